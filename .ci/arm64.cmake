@@ -1,5 +1,5 @@
-# CMake toolchain file: cross-compiles for arm64 with Debian's packages of that architecture; qemu-user, where it is
-# installed, runs what the build itself has to run.
+# CMake toolchain file: cross-compiles for arm64 with Debian's packages of that architecture. qemu-user, if installed, runs
+# the programs that the build itself executes.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

@@ -1,7 +1,7 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
-# arm64: cross-compiled in a Debian 12 root, run by qemu-user there.
+# arm64: cross-compiled and run with qemu-user in a Debian 12 root.
 
-# in_arm64 PART...: these parts of .ci/arm64; counts its tests
+# in_arm64 PART...: runs parts of .ci/arm64 and counts its tests.
 in_arm64() {
   local log=build/check/arm64.log line
   .ci/chroot bookworm --name arm64 --arch arm64 .ci/arm64 "$@" 2>&1 | tee "$log" | grep -E '^arm64: ' || true
@@ -11,7 +11,7 @@ in_arm64() {
   failed=$((failed + BASH_REMATCH[2]))
 }
 
-# a row of ./check --long hashes: the golden scenes with one thread and with two
+# Adds a row to the table of ./check --long hashes: the golden scenes with one and two threads.
 hash_arm64() {
   local label="Debian 12 (bookworm), arm64, qemu-aarch64"
   if [ "$(id -u)" != 0 ] || ! command -v debootstrap >/dev/null; then
@@ -22,7 +22,7 @@ hash_arm64() {
   hash_differs_by_design "$label" "Debian's Bullet for arm64 contains fused multiply-adds, see [arm64.md](arm64.md)"
 }
 
-# each scene's hash on arm64 beside this machine's
+# Writes a table with each scene's hash on arm64 and on this machine.
 compare_hashes() {
   local name scene played here table=build/check/arm64_hashes.txt
   : >"$table"
@@ -34,9 +34,9 @@ compare_hashes() {
   say "hashes of arm64 and $(uname -m): $table"
 }
 
-# --long arm64: cross-compiled for arm64; tests of OSC, base, Lua and the command line, and scenes, by qemu-user
+# --long arm64: a cross-compiled arm64 build: tests of OSC, base, Lua and the command line, and scenes, with qemu-user
 long_arm64() {
   in_arm64 build tests play && build_program && compare_hashes
 }
-# --long arm64_sim: the tests of sim on arm64 by qemu-user
+# --long arm64_sim: the tests of sim on arm64 with qemu-user
 long_arm64_sim() { in_arm64 build sim; }

@@ -1,25 +1,25 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2013,SC2154
-# The steps of ./check. Each one adds to passed and failed; summary() tells them in the closing line.
+# The steps of ./check. Each one adds to passed and failed; summary() prints both in the last line.
 
 passed=0
 failed=0
-# what runs under which sanitizer: the address sanitizer takes all but tests that only read files;
-# the thread sanitizer takes the rooms where threads meet
+# Modules per sanitizer: the address sanitizer runs all except those that only read files, and the long tests; the thread
+# sanitizer runs those that use several threads,
 asan_leaves_out="architecture first_minutes long"
 tsan_takes="base engine osc console query"
-# and all of them at once in a window
-tsan_takes_of_app=Window.AFloodReloadsAndHandsTogether
-# of one thread
-tsan_leaves_out_tests='PresetText.*:PanicButton.*:History.EveryBehavior*:History.WithMany*:History.StepsBack*:History.ItGoesAsFar*'
-tsan_leaves_out_tests+=:History.ScriptsGoTheSameWay:Take.AWildShow*:SeedWire.EveryAddress*
-# long predictions: the release build's runs test them; shorter tests take the same code through the address sanitizer
-asan_leaves_out_tests=All/PointGridLanes.EachPairOnce/*:All/PointGridLanes.Finds*/0:JointRows.StopCfm*:Plots.AreTodays:Flock.Without*
-asan_leaves_out_tests+=:Scenes.ABehaviorOfAnArm*:Scenes.AGustBends*:Scenes.TheSwarmComes*:Bench.TwoThreads*
-asan_leaves_out_tests+=:PanicButton.EveryShow*:History.EveryBehavior*:History.WithMany*:History.StepsBack*
-asan_leaves_out_tests+=:PresetText.AHundredMegabytes:Twins.MoveAlike/al*:Twins.MoveAlike/sep*:Twins.MoveAlike/r*:Twins.MoveAlike/vol*
+# and a test that uses all of these in a window.
+tsan_takes_of_app=Window.HandlesFloodReloadsAndInputTogether
+# long tests that use one thread only
+tsan_leaves_out_tests='PresetText.*:PanicButton.*:History.RewindIsExactForEveryBehavior*:History.RewindIsExactWithMany*:History.StepsBack*:History.RewindsAsFar*'
+tsan_leaves_out_tests+=:History.RewindIsExactForScripts:Take.ReplaysARandom*:LegacyWire.EveryAddress*
+# long tests, which run in the release build; shorter ones execute the same code with the address sanitizer
+asan_leaves_out_tests=All/PointGridVectors.FindsEachPairOnce/*:All/PointGridVectors.FindsTheSame*/0:JointRows.StopCfm*:Plots.AreUpToDate:Flock.Without*
+asan_leaves_out_tests+=:Scenes.ABehaviorOfAnArm*:Scenes.AGustBends*:Scenes.TheSwarmAligns*:Bench.TwoThreads*
+asan_leaves_out_tests+=:PanicButton.EveryShow*:History.RewindIsExactForEveryBehavior*:History.RewindIsExactWithMany*:History.StepsBack*
+asan_leaves_out_tests+=:PresetText.ReadsAHundredMegabytes:Twins.MoveAlike/al*:Twins.MoveAlike/sep*:Twins.MoveAlike/r*:Twins.MoveAlike/vol*
 
 pass() { passed=$((passed + ${1:-1})); }
-# fail TEXT LOG: one failed check, with the end of its log
+# fail TEXT LOG: counts a failed check and prints the end of its log.
 fail() {
   failed=$((failed + 1))
   say "FAILED: $1"
@@ -32,10 +32,10 @@ summary() {
   exit
 }
 
-# a sanitizer's shadow memory wants addresses that strong address randomisation may take
+# Runs a command without address space randomization, which may conflict with a sanitizer's shadow memory.
 fixed_addresses() { if setarch -R true 2>/dev/null; then setarch -R "$@"; else "$@"; fi; }
 
-# build FOLDER TARGET...: quiet unless it fails
+# build FOLDER TARGET...: builds; prints errors only.
 build() {
   local folder=$1 log begin=$SECONDS
   shift
@@ -50,17 +50,17 @@ build() {
   fi
 }
 
-# rooms whose tests take longest: they begin first, in two halves, so that no core waits for one of them at the end
-slow_rooms="app engine scenes script sim"
+# The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
+slow_modules="app engine scenes script sim"
 
-# begin_tests FOLDER ROOM...: runs test_ROOM of that build, one a core; each part leaves a log, and its exit code and
-# seconds
+# begin_tests FOLDER MODULE...: runs test_MODULE of that build, one per core. Each part writes a log, and its exit code and
+# duration in seconds.
 begin_tests() {
-  local folder=$1 room first=() rest=()
+  local folder=$1 module first=() rest=()
   shift
-  for room in "$@"; do
-    case " $slow_rooms " in *" $room "*) first+=("$room 0 2" "$room 1 2") ;; *) rest+=("$room 0 1") ;; esac
-    rm -f "build/check/${folder//\//_}_test_$room".*.end
+  for module in "$@"; do
+    case " $slow_modules " in *" $module "*) first+=("$module 0 2" "$module 1 2") ;; *) rest+=("$module 0 1") ;; esac
+    rm -f "build/check/${folder//\//_}_test_$module".*.end
   done
   export -f fixed_addresses
   printf '%s\n' "${first[@]}" "${rest[@]}" | grep . | test_folder=$folder test_without=${test_without-} \
@@ -72,7 +72,7 @@ begin_tests() {
     echo "$? $((SECONDS - begin))" >"${log%.log}.end"'
 }
 
-# gather_parts LOG: one log of a program's parts, those that went wrong at its end; sets rc and seconds
+# gather_parts LOG: concatenates the logs of a program's parts, failed ones last; sets rc and seconds.
 gather_parts() {
   local end code took good=() bad=()
   rc=0 seconds=0
@@ -84,18 +84,18 @@ gather_parts() {
   cat "${good[@]}" "${bad[@]}" >"$1"
 }
 
-# run_tests FOLDER ROOM...: runs those tests and counts them; a skipped one counts as failed
+# run_tests FOLDER MODULE...: runs and counts tests; a skipped test counts as failed.
 run_tests() {
-  local folder=$1 room log ok bad rc seconds built=()
+  local folder=$1 module log ok bad rc seconds built=()
   shift
-  for room in "$@"; do
-    if [ -x "$folder/test_$room" ]; then built+=("$room"); else fail "$folder/test_$room was not built"; fi
+  for module in "$@"; do
+    if [ -x "$folder/test_$module" ]; then built+=("$module"); else fail "$folder/test_$module was not built"; fi
   done
   [ ${#built[@]} != 0 ] || return
   begin_tests "$folder" "${built[@]}"
-  for room in "${built[@]}"; do
-    log=build/check/${folder//\//_}_test_$room.log
-    gather_parts "$log" || { fail "$folder/test_$room did not run"; continue; }
+  for module in "${built[@]}"; do
+    log=build/check/${folder//\//_}_test_$module.log
+    gather_parts "$log" || { fail "$folder/test_$module did not run"; continue; }
     ok=$(grep -c '\[       OK \]' "$log")
     bad=$(grep -cE '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log")
     pass "$ok"
@@ -104,32 +104,32 @@ run_tests() {
       grep -E '\[  (FAILED  |SKIPPED )\] .* \([0-9]+ ms\)$' "$log" | sed 's/^/    /'
       grep -B1 -A8 ': Failure$' "$log" | head -30 | sed 's/^/    /'
     elif [ "$rc" != 0 ]; then
-      # it crashed, hung, or a sanitizer spoke after the last test
-      fail "$folder/test_$room ended with code $rc (124 and 137: too slow)" "$log"
+      # it crashed, hung, or a sanitizer reported an error after the last test
+      fail "$folder/test_$module ended with code $rc (124 and 137: too slow)" "$log"
     elif [ "$ok" = 0 ]; then
-      fail "$folder/test_$room holds no test"
+      fail "$folder/test_$module has no test"
     fi
-    say "$folder/test_$room: $ok passed, $((bad > 0 ? bad : rc != 0)) failed, $seconds s"
+    say "$folder/test_$module: $ok passed, $((bad > 0 ? bad : rc != 0)) failed, $seconds s"
   done
 }
 
-# the folders of tests/ that make a test program, without those named in the arguments
-test_rooms() {
-  local folder room
+# Prints the folders of tests/ that have a test program, without those in the arguments.
+test_modules() {
+  local folder module
   for folder in tests/*/; do
-    room=$(basename "$folder")
-    case " bench fuzz faults $* " in *" $room "*) continue ;; esac
-    [ -z "$(find "$folder" -name '*_test.cpp' -print -quit)" ] || printf '%s ' "$room"
+    module=$(basename "$folder")
+    case " bench fuzz faults $* " in *" $module "*) continue ;; esac
+    [ -z "$(find "$folder" -name '*_test.cpp' -print -quit)" ] || printf '%s ' "$module"
   done
 }
 
-# while the tests run, the default ports are in use
+# Occupies the default ports while the tests run.
 step_release() {
   local holder
   configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
   build build || return
   exec {holder}> >(exec python3 .ci/hold_ports.py)
-  run_tests build $(test_rooms long)
+  run_tests build $(test_modules long)
   exec {holder}>&-
 }
 
@@ -141,7 +141,7 @@ sanitizer_options() {
   export ASAN_SYMBOLIZER_PATH
 }
 
-# the newest clang++ that comes with its sanitizers and libFuzzer
+# Prints the newest clang++ with sanitizers and libFuzzer.
 clang() {
   local found
   for found in $(compgen -c clang++ | grep -xE 'clang\+\+(-[0-9]+)?' | sort -u -t- -k2 -rV); do
@@ -151,7 +151,7 @@ clang() {
       return
     fi
   done
-  refuse 3 "there is no clang++ with sanitizers and libFuzzer in PATH." "apt-get install clang libclang-rt-dev"
+  die 3 "there is no clang++ with sanitizers and libFuzzer in PATH." "apt-get install clang libclang-rt-dev"
 }
 
 configure_asan() {
@@ -160,7 +160,7 @@ configure_asan() {
   configure asan build/asan "-DCMAKE_CXX_COMPILER=$compiler"
 }
 
-# at most 40 s of what `--long valgrind` does in full
+# A short form of `--long valgrind`: 40 s at most.
 step_valgrind() {
   build_program || return
   memcheck_scenes 12 < <(memory_scenes)
@@ -169,25 +169,25 @@ step_valgrind() {
 step_asan() {
   sanitizer_options
   configure_asan
-  local rooms=($(test_rooms $asan_leaves_out))
-  build build/asan "${rooms[@]/#/test_}" && test_without=$asan_leaves_out_tests run_tests build/asan "${rooms[@]}"
+  local modules=($(test_modules $asan_leaves_out))
+  build build/asan "${modules[@]/#/test_}" && test_without=$asan_leaves_out_tests run_tests build/asan "${modules[@]}"
 }
 
 step_tsan() {
   sanitizer_options
   configure tsan build/tsan
-  local rooms=() room
-  for room in $tsan_takes; do
-    case " $(test_rooms)" in *" $room "*) rooms+=("$room") ;; esac
+  local modules=() module
+  for module in $tsan_takes; do
+    case " $(test_modules)" in *" $module "*) modules+=("$module") ;; esac
   done
-  build build/tsan "${rooms[@]/#/test_}" test_app || return
-  test_without=$tsan_leaves_out_tests run_tests build/tsan "${rooms[@]}"
+  build build/tsan "${modules[@]/#/test_}" test_app || return
+  test_without=$tsan_leaves_out_tests run_tests build/tsan "${modules[@]}"
   test_only=$tsan_takes_of_app run_tests build/tsan app
 }
 
-# run_fuzz NAME ARGUMENTS...: replays the corpus, then looks for more; what it finds stays in build/check/fuzz. Leaves a
-# log and its exit code. Leaks are looked for once, at the end: a world that lives on grows, and libFuzzer would search
-# it after every input
+# run_fuzz NAME ARGUMENTS...: replays the corpus, then generates inputs; interesting ones stay in build/check/fuzz. Writes a
+# log and the exit code. Leak detection runs once at the end, because libFuzzer would run it after every input that makes
+# the world grow.
 run_fuzz() {
   local name=$1 short=${1%_fuzz} log=build/check/$1.log found=build/check/fuzz/$1 seeds=() dictionary=()
   shift
@@ -204,7 +204,7 @@ count_fuzz() {
   read -r rc <"${log%.log}.end"
   if [ "$rc" = 0 ]; then
     pass
-    say "$1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs without a fault"
+    say "$1: $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") inputs without an error"
   else
     fail "$1 (the input is in build/check/fuzz/$1)" "$log"
   fi
@@ -212,11 +212,11 @@ count_fuzz() {
 
 fuzz_names() { (cd tests/fuzz 2>/dev/null && ls ./*_fuzz.cpp 2>/dev/null) | sed 's|^\./||; s|\.cpp$||'; }
 
-# how many inputs a target takes in at most about fifteen seconds
+# Prints the number of inputs that a target processes in about 15 seconds.
 fuzz_runs() { case $1 in osc*) echo 90000 ;; script*) echo 1100 ;; websocket*) echo 2600 ;; *) echo 15000 ;; esac; }
 
-# as alike as it can be: one seed, a number of runs, nothing from the runs before; the time is a cap for a slow machine
-# alone. (In a live world Lua's collector stops by the clock, so the OSC target's runs differ a little.)
+# Repeatable as far as possible: one seed, a fixed number of runs, no inputs of earlier runs; the time limit is for slow
+# machines only. (Lua's garbage collector has a time limit, so runs of the OSC target differ slightly.)
 step_fuzz() {
   local names name
   sanitizer_options
@@ -224,7 +224,7 @@ step_fuzz() {
   [ -n "$names" ] || { say "no fuzz targets"; return; }
   [ -e build/asan/build.ninja ] || configure_asan
   build build/asan $names || return
-  # libFuzzer writes to the first folder that it is given
+  # libFuzzer writes to the first folder in its arguments
   rm -rf build/check/fuzz_new
   (cd build/check && rm -f ./*_fuzz.end)
   export -f fixed_addresses run_fuzz fuzz_runs
@@ -234,7 +234,7 @@ step_fuzz() {
   for name in $names; do count_fuzz "$name"; done
 }
 
-# each script names what it needs in a line "# needs: PROGRAM..."
+# Runs the scripts of a folder. A script declares required programs in a line "# needs: PROGRAM...".
 scripts() {
   local script program left_out=()
   for script in "$1"/*.sh; do
@@ -245,13 +245,13 @@ scripts() {
     if bash "$script" >"build/check/$(basename "$script").log" 2>&1; then pass; else
       fail "$script" "build/check/$(basename "$script").log"; fi
   done
-  say "left out: ${left_out[*]:-nothing}"
+  say "skipped: ${left_out[*]:-nothing}"
 }
 
-# our C++ files, in the index or new
+# Prints the C++ files of the project, tracked or new.
 cpp_files() { git ls-files -co --exclude-standard -- 'src/*.cpp' 'src/*.h' 'tests/*.cpp' 'tests/*.h'; }
 
-# what differs from the main branch, or, on the main branch, from the commit before
+# Prints the files that differ from the main branch, or on the main branch from the previous commit.
 changed_files() {
   local base
   base=$(git merge-base HEAD origin/main 2>/dev/null)
@@ -259,7 +259,8 @@ changed_files() {
   { git diff --name-only --diff-filter=d "$base"; git ls-files -o --exclude-standard; } | grep -E '^(src|tests)/.*\.cpp$' | sort -u
 }
 
-# files, a line each -> some files of one folder in a line; built-in behaviours have names in common, as in a unity build
+# Groups files, one per line, into lines of up to six files of one folder. Built-in behaviors are not grouped, because
+# their names collide, as in a unity build.
 lint_groups() {
   awk '{ folder = $0; sub("/[^/]*$", "", folder)
          if (folder != last || count == 6 || folder == "src/behaviors") { if (NR > 1) print ""; count = 0 }
@@ -268,14 +269,16 @@ lint_groups() {
 
 step_style() {
   local log=build/check/format.log files
-  git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint left out"; return; }
-  # another version formats differently and warns of other things
+  if .ci/words.py >build/check/words.log 2>&1; then pass; else fail "wording" build/check/words.log; fi
+  if python3 tests/mutations/plant.py >build/check/plant.log 2>&1; then pass; else fail "mutations" build/check/plant.log; fi
+  git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint skipped"; return; }
+  # other versions format differently and have other warnings
   if ! command -v clang-format-14 >/dev/null || ! command -v clang-tidy-14 >/dev/null; then
-    say "no clang-format-14 and clang-tidy-14 (Debian 12 has them): format and lint left out"
+    say "no clang-format-14 and clang-tidy-14 (Debian 12 has them): format and lint skipped"
     return
   fi
   if cpp_files | xargs -r clang-format-14 --dry-run -Werror >"$log" 2>&1; then pass; else
-    fail "format; cure: clang-format-14 -i on $(sed -n 's/^\([^:]*\):.*error:.*/\1/p' "$log" | sort -u | tr '\n' ' ')"
+    fail "format; fix: clang-format-14 -i on $(sed -n 's/^\([^:]*\):.*error:.*/\1/p' "$log" | sort -u | tr '\n' ' ')"
   fi
   case ${LIMBER_TIDY:-changed} in all) files=$(cpp_files | grep '\.cpp$') ;; off) files= ;; *) files=$(changed_files) ;; esac
   [ -n "$files" ] || return

@@ -1,20 +1,20 @@
 # shellcheck shell=bash disable=SC2154
-# Other Debian releases, each in a root that .ci/chroot makes: as root, with the network for Debian's packages. The parts
-# of a release share its root with what is installed and built there; trixie_run and sid begin with a bare one.
+# Tests on other Debian releases, in roots made by .ci/chroot; need root, and network access for packages. The parts of a
+# release share a root with its packages and builds; trixie_run and sid start with a minimal root.
 
-# in_debian RELEASE NAME OPTION... -- COMMAND...: COMMAND in that release; leaves a log
+# in_debian RELEASE NAME OPTION... -- COMMAND...: runs COMMAND in that release and writes a log.
 in_debian() {
   local release=$1 log=build/check/debian_$1_$2.log
   shift 2
   .ci/chroot "$release" "$@" </dev/null >"$log" 2>&1
 }
 
-# passes_in_debian RELEASE NAME OPTION... -- COMMAND...: one check, passed if COMMAND ends with 0
+# passes_in_debian RELEASE NAME OPTION... -- COMMAND...: counts one check, which passes if COMMAND exits with 0.
 passes_in_debian() {
   if in_debian "$@"; then pass; else fail "$2 on Debian $1" "build/check/debian_$1_$2.log"; fi
 }
 
-# check_in_debian RELEASE NAME STEPS: ./check --only STEPS there, counted as if it ran here
+# check_in_debian RELEASE NAME STEPS: runs ./check --only STEPS in that release and adds its counts.
 check_in_debian() {
   local log=build/check/debian_$1_$2.log counts
   in_debian "$1" "$2" -- ./check --only "$3"
@@ -29,7 +29,7 @@ check_in_debian() {
 
 played='build/limber play --headless --fast --ticks 120 --hash --osc-in off --osc-out off --query off'
 
-# --long trixie_run: ./run on a bare Debian 13
+# --long trixie_run: ./run on a minimal Debian 13
 long_trixie_run() {
   passes_in_debian trixie run --fresh -- ./run --build-only
   passes_in_debian trixie play -- sh -c "$played"
@@ -40,7 +40,7 @@ long_trixie_release() { check_in_debian trixie release style,release,valgrind; }
 long_trixie_asan() { check_in_debian trixie asan asan,fuzz; }
 # --long trixie_tsan: the thread sanitizer's tests on Debian 13
 long_trixie_tsan() { check_in_debian trixie tsan tsan; }
-# --long sid: ./run on a bare Debian sid, whose compilers and libraries are newer
+# --long sid: ./run on a minimal Debian sid, with newer compilers and libraries
 long_sid() {
   passes_in_debian sid run --fresh -- ./run --build-only
   passes_in_debian sid play -- sh -c "$played"

@@ -20,13 +20,13 @@ fault_build() {
   cmake --build "$folder" -j "$(jobs)" --target "$@"
 }
 
-# kind_and_program WORD: "test_sim" gives "plain:test_sim", "tsan:test_base" itself
+# kind_and_program WORD: prints "plain:test_sim" for "test_sim"; a word with a kind, such as "tsan:test_base", is unchanged
 kind_and_program() { case $1 in *:*) echo "$1" ;; *) echo "plain:$1" ;; esac; }
 
-# programs: all "kind:program" of the list, each once
+# Prints all "kind:program" of the list, each once.
 programs() { local word; for word in $(cut -f3 "$list" | tr ';' '\n' | cut -d'|' -f1 | sort -u); do kind_and_program "$word"; done; }
 
-# build_all: builds the programs of the list
+# Builds the programs of the list.
 build_all() {
   local kind rc=0
   for kind in $(programs | cut -d: -f1 | sort -u); do
@@ -38,7 +38,8 @@ build_all() {
   return $rc
 }
 
-# passes KIND:PROGRAM FILTER: runs it until its first failure; "valgrind:joints" plays that scene of tests/memory
+# passes KIND:PROGRAM FILTER: runs a test program until its first failure; "valgrind:joints" plays that scene of tests/memory
+# under valgrind
 passes() {
   local name=${1#*:}
   case $1 in valgrind:*)
@@ -53,12 +54,12 @@ passes() {
 
 verdict_line() { printf '%-40s %-9s %s\n' "$@" | tee -a "$table"; }
 
-# first_failure LOG: the test that noticed
+# first_failure LOG: prints the first failed test
 first_failure() {
   grep -m1 -oE 'FAILED  \] [A-Za-z0-9_./]+|SUMMARY: .*|uninitialised value' "$1" | sed 's/FAILED  \] //' || echo "ended or timed out"
 }
 
-# try_mutation NAME TESTS FAULT: tests that pass mean that none notices it
+# try_mutation NAME TESTS FAULT: runs the tests with a mutation; it survives if all pass
 try_mutation() {
   local name=$1 fault=$3 log=build/check/fault_$1.log test word filter
   : >"$log"
@@ -71,7 +72,7 @@ try_mutation() {
   verdict_line "$name" SURVIVED "no test noticed: $fault"
 }
 
-# try_alone NAME TESTS FAULT NAMES...: a mutation of a file that is no C++, built and tried by itself
+# try_alone NAME TESTS FAULT NAMES...: builds and tries a mutation of a file that is not C++
 try_alone() {
   local name=$1 tests=$2 fault=$3
   shift 3
@@ -83,7 +84,7 @@ try_alone() {
   fi
 }
 
-# faults NAME...: all mutations, or those whose names start with one of these
+# faults NAME...: tries all mutations, or those with a name that starts with one of these.
 faults() {
   local word log=build/check/fault_baseline.log name how tests fault begin=$SECONDS
   sanitizer_options
@@ -93,12 +94,12 @@ faults() {
   mkdir -p "$copy"
   # tests look for extra data beside the checkout, so it is beside the copy as well
   [ ! -e ../shared ] || ln -sfn "$(realpath ../shared)" build/faults/shared
-  python3 tests/mutations/plant.py --folder "$copy" --table "$list" -- "$@" || refuse 2 "the mutations can't be planted" \
+  python3 tests/mutations/plant.py --folder "$copy" --table "$list" -- "$@" || die 2 "the mutations can't be planted." \
     "see above; 'python3 tests/mutations/plant.py' checks all entries."
   say "building $(programs | tr '\n' ' ')with $(wc -l <"$list") mutations"
   build_all >"$log" 2>&1 || { fail "the build with all mutations" "$log"; return; }
   say "built in $((SECONDS - begin)) s"
-  # without a mutation all pass, or a failure would prove nothing
+  # all tests must pass without a mutation; otherwise a failure would prove nothing
   for word in $(programs); do
     passes "$word" >>"$log" 2>&1 || { fail "$word fails without a mutation" "$log"; return; }
   done

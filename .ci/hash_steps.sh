@@ -1,9 +1,9 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
-# The golden scenes on every platform that this machine can build or emulate, in one table: docs/hashes.md.
+# Compares the golden scenes on all platforms that this machine can build or emulate, in a table: docs/hashes.md.
 
 hash_folder=build/check/hashes
 
-# row PLATFORM RUN-COMMAND...: plays the scenes; LIMBER_GOLDEN_OUT names the file for the lines
+# hash_row PLATFORM COMMAND...: plays the scenes by COMMAND, which writes lines to the file in LIMBER_GOLDEN_OUT.
 hash_row() {
   local platform=$1 file
   shift
@@ -14,7 +14,7 @@ hash_row() {
   [ -s "$file.lines" ] || printf 'it did not play: %s\n' "$(grep -vE '^\s*$' "$file.log" | tail -n 1 | cut -c1-120)" >"$file.missing"
 }
 
-# left_out PLATFORM REASON
+# hash_left_out PLATFORM REASON: records that a platform was skipped.
 hash_left_out() {
   local file
   file=$hash_folder/$(printf '%s' "$1" | tr -c 'a-zA-Z0-9' _)
@@ -23,7 +23,7 @@ hash_left_out() {
   printf '%s\n' "$2" >"$file.missing"
 }
 
-# hash_differs_by_design PLATFORM REASON: its hashes may differ from the golden ones, but not with the number of threads
+# hash_differs_by_design PLATFORM REASON: its hashes may differ from the golden ones, but not between numbers of threads.
 hash_differs_by_design() {
   printf '%s\n' "$2" >"$hash_folder/$(printf '%s' "$1" | tr -c 'a-zA-Z0-9' _).own"
 }
@@ -33,7 +33,7 @@ golden_filter_one='Scenes/*_1:GoldenShow.*'
 
 cpu_has() { grep -qw -- "$1" /proc/cpuinfo; }
 
-# hash_build LABEL COMPILER ARCHITECTURE: plays it as a row
+# hash_build LABEL COMPILER ARCHITECTURE: builds and plays the scenes, as a row of the table.
 hash_build() {
   local label=$1 compiler=$2 architecture=$3 folder
   folder=build/hashes/${compiler##*/}_$architecture
@@ -59,7 +59,7 @@ hash_compilers() {
   done
 }
 
-# the same program with another library or processor beneath it
+# Plays the scenes with another math library or processor.
 hash_surroundings() {
   local program=build/test_golden here
   here=$(system_name)
@@ -71,7 +71,7 @@ hash_surroundings() {
     hash_left_out "glibc without FMA" "GLIBC_TUNABLES changes no result of the math library here"
   fi
   if gcc -O1 -fno-builtin -shared -fPIC -o $hash_folder/other_libm.so .ci/other_libm.c 2>$hash_folder/build.log; then
-    hash_row "$here, a math library whose results are one unit off (.ci/other_libm.c)" \
+    hash_row "$here, a math library with results off by one unit (.ci/other_libm.c)" \
       env LD_PRELOAD=$PWD/$hash_folder/other_libm.so $program --gtest_filter="$golden_filter"
   fi
   if command -v qemu-x86_64 >/dev/null; then
@@ -82,7 +82,7 @@ hash_surroundings() {
   fi
 }
 
-# a number that depends on each bit of what the C library's functions return
+# Prints a hash of results of the C library's math functions.
 hash_probe() {
   local program=$hash_folder/probe
   [ -x $program ] || gcc -O1 -fno-builtin -x c -o $program - -lm <<'TEXT'
@@ -104,7 +104,7 @@ TEXT
   $program
 }
 
-# hash_lines_of COMMAND...: what it prints, and the lines of scenes in LIMBER_GOLDEN_OUT
+# hash_lines_of COMMAND...: prints its output and writes its "golden:" lines to LIMBER_GOLDEN_OUT.
 hash_lines_of() {
   local all=$LIMBER_GOLDEN_OUT.all
   "$@" >"$all"
@@ -113,7 +113,7 @@ hash_lines_of() {
   rm -f "$all"
 }
 
-# hash_chroot RELEASE LABEL
+# hash_chroot RELEASE LABEL: builds and plays the scenes in a Debian root.
 hash_chroot() {
   local label=$2
   if [ "$(id -u)" != 0 ] || ! command -v debootstrap >/dev/null; then
@@ -123,7 +123,7 @@ hash_chroot() {
   hash_row "$label" hash_lines_of .ci/chroot "$1" .ci/golden lines
 }
 
-# --long hashes: the golden scenes with each compiler, processor and release that is at hand; writes docs/hashes.md
+# --long hashes: the golden scenes with each available compiler, processor and release; writes docs/hashes.md
 long_hashes() {
   mkdir -p $hash_folder && rm -f $hash_folder/*
   configure release build -DLIMBER_TESTS=ON

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/hashes.md from what each platform printed: hash_table.py FOLDER PAGE.
+"""Writes the table of docs/hashes.md from the results of all platforms: hash_table.py FOLDER PAGE.
 
-FOLDER has for each platform NAME.name (what it is called) and either NAME.lines ("scene ticks hash threads") or
-NAME.missing (why it was left out). NAME.own says why a platform has hashes of its own.
+FOLDER has for each platform NAME.name (its title) and either NAME.lines ("scene ticks hash threads") or NAME.missing
+(the reason for skipping it). NAME.own has the reason if a platform is expected to have different hashes.
 Exit code 1: a hash differs from tests/golden/hashes.txt (or, with NAME.own, between numbers of threads), or a scene is
 missing.
 """
@@ -62,12 +62,12 @@ def main():
                     differing.append((platform, threads, name, " ".join(expected.get(name, ("?",))), got))
         rows.append((platform, cells))
     commit = subprocess.run(["git", "rev-parse", "--short=10", "HEAD"], capture_output=True, text=True).stdout.strip()
-    text = [MARK, "", f"Commit {commit}, {datetime.date.today().isoformat()}. Each cell: golden hashes that came out "
-            "equal, of all (the scenes and the recorded show).", "",
+    text = [MARK, "", f"Commit {commit}, {datetime.date.today().isoformat()}. Each cell: number of equal golden hashes "
+            "of all (the scenes and the recorded show).", "",
             "| platform | 1 thread | 2 threads | 3 threads |", "|---|---|---|---|"]
     text += ["| " + " | ".join([platform] + cells) + " |" for platform, cells in rows]
     if notes:
-        text += [""] + [f"{platform}: hashes of its own, equal with each number of threads. {why}." for platform, why in notes]
+        text += [""] + [f"{platform}: different hashes, equal for all numbers of threads. {why}." for platform, why in notes]
     text += ["", "## Differences", ""]
     if differing:
         text += ["| platform | threads | scene | expected | here |", "|---|---|---|---|---|"]

@@ -1,4 +1,4 @@
-"""Holds the ports 9000 to 9010 until its input ends, so that a test that opens a default port fails."""
+"""Occupies the ports 9000 to 9010 until its input ends, so that a test that opens a default port fails."""
 import socket
 import sys
 
@@ -15,5 +15,5 @@ for family, address in ((socket.AF_INET, "0.0.0.0"), (socket.AF_INET6, "::")):
                     taken.listen(1)
                 held.append(taken)
             except OSError:
-                pass  # another program has it, or there is no IPv6
+                pass  # used by another program, or no IPv6
 sys.stdin.read()

@@ -1,11 +1,11 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
 # The parts of ./check --long. A part is a function long_NAME in a file *_steps.sh, with a comment "# --long NAME: …" for
-# the help, or a fuzz target. It takes an hour at most. A part that passed is left out when it is asked for again with
-# the same files, so that an interrupted run goes on where it was.
+# the help, or a fuzz target. It takes an hour at most. Parts that passed with the same files are skipped, so that an
+# interrupted run can be continued.
 
 part_names() { compgen -A function long_ | sed 's/^long_//'; fuzz_names; }
 
-# the lines of the help
+# Prints the lines of the help.
 describe_parts() {
   sed -n 's/^# --long \([a-z0-9_]*\): \(.*\)/\1|\2/p' .ci/*_steps.sh | while IFS='|' read -r name text; do
     printf '  %-16s %s\n' "$name" "$text"
@@ -13,17 +13,17 @@ describe_parts() {
   printf '  %-16s %s\n' "NAME_fuzz" "30 minutes of a fuzz target: $(fuzz_names | tr '\n' ' ')"
 }
 
-# the commit; fails when the files differ from it, since then nothing can be said about them later
+# Prints the commit; fails if files differ from it, because results would not belong to a commit.
 clean_commit() { [ -z "$(git status --porcelain 2>&1)" ] && git rev-parse --short=10 HEAD; }
 
-# run_part NAME: leaves a stamp with the commit, and the folder of robots, when all of it passed
+# run_part NAME: runs a part; if it passes, writes a stamp file with the commit and the folder of robots.
 run_part() {
   local stamp=build/check/long/$1.passed commit before=$failed begin=$SECONDS
   commit=$(clean_commit) && commit+=${LIMBER_ROBOTS:+ $LIMBER_ROBOTS} || commit=none
   mkdir -p build/check/long
   if [ "$commit" != none ] && [ "$(cat "$stamp" 2>/dev/null)" = "$commit" ]; then
     pass
-    say "$1: passed before at $commit (to run it again, remove $stamp)"
+    say "$1: passed already at $commit (to run it again, remove $stamp)"
     return
   fi
   rm -f "$stamp"
@@ -36,16 +36,16 @@ run_part() {
   fi
 }
 
-# step_long NAME...: these parts; all without a name
+# step_long NAME...: runs these parts, or all without a name.
 step_long() {
   local name
   sanitizer_options
-  say "--long: figures go to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
+  say "--long: add the results to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
   [ $# != 0 ] || set -- $(part_names)
   for name; do run_part "$name"; done
 }
 
-# what one finds stays in build/check/fuzz/NAME, where the next run begins
+# New inputs stay in build/check/fuzz/NAME, where the next run continues.
 fuzz_at_length() {
   [ -e build/asan/build.ninja ] || configure_asan
   build build/asan "$1" || return
@@ -56,24 +56,24 @@ fuzz_at_length() {
   count_fuzz "$1"
 }
 
-# tests_at_length FILTER: these tests of tests/long
+# tests_at_length FILTER: runs these tests of tests/long.
 tests_at_length() {
   configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
   build build test_long && test_seconds=3600 test_only=$1 run_tests build long
 }
 
-# --long processes: twenty processes, paced, fast, pinned, with and without streams and address randomization
+# --long processes: equal results of twenty processes: paced, fast, pinned, with and without streams and ASLR
 long_processes() { tests_at_length 'LongDeterminism.*'; }
-# --long flood: as fast as three senders can
+# --long flood: three senders at maximum rate
 long_flood() { tests_at_length 'Flood.*'; }
-# --long soak: memory in an hour of stage time, and a flood of questions
+# --long soak: memory use in an hour of simulated time, and a flood of queries
 long_soak() { tests_at_length 'Soak.*'; }
-# --long crash: two hundred killed shows
+# --long crash: recovery of 200 killed sessions
 long_crash() { tests_at_length 'LongCrash.*'; }
-# --long takes: takes of ten wild minutes, and of many seeds
+# --long takes: takes of ten minutes with random input, and of many random seeds
 long_takes() { tests_at_length 'LongTake.*'; }
 # --long lua_difference: a million random Lua programs, compiled against interpreted (LIMBER_LUA_PROGRAMS)
-# What is done is noted with the commit, so that an interrupted run goes on from there.
+# The progress is stored with the commit, so that an interrupted run can be continued.
 long_lua_difference() {
   local note=build/check/long/lua_difference.seed commit first=1 seed programs=${LIMBER_LUA_PROGRAMS:-1000000}
   commit=$(clean_commit) || commit=none
@@ -88,9 +88,9 @@ long_lua_difference() {
   unset LIMBER_LUA_SEED LIMBER_LUA_PROGRAMS LIMBER_LUA_PROGRESS
   rm -f "$note.commit"
 }
-# --long math: the math functions against MPFR, ten million arguments of each and every float
+# --long math: the math functions against MPFR, ten million arguments each, and all floats
 long_math() { tests_at_length 'LongMath*'; }
-# --long environment: a show among full disks, hung displays, floods and so on; writes docs/environments.md
+# --long environment: a session with full disks, hung displays, floods and so on; writes docs/environments.md
 long_environment() {
   configure release build
   build build limber || return

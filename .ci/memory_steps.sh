@@ -1,9 +1,9 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
-# Uninitialized memory: the scenes of tests/memory under valgrind, in builds that initialize locals differently, and in
-# twenty processes each. (glm could initialize its types, by GLM_FORCE_CTOR_INIT; but then its copy constructors are not
-# trivial, and checkpoints copy vectors as bytes.)
+# Tests for uninitialized memory: the scenes of tests/memory under valgrind, in builds that initialize locals differently,
+# and in twenty processes each. (glm could initialize its types with GLM_FORCE_CTOR_INIT, but then its copy constructors
+# are not trivial, and checkpoints copy vectors as bytes.)
 
-# the scenes with their options, a line each: NAME SCENE OPTION...
+# Prints the scenes with their options, one per line: NAME SCENE OPTION...
 memory_scenes() {
   cat <<'TEXT'
 joints tests/memory/joints.lua
@@ -13,7 +13,7 @@ contacts_iterative tests/memory/contacts.lua --set /scene/iterative=1
 TEXT
 }
 
-# with several threads, and the shows that come with the program
+# The same with several threads, and the scenes in scripts/.
 more_memory_scenes() {
   local scene
   echo joints_threads tests/memory/joints.lua --threads 2
@@ -21,10 +21,10 @@ more_memory_scenes() {
   for scene in scripts/*.lua; do echo "$(basename "$scene" .lua) $scene"; done
 }
 
-# builds what plays them
+# Builds the program that plays them.
 build_program() { configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON && build build limber; }
 
-# play_scene TICKS SCENE OPTION...: prints state hashes; `before` is put in front of the program
+# play_scene TICKS SCENE OPTION...: prints state hashes; `before` is a command prefix.
 play_scene() {
   local ticks=$1
   shift
@@ -32,7 +32,7 @@ play_scene() {
     --osc-in off --osc-out off --query off </dev/null 2>"${errors:-/dev/null}"
 }
 
-# memcheck_scene TICKS NAME SCENE OPTION...: the same under valgrind; leaves a log and its exit code, 9: it found errors
+# memcheck_scene TICKS NAME SCENE OPTION...: plays under valgrind; writes a log and the exit code (9: errors found).
 memcheck_scene() {
   local ticks=$1 log=build/check/valgrind_$2.log
   shift 2
@@ -41,7 +41,7 @@ memcheck_scene() {
   echo $? >"${log%.log}.end"
 }
 
-# memcheck_scenes TICKS: those of the input, one a core
+# memcheck_scenes TICKS: plays the scenes from standard input under valgrind, one per core.
 memcheck_scenes() {
   local scenes name rest rc begin=$SECONDS
   scenes=$(cat)
@@ -63,7 +63,7 @@ long_valgrind() {
   memcheck_scenes 120 < <(memory_scenes; more_memory_scenes)
 }
 
-# --long init: g++ fills locals with zeros, or with a pattern; the motion must be the release build's
+# --long init: builds that initialize locals with zeros or with a pattern must move like the release build
 long_init() {
   local fill folder name rest expected
   build_program || return
@@ -82,7 +82,7 @@ long_init() {
   done
 }
 
-# one_of_twenty NUMBER OPTION...: plays 41 ticks with other memory around and inside it each time, and prints one word
+# one_of_twenty NUMBER OPTION...: plays 41 ticks with a different memory layout and fill pattern, and prints a hash.
 one_of_twenty() {
   local number=$1
   shift
@@ -92,7 +92,7 @@ one_of_twenty() {
   } | md5sum
 }
 
-# twenty NAME SCENE OPTION...: twenty processes with 1 to 3 threads, one hash
+# twenty NAME SCENE OPTION...: checks that twenty processes with 1 to 3 threads have the same hash.
 twenty() {
   local name=$1 hashes
   shift
@@ -102,7 +102,7 @@ twenty() {
   fi
 }
 
-# --long twenty: twenty processes, one hash, for each joint type in each use, and for contacts
+# --long twenty: twenty processes have equal hashes, for each joint type in each use, and for contacts
 long_twenty() {
   local case name rest
   build_program || return
@@ -113,13 +113,13 @@ long_twenty() {
   while read -r name rest; do twenty "$name" $rest; done < <(memory_scenes)
 }
 
-# --long models: 10000 random scenes of each plan, played twice, and 200 of them under valgrind
+# --long models: 10000 random scenes of each kind, played twice, and 200 of them under valgrind
 long_models() {
   local log=build/check/valgrind_models.log rc
   build_program && build build test_sim || return
   LIMBER_RANDOM_MODELS=10000 test_seconds=3600 test_only='RandomModels.*' run_tests build sim
   LIMBER_RANDOM_MODELS=200 timeout -k 10 3600 valgrind -q --smc-check=all-non-file --error-exitcode=9 \
-    --suppressions=tests/valgrind.supp build/test_sim --gtest_filter=RandomModels.AnythingGainsNoEnergy >"$log" 2>&1
+    --suppressions=tests/valgrind.supp build/test_sim --gtest_filter=RandomModels.NoSceneGainsEnergy >"$log" 2>&1
   rc=$?
   if [ "$rc" = 0 ]; then pass; else fail "valgrind on 200 random scenes ended with code $rc (9: errors)" "$log"; fi
 }

@@ -1,13 +1,13 @@
-/* A math library whose results are one unit in the last place off: what a program computes with it shows whether its
-   results depend on the system's library. Preloaded by `./check --long hashes`. The functions that IEEE 754 defines to
-   the bit (sqrt, fma, rounding, fmod) are left as they are. */
+/* A math library with results that are off by one unit in the last place, which shows whether a program's results depend
+   on the system's library. Preloaded by `./check --long hashes`. The functions that IEEE 754 defines exactly (sqrt, fma,
+   rounding, fmod) are not replaced. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <float.h>
 #include <stdint.h>
 #include <string.h>
 
-/* the next number away from zero; zeros, infinities and NaN stay */
+/* Returns the next number away from zero; zeros, infinities and NaN are unchanged. */
 static double off(double x) {
   uint64_t bits;
   memcpy(&bits, &x, sizeof bits);

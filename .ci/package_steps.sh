@@ -1,7 +1,7 @@
 # shellcheck shell=bash disable=SC2154
-# The long part "package". The packages are built for each release, and tried in bare systems by .ci/package/inside.sh.
+# The long part "package": builds packages for each release; .ci/package/inside.sh tests them in minimal systems.
 
-# built_for RELEASE --package|--tarball: builds it, here if this is that release, else in a root of it; prints the file
+# built_for RELEASE --package|--tarball: builds it, here if this is that release, else in a root; prints the file name.
 built_for() {
   local release=$1 what=$2 file log=build/check/package_$1$2.log
   if [ "$(os_field VERSION_CODENAME)" = "$release" ]; then
@@ -15,7 +15,7 @@ built_for() {
   fi && printf '%s' "build/check/package/${file##*/}"
 }
 
-# the same package as an older version, with a file that the newer one doesn't have: older_package DEB FILE
+# older_package DEB FILE: repacks the package as an older version, with an additional file.
 older_package() {
   local tree=build/check/package/older
   rm -rf "$tree"
@@ -25,7 +25,7 @@ older_package() {
   rm -rf "$tree"
 }
 
-# package_checks RELEASE TARBALL: everything in a bare root of that release, counted by name
+# package_checks RELEASE TARBALL: runs all checks in a minimal root of that release and counts them.
 package_checks() {
   local release=$1 tarball=$2 deb folder=build/check/package/$1 log=build/check/package_$1.log line
   deb=$(built_for "$release" --package) || { fail "the package of $release was not built" "build/check/package_$release--package.log"; return; }
@@ -34,7 +34,7 @@ package_checks() {
   package_rows bare | cut -d' ' -f1 >"$folder/tools"
   older_package "$deb" "$folder/older.deb" && build/limber play --headless --fast --ticks 120 --hash --seed 3 \
     2>/dev/null | tail -n 1 >"$folder/expected" || { fail "the files for the checks in $release could not be made"; return; }
-  # everything that a check says is in the log; a root that ends early fails
+  # the log has the output of all checks; an early exit is a failure
   tar -C "$folder" -cf - . | .ci/chroot "$release" --name "package_$release" --fresh --no-source -- \
     sh -c 'mkdir /package && tar -C /package -xf - && exec bash /package/inside.sh </dev/null' >"$log" 2>&1
   while read -r line; do
@@ -47,7 +47,7 @@ package_checks() {
   say "$release: $(grep -c '^ok ' "$log") checks of the packages passed, $(grep -c '^FAILED ' "$log") failed"
 }
 
-# --long package: the Debian packages of 12 and 13 and the tarball: lintian, bare systems, upgrade, removal, man page, completion
+# --long package: the Debian packages of 12 and 13 and the tarball: lintian, minimal systems, upgrade, removal, man page, completion
 long_package() {
   local release tarball
   . .ci/package/package.sh

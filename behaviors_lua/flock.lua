@@ -1,17 +1,17 @@
--- Flocking: the three rules of a flock in one, after Reynolds' "Flocks, Herds, and Schools" (SIGGRAPH 1987).
+-- flock: the three rules of a flock in one behavior, after Reynolds' "Flocks, Herds, and Schools" (SIGGRAPH 1987).
 --
 --   sim:add_group_behavior("flock", "swarm", { bodies = "bird*", radius = 1.5, speed = 1 })
 return behavior {
-  doc = "The three rules of a flock: go where the others are, move as they do, keep a distance.",
+  doc = "The three rules of a flock: cohesion, alignment and separation.",
   group = true,
   params = {
-    { "radius", 1.5, min = 0.01, max = 100, unit = "m", doc = "How far each one sees." },
-    { "distance", 0.5, min = 0, max = 100, unit = "m", doc = "Others nearer than this are avoided." },
-    { "cohesion", 1, min = 0, max = 100, doc = "Acceleration in m/s² for each metre to the middle of the others." },
-    { "alignment", 2, min = 0, max = 100, unit = "1/s", doc = "Acceleration for each m/s of difference to the others." },
-    { "separation", 4, min = 0, max = 100, unit = "m/s²", doc = "Acceleration away from one that is at hand." },
-    { "speed", 1, min = 0, max = 100, unit = "m/s", doc = "The speed that each one likes." },
-    { "haste", 1, min = 0, max = 100, unit = "1/s", doc = "How strongly it keeps to its speed." },
+    { "radius", 1.5, min = 0.01, max = 100, unit = "m", doc = "Radius of the neighborhood." },
+    { "distance", 0.5, min = 0, max = 100, unit = "m", doc = "Distance below which separation acts." },
+    { "cohesion", 1, min = 0, max = 100, doc = "Acceleration in m/s² per meter to the center of the neighbors." },
+    { "alignment", 2, min = 0, max = 100, unit = "1/s", doc = "Acceleration per m/s of difference to the neighbors' velocity." },
+    { "separation", 4, min = 0, max = 100, unit = "m/s²", doc = "Acceleration away from a neighbor at distance 0." },
+    { "speed", 1, min = 0, max = 100, unit = "m/s", doc = "Preferred speed." },
+    { "haste", 1, min = 0, max = 100, unit = "1/s", doc = "How fast the preferred speed is approached." },
   },
   step = function(self)
     local close = self.distance

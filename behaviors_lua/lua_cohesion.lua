@@ -1,20 +1,20 @@
--- The built-in `cohesion`, written in Lua: draws each part towards the middle of its neighbours in other bodies.
+-- The built-in `cohesion`, written in Lua: pulls each part towards the center of its neighbors in other bodies.
 return behavior {
-  doc = "Draws each part towards the middle of its neighbours in other bodies. (The built-in cohesion, written in Lua.)",
+  doc = "Pulls each part towards the center of its neighbors in other bodies. (The built-in cohesion, written in Lua.)",
   group = true,
   params = {
-    { "min_dist", 0, min = 0, max = 1e6, unit = "m", doc = "Neighbours are further away than this" },
-    { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "and nearer than this." },
-    { "amount", 1, min = -1e9, max = 1e9, unit = "N", doc = "Force; below 0: away from the neighbours." },
+    { "min_dist", 0, min = 0, max = 1e6, unit = "m", doc = "Minimal distance of neighbors." },
+    { "max_dist", 10, min = 0, max = 1e6, unit = "m", doc = "Maximal distance of neighbors." },
+    { "amount", 1, min = -1e9, max = 1e9, unit = "N", doc = "Force; negative: away from the neighbors." },
   },
   step = function(self)
     local near, far, amount = self.min_dist, self.max_dist, self.amount
     if far <= near then return end
     for _, part in ipairs(self.parts) do
-      local n, way = self:neighbor_means(part, near, far)
+      local n, offset = self:neighbor_means(part, near, far)
       if n > 0 then
-        local s = near > 0 and math.clamp((way:length() - near) / (far - near), 0, 1) or 1
-        part:apply_force(way:normalized() * (amount * s))
+        local s = near > 0 and math.clamp((offset:length() - near) / (far - near), 0, 1) or 1
+        part:apply_force(offset:normalized() * (amount * s))
       end
     end
   end,

@@ -1,19 +1,19 @@
--- The built-in `random_rotation_target`, written in Lua: leads each servo and spring towards angles of its own that are
--- drawn anew from time to time.
+-- The built-in `random_rotation_target`, written in Lua: moves each servo and spring towards random angles, which
+-- change at regular intervals.
 local turn = require "turn"
 
 return behavior {
-  doc = "Leads each servo and spring towards angles of its own, drawn anew from time to time. (The built-in, written in Lua.)",
+  doc = "Moves each servo and spring towards random angles, which change at regular intervals. (The built-in, written in Lua.)",
   params = {
-    { "min_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "Angles are drawn from these, about the joint's axes," },
-    { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "to these. On free axes it goes the shorter way round." },
-    { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "How far ahead of the joint the servo or spring is set, at each application." },
-    { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one random draw to the next." },
-    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time from one application to the next; shorter than a tick: every tick." },
+    { "min_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "Lower bounds of the random angles about the joint's axes." },
+    { "max_target", vec3(0, 0, 0), min = -1e4, max = 1e4, unit = "rad", doc = "Upper bounds of the random angles. Free axes take the shorter way." },
+    { "speed", 0.1, min = 0, max = 1e4, unit = "rad", doc = "Maximal lead of the target over the joint's angle, set at each application." },
+    { "rand_interval", 1000, min = 0, max = 1e9, unit = "ms", doc = "Simulated time between random draws." },
+    { "app_interval", 1, min = 0, max = 1e9, unit = "ms", doc = "Simulated time between applications; shorter than a tick: every tick." },
   },
   start = function(self) self.state.x, self.state.y, self.state.z = {}, {}, {} end,
   step = function(self)
-    -- three lists of numbers are read faster than one of vectors
+    -- three lists of numbers are faster to read than one of vectors
     local x, y, z = self.state.x, self.state.y, self.state.z
     if self:due("rand_interval") then
       for i in ipairs(self.motors) do

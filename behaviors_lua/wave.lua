@@ -1,13 +1,13 @@
--- A wave runs along the motors from root to tip: crests move on by rate × length motors a second.
+-- wave: a wave along the motors from root to tip; crests advance by rate × length motors per second.
 --
 --   worm:add_behavior("wave", "crawl", { rate = 1, length = 6, depth = 0.5 })
 return behavior {
-  doc = "A wave that runs along the motors; its crests travel rate × length motors a second.",
+  doc = "A wave along the motors; its crests advance by rate × length motors per second.",
   params = {
-    { "rate", 0.5, min = -4, max = 4, unit = "Hz", doc = "Swings of each motor per second; negative: from tip to root." },
+    { "rate", 0.5, min = -4, max = 4, unit = "Hz", doc = "Frequency; negative: from tip to root." },
     { "length", 6, min = 1, max = 100, doc = "Motors from one crest to the next." },
     { "depth", 0.5, min = 0, max = 1.57, unit = "rad", doc = "Largest deviation." },
-    { "growth", 0, min = -1, max = 1, doc = "How much more the tip swings than the root: 1: the root rests, −1: the tip." },
+    { "growth", 0, min = -1, max = 1, doc = "Change of the amplitude from root to tip; 1: the root is at rest, −1: the tip." },
   },
   start = function(self) self.state.phase = self.state.phase or 0 end,
   step = function(self, dt)

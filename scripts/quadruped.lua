@@ -1,4 +1,4 @@
--- A quadruped stands up, then trots: diagonal legs step together, by servo targets alone.
+-- A quadruped stands up, then trots: diagonal legs step together, driven by servo targets only.
 --
 -- Try while it runs:   oscsend 127.0.0.1 9003 /scene/turn f 0.5
 --                      oscsend 127.0.0.1 9003 /scene/stride f 0.16
@@ -18,11 +18,11 @@ params {
 }
 
 local LEG = 0.22    -- thigh and shin, m, from joint to joint
-local BEND = 0.6    -- what the home pose is bent by at the thigh, rad; the knee by twice that
-local STANCE = 0.6  -- part of a step that a foot is on the ground
-local GIVE = 0.8    -- part of a tilt that the feet on the ground follow, so that it is not thrown back
+local BEND = 0.6    -- bend of the thigh in the home pose, rad; the knee bends by twice that angle
+local STANCE = 0.6  -- fraction of a step that a foot is on the ground
+local COMPLIANCE = 0.8    -- fraction of a tilt that the feet on the ground follow, to avoid a counter-force
 
--- x, y: where the foot stands below the trunk, m; phase: diagonal legs share one
+-- x, y: foot position below the trunk, m; phase: equal for diagonal legs
 local legs = {
   { name = "front_left",  x = 0.18,  y = 0.14,  phase = 0 },
   { name = "back_right",  x = -0.18, y = -0.14, phase = 0 },
@@ -36,8 +36,8 @@ for _, leg in ipairs(legs) do
 end
 local trunk = dog:part("trunk")
 
--- The three angles that put a foot at (x forward, y left, z up) from where it hangs. The hip swings the leg's plane
--- outward. Thigh and shin are equally long, so the leg is the sum of two unit arrows: their mean gives its
+-- Sets the three angles that move a foot to (x forward, y left, z up), relative to its hip. The hip swings the leg's
+-- plane outward. Thigh and shin are equally long, so the leg is the sum of two unit vectors: their mean angle gives its
 -- direction, half their difference its length.
 local function reach(leg, x, y, z)
   local down = math.sqrt(y * y + z * z)
@@ -48,8 +48,8 @@ local function reach(leg, x, y, z)
   leg.knee.target = 2 * half - 2 * BEND
 end
 
--- Where a foot is in its step: 0.5 .. -0.5 of its way while it is on the ground, evenly; in the air forward along an
--- arch. And how high it is raised, 0 .. 1.
+-- Returns the position of a foot in its step, from 0.5 to -0.5: linear on the ground, in the air forward along an arch;
+-- and the height, 0 .. 1.
 local function step_of(phase)
   if phase < STANCE then return 0.5 - phase / STANCE, 0 end
   local air = (phase - STANCE) / (1 - STANCE)
@@ -58,10 +58,10 @@ end
 
 state.phase = state.phase or 0
 state.eager = state.eager or 0    -- 0 stands .. 1 lifts its feet
-state.stride = state.stride or 0  -- what is told comes into force bit by bit, since feet that jump throw it over
+state.stride = state.stride or 0  -- follows the slider slowly, since sudden foot movements would topple it
 state.turn = state.turn or 0
 
-local function towards(now, target, most) return now + math.clamp(target - now, -most, most) end
+local function towards(now, target, max_change) return now + math.clamp(target - now, -max_change, max_change) end
 
 sim:on_step(function(dt)
   if sim.time > 1 then
@@ -70,7 +70,7 @@ sim:on_step(function(dt)
     state.turn = towards(state.turn, params.turn, dt)
   end
   state.phase = (state.phase + params.pace * dt) % 1
-  local angle = state.turn * STANCE / params.pace  -- that the trunk turns by while a foot is on the ground
+  local angle = state.turn * STANCE / params.pace  -- angle that the trunk turns while a foot is on the ground
   local ahead, left = trunk.rotation * vec3(1, 0, 0), trunk.rotation * vec3(0, 1, 0)
   for _, leg in ipairs(legs) do
     local way, up = step_of((state.phase + leg.phase) % 1)
@@ -78,13 +78,13 @@ sim:on_step(function(dt)
     local x = state.stride * way + leg.x * (cos - 1) - leg.y * sin
     local y = leg.x * sin + leg.y * (cos - 1)
     local raised = leg.x * ahead.z + leg.y * left.z
-    local give = up > 0 and 0 or GIVE * raised
-    reach(leg, x, y, state.eager * (params.lift * up - give) - params.height)
+    local tilt = up > 0 and 0 or COMPLIANCE * raised
+    reach(leg, x, y, state.eager * (params.lift * up - tilt) - params.height)
   end
 end)
 
-visuals.camera.distance = 4  -- nearer than usual, and with it: it soon walks out of the picture
-sim:on_start(function() visuals.camera:follow(dog) end)
+visuals.camera.distance = 4  -- closer than the default
+sim:on_start(function() visuals.camera:follow(dog) end)  -- otherwise it soon walks out of view
 
 osc:on("/push", function(strength) trunk:apply_impulse(vec3(0, strength or 5, 0)) end)
 

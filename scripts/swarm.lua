@@ -1,10 +1,10 @@
--- A hundred small creatures, a head with a tail that beats, flock over a floor. From outside:
---   /swarm/scatter 2      a gust from the middle blows them apart
---   /swarm/call 1.5 0     they gather about x, y (m); without numbers they are free again
--- Everything else is a parameter: /physics/group/swarm/alignment 0, say, and the flock falls to bits.
+-- A flock of a hundred small creatures, each a head with a beating tail, on a floor. OSC:
+--   /swarm/scatter 2      an explosion in the middle scatters them
+--   /swarm/call 1.5 0     they gather around x, y (m); without numbers they are free again
+-- All other controls are parameters: with /physics/group/swarm/alignment 0, for example, the flock falls apart.
 
 local kCreatures = 100
-local kArena = 5 -- m, the radius in which they stay
+local kArena = 5 -- m, radius of their area
 
 sim.gravity = vec3(0, 0, -9.81)
 visuals.camera:look_at(vec3(4.5, -6.5, 3.5), vec3(0, 0, 0))
@@ -26,7 +26,7 @@ first:add_motor(first:add_joint("tail", head, tail, { position = vec3(-0.07, 0, 
 first:add_behavior("breathe", "beat", { rate = 2.5, depth = 0.5 })
 first:add_behavior("balance", "upright", { parts = "head", stiffness = 0.05, damping = 0.004 })
 
--- a sunflower's seeds: evenly over the disc, no two at one place, each looking its own way
+-- sunflower pattern: evenly distributed over a disc, without overlaps, each with a random heading
 local bugs = {}
 for i = 1, kCreatures do
   local angle, r = i * 2.39996, 0.35 * math.sqrt(i)
@@ -44,19 +44,19 @@ end
 
 sim:add_group_behavior("flock", "swarm", { bodies = "bug*", parts = "head", radius = 1, distance = 0.35, speed = 0.8 })
 
--- they begin as they look
+-- initial velocity in the direction of the heading
 sim:on_start(function()
   for _, bug in ipairs(bugs) do bug.linear_velocity = bug.rotation * vec3(0.5, 0, 0) end
 end)
 
--- nobody leaves the arena; who is called goes there
+-- keep them in the arena; while they are called, move them there
 state.called = state.called or false
 sim:on_step(function()
   local middle = state.called or vec3()
   local edge = state.called and 0.5 or kArena
   for _, bug in ipairs(bugs) do
     local part = bug.root
-    -- they look where they go
+    -- turn the heading to the direction of motion
     local ahead = part.rotation * vec3(1, 0, 0)
     part:apply_torque(vec3(0, 0, 0.01 * ahead:cross(part.linear_velocity).z - 0.003 * part.angular_velocity.z))
     local way = middle - part.center

@@ -1,2 +1,2 @@
-// Depth alone: the lamp's map, and that of what stands above the floor.
+// Depth-only pass, for the shadow map and the ground map.
 void main() {}

@@ -1,4 +1,4 @@
-// Linear light to sRGB bytes, where OpenGL can't leave the bytes of an sRGB framebuffer as they are.
+// Converts linear light to sRGB bytes, for OpenGL versions that can't switch off the conversion of sRGB framebuffers.
 uniform sampler2D picture;
 out vec4 color;
 

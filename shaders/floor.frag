@@ -1,4 +1,4 @@
-// The floor: shadow, darkening under what stands on it, a faint grid; what shines through is the mirrored world.
+// The floor: shadow, contact shadows, a faint grid; the mirrored scene shows through by alpha.
 uniform vec4 origin;
 uniform vec4 along;
 uniform vec4 across;
@@ -6,25 +6,25 @@ uniform vec4 tint;
 in vec3 at;
 out vec4 color;
 
-// how much light from above reaches a point of the floor past what stands just above it
-float open_above(vec3 p) {
+// ambient occlusion of a point of the floor by objects just above it: the fraction of ambient light that reaches it
+float ambient_visibility(vec3 p) {
 #if CONTACT_TAPS
   vec2 place = (ground_map * vec4(p, 1.0)).xy;
   if (any(lessThan(place, vec2(0.01))) || any(greaterThan(place, vec2(0.99)))) return 1.0;
-  float taken = 0.0;
-  vec2 seed = first_seed(gl_FragCoord.xy + 17.0);
+  float occlusion = 0.0;
+  vec2 direction = first_direction(gl_FragCoord.xy + 17.0);
   for (int i = 0; i < CONTACT_TAPS; i++) {
-    float near = 1.0 - texture(ground_depth, place + soft.z * seed_radius(i, CONTACT_TAPS) * seed).r;
-    taken += near * near;
-    seed = next_seed(seed);
+    float near = 1.0 - texture(ground_depth, place + soft.z * sample_radius(i, CONTACT_TAPS) * direction).r;
+    occlusion += near * near;
+    direction = next_direction(direction);
   }
-  return 1.0 - 0.85 * taken / float(CONTACT_TAPS);
+  return 1.0 - 0.85 * occlusion / float(CONTACT_TAPS);
 #else
   return 1.0;
 #endif
 }
 
-// lines a step apart, a pixel and a half wide, gone where they would be too many
+// grid lines at a distance of `apart`, 1.5 pixels wide, faded out where they would be too dense
 float lines(vec2 p, float apart) {
   vec2 q = p / apart;
   vec2 width = fwidth(q);
@@ -42,12 +42,12 @@ void main() {
 
   vec3 albedo = floor_color.rgb * tint.rgb;
   bool stage = along.w > 0.5;
-  float open = stage ? open_above(at) : 1.0;
+  float open = stage ? ambient_visibility(at) : 1.0;
   vec4 l = lamp(at);
   float facing_lamp = max(dot(n, l.xyz), 0.0);
-  float come = l.w * facing_lamp;
-  if (come > 0.0) come *= lit(at, n, l.xyz, gl_FragCoord.xy);
-  vec3 light = albedo * (sky.rgb * open + lamp_color.rgb * come * mix(1.0, open, 0.5));
+  float incoming = l.w * facing_lamp;
+  if (incoming > 0.0) incoming *= shadow_factor(at, n, l.xyz, gl_FragCoord.xy);
+  vec3 light = albedo * (sky.rgb * open + lamp_color.rgb * incoming * mix(1.0, open, 0.5));
 
   vec2 p = vec2(dot(at, along.xyz), dot(at, across.xyz));
   float line = max(0.4 * lines(p, 1.0), lines(p, 5.0));

@@ -1,6 +1,6 @@
-// An endless plane: a square about the point below the eye, as wide as the fog lets one see.
-uniform vec4 origin;  // w: half its width
-uniform vec4 along;   // two directions in it; w of the first: 1 when things stand on it
+// An infinite plane, drawn as a square around the point below the eye that extends to where the fog is opaque.
+uniform vec4 origin;  // w: half the square's width
+uniform vec4 along;   // tangent; w: 1 for the scene's floor, which has contact shadows and reflections
 uniform vec4 across;
 uniform vec4 tint;
 out vec3 at;

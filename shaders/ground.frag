@@ -1,4 +1,4 @@
-// Depth of the map of what is just above the floor, where OpenGL can't clamp it to the map's range instead of clipping.
+// Depth of the ground map, clamped to the map's range, for OpenGL versions without GL_DEPTH_CLAMP.
 in float depth;
 
 void main() { gl_FragDepth = clamp(0.5 + 0.5 * depth, 0.0, 1.0); }

@@ -1,4 +1,4 @@
-// Colours as they are shown; faint where something stands before them.
+// Overlay lines: colors are not tone mapped; `strength` is lower in the pass for occluded lines.
 flat in vec4 v_paint;
 in float side;
 uniform vec4 strength;

@@ -1,4 +1,4 @@
-// The debug picture's lines: each is a quad that is as wide as its pixels say, wherever it lies.
+// Lines of the debug overlay: each is a quad with a constant width in pixels.
 layout(location = 0) in vec4 from;   // w: width in pixels
 layout(location = 1) in vec4 to;
 layout(location = 2) in vec4 paint;
@@ -10,7 +10,7 @@ out float side;       // -1 .. 1 across the line
 void main() {
   vec4 a = view_proj * vec4(from.xyz, 1.0);
   vec4 b = view_proj * vec4(to.xyz, 1.0);
-  // what lies behind the eye has no place in the picture: the line ends where it comes in front
+  // clips the line in front of the eye, because points behind it can't be projected
   float near = 1e-3;
   if (a.w < near && b.w < near) {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -24,7 +24,7 @@ void main() {
   side = float(gl_VertexID & 1) * 2.0 - 1.0;
   bool end = (gl_VertexID >> 1) == 1;
   vec4 at = end ? b : a;
-  // half a pixel more to either side, for a soft edge; and as much beyond the ends, so that corners close
+  // half a pixel wider on either side for anti-aliasing, and extended beyond the ends so that corners close
   vec2 shift = (across * side + way * (end ? 1.0 : -1.0) * 0.5) * (from.w * 0.5 + 0.5);
   gl_Position = at + vec4(2.0 * shift / screen.xy * at.w, 0.0, 0.0);
   v_paint = paint;

@@ -1,4 +1,5 @@
-// Every shape by one formula: a corner stretched to its size, rounded by its normal; then turned and put in its place.
+// All shapes use one formula: the corner is scaled to the extent and offset along the normal by the rounding radius, then
+// rotated and translated.
 layout(location = 0) in vec3 corner;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 place;    // w: round
@@ -20,18 +21,18 @@ vec3 turned(vec3 v) { return v + 2.0 * cross(turn.xyz, cross(turn.xyz, v) + turn
 
 void main() {
   at = place.xyz + turned(corner * extent.xyz + normal * place.w);
-  // what is not round is stretched: its normals the other way
+  // shapes without rounding are scaled non-uniformly: their normals by the inverse
   facing = turned(place.w > 0.0 ? normal : normalize(normal / extent.xyz));
   v_diffuse = diffuse;
   v_ambient = ambient;
   v_specular = extent.w;
   gl_Position = view_proj * vec4(at, 1.0);
 #if CLIP_DISTANCE
-  // in the mirror alone; some drivers clip by it even where it is switched off
+  // clips in the mirror pass only; some drivers use it even if GL_CLIP_DISTANCE0 is disabled
   gl_ClipDistance[0] = eye.w > 0.5 ? at.z - tone.z : 1.0;
 #endif
 #ifdef GROUND
-  depth = gl_Position.z;  // the map is parallel: w is 1
+  depth = gl_Position.z;  // the projection is orthographic: w is 1
   gl_Position.z = 0.0;
 #endif
 }

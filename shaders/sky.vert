@@ -1,4 +1,4 @@
-// One triangle over the whole picture, behind everything.
+// One triangle that covers the whole view, at the far plane.
 out vec4 ray;
 
 void main() {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the models of this folder: *.urdf, meshes/*.stl, and the tables in docs/models.md.
+"""Generates the models of this folder: *.urdf, meshes/*.stl, and the tables in docs/models.md.
 
-    python3 urdf/make_models.py            writes everything; the same bytes every time
-    python3 urdf/make_models.py --check    compares with what is there; exit 1 when something differs
+    python3 urdf/make_models.py            writes all files; the output is deterministic
+    python3 urdf/make_models.py --check    compares with the existing files; exits with 1 if one differs
 """
 
 import argparse
@@ -21,7 +21,7 @@ PAGE = HERE.parent / "docs" / "models.md"
 
 
 def everything():
-    """Every file that this script answers for, with its bytes."""
+    """All files that this script generates, with their bytes."""
     robots = [make() for make in MODELS]
     files = {HERE / "meshes" / f"{name}.stl": stl_bytes(part[0]) for name, part in PARTS.items()}
     files.update({HERE / f"{robot.name}.urdf": robot.xml().encode() for robot in robots})
@@ -41,7 +41,7 @@ def main():
         if not check:
             path.parent.mkdir(exist_ok=True)
             path.write_bytes(data)
-    # a model or mesh that nothing makes any more would linger unseen
+    # files of models and meshes that are no longer generated
     lost = [p for p in [*HERE.glob("*.urdf"), *HERE.glob("meshes/*.stl")] if p not in files]
     for path in stale + lost:
         verb = "differs: run urdf/make_models.py" if check else "written"

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Tries the packages in a bare Debian: called in the root by `./check --long package`, in a folder with
+# Tests the packages in a minimal Debian. `./check --long package` calls it in the root, in a folder with
 # limber_*.deb, older.deb, limber-*.tar.gz, expected (the hash of the run below), tools (packages that the checks need)
 # and zsh_completion.
 # Prints "ok NAME" or "FAILED NAME" with the end of the output for each check.
@@ -11,7 +11,7 @@ export HOME=/home/player XDG_RUNTIME_DIR=/run/player LC_ALL=C.UTF-8
 unset DISPLAY WAYLAND_DISPLAY
 mkdir -p "$HOME" "$XDG_RUNTIME_DIR" && chmod 700 "$XDG_RUNTIME_DIR"
 
-# check NAME COMMAND...
+# check NAME COMMAND...: prints "ok NAME" or "FAILED NAME".
 check() {
   local name=$1
   shift
@@ -28,16 +28,16 @@ hash_is_expected() { [ "$("$@" $play 2>play.err | tail -n 1)" = "$(cat expected)
 is_clean() { "$@" 2>&1 | tee clean.out; [ ! -s clean.out ]; }
 no_missing_library() { ! ldd "$1" | grep 'not found'; }
 
-# what draws has another home: it saves the window's settings, and Mesa's driver its shaders
-# a still, by software: a picture, not one color
+# Commands that draw use another home, because they save window settings, and Mesa's driver saves shaders.
+# Renders a still in software; the size shows that it is not a single color.
 draws() {
   rm -f still.png
   HOME=/home/other "$@" play --screenshot still.png --at 1 --size 640x360 && [ "$(stat -c %s still.png)" -gt 20000 ]
 }
-# plays in a window for two simulated seconds
+# Plays in a window for two simulated seconds.
 shows_a_window() { HOME=/home/other xvfb-run -a -s '-screen 0 1280x800x24' "$@" play --duration 2 --osc-in off --osc-out off --query off --strict; }
 
-# ---- the archive, in a system that has no other packages
+# ---- the archive, in a system without other packages
 tar -xzf limber-*.tar.gz
 tarball=$(echo "$PWD"/limber-*/bin/limber)
 check tarball_finds_its_libraries no_missing_library "$tarball"
@@ -47,7 +47,7 @@ mkdir moved && mv limber-*/ "moved/with space"
 tarball=$PWD/moved/with\ space/bin/limber
 check tarball_plays_where_it_was_moved hash_is_expected "$tarball"
 
-# ---- an older package, a home with shows and settings, then this package
+# ---- an older package, a home folder with projects and settings, then an upgrade to this package
 apt-get update -qq
 check installs_older install_debian ./older.deb
 check older_has_its_file test -e /usr/share/limber/scripts/older.lua
@@ -69,7 +69,7 @@ check replays_the_take limber --replay "$HOME/my_show/evening.take" --headless -
 check draws_a_still draws limber
 check version_is_the_packages test "$(limber --version | cut -d' ' -f2)" = "$(dpkg-query -W -f '${Version}' limber | cut -d- -f1)"
 
-# ---- what belongs to desktops, shells and readers
+# ---- integration with desktops, shells, man pages
 check installs_tools install_debian $(cat tools)
 check lintian lintian --allow-root --fail-on error,warning "$deb"
 check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
@@ -83,7 +83,7 @@ check man_page_renders is_clean sh -c 'man --warnings -E UTF-8 -l -Tutf8 -Z /usr
 check man_finds_it sh -c 'man -w limber && man limber | grep -q "live simulator"'
 check md5sums dpkg --verify limber
 completes_in_bash() {
-  # the words of _comp_load: bash-completion 2.12 and newer
+  # _comp_load exists in bash-completion 2.12 and newer
   bash --norc -c '. /usr/share/bash-completion/bash_completion
     _comp_load limber 2>/dev/null || _completion_loader limber
     complete -p limber || exit 1
@@ -95,7 +95,7 @@ check window shows_a_window limber
 check tarball_draws_a_still draws "$tarball"
 check tarball_window shows_a_window "$tarball"
 
-# ---- removal, and purging
+# ---- removal and purge
 removed() { ! ls -d /usr/bin/limber /usr/share/limber /usr/share/doc/limber 2>/dev/null | grep .; }
 check removes apt-get remove -y -q limber
 check removal_leaves_nothing removed

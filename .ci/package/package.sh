@@ -1,17 +1,17 @@
 # shellcheck shell=bash disable=SC2154,SC2086,SC2016
-# ./run --package and ./run --tarball: a Debian package, and an archive that runs without installing, of build/limber.
-# Sourced by bash in the root, after a build.
+# ./run --package and ./run --tarball: build a Debian package, and an archive that runs without installation, from
+# build/limber. Sourced by bash in the root, after a build.
 
 package_out=build/package
 package_maintainer='Limber contributors <limber@example.org>'
 
-# the version, as CMakeLists.txt declares it
+# Prints the version in CMakeLists.txt.
 package_version() { sed -n 's/^project(limber VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt; }
 
-# the field of the system's description: os_field VERSION_ID
+# os_field NAME: prints a field of /etc/os-release.
 os_field() { (. "${LIMBER_OS_RELEASE:-/etc/os-release}" 2>/dev/null && printf '%s' "${!1-}"); }
 
-# the release in the package's version: deb12, deb13, debsid; ubuntu24.04
+# Prints the release for the package's version: deb12, deb13, debsid; ubuntu24.04.
 release_tag() {
   local id number
   id=$(os_field ID)
@@ -19,42 +19,42 @@ release_tag() {
   printf '%s' "${id/debian/deb}${number:-$(os_field VERSION_CODENAME)}"
 }
 
-# when the sources were committed, in seconds; packages of the same sources are the same
+# Prints the time of the commit in seconds, for reproducible packages.
 source_time() {
   local time=${SOURCE_DATE_EPOCH-}
-  # in a checkout this file has no time
+  # in a checkout, this file has no time
   [ -n "$time" ] || time=$(sed -n 's/^time: \([0-9][0-9]*\)$/\1/p' .git_archival.txt 2>/dev/null)
   [ -n "$time" ] || time=$(git log -1 --format=%ct 2>/dev/null)
   printf '%s' "${time:-$(date -r CHANGELOG.md +%s)}"
 }
 
-# packages whose code the compiler puts into the program, since they are headers or static libraries
+# packages with headers or static libraries, which become part of the program
 compiled_in='libimgui-dev libcli11-dev libglm-dev nlohmann-json3-dev libstb-dev libboost-dev libtinygltf-dev
   libfmt-dev libspdlog-dev'
 
-# install_licences FOLDER PACKAGE...: their license texts
+# install_licences FOLDER PACKAGE...: copies their license texts.
 install_licences() {
   local folder=$1 package
   shift
   mkdir -p "$folder"
   for package; do
     [ -e "$folder/$package" ] || cp "/usr/share/doc/$package/copyright" "$folder/$package" ||
-      refuse 3 "the license of $package was not found." "apt-get install --reinstall $package"
+      die 3 "the license of $package was not found." "apt-get install --reinstall $package"
   done
 }
 
-# need_program PROGRAM PACKAGE: fails clearly when it is missing
+# need_program PROGRAM PACKAGE: exits with an error if the program is missing.
 need_program() {
-  command -v "$1" >/dev/null || refuse 3 "$1 not found, so no package can be built." "apt-get install $2"
+  command -v "$1" >/dev/null || die 3 "$1 not found, so no package can be built." "apt-get install $2"
 }
 
-# install_tree PREFIX: what `cmake --install` installs, stripped, with icons in the usual sizes
+# install_tree PREFIX: runs `cmake --install`, strips the program, and adds icons in the usual sizes.
 install_tree() {
   local prefix=$1 size folder
   need_program rsvg-convert librsvg2-bin
   umask 022
   cmake --install build --prefix "$prefix" --strip >"$package_out/install.log" ||
-    refuse 3 "installing into $prefix failed (whole output: $package_out/install.log)." "remove build/package and try again."
+    die 3 "installing into $prefix failed (whole output: $package_out/install.log)." "remove build/package and try again."
   for size in 16 24 32 48 64 128 256; do
     folder=$prefix/share/icons/hicolor/${size}x$size/apps
     mkdir -p "$folder"
@@ -63,17 +63,17 @@ install_tree() {
   install_licences "$prefix/share/doc/limber/licences" $compiled_in
 }
 
-# install_site FOLDER: the documentation as pages that a browser shows without a network
+# install_site FOLDER: builds the documentation as HTML pages that work offline.
 install_site() {
   local folder=$1
   need_program mkdocs mkdocs
   mkdocs build --clean -f mkdocs.yml -d "$PWD/$folder" >"$package_out/site.log" 2>&1 ||
-    refuse 3 "mkdocs could not build the documentation (whole output: $package_out/site.log)." "mend what it says there."
-  # what makes the pictures, and what mkdocs writes for servers
+    die 3 "mkdocs could not build the documentation (whole output: $package_out/site.log)." "fix the problem in its output."
+  # the sources of the images, and files that mkdocs writes for servers
   rm -rf "$folder"/{media,plots}/{make,*.lua} "$folder"/{sitemap.xml,sitemap.xml.gz,404.html}
 }
 
-# the newest section of CHANGELOG.md as an entry of a Debian changelog
+# Prints the newest section of CHANGELOG.md as an entry of a Debian changelog.
 debian_changelog() {
   printf 'limber (%s) %s; urgency=medium\n' "$1" "$(os_field VERSION_CODENAME)"
   awk '
@@ -99,7 +99,7 @@ debian_changelog() {
   printf '\n -- %s  %s\n' "$package_maintainer" "$(LC_ALL=C date -R -u -d "@$(source_time)")"
 }
 
-# the dependencies that the program's libraries ask for, as dpkg-shlibdeps finds them
+# Prints the dependencies on libraries, as found by dpkg-shlibdeps.
 library_dependencies() {
   local depends
   mkdir -p "$package_out/debian"
@@ -107,7 +107,7 @@ library_dependencies() {
   depends=$(cd "$package_out" && dpkg-shlibdeps -O stage/usr/bin/limber 2>shlibdeps.log | sed -n 's/^shlibs:Depends=//p')
   case $depends in
     *libc6*) printf '%s' "$depends" ;;
-    *) refuse 3 "dpkg-shlibdeps found no dependencies (its messages: $package_out/shlibdeps.log)." \
+    *) die 3 "dpkg-shlibdeps found no dependencies (its messages: $package_out/shlibdeps.log)." \
       "install the libraries from Debian's packages and build again." ;;
   esac
 }
@@ -135,7 +135,7 @@ Description: live simulator of actuated, articulated bodies
 TEXT
 }
 
-# what Debian's policy wants of the documentation: compressed, with the license in `copyright`
+# Adapts the documentation to Debian's policy: compressed, with the license in `copyright`.
 debian_documents() {
   local doc=$1/usr/share/doc/limber version=$2
   rm "$doc/LICENSE" "$doc/README.md" "$doc/licences.md"
@@ -143,17 +143,17 @@ debian_documents() {
   debian_changelog "$version" >"$doc/changelog.Debian"
   cp .ci/package/copyright "$doc/copyright"
   install_site "${doc#"$PWD"/}/html"
-  # the page of licenses leads to the license, which is in this file here
+  # the page of licenses links to the license, which is in this file
   sed -i 's|"../LICENSE"|"../copyright"|g' "$doc/html/licences.html"
   gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1/usr/share/man/man1/limber.1"
   mkdir -p "$1/usr/share/doc-base"
-  # the lintian of Debian 12 does not know the tag, which it reports as an error
+  # Debian 12's lintian reports the unknown tag as an error
   if [ "$(release_tag)" != deb12 ]; then
     mkdir -p "$1/usr/share/lintian/overrides"
     cp .ci/package/lintian-overrides "$1/usr/share/lintian/overrides/limber"
   fi
   cp .ci/package/doc-base "$1/usr/share/doc-base/limber.limber"
-  # where Debian's zsh looks
+  # Debian's zsh searches this folder
   mkdir -p "$1/usr/share/zsh/vendor-completions"
   mv "$1/usr/share/zsh/site-functions/_limber" "$1/usr/share/zsh/vendor-completions/"
   rmdir "$1/usr/share/zsh/site-functions"
@@ -172,12 +172,12 @@ make_package() {
   find "$stage" -exec touch -h -d "@$(source_time)" {} +
   file=$package_out/limber_${version}_$(dpkg --print-architecture).deb
   SOURCE_DATE_EPOCH=$(source_time) dpkg-deb --root-owner-group -Zxz --build "$stage" "$file" >/dev/null ||
-    refuse 3 "dpkg-deb could not build $file." "mend what it says above and try again."
+    die 3 "dpkg-deb could not build $file." "fix the problem above and try again."
   say "built: $file"
   say "to install it: apt install ./$file"
 }
 
-# libraries that belong to the system: the C and C++ library, and what the drivers of the graphics card bring
+# True for libraries of the system: the C and C++ library, and libraries of graphics drivers.
 system_library() {
   case $1 in
     ld-linux* | libc.so.* | libm.so.* | libdl.so.* | libpthread.so.* | librt.so.* | libresolv.so.* | libutil.so.* | \
@@ -187,7 +187,7 @@ system_library() {
   return 1
 }
 
-# the libraries that the program loads, and their licenses
+# Copies the libraries that the program loads, and their licenses.
 bundle_libraries() {
   local tree=$1 name path package
   mkdir -p "$tree/lib"
@@ -196,7 +196,7 @@ bundle_libraries() {
     cp -L "$path" "$tree/lib/$name" && strip --strip-unneeded "$tree/lib/$name" &&
       patchelf --force-rpath --set-rpath '$ORIGIN' "$tree/lib/$name" || exit 3
     package=$(dpkg-query -S "*/$(basename "$(realpath "$path")")" 2>/dev/null | sed 's/:.*//;q')
-    [ -n "$package" ] || refuse 3 "$path belongs to no package, so its license is unknown." "build with Debian's libraries."
+    [ -n "$package" ] || die 3 "$path belongs to no package, so its license is unknown." "build with Debian's libraries."
     install_licences "$tree/share/doc/limber/licences" "$package"
   done < <(LC_ALL=C ldd "$tree/bin/limber" | awk '$2 == "=>" && $3 ~ /^\// { print $1, $3 }')
   patchelf --force-rpath --set-rpath '$ORIGIN/../lib' "$tree/bin/limber" || exit 3
@@ -204,8 +204,8 @@ bundle_libraries() {
 
 make_tarball() {
   local name tree
-  [ "$(os_field ID)$(os_field VERSION_ID)" = debian12 ] || refuse 3 \
-    "a tarball built on $(system_name) would not run on Debian 12, whose C library is older." \
+  [ "$(os_field ID)$(os_field VERSION_ID)" = debian12 ] || die 3 \
+    "a tarball built on $(system_name) would not run on Debian 12, which has an older C library." \
     "build it on Debian 12: .ci/chroot bookworm ./run --tarball"
   need_program patchelf patchelf
   name=limber-$(package_version)-linux-$(uname -m)
@@ -215,6 +215,6 @@ make_tarball() {
   bundle_libraries "$tree"
   install_site "$tree/share/doc/limber/html"
   tar -C "$package_out" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$(source_time)" -czf \
-    "$package_out/$name.tar.gz" "$name" || refuse 3 "tar could not write $package_out/$name.tar.gz." "free some disk space."
+    "$package_out/$name.tar.gz" "$name" || die 3 "tar could not write $package_out/$name.tar.gz." "free some disk space."
   say "built: $package_out/$name.tar.gz"
 }

@@ -1,7 +1,7 @@
 """Adapts the pages for Python-Markdown, which mkdocs uses and which is stricter than GitHub.
 
-- A block of code has a language alone behind its fence, not the file that the tests play it as.
-- Lists and tables need an empty line in front.
+- The fence of a code block may only have a language, not the file name for the tests.
+- Lists and tables need an empty line before them.
 """
 import re
 

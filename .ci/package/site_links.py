@@ -1,6 +1,6 @@
-"""Checks the built documentation: each link within it leads to a file and a heading, and nothing is loaded from a network.
+"""Checks the built documentation: each internal link has a target, and nothing is loaded from the network.
 
-Usage: site_links.py FOLDER PAGES, where PAGES is the folder of the Markdown pages. Prints each fault; exit code 1 if any.
+Usage: site_links.py FOLDER PAGES, where PAGES is the folder of the Markdown pages. Prints all errors; exit code 1 if there are any.
 """
 import html.parser
 import pathlib
@@ -8,7 +8,7 @@ import sys
 
 
 class Page(html.parser.HTMLParser):
-    """The links, the loaded files and the marks of one page."""
+    """The links, the loaded files and the anchors of one page."""
 
     def __init__(self, file):
         super().__init__()

@@ -1,12 +1,12 @@
--- turn(motor, target, speed): one application of rotation_target. Every axis of the motor that is in servo or spring
--- mode is sent from where its joint stands towards `target` (rad), by `speed` (rad) at most.
+-- turn(motor, target, speed): one application of rotation_target. Sets every servo or spring axis of the motor to an
+-- angle between the joint's angle and `target` (rad), by at most `speed` (rad) ahead of the joint.
 
--- an angle in (−pi, pi]
+-- Wraps an angle to (−pi, pi].
 local function wrap(angle)
   return angle - 2 * math.pi * math.ceil((angle - math.pi) / (2 * math.pi))
 end
 
--- where an axis is sent: on a free one the shorter way round; `old` where its mode does not fit
+-- Returns the new setting of an axis, by the shorter way if it is free; `old` if its mode doesn't match.
 local function toward(fits, old, angle, target, speed, free)
   if not fits then return old end
   local way = target - angle
@@ -27,7 +27,7 @@ return function(motor, target, speed)
       toward(y, old.y, angles.y, target.y, speed, free_y),
       toward(z, old.z, angles.z, target.z, speed, free_z))
   end
-  -- what is a spring is no servo
+  -- an axis in spring mode isn't a servo
   x, y, z = active.x and servo.x and not x, active.y and servo.y and not y, active.z and servo.z and not z
   if x or y or z then
     local old = motor.angular_servo_position

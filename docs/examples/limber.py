@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Plays Limber over OSC and reads what it sends, with Python's own library alone.
+"""Controls Limber over OSC and reads its streams, with Python's standard library only.
 
     python3 limber.py                       while `limber scripts/arms.lua` plays
     python3 limber.py --port 9003 --seconds 5
@@ -16,7 +16,7 @@ def padded(raw):
 
 
 def encode(address, *args):
-    """One OSC message: whole numbers as i, others as f, truths as T and F, text as s."""
+    """Returns one OSC message: int as i, float as f, bool as T or F, text as s."""
     tags, data = ",", b""
     for arg in args:
         if isinstance(arg, bool):
@@ -31,7 +31,7 @@ def encode(address, *args):
 
 
 def decode(packet):
-    """The messages of a datagram: (address, arguments) each; bundles are opened."""
+    """Yields (address, arguments) for each message of a datagram, also inside bundles."""
     if packet.startswith(b"#bundle\0"):
         at = 16
         while at < len(packet):
@@ -56,7 +56,7 @@ def decode(packet):
 
 
 class Limber:
-    """A way to one running Limber. Answers, and what is subscribed to, come to the same socket."""
+    """A connection to one running Limber. Answers and subscribed values arrive at the same socket."""
 
     def __init__(self, host="127.0.0.1", port=9003):
         self.to = (host, port)
@@ -66,7 +66,7 @@ class Limber:
         self.socket.sendto(encode(address, *args), self.to)
 
     def receive(self, seconds=1.0):
-        """The messages of the next datagram; none when nothing comes."""
+        """Returns the messages of the next datagram; an empty list after `seconds` without one."""
         self.socket.settimeout(max(seconds, 0.001))
         try:
             return list(decode(self.socket.recv(65536)))
@@ -79,7 +79,7 @@ class Limber:
             if address == "/error":
                 raise LookupError(args[1])
             return args
-        raise TimeoutError("nobody answers; does Limber play?")
+        raise TimeoutError("no answer; is Limber running?")
 
 
 def main():
@@ -96,7 +96,7 @@ def main():
     print("bodies:", " ".join(bodies))
     limber.send("/physics/sim/gravity", -3.0)
 
-    # one value of many things by a pattern, and every change of it told back by the simulation
+    # set one property of many motors by a pattern, and receive the positions of the joints 20 times a second
     limber.send("/subscribe", "pos", 20)
     begin = time.monotonic()
     frames = 0

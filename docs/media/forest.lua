@@ -1,5 +1,5 @@
--- A stand of arms in five colours, with glass among them: for the pictures of both looks. docs/media/make paints
--- urdf/arm17.urdf in these colours.
+-- A stand of arms in five colors, with glass among them: for the pictures of both looks. docs/media/make paints
+-- urdf/arm17.urdf in these colors.
 sim.solver, sim.substeps = "direct", 2
 visuals.camera:look_at(vec3(0.3, -7.2, 2.3), vec3(0, 0, 1.05))
 

@@ -1,4 +1,4 @@
--- Draws the built-in behaviours: what they do to bodies, measured from how these move, as SVG on stdout, one picture a
+-- Draws the effect of the built-in behaviors on bodies, measured from their motion, as SVG on stdout, one picture per
 -- type. docs/plots/make puts them into files.
 --
 -- A body of one kilogram at rest, pushed for one tick, has the velocity F·dt: so its velocity tells the force.
@@ -141,7 +141,7 @@ for _, min in ipairs { 0, 3 } do
   end, force)
 end
 
--- group behaviours: one ball with one neighbour, which is too heavy to move
+-- group behaviors: one ball with one neighbor, which is too heavy to move
 local function beside(name, at, x, other_velocity)
   local other = sim:add_body(name .. "_other")
   other:add_part("ball", kSphere, { mass = 1e6, position = at + vec3(x, 0, 0) })

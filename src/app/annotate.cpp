@@ -1,4 +1,4 @@
-// A scene that never runs tells its names; the tables tell the rest.
+// Collects the Lua names from a scene that never runs and the properties from the tables.
 #include "app/annotate.h"
 
 #include <filesystem>
@@ -16,13 +16,13 @@ namespace limber {
 
 namespace {
 
-// what scripts ask of the outside leads nowhere here
-struct Nobody : ScriptHost {
+// A host that discards all output; no script runs here.
+struct NullHost : ScriptHost {
   void send(Message) override {}
-  void reply(const Origin&, Message) override {}
-  void send_direct(const Origin&, Message) override {}
-  void plan_osc(const OscPlan&) override {}
-  void ask_reset() override {}
+  void reply(const CommandOrigin&, Message) override {}
+  void send_direct(const CommandOrigin&, Message) override {}
+  void configure_osc(const OscConfig&) override {}
+  void request_reset() override {}
   void script_error(std::string_view, int, std::string_view) override {}
 };
 
@@ -31,7 +31,7 @@ struct Nobody : ScriptHost {
 std::string annotations_text() {
   Store store;
   World world(store);
-  Nobody host;
+  NullHost host;
   Scene scene(world, host, {});
   return annotations(scene.names());
 }
@@ -40,7 +40,7 @@ int annotate_command(const std::string& file) {
   const std::string text = annotations_text();
   if (file.empty()) {
     print_result("{}", text);
-    return kFine;
+    return kSuccess;
   }
   std::error_code ignored;
   const std::filesystem::path folder = std::filesystem::path(file).parent_path();
@@ -48,8 +48,8 @@ int annotate_command(const std::string& file) {
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
-  if (out) return kFine;
-  return fail(kMachine, fmt::format("{} can't be written; look at the folder's permissions", file));
+  if (out) return kSuccess;
+  return fail(kMachineError, fmt::format("{} can't be written; check the folder's permissions", file));
 }
 
 }  // namespace limber

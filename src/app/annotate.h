@@ -1,14 +1,14 @@
-// `limber annotate`: definitions of all that scripts see, for editors.
+// `limber annotate`: writes the LuaCATS definitions of everything that scripts can use, for editors.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
-/// Writes them into the file, or to stdout when its name is empty. Returns the exit code. [main]
+/// Writes the definitions to `file`, or to stdout if its name is empty. Returns the exit code. [main]
 int annotate_command(const std::string& file);
 
-/// The text. [main]
+/// Returns the definitions as text. [main]
 std::string annotations_text();
 
 }  // namespace limber

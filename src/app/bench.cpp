@@ -1,4 +1,4 @@
-// The bench's list of scenes, and how figures are printed.
+// Lists the benchmark scenes and prints their results.
 #include "app/bench.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// enough ticks that the least of them is undisturbed, few enough for patience
+// The default number of ticks is a compromise between an undisturbed minimum and the duration of the benchmark.
 template <int Arms, int Ticks>
 Json run_arms(const BenchOptions& options) {
   return bench_arms(bench_arm_scene(Arms), std::min(30, Ticks), options.ticks > 0 ? options.ticks : Ticks,
@@ -113,37 +113,36 @@ const BenchScene* find_scene_named(std::string_view name) {
 
 const std::vector<BenchScene>& bench_scenes() {
   static const std::vector<BenchScene> scenes = {
-      {"arms-1", "one arm of 17 parts, a servo a joint, gravity, floor", &run_arms<1, 1200>},
+      {"arms-1", "one arm of 17 parts with a servo per joint, gravity, floor", &run_arms<1, 1200>},
       {"arms-16", "16 such arms", &run_arms<16, 240>},
       {"arms-100", "100 such arms", &run_arms<100, 80>},
       {"arms-1000", "1000 such arms", &run_arms<1000, 16>},
-      {"arm-quality", "one arm hanging, one internal step of 1/60 s: how far joints part and servos miss",
+      {"arm-quality", "one hanging arm, one internal step of 1/60 s: joint gaps and servo errors",
        &run_arm_quality<false>},
       {"arm-direct", "the same with the direct solver", &run_arm_quality<true>},
       {"arms-100-direct", "100 arms, direct solver, one internal step of 1/60 s", &run_direct_arms<100, 80>},
       {"arms-1000-direct", "1000 arms, direct solver, one internal step of 1/60 s", &run_direct_arms<1000, 16>},
-      {"solver", "arms, trees, legs and random trees: stock Bullet beside the direct solver, 1/60 s", &run_solver},
-      {"swarm-300", "300 six-part creatures that press on each other: stock Bullet beside ours", &run_swarm},
-      {"pile-2000", "2000 boxes in a pile, the same", &run_pile},
-      {"threads", "100 and 1000 arms on two threads beside one, in pairs", &bench_threads},
-      {"flock-1k", "1000 bodies with 30 neighbours each: cohesion and alignment", &run_flock<1000>},
+      {"solver", "arms, trees, legs and random trees: stock Bullet against the direct solver, 1/60 s", &run_solver},
+      {"swarm-300", "a clump of 300 six-part creatures: stock Bullet against Limber", &run_swarm},
+      {"pile-2000", "a pile of 2000 boxes: stock Bullet against Limber", &run_pile},
+      {"threads", "100 and 1000 arms with two threads against one", &bench_threads},
+      {"flock-1k", "1000 bodies with 30 neighbors each: cohesion and alignment", &run_flock<1000>},
       {"flock-10k", "10 000 such bodies", &run_flock<10000>},
       {"flock-100k", "100 000 such bodies", &run_flock<100000>},
-      {"lua-twin", "each built-in behaviour and its twin in Lua, 10 000 parts each", &bench_lua_twin},
-      {"lua-garbage", "behaviours in Lua that leave garbage: what the collector adds to ticks", &bench_lua_garbage},
-      {"lua-many", "1000 instances of a small behaviour in Lua", &bench_lua_many},
-      {"spawn", "load urdf/arm17.urdf and make 1000 copies", &bench_spawn},
-      {"reload", "a scene saved while it plays: how soon the new one is in force, and what its ticks feel of it",
-       &bench_reload},
-      {"preset", "presets of every property of 1000 arms: stored, recalled, glided to", &bench_preset},
-      {"take", "16 arms and 1000 messages a second: what a take costs, and its replay", &bench_take},
-      {"history", "1, 100 and 1000 arms: key states, and going back", &bench_history},
-      {"osc-in", "messages a second from a socket into rows; a burst of 10 000", &bench_osc_in},
-      {"osc-latency", "from message to answer: /ping, and a value in force", &bench_osc_latency},
+      {"lua-twin", "each built-in behavior against its equivalent in Lua, 10 000 parts each", &bench_lua_twin},
+      {"lua-garbage", "Lua behaviors that produce garbage: time of garbage collection", &bench_lua_garbage},
+      {"lua-many", "1000 instances of a small Lua behavior", &bench_lua_many},
+      {"spawn", "import urdf/arm17.urdf and create 1000 copies", &bench_spawn},
+      {"reload", "saving a scene while it plays: delay until the new version runs, and effect on ticks", &bench_reload},
+      {"preset", "presets of all properties of 1000 arms: store, recall, morph", &bench_preset},
+      {"take", "16 arms and 1000 messages per second: cost of recording a take, and its replay", &bench_take},
+      {"history", "1, 100 and 1000 arms: checkpoints and rewind", &bench_history},
+      {"osc-in", "messages per second from a socket into properties; a burst of 10 000", &bench_osc_in},
+      {"osc-latency", "response time: /ping, and setting a value", &bench_osc_latency},
       {"osc-out", "frames of 1000 bodies in three streams", &bench_osc_out},
-      {"panel", "a frame of the panel beside 1000 arms, without drawing it", &bench_panel},
-      {"picture", "frames a second without a window: 16 arms small, 1000 arms large", &bench_picture},
-      {"query", "16 arms while 100 WebSocket clients listen to 50 values each, and alone", &bench_query},
+      {"panel", "a frame of the panel with 1000 arms, without drawing", &bench_panel},
+      {"picture", "frames per second without a window: 16 arms small, 1000 arms large", &bench_picture},
+      {"query", "16 arms with and without 100 WebSocket clients that listen to 50 values each", &bench_query},
   };
   return scenes;
 }
@@ -161,21 +160,21 @@ std::string bench_text(const nlohmann::ordered_json& figures) {
 }
 
 int bench_command(const BenchOptions& options) {
-  std::vector<const BenchScene*> chosen;
+  std::vector<const BenchScene*> selected;
   for (const std::string& name : options.scenes) {
-    chosen.push_back(find_scene_named(name));
-    if (chosen.back() != nullptr) continue;
+    selected.push_back(find_scene_named(name));
+    if (selected.back() != nullptr) continue;
     std::vector<std::string_view> names;
     for (const BenchScene& scene : bench_scenes()) names.push_back(scene.name);
-    return fail(kUsage, fmt::format("there is no bench scene '{}'{}", name, name_hint(name, names)));
+    return fail(kUsageError, fmt::format("unknown benchmark '{}'{}", name, name_hint(name, names)));
   }
-  if (chosen.empty()) {
-    for (const BenchScene& scene : bench_scenes()) chosen.push_back(&scene);
+  if (selected.empty()) {
+    for (const BenchScene& scene : bench_scenes()) selected.push_back(&scene);
   }
   Json all = machine();
   if (!options.json) print_result("{}", bench_text(all));
   all["scenes"] = Json::array();
-  for (const BenchScene* scene : chosen) {
+  for (const BenchScene* scene : selected) {
     if (!options.json && !print_result("{}: {}\n", scene->name, scene->doc)) break;
     Json figures = {{"scene", std::string(scene->name)}};
     figures.update(scene->run(options));
@@ -187,7 +186,7 @@ int bench_command(const BenchOptions& options) {
     }
   }
   if (options.json) print_result("{}\n", all.dump(2));
-  return kFine;
+  return kSuccess;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// `limber bench`: how fast it is on this machine, scene by scene, beside a bare Bullet loop where that makes sense.
+// `limber bench`: measures the speed on this machine, scene by scene, optionally next to a plain Bullet loop.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@ namespace limber {
 
 struct BenchOptions {
   std::vector<std::string> scenes;  ///< Names; empty: all.
-  bool compare_raw = false;         ///< Arms: the same in a bare Bullet loop, interleaved.
+  bool compare_raw = false;         ///< Arms: also run the same scene in a plain Bullet loop, interleaved.
   bool json = false;
-  int ticks = 0;        ///< Timed ticks of a scene; 0: chosen for each.
-  std::string gl = {};  ///< Kind of OpenGL of the picture, see gl_apis().
+  int ticks = 0;        ///< Timed ticks per scene; 0: a default for each scene.
+  std::string gl = {};  ///< Kind of OpenGL for rendering, see gl_apis().
 };
 
-/// A scene of the bench: its figures as JSON, units in the keys.
+/// One benchmark scene. `run` returns the results as JSON, with units in the keys.
 struct BenchScene {
   std::string_view name;
   std::string_view doc;  ///< One line.
@@ -25,14 +25,14 @@ struct BenchScene {
 };
 const std::vector<BenchScene>& bench_scenes();
 
-/// "arms-1,arms-16,…", for help.
+/// Returns "arms-1,arms-16,…", for help texts.
 std::string bench_scene_list();
 
-/// Prints each scene's figures to stdout as they come (with `json`: one object at the end). Returns the exit code: 2
-/// for a scene that does not exist, else 0. Nothing here asserts a time. [main]
+/// Prints the results of each scene to stdout as they arrive (with `json`: one object at the end). Returns the exit
+/// code: 2 for an unknown scene, else 0. There is no pass or fail for times. [main]
 int bench_command(const BenchOptions& options);
 
-/// The figures of one scene as text: a line for each number or group of numbers.
+/// Formats the results of one scene as text: one line per number or group of numbers.
 std::string bench_text(const nlohmann::ordered_json& figures);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Arms: building, driving, and the interleaved measurement.
+// Builds and drives the arms; interleaved measurement of Limber and plain Bullet.
 #include "app/bench_arms.h"
 
 #include <algorithm>
@@ -25,23 +25,23 @@ EngineOptions options_with(int threads) {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kRound = 4;       // ticks of one side before it is the other's turn
-constexpr int kPhaseTicks = 8;  // at most, for the look inside Bullet, which costs a little itself
+constexpr int kRound = 4;  // consecutive ticks of Limber or plain Bullet before the other runs
+// maximal number of ticks with phase counters inside Bullet, which cost some time themselves
+constexpr int kPhaseTicks = 8;
 
-void set(Store& store, NodeId id, const Table& table, const char* row, std::vector<double> values) {
-  LIMBER_CHECK(store.set(id, table.at(row), values).ok());
+void set(Store& store, NodeId id, const PropertyTable& table, const char* property, std::vector<double> values) {
+  LIMBER_CHECK(store.set(id, table.at(property), values).ok());
 }
 
-// what surrounds physics in a tick, as a part of the tick
-double surroundings(const PhaseTimes& t) {
-  return (t.commands + t.scripts + t.behaviors + t.effects + t.readouts + t.snapshot + t.collector) /
-         (t.total() + t.collector);
+// share of the tick outside of the physics
+double overhead_share(const PhaseTimes& t) {
+  return (t.commands + t.scripts + t.behaviors + t.callbacks + t.readouts + t.snapshot + t.gc) / (t.total() + t.gc);
 }
 
-// one side's samples
+// samples of Limber or of plain Bullet
 struct ArmSide {
-  Samples ticks;  // real time
-  Samples work;   // the processor's
+  TimeSamples ticks;  // wall time
+  TimeSamples work;   // processor time
   double gap = 0;
   double error = 0;
 
@@ -67,31 +67,31 @@ struct ArmSide {
   }
 };
 
-// the engine's phases
+// phases of the engine's tick
 struct Phases {
-  Samples commands, scripts, behaviors, effects, physics, readouts, snapshot, collector, around, snapshot_part;
+  TimeSamples commands, scripts, behaviors, effects, physics, readouts, snapshot, collector, overhead, snapshot_part;
 
   void add(const PhaseTimes& t) {
     commands.add(t.commands);
     scripts.add(t.scripts);
     behaviors.add(t.behaviors);
-    effects.add(t.effects);
+    effects.add(t.callbacks);
     physics.add(t.physics);
     readouts.add(t.readouts);
     snapshot.add(t.snapshot);
-    collector.add(t.collector);
-    around.add(surroundings(t));
-    snapshot_part.add(t.snapshot / (t.total() + t.collector));
+    collector.add(t.gc);
+    overhead.add(overhead_share(t));
+    snapshot_part.add(t.snapshot / (t.total() + t.gc));
   }
   Json microseconds() const {
-    const auto median = [](const Samples& s) { return Samples::in_microseconds(s.at(0.5)); };
+    const auto median = [](const TimeSamples& s) { return TimeSamples::in_microseconds(s.quantile(0.5)); };
     return {{"commands", median(commands)}, {"scripts", median(scripts)},    {"behaviors", median(behaviors)},
             {"effects", median(effects)},   {"physics", median(physics)},    {"readouts", median(readouts)},
             {"snapshot", median(snapshot)}, {"collector", median(collector)}};
   }
 };
 
-// what the arms alone take in a bare loop, the world not counted
+// memory of the arms in a plain loop, without the world
 double raw_bytes_per_part(const ArmScene& scene) {
   ArmScene none = scene;
   none.arms = 0;
@@ -103,24 +103,24 @@ double raw_bytes_per_part(const ArmScene& scene) {
   return (system::heap_bytes() - before - 2 * world) / (scene.arms * (scene.parts + 1));
 }
 
-// inside Bullet, of the fastest of some ticks
+// phases inside Bullet, of the fastest tick
 Json bullet_phases(BenchArms& arms, int ticks) {
   BulletPhases best;
-  double least = 0;
+  double best_sum = 0;
   for (int i = 0; i < ticks; i++) {
     arms.drive(arms.time());
     const BulletPhaseCounter counter;
     arms.tick();
     const BulletPhases& p = counter.phases();
     const double sum = p.broadphase + p.narrowphase + p.islands + p.solver;
-    if (i > 0 && sum >= least) continue;
+    if (i > 0 && sum >= best_sum) continue;
     best = p;
-    least = sum;
+    best_sum = sum;
   }
-  return {{"broadphase", Samples::in_microseconds(best.broadphase)},
-          {"narrowphase", Samples::in_microseconds(best.narrowphase)},
-          {"islands", Samples::in_microseconds(best.islands)},
-          {"solver", Samples::in_microseconds(best.solver)}};
+  return {{"broadphase", TimeSamples::in_microseconds(best.broadphase)},
+          {"narrowphase", TimeSamples::in_microseconds(best.narrowphase)},
+          {"islands", TimeSamples::in_microseconds(best.islands)},
+          {"solver", TimeSamples::in_microseconds(best.solver)}};
 }
 
 }  // namespace
@@ -171,9 +171,9 @@ void BenchArms::add_arm(int arm, Shape& box) {
   for (int i = 0; i < scene_.parts; i++) {
     Part* above =
         *body.add_part(fmt::format("part{}", i + 1), box, scene_.mass, {scene_.center(arm, i), quat_identity()});
-    const Vec3 place = scene_.center(arm, i) + scene_.to_joint();
+    const Vec3 position = scene_.center(arm, i) + scene_.to_joint();
     const Vec3 axis = ArmScene::axis(i) == 0 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    Joint& joint = **body.add_joint(fmt::format("joint{}", i + 1), *below, *above, JointType::revolute, place, axis);
+    Joint& joint = **body.add_joint(fmt::format("joint{}", i + 1), *below, *above, JointType::revolute, position, axis);
     set(store, joint.id(), Joint::table(), "angular_lower_limit", {0, 0, -scene_.limit});
     set(store, joint.id(), Joint::table(), "angular_upper_limit", {0, 0, scene_.limit});
     const Motor& motor = **body.add_motor(joint);
@@ -233,18 +233,18 @@ nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int tic
                     {"solver_iterations", scene.solver_iterations}}},
                   {"ticks", ticks}};
   figures.update(ours.figures());
-  figures["simulated_seconds_per_second"] = rounded(scene.step * scene.substeps / ours.ticks.at(0.5), 2);
+  figures["simulated_seconds_per_second"] = rounded(scene.step * scene.substeps / ours.ticks.quantile(0.5), 2);
   figures["phases_us"] = phases.microseconds();
-  figures["around_physics_percent"] = rounded(100 * phases.around.at(0.5), 2);
-  figures["snapshot_percent"] = rounded(100 * phases.snapshot_part.at(0.5), 2);
+  figures["around_physics_percent"] = rounded(100 * phases.overhead.quantile(0.5), 2);
+  figures["snapshot_percent"] = rounded(100 * phases.snapshot_part.quantile(0.5), 2);
   figures["hash"] = fmt::format("{:016x}", arms.engine().state_hash());
   figures["bullet_us"] = bullet_phases(arms, std::min(ticks, kPhaseTicks));
   figures["bytes_per_part"] = rounded(bytes, 0);
   if (!raw) return figures;
   figures["raw"] = bare.figures();
   figures["raw"]["bytes_per_part"] = rounded(raw_bytes_per_part(scene), 0);
-  const auto ratio = [](const Samples& a, const Samples& b, double part) {
-    return rounded(a.at(part) / b.at(part), 3);
+  const auto ratio = [](const TimeSamples& a, const TimeSamples& b, double part) {
+    return rounded(a.quantile(part) / b.quantile(part), 3);
   };
   figures["ratio"] = {{"min", ratio(ours.ticks, bare.ticks, 0)},
                       {"median", ratio(ours.ticks, bare.ticks, 0.5)},

@@ -1,5 +1,5 @@
-// The arms of the bench in Limber: an engine whose world is filled by hand. Shared by `limber bench`, the benchmarks in
-// tests/bench and tests.
+// The benchmark's arms in Limber: an engine with a world that is built without a scene. Shared by `limber bench`, the
+// benchmarks in tests/bench and tests.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,24 @@
 
 namespace limber {
 
-/// The same arms as RawLoop's, through the world's own doors. [sim]
+/// The same arms as RawLoop's, built with the world's functions. [sim]
 class BenchArms {
  public:
   explicit BenchArms(const ArmScene& scene, int threads = 1);
   BenchArms(const BenchArms&) = delete;
   BenchArms& operator=(const BenchArms&) = delete;
 
-  /// Targets of all servos for this time, through the door: what a script or a behaviour would do.
+  /// Sets the targets of all servos for this time through the setters, as a script or behavior does.
   void drive(double time);
-  /// The whole tick: commands, scripts, effects, physics, readouts, snapshot.
+  /// Runs a complete tick: commands, scripts, on-change callbacks, physics, readouts, snapshot.
   void tick() { engine_.tick(); }
 
+  /// Largest position error of a joint, m.
   double joint_gap() const;
+  /// Largest deviation of a joint from its target at this time, rad.
   double servo_error(double time) const;
   double time() { return engine_.world().time(); }
-  /// Heap before the arms were made, bytes.
+  /// Size of the heap before the arms were created, bytes.
   double heap_when_empty() const { return heap_when_empty_; }
   Engine& engine() { return engine_; }
   EngineLink& link() { return link_; }
@@ -39,18 +41,18 @@ class BenchArms {
   ArmScene scene_;
   EngineLink link_;
   Engine engine_;
-  std::vector<Joint*> joints_;  // arm by arm, from the base up
+  std::vector<Joint*> joints_;  // arm by arm, from the base upwards
   double heap_when_empty_ = 0;
 };
 
-/// The default of sim.solver_iterations.
+/// Returns the default of sim.solver_iterations.
 int default_iterations();
-/// A scene with this many arms: ticks of 1/60 s, 4 substeps.
+/// Returns a scene with this many arms: ticks of 1/60 s, 4 substeps.
 ArmScene bench_arm_scene(int arms);
-/// The same with the direct solver, which needs one internal step a tick alone.
+/// Returns the same scene with the direct solver, which needs a single internal step per tick.
 ArmScene direct_arm_scene(int arms);
 
-/// Ticks both (raw where it is wanted), interleaved, and gives the figures.
+/// Runs Limber's arms and, if requested, the plain Bullet loop, interleaved. Returns the results.
 nlohmann::ordered_json bench_arms(const ArmScene& scene, int warm_ticks, int ticks, bool compare_raw);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A flock in a box: built by hand, its behaviours' time taken from the engine's own phases.
+// A flock in a cube; the engine's phase times give the cost of the behaviors.
 #include "app/bench_flock.h"
 
 #include <algorithm>
@@ -18,19 +18,20 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kNeighbors = 30;
-constexpr double kReach = 1;  // m
+constexpr double kNeighborDistance = 1;  // m
 
-void set(Store& store, NodeId id, std::string_view row, double value) {
-  LIMBER_CHECK(store.set(id, row, {&value, 1}).ok());
+void set(Store& store, NodeId id, std::string_view property, double value) {
+  LIMBER_CHECK(store.set(id, property, {&value, 1}).ok());
 }
 
-// balls in a cube whose side makes the density right, each with a motion of its own
+// balls with random velocities in a cube; its size gives the desired number of neighbors
 void add_balls(World& world, int bodies) {
   ShapeModel ball;
   ball.kind = ShapeKind::sphere;
   ball.radius = 0.02;
   Shape& shape = **world.add_shape("ball", ball);
-  const double side = std::cbrt(bodies * 4.0 / 3 * kPi * kReach * kReach * kReach / kNeighbors);
+  const double side =
+      std::cbrt(bodies * 4.0 / 3 * kPi * kNeighborDistance * kNeighborDistance * kNeighborDistance / kNeighbors);
   Random random(1, "flock");
   const Vec3 half(side / 2);
   const auto between = [&](const Vec3& size) {
@@ -47,17 +48,18 @@ BehaviorGroup& add_group(World& world, const char* type) {
   GroupSetup setup;
   setup.bodies = Selection({"ball*"});
   BehaviorGroup& group = **world.behaviors().add_group(type, type, setup);
-  set(world.store(), group.id(), "max_dist", kReach);
+  set(world.store(), group.id(), "max_dist", kNeighborDistance);
   set(world.store(), group.id(), "amount", 1e-4);
   return group;
 }
 
-// how many a part sees, in the middle of the cube and at its faces alike
+// mean number of neighbors over all parts, including those at the faces of the cube
 double mean_neighbors(BehaviorGroup& group) {
   std::vector<Part*> parts;
   for (const auto& member : group.members()) parts.push_back(member->parts().front());
   double sum = 0;
-  for (const NeighborMeans& means : group.neighbors().means(parts, 0, kReach, kWantVelocity)) sum += means.count;
+  for (const NeighborMeans& means : group.neighbors().means(parts, 0, kNeighborDistance, kWantVelocity))
+    sum += means.count;
   return sum / static_cast<double>(parts.size());
 }
 
@@ -76,20 +78,20 @@ nlohmann::ordered_json bench_flock(int bodies, const BenchOptions& options) {
   BehaviorGroup& alignment = add_group(world, "alignment");
   const int usual = std::clamp(400000 / bodies, 5, 200);
   const int ticks = options.ticks > 0 ? options.ticks : usual;
-  Samples behaviors, cohesions, alignments, ticks_whole;
+  TimeSamples behaviors, cohesions, alignments, ticks_whole;
   for (int i = -3; i < ticks; i++) {
     engine.tick();
     if (i < 0) continue;
     behaviors.add(engine.times().behaviors);
-    cohesions.add(cohesion.seconds_a_member() * bodies);
-    alignments.add(alignment.seconds_a_member() * bodies);
+    cohesions.add(cohesion.seconds_per_member() * bodies);
+    alignments.add(alignment.seconds_per_member() * bodies);
     ticks_whole.add(engine.times().total());
   }
   return {{"bodies", bodies},
           {"neighbors", rounded(mean_neighbors(cohesion), 1)},
           {"ticks", ticks},
           {"behaviors_us", behaviors.microseconds()},
-          {"behaviors_ns_a_part", rounded(1e9 * behaviors.at(0) / bodies, 1)},
+          {"behaviors_ns_a_part", rounded(1e9 * behaviors.quantile(0) / bodies, 1)},
           {"cohesion_us", cohesions.microseconds()},
           {"alignment_us", alignments.microseconds()},
           {"tick_us", ticks_whole.microseconds()},

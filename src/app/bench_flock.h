@@ -1,12 +1,12 @@
-// Group behaviours of the bench: many bodies that follow their neighbours.
+// Benchmark of group behaviors: many bodies that follow their neighbors.
 #pragma once
 
 #include "app/bench.h"
 
 namespace limber {
 
-/// So many bodies of one part, about 30 neighbours each; cohesion and alignment: the behaviours' share of a tick, and
-/// what surrounds it.
+/// `bodies` one-part bodies with about 30 neighbors each: time per tick of cohesion and alignment, and of the whole
+/// tick.
 nlohmann::ordered_json bench_flock(int bodies, const BenchOptions& options);
 
 }  // namespace limber

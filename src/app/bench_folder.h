@@ -1,4 +1,4 @@
-// BenchFolder: a show's folder of the bench's own, in the system's place for such; it goes when the bench is over.
+// BenchFolder: a show folder for the benchmark in the system's temporary folder, deleted by the destructor.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 
 namespace limber {
 
+/// The folder exists as long as this object.
 class BenchFolder {
  public:
   BenchFolder() : path_(std::filesystem::temp_directory_path() / fmt::format("limber_bench_{}", system::process_id())) {

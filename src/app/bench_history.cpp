@@ -1,4 +1,4 @@
-// Shows that are played for some seconds and rewound.
+// Plays scenes for some seconds and rewinds them.
 #include "app/bench_history.h"
 
 #include <fstream>
@@ -18,12 +18,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kKeptArms = R"(
+constexpr const char* kHistoryArms = R"(
 local arm = sim:load_urdf("{0}/urdf/arm17.urdf", {{ name = "arm1" }})
 for i = 2, {1} do arm:copy("arm" .. i, {{ position = vec3(2 * (i % 32), 2 * math.floor(i / 32), 0) }}) end
 {2}
 )";
-constexpr const char* kKeptLua = R"(
+constexpr const char* kHistoryForces = R"(
 sim:on_step(function()
   for _, body in ipairs(sim.bodies) do
     body.parts[2]:apply_force(vec3(math.sin(sim.time + #body.name), 0, rng:uniform(0, 1)))
@@ -31,15 +31,15 @@ sim:on_step(function()
 end)
 )";
 
-Json keep(const BenchFolder& folder, int arms, const std::string& more, int ticks) {
-  std::ofstream(folder.scene()) << fmt::format(kKeptArms, data_dir(), arms, more);
+Json measure_history(const BenchFolder& folder, int arms, const std::string& more, int ticks) {
+  std::ofstream(folder.scene()) << fmt::format(kHistoryArms, data_dir(), arms, more);
   EngineLink link;
   EngineOptions options;
   options.scene = folder.scene();
   options.fast = true;
   Engine engine(link, options);
   LIMBER_CHECK(engine.start().ok());
-  Samples plain, with_key, back;
+  TimeSamples plain, with_checkpoint, back;
   double before = 0;
   double grown = 0;
   for (int i = 0; i < ticks; i++) {
@@ -52,24 +52,24 @@ Json keep(const BenchFolder& folder, int arms, const std::string& more, int tick
     }
     const auto bytes = static_cast<double>(engine.history().bytes());
     if (before > 0) {
-      with_key.add(seconds);
+      with_checkpoint.add(seconds);
       grown += bytes - before;
     }
     before = bytes;
   }
   const int seconds = ticks / 60;
-  const double keys = seconds - 1;
+  const double checkpoints = seconds - 1;
   for (int i = 0; i < 3; i++) {
-    link.inbox.push({{{"/transport/rewind", {Arg::of(0.9)}}}, {Hand::osc, 0x7f000001, 4000}});
+    link.command_queue.push({{{"/transport/rewind", {Arg::of(0.9)}}}, {CommandSource::osc, 0x7f000001, 4000}});
     const double start = system::thread_seconds();
     engine.idle();
     back.add(system::thread_seconds() - start);
     for (int k = 0; k < 54; k++) engine.tick();
   }
-  return {{"tick_us", Samples::in_microseconds(plain.at(0.5))},
-          {"tick_with_key_us", Samples::in_microseconds(with_key.at(0.5))},
-          {"mb_of_30_s", rounded((before + grown / keys * (30 - keys)) / (1u << 20u), 1)},
-          {"rewind_ms", rounded(1000 * back.at(0.5), 2)}};
+  return {{"tick_us", TimeSamples::in_microseconds(plain.quantile(0.5))},
+          {"tick_with_key_us", TimeSamples::in_microseconds(with_checkpoint.quantile(0.5))},
+          {"mb_of_30_s", rounded((before + grown / checkpoints * (30 - checkpoints)) / (1u << 20u), 1)},
+          {"rewind_ms", rounded(1000 * back.quantile(0.5), 2)}};
 }
 
 }  // namespace
@@ -78,10 +78,10 @@ Json bench_history(const BenchOptions& options) {
   const int ticks = options.ticks > 0 ? options.ticks : 360;
   const BenchFolder folder;
   return {{"ticks", ticks},
-          {"arms_1", keep(folder, 1, "", ticks)},
-          {"arms_100", keep(folder, 100, "", ticks)},
-          {"arms_1000", keep(folder, 1000, "", ticks)},
-          {"arms_100_lua", keep(folder, 100, kKeptLua, ticks)}};
+          {"arms_1", measure_history(folder, 1, "", ticks)},
+          {"arms_100", measure_history(folder, 100, "", ticks)},
+          {"arms_1000", measure_history(folder, 1000, "", ticks)},
+          {"arms_100_lua", measure_history(folder, 100, kHistoryForces, ticks)}};
 }
 
 }  // namespace limber

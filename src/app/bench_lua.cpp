@@ -1,4 +1,4 @@
-// Scenes in a folder of their own, played by the engine; behaviours say what a tick spent on them.
+// Plays scenes from a temporary folder and reads the time of each behavior from its readout.
 #include "app/bench_lua.h"
 
 #include <filesystem>
@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// a show that goes when it has been played
+// a show in a temporary folder, deleted by the destructor
 class BenchShow {
  public:
   BenchShow(const std::string& scene, const std::string& behavior) {
@@ -58,7 +58,7 @@ class BenchShow {
   Result<void> started_;
 };
 
-// two equal clouds far apart, each of so many parts; `in_one`: as one body, else a body a part
+// defines cloud(): `count` parts in a grid; `in_one`: as one body, else one body per part
 constexpr const char* kClouds = R"(
 sim.gravity, sim.substeps, sim.solver_iterations = vec3(), 1, 1
 local ball = sim:add_sphere_shape("ball", 0.1)
@@ -74,7 +74,7 @@ local function cloud(name, count, in_one, at)
 end
 )";
 
-// as many motors, on joints of parts that stand in rows
+// defines rack(): `count` parts in a grid, with a motor on each joint
 constexpr const char* kMotors = R"(
 sim.gravity, sim.substeps, sim.solver_iterations = vec3(), 1, 1
 local ball = sim:add_sphere_shape("ball", 0.1)
@@ -128,7 +128,7 @@ std::string twin_scene(const Twin& twin, int parts) {
          line("lua", fmt::format("lua_{}", twin.type));
 }
 
-// microseconds of the last tick
+// time of the last tick in microseconds
 double time_of(const World& world, const Twin& twin, const std::string& body) {
   const Store& store = world.store();
   const NodeId id =
@@ -141,7 +141,7 @@ double time_of(const World& world, const Twin& twin, const std::string& body) {
 Json measure(const Twin& twin, int parts, int ticks) {
   BenchShow show(twin_scene(twin, parts), "");
   if (!show.started()) return {{"error", show.started().error()}};
-  Samples built_in, lua;
+  TimeSamples built_in, lua;
   World& world = show.engine().world();
   for (int i = -10; i < ticks; i++) {
     show.engine().tick();
@@ -149,14 +149,14 @@ Json measure(const Twin& twin, int parts, int ticks) {
     built_in.add(1e-6 * time_of(world, twin, "cpp"));
     lua.add(1e-6 * time_of(world, twin, "lua"));
   }
-  return {{"cpp_ns_a_part", rounded(1e9 * built_in.at(0.5) / parts, 1)},
-          {"lua_ns_a_part", rounded(1e9 * lua.at(0.5) / parts, 1)},
-          {"ratio_of_medians", rounded(lua.at(0.5) / built_in.at(0.5), 2)},
-          {"ratio_of_minima", rounded(lua.at(0) / built_in.at(0), 2)},
+  return {{"cpp_ns_a_part", rounded(1e9 * built_in.quantile(0.5) / parts, 1)},
+          {"lua_ns_a_part", rounded(1e9 * lua.quantile(0.5) / parts, 1)},
+          {"ratio_of_medians", rounded(lua.quantile(0.5) / built_in.quantile(0.5), 2)},
+          {"ratio_of_minima", rounded(lua.quantile(0) / built_in.quantile(0), 2)},
           {"faults", show.engine().faults()}};
 }
 
-// so many bodies of one part, each with the behaviour `small`
+// `instances` one-part bodies, each with the behavior `small`
 std::string many_scene(int instances) {
   return std::string(kClouds) + fmt::format(
                                     "cloud('b', {}, false, vec3())\n"
@@ -164,20 +164,20 @@ std::string many_scene(int instances) {
                                     instances);
 }
 
-// what the collector adds to ticks of a scene with so many instances
-Json collected(const char* behavior, int instances, int ticks) {
+// time of garbage collection in the ticks of a scene with `instances` behaviors
+Json measure_garbage(const char* behavior, int instances, int ticks) {
   BenchShow show("sim.history = 0\n" + many_scene(instances), behavior);
   if (!show.started()) return {{"error", show.started().error()}};
-  Samples slices;
+  TimeSamples slices;
   for (int i = 0; i < ticks; i++) {
     show.engine().tick();
-    // less is a look at how much memory there is
-    if (const double seconds = show.engine().times().collector; seconds > 20e-6) slices.add(seconds);
+    // shorter times are only checks of the memory in use
+    if (const double seconds = show.engine().times().gc; seconds > 20e-6) slices.add(seconds);
   }
   if (slices.empty()) return {{"slices", 0}};
   return {{"slices", slices.count()},
-          {"median_us", Samples::in_microseconds(slices.at(0.5))},
-          {"longest_us", Samples::in_microseconds(slices.at(1))},
+          {"median_us", TimeSamples::in_microseconds(slices.quantile(0.5))},
+          {"longest_us", TimeSamples::in_microseconds(slices.quantile(1))},
           {"faults", show.engine().faults()}};
 }
 
@@ -193,19 +193,19 @@ nlohmann::ordered_json bench_lua_twin(const BenchOptions& options) {
 
 nlohmann::ordered_json bench_lua_garbage(const BenchOptions& options) {
   const int ticks = options.ticks > 0 ? options.ticks : 2000;
-  // a table, a vector and a text a tick, which take the place of the last ones
+  // a table, a vector and a string per tick, which replace those of the last tick
   constexpr const char* kLast =
       "return behavior { step = function(self)\n"
       "self.state.last = { at = self.parts[1].center, name = 'at ' .. sim.tick } end }\n";
-  // or of those a second ago: a long table that changes is looked at once more, in one go
+  // the same, replacing those of a second ago in a long table, which LuaJIT traverses again atomically if it changes
   constexpr const char* kPast =
       "return behavior { start = function(self) self.state.past, self.state.at = {}, 0 end,\n"
       "step = function(self) self.state.at = self.state.at % 60 + 1\n"
       "self.state.past[self.state.at] = { at = self.parts[1].center, name = 'at ' .. sim.tick } end }\n";
   return {{"ticks", ticks},
-          {"1000 instances", collected(kLast, 1000, ticks)},
-          {"100 with a past of a second", collected(kPast, 100, ticks)},
-          {"1000 with such a past", collected(kPast, 1000, ticks)}};
+          {"1000 instances", measure_garbage(kLast, 1000, ticks)},
+          {"100 with a past of a second", measure_garbage(kPast, 100, ticks)},
+          {"1000 with such a past", measure_garbage(kPast, 1000, ticks)}};
 }
 
 nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {
@@ -216,7 +216,7 @@ nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {
       "step = function(self) self.parts[1]:apply_force(vec3(0, 0, self.lift)) end }\n";
   BenchShow show(many_scene(kInstances), small);
   if (!show.started()) return {{"error", show.started().error()}};
-  Samples behaviors;
+  TimeSamples behaviors;
   for (int i = -20; i < ticks; i++) {
     show.engine().tick();
     if (i >= 0) behaviors.add(show.engine().times().behaviors);
@@ -224,7 +224,7 @@ nlohmann::ordered_json bench_lua_many(const BenchOptions& options) {
   return {{"instances", kInstances},
           {"ticks", ticks},
           {"behaviors_us", behaviors.microseconds()},
-          {"ns_an_instance", rounded(1e9 * behaviors.at(0.5) / kInstances, 1)},
+          {"ns_an_instance", rounded(1e9 * behaviors.quantile(0.5) / kInstances, 1)},
           {"faults", show.engine().faults()}};
 }
 

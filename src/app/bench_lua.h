@@ -1,15 +1,16 @@
-// Behaviours in Lua beside the built-in ones that they repeat, and many small ones.
+// Benchmarks of Lua behaviors: against the equivalent built-in ones, and many small ones.
 #pragma once
 
 #include "app/bench.h"
 
 namespace limber {
 
-/// Each built-in type and its twin of behaviors_lua/, on 10 000 parts each, in the same ticks: time of a tick, ratio.
+/// Each built-in type and its Lua equivalent in behaviors_lua/, on 10 000 parts each, in the same ticks: times and
+/// ratio.
 nlohmann::ordered_json bench_lua_twin(const BenchOptions& options);
-/// Instances that leave garbage: what the collector adds to ticks.
+/// Instances that produce garbage: time of garbage collection per tick.
 nlohmann::ordered_json bench_lua_garbage(const BenchOptions& options);
-/// 1000 instances of a small behaviour in Lua: time of a tick.
+/// 1000 instances of a small Lua behavior: time of a tick.
 nlohmann::ordered_json bench_lua_many(const BenchOptions& options);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// OSC scenes: an engine with arms, the program's own receiver and streams, a client of a few lines.
+// Runs an engine with arms, the program's receiver and streams, and a minimal client.
 #include "app/bench_osc.h"
 
 #include <array>
@@ -28,7 +28,7 @@ using Packet = std::vector<char>;
 
 constexpr int kArms = 16;
 constexpr int kBurst = 10000;
-constexpr int kBundled = 20;  // messages of a bundle
+constexpr int kBundled = 20;  // messages per bundle
 
 Packet packet_of(const Message& message) {
   static PacketBuffer buffer;
@@ -36,7 +36,7 @@ Packet packet_of(const Message& message) {
   return {bytes.begin(), bytes.end()};
 }
 
-// the i-th servo target of a stream of them, to all joints in turn
+// the i-th message of a stream of servo targets that addresses all joints in turn
 Packet target_packet(int i) {
   const std::string arm = fmt::format("arm{}", i % kArms + 1);
   const std::string joint = fmt::format("joint{}", i / kArms % 17 + 1);
@@ -53,22 +53,22 @@ Packet bundle_of(const std::vector<Packet>& messages) {
   return bundle;
 }
 
-// time stands still, so that a tick is commands and a snapshot
+// pauses the simulation, so that a tick consists of commands and the snapshot only
 void pause(BenchArms& arms) {
-  arms.link().inbox.push({{{"/transport/pause", {}}}, {}});
+  arms.link().command_queue.push({{{"/transport/pause", {}}}, {}});
   arms.tick();
 }
 
-// messages a second, the best of some rounds: receiver, then the engine's half
+// messages per second of the best round: receiver, then the engine's part
 double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, int messages) {
   const NetClock clock;
   Receiver receiver(arms.link(), {}, {}, clock);
   double best = 0;
   for (int round = 0; round < 12; round++) {
     const double start = system::clock_seconds();
-    for (const Packet& packet : packets) receiver.take(packet.data(), packet.size(), {0x7f000001, 9});
+    for (const Packet& packet : packets) receiver.process(packet.data(), packet.size(), {0x7f000001, 9});
     double seconds = system::clock_seconds() - start;
-    // a tick takes so much of them
+    // a tick processes a limited number of messages
     for (int work = 0; work < 2 * messages; work += Engine::kTickWork) {
       arms.tick();
       seconds += arms.engine().times().commands;
@@ -78,15 +78,15 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
   return rounded(best, 0);
 }
 
-// a socket of a client on this machine
+// a UDP client on this machine
 class Client {
  public:
   explicit Client(std::uint16_t port) : socket_(std::move(*system::open_udp({0x7f000001, 0}))), to_{0x7f000001, port} {}
 
   void send(const Packet& packet) { (void)system::send_datagram(socket_.fd(), to_, packet); }
-  // whether something came within a second
+  // true if a datagram arrived within a second
   bool receive() {
-    system::Waiting waiting{.fd = socket_.fd()};
+    system::PollEntry waiting{.fd = socket_.fd()};
     std::array<char, 2048> bytes;
     return system::wait_ready({&waiting, 1}, std::chrono::seconds(1)) &&
            system::receive_bytes(socket_.fd(), bytes.data(), bytes.size()) > 0;
@@ -113,7 +113,7 @@ Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets
   std::thread sender([&] {
     for (const Packet& packet : packets) client.send(packet);
   });
-  // until nothing has come for a while
+  // until all have arrived or none has for 0.5 s
   double last = start;
   for (std::uint64_t seen = before; seen < before + packets.size() && system::clock_seconds() - last < 0.5;) {
     arms.tick();
@@ -123,8 +123,9 @@ Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets
   }
   sender.join();
   arms.tick();
-  const auto whole = static_cast<double>(arrived() - before);
-  return {{"sent", packets.size()}, {"arrived", whole}, {"messages_per_second", rounded(whole / (last - start), 0)}};
+  const auto received = static_cast<double>(arrived() - before);
+  return {
+      {"sent", packets.size()}, {"arrived", received}, {"messages_per_second", rounded(received / (last - start), 0)}};
 }
 
 }  // namespace
@@ -139,7 +140,7 @@ nlohmann::ordered_json bench_osc_in(const BenchOptions&) {
   }
   Json figures = {{"messages_per_second", messages_per_second(arms, single, kBurst)},
                   {"messages_per_second_in_bundles", messages_per_second(arms, bundles, kBurst)}};
-  Network network(arms.link(), loopback_only(), live_offsets());
+  Network network(arms.link(), loopback_only(), transient_offsets());
   if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
   figures["burst_on_loopback"] = burst(arms, network, single);
   network.stop();
@@ -151,12 +152,12 @@ nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
   constexpr int kPings = 2000;
   constexpr int kQuestions = 120;
   BenchArms arms(bench_arm_scene(kArms));
-  Network network(arms.link(), loopback_only(), live_offsets());
+  Network network(arms.link(), loopback_only(), transient_offsets());
   if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
   Client client(network.bound().front().port);
   int lost = 0;
-  Samples pings, values;
-  const auto ask = [&](const Packet& packet, Samples& times) {
+  TimeSamples pings, values;
+  const auto ask = [&](const Packet& packet, TimeSamples& times) {
     const double start = system::clock_seconds();
     client.send(packet);
     if (client.receive()) {
@@ -172,7 +173,7 @@ nlohmann::ordered_json bench_osc_latency(const BenchOptions&) {
   Random random(1);
   const Packet get = packet_of({"/get", {Arg::of("/physics/body/arm1/motor/joint1/target")}});
   for (int i = 0; i < kQuestions; i++) {
-    // anywhere in a tick
+    // at a random time of the tick
     std::this_thread::sleep_for(std::chrono::duration<double>(random.uniform() / 60));
     client.send(target_packet(0));
     ask(get, values);
@@ -198,24 +199,24 @@ nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
   const Result<system::UdpSocket> in = system::open_udp({0x7f000001, 0});
   if (!opened || !in) return {{"fault", opened ? in.error() : opened.error()}};
 
-  // someone who reads, so that the kernel does all its work
+  // a reader, so that the kernel delivers the datagrams
   std::atomic<bool> done{false};
   std::thread reader([&] {
     std::vector<char> bytes(65536);
     while (!done) {
-      system::Waiting waiting{.fd = in->fd()};
+      system::PollEntry waiting{.fd = in->fd()};
       if (!system::wait_ready({&waiting, 1}, std::chrono::milliseconds(20))) continue;
       while (system::receive_bytes(in->fd(), bytes.data(), bytes.size()) > 0) continue;
     }
   });
-  StreamTarget wish;
-  StreamFrame frame(live_offsets());
+  StreamTarget target;
+  StreamFrame frame(transient_offsets());
   const std::shared_ptr<const Snapshot> snapshot = arms.link().snapshots.read();
-  Samples fill, send;
+  TimeSamples fill, send;
   bool segmentation = true;
   for (int i = 0; i < kFrames; i++) {
     const double start = system::thread_seconds();
-    frame.lay_out(snapshot->roster, wish);
+    frame.lay_out(snapshot->body_list, target);
     frame.fill(*snapshot);
     const double filled = system::thread_seconds();
     (void)out.send(in->local(), frame.bytes(), frame.datagram_sizes(), segmentation);
@@ -230,7 +231,7 @@ nlohmann::ordered_json bench_osc_out(const BenchOptions&) {
           {"bytes", frame.bytes().size()},
           {"fill_us", fill.microseconds()},
           {"send_us", send.microseconds()},
-          {"percent_of_a_tick_at_60_hz", rounded(100 * 60 * (fill.at(0.5) + send.at(0.5)), 2)}};
+          {"percent_of_a_tick_at_60_hz", rounded(100 * 60 * (fill.quantile(0.5) + send.quantile(0.5)), 2)}};
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A panel without a window over 1000 arms; the simulation makes images in between, as it does beside a window.
+// Runs the panel without a window with 1000 arms; the engine takes value snapshots in between, as with a window.
 #include "app/bench_panel.h"
 
 #include <string>
@@ -18,9 +18,9 @@ class BenchPanel {
   explicit BenchPanel(EngineLink& link) : gui_(link, options()) {}
 
   Gui& gui() { return gui_; }
-  /// So many frames; what each takes of the processor.
-  Samples frames(BenchArms& arms, int count) {
-    Samples samples;
+  /// Runs `count` frames and returns the processor time of each.
+  TimeSamples frames(BenchArms& arms, int count) {
+    TimeSamples samples;
     for (int i = 0; i < count; i++) {
       arms.engine().idle();
       clock_ += 1.0 / 60;
@@ -48,7 +48,7 @@ class BenchPanel {
     InputEvent event;
     event.kind = InputEvent::Kind::text;
     for (const char c : text) {
-      event.letter = static_cast<unsigned char>(c);
+      event.character = static_cast<unsigned char>(c);
       gui_.push(event);
     }
   }
@@ -56,7 +56,7 @@ class BenchPanel {
  private:
   static GuiOptions options() {
     GuiOptions options;
-    options.paints = false;
+    options.draws = false;
     return options;
   }
 
@@ -72,20 +72,20 @@ nlohmann::ordered_json bench_panel(const BenchOptions& options) {
   arms.tick();
   BenchPanel panel(arms.link());
   panel.frames(arms, 60);
-  const Samples plain = panel.frames(arms, frames);
+  const TimeSamples plain = panel.frames(arms, frames);
   panel.click("tree:/physics/body/arm1");
   panel.frames(arms, 10);
   panel.click("tree:/physics/body/arm1");
   panel.frames(arms, 10);
-  const Samples chosen = panel.frames(arms, frames);
+  const TimeSamples with_selection = panel.frames(arms, frames);
   panel.click("scene.search");
   panel.frames(arms, 5);
   panel.type("part16");
   panel.frames(arms, 5);
-  const Samples filtered = panel.frames(arms, frames);
+  const TimeSamples filtered = panel.frames(arms, frames);
   return {{"parts", kPanelArms * 17},
           {"frame_us", plain.microseconds()},
-          {"frame_with_a_body_chosen_us", chosen.microseconds()},
+          {"frame_with_a_body_chosen_us", with_selection.microseconds()},
           {"frame_with_the_tree_filtered_us", filtered.microseconds()}};
 }
 

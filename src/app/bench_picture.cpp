@@ -1,5 +1,5 @@
-// All arms are seen, in motion; as in a window, a frame is prepared while the card draws the one before. The simulation
-// runs ahead: a card that waits for it in between would slow its clock down.
+// Draws all arms in motion. As in a window, a frame is prepared while the GPU draws the previous one. The simulation
+// runs ahead: a GPU that waits for it in between would lower its clock rate.
 #include "app/bench_picture.h"
 
 #include <algorithm>
@@ -30,10 +30,10 @@ struct PictureScene {
 };
 
 constexpr int kTicks = 8;
-constexpr int kFramesATick = 2;  // the display is twice as fast as the simulation
+constexpr int kFramesPerTick = 2;  // the display runs at twice the rate of the simulation
 
-// from above a corner, the whole field in sight
-void look_at_all(BenchArms& arms) {
+// places the camera so that all arms are in view
+void view_all_arms(BenchArms& arms) {
   World& world = arms.engine().world();
   Vec3 low(0), high(0);
   for (const auto& body : world.bodies()) {
@@ -43,14 +43,14 @@ void look_at_all(BenchArms& arms) {
       high = glm::max(high, part->pose().position);
     }
   }
-  const Vec3 middle = 0.5 * (low + high);
-  const Vec3 eye = middle + glm::length(high - low) * Vec3(0.6, -0.6, 0.45);
+  const Vec3 center = 0.5 * (low + high);
+  const Vec3 eye = center + glm::length(high - low) * Vec3(0.6, -0.6, 0.45);
   Store& store = world.store();
   LIMBER_CHECK(store.set(world.visuals().camera().id(), "eye", {&eye.x, 3}).ok());
-  LIMBER_CHECK(store.set(world.visuals().camera().id(), "target", {&middle.x, 3}).ok());
+  LIMBER_CHECK(store.set(world.visuals().camera().id(), "target", {&center.x, 3}).ok());
 }
 
-// `warm`: frames in which meshes are handed over and the driver finds its pace
+// `warm`: untimed frames for the upload of meshes and the warm-up of the driver
 Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
   Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api, shader_dir(), scene.quality);
   if (!renderer) return {{"error", renderer.error()}};
@@ -61,17 +61,17 @@ Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
     return arms.link().snapshots.read();
   };
   tick();
-  look_at_all(arms);
-  std::vector<std::shared_ptr<const Snapshot>> moments;
-  moments.reserve(kTicks);
-  for (int i = 0; i < kTicks; i++) moments.push_back(tick());
-  Samples own;
+  view_all_arms(arms);
+  std::vector<std::shared_ptr<const Snapshot>> snapshots;
+  snapshots.reserve(kTicks);
+  for (int i = 0; i < kTicks; i++) snapshots.push_back(tick());
+  TimeSamples processor;
   double begin = 0;
   for (int i = 0; i < warm + frames; i++) {
-    const auto at = static_cast<std::size_t>(i / kFramesATick % (kTicks - 1));
-    const Snapshot& before = *moments[at];
-    const Snapshot& now = *moments[at + 1];
-    const double mix = 1.0 * (i % kFramesATick) / kFramesATick;
+    const auto at = static_cast<std::size_t>(i / kFramesPerTick % (kTicks - 1));
+    const Snapshot& before = *snapshots[at];
+    const Snapshot& now = *snapshots[at + 1];
+    const double mix = 1.0 * (i % kFramesPerTick) / kFramesPerTick;
     if (i == warm) {
       (*renderer)->finish();
       begin = system::clock_seconds();
@@ -79,26 +79,26 @@ Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
     const double begin_own = system::thread_seconds();
     const Result<void> drawn = (*renderer)->draw(before, now, mix, scene.width, scene.height);
     if (!drawn) return {{"error", drawn.error()}};
-    if (i >= warm) own.add(system::thread_seconds() - begin_own);
+    if (i >= warm) processor.add(system::thread_seconds() - begin_own);
   }
   (*renderer)->finish();
-  const double a_frame = (system::clock_seconds() - begin) / frames;
+  const double frame_seconds = (system::clock_seconds() - begin) / frames;
   return {{"quality", scene.quality_name},
           {"size", fmt::format("{} x {}", scene.width, scene.height)},
           {"parts", scene.arms * 17},
           {"frames", frames},
-          {"frames_a_second", rounded(1 / a_frame, 1)},
-          {"frame_us", Samples::in_microseconds(a_frame)},
-          {"processor_us", own.microseconds()}};
+          {"frames_a_second", rounded(1 / frame_seconds, 1)},
+          {"frame_us", TimeSamples::in_microseconds(frame_seconds)},
+          {"processor_us", processor.microseconds()}};
 }
 
 }  // namespace
 
 nlohmann::ordered_json bench_picture(const BenchOptions& options) {
-  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make(options.gl);
+  const Result<std::unique_ptr<OffscreenContext>> context = OffscreenContext::make(options.gl);
   if (!context) return {{"error", context.error()}};
   const bool software = gl_is_software();
-  // software draws the large one for seconds
+  // software needs seconds for the large scene
   const int warm = software ? 2 : 100;
   const int frames = options.ticks > 0 ? options.ticks : software ? 100 : 600;
   const int frames_large = software ? std::min(frames, 3) : frames;

@@ -1,4 +1,4 @@
-// The bench of the picture: frames a second without a window.
+// Benchmark of rendering without a window: frames per second.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace limber {
 
-/// 1000 arms at 1920 × 1080 in the best quality, 16 at 640 × 360 in the lowest; or why there is no picture here. [main]
+/// 1000 arms at 1920 × 1080 in high quality, 16 at 640 × 360 in low quality; or an error if OpenGL is missing. [main]
 nlohmann::ordered_json bench_picture(const BenchOptions& options);
 
 }  // namespace limber

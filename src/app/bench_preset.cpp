@@ -1,4 +1,4 @@
-// Stores, recalls and glides, by messages as a performer does.
+// Stores, recalls and morphs presets through OSC messages.
 #include "app/bench_preset.h"
 
 #include <fmt/format.h>
@@ -13,34 +13,36 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// the arms with a hand; times are the processor's, so that other programs' turns do not count
+// sends messages to the arms; measures processor time, which other programs don't affect
 class ArmPresets {
  public:
   explicit ArmPresets(int arms) : arms_(bench_arm_scene(arms)) {
     for (int i = 0; i < 3; i++) arms_.tick();
     send({"/transport/pause", {}});
-    empty_ = ticks(8).at(0.5);
+    empty_ = ticks(8).quantile(0.5);
   }
   Engine& engine() { return arms_.engine(); }
 
-  Samples ticks(int count) {
-    Samples all;
+  TimeSamples ticks(int count) {
+    TimeSamples all;
     for (int i = 0; i < count; i++) all.add(tick());
     return all;
   }
-  /// Seconds that the message takes of its tick, while time stands still: with what it sets off in Bullet.
+  /// Returns the seconds that the message adds to a tick while the simulation is paused, including changes in Bullet.
   double send(Message message) {
-    arms_.link().inbox.push({{std::move(message)}, {}});
+    arms_.link().command_queue.push({{std::move(message)}, {}});
     const double seconds = tick() - empty_;
     LIMBER_CHECK(arms_.link().counters.refused.load() == 0);
     return seconds;
   }
-  /// Seconds of the last tick in which values went their way into Bullet.
-  double of_values() { return engine().times().scripts + engine().times().effects; }
-  /// The parts' rows alone.
+  /// Seconds of the last tick for scripts and on-change callbacks.
+  double value_seconds() { return engine().times().scripts + engine().times().callbacks; }
+  /// Stores a preset of the parts' properties only.
   double store_parts() { return send({"/preset/store", {Arg::of("parts"), Arg::of("/physics/body/*/part/*/*")}}); }
-  double newest_numbers() { return static_cast<double>(engine().presets().list().back()->values.size()); }
-  double preset(const char* what, const char* name) { return send({fmt::format("/preset/{}", what), {Arg::of(name)}}); }
+  double latest_value_count() { return static_cast<double>(engine().presets().list().back()->values.size()); }
+  double preset(const char* action, const char* name) {
+    return send({fmt::format("/preset/{}", action), {Arg::of(name)}});
+  }
 
  private:
   double tick() {
@@ -50,31 +52,31 @@ class ArmPresets {
   }
 
   BenchArms arms_;
-  double empty_ = 0;  // a tick without a message
+  double empty_ = 0;  // time of a tick without a message
 };
 
-Json least_and_median(const Samples& samples) {
-  return {{"min", rounded(samples.at(0) * 1e3, 2)}, {"median", rounded(samples.at(0.5) * 1e3, 2)}};
+Json min_and_median(const TimeSamples& samples) {
+  return {{"min", rounded(samples.quantile(0) * 1e3, 2)}, {"median", rounded(samples.quantile(0.5) * 1e3, 2)}};
 }
 
 struct MorphCost {
-  Samples tick;  // without one
+  TimeSamples tick;  // without a morph
   double seconds = 0;
 };
 
-// ticks with a morph and without, by turns: they take longer as the arms fall
+// alternates ticks with and without a morph: ticks get longer as the arms fall
 MorphCost cost_of_morph(ArmPresets& bench, int count) {
   MorphCost cost;
-  Samples quiet, morphing;
+  TimeSamples quiet, morphing;
   for (int i = 0; i < count; i++) {
-    cost.tick.add(bench.ticks(1).at(0));
-    quiet.add(bench.of_values());
+    cost.tick.add(bench.ticks(1).quantile(0));
+    quiet.add(bench.value_seconds());
     bench.send({"/preset/recall", {Arg::of("a"), Arg::of(60.0), Arg::of("linear")}});
     bench.ticks(1);
-    morphing.add(bench.of_values());
+    morphing.add(bench.value_seconds());
     bench.send({"/preset/stop", {}});
   }
-  cost.seconds = morphing.at(0) - quiet.at(0);
+  cost.seconds = morphing.quantile(0) - quiet.quantile(0);
   return cost;
 }
 
@@ -86,19 +88,19 @@ Json bench_preset(const BenchOptions& options) {
   bench.send({"/physics/part/restitution", {Arg::of(0.1)}});
   const double sudden_store = bench.preset("store", "sudden");
   (void)bench.store_parts();
-  const double parts_numbers = bench.newest_numbers();
-  // something comes, and for a while nothing does: the next store has been made ready
+  const double parts_numbers = bench.latest_value_count();
+  // bodies were added, then nothing changes for a while: the next store is prepared in the background
   LIMBER_CHECK(bench.engine().world().add_body("more").ok());
   bench.ticks(200);
   const double first_store = bench.preset("store", "a");
   bench.ticks(200);
-  Samples soon, store, first_parts, parts, recall;
+  TimeSamples soon, store, first_parts, parts, recall;
   for (int i = 0; i < count; i++) {
-    // something came, and there was no time to look at it
+    // a body was added just before the store: nothing is prepared
     LIMBER_CHECK(bench.engine().world().add_body(fmt::format("soon{}", i)).ok());
     bench.ticks(2);
     soon.add(bench.preset("store", "soon"));
-    // again, and the patterns are new since then
+    // the same, and the patterns must be matched again
     LIMBER_CHECK(bench.engine().world().add_body(fmt::format("parts{}", i)).ok());
     bench.ticks(60);
     first_parts.add(bench.store_parts());
@@ -107,8 +109,9 @@ Json bench_preset(const BenchOptions& options) {
   for (int i = 0; i < count; i++) parts.add(bench.store_parts());
 
   double value = 0.1;
-  for (const char* row : {"mass", "linear_damping", "angular_damping", "friction", "rolling_friction", "restitution"})
-    bench.send({fmt::format("/physics/part/{}", row), {Arg::of(value += 0.05)}});
+  for (const char* property :
+       {"mass", "linear_damping", "angular_damping", "friction", "rolling_friction", "restitution"})
+    bench.send({fmt::format("/physics/part/{}", property), {Arg::of(value += 0.05)}});
   bench.preset("store", "b");
   const double first_recall = bench.preset("recall", "a");
   for (int i = 0; i < count; i++) recall.add(bench.preset("recall", i % 2 == 0 ? "b" : "a"));
@@ -117,21 +120,21 @@ Json bench_preset(const BenchOptions& options) {
   bench.send({"/transport/play", {}});
   const MorphCost morph = cost_of_morph(bench, count);
   const Preset& preset = *bench.engine().presets().list().front();
-  return {{"things", preset.shape->things().size()},
-          {"rows", preset.shape->row_count()},
+  return {{"things", preset.schema->nodes().size()},
+          {"rows", preset.schema->property_count()},
           {"numbers", preset.values.size()},
-          {"tick_ms", least_and_median(morph.tick)},
+          {"tick_ms", min_and_median(morph.tick)},
           {"sudden_store_ms", rounded(sudden_store * 1e3, 2)},
           {"first_store_ms", rounded(first_store * 1e3, 2)},
-          {"soon_store_ms", least_and_median(soon)},
-          {"store_ms", least_and_median(store)},
+          {"soon_store_ms", min_and_median(soon)},
+          {"store_ms", min_and_median(store)},
           {"parts_numbers", parts_numbers},
-          {"first_parts_ms", least_and_median(first_parts)},
-          {"parts_ms", least_and_median(parts)},
+          {"first_parts_ms", min_and_median(first_parts)},
+          {"parts_ms", min_and_median(parts)},
           {"first_recall_ms", rounded(first_recall * 1e3, 2)},
-          {"recall_ms", least_and_median(recall)},
+          {"recall_ms", min_and_median(recall)},
           {"morph_ms", rounded(morph.seconds * 1e3, 2)},
-          {"morph_percent_of_tick", rounded(100 * morph.seconds / morph.tick.at(0), 2)}};
+          {"morph_percent_of_tick", rounded(100 * morph.seconds / morph.tick.quantile(0), 2)}};
 }
 
 }  // namespace limber

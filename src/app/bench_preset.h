@@ -1,4 +1,4 @@
-// What presets of many parts cost the tick.
+// Benchmark of presets of many parts.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace limber {
 
-/// 1000 arms of 17 parts, each with a joint and a motor: a preset of every property stored and recalled, first and
-/// again, and a morph that moves six rows of every part.
+/// 1000 arms of 17 parts, each with a joint and a motor: storing and recalling a preset of all properties, the first
+/// time and repeatedly, and a morph that changes six properties of every part.
 nlohmann::ordered_json bench_preset(const BenchOptions& options);
 
 }  // namespace limber

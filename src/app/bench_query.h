@@ -1,4 +1,4 @@
-// OSCQuery's clients on this machine: what they cost the simulation's thread.
+// Benchmark of OSCQuery clients: their cost on the simulation's thread.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace limber {
 
-/// 16 arms at 60 ticks a second, alone and while 100 WebSocket clients listen to 50 moving values each, by turns: the
-/// processor time of the simulation's ticks, and how many values the clients get.
+/// 16 arms at 60 ticks a second, alternately without clients and while 100 WebSocket clients listen to 50 changing
+/// values each: the processor time of the ticks, and the number of values sent.
 nlohmann::ordered_json bench_query(const BenchOptions& options);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Saving a scene while it plays. Each tick of the scene tells its version and its number, so the first of a new version
-// and the gaps between ticks are seen from outside.
+// Saves a scene while it plays. Each tick of the scene sends its version, so that the first tick of a new version and
+// the gaps between ticks can be measured from outside.
 #include "app/bench_reload.h"
 
 #include <chrono>
@@ -34,38 +34,38 @@ void save(const BenchFolder& folder, std::string_view robot, int arms, int versi
   std::ofstream(folder.scene()) << fmt::format(kScene, data_dir(), robot, arms, 0.001 * version, version);
 }
 
-// the show as it is played, with its watching thread, and who listens to it
-class Played {
+// a running show with its SceneWatch, and a reader of its messages
+class ReloadedShow {
  public:
-  explicit Played(const std::string& scene) : engine_(link_, options_of(scene)), watch_(link_, engine_, scene) {
+  explicit ReloadedShow(const std::string& scene) : engine_(link_, options_of(scene)), watch_(link_, engine_, scene) {
     started_ = engine_.start();
     if (!started_) return;
     sim_ = std::thread([this] { engine_.run(); });
     watch_.start();
   }
-  ~Played() {
+  ~ReloadedShow() {
     engine_.stop();
     if (sim_.joinable()) sim_.join();
     watch_.stop();
   }
-  Played(const Played&) = delete;
-  Played& operator=(const Played&) = delete;
+  ReloadedShow(const ReloadedShow&) = delete;
+  ReloadedShow& operator=(const ReloadedShow&) = delete;
 
   const Result<void>& started() const { return started_; }
 
-  /// Listens until a tick of that version comes, and to `more` ticks after it; gaps between ticks are added.
-  void listen(int version, int more, Samples& gaps) {
-    bool seen = false;
-    while (!seen || more > 0) {
-      link_.outbox.drain(out_);
+  /// Reads messages until a tick of `version` arrives, then `more` further ticks; adds the gaps between ticks.
+  void listen(int version, int more, TimeSamples& gaps) {
+    bool reloaded = false;
+    while (!reloaded || more > 0) {
+      link_.output_queue.drain(out_);
       const double now = system::clock_seconds();
       for (const Outgoing& o : out_) {
         if (o.message.address != "/version") continue;
         if (last_ > 0) gaps.add(now - last_);
         last_ = now;
-        if (seen) more--;
-        if (seen || static_cast<int>(o.message.args[0].number) != version) continue;
-        seen = true;
+        if (reloaded) more--;
+        if (reloaded || static_cast<int>(o.message.args[0].number) != version) continue;
+        reloaded = true;
         first_ = now;
       }
       std::this_thread::sleep_for(std::chrono::microseconds(100));
@@ -90,19 +90,19 @@ class Played {
   double first_ = 0;
 };
 
-nlohmann::ordered_json milliseconds(const Samples& samples) {
-  const auto at = [&](double part) { return rounded(samples.at(part) * 1e3, 2); };
+nlohmann::ordered_json milliseconds(const TimeSamples& samples) {
+  const auto at = [&](double part) { return rounded(samples.quantile(part) * 1e3, 2); };
   return {{"min", at(0)}, {"median", at(0.5)}, {"max", at(1)}};
 }
 
 nlohmann::ordered_json reload(std::string_view robot, int arms, int saves) {
   const BenchFolder folder;
   save(folder, robot, arms, 0);
-  Played played(folder.scene());
+  ReloadedShow played(folder.scene());
   if (!played.started()) return {{"fault", played.started().error()}};
-  Samples quiet;
-  Samples near;
-  Samples latency;
+  TimeSamples quiet;
+  TimeSamples near;
+  TimeSamples latency;
   played.listen(0, 10, quiet);
   for (int version = 1; version <= saves; version++) {
     const double start = system::clock_seconds();

@@ -1,4 +1,4 @@
-// How soon a saved scene plays, and what that does to the ticks around it.
+// Benchmark of reloading a scene: the delay, and the effect on the ticks around it.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace limber {
 
-/// A scene of sixteen arms and one of a thousand, saved again and again while they play: the time from the save to the
-/// first tick of the new code, and the longest tick near it beside the median one.
+/// A scene of 16 arms and one of 1000, saved repeatedly while they play: the time from the save to the first tick of
+/// the new code, and the longest tick near it compared with the median.
 nlohmann::ordered_json bench_reload(const BenchOptions& options);
 
 }  // namespace limber

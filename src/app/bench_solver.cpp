@@ -1,4 +1,4 @@
-// Each machine in stock Bullet and with the direct solver, step by step in turn; its figures, one line a scene.
+// Runs each mechanism in stock Bullet and with the direct solver, alternating step by step.
 #include "app/bench_solver.h"
 
 #include <algorithm>
@@ -19,61 +19,61 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kRandomTrees = 300;
-/// So often a scene is played from its start. All runs are alike, so that a step took the least that it did in any of
-/// them; what else the machine does comes elsewhere each time.
+/// Runs per scene. All runs are identical, so the minimum over the runs is used for each step; disturbances hit
+/// different steps.
 constexpr int kRuns = 3;
-constexpr unsigned kFirstSeed = 90001;  // none that was looked at while the solver was made
+constexpr unsigned kFirstSeed = 90001;  // not used during the development of the solver
 
-struct Side {
-  explicit Side(const RawScene& scene, RawSolver solver) : player(RawPlayer::make(scene, solver)) {}
-  void begin_anew(const RawScene& scene, RawSolver solver) {
-    player = RawPlayer::make(scene, solver);
+struct SolverRun {
+  explicit SolverRun(const RawScene& scene, RawSolver solver) : player(RawSimulation::make(scene, solver)) {}
+  void restart(const RawScene& scene, RawSolver solver) {
+    player = RawSimulation::make(scene, solver);
     steps = 0;
   }
-  void begin_to_time() {
+  void restart_timing() {
     times = {};
     steps = 0;
   }
   void step() {
     const double start = system::thread_seconds();
     player->step();
-    times.add_least(steps++, system::thread_seconds() - start);
-    worst.take(player->figures());
+    times.add_min(steps++, system::thread_seconds() - start);
+    worst.accumulate_max(player->measurements());
   }
   Json figures() const {
     Json out = {{"gap_mm", rounded(worst.gap * 1e3, 3)},
                 {"servo_error_rad", rounded(worst.servo_error, 4)},
-                {"limit_passed_rad", rounded(worst.limit_passed, 4)},
+                {"limit_passed_rad", rounded(worst.limit_violation, 4)},
                 {"step_us", times.microseconds()}};
     if (!worst.finite) out["finite"] = false;
     return out;
   }
-  std::unique_ptr<RawPlayer> player;
+  std::unique_ptr<RawSimulation> player;
   std::size_t steps = 0;
-  Samples times;
-  RawFigures worst;
+  TimeSamples times;
+  RawMeasurements worst;
 };
 
-Json island_steps(const RawPlayer::Direct& d) {
+Json island_steps(const RawSimulation::Direct& d) {
   return {{"direct", d.direct}, {"by_rule_plain", d.plain}, {"fallbacks", d.fallbacks}};
 }
 
-// Residuals cost time, so they are another run's.
+// A separate run, because computing residuals costs time.
 Json residuals(RawScene scene, int steps) {
   scene.measure = true;
-  const auto player = RawPlayer::make(scene, RawSolver::direct);
+  const auto player = RawSimulation::make(scene, RawSolver::direct);
   for (int i = 0; i < steps; ++i) player->step();
-  const RawPlayer::Direct d = player->direct();
+  const RawSimulation::Direct d = player->direct();
   return {{"locked", d.locked}, {"bounded", d.bounded}, {"contact", d.contact}};
 }
 
 Json play(const RawScene& scene, int steps, double seconds = 6) {
   const int count = steps > 0 ? steps : static_cast<int>(seconds / scene.step);
-  Side stock(scene, RawSolver::stock);
-  Side direct(scene, RawSolver::direct);
+  SolverRun stock(scene, RawSolver::stock);
+  SolverRun direct(scene, RawSolver::direct);
   for (int run = 0; run < kRuns; ++run) {
-    if (run > 0) stock.begin_anew(scene, RawSolver::stock);
-    if (run > 0) direct.begin_anew(scene, RawSolver::direct);
+    if (run > 0) stock.restart(scene, RawSolver::stock);
+    if (run > 0) direct.restart(scene, RawSolver::direct);
     for (int i = 0; i < count; ++i) {
       stock.step();
       direct.step();
@@ -82,22 +82,22 @@ Json play(const RawScene& scene, int steps, double seconds = 6) {
   Json out = {{"stock", stock.figures()}, {"direct", direct.figures()}};
   out["direct"]["island_steps"] = island_steps(direct.player->direct());
   out["direct"]["residuals"] = residuals(scene, count);
-  out["time_ratio"] = {{"min", rounded(direct.times.at(0) / stock.times.at(0), 2)},
-                       {"median", rounded(direct.times.at(0.5) / stock.times.at(0.5), 2)},
-                       {"worst_to_median", rounded(direct.times.at(1) / stock.times.at(0.5), 2)}};
+  out["time_ratio"] = {{"min", rounded(direct.times.quantile(0) / stock.times.quantile(0), 2)},
+                       {"median", rounded(direct.times.quantile(0.5) / stock.times.quantile(0.5), 2)},
+                       {"worst_to_median", rounded(direct.times.quantile(1) / stock.times.quantile(0.5), 2)}};
   return out;
 }
 
-// The second half of the steps, which has most contacts, is timed. Both solvers do the program's default number of
+// Times the second half of the steps, which has the most contacts. Both solvers use the program's default number of
 // iterations.
 Json play_crowd(RawScene scene, int steps) {
   scene.iterations = default_iterations();
-  Side stock(scene, RawSolver::stock);
-  Side ours(scene, RawSolver::direct);
+  SolverRun stock(scene, RawSolver::stock);
+  SolverRun ours(scene, RawSolver::direct);
   for (int i = 0; i < steps; ++i) {
     if (i == steps / 2) {
-      stock.begin_to_time();
-      ours.begin_to_time();
+      stock.restart_timing();
+      ours.restart_timing();
     }
     stock.step();
     ours.step();
@@ -106,20 +106,21 @@ Json play_crowd(RawScene scene, int steps) {
           {"ours", ours.figures()},
           {"island_steps", island_steps(ours.player->direct())},
           {"time_ratio",
-           {{"min", rounded(ours.times.at(0) / stock.times.at(0), 2)},
-            {"median", rounded(ours.times.at(0.5) / stock.times.at(0.5), 2)}}}};
+           {{"min", rounded(ours.times.quantile(0) / stock.times.quantile(0), 2)},
+            {"median", rounded(ours.times.quantile(0.5) / stock.times.quantile(0.5), 2)}}}};
 }
 
-// How many of the random trees are clearly worse than stock: 1.1 times its gap and 2 mm more.
+// Counts the random trees that are clearly worse than in stock Bullet: a gap of more than 1.1 times the other plus 2
+// mm.
 Json play_random(double step, bool floor, int trees, int steps) {
   int worse = 0;
   int lost = 0;
-  RawPlayer::Direct all;
+  RawSimulation::Direct all;
   std::array<int, 2> torn{};
   for (int i = 0; i < trees; ++i) {
-    const RawScene scene = raw_at_step(raw_random_tree(kFirstSeed + static_cast<unsigned>(i), floor), step);
-    Side stock(scene, RawSolver::stock);
-    Side direct(scene, RawSolver::direct);
+    const RawScene scene = raw_with_step(raw_random_tree(kFirstSeed + static_cast<unsigned>(i), floor), step);
+    SolverRun stock(scene, RawSolver::stock);
+    SolverRun direct(scene, RawSolver::direct);
     const int count = steps > 0 ? steps : static_cast<int>(3 / step);
     for (int k = 0; k < count; ++k) {
       stock.step();
@@ -129,7 +130,7 @@ Json play_random(double step, bool floor, int trees, int steps) {
     lost += direct.worst.finite ? 0 : 1;
     torn[0] += stock.worst.gap > 0.1 ? 1 : 0;
     torn[1] += direct.worst.gap > 0.1 ? 1 : 0;
-    const RawPlayer::Direct d = direct.player->direct();
+    const RawSimulation::Direct d = direct.player->direct();
     all.direct += d.direct;
     all.plain += d.plain;
     all.fallbacks += d.fallbacks;
@@ -141,9 +142,9 @@ Json play_random(double step, bool floor, int trees, int steps) {
           {"island_steps", island_steps(all)}};
 }
 
-// A chain that lies at first and swings for a minute, nothing driving or braking it.
+// An undriven, undamped chain that starts horizontally and swings for a minute.
 Json play_passive(int parts, double step, int steps) {
-  RawScene s = raw_at_step(raw_arm(17, 1, 0, 0, false), step);
+  RawScene s = raw_with_step(raw_arm(17, 1, 0, 0, false), step);
   s.floor = false;
   s.parts.resize(static_cast<std::size_t>(parts) + 1);
   s.joints.resize(static_cast<std::size_t>(parts));
@@ -151,35 +152,36 @@ Json play_passive(int parts, double step, int steps) {
   const double swing = 9.81 * parts * 0.1 * parts;
   Json out;
   for (const RawSolver solver : {RawSolver::stock, RawSolver::direct}) {
-    const auto player = RawPlayer::make(s, solver);
-    const double begun = player->energy().potential;  // at rest
+    const auto player = RawSimulation::make(s, solver);
+    const double start_energy = player->energy().potential;  // starts at rest
     player->step();
     RawEnergyMeter meter(*player);
-    double now = begun;
-    double most = -swing;
-    RawFigures worst;
+    double now = start_energy;
+    double max_energy = -swing;
+    RawMeasurements worst;
     const int count = steps > 0 ? steps : static_cast<int>(60 / step);
     for (int i = 0; i < count; ++i) {
       player->step();
-      worst.take(player->figures());
-      now = meter.take();
-      most = std::max(most, now);
+      worst.accumulate_max(player->measurements());
+      now = meter.measure();
+      max_energy = std::max(max_energy, now);
     }
     out[solver == RawSolver::stock ? "stock" : "direct"] = {
-        {"gain_percent_of_swing", rounded(100 * (most - begun) / swing, 3)},
-        {"at_end_percent", rounded(100 * (now - begun) / swing, 1)},
+        {"gain_percent_of_swing", rounded(100 * (max_energy - start_energy) / swing, 3)},
+        {"at_end_percent", rounded(100 * (now - start_energy) / swing, 1)},
         {"gap_mm", rounded(worst.gap * 1e3, 3)}};
   }
   return out;
 }
 
-// Where the ball is after three seconds: with sweeps until they converge, at two steps, and with the direct solver.
+// Displacement of the ball after three seconds: with sweeps until convergence, at two step sizes, and with the direct
+// solver.
 Json play_hand(double torque, int steps) {
   Json out;
   const auto sink = [&](double step, RawSolver solver, int iterations) {
-    RawScene s = raw_at_step(raw_hand(torque), step);
+    RawScene s = raw_with_step(raw_gripper(torque), step);
     s.iterations = iterations;
-    const auto player = RawPlayer::make(s, solver);
+    const auto player = RawSimulation::make(s, solver);
     const int ball = static_cast<int>(s.parts.size()) - 1;
     const double from = player->pose(ball).position.z;
     const int count = steps > 0 ? steps : static_cast<int>(3 / step);
@@ -187,41 +189,41 @@ Json play_hand(double torque, int steps) {
     return rounded(1e3 * (player->pose(ball).position.z - from), 2);
   };
   out["moved_mm"] = {{"stock", sink(1.0 / 60, RawSolver::stock, 10)},
-                     {"sweeps_1000", sink(1.0 / 60, RawSolver::sweeps, 1000)},
-                     {"sweeps_1000_at_240", sink(1.0 / 240, RawSolver::sweeps, 1000)},
+                     {"sweeps_1000", sink(1.0 / 60, RawSolver::iterative, 1000)},
+                     {"sweeps_1000_at_240", sink(1.0 / 240, RawSolver::iterative, 1000)},
                      {"direct", sink(1.0 / 60, RawSolver::direct, 10)},
                      {"direct_at_240", sink(1.0 / 240, RawSolver::direct, 10)}};
-  out["residuals"] = residuals(raw_hand(torque), steps > 0 ? steps : 180);
+  out["residuals"] = residuals(raw_gripper(torque), steps > 0 ? steps : 180);
   return out;
 }
 
-// How often a scene's step is taken before the next one has its turn, so that each finds its own caches again.
+// Runs several steps of one scene before the next scene, so that each finds warm caches.
 struct BenchRun {
   explicit BenchRun(const RawScene& scene, int count) : side(scene, RawSolver::direct), steps(count) {}
-  void take() {
+  void run_steps() {
     for (int i = 0; i < steps; ++i) side.step();
   }
-  // beside the same of another scene, both spread over their units
-  Json figures(const char* what, double units, const BenchRun& base, double base_units) const {
-    const auto each = [&](double part) { return 1e6 * side.times.at(part) / units; };
+  // results per unit, relative to those of `base`
+  Json figures(const char* unit, double units, const BenchRun& base, double base_units) const {
+    const auto each = [&](double part) { return 1e6 * side.times.quantile(part) / units; };
     const auto ratio = [&](double part) {
-      return rounded(each(part) / (1e6 * base.side.times.at(part) / base_units), 3);
+      return rounded(each(part) / (1e6 * base.side.times.quantile(part) / base_units), 3);
     };
     Json out = side.figures();
-    out[fmt::format("us_per_{}", what)] = {{"p5", rounded(each(kLeast), 3)}, {"median", rounded(each(0.5), 3)}};
-    out["times_the_first"] = {{"p5", ratio(kLeast)}, {"median", ratio(0.5)}};
+    out[fmt::format("us_per_{}", unit)] = {{"p5", rounded(each(kLowQuantile), 3)}, {"median", rounded(each(0.5), 3)}};
+    out["times_the_first"] = {{"p5", ratio(kLowQuantile)}, {"median", ratio(0.5)}};
     out["island_steps"] = island_steps(side.player->direct());
     return out;
   }
-  // not the very least: a thread's clock on a virtual machine now and then tells far too little of a single step
-  static constexpr double kLeast = 0.05;
-  Side side;
+  // not the minimum: the thread clock of a virtual machine is sometimes far off for a single step
+  static constexpr double kLowQuantile = 0.05;
+  SolverRun side;
   int steps;
 };
 
-// One arm that gets longer, and ten times the arms: what a joint costs, what a part costs.
+// Time per joint of an arm that gets longer, and time per part with ten times as many arms.
 Json play_growth(int steps) {
-  constexpr double kStrong = 1e6;  // N·m: what holds 170 parts; with less the servos of long arms give way
+  constexpr double kStrong = 1e6;  // N·m: holds 170 parts; servos of long arms give way with less
   Json out;
   const int rounds = steps > 0 ? steps : 60;
   std::vector<std::pair<int, std::unique_ptr<BenchRun>>> arms;
@@ -229,16 +231,16 @@ Json play_growth(int steps) {
     arms.emplace_back(parts, std::make_unique<BenchRun>(raw_arm(parts, 1, kStrong, 0.3, false), 10));
   }
   for (int i = 0; i < rounds; ++i) {
-    for (const auto& [parts, turn] : arms) turn->take();
+    for (const auto& [parts, bench_run] : arms) bench_run->run_steps();
   }
-  for (const auto& [parts, turn] : arms) {
-    out[fmt::format("{} joints", parts)] = turn->figures("joint", parts, *arms[0].second, arms[0].first);
+  for (const auto& [parts, bench_run] : arms) {
+    out[fmt::format("{} joints", parts)] = bench_run->figures("joint", parts, *arms[0].second, arms[0].first);
   }
   BenchRun few(raw_arms(100), 10);
   BenchRun many(raw_arms(1000), 1);
   for (int i = 0; i < rounds; ++i) {
-    few.take();
-    many.take();
+    few.run_steps();
+    many.run_steps();
   }
   out["100 arms"] = few.figures("part", 1800, few, 1800);
   out["1000 arms"] = many.figures("part", 18000, few, 1800);
@@ -257,7 +259,7 @@ void add_arms(Json& out, int steps) {
   for (const int rate : {30, 60, 240}) {
     for (const int force : {5, 50, 10000}) {
       out[fmt::format("square wave, {} N·m, 1/{} s", force, rate)] =
-          play(raw_at_step(arm(1, force, 0.6, true), 1.0 / rate), steps);
+          play(raw_with_step(arm(1, force, 0.6, true), 1.0 / rate), steps);
     }
   }
   out["limits met in free fall"] = play(raw_lying_arm(0.2), steps);

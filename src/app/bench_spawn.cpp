@@ -1,4 +1,4 @@
-// Spawning: import, build, copies, first tick.
+// Import, build, copy, first tick.
 #include "app/bench_spawn.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// How long it takes until a thousand imported arms stand in the world.
+// Benchmark of spawning a thousand imported arms.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace limber {
 
-/// Imports urdf/arm17.urdf, builds it, copies it 1000 times to places of their own, and takes the first tick.
+/// Imports urdf/arm17.urdf, builds it, copies it 1000 times to different positions, and runs the first tick.
 nlohmann::ordered_json bench_spawn(const BenchOptions& options);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What recording a take costs, and how fast one is replayed.
+// Benchmark of recording and replaying takes.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,8 +7,8 @@
 
 namespace limber {
 
-/// 16 arms of 17 parts, and 17 messages of one number each tick (1000 a second): what a take of that costs a tick and
-/// the disk, and the processor's time of its replay beside that of the show.
+/// 16 arms of 17 parts and 17 one-number messages per tick (1000 a second): the cost of recording per tick and on disk,
+/// and the processor time of a replay compared with that of the show.
 nlohmann::ordered_json bench_take(const BenchOptions& options);
 
 }  // namespace limber

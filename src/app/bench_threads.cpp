@@ -1,4 +1,4 @@
-// Pairs, one after the other, so that what else the machine does falls on both.
+// Alternates the two runs, so that disturbances affect both equally.
 #include "app/bench_threads.h"
 
 #include "app/bench_arms.h"
@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 constexpr int kPairs = 15;
 constexpr int kWarmTicks = 4;
 
-double play_some(BenchArms& arms, int ticks) {
+double play_ticks(BenchArms& arms, int ticks) {
   double seconds = 0;
   for (int i = 0; i < ticks; i++) {
     arms.drive(arms.time());
@@ -24,33 +24,33 @@ double play_some(BenchArms& arms, int ticks) {
   return seconds;
 }
 
-Json one_and_two(const ArmScene& scene, int ticks) {
+Json compare_threads(const ArmScene& scene, int ticks) {
   BenchArms one(scene, 1);
   BenchArms two(scene, 2);
-  play_some(one, kWarmTicks);
-  play_some(two, kWarmTicks);
-  Samples alone, together, ratio;
+  play_ticks(one, kWarmTicks);
+  play_ticks(two, kWarmTicks);
+  TimeSamples alone, together, ratio;
   for (int i = 0; i < kPairs; i++) {
-    const double a = play_some(one, ticks);
-    const double b = play_some(two, ticks);
+    const double a = play_ticks(one, ticks);
+    const double b = play_ticks(two, ticks);
     alone.add(a / ticks);
     together.add(b / ticks);
     ratio.add(b / a);
   }
   return {{"one_us", alone.microseconds()},
           {"two_us", together.microseconds()},
-          {"ratio", {{"min", rounded(ratio.at(0), 3)}, {"median", rounded(ratio.at(0.5), 3)}}},
+          {"ratio", {{"min", rounded(ratio.quantile(0), 3)}, {"median", rounded(ratio.quantile(0.5), 3)}}},
           {"same_state", one.engine().state_hash() == two.engine().state_hash()}};
 }
 
 }  // namespace
 
 nlohmann::ordered_json bench_threads(const BenchOptions& options) {
-  const auto ticks = [&](int chosen) { return options.ticks > 0 ? options.ticks : chosen; };
+  const auto ticks = [&](int default_ticks) { return options.ticks > 0 ? options.ticks : default_ticks; };
   Json figures = {{"pairs", kPairs}};
-  figures["100 arms, direct"] = one_and_two(direct_arm_scene(100), ticks(10));
-  figures["1000 arms, direct"] = one_and_two(direct_arm_scene(1000), ticks(2));
-  figures["100 arms, iterative"] = one_and_two(bench_arm_scene(100), ticks(4));
+  figures["100 arms, direct"] = compare_threads(direct_arm_scene(100), ticks(10));
+  figures["1000 arms, direct"] = compare_threads(direct_arm_scene(1000), ticks(2));
+  figures["100 arms, iterative"] = compare_threads(bench_arm_scene(100), ticks(4));
   return figures;
 }
 

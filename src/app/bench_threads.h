@@ -1,12 +1,12 @@
-// The bench of two threads beside one.
+// Benchmark of two threads against one.
 #pragma once
 
 #include "app/bench.h"
 
 namespace limber {
 
-/// The same arms ticked by one thread and by two, in turn, 15 pairs of so many ticks: time by time, and whether both
-/// came to the same state.
+/// Ticks the same arms with one thread and with two, alternating in 15 pairs of several ticks: both times, their ratio,
+/// and whether the states are identical.
 nlohmann::ordered_json bench_threads(const BenchOptions& options);
 
 }  // namespace limber

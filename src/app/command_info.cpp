@@ -1,4 +1,4 @@
-// Reads the command line's declaration.
+// Reads the commands and options that were declared with CLI11.
 #include "app/command_info.h"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ OptionInfo option_info(const CLI::Option& option) {
   return info;
 }
 
-// commands without a footer of their own inherit that of the program, which is left out
+// leaves out the program's footer, which commands without their own inherit
 CommandInfo read_command(const CLI::App& app, const std::string& inherited) {
   CommandInfo info;
   info.name = app.get_name();

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace CLI {  // NOLINT(readability-identifier-naming): its name
+namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
@@ -25,7 +25,7 @@ struct OptionInfo {
 struct CommandInfo {
   std::string name;
   std::string about;
-  std::string footer;  ///< Help text behind the options, usually examples.
+  std::string footer;  ///< Help text after the options, usually examples.
   std::vector<OptionInfo> options;
   std::vector<OptionInfo> positionals;
   std::vector<CommandInfo> commands;
@@ -34,8 +34,8 @@ struct CommandInfo {
 /// Copies the declared commands and options, in the order of their declaration. [any]
 CommandInfo command_info(const CLI::App& app);
 
-/// The file name extension of a value that is a file, "lua" for "SCENE.lua", "take" for "TAKE"; "*" for any file, "/"
-/// for a folder; empty when the value is no file. [any]
+/// Returns the file name extension that completes the option's value: "lua" for "SCENE.lua", "take" for "TAKE"; "*" for
+/// any file, "/" for a folder; empty if the value is not a file. [any]
 std::string file_extension(const OptionInfo& option);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Completion scripts for shells, made from the declared options, so that they name each of them.
+// Generates completion scripts for shells from the declared options, so that no option is missing.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace limber {
 
-/// A script for bash that completes `limber`. It needs no other script. [any]
+/// Returns a bash script that completes `limber`. It depends on no other script. [any]
 std::string bash_completion(const CommandInfo& program);
 
-/// A function for zsh's completion system, for a file `_limber` in its `fpath`. [any]
+/// Returns a function for zsh's completion system, to be saved as `_limber` in `fpath`. [any]
 std::string zsh_completion(const CommandInfo& program);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Completion in bash: tables of each command's words, and one function that reads the line.
+// Completion for bash: tables of each command's words, and one function that parses the line.
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-// one function of fixed text; the tables are functions that the program's options fill
+// the fixed part of the script; it calls the functions that bash_table() generates from the options
 constexpr std::string_view kBashReader = R"bash(
 # adds the files with this extension (* any, / none), and folders
 _limber_files() {
@@ -78,8 +78,8 @@ _limber() {
 complete -F _limber limber
 )bash";
 
-// what completes a value, as lines of the tables; empty: nothing does
-std::string bash_answers(const OptionInfo& option) {
+// the completions of a value as table entries; empty: none
+std::string bash_completions(const OptionInfo& option) {
   std::string text;
   if (!option.choices.empty()) {
     std::string words;
@@ -105,16 +105,16 @@ void add_to_tables(BashTables& tables, const CommandInfo& command, const std::st
       if (!option.value.empty()) valued += (valued.empty() ? "" : " ") + name;
       patterns += fmt::format("{}'{} {}'", patterns.empty() ? "" : " | ", path, name);
     }
-    if (const std::string answers = bash_answers(option); !answers.empty())
-      tables.values += fmt::format("    {}) printf '%s\\n'{} ;;\n", patterns, answers);
+    if (const std::string completions = bash_completions(option); !completions.empty())
+      tables.values += fmt::format("    {}) printf '%s\\n'{} ;;\n", patterns, completions);
   }
-  int place = 0;
+  int position = 0;
   for (const OptionInfo& argument : command.positionals) {
-    const std::string answers = bash_answers(argument);
-    if (!answers.empty())
+    const std::string completions = bash_completions(argument);
+    if (!completions.empty())
       tables.arguments += fmt::format("    '{} {} printf '%s\\n'{} ;;\n", path,
-                                      argument.repeats ? "'*)" : fmt::format("{}')", place), answers);
-    ++place;
+                                      argument.repeats ? "'*)" : fmt::format("{}')", position), completions);
+    ++position;
   }
   if (!inner.empty()) tables.commands += fmt::format("    '{}') echo '{}' ;;\n", path, inner);
   if (!valued.empty()) tables.valued += fmt::format("    '{}') echo '{}' ;;\n", path, valued);
@@ -123,8 +123,8 @@ void add_to_tables(BashTables& tables, const CommandInfo& command, const std::st
 }
 
 std::string bash_table(std::string_view comment, std::string_view name, std::string_view subject,
-                       std::string_view rows) {
-  return fmt::format("\n# {}\n{}() {{\n  case {} in\n{}  esac\n}}\n", comment, name, subject, rows);
+                       std::string_view cases) {
+  return fmt::format("\n# {}\n{}() {{\n  case {} in\n{}  esac\n}}\n", comment, name, subject, cases);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Completion in zsh: a function for each command, whose options _arguments reads.
+// Completion for zsh: a function for each command that passes its options to _arguments.
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-// within single quotes, with these characters behind a backslash
+// escapes text for single quotes, and the special characters with a backslash
 std::string zsh_escaped(std::string_view text, std::string_view special) {
   std::string out;
   for (const char c : text) {
@@ -34,7 +34,7 @@ std::string zsh_action(const OptionInfo& option) {
   }
   if (extension == "/") return "_files -/";
   if (extension == "*") return "_files";
-  // a space: a value that nothing completes
+  // a space: the value has no completion
   return extension.empty() ? " " : fmt::format("_files -g \"*.{}\"", extension);
 }
 
@@ -57,9 +57,9 @@ std::string zsh_option(const OptionInfo& option) {
   return fmt::format("    '{}{}{}'", option.repeats ? "*" : "", braced, about);
 }
 
-std::string zsh_argument(const OptionInfo& argument, int place) {
-  // a second colon: may be left out
-  return fmt::format("    '{}:{}{}:{}'", argument.repeats ? "*" : fmt::format("{}", place),
+std::string zsh_argument(const OptionInfo& argument, int position) {
+  // a second colon: the argument is optional
+  return fmt::format("    '{}:{}{}:{}'", argument.repeats ? "*" : fmt::format("{}", position),
                      argument.required || argument.repeats ? "" : ":", zsh_escaped(argument.value, ":"),
                      zsh_action(argument));
 }
@@ -67,8 +67,8 @@ std::string zsh_argument(const OptionInfo& argument, int place) {
 std::string zsh_arguments(const CommandInfo& command) {
   std::string lines = "  _arguments -s -S";
   for (const OptionInfo& option : command.options) lines += " \\\n" + zsh_option(option);
-  int place = 0;
-  for (const OptionInfo& argument : command.positionals) lines += " \\\n" + zsh_argument(argument, ++place);
+  int position = 0;
+  for (const OptionInfo& argument : command.positionals) lines += " \\\n" + zsh_argument(argument, ++position);
   return lines + "\n";
 }
 
@@ -80,19 +80,20 @@ std::string zsh_function_name(const std::string& path) {
   return name;
 }
 
-// what completes the word behind a command that has commands, or calls the function of the one that is there
-std::string zsh_choice(const CommandInfo& command, const std::string& path, std::string_view otherwise) {
+// completes the name of a subcommand, or calls the function of the subcommand that is given
+std::string zsh_choice(const CommandInfo& command, const std::string& path, std::string_view default_action) {
   std::string text = "  local -a commands=(\n";
   for (const CommandInfo& inner : command.commands)
     text += fmt::format("    '{}:{}'\n", inner.name, zsh_escaped(inner.about, ":"));
   text += "  )\n  if (( CURRENT == 2 )) && [[ $words[2] != -* ]]; then\n";
   text += "    _describe -t commands 'command' commands\n";
-  if (!otherwise.empty()) text += "    _files -g '*.lua'\n";
+  if (!default_action.empty()) text += "    _files -g '*.lua'\n";
   text += "    return\n  fi\n  case $words[2] in\n";
   for (const CommandInfo& inner : command.commands)
     text += fmt::format("    {}) shift words; (( CURRENT-- )); {} ;;\n", inner.name,
                         zsh_function_name(path + " " + inner.name));
-  return text + fmt::format("    *) {} ;;\n  esac\n", otherwise.empty() ? "_message 'no such command'" : otherwise);
+  return text +
+         fmt::format("    *) {} ;;\n  esac\n", default_action.empty() ? "_message 'no such command'" : default_action);
 }
 
 void add_zsh_function(std::string& text, const CommandInfo& command, const std::string& path) {
@@ -101,7 +102,7 @@ void add_zsh_function(std::string& text, const CommandInfo& command, const std::
   if (command.commands.empty()) {
     text += zsh_arguments(command);
   } else if (outermost) {
-    // without a command it plays
+    // without a command, `limber` plays
     text += zsh_choice(command, path, zsh_function_name(path + " play"));
   } else {
     text += zsh_choice(command, path, "");

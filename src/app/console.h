@@ -1,4 +1,4 @@
-// `limber console`: a Lua console of the running scene, at a terminal, from a pipe, or for one expression.
+// `limber console`: a Lua console of the running scene, interactive, from a pipe, or for one expression.
 #pragma once
 
 #include <optional>
@@ -6,13 +6,14 @@
 
 namespace limber {
 
+/// Options of `console`.
 struct ConsoleCommand {
-  int pid = 0;                            ///< Which program; 0: the only one.
-  std::optional<std::string> expression;  ///< `-e`: evaluate this and end.
+  int pid = 0;                            ///< Process id of the program; 0: the only one that runs.
+  std::optional<std::string> expression;  ///< `-e`: evaluate this expression and exit.
 };
 
-/// Returns the exit code: 1 when there is no program to talk to, or when (without a terminal) anything had an error.
-/// [main]
+/// Runs the console. Returns the exit code: 1 if no program is running, or if any evaluation failed (except in an
+/// interactive terminal). [main]
 int console_command(const ConsoleCommand& command);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// ConsoleHistory: the lines that were typed into consoles, in a plain text file of the user's state folder.
+// ConsoleHistory: lines entered in consoles, saved in a plain text file in the user's state folder.
 #pragma once
 
 #include <string>
@@ -7,21 +7,23 @@
 
 namespace limber {
 
+/// [main]
 class ConsoleHistory {
  public:
-  static constexpr std::size_t kMostLines = 1000;
-  static constexpr std::size_t kMostBytes = 4096;  ///< Of a line; longer ones are not kept.
+  static constexpr std::size_t kMaxLines = 1000;
+  static constexpr std::size_t kMaxLineBytes = 4096;  ///< Maximal length of a line; longer ones are not saved.
 
-  /// $XDG_STATE_HOME/limber/console_history, else below ~/.local/state; empty when there is no home.
+  /// Returns $XDG_STATE_HOME/limber/console_history, else the same below ~/.local/state; empty if there is no home
+  /// folder.
   static std::string default_file();
 
-  /// Reads what the file has: whatever is no line of text in it is passed over. Without a file it is empty, and with an
-  /// empty name nothing is kept.
+  /// Loads the file and skips lines that are not printable text. A missing file gives an empty history; with an empty
+  /// name nothing is saved.
   explicit ConsoleHistory(std::string file);
 
   const std::vector<std::string>& lines() const { return lines_; }
-  /// Keeps a line, in the file at once, unless it is blank, the same as the last, or too long. A file that can't be
-  /// written is no reason to stop a console.
+  /// Appends a line and writes it to the file at once, unless it is blank, repeats the last line, or is too long. Write
+  /// errors are ignored: they must not stop a console.
   void add(std::string_view line);
 
  private:

@@ -1,4 +1,4 @@
-// Asking, waiting for the answer, showing.
+// Sends requests, waits for the answers and prints them.
 #include "app/console_session.h"
 
 #include <utility>
@@ -13,48 +13,48 @@ namespace {
 
 using Kind = ConsoleLine::Kind;
 
-bool is_answer(Kind kind) { return kind >= Kind::done && kind <= Kind::names; }
+bool is_reply(Kind kind) { return kind >= Kind::done && kind <= Kind::names; }
 
 }  // namespace
 
-// the answer; nothing when it was given up or the program has ended
-std::optional<ConsoleLine> ConsoleSession::ask(ConsoleRequest request) {
-  request.id = ++asked_;
+// Returns the reply; nullopt if the user cancelled or the program has ended.
+std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) {
+  request.id = ++last_request_;
   if (!link_.send(request)) return {};
   while (true) {
     std::optional<ConsoleLine> line = link_.next(-1);
-    if (line && line->id == asked_ && is_answer(line->kind)) return line;
+    if (line && line->id == last_request_ && is_reply(line->kind)) return line;
     if (line) {
       show(*line);
-    } else if (link_.ended() || given_up_()) {
+    } else if (link_.ended() || is_cancelled_()) {
       return {};
     }
   }
 }
 
-ConsoleSession::Answer ConsoleSession::evaluate(const std::string& text) {
-  const std::optional<ConsoleLine> answer = ask({0, ConsoleRequest::Wish::evaluate, text});
-  if (!answer) return link_.ended() ? Answer::ended : Answer::left;
-  if (answer->kind == Kind::incomplete) return Answer::incomplete;
-  show(*answer);
-  return answer->kind == Kind::error ? Answer::failed : Answer::done;
+ConsoleSession::EvaluationStatus ConsoleSession::evaluate(const std::string& text) {
+  const std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::evaluate, text});
+  if (!reply) return link_.ended() ? EvaluationStatus::program_ended : EvaluationStatus::cancelled;
+  if (reply->kind == Kind::incomplete) return EvaluationStatus::incomplete;
+  show(*reply);
+  return reply->kind == Kind::error ? EvaluationStatus::failed : EvaluationStatus::done;
 }
 
 std::vector<std::string> ConsoleSession::complete(const std::string& text, std::size_t& word) {
-  std::optional<ConsoleLine> answer = ask({0, ConsoleRequest::Wish::complete, text});
-  if (!answer || answer->word > text.size()) return {};
-  word = answer->word;
-  return std::move(answer->names);
+  std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::complete, text});
+  if (!reply || reply->word > text.size()) return {};
+  word = reply->word;
+  return std::move(reply->names);
 }
 
-bool ConsoleSession::has_news() {
-  while (std::optional<ConsoleLine> line = link_.next(0)) news_.push_back(std::move(*line));
-  return !news_.empty();
+bool ConsoleSession::has_messages() {
+  while (std::optional<ConsoleLine> line = link_.next(0)) messages_.push_back(std::move(*line));
+  return !messages_.empty();
 }
 
-void ConsoleSession::show_news() {
-  for (const ConsoleLine& line : news_) show(line);
-  news_.clear();
+void ConsoleSession::show_messages() {
+  for (const ConsoleLine& line : messages_) show(line);
+  messages_.clear();
 }
 
 void ConsoleSession::show(const ConsoleLine& line) const {
@@ -63,14 +63,14 @@ void ConsoleSession::show(const ConsoleLine& line) const {
       print_result("{}\n", line.text);
       break;
     case Kind::print:
-      if (line.id == asked_) {
+      if (line.id == last_request_) {
         print_result("{}\n", line.text);
       } else {
         write_line(OutputTo::error, line.text);
       }
       break;
     case Kind::error:
-    case Kind::refused:
+    case Kind::rejected:
       write_line(OutputTo::error, line.text);
       break;
     case Kind::warning:
@@ -80,10 +80,10 @@ void ConsoleSession::show(const ConsoleLine& line) const {
       print_notice("error: {}", line.text);
       break;
     case Kind::missed:
-      write_line(OutputTo::error, fmt::format("({} lines are left out here: too much was said)", line.count));
+      write_line(OutputTo::error, fmt::format("({} lines dropped: too much output)", line.count));
       break;
     default:
-      return;  // nothing to see
+      return;  // no output
   }
 }
 

@@ -1,5 +1,6 @@
-// ConsoleSession: what a console asks and shows, whoever types. Values, and what the asked text printed, go to stdout;
-// errors and what the program says by itself go to stderr, so that a pipe gets what it asked for.
+// ConsoleSession: evaluates text in a running program and shows the results, for all front ends of the console. Values
+// and the output of the evaluated text go to stdout; errors and messages that the program prints on its own go to
+// stderr, so that a pipe receives only results.
 #pragma once
 
 #include <functional>
@@ -10,39 +11,41 @@
 
 namespace limber {
 
+/// [main]
 class ConsoleSession {
  public:
-  enum class Answer : std::uint8_t {
+  /// Outcome of an evaluation.
+  enum class EvaluationStatus : std::uint8_t {
     done,
-    failed,      ///< The error was shown.
-    incomplete,  ///< Nothing was run: more lines may make it whole.
-    left,        ///< It was given up while the answer was awaited.
-    ended,       ///< The program has ended.
+    failed,         ///< The error was shown.
+    incomplete,     ///< Nothing was evaluated: the text needs more lines.
+    cancelled,      ///< The user cancelled the evaluation while waiting for its result.
+    program_ended,  ///< The program has ended.
   };
 
-  /// `given_up` is asked after a signal: whether the person wants no answer any more.
+  /// `is_cancelled` is called after a signal; it returns true if the user no longer waits for the answer.
   explicit ConsoleSession(
-      ConsoleLink link, std::function<bool()> given_up = [] { return false; })
-      : link_(std::move(link)), given_up_(std::move(given_up)) {}
+      ConsoleLink link, std::function<bool()> is_cancelled = [] { return false; })
+      : link_(std::move(link)), is_cancelled_(std::move(is_cancelled)) {}
 
   int fd() const { return link_.fd(); }
   bool ended() const { return link_.ended(); }
-  /// Evaluates, and shows what comes of it.
-  Answer evaluate(const std::string& text);
-  /// Words that may stand at the end of a text; `word` gets how many bytes of it they replace.
+  /// Evaluates the text and shows the result.
+  EvaluationStatus evaluate(const std::string& text);
+  /// Returns the possible completions of the last word of `text`; sets `word` to the length of that word in bytes.
   std::vector<std::string> complete(const std::string& text, std::size_t& word);
-  /// Whether the program has said something by itself.
-  bool has_news();
-  void show_news();
+  /// True if the program has printed messages on its own.
+  bool has_messages();
+  void show_messages();
 
  private:
-  std::optional<ConsoleLine> ask(ConsoleRequest request);
+  std::optional<ConsoleLine> send_request(ConsoleRequest request);
   void show(const ConsoleLine& line) const;
 
   ConsoleLink link_;
-  std::function<bool()> given_up_;
-  std::uint64_t asked_ = 0;
-  std::vector<ConsoleLine> news_;
+  std::function<bool()> is_cancelled_;
+  std::uint64_t last_request_ = 0;
+  std::vector<ConsoleLine> messages_;
 };
 
 }  // namespace limber

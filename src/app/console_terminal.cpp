@@ -1,4 +1,4 @@
-// libedit, with a way of reading keys that also listens to the program.
+// Uses libedit, with a key reader that also receives messages of the program.
 #include "app/console_terminal.h"
 
 #include <histedit.h>
@@ -26,14 +26,14 @@ namespace limber {
 
 namespace {
 
-constexpr wchar_t kCancel = L'\x03';  // what Ctrl+C becomes for the editor
+constexpr wchar_t kCancel = L'\x03';  // the key that Ctrl+C becomes for the editor
 constexpr int kColumns = 80;
 
 volatile std::sig_atomic_t interrupted = 0;
 
 void on_interrupt(int) { interrupted = 1; }
 
-bool take_interrupt() {
+bool consume_interrupt() {
   const bool was = interrupted != 0;
   interrupted = 0;
   return was;
@@ -58,25 +58,25 @@ class Terminal {
   int next_key(wchar_t* key);
   int decode(wchar_t* key);
   unsigned char complete();
-  void offer(const std::vector<std::string>& words) const;
+  void list_words(const std::vector<std::string>& words) const;
   void remember(const std::string& line);
 
   ConsoleSession session_;
-  ConsoleHistory kept_{ConsoleHistory::default_file()};
+  ConsoleHistory saved_history_{ConsoleHistory::default_file()};
   EditLine* edit_ = nullptr;
   ::History* history_ = nullptr;
-  std::string pending_;  // lines of a chunk that is not whole yet
+  std::string pending_;  // lines of an incomplete chunk
   bool cancelled_ = false;
-  std::mbstate_t bytes_{};  // of a character that has come in part
+  std::mbstate_t bytes_{};  // state of an incomplete multibyte character
 };
 
-Terminal::Terminal(ConsoleLink link) : session_(std::move(link), take_interrupt) {
-  // only how characters are coded; numbers keep their point
+Terminal::Terminal(ConsoleLink link) : session_(std::move(link), consume_interrupt) {
+  // only the character encoding; numbers keep the decimal point
   if (std::setlocale(LC_CTYPE, "") == nullptr || MB_CUR_MAX < 2) std::setlocale(LC_CTYPE, "C.UTF-8");
   history_ = history_init();
   HistEvent event;
-  history(history_, &event, H_SETSIZE, static_cast<int>(ConsoleHistory::kMostLines));
-  for (const std::string& line : kept_.lines()) history(history_, &event, H_ENTER, line.c_str());
+  history(history_, &event, H_SETSIZE, static_cast<int>(ConsoleHistory::kMaxLines));
+  for (const std::string& line : saved_history_.lines()) history(history_, &event, H_ENTER, line.c_str());
 
   edit_ = el_init("limber", stdin, stdout, stderr);
   el_set(edit_, EL_CLIENTDATA, this);
@@ -85,14 +85,14 @@ Terminal::Terminal(ConsoleLink link) : session_(std::move(link), take_interrupt)
   el_set(edit_, EL_SIGNAL, 0);
   el_set(edit_, EL_HIST, history, history_);
   el_set(edit_, EL_GETCFN, &Terminal::read_key);
-  // in wide characters, which libedit keeps as they are: of others it makes copies that it never frees
-  el_wset(edit_, EL_ADDFN, L"limber-cancel", L"Gives the line up", &Terminal::on_cancel);
+  // with wide characters: of names in other strings, libedit makes copies that it never frees
+  el_wset(edit_, EL_ADDFN, L"limber-cancel", L"Cancels the line", &Terminal::on_cancel);
   el_wset(edit_, EL_ADDFN, L"limber-complete", L"Completes a name", &Terminal::on_tab);
   el_set(edit_, EL_BIND, "^C", "limber-cancel", nullptr);
   el_set(edit_, EL_BIND, "^I", "limber-complete", nullptr);
   el_set(edit_, EL_BIND, "^R", "em-inc-search-prev", nullptr);
 
-  // Ctrl+C ends a wait, and comes in nowhere else
+  // SIGINT is blocked except while waiting, which Ctrl+C then interrupts
   system::handle_signal(SIGINT, on_interrupt);
   system::block_signal(SIGINT);
 }
@@ -123,22 +123,22 @@ unsigned char Terminal::on_cancel(EditLine* edit, int) {
 
 unsigned char Terminal::on_tab(EditLine* edit, int) { return of(edit).complete(); }
 
-// the next key; while none comes, what the program says is shown above the line that is being typed
+// returns the next key; shows messages of the program above the edited line meanwhile
 int Terminal::next_key(wchar_t* key) {
   std::fflush(stdout);
   while (true) {
-    if (take_interrupt()) {
+    if (consume_interrupt()) {
       *key = kCancel;
       return 1;
     }
-    system::Waiting waiting[2] = {{.fd = system::kStandardInput}, {.fd = session_.ended() ? -1 : session_.fd()}};
+    system::PollEntry waiting[2] = {{.fd = system::kStandardInput}, {.fd = session_.ended() ? -1 : session_.fd()}};
     if (!system::wait_ready_or_signal(waiting, std::nullopt)) {
       if (errno != EINTR) return -1;
       continue;
     }
-    if (waiting[1].ready && session_.has_news()) {
+    if (waiting[1].ready && session_.has_messages()) {
       write_result("\r\x1b[K");
-      session_.show_news();
+      session_.show_messages();
       el_set(edit_, EL_REFRESH);
     }
     if (session_.ended()) return 0;  // the end, as if by Ctrl+D
@@ -147,7 +147,7 @@ int Terminal::next_key(wchar_t* key) {
   }
 }
 
-// 1: a character; 0: the end; -1: an error; 2: it is not whole yet
+// returns 1: a character; 0: end of input; -1: error; 2: incomplete
 int Terminal::decode(wchar_t* key) {
   char byte = 0;
   const std::ptrdiff_t got = system::read_some(system::kStandardInput, &byte, 1);
@@ -157,7 +157,7 @@ int Terminal::decode(wchar_t* key) {
   if (length == static_cast<std::size_t>(-2)) return 2;
   if (length == static_cast<std::size_t>(-1)) {
     bytes_ = {};
-    return 2;  // no text: passed over
+    return 2;  // invalid byte: skipped
   }
   return 1;
 }
@@ -168,7 +168,7 @@ unsigned char Terminal::complete() {
   std::size_t word = 0;
   std::vector<std::string> words = session_.complete(pending_ + before, word);
   if (words.empty()) return CC_REFRESH_BEEP;
-  // as far as all of them go
+  // the longest common prefix
   std::string common = words.front();
   for (const std::string& each : words) {
     const auto [end, other] = std::ranges::mismatch(common, each);
@@ -179,11 +179,11 @@ unsigned char Terminal::complete() {
     return CC_REFRESH;
   }
   if (words.size() == 1) return CC_NORM;
-  offer(words);
+  list_words(words);
   return CC_REDISPLAY;
 }
 
-void Terminal::offer(const std::vector<std::string>& words) const {
+void Terminal::list_words(const std::vector<std::string>& words) const {
   std::size_t widest = 0;
   for (const std::string& each : words) widest = std::max(widest, each.size());
   const std::size_t columns = std::max<std::size_t>(1, kColumns / (widest + 2));
@@ -197,7 +197,7 @@ void Terminal::offer(const std::vector<std::string>& words) const {
 void Terminal::remember(const std::string& line) {
   HistEvent event;
   history(history_, &event, H_ENTER, line.c_str());
-  kept_.add(line);
+  saved_history_.add(line);
 }
 
 int Terminal::run() {
@@ -214,22 +214,23 @@ int Terminal::run() {
     while (line.ends_with('\n') || line.ends_with('\r')) line.pop_back();
     if (line.empty() && pending_.empty()) continue;
     remember(line);
-    const ConsoleSession::Answer answer = session_.evaluate(pending_ + line);
-    if (answer == ConsoleSession::Answer::incomplete) {
+    const ConsoleSession::EvaluationStatus status = session_.evaluate(pending_ + line);
+    if (status == ConsoleSession::EvaluationStatus::incomplete) {
       pending_ += line + "\n";
       continue;
     }
     pending_.clear();
-    if (answer == ConsoleSession::Answer::left) write_result(" (it may still run; its answer is not awaited)\n");
+    if (status == ConsoleSession::EvaluationStatus::cancelled)
+      write_result(" (cancelled; the evaluation may still be running)\n");
   }
   print_result("{}\n", session_.ended() ? "\nlimber has ended" : "");
-  return kFine;
+  return kSuccess;
 }
 
 }  // namespace
 
 int console_terminal(ConsoleLink link, const ConsoleLine& hello) {
-  print_result("limber {}, number {}, plays {}. Lua; Tab completes, Ctrl+C gives a line up, Ctrl+D leaves.\n",
+  print_result("limber {}, process {}, plays {}. Lua console: Tab completes, Ctrl+C cancels a line, Ctrl+D exits.\n",
                hello.version, hello.pid, hello.text);
   return Terminal(std::move(link)).run();
 }

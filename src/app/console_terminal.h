@@ -1,11 +1,11 @@
-// The console at a terminal: a line editor with history and completion, over a session.
+// The interactive console: a line editor with history and completion on top of a ConsoleSession.
 #pragma once
 
 #include "console/console_link.h"
 
 namespace limber {
 
-/// Until the person leaves (Ctrl+D) or the program ends. Returns the exit code. [main]
+/// Runs until the user leaves (Ctrl+D) or the program ends. Returns the exit code. [main]
 int console_terminal(ConsoleLink link, const ConsoleLine& hello);
 
 }  // namespace limber

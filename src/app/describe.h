@@ -1,4 +1,4 @@
-// `limber describe`: every address with type, unit, range, default and meaning, derived from the tables.
+// `limber describe`: lists every OSC address with type, unit, range, default and meaning, from the property tables.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace limber {
 
-/// Without a scene the classes' addresses with <name> where a name stands; with one, those of every thing it has.
+/// Prints the addresses of all classes (with <name> as a placeholder), or, if a scene is given, of all its objects.
 /// Returns the exit code. [main]
 int describe_command(const std::string& scene, bool json);
 
-/// The classes that have rows, and what is answered beside them. [any]
-std::vector<const Table*> described_classes();
-std::vector<Irregular> described_messages();
+/// The classes that have properties, and the messages that belong to no property. [any]
+std::vector<const PropertyTable*> described_classes();
+std::vector<SpecialAddress> described_messages();
 
-/// The text without a scene: what the golden file holds. [any]
+/// Returns the text that is printed without a scene; a golden file holds it. [any]
 std::string describe_classes();
 
 }  // namespace limber

@@ -1,11 +1,11 @@
-// `limber describe --markdown`: the reference as it stands in docs/osc.md.
+// `limber describe --markdown`: the reference in the form of docs/osc.md.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
-/// Every class's rows and every message that comes from no row, as tables. [any]
+/// Returns Markdown tables of every class's properties and of the messages that belong to no property. [any]
 std::string describe_page();
 
 }  // namespace limber

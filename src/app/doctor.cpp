@@ -1,4 +1,4 @@
-// The doctor's findings.
+// Runs the checks and prints their results.
 #include "app/doctor.h"
 
 #include <cstdlib>
@@ -33,8 +33,8 @@ namespace limber {
 
 namespace {
 
-void finding(std::string_view mark, std::string_view what, std::string_view text) {
-  print_result("{:4} {:10} {}\n", mark, what, text);
+void print_check(std::string_view status, std::string_view topic, std::string_view text) {
+  print_result("{:4} {:10} {}\n", status, topic, text);
 }
 
 std::string system_name() {
@@ -48,89 +48,95 @@ std::string system_name() {
 
 bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<ListenAddress>& query_at) {
   EngineLink link;
-  Network network(link, OscOptions{.in = osc_in, .out = std::vector<StreamTarget>(), .allow = {}}, live_offsets());
+  Network network(link, OscOptions{.in = osc_in, .out = std::vector<StreamTarget>(), .allow = {}}, transient_offsets());
   const Result<void> open = network.start();
   network.stop();
   if (open) {
     for (const ListenAddress& at : osc_in)
-      finding("ok", "ports", fmt::format("OSC in {}:{} is free", at.address, at.port));
+      print_check("ok", "ports", fmt::format("OSC in {}:{} is free", at.address, at.port));
   } else {
-    finding("no", "ports", open.error());
+    print_check("fail", "ports", open.error());
   }
   if (!query_at) return open.ok();
   QueryServer query(link, {});
   const Result<void> panel = query.start(*query_at);
   query.stop();
   if (panel) {
-    finding("ok", "ports",
-            fmt::format("OSCQuery and remote panel {}:{} (TCP) is free", query_at->address, query_at->port));
+    print_check("ok", "ports",
+                fmt::format("OSCQuery and remote panel {}:{} (TCP) is free", query_at->address, query_at->port));
   } else {
-    finding("no", "ports", panel.error());
+    print_check("fail", "ports", panel.error());
   }
   return open.ok() && panel.ok();
 }
 
 void check_drawing(const std::string& gl) {
-  const auto context = Offscreen::make(gl);
+  const auto context = OffscreenContext::make(gl);
   if (context) {
-    finding(gl_is_software() ? "mind" : "ok", "OpenGL",
-            fmt::format("{} with {}{}", gl_driver(), gl_api_info((*context)->api()).name,
-                        gl_is_software() ? ": software, slow; windows begin with --quality low" : ""));
+    print_check(
+        gl_is_software() ? "warn" : "ok", "OpenGL",
+        fmt::format("{} with {}{}", gl_driver(), gl_api_info((*context)->api()).name,
+                    gl_is_software() ? ": software rendering, slow; windows use --quality low by default" : ""));
   } else {
-    finding("mind", "OpenGL", context.error());
+    print_check("warn", "OpenGL", context.error());
   }
   const FontFiles fonts = find_fonts();
-  for (const std::string& line : fonts.said) finding("mind", "fonts", line);
-  if (fonts.said.empty()) finding("ok", "fonts", "Inter and JetBrains Mono, for the panel");
+  for (const std::string& line : fonts.warnings) print_check("warn", "fonts", line);
+  if (fonts.warnings.empty()) print_check("ok", "fonts", "Inter and JetBrains Mono, for the panel");
   const bool video = !find_in_path("ffmpeg").empty();
-  finding(video ? "ok" : "mind", "ffmpeg",
-          video ? "there, for --render film.mp4" : "not there: --render makes stills only; apt-get install ffmpeg");
+  print_check(video ? "ok" : "warn", "ffmpeg",
+              video ? "installed, for --render film.mp4"
+                    : "not installed: --render can only write images; apt-get install ffmpeg");
 }
 
 }  // namespace
 
 int doctor_command(const DoctorCommand& command) {
   const Result<std::vector<ListenAddress>> osc_in = parse_osc_in(command.osc_in);
-  if (!osc_in) return fail(kUsage, osc_in.error());
+  if (!osc_in) return fail(kUsageError, osc_in.error());
   const Result<std::optional<std::vector<ListenAddress>>> query = parse_query(command.query);
-  if (!query) return fail(kUsage, query.error());
+  if (!query) return fail(kUsageError, query.error());
 
-  finding("ok", "limber", fmt::format("{} ({})", version(), commit()));
-  finding("ok", "system",
-          fmt::format("{}, {}, {} cores{}", system_name(), system::machine_name(), std::thread::hardware_concurrency(),
-                      system::is_portable() ? "; built with POSIX calls only" : ""));
+  print_check("ok", "limber", fmt::format("{} ({})", version(), commit()));
+  print_check(
+      "ok", "system",
+      fmt::format("{}, {}, {} cores{}", system_name(), system::machine_name(), std::thread::hardware_concurrency(),
+                  system::is_portable() ? "; built with POSIX calls only" : ""));
 
   const bool exact = fixed::is_arithmetic_exact() && fixed::is_libm_replaced();
-  finding(exact ? "ok" : "no", "arithmetic",
-          exact ? "as on every machine of this architecture: a scene, a seed and its commands give the same hash"
-                : "hashes and takes of other machines do not match: the program was compiled with -ffast-math or "
-                  "-ffp-contract, or without exporting its mathematical functions");
+  print_check(
+      exact ? "ok" : "fail", "arithmetic",
+      exact
+          ? "deterministic: the same scene, seed and commands give the same hash on every machine of this architecture"
+          : "hashes and takes of other machines do not match: the program was compiled with -ffast-math or "
+            "-ffp-contract, or without exporting its mathematical functions");
 
   const std::string data = data_dir();
   if (data.empty()) {
-    finding("no", "data",
-            "scripts/ and urdf/ are not beside the program nor installed; call ./run, or cmake --install build");
+    print_check("fail", "data",
+                "scripts/ and urdf/ not found next to the program or installed; run ./run, or cmake --install build");
   } else {
-    finding("ok", "data", data);
+    print_check("ok", "data", data);
   }
-  const bool ports = check_ports(*osc_in, query_address(*query, OscPlan{.listen = *osc_in, .targets = {}}));
+  const bool ports = check_ports(*osc_in, query_address(*query, OscConfig{.listen = *osc_in, .targets = {}}));
 
   const std::optional<long> buffer = system::max_receive_buffer();
   constexpr long kWanted = 4194304;
   if (!buffer) {
-    finding("mind", "buffer", "this system does not tell how large a socket's buffer may be; long bursts may be lost");
+    print_check("warn", "buffer", "the limit of socket buffers is unknown; long bursts may be lost");
   } else if (*buffer >= kWanted) {
-    finding("ok", "buffer",
-            fmt::format("the kernel grants {} bytes to a socket: bursts of 10 000 messages come through", *buffer));
+    print_check("ok", "buffer",
+                fmt::format("socket buffers of up to {} bytes: enough for bursts of 10 000 messages", *buffer));
   } else {
-    finding("mind", "buffer",
-            fmt::format("the kernel grants {} bytes to a socket, bursts over some hundred messages may be lost; "
-                        "sysctl -w net.core.rmem_max={} lifts that",
-                        *buffer, kWanted));
+    print_check(
+        "warn", "buffer",
+        fmt::format("socket buffers of only up to {} bytes: bursts of more than some hundred messages may be lost; "
+                    "raise the limit with sysctl -w net.core.rmem_max={}",
+                    *buffer, kWanted));
   }
-  finding("ok", "display", Window::has_display() ? "there is one, for the window" : "none; Limber plays headless");
+  print_check("ok", "display", Window::has_display() ? "available for the window" : "none; Limber plays headless");
   check_drawing(command.gl);
-  return data.empty() || !ports ? kMachine : kFine;
+  return data.empty() || !ports ? kMachineError : kSuccess;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A thread that looks about itself every twenty milliseconds.
+// A watchdog thread that polls every twenty milliseconds.
 #include "app/ending.h"
 
 #include <utility>
@@ -10,33 +10,34 @@
 namespace limber {
 
 namespace {
-constexpr auto kLook = std::chrono::milliseconds(20);
-constexpr int kMostLooks = 25;
-/// After another signal: it may have come with the first, as to a program and to its group.
-constexpr int kLooksMore = 12;
+constexpr auto kPollInterval = std::chrono::milliseconds(20);
+constexpr int kMaxPolls = 25;
+/// Grace period after another signal, which may be a duplicate of the first: sent to the program and to its group.
+constexpr int kGracePolls = 12;
 }  // namespace
 
-Ending::Ending(std::function<void()> late) : late_(std::move(late)), thread_([this] { watch(); }) {}
+ShutdownGuard::ShutdownGuard(std::function<void()> on_timeout)
+    : on_timeout_(std::move(on_timeout)), thread_([this] { watch(); }) {}
 
-Ending::~Ending() {
+ShutdownGuard::~ShutdownGuard() {
   done_.store(true);
   thread_.join();
 }
 
-void Ending::watch() {
-  bool asked = false;
-  for (int looks = 0, more = 0; !done_.load();) {
-    const system::Signal signal = system::wait_for_signal(kLook);
-    if (signal == system::Signal::end) {
-      asked = true;
-      hurry_output();
+void ShutdownGuard::watch() {
+  bool signalled = false;
+  for (int polls = 0, grace_polls = 0; !done_.load();) {
+    const system::Signal signal = system::wait_for_signal(kPollInterval);
+    if (signal == system::Signal::terminate) {
+      signalled = true;
+      begin_output_shutdown();
     }
     if (done_.load()) return;
-    if (asked && ++more > kLooksMore) {
-      print_notice("ended before all files were written");
-      end_program(kInput);
+    if (signalled && ++grace_polls > kGracePolls) {
+      print_notice("interrupted before all files were written");
+      end_program(kInputError);
     }
-    if (whole_.load() && ++looks > kMostLooks) late_();
+    if (files_written_.load() && ++polls > kMaxPolls) on_timeout_();
   }
 }
 

@@ -1,5 +1,5 @@
-// Ending: while it lives, the show ends. Another signal ends the program a quarter of a second later, and once the
-// files are whole nobody is waited for long.
+// ShutdownGuard: limits the duration of the shutdown. After another signal the program ends within a quarter of a
+// second; once all files are written, the rest of the shutdown may take half a second.
 #pragma once
 
 #include <atomic>
@@ -8,22 +8,25 @@
 
 namespace limber {
 
-class Ending {
+/// Watches the shutdown from its constructor to its destructor.
+class ShutdownGuard {
  public:
-  /// Signals are blocked (system::block_signals) in every thread. `late` ends the program. [main]
-  explicit Ending(std::function<void()> late);
-  ~Ending();
-  Ending(const Ending&) = delete;
-  Ending& operator=(const Ending&) = delete;
+  /// Signals must be blocked (system::block_signals) in every thread. `on_timeout` must end the program; it is called
+  /// on the guard's thread. [main]
+  explicit ShutdownGuard(std::function<void()> on_timeout);
+  ~ShutdownGuard();
+  ShutdownGuard(const ShutdownGuard&) = delete;
+  ShutdownGuard& operator=(const ShutdownGuard&) = delete;
 
-  /// From here on `late` comes in half a second, unless all have come back by then. [main]
-  void files_are_whole() { whole_.store(true); }
+  /// Starts the time limit of half a second, after which `on_timeout` is called unless the guard was destroyed
+  /// before. [main]
+  void files_written() { files_written_.store(true); }
 
  private:
   void watch();
 
-  std::function<void()> late_;
-  std::atomic<bool> whole_{false};
+  std::function<void()> on_timeout_;
+  std::atomic<bool> files_written_{false};
   std::atomic<bool> done_{false};
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// How a command reports that it failed, and how the program ends.
+// Reports errors of commands and ends the program.
 #include "app/exit_code.h"
 
 #include <cerrno>
@@ -19,18 +19,19 @@ int fail(int code, std::string_view text) {
 }
 
 int finish_command(int code) {
-  if (const std::uint64_t count = log_left_out(); count > 0)
-    print_notice("{} repeated line{} left out above", count, count == 1 ? " is" : "s are");
+  if (const std::uint64_t count = log_suppressed(); count > 0)
+    print_notice("{} repeated line{} suppressed above", count, count == 1 ? " is" : "s are");
   const int error = result_error();
-  // a reader that needs no more, and a signal, end a command quietly
+  // a closed pipe or a signal ends a command quietly
   if (error == ETIMEDOUT) {
-    code = fail(kMachine,
-                "standard output was not read until the end: the result is missing; read it, or write it to a file");
+    code = fail(kMachineError,
+                "standard output was not read to the end: the result is incomplete. Read it, or write it to a file");
   } else if (error != 0 && error != EPIPE && error != EINTR) {
-    code = fail(kMachine,
-                fmt::format("standard output can't be written: {}; the result is missing or cut off. Make room on the "
-                            "disk, or write it elsewhere",
-                            std::generic_category().message(error)));
+    code = fail(
+        kMachineError,
+        fmt::format(
+            "standard output can't be written: {}; the result is incomplete. Free disk space, or write it elsewhere",
+            std::generic_category().message(error)));
   }
   finish_output();
   return code;

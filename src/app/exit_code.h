@@ -1,22 +1,22 @@
-// What the program's commands end with, as --help says: by these a script that calls them knows what to do.
+// Exit codes of the program's commands, as documented in --help, so that scripts can react to them.
 #pragma once
 
 #include <string_view>
 
 namespace limber {
 
-inline constexpr int kFine = 0;
-inline constexpr int kInput = 1;    ///< What was given (a scene, a model, an answer) is at fault.
-inline constexpr int kUsage = 2;    ///< The command line is.
-inline constexpr int kMachine = 3;  ///< The machine is: a port in use, a folder that can't be written.
+inline constexpr int kSuccess = 0;
+inline constexpr int kInputError = 1;    ///< The input is invalid: a scene, a model, an answer.
+inline constexpr int kUsageError = 2;    ///< The command line is invalid.
+inline constexpr int kMachineError = 3;  ///< The machine is at fault: a port is in use, a folder is not writable.
 
-/// Says on stderr what went wrong, unprintable bytes escaped, and gives the code back.
+/// Prints an error to stderr, with unprintable bytes escaped, and returns `code`.
 int fail(int code, std::string_view text);
 
-/// Writes all text that is queued. Returns the code, or 3 where a result could not be written to stdout; a reader that
-/// has closed it is no failure. [main]
+/// Flushes all queued output. Returns `code`, or 3 if a result could not be written to stdout. A reader that closed the
+/// pipe is not an error. [main]
 int finish_command(int code);
-/// The same, and ends the program without destroying anything. [any]
+/// Calls finish_command(), then ends the program without running destructors. [any]
 [[noreturn]] void end_program(int code);
 
 }  // namespace limber

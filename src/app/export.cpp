@@ -1,4 +1,4 @@
-// A replay that is looked at so many times a second.
+// Replays a take and samples it at the export's frame rate.
 #include "app/export.h"
 
 #include <array>
@@ -30,16 +30,16 @@ namespace fs = std::filesystem;
 
 enum class Format : std::uint8_t { csv, bvh, gltf };
 
-struct Ending {
+struct Extension {
   std::string_view text;
   Format format;
 };
-constexpr std::array kEndings = {Ending{".csv", Format::csv}, Ending{".bvh", Format::bvh}, Ending{".glb", Format::gltf},
-                                 Ending{".gltf", Format::gltf}};
+constexpr std::array kExtensions = {Extension{".csv", Format::csv}, Extension{".bvh", Format::bvh},
+                                    Extension{".glb", Format::gltf}, Extension{".gltf", Format::gltf}};
 
 std::optional<Format> format_of(std::string_view output) {
-  for (const Ending& ending : kEndings) {
-    if (output.ends_with(ending.text)) return ending.format;
+  for (const Extension& extension : kExtensions) {
+    if (output.ends_with(extension.text)) return extension.format;
   }
   return {};
 }
@@ -49,13 +49,14 @@ struct Plan {
   std::string output;
 };
 
-// format and output say the same, or one of them says both
-Result<Plan> plan_of(const ExportCommand& command) {
+// determines format and file from the options; they must agree
+Result<Plan> make_plan(const ExportCommand& command) {
   const std::optional<Format> by_name = format_of(command.output);
   Plan plan;
   if (command.format.empty()) {
     if (!by_name)
-      return Error{"say --format csv, bvh or gltf, or give -o a name that ends with .csv, .bvh, .glb or .gltf"};
+      return Error{
+          "no format: use --format csv, bvh or gltf, or -o with a name that ends with .csv, .bvh, .glb or .gltf"};
     plan = {*by_name, command.output};
     return plan;
   }
@@ -63,19 +64,20 @@ Result<Plan> plan_of(const ExportCommand& command) {
   plan.output = command.output;
   if (plan.output.empty()) {
     const fs::path take(command.take);
-    const char* const ending = plan.format == Format::csv ? ".csv" : plan.format == Format::gltf ? ".glb" : "_bvh";
-    plan.output = (take.parent_path() / (take.stem().string() + ending)).string();
+    const char* const suffix = plan.format == Format::csv ? ".csv" : plan.format == Format::gltf ? ".glb" : "_bvh";
+    plan.output = (take.parent_path() / (take.stem().string() + suffix)).string();
   }
   if (by_name ? *by_name == plan.format : plan.format == Format::bvh) return plan;
   if (command.output.empty()) return plan;
-  return Error{fmt::format("-o '{}' is no name for --format {}: {}", printable(command.output), command.format,
-                           plan.format == Format::csv   ? "one that ends with .csv would do"
-                           : plan.format == Format::bvh ? "one that ends with .bvh, or a folder's, would do"
-                                                        : "one that ends with .glb or .gltf would do")};
+  return Error{fmt::format("-o '{}' doesn't match --format {}: the name must {}", printable(command.output),
+                           command.format,
+                           plan.format == Format::csv   ? "end with .csv"
+                           : plan.format == Format::bvh ? "end with .bvh, or be that of a folder"
+                                                        : "end with .glb or .gltf")};
 }
 
-// whether something that is there would be lost
-Result<void> check_free(const Plan& plan, bool overwrite) {
+// fails if an existing file would be overwritten
+Result<void> check_not_existing(const Plan& plan, bool overwrite) {
   std::vector<std::string> names = {plan.output};
   if (plan.output.ends_with(".gltf")) names.push_back(fs::path(plan.output).replace_extension(".bin").string());
   for (const std::string& name : names) {
@@ -83,11 +85,10 @@ Result<void> check_free(const Plan& plan, bool overwrite) {
     const fs::file_status status = fs::symlink_status(name, none);
     if (!fs::exists(status)) continue;
     if (fs::is_directory(status))
-      return Error{
-          fmt::format("{} is a folder that is there already, and none is written over: choose another name by -o",
-                      printable(name))};
+      return Error{fmt::format("{} is an existing folder, which is never overwritten: choose another name with -o",
+                               printable(name))};
     if (!overwrite)
-      return Error{fmt::format("{} is there already: choose another name by -o, or write over it by --overwrite",
+      return Error{fmt::format("{} already exists: choose another name with -o, or overwrite it with --overwrite",
                                printable(name))};
   }
   return {};
@@ -99,7 +100,7 @@ Result<std::unique_ptr<MotionWriter>> open_writer(const Plan& plan, double rate)
   return write_gltf(plan.output);
 }
 
-// ticks in which time goes on
+// number of ticks that advance time
 Result<std::uint64_t> ticks_of(const std::string& take) {
   auto opened = TakeReader::open(take);
   if (!opened) return Error{opened.error()};
@@ -117,83 +118,84 @@ EngineOptions engine_options(const ExportCommand& command) {
   return options;
 }
 
-struct Ended {
+struct ExportResult {
   std::uint64_t frames = 0;
   bool cancelled = false;
   Result<void> written;
 };
 
-// every frame, to the end of the take or of what was asked for
-Ended write_frames(const ExportCommand& command, std::uint64_t ticks, Engine& engine, Moments& moments,
-                   MotionSource& source, MotionWriter& writer) {
+// writes all frames up to the end of the take or the requested time
+ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, Engine& engine, OfflineClock& clock,
+                          MotionSource& source, MotionWriter& writer) {
   const auto wanted = command.to ? std::llround(std::floor((*command.to - command.from) * command.rate + 1e-6)) + 1 : 0;
   Progress progress(command.to ? "frame" : "tick", command.to ? static_cast<std::uint64_t>(wanted) : ticks);
-  Ended end;
+  ExportResult end;
   std::uint64_t done = 0;
-  moments.after_tick([&] {
-    source.learn(engine.world(), moments.now());
-    if (moments.now().time != moments.before().time) done++;
-    progress.tell(command.to ? end.frames : done);
+  clock.on_after_tick([&] {
+    source.update(engine.world(), clock.now());
+    if (clock.now().time != clock.before().time) done++;
+    progress.report(command.to ? end.frames : done);
   });
-  source.learn(engine.world(), moments.now());
+  source.update(engine.world(), clock.now());
   for (; !command.to || end.frames < static_cast<std::uint64_t>(wanted); end.frames++) {
     const double at = command.from + static_cast<double>(end.frames) / command.rate;
-    const Moments::Went went = moments.go_to(at);
-    end.cancelled = went == Moments::Went::cancelled;
-    if (went != Moments::Went::there) break;
-    end.written = source.add_frame(at, moments.before(), moments.now(), moments.mix(at), writer);
+    const OfflineClock::Outcome outcome = clock.advance_to(at);
+    end.cancelled = outcome == OfflineClock::Outcome::cancelled;
+    if (outcome != OfflineClock::Outcome::reached) break;
+    end.written = source.add_frame(at, clock.before(), clock.now(), clock.mix(at), writer);
     if (!end.written) break;
   }
   return end;
 }
 
-int tell_end(const Plan& plan, const ExportCommand& command, const Ended& end, const MotionSource& source,
-             const Engine& engine) {
+int report_result(const Plan& plan, const ExportCommand& command, const ExportResult& end, const MotionSource& source,
+                  const Engine& engine) {
   print_notice("{}: {} frames of {} bod{}, {} a second", printable(plan.output), end.frames, source.bodies(),
                source.bodies() == 1 ? "y" : "ies", number_text(command.rate));
-  const TakeVerdict verdict = engine.verdict();
-  print_notice("{}", text_of(verdict));
-  return verdict.parted || !verdict.damage.empty() ? kInput : kFine;
+  const ReplayResult result = engine.replay_result();
+  print_notice("{}", text_of(result));
+  return result.diverged_at || !result.damage.empty() ? kInputError : kSuccess;
 }
 
 }  // namespace
 
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel) {
-  const Result<Plan> plan = plan_of(command);
-  if (!plan) return fail(kUsage, plan.error());
+  const Result<Plan> plan = make_plan(command);
+  if (!plan) return fail(kUsageError, plan.error());
   if (command.to && *command.to < command.from)
-    return fail(kUsage, fmt::format("--to {} lies before --from {}; give a time behind it", number_text(*command.to),
-                                    number_text(command.from)));
-  if (const Result<void> is_free = check_free(*plan, command.overwrite); !is_free) return fail(kInput, is_free.error());
+    return fail(kUsageError, fmt::format("--to {} is before --from {}; choose a later time", number_text(*command.to),
+                                         number_text(command.from)));
+  if (const Result<void> can_write = check_not_existing(*plan, command.overwrite); !can_write)
+    return fail(kInputError, can_write.error());
   const Result<std::uint64_t> ticks = ticks_of(command.take);
-  if (!ticks) return fail(kInput, ticks.error());
+  if (!ticks) return fail(kInputError, ticks.error());
   EngineLink link;
   Engine engine(link, engine_options(command));
-  if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
+  if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
   Result<std::unique_ptr<MotionWriter>> writer = open_writer(*plan, command.rate);
-  if (!writer) return fail(kInput, writer.error());
-  Moments moments(engine, link, cancel);
+  if (!writer) return fail(kInputError, writer.error());
+  OfflineClock clock(engine, link, cancel);
   MotionSource source(command.bodies);
-  const Ended end = write_frames(command, *ticks, engine, moments, source, **writer);
-  if (!end.written) return fail(kMachine, end.written.error());
+  const ExportResult end = write_frames(command, *ticks, engine, clock, source, **writer);
+  if (!end.written) return fail(kMachineError, end.written.error());
   if (end.cancelled) {
-    print_notice("cancelled; there is no {}", printable(plan->output));
-    return kInput;
+    print_notice("cancelled; {} was not written", printable(plan->output));
+    return kInputError;
   }
   if (end.frames == 0)
-    return fail(kInput, fmt::format("the take ends at {:.2f} s, before --from {}; begin earlier", moments.elapsed(),
-                                    number_text(command.from)));
+    return fail(kInputError, fmt::format("the take ends at {:.2f} s, before --from {}; choose an earlier time",
+                                         clock.elapsed(), number_text(command.from)));
   if (source.bodies() == 0 && !command.bodies.empty())
-    return fail(kInput, fmt::format("no body of the take is called '{}'{}", printable(command.bodies.front()),
-                                    name_hint(command.bodies.front(), source.names())));
-  if (const Result<void> finished = (*writer)->finish(); !finished) return fail(kMachine, finished.error());
-  return tell_end(*plan, command, end, source, engine);
+    return fail(kInputError, fmt::format("no body '{}' in the take{}", printable(command.bodies.front()),
+                                         name_hint(command.bodies.front(), source.names())));
+  if (const Result<void> finished = (*writer)->finish(); !finished) return fail(kMachineError, finished.error());
+  return report_result(*plan, command, end, source, engine);
 }
 
 int export_command(const ExportCommand& command) {
   system::block_signals();
   start_output(OutputMode::batch);
-  return export_take(command, system::signal_came);
+  return export_take(command, system::signal_arrived);
 }
 
 }  // namespace limber

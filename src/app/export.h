@@ -1,4 +1,4 @@
-// `limber export`: a take as motion for other programs: CSV, BVH, glTF.
+// `limber export`: exports a take as motion for other programs: CSV, BVH, glTF.
 #pragma once
 
 #include <functional>
@@ -8,22 +8,22 @@
 
 namespace limber {
 
-/// The command line of `export`, as it was typed.
+/// Options of `export`, as typed.
 struct ExportCommand {
   std::string take;
-  std::string format;               ///< csv, bvh, gltf; empty: what `output` ends with.
-  std::string output;               ///< Empty: beside the take, under its name.
-  double rate = 60;                 ///< Frames a simulated second.
-  std::vector<std::string> bodies;  ///< Names or patterns; none: all.
-  double from = 0;                  ///< Simulated seconds since the take's start.
-  std::optional<double> to;         ///< Its end, when it is left out.
+  std::string format;               ///< csv, bvh, gltf; empty: by the extension of `output`.
+  std::string output;               ///< Empty: next to the take, with the same name.
+  double rate = 60;                 ///< Frames per simulated second.
+  std::vector<std::string> bodies;  ///< Names or patterns; empty: all bodies.
+  double from = 0;                  ///< Start, in simulated seconds since the beginning of the take.
+  std::optional<double> to;         ///< End, in the same unit; nullopt: the end of the take.
   bool overwrite = false;
 };
 
-/// Replays the take as fast as it goes. An exit code: 1 for a take that is none, or that did not play as it was
-/// recorded (then the file is there all the same); 3 for a disk that takes no more. Ctrl+C leaves nothing. [main]
+/// Replays the take at full speed. Returns the exit code: 1 if the file is not a take or the replay diverged from the
+/// recording (the output is written anyway); 3 if writing failed. Ctrl+C leaves no file behind. [main]
 int export_command(const ExportCommand& command);
-/// The same; `cancel` is asked before each tick.
+/// Like export_command(); `cancel` is called before each tick and returns true to stop.
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
-// FileWatch: which of some files have changed, told once they have been quiet for a while, whatever way an editor
-// saves. It looks at the folders on the way to a file, not at the file, since saving may put another file in place, and
-// an update another folder or link. [one thread]
+// FileWatch: reports which files of a set have changed, after a quiet period, for every way in which editors save. It
+// watches the folders on the path of a file rather than the file, because saving may replace the file, and an update
+// may replace a folder or a link. [one thread]
 #pragma once
 
 #include <chrono>
@@ -18,55 +18,56 @@
 
 namespace limber {
 
+/// Watches a set of files.
 class FileWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
-  /// Told by the kernel; or looked for four times a second, as on file systems whose changes the kernel does not hear
-  /// of. Events turn into polling by themselves where it must be.
-  enum class Way : std::uint8_t { events, polling };
+  /// `events`: the kernel reports changes. `polling`: files are compared four times a second, on file systems for
+  /// which the kernel reports none. Falls back from `events` to `polling` by itself.
+  enum class Mode : std::uint8_t { events, polling };
 
-  static constexpr auto kQuiet = std::chrono::milliseconds(50);
-  static constexpr auto kLook = std::chrono::milliseconds(250);
-  /// A file that was made and is not closed yet may be half written.
-  static constexpr auto kOpenFile = std::chrono::milliseconds(500);
+  static constexpr auto kQuietPeriod = std::chrono::milliseconds(50);
+  static constexpr auto kPollInterval = std::chrono::milliseconds(250);
+  /// Quiet period of a file that was created and not closed yet: it may be incomplete.
+  static constexpr auto kOpenFileQuietPeriod = std::chrono::milliseconds(500);
 
-  explicit FileWatch(Way way = Way::events);
+  explicit FileWatch(Mode mode = Mode::events);
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  /// The files that count from now on, whether they exist or not. One that does not hold what was read of it counts as
-  /// changed.
+  /// Replaces the set of watched files, whether they exist or not. A file with content other than the given one
+  /// counts as changed.
   void watch(const std::vector<SourceFile>& files, Time now);
-  /// Becomes readable when something has happened; -1: nothing will.
+  /// File descriptor that becomes readable when something has changed; -1: none.
   int fd() const { return events_ ? events_->fd() : -1; }
-  Way way() const { return way_; }
-  /// When poll() is to be called even if nothing happens.
-  std::optional<Time> due() const;
-  /// The files that hold something else than when they were last told, once all is quiet; a file that is gone is not
-  /// told until it is back. Never waits.
+  Mode mode() const { return mode_; }
+  /// Returns the time at which poll() must be called even without events.
+  std::optional<Time> next_poll() const;
+  /// Returns the files with content changed since they were last reported, once all are quiet. A removed file is
+  /// reported when it exists again. Never blocks.
   std::vector<std::string> poll(Time now);
 
  private:
   struct Folder {
     std::string path;
-    std::set<std::string> names;  // what counts in it
+    std::set<std::string> names;  // watched entries
   };
 
-  void arm();
-  void want(std::map<std::string, std::set<std::string>>& folders, std::set<std::string>& seen,
-            const std::filesystem::path& file) const;
+  void update_watches();
+  void add_watched(std::map<std::string, std::set<std::string>>& folders, std::set<std::string>& visited,
+                   const std::filesystem::path& file) const;
   void read_events(Time now);
-  void look(Time now);
-  bool still_moving(Time now);
-  std::vector<std::string> take_changed();
+  void compare_files(Time now);
+  bool still_changing(Time now);
+  std::vector<std::string> collect_changed();
 
-  Way way_;
+  Mode mode_;
   std::optional<system::FolderEvents> events_;
   std::map<std::string, FileStamp> files_;
-  std::map<int, Folder> folders_;  // by number
-  std::optional<Time> settle_at_;
-  std::optional<Time> next_look_;
-  std::map<std::string, FileStamp> seen_moving_;
+  std::map<int, Folder> folders_;  // by the number that system::FolderEvents gives them
+  std::optional<Time> quiet_at_;
+  std::optional<Time> next_poll_;
+  std::map<std::string, FileStamp> last_stamps_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Frames go to ffmpeg or to a still each.
+// Writes frames to ffmpeg or to single PNG files.
 #include "app/film_file.h"
 
 #include <array>
@@ -17,16 +17,16 @@ namespace {
 constexpr std::array kVideos = {".mp4", ".mov", ".mkv"};
 
 bool is_video(const std::string& name) {
-  for (const char* ending : kVideos) {
-    if (name.ends_with(ending)) return true;
+  for (const char* extension : kVideos) {
+    if (name.ends_with(extension)) return true;
   }
   return false;
 }
 
 struct Pattern {
   std::string before, after;
-  int digits = 0;  // at least; filled with zeros
-  bool good = false;
+  int digits = 0;  // minimal number, padded with zeros
+  bool valid = false;
 };
 
 // "shot_%05d.png"
@@ -44,12 +44,12 @@ Pattern pattern_of(const std::string& name) {
   }
   p.before = name.substr(0, at);
   p.after = name.substr(d + 1);
-  p.good = true;
+  p.valid = true;
   return p;
 }
 
-// out.mp4 while it is made: out.part.mp4, so that its ending says what it is
-std::string beside(const std::string& name) {
+// temporary name of out.mp4: out.part.mp4, which keeps the extension for ffmpeg
+std::string temporary_name(const std::string& name) {
   const std::filesystem::path path(name);
   return (path.parent_path() / (path.stem().string() + ".part" + path.extension().string())).string();
 }
@@ -59,12 +59,12 @@ std::string beside(const std::string& name) {
 Result<void> check_film_file(const std::string& name, int width, int height) {
   if (is_video(name)) {
     if (width % 2 == 0 && height % 2 == 0) return {};
-    return Error{fmt::format("--size {}x{}: a video's width and height are even; {}x{} would do", width, height,
+    return Error{fmt::format("--size {}x{}: the width and height of a video must be even; use {}x{}", width, height,
                              width + width % 2, height + height % 2)};
   }
-  if (pattern_of(name).good) return {};
+  if (pattern_of(name).valid) return {};
   return Error{
-      fmt::format("--render '{}': give a video's name, such as film.mp4, or a pattern for stills, such as "
+      fmt::format("--render '{}': expected a video file, such as film.mp4, or a pattern for images, such as "
                   "shot_%05d.png",
                   printable(name))};
 }
@@ -78,7 +78,7 @@ Result<std::unique_ptr<FilmFile>> FilmFile::open(const std::string& name, int wi
 }
 
 Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
-  beside_ = beside(name_);
+  temporary_file_ = temporary_name(name_);
   const std::vector<std::string> words = {"ffmpeg",    "-nostdin",
                                           "-v",        "error",
                                           "-f",        "rawvideo",
@@ -91,41 +91,41 @@ Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
                                           "-crf",      "18",
                                           "-pix_fmt",  "yuv420p",
                                           "-movflags", "+faststart",
-                                          "-y",        beside_};
+                                          "-y",        temporary_file_};
   const int fault = ffmpeg_.start(words);
   if (fault == 0) return {};
   return Error{
-      fmt::format("a video needs ffmpeg, which can't be called: {}; on Debian apt-get install ffmpeg, or draw "
-                  "stills with --render shot_%05d.png",
+      fmt::format("ffmpeg, which is needed for videos, can't be started: {}. On Debian: apt-get install ffmpeg. Or "
+                  "render images with --render shot_%05d.png",
                   std::strerror(fault))};
 }
 
 FilmFile::~FilmFile() {
   if (!ffmpeg_.started()) return;
   ffmpeg_.kill();
-  std::remove(beside_.c_str());
+  std::remove(temporary_file_.c_str());
 }
 
-std::string FilmFile::still(std::uint64_t number) const {
+std::string FilmFile::still_name(std::uint64_t number) const {
   const Pattern p = pattern_of(name_);
   return fmt::format("{}{:0{}}{}", p.before, number, p.digits, p.after);
 }
 
 Result<void> FilmFile::add(const Pixels& frame) {
-  if (!ffmpeg_.started()) return write_png(frame, still(frames_++));
+  if (!ffmpeg_.started()) return write_png(frame, still_name(frames_++));
   if (!ffmpeg_.write({reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()}))
-    return Error{fmt::format("ffmpeg took no more of '{}'; what it says stands above", printable(name_))};
+    return Error{fmt::format("ffmpeg stopped reading '{}'; see its messages above", printable(name_))};
   frames_++;
   return {};
 }
 
 Result<void> FilmFile::finish() {
   if (!ffmpeg_.started()) return {};
-  const bool well = ffmpeg_.finish();
-  if (well && frames_ > 0 && std::rename(beside_.c_str(), name_.c_str()) == 0) return {};
-  std::remove(beside_.c_str());
+  const bool succeeded = ffmpeg_.finish();
+  if (succeeded && frames_ > 0 && std::rename(temporary_file_.c_str(), name_.c_str()) == 0) return {};
+  std::remove(temporary_file_.c_str());
   if (frames_ == 0) return {};
-  return Error{fmt::format("ffmpeg made no '{}'; what it says stands above", printable(name_))};
+  return Error{fmt::format("ffmpeg failed to write '{}'; see its messages above", printable(name_))};
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// FramePace: when the window draws its next picture: at the screen's rate, or seldom while nothing changes.
+// FramePace: decides when the window draws its next frame: at the screen's rate, or rarely while nothing changes.
 #pragma once
 
 #include <algorithm>
@@ -8,25 +8,29 @@ namespace limber {
 /// All times in seconds. [main]
 class FramePace {
  public:
-  static constexpr double kIdleAfter = 1;        ///< Without a change.
-  static constexpr double kIdleEvery = 0.25;     ///< Between two pictures of an idle window.
-  static constexpr double kIdleLook = 1.0 / 30;  ///< Between two looks for a change.
+  static constexpr double kIdleAfter = 1;                 ///< Time without a change.
+  static constexpr double kIdleInterval = 0.25;           ///< Interval between frames of an idle window.
+  static constexpr double kIdleCheckInterval = 1.0 / 30;  ///< Interval between checks for a change.
 
-  /// Something that is seen has changed, or a hand has done something.
-  void touch(double now) { touched_ = now; }
-  bool idle(double now) const { return now - touched_ > kIdleAfter; }
-  /// Whether a picture is due. `rate`: of the screen.
-  bool due(double now, double rate) const { return now >= drawn_ + (idle(now) ? kIdleEvery : 0.9 / rate); }
-  /// How long to wait for events before the next look.
-  double rest(double now, double rate) const {
-    return idle(now) ? std::min(kIdleLook, std::max(drawn_ + kIdleEvery - now, 0.001)) : drawn_ + 0.95 / rate - now;
+  /// Called when something visible has changed, or on user input.
+  void note_activity(double now) { last_activity_ = now; }
+  /// True if nothing has changed for kIdleAfter.
+  bool idle(double now) const { return now - last_activity_ > kIdleAfter; }
+  /// True if it is time to draw a frame. `rate`: refresh rate of the screen, 1/s.
+  bool frame_due(double now, double rate) const {
+    return now >= last_frame_ + (idle(now) ? kIdleInterval : 0.9 / rate);
   }
-  /// A picture begins.
-  void draw(double now) { drawn_ = now; }
+  /// Returns how long to wait for events before the next check.
+  double wait_time(double now, double rate) const {
+    return idle(now) ? std::min(kIdleCheckInterval, std::max(last_frame_ + kIdleInterval - now, 0.001))
+                     : last_frame_ + 0.95 / rate - now;
+  }
+  /// Called at the start of a frame.
+  void begin_frame(double now) { last_frame_ = now; }
 
  private:
-  double touched_ = 0;
-  double drawn_ = 0;
+  double last_activity_ = 0;
+  double last_frame_ = 0;
 };
 
 }  // namespace limber

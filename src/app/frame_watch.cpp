@@ -1,4 +1,4 @@
-// It looks every fifty milliseconds.
+// A watchdog thread that polls every fifty milliseconds.
 #include "app/frame_watch.h"
 
 #include <chrono>
@@ -10,30 +10,30 @@
 namespace limber {
 
 namespace {
-constexpr auto kFrameLook = std::chrono::milliseconds(50);
-constexpr int kFrameLooks = 20;
+constexpr auto kFramePollInterval = std::chrono::milliseconds(50);
+constexpr int kMaxFramePolls = 20;
 }  // namespace
 
-FrameWatch::~FrameWatch() {
+DisplayWatchdog::~DisplayWatchdog() {
   done_.store(true);
-  turn_.unlock();
+  main_thread_mutex_.unlock();
   if (thread_.joinable()) thread_.join();
 }
 
-void FrameWatch::start(std::function<void()> end) {
+void DisplayWatchdog::start(std::function<void()> end) {
   end_ = std::move(end);
   (void)system::start_thread(thread_, [this] { watch(); });
 }
 
-void FrameWatch::watch() {
+void DisplayWatchdog::watch() {
   system::name_this_thread("limber-frames");
-  for (int looks = 0; !done_.load();) {
-    std::this_thread::sleep_for(kFrameLook);
-    looks = ending_.load() || system::end_is_pending() ? looks + 1 : 0;
-    if (looks < kFrameLooks || !turn_.try_lock()) continue;
-    // the main thread stays where it is, since this one keeps the turn
+  for (int polls = 0; !done_.load();) {
+    std::this_thread::sleep_for(kFramePollInterval);
+    polls = ending_.load() || system::termination_is_pending() ? polls + 1 : 0;
+    if (polls < kMaxFramePolls || !main_thread_mutex_.try_lock()) continue;
+    // this thread holds the mutex, so the main thread can't return from call()
     if (!done_.load()) end_();
-    turn_.unlock();
+    main_thread_mutex_.unlock();
   }
 }
 

@@ -1,4 +1,4 @@
-// FrameWatch: a program whose display server does not answer still ends at a signal.
+// DisplayWatchdog: lets the program react to signals while the display server doesn't respond.
 #pragma once
 
 #include <atomic>
@@ -8,40 +8,40 @@
 
 namespace limber {
 
-/// While the main thread is in a call of the display's, nothing else hears signals. A thread of its own looks for one
-/// that waits there for longer than a second.
-class FrameWatch {
+/// A call into the display server may block the main thread, which handles the signals. A watchdog thread takes over if
+/// a signal is pending for longer than a second during such a call.
+class DisplayWatchdog {
  public:
-  FrameWatch() { turn_.lock(); }
-  ~FrameWatch();
-  FrameWatch(const FrameWatch&) = delete;
-  FrameWatch& operator=(const FrameWatch&) = delete;
+  DisplayWatchdog() { main_thread_mutex_.lock(); }
+  ~DisplayWatchdog();
+  DisplayWatchdog(const DisplayWatchdog&) = delete;
+  DisplayWatchdog& operator=(const DisplayWatchdog&) = delete;
 
-  /// From here on, `end` is called in the main thread's place when a signal (or, after ending(), nothing) has waited
-  /// for a second inside of call(). It must end the program. Without a thread left, there is no such watch. [main]
+  /// From now on, `end` is called on the watchdog thread if call() has blocked for a second while a signal was pending
+  /// (after ending(): in any case). It must end the program. If no thread can be started, there is no watchdog. [main]
   void start(std::function<void()> end);
-  /// Calls it; what may wait for the display belongs in there. Never returns once `end` was called. [main]
+  /// Runs `call`, which may block on the display. Never returns once `end` was called. [main]
   template <class Call>
   decltype(auto) call(Call&& call) {
-    const Turn turn(turn_);
+    const ReleaseScope release(main_thread_mutex_);
     return call();
   }
-  /// The program is about to end: from here on, call() may take a second. [main]
+  /// The program is about to end: from now on call() may take at most a second. [main]
   void ending() { ending_.store(true); }
 
  private:
-  // the main thread has turn_, except in call()
-  struct Turn {
-    explicit Turn(std::mutex& mutex) : turn(mutex) { turn.unlock(); }
-    ~Turn() { turn.lock(); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-    std::mutex& turn;
+  // Unlocks the mutex during call(); otherwise the main thread holds it.
+  struct ReleaseScope {
+    explicit ReleaseScope(std::mutex& mutex) : released(mutex) { released.unlock(); }
+    ~ReleaseScope() { released.lock(); }
+    ReleaseScope(const ReleaseScope&) = delete;
+    ReleaseScope& operator=(const ReleaseScope&) = delete;
+    std::mutex& released;
   };
   void watch();
 
   std::function<void()> end_;
-  std::mutex turn_;
+  std::mutex main_thread_mutex_;
   std::atomic<bool> ending_{false};
   std::atomic<bool> done_{false};
   std::thread thread_;

@@ -1,4 +1,4 @@
-// The answer of `limber inspect`: everything that the file has, in stream order, and every problem with line and cure.
+// Prints the contents of a URDF file in file order, and every problem with its line and fix.
 #include "app/inspect.h"
 
 #include <algorithm>
@@ -32,30 +32,30 @@ const char* severity_name(Severity severity) {
   return "";
 }
 
-Json of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
-Json of(const Pose& p) {
+Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json json_of(const Pose& p) {
   const Quat& q = p.rotation;
-  return {{"position", of(p.position)}, {"rotation", Json::array({q.x, q.y, q.z, q.w})}};
+  return {{"position", json_of(p.position)}, {"rotation", Json::array({q.x, q.y, q.z, q.w})}};
 }
 
-Json of(const FileLink& link) {
+Json json_of(const FileLink& link) {
   const Mat3& t = link.tensor;
   return {{"name", link.name},
           {"mass", link.mass},
-          {"com", of(link.center)},
+          {"com", json_of(link.center)},
           {"inertia", Json::array({t[0][0], t[0][1], t[0][2], t[1][1], t[1][2], t[2][2]})},
           {"collisions", link.collisions},
           {"visuals", link.visuals},
-          {"home", of(link.home)},
-          {"start", of(link.start)}};
+          {"home", json_of(link.home)},
+          {"start", json_of(link.start)}};
 }
 
-Json of(const FileJoint& joint) {
+Json json_of(const FileJoint& joint) {
   Json j = {{"name", joint.name},
             {"type", joint.type},
             {"parent", joint.parent},
             {"child", joint.child},
-            {"axis", of(joint.axis)},
+            {"axis", json_of(joint.axis)},
             {"lower", joint.free ? Json() : Json(joint.lower)},
             {"upper", joint.free ? Json() : Json(joint.upper)},
             {"effort", joint.effort},
@@ -126,7 +126,7 @@ void add_mimics(const BodyModel& model, std::string& out) {
 }
 
 void add_body(const BodyModel& model, std::string& out) {
-  out += "\nas it is built (mass 0: fixed to the world)\n";
+  out += "\nresulting body (mass 0: fixed to the world)\n";
   for (const LinkModel& link : model.links) {
     out += fmt::format("  {}: {:.6g} kg", printable(link.name), link.inertial.mass);
     for (const PlacedShape& s : link.collisions) {
@@ -161,20 +161,24 @@ void add_overlaps(const BodyModel& model, std::string& out) {
 
 std::string inspect_json(const BodyModel& model) {
   Json links = Json::array(), joints = Json::array(), problems = Json::array();
-  for (const FileLink& link : model.file_links) links.push_back(of(link));
-  for (const FileJoint& joint : model.file_joints) joints.push_back(of(joint));
+  for (const FileLink& link : model.file_links) links.push_back(json_of(link));
+  for (const FileJoint& joint : model.file_joints) joints.push_back(json_of(joint));
   for (const Problem& p : model.problems) {
-    problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.cure}});
+    problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.fix}});
   }
-  Json pairs = Json::array(), apart = Json::array();
+  Json pairs = Json::array(), no_self_collision = Json::array();
   for (const Overlap& overlap : model.overlaps) {
     pairs.push_back({{"a", link_name(model, overlap.a)}, {"b", link_name(model, overlap.b)}, {"depth", overlap.depth}});
   }
   for (const LinkModel& link : model.links) {
-    if (!link.self_collision) apart.push_back(link.name);
+    if (!link.self_collision) no_self_collision.push_back(link.name);
   }
-  const Json all{{"robot", model.name},        {"links", links},      {"joints", joints}, {"excluded_pairs", pairs},
-                 {"no_self_collision", apart}, {"problems", problems}};
+  const Json all{{"robot", model.name},
+                 {"links", links},
+                 {"joints", joints},
+                 {"excluded_pairs", pairs},
+                 {"no_self_collision", no_self_collision},
+                 {"problems", problems}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -190,7 +194,7 @@ std::string inspect_table(const BodyModel& model) {
   add_overlaps(model, out);
   out += model.problems.empty() ? "\nno problems\n" : "\n";
   for (const Problem& p : model.problems) {
-    out += fmt::format("{}:{}: {}: {}. {}\n", printable(model.file), p.line, severity_name(p.severity), p.text, p.cure);
+    out += fmt::format("{}:{}: {}: {}. {}\n", printable(model.file), p.line, severity_name(p.severity), p.text, p.fix);
   }
   return out;
 }
@@ -201,11 +205,11 @@ int inspect_command(const std::string& path, bool json, const std::vector<std::s
   const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options);
   if (!model) {
     write_line(OutputTo::error, model.error());
-    return kInput;
+    return kInputError;
   }
   const std::string text = json ? inspect_json(**model) : inspect_table(**model);
   write_result(text);
-  return kFine;
+  return kSuccess;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// `limber inspect`: what the importer makes of a URDF file, as a table or as JSON.
+// `limber inspect`: prints the result of importing a URDF file, as a table or as JSON.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace limber {
 
-/// Prints links, joints and problems to stdout; a file that holds no body is said on stderr. Returns the exit code:
-/// 0 when there is a body, with whatever problems, else 1. [main]
+/// Prints links, joints and problems to stdout; if the file contains no body, an error to stderr. Returns the exit
+/// code: 0 if there is a body, even with problems, else 1. [main]
 int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths);
 
-/// The same as text: the JSON of product.md, indented, or the table for people. [any]
+/// Return the same as text: indented JSON, or a table for people. [any]
 std::string inspect_json(const BodyModel& model);
 std::string inspect_table(const BodyModel& model);
 

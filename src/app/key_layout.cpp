@@ -1,4 +1,4 @@
-// Keys are assigned by what is printed on them, and those that remain by their place.
+// Assigns keys by their printed letters first, the remaining keys by position.
 #include "app/key_layout.h"
 
 #include <GLFW/glfw3.h>
@@ -40,8 +40,8 @@ constexpr KeyName kKeys[] = {{GLFW_KEY_TAB, GuiKey::tab},
                              {GLFW_KEY_KP_ADD, GuiKey::equal},
                              {GLFW_KEY_SLASH, GuiKey::slash}};
 
-// GLFW's own order within these runs is ours
-GuiKey by_place(int key) {
+// GuiKey has the order of GLFW within letters, digits and function keys
+GuiKey key_at_position(int key) {
   const auto run = [&](int first, int last, GuiKey begin) {
     return key >= first && key <= last ? static_cast<GuiKey>(static_cast<int>(begin) + key - first) : GuiKey::none;
   };
@@ -55,17 +55,17 @@ GuiKey by_place(int key) {
 }
 
 // the key of a letter, digit or sign
-GuiKey by_letter(const std::string& printed) {
+GuiKey key_of_letter(const std::string& printed) {
   if (printed.size() != 1) return GuiKey::none;
   const char c = printed[0];
-  if (c >= 'a' && c <= 'z') return by_place(GLFW_KEY_A + c - 'a');
-  const std::string_view others = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-=/";  // GLFW's numbers are ASCII
-  return others.find(c) == std::string_view::npos ? GuiKey::none : by_place(c);
+  if (c >= 'a' && c <= 'z') return key_at_position(GLFW_KEY_A + c - 'a');
+  const std::string_view others = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-=/";  // GLFW's key codes are ASCII
+  return others.find(c) == std::string_view::npos ? GuiKey::none : key_at_position(c);
 }
 
-// a key that exists; GLFW reports an error for others
-bool prints(int key) {
-  return by_place(key) != GuiKey::none ||
+// true for printable keys that exist; GLFW reports an error for others
+bool is_printing_key(int key) {
+  return key_at_position(key) != GuiKey::none ||
          std::string_view("';[\\]`").find(static_cast<char>(key)) != std::string_view::npos;
 }
 
@@ -73,23 +73,23 @@ bool is_digit(int key) { return key >= GLFW_KEY_0 && key <= GLFW_KEY_9; }
 
 }  // namespace
 
-KeyLayout::KeyLayout(const Printed& printed) {
+KeyLayout::KeyLayout(const PrintedText& printed) {
   static_assert(GLFW_KEY_GRAVE_ACCENT - GLFW_KEY_APOSTROPHE + 1 == kPrinting);
   std::array<std::string, kPrinting> names;
   bool digits = false;
   for (std::size_t i = 0; i < kPrinting; i++) {
     const int key = GLFW_KEY_APOSTROPHE + static_cast<int>(i);
-    if (prints(key)) names[i] = printed(key);
+    if (is_printing_key(key)) names[i] = printed(key);
     digits |= names[i].size() == 1 && is_digit(names[i][0]);
   }
   std::set<GuiKey> used;
   for (std::size_t i = 0; i < kPrinting; i++) {
-    const int place = GLFW_KEY_APOSTROPHE + static_cast<int>(i);
-    const GuiKey key = is_digit(place) && !digits ? by_place(place) : by_letter(names[i]);
+    const int position = GLFW_KEY_APOSTROPHE + static_cast<int>(i);
+    const GuiKey key = is_digit(position) && !digits ? key_at_position(position) : key_of_letter(names[i]);
     if (key != GuiKey::none && used.insert(key).second) keys_[i] = key;
   }
   for (std::size_t i = 0; i < kPrinting; i++) {
-    const GuiKey key = by_place(GLFW_KEY_APOSTROPHE + static_cast<int>(i));
+    const GuiKey key = key_at_position(GLFW_KEY_APOSTROPHE + static_cast<int>(i));
     if (keys_[i] != GuiKey::none || key == GuiKey::none || !used.insert(key).second) continue;
     keys_[i] = key;
     if (!names[i].empty()) labels_[key] = names[i];
@@ -97,9 +97,9 @@ KeyLayout::KeyLayout(const Printed& printed) {
 }
 
 GuiKey KeyLayout::key(int key) const {
-  const int place = key - GLFW_KEY_APOSTROPHE;
-  if (place < 0 || place >= static_cast<int>(kPrinting)) return by_place(key);
-  return keys_[static_cast<std::size_t>(place)];
+  const int position = key - GLFW_KEY_APOSTROPHE;
+  if (position < 0 || position >= static_cast<int>(kPrinting)) return key_at_position(key);
+  return keys_[static_cast<std::size_t>(position)];
 }
 
 }  // namespace limber

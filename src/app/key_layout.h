@@ -1,4 +1,4 @@
-// What the keys of a keyboard mean: shortcuts follow the letter that the layout prints on a key. [any]
+// KeyLayout: maps the keys of a keyboard to shortcuts by the letters that the layout prints on them. [any]
 #pragma once
 
 #include <array>
@@ -10,17 +10,18 @@
 
 namespace limber {
 
+/// The current layout of the keyboard.
 class KeyLayout {
  public:
-  /// What the layout prints on a key without Shift, UTF-8; empty: nothing. Keys are GLFW's, by their place on a US
-  /// keyboard.
-  using Printed = std::function<std::string(int key)>;
-  explicit KeyLayout(const Printed& printed);
+  /// Returns the text that the layout prints on a key without Shift, in UTF-8; empty: none. `key`: GLFW's key code,
+  /// which is the position on a US keyboard.
+  using PrintedText = std::function<std::string(int key)>;
+  explicit KeyLayout(const PrintedText& printed);
 
-  /// The key that prints its letter, digit or sign. A letter that the layout prints nowhere (Cyrillic) stays at its
-  /// place on a US keyboard; so do digits where all of them need Shift (AZERTY). `key`: GLFW's.
+  /// Returns the key for the letter, digit or sign printed on `key` (GLFW's code). A letter that the layout doesn't
+  /// have (Cyrillic) stays at its position on a US keyboard; so do digits if all of them need Shift (AZERTY).
   GuiKey key(int key) const;
-  /// What is printed on the keys that stay at their place.
+  /// Printed text of the keys that stay at their US position.
   const KeyLabels& labels() const { return labels_; }
 
  private:

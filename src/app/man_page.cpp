@@ -18,21 +18,21 @@ constexpr std::string_view kClosingSections = R"(.SH EXIT STATUS
 Success.
 .TP
 .B 1
-The input is at fault: a scene, a robot or a take. The error names the place and the fix.
+Invalid input: a scene, a robot or a take. The error names the place and the fix.
 .TP
 .B 2
 Wrong usage.
 .TP
 .B 3
-The machine is at fault: a port is in use, for example, or nothing answers.
+A problem of the machine: a port is in use, for example, or there is no reply.
 .SH FILES
 .TP
 .I /usr/share/limber
-Scenes, robots, behaviors and shaders of an installed program. A scene that is not found in the current folder is looked
-for there.
+Scenes, robots, behaviors and shaders of an installed program. A scene that is not found in the current folder is
+searched there.
 .TP
 .I $XDG_CONFIG_HOME/limber/panel.json
-Settings of the panel, by default in
+Settings of the panel; by default in
 .IR ~/.config/limber .
 .TP
 .I $XDG_STATE_HOME/limber
@@ -58,7 +58,7 @@ Without both,
 plays without a window.
 .TP
 .BR XDG_CONFIG_HOME ", " XDG_STATE_HOME ", " XDG_RUNTIME_DIR ", " HOME ", " TMPDIR
-Places of the files above.
+Locations of the files above.
 .SH SEE ALSO
 .BR oscsend (1),
 .BR oscdump (1)
@@ -67,7 +67,7 @@ The documentation is in
 .IR /usr/share/doc/limber .
 )";
 
-// text of roff in which no character has a meaning of its own
+// escapes the characters that have a meaning in roff
 std::string roff(std::string_view text) {
   std::string out;
   for (const char c : text) {
@@ -81,11 +81,11 @@ std::string roff(std::string_view text) {
       out += c;
     }
   }
-  // a period in front would be a macro
+  // a period at the start would be a macro
   return out.starts_with('.') ? "\\&" + out : out;
 }
 
-// the first run of two spaces behind the example's command
+// position of the two spaces after the example's command
 std::size_t end_of_command(std::string_view line) { return line.find("  "); }
 
 void add_roff_example(std::string& page, std::string_view line) {

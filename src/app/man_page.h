@@ -1,4 +1,4 @@
-// The manual page, made from the declared options, so that it names each of them.
+// Generates the manual page from the declared options, so that no option is missing.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace limber {
 
-/// limber(1) in the man macros of roff, all commands on one page. [any]
+/// Returns limber(1) in the man macros of roff, with all commands on one page. [any]
 std::string man_page(const CommandInfo& program);
 
 }  // namespace limber

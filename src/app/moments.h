@@ -1,4 +1,4 @@
-// Moments: drives an engine offline from one simulated time to the next, and knows the two snapshots around it.
+// OfflineClock: ticks an engine offline up to given simulated times and holds the two snapshots around each.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,25 @@
 
 namespace limber {
 
-/// The engine has started and nobody else runs it: it ticks on this thread. [main]
-class Moments {
+/// The engine must be started and not running elsewhere: it ticks on this thread. [main]
+class OfflineClock {
  public:
-  /// `cancel` is asked before each tick.
-  Moments(Engine& engine, EngineLink& link, const std::function<bool()>& cancel);
+  /// `cancel` is called before each tick and returns true to stop.
+  OfflineClock(Engine& engine, EngineLink& link, const std::function<bool()>& cancel);
 
-  enum class Went : std::uint8_t { there, stuck, ended, cancelled };
-  /// Ticks until there. `stuck`: time stands still; `ended`: the take that is replayed goes no further.
-  Went go_to(double seconds);
-  /// Called before each tick, and after it.
-  void on_tick(std::function<void()> before) { before_tick_ = std::move(before); }
-  void after_tick(std::function<void()> after) { after_tick_ = std::move(after); }
+  /// Reason why advance_to() has returned.
+  enum class Outcome : std::uint8_t { reached, stuck, ended, cancelled };
+  /// Ticks until `seconds` is reached. `stuck`: the simulation is paused; `ended`: the replayed take has ended.
+  Outcome advance_to(double seconds);
+  /// Sets callbacks that run before and after each tick.
+  void on_before_tick(std::function<void()> before) { before_tick_ = std::move(before); }
+  void on_after_tick(std::function<void()> after) { after_tick_ = std::move(after); }
 
   const Snapshot& before() const { return *before_; }
   const Snapshot& now() const { return *now_; }
-  /// How far that time is from before() to now(): 0 .. 1.
+  /// Returns the interpolation factor of `seconds` between before() and now(): 0 .. 1.
   double mix(double seconds) const;
-  /// Of now(), s; a reset does not set it back.
+  /// Simulated time at now(), s; a reset doesn't set it back.
   double elapsed() const { return elapsed_; }
 
  private:
@@ -39,8 +40,8 @@ class Moments {
   std::shared_ptr<const Snapshot> before_, now_;
   double elapsed_ = 0;
   double elapsed_before_ = 0;
-  double last_step_ = 0;        // s, of a tick that went on
-  std::vector<Outgoing> gone_;  // nobody listens
+  double last_step_ = 0;             // s; step of the last tick that advanced time
+  std::vector<Outgoing> discarded_;  // output that is discarded: there is no listener
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// `limber monitor`: prints what a running program takes in and sends out, or what changes in it.
+// `limber monitor`: prints the messages that a running program receives and sends, or the values that change.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,17 @@
 
 namespace limber {
 
+/// Options of `monitor`.
 struct MonitorCommand {
-  std::string pattern;  ///< Of addresses; empty: all.
+  std::string pattern;  ///< Pattern of addresses; empty: all.
   bool changes = false;
   bool only_in = false;
   bool only_out = false;
-  int pid = 0;                         ///< Which program; 0: the only one.
-  std::optional<std::uint64_t> count;  ///< Ends after so many lines.
+  int pid = 0;                         ///< Process id of the program; 0: the only one that runs.
+  std::optional<std::uint64_t> count;  ///< Exit after this number of lines.
 };
 
-/// Until the program ends or Ctrl+C. Returns the exit code. [main]
+/// Runs until the program ends or Ctrl+C. Returns the exit code. [main]
 int monitor_command(const MonitorCommand& command);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Skeletons are read from the world whenever somebody came or went, poses from snapshots.
+// Reads skeletons from the world when bodies were added or removed, poses from snapshots.
 #include "app/motion_source.h"
 
 #include <algorithm>
@@ -12,37 +12,38 @@ namespace limber {
 
 namespace {
 
-struct JointRows {
+struct JointOffsets {
   std::uint32_t value, angles, offsets, relrot;
 };
 
-const JointRows& joint_rows() {
+const JointOffsets& joint_offsets() {
   static const auto at = [](const char* name) { return Joint::table().at(name).offset; };
-  static const JointRows rows{at("value"), at("angles"), at("offsets"), at("relrot")};
-  return rows;
+  static const JointOffsets layout{at("value"), at("angles"), at("offsets"), at("relrot")};
+  return layout;
 }
 
-struct NamedRow {
+struct NamedValue {
   const char* name;
-  std::uint32_t row;
-  bool turns;
+  std::uint32_t offset;
+  bool is_angle;
 };
 
-// what is told of a joint
-std::vector<NamedRow> told_of(JointType type) {
-  const JointRows& rows = joint_rows();
-  const std::vector<NamedRow> turned = {
-      {"angle_x", rows.relrot, true}, {"angle_y", rows.relrot + 1, true}, {"angle_z", rows.relrot + 2, true}};
-  std::vector<NamedRow> shifted = {
-      {"shift_x", rows.offsets, false}, {"shift_y", rows.offsets + 1, false}, {"shift_z", rows.offsets + 2, false}};
+// the exported values of a joint
+std::vector<NamedValue> exported_values(JointType type) {
+  const JointOffsets& layout = joint_offsets();
+  const std::vector<NamedValue> turned = {
+      {"angle_x", layout.relrot, true}, {"angle_y", layout.relrot + 1, true}, {"angle_z", layout.relrot + 2, true}};
+  std::vector<NamedValue> shifted = {{"shift_x", layout.offsets, false},
+                                     {"shift_y", layout.offsets + 1, false},
+                                     {"shift_z", layout.offsets + 2, false}};
   switch (type) {
     case JointType::revolute:
     case JointType::continuous:
-      return {{"angle", rows.value, false}};
+      return {{"angle", layout.value, false}};
     case JointType::prismatic:
-      return {{"shift", rows.value, false}};
+      return {{"shift", layout.value, false}};
     case JointType::planar:
-      return {shifted[0], shifted[1], {"angle", rows.angles + 2, false}};
+      return {shifted[0], shifted[1], {"angle", layout.angles + 2, false}};
     case JointType::spherical:
       return turned;
     case JointType::floating:
@@ -56,11 +57,11 @@ std::vector<NamedRow> told_of(JointType type) {
 
 std::vector<std::string> value_names(JointType type) {
   std::vector<std::string> names;
-  for (const NamedRow& row : told_of(type)) names.emplace_back(row.name);
+  for (const NamedValue& value : exported_values(type)) names.emplace_back(value.name);
   return names;
 }
 
-std::uint64_t content_of(const Body& body) { return body.model() == nullptr ? 0 : body.model()->content; }
+std::uint64_t content_of(const Body& body) { return body.model() == nullptr ? 0 : body.model()->content_hash; }
 
 bool same_parts(const MotionBody& known, const Body& body) {
   const auto parts = body.parts();
@@ -74,16 +75,17 @@ bool same_parts(const MotionBody& known, const Body& body) {
 }
 
 Pose pose_in(const Snapshot& snapshot, std::uint32_t part) {
-  const double* const block = snapshot.live.data() + part;
-  return {vec3_at(block + live_offsets().part_position), quat_at(block + live_offsets().part_rotation)};
+  const double* const block = snapshot.transient.data() + part;
+  return {vec3_at(block + transient_offsets().part_position), quat_at(block + transient_offsets().part_rotation)};
 }
 
-Pose between(const Pose& a, const Pose& b, double mix) {
+Pose interpolate(const Pose& a, const Pose& b, double mix) {
   return {glm::mix(a.position, b.position, mix), slerp(a.rotation, b.rotation, mix)};
 }
 
-// parents by the first joint that leads to a part and closes no loop, and rest poses along these joints
-void hang(MotionBody& motion, const Body& body, const std::vector<Pose>& now) {
+// sets the parent of each link by the first joint that leads to it and closes no loop, and the rest poses along these
+// joints
+void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& now) {
   std::map<const Part*, int> number;
   for (std::size_t i = 0; i < body.parts().size(); i++) number[body.parts()[i].get()] = static_cast<int>(i);
   std::vector<const Joint*> by(motion.links.size(), nullptr);
@@ -111,37 +113,39 @@ void hang(MotionBody& motion, const Body& body, const std::vector<Pose>& now) {
 
 }  // namespace
 
-bool MotionSource::chosen(const std::string& name) const {
+bool MotionSource::is_selected(const std::string& name) const {
   return patterns_.empty() || std::any_of(patterns_.begin(), patterns_.end(), [&](const std::string& pattern) {
            return pattern == name || pattern_match(pattern, name);
          });
 }
 
-MotionSource::Track MotionSource::make_track(const Body& body, const RosterBody& entry, const Snapshot& now) {
+MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
   Track track;
   track.content = content_of(body);
   track.body.name = body.name();
-  std::map<std::uint32_t, std::vector<DrawnPiece>> pieces;
-  for (const DrawnPiece& piece : now.drawing->pieces) {
-    if (piece.enabled_at == entry.enabled_at) pieces[piece.part_at].push_back(piece);
+  std::map<std::uint32_t, std::vector<RenderInstance>> pieces;
+  for (const RenderInstance& piece : now.render_scene->instances) {
+    if (piece.enabled_offset == entry.enabled_offset) pieces[piece.part_offset].push_back(piece);
   }
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < body.parts().size(); i++) {
-    poses.push_back(pose_in(now, entry.parts[i]));
-    track.body.links.push_back({body.parts()[i]->name(), -1, {}, surfaces_.of(now, pieces[entry.parts[i]])});
+    poses.push_back(pose_in(now, entry.part_offsets[i]));
+    track.body.links.push_back(
+        {body.parts()[i]->name(), -1, {}, surfaces_.surfaces_of(now, pieces[entry.part_offsets[i]])});
   }
-  hang(track.body, body, poses);
+  set_parents(track.body, body, poses);
   for (std::size_t i = 0; i < body.joints().size(); i++) {
     const Joint& joint = *body.joints()[i];
     track.body.joints.push_back({joint.name(), value_names(joint.type())});
-    for (const NamedRow& row : told_of(joint.type())) track.values.push_back({i, row.row, row.turns});
+    for (const NamedValue& value : exported_values(joint.type()))
+      track.values.push_back({i, value.offset, value.is_angle});
   }
   return track;
 }
 
-int MotionSource::find_track(const Body& body, const RosterBody& entry, const Snapshot& now) {
+int MotionSource::find_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
   if (std::find(names_.begin(), names_.end(), body.name()) == names_.end()) names_.push_back(body.name());
-  if (body.parts().empty() || !chosen(body.name())) return -1;
+  if (body.parts().empty() || !is_selected(body.name())) return -1;
   for (std::size_t i = 0; i < tracks_.size(); i++) {
     const Track& track = tracks_[i];
     if (track.body.name == body.name() && track.content == content_of(body) && same_parts(track.body, body))
@@ -151,57 +155,57 @@ int MotionSource::find_track(const Body& body, const RosterBody& entry, const Sn
   return static_cast<int>(tracks_.size()) - 1;
 }
 
-void MotionSource::learn(const World& world, const Snapshot& now) {
-  if (seen_[0].roster == now.roster) return;
-  std::swap(seen_[0], seen_[1]);
-  Seen& seen = seen_[0];
-  seen.roster = now.roster;
-  seen.track_of.clear();
-  for (std::size_t i = 0; i < now.roster->bodies.size(); i++)
-    seen.track_of.push_back(find_track(*world.bodies()[i], now.roster->bodies[i], now));
-  seen.body_of.assign(tracks_.size(), -1);
-  for (std::size_t i = 0; i < seen.track_of.size(); i++) {
-    if (seen.track_of[i] >= 0) seen.body_of[static_cast<std::size_t>(seen.track_of[i])] = static_cast<int>(i);
+void MotionSource::update(const World& world, const Snapshot& now) {
+  if (recent_[0].body_list == now.body_list) return;
+  std::swap(recent_[0], recent_[1]);
+  BodyListTracks& tracks = recent_[0];
+  tracks.body_list = now.body_list;
+  tracks.track_of.clear();
+  for (std::size_t i = 0; i < now.body_list->bodies.size(); i++)
+    tracks.track_of.push_back(find_track(*world.bodies()[i], now.body_list->bodies[i], now));
+  tracks.body_of.assign(tracks_.size(), -1);
+  for (std::size_t i = 0; i < tracks.track_of.size(); i++) {
+    if (tracks.track_of[i] >= 0) tracks.body_of[static_cast<std::size_t>(tracks.track_of[i])] = static_cast<int>(i);
   }
 }
 
-const MotionSource::Seen& MotionSource::seen(const Roster* roster) const {
-  return seen_[0].roster.get() == roster ? seen_[0] : seen_[1];
+const MotionSource::BodyListTracks& MotionSource::tracks_of(const BodyList* body_list) const {
+  return recent_[0].body_list.get() == body_list ? recent_[0] : recent_[1];
 }
 
 Result<void> MotionSource::add_frame(double time, const Snapshot& before, const Snapshot& now, double mix,
                                      MotionWriter& writer) {
-  const Snapshot& shown = mix >= 1 ? now : before;
-  const Seen& here = seen(shown.roster.get());
-  const Seen& next = seen(now.roster.get());
-  const bool flows = mix < 1 && now.time >= before.time;
-  for (MotionSample& sample : samples_) sample.there = false;
+  const Snapshot& snapshot = mix >= 1 ? now : before;
+  const BodyListTracks& here = tracks_of(snapshot.body_list.get());
+  const BodyListTracks& next = tracks_of(now.body_list.get());
+  const bool interpolates = mix < 1 && now.time >= before.time;
+  for (MotionSample& sample : samples_) sample.present = false;
   for (std::size_t i = 0; i < here.track_of.size(); i++) {
-    const RosterBody& a = shown.roster->bodies[i];
-    if (here.track_of[i] < 0 || shown.live[a.enabled_at] < 0.5) continue;
+    const BodyEntry& a = snapshot.body_list->bodies[i];
+    if (here.track_of[i] < 0 || snapshot.transient[a.enabled_offset] < 0.5) continue;
     const auto number = static_cast<std::size_t>(here.track_of[i]);
     Track& track = tracks_[number];
-    if (!track.number) {
-      track.number = samples_.size();
+    if (!track.writer_number) {
+      track.writer_number = samples_.size();
       samples_.emplace_back();
       if (Result<void> added = writer.add_body(track.body); !added) return added;
     }
-    MotionSample& sample = samples_[*track.number];
-    sample.there = true;
-    sample.links.resize(a.parts.size());
+    MotionSample& sample = samples_[*track.writer_number];
+    sample.present = true;
+    sample.links.resize(a.part_offsets.size());
     sample.values.resize(track.values.size());
-    const bool stays = flows && number < next.body_of.size() && next.body_of[number] >= 0;
-    const RosterBody& b = stays ? now.roster->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
-    const Snapshot& to = stays ? now : shown;
-    const double part = stays ? mix : 0;
-    for (std::size_t k = 0; k < a.parts.size(); k++)
-      sample.links[k] = between(pose_in(shown, a.parts[k]), pose_in(to, b.parts[k]), part);
+    const bool continues = interpolates && number < next.body_of.size() && next.body_of[number] >= 0;
+    const BodyEntry& b = continues ? now.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
+    const Snapshot& to = continues ? now : snapshot;
+    const double part = continues ? mix : 0;
+    for (std::size_t k = 0; k < a.part_offsets.size(); k++)
+      sample.links[k] = interpolate(pose_in(snapshot, a.part_offsets[k]), pose_in(to, b.part_offsets[k]), part);
     for (std::size_t k = 0; k < track.values.size(); k++) {
       const Value& value = track.values[k];
-      const double from = shown.live[a.joints[value.joint] + value.row];
-      double way = to.live[b.joints[value.joint] + value.row] - from;
-      if (value.turns) way -= 2 * kPi * std::round(way / (2 * kPi));
-      sample.values[k] = from + way * part;
+      const double from = snapshot.transient[a.joint_offsets[value.joint] + value.offset];
+      double difference = to.transient[b.joint_offsets[value.joint] + value.offset] - from;
+      if (value.is_angle) difference -= 2 * kPi * std::round(difference / (2 * kPi));
+      sample.values[k] = from + difference * part;
     }
   }
   return writer.add_frame(time, samples_);

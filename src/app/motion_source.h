@@ -1,5 +1,5 @@
-// MotionSource: what a writer of motion is told of an engine that is driven offline: who came with which links, and
-// where all are at a time between two ticks.
+// MotionSource: feeds a MotionWriter from an engine that runs offline: which bodies exist, with which links, and their
+// poses at times between two ticks.
 #pragma once
 
 #include <array>
@@ -16,54 +16,57 @@
 
 namespace limber {
 
+/// Tracks the bodies of a running engine.
 class MotionSource {
  public:
-  /// `patterns`: names of bodies, or OSC's patterns of them; none: all bodies.
+  /// `patterns`: names or OSC patterns of bodies; empty: all bodies.
   explicit MotionSource(std::vector<std::string> patterns) : patterns_(std::move(patterns)) {}
 
-  /// After each tick, and before the first: who is there now. A body that comes back with the same parts and joints
-  /// under the same name, as after a reset, is the same. [sim]
-  void learn(const World& world, const Snapshot& now);
-  /// Where they are between the two snapshots: `mix` 0 .. 1. Places along a line, rotations along the shortest turn.
-  /// Who comes or goes with `now` does so at 1, and nothing is between a moment and a reset.
+  /// Updates the list of bodies; called before the first tick and after each. A body that is created again with the
+  /// same name, parts and joints (after a reset, for example) continues the same track. [sim]
+  void update(const World& world, const Snapshot& now);
+  /// Adds a frame that is interpolated between the two snapshots by `mix`, 0 .. 1: positions linearly, rotations along
+  /// the shortest arc. Bodies that `now` adds or removes change at `mix` 1, and there is no interpolation across a
+  /// reset.
   Result<void> add_frame(double time, const Snapshot& before, const Snapshot& now, double mix, MotionWriter& writer);
 
-  /// Bodies that were in a frame.
+  /// Number of bodies that were in a frame.
   std::size_t bodies() const { return samples_.size(); }
-  /// All that were seen, chosen or not.
+  /// Names of all bodies seen so far, whether they match the patterns or not.
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  // a number of a joint's block
+  // a value in the transient block of a joint
   struct Value {
     std::size_t joint = 0;
-    std::uint32_t row = 0;
-    bool turns = false;  // an angle between -pi and pi
+    std::uint32_t offset = 0;
+    bool is_angle = false;  // an angle between -pi and pi
   };
+  // the motion of one body
   struct Track {
     MotionBody body;
-    std::uint64_t content = 0;  // of its model
+    std::uint64_t content = 0;  // hash of the body's model
     std::vector<Value> values;
-    std::optional<std::size_t> number;  // the writer's
+    std::optional<std::size_t> writer_number;  // the writer's number of the body
   };
-  // which track each body of a roster is, and which body each track; -1: none
-  struct Seen {
-    std::shared_ptr<const Roster> roster;
+  // maps the bodies of a body list to tracks and back; -1: none
+  struct BodyListTracks {
+    std::shared_ptr<const BodyList> body_list;
     std::vector<int> track_of;
     std::vector<int> body_of;
   };
 
-  int find_track(const Body& body, const RosterBody& entry, const Snapshot& now);
-  Track make_track(const Body& body, const RosterBody& entry, const Snapshot& now);
-  bool chosen(const std::string& name) const;
-  const Seen& seen(const Roster* roster) const;
+  int find_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
+  Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
+  bool is_selected(const std::string& name) const;
+  const BodyListTracks& tracks_of(const BodyList* body_list) const;
 
   std::vector<std::string> patterns_;
   std::vector<std::string> names_;
   std::vector<Track> tracks_;
-  std::array<Seen, 2> seen_;  // the newest first
+  std::array<BodyListTracks, 2> recent_;  // the latest first
   MotionSurfaces surfaces_;
-  std::vector<MotionSample> samples_;  // by the writer's numbers
+  std::vector<MotionSample> samples_;  // indexed by the writer's number
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The view's own meshes, of middling detail, each point once.
+// Builds surfaces from the view's meshes at medium detail, without duplicate vertices.
 #include "app/motion_surfaces.h"
 
 #include <algorithm>
@@ -12,18 +12,19 @@ namespace limber {
 
 namespace {
 
-constexpr double kUnseen = 0.002;  // of alpha
+constexpr double kMinAlpha = 0.002;  // alpha below which a surface is left out
 
 struct Paint {
   Vec3 color{0};
   double alpha = 1;
 };
 
-// the seed's scale is 0.5 for a surface that shines as it should
+// the factor 2 is for ofxDabPhysics: its scale is 0.5 for a surface of full brightness
 Paint paint_of(const Material& material) {
   const Vec3 rgb = rgb_of(material.diffuse_color);
   Paint paint;
-  for (int i = 0; i < 3; i++) paint.color[i] = std::clamp(2 * material.diffuse_scale * light_of(rgb[i]), 0.0, 1.0);
+  for (int i = 0; i < 3; i++)
+    paint.color[i] = std::clamp(2 * material.diffuse_scale * linear_light_of(rgb[i]), 0.0, 1.0);
   paint.alpha = 1 - material.transparency;
   return paint;
 }
@@ -51,7 +52,7 @@ void add_piece(std::string& key, const ShapeModel& shape, const Pose& origin, co
   add_number(key, paint.alpha);
 }
 
-// a surface that is added to, each point with its normal once
+// appends to a surface and merges equal vertices
 class Builder {
  public:
   explicit Builder(Surface& surface) : surface_(surface) {}
@@ -61,17 +62,17 @@ class Builder {
     const Vec3 n = normalized(at.rotation * normal);
     const auto f = [](double v) { return static_cast<float>(v) + 0.0F; };  // no negative zero
     const std::array<float, 6> both = {f(p.x), f(p.y), f(p.z), f(n.x), f(n.y), f(n.z)};
-    const auto [place, fresh] = places_.try_emplace(both, static_cast<std::uint32_t>(surface_.points.size()));
+    const auto [entry, fresh] = indices_.try_emplace(both, static_cast<std::uint32_t>(surface_.points.size()));
     if (fresh) {
       surface_.points.push_back({both[0], both[1], both[2]});
       surface_.normals.push_back({both[3], both[4], both[5]});
     }
-    surface_.triangles.push_back(place->second);
+    surface_.triangles.push_back(entry->second);
   }
 
  private:
   Surface& surface_;
-  std::map<std::array<float, 6>, std::uint32_t> places_;
+  std::map<std::array<float, 6>, std::uint32_t> indices_;
 };
 
 void add_plane(Builder& builder, const Pose& at, const Vec3& up) {
@@ -90,28 +91,30 @@ void add_shape(Builder& builder, const ShapeModel& shape, const Pose& origin) {
   for (const MeshVertex& vertex : vertices) {
     const Vec3 corner(vertex.corner[0], vertex.corner[1], vertex.corner[2]);
     const Vec3 normal(vertex.normal[0], vertex.normal[1], vertex.normal[2]);
-    // what is not round is stretched: its normals the other way
-    builder.add(at, corner * size.extent + normal * size.round, size.round > 0 ? normal : normal / size.extent);
+    // shapes without a round part are scaled, their normals inversely
+    builder.add(at, corner * size.extent + normal * size.rounding_radius,
+                size.rounding_radius > 0 ? normal : normal / size.extent);
   }
 }
 
 }  // namespace
 
-std::shared_ptr<const Surfaces> MotionSurfaces::of(const Snapshot& snapshot, std::span<const DrawnPiece> pieces) {
+std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snapshot,
+                                                            std::span<const RenderInstance> pieces) {
   std::string key;
   std::vector<Paint> paints;
-  for (const DrawnPiece& piece : pieces) {
-    const DrawnForm& form = snapshot.drawing->forms[piece.form];
+  for (const RenderInstance& piece : pieces) {
+    const RenderShape& form = snapshot.render_scene->shapes[piece.shape];
     paints.push_back(paint_of(material_of(snapshot, form.material)));
-    add_piece(key, form.shape, piece.origin, paints.back());
+    add_piece(key, form.geometry, piece.origin, paints.back());
   }
-  const auto [at, fresh] = known_.try_emplace(key);
+  const auto [at, fresh] = cache_.try_emplace(key);
   if (!fresh) return at->second.surfaces;
   Surfaces surfaces;
   std::vector<Builder> builders;
-  surfaces.reserve(pieces.size());  // builders hold on to their places
+  surfaces.reserve(pieces.size());  // builders keep references to its elements
   for (std::size_t i = 0; i < pieces.size(); i++) {
-    if (paints[i].alpha < kUnseen) continue;
+    if (paints[i].alpha < kMinAlpha) continue;
     std::size_t n = 0;
     while (n < surfaces.size() && (surfaces[n].color != paints[i].color || surfaces[n].alpha != paints[i].alpha)) n++;
     if (n == surfaces.size()) {
@@ -119,7 +122,7 @@ std::shared_ptr<const Surfaces> MotionSurfaces::of(const Snapshot& snapshot, std
       surfaces[n].color = paints[i].color;
       surfaces[n].alpha = paints[i].alpha;
     }
-    const ShapeModel& shape = snapshot.drawing->forms[pieces[i].form].shape;
+    const ShapeModel& shape = snapshot.render_scene->shapes[pieces[i].shape].geometry;
     add_shape(builders[n], shape, pieces[i].origin);
     at->second.meshes.push_back(shape.mesh);
   }

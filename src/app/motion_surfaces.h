@@ -1,4 +1,4 @@
-// MotionSurfaces: what is seen of a part, as triangles that other programs draw.
+// MotionSurfaces: the visible surfaces of parts as triangle meshes, for exported motion.
 #pragma once
 
 #include <map>
@@ -13,21 +13,23 @@
 
 namespace limber {
 
-/// A plane has no end; it becomes a square of this edge, m.
+/// Edge of the square that represents an infinite plane, m.
 inline constexpr double kPlaneEdge = 20;
 
+/// Builds surfaces and shares equal ones.
 class MotionSurfaces {
  public:
-  /// The pieces of one part, with the colours of that moment. Parts that look alike get the same. Null: nothing is
-  /// seen.
-  std::shared_ptr<const Surfaces> of(const Snapshot& snapshot, std::span<const DrawnPiece> pieces);
+  /// Returns the surfaces of the pieces of one part, with their current colors. Parts that look alike share them. Null
+  /// if nothing is visible.
+  std::shared_ptr<const Surfaces> surfaces_of(const Snapshot& snapshot, std::span<const RenderInstance> pieces);
 
  private:
-  struct Known {
+  struct CacheEntry {
     std::shared_ptr<const Surfaces> surfaces;
-    std::vector<std::shared_ptr<const MeshModel>> meshes;  // so that their addresses, which are in the key, stay theirs
+    // keeps the meshes alive: their addresses are part of the key
+    std::vector<std::shared_ptr<const MeshModel>> meshes;
   };
-  std::map<std::string, Known> known_;  // by all that makes them
+  std::map<std::string, CacheEntry> cache_;  // by everything that determines them
 };
 
 }  // namespace limber

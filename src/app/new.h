@@ -1,18 +1,19 @@
-// `limber new`: a commented start of a show, a scene, a behaviour. Nothing that is there is ever written over.
+// `limber new`: creates a commented template of a show, a scene or a behavior. Never overwrites existing files.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
+/// Arguments of `new`.
 struct NewCommand {
-  enum class What : unsigned char { show, scene, behavior };
-  What what = What::scene;
-  std::string name;  ///< Of a show: its folder.
+  enum class Kind : unsigned char { show, scene, behavior };
+  Kind kind = Kind::scene;
+  std::string name;  ///< For a show: its folder.
 };
 
-/// Returns the exit code: 1 when something is there already, or a behaviour's name is that of another type, 2 for a
-/// name that can't be one, 3 when a file can't be written. [main]
+/// Returns the exit code: 1 if the file exists or the behavior's name is in use by another type, 2 if the name is
+/// invalid, 3 if a file can't be written. [main]
 int new_command(const NewCommand& command);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Two contexts, of which one is current at a time.
+// Switches between two OpenGL contexts, of which one is current at a time.
 #include "app/output_window.h"
 
 #include <utility>
@@ -18,31 +18,30 @@ Result<std::unique_ptr<OutputWindow>> OutputWindow::open(Window& first, const st
   Result<std::unique_ptr<Window>> window =
       Window::open_beside(first, fmt::format("Limber output: {}", scene), kWidth, kHeight);
   if (!window) return Error{window.error()};
-  print_notice("output window {} × {}; F11: the whole screen, F10: away with it", (*window)->width(),
-               (*window)->height());
+  print_notice("output window {} × {}; F11: full screen, F10: close it", (*window)->width(), (*window)->height());
   return std::unique_ptr<OutputWindow>(new OutputWindow(first, std::move(*window)));
 }
 
-// the audience's screen sets the pace; waiting for both would halve it
+// only the output window waits for the vertical blank; waiting for both would halve the frame rate
 OutputWindow::OutputWindow(Window& first, std::unique_ptr<Window> window) : first_(first), window_(std::move(window)) {
-  first_.wait_for_screen(false);
-  window_->use();
-  window_->wait_for_screen(true);
-  frame_ = GlFramebuffer::make();
-  first_.use();
+  first_.set_vsync(false);
+  window_->make_current();
+  window_->set_vsync(true);
+  framebuffer_ = GlFramebuffer::make();
+  first_.make_current();
 }
 
 OutputWindow::~OutputWindow() {
-  window_->use();
-  frame_ = {};
+  window_->make_current();
+  framebuffer_ = {};
   window_.reset();
-  first_.use();
-  first_.wait_for_screen(true);
+  first_.make_current();
+  first_.set_vsync(true);
 }
 
-std::vector<InputEvent> OutputWindow::take_keys() {
-  std::vector<InputEvent> events = window_->take_events();
-  (void)window_->take_mouse();
+std::vector<InputEvent> OutputWindow::consume_keys() {
+  std::vector<InputEvent> events = window_->consume_events();
+  (void)window_->consume_mouse();
   std::erase_if(events, [](const InputEvent& event) { return event.kind != InputEvent::Kind::key; });
   return events;
 }
@@ -52,11 +51,11 @@ Result<void> OutputWindow::draw(Renderer& renderer, const Snapshot& before, cons
   const int height = window_->height();
   if (width == 0 || height == 0) return {};
   if (Result<void> drawn = renderer.draw_output(before, now, mix, width, height); !drawn) return drawn;
-  glFlush();  // else the other context may see the picture before
-  window_->use();
-  renderer.show_output(frame_, width, height);
+  glFlush();  // otherwise the other context may see an older frame
+  window_->make_current();
+  renderer.present_output(framebuffer_, width, height);
   window_->swap();
-  first_.use();
+  first_.make_current();
   return {};
 }
 

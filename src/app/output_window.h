@@ -1,5 +1,5 @@
-// OutputWindow: a second window with the picture alone, for a projector. It shares OpenGL's objects with the first,
-// whose renderer draws for both.
+// OutputWindow: a second window with the scene alone, for a projector. It shares OpenGL objects with the first window,
+// and the renderer of that window draws both.
 #pragma once
 
 #include <memory>
@@ -11,22 +11,24 @@
 
 namespace limber {
 
+/// [main]
 class OutputWindow {
  public:
-  /// On another screen than `first` where there is one; said on stderr. `first` outlives it. An error says why there is
-  /// none. [main]
+  /// Opens the window, on another screen than `first` if there is one, and prints a notice. `first` must outlive it.
+  /// The error says why it can't be opened. [main]
   static Result<std::unique_ptr<OutputWindow>> open(Window& first, const std::string& scene);
   ~OutputWindow();
   OutputWindow(const OutputWindow&) = delete;
   OutputWindow& operator=(const OutputWindow&) = delete;
 
-  /// Somebody has closed it. [main]
+  /// True if the user has closed it. [main]
   bool closed() const { return window_->closed(); }
   void toggle_full_screen() { window_->toggle_full_screen(); }
   bool has_events() const { return window_->has_events(); }
-  /// Keys that were pressed in it since the last call. [main]
-  std::vector<InputEvent> take_keys();
-  /// Its own picture between two snapshots; the first window's context is current before and after. [main]
+  /// Returns the key events since the last call. [main]
+  std::vector<InputEvent> consume_keys();
+  /// Draws the scene interpolated between two snapshots. The context of the first window is current before and after.
+  /// [main]
   Result<void> draw(Renderer& renderer, const Snapshot& before, const Snapshot& now, double mix);
 
  private:
@@ -34,7 +36,7 @@ class OutputWindow {
 
   Window& first_;
   std::unique_ptr<Window> window_;
-  GlFramebuffer frame_;  // of the window's own context
+  GlFramebuffer framebuffer_;  // belongs to the context of this window
 };
 
 }  // namespace limber

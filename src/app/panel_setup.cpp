@@ -1,4 +1,4 @@
-// Gathered from the rooms below and the user's folders.
+// Collects the data from the modules and the user's folders.
 #include "app/panel_setup.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// built in, and those of behaviors_lua
+// the built-in types and those in behaviors_lua
 std::vector<std::string> behavior_types() {
   std::vector<std::string> names;
   const BehaviorTypes built_in;
@@ -32,8 +32,8 @@ std::vector<std::string> behavior_types() {
 
 }  // namespace
 
-FreePart free_part(const Gui& gui, int width, int height) {
-  const PanelRect& free = gui.layout().free;
+FreeArea free_part(const Gui& gui, int width, int height) {
+  const PanelRect& free = gui.layout().view;
   if (gui.settings().hidden || free.empty()) return {};
   return {free.x / width, free.y / height, free.width / width, free.height / height};
 }
@@ -44,7 +44,7 @@ GuiOptions panel_options(Window* window, GlApi api) {
   options.behavior_types = behavior_types();
   const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
   options.history = history->lines();
-  options.remember = [history](const std::string& line) { history->add(line); };
+  options.store_line = [history](const std::string& line) { history->add(line); };
   if (window == nullptr) return options;
   options.copy = [window](const std::string& text) { window->clipboard(text); };
   options.paste = [window] { return window->clipboard(); };

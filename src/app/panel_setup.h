@@ -1,4 +1,4 @@
-// What the panel gets from the app: settings, kinds of behaviours, the console's history, the clipboard.
+// Collects the panel's inputs from the app: settings, behavior types, console history, clipboard.
 #pragma once
 
 #include "gui/gui.h"
@@ -9,11 +9,11 @@ namespace limber {
 
 class Window;
 
-/// What of a picture of that size the panel leaves free. [main]
-FreePart free_part(const Gui& gui, int width, int height);
+/// Returns the part of a view of this size that the panel doesn't cover. [main]
+FreeArea free_part(const Gui& gui, int width, int height);
 
-/// `window`: whose clipboard it uses; null: none. It outlives the panel. `api`: of the context that it is drawn in.
-/// [main]
+/// Returns the options of the panel. `window`: provides the clipboard and must outlive the panel; null: no clipboard.
+/// `api`: OpenGL kind of the context that draws the panel. [main]
 GuiOptions panel_options(Window* window, GlApi api);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Finding the program's data.
+// Searches the folders of the program, its installation and the user.
 #include "app/paths.h"
 
 #include <cstdlib>
@@ -19,15 +19,16 @@ namespace fs = std::filesystem;
 std::string data_dir() {
   std::error_code fault;
   const fs::path program = system::executable_path();
-  std::vector<fs::path> places;
+  std::vector<fs::path> candidates;
   if (!program.empty()) {
-    // a checkout's build folder may lie deeper: build/asan
+    // a build folder may be nested: build/asan
     const fs::path above = program.parent_path().parent_path();
-    places = {above, above.parent_path(), above / "share/limber"};
+    candidates = {above, above.parent_path(), above / "share/limber"};
   }
-  places.emplace_back(install_data_dir());
-  for (const fs::path& place : places) {
-    if (fs::is_directory(place / "scripts", fault) && fs::is_directory(place / "urdf", fault)) return place.string();
+  candidates.emplace_back(install_data_dir());
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_directory(candidate / "scripts", fault) && fs::is_directory(candidate / "urdf", fault))
+      return candidate.string();
   }
   return {};
 }
@@ -71,25 +72,25 @@ std::string state_dir() {
   return home != nullptr && home[0] == '/' ? std::string(home) + "/.local/state/limber" : "";
 }
 
-std::string find_scene(std::string_view name, std::vector<std::string>& looked) {
+std::string find_scene(std::string_view name, std::vector<std::string>& searched) {
   if (name.empty()) return {};
-  std::vector<fs::path> places{fs::path(name)};
+  std::vector<fs::path> candidates{fs::path(name)};
   const std::string data = data_dir();
-  if (!data.empty() && fs::path(name).is_relative()) places.push_back(fs::path(data) / name);
+  if (!data.empty() && fs::path(name).is_relative()) candidates.push_back(fs::path(data) / name);
   std::error_code fault;
-  for (const fs::path& place : places) {
-    if (fs::is_regular_file(place, fault)) return place.string();
-    // called from the data's own folder, both places are one
-    const std::string whole = fs::absolute(place, fault).lexically_normal().string();
-    if (looked.empty() || looked.back() != whole) looked.push_back(whole);
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_regular_file(candidate, fault)) return candidate.string();
+    // in the data folder itself both places are the same
+    const std::string absolute = fs::absolute(candidate, fault).lexically_normal().string();
+    if (searched.empty() || searched.back() != absolute) searched.push_back(absolute);
   }
   return {};
 }
 
-std::string no_scene(std::string_view name, const std::vector<std::string>& looked) {
+std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched) {
   if (name.empty()) return "the scene's name is empty; leave it out to play scripts/arms.lua";
-  return fmt::format("there is no scene '{}'; looked for {}; a scene is a .lua file, such as scripts/hello.lua", name,
-                     fmt::join(looked, " and "));
+  return fmt::format("scene '{}' not found; searched {}; a scene is a .lua file, such as scripts/hello.lua", name,
+                     fmt::join(searched, " and "));
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Where the program's own data (scripts, urdf) is: beside the build, or where it was installed.
+// Locates the program's data (scripts, urdf, shaders) and the user's folders.
 #pragma once
 
 #include <string>
@@ -7,30 +7,32 @@
 
 namespace limber {
 
-/// The folder that holds scripts/ and urdf/ of this program: above the program's file (a checkout), share/limber beside
-/// it, or the installed one; empty when there is none. [any]
+/// Returns the folder that holds scripts/ and urdf/: above the executable (in a checkout), share/limber next to it, or
+/// the installed one; empty if there is none. [any]
 std::string data_dir();
 
-/// The printable text as one word of a shell: in quotes if it needs them. [any]
+/// Returns the text, made printable, as one word for a shell, quoted if necessary. [any]
 std::string shell_word(std::string_view text);
 
-/// How a shell calls this program: "limber" where PATH leads to it, else the program's file, quoted. [any]
+/// Returns the command that starts this program in a shell: "limber" if PATH finds it, else the quoted path. [any]
 std::string program_command();
 
-/// The folder of shaders/ among that data, which may be edited while it plays; empty when there is none. [any]
+/// Returns the folder of the shaders, which may be edited while the program runs; empty if there is none. [any]
 std::string shader_dir();
 
-/// Where this user's programs keep what they remember of themselves, without / at the end: $XDG_STATE_HOME/limber, else
-/// below ~/.local/state; empty when there is no home. [any]
+/// Returns the folder for the user's persistent state, without a trailing /: $XDG_STATE_HOME/limber, else the same
+/// below ~/.local/state; empty if there is no home folder. [any]
 std::string state_dir();
 
-/// The file that a shell starts for this name: the first in PATH that may be executed; empty: none. [any]
+/// Returns the executable that a shell would start for this name: the first in PATH; empty: not found. [any]
 std::string find_in_path(std::string_view name);
 
-/// The file as given, else in the data folder; empty when neither is there. `looked` gets every place. [any]
-std::string find_scene(std::string_view name, std::vector<std::string>& looked);
+/// Returns the file as given, else in the data folder; empty if neither exists. `searched` receives all paths that
+/// were tried.
+/// [any]
+std::string find_scene(std::string_view name, std::vector<std::string>& searched);
 
-/// What is said when there is none: where it was looked for, and what a scene is.
-std::string no_scene(std::string_view name, const std::vector<std::string>& looked);
+/// Returns the error message for a missing scene: the places searched, and how to name a scene.
+std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched);
 
 }  // namespace limber

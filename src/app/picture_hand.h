@@ -1,5 +1,5 @@
-// PictureHand: a mouse in the picture: it chooses a part with a click, follows it with two, drags it with a spring, and
-// with Ctrl pushes it. Knows no window.
+// ViewportMouse: mouse input in the 3D view: a click selects a part, a double click follows it, a drag pulls it with a
+// spring, and Ctrl+click pushes it. Independent of the window system.
 #pragma once
 
 #include <optional>
@@ -14,49 +14,50 @@
 
 namespace limber {
 
-/// What the hand sees: the picture of that size in pixels.
-struct HandView {
+/// The view at the time of an event; sizes in pixels.
+struct ViewState {
   const Snapshot& now;
-  const Image& image;  ///< Of the same show; where it is older, nothing is found.
-  Lens lens;
+  const ValueSnapshot& values;  ///< Values of the same show; if its structure is older than `now`, no part is found.
+  ViewCamera camera;
   int width = 1;
   int height = 1;
   double clock = 0;  ///< s
 
-  const Tree& tree() const { return *image.tree; }
+  const TreeSnapshot& tree() const { return *values.tree; }
 };
 
-class PictureHand {
+/// [main]
+class ViewportMouse {
  public:
-  static constexpr double kStill = 4;      ///< Pixels that a click may move.
-  static constexpr double kTwice = 0.4;    ///< s between the two of a double click.
-  static constexpr double kPushSpeed = 2;  ///< m/s that a push gives a part that is free.
+  static constexpr double kClickTolerance = 4;     ///< Pixels that the mouse may move during a click.
+  static constexpr double kDoubleClickTime = 0.4;  ///< s between the two clicks of a double click.
+  static constexpr double kPushSpeed = 2;          ///< m/s that a push gives a free part.
 
-  /// A press, a release or a move that is not the panel's.
-  void event(const InputEvent& event, const HandView& view);
-  /// Once a picture: where what is held is pulled to.
-  void frame(const HandView& view);
+  /// Handles a press, release or move that the panel does not use.
+  void event(const InputEvent& event, const ViewState& view);
+  /// Called once per frame: updates the target of the part that is being dragged.
+  void frame(const ViewState& view);
 
-  /// It has hold of a part: a drag does not turn the view.
-  bool holds() const { return held_.has_value(); }
-  /// Messages since the last call.
-  std::vector<Message> take_messages() { return std::exchange(messages_, {}); }
-  /// Address of the part that a click has chosen since the last call; empty: none.
-  std::string take_chosen() { return std::exchange(chosen_, {}); }
-  /// The part to follow; nothing: none.
+  /// True while a part is being dragged: then a drag must not orbit the camera.
+  bool has_grab() const { return grab_.has_value(); }
+  /// Returns the messages since the last call.
+  std::vector<Message> consume_messages() { return std::exchange(messages_, {}); }
+  /// Returns the address of the part selected since the last call; empty: none.
+  std::string consume_selection() { return std::exchange(selected_, {}); }
+  /// The part that the camera follows, by its offset; nullopt: none.
   const std::optional<std::uint32_t>& followed() const { return followed_; }
-  void follow_nothing() { followed_.reset(); }
+  void stop_following() { followed_.reset(); }
 
-  /// What is dragged and where to, pixels, for a mark in the picture.
-  struct Mark {
+  /// Marker in the view for a drag: grabbed point and target, pixels.
+  struct DragMarker {
     double x = 0, y = 0, to_x = 0, to_y = 0;
     std::string name;
   };
-  std::optional<Mark> mark(const HandView& view) const;
+  std::optional<DragMarker> drag_marker(const ViewState& view) const;
 
  private:
-  struct Held {
-    std::uint32_t part_at = 0;
+  struct Grab {
+    std::uint32_t part_offset = 0;
     std::string body, part, path;
     Vec3 point{0};     // in the part's frame
     double depth = 0;  // along the view, m
@@ -64,16 +65,16 @@ class PictureHand {
     bool moved = false;
   };
 
-  void press(const InputEvent& event, const HandView& view);
-  void release(const HandView& view);
-  Vec3 target(const HandView& view) const;
+  void press(const InputEvent& event, const ViewState& view);
+  void release(const ViewState& view);
+  Vec3 target(const ViewState& view) const;
 
-  std::optional<Held> held_;
+  std::optional<Grab> grab_;
   std::optional<std::uint32_t> followed_;
-  double x_ = 0, y_ = 0;  // of the mouse
+  double x_ = 0, y_ = 0;  // position of the mouse
   std::string last_path_;
   double last_click_ = -1;
-  std::string chosen_;
+  std::string selected_;
   std::vector<Message> messages_;
 };
 

@@ -1,4 +1,4 @@
-// What the command line of `play` says about the picture.
+// Options of `play` for the window, still images and films.
 #pragma once
 
 #include <optional>
@@ -7,45 +7,46 @@
 #include "base/result.h"
 #include "view/renderer.h"
 
-namespace CLI {  // NOLINT(readability-identifier-naming): its name
+namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
 namespace limber {
 
-/// As it was typed.
-struct PictureOptions {
+/// The options as typed.
+struct DisplayOptions {
   bool headless = false;
   std::string gl;                    ///< Kind of OpenGL, see gl_apis().
   std::string quality;               ///< Empty: not given.
   std::string size;                  ///< Empty: not given.
-  std::optional<bool> fullscreen;    ///< Of the window; nothing: as it was last.
-  std::string monitor;               ///< Its number from 1 or its name; empty: as it was last.
-  std::optional<bool> hide_pointer;  ///< Over the window; nothing: as it was last.
-  std::string screenshot;            ///< File of a still; empty: none.
+  std::optional<bool> fullscreen;    ///< Fill the monitor; nothing: as in the last session.
+  std::string monitor;               ///< Number from 1, or name; empty: as in the last session.
+  std::optional<bool> hide_pointer;  ///< Hide the mouse pointer over the window; nothing: as in the last session.
+  std::string screenshot;            ///< File of a still image; empty: none.
   std::optional<double> at;
-  std::string render;  ///< File of a film, or a pattern of stills; empty: none.
+  std::string render;  ///< File of a film, or pattern of still images; empty: none.
   std::optional<double> fps;
-  bool panel = false;                 ///< Over a still, too.
-  std::optional<double> panel_scale;  ///< Beside the screen's own.
+  bool panel = false;                 ///< Draw the panel over a still image, too.
+  std::optional<double> panel_scale;  ///< Scale of the panel, multiplied by the screen's own.
 
   bool offline() const { return !screenshot.empty() || !render.empty(); }
 };
 
-void add_picture_options(CLI::App& play, PictureOptions& options);
-/// `--gl`, of each command that draws.
+void add_display_options(CLI::App& play, DisplayOptions& options);
+/// Declares `--gl`, for each command that draws.
 void add_gl_option(CLI::App& command, std::string& choice);
 
-struct PictureSize {
+/// Pixels.
+struct ImageSize {
   int width = 1280;
   int height = 720;
 };
 
-/// What of them is wrong together, or nothing. `duration`: of the run, where it has one.
-Result<void> check_picture(const PictureOptions& options, const std::optional<double>& duration);
-/// "1280x720".
-Result<PictureSize> picture_size(const PictureOptions& options);
-/// The one that was asked for; else `otherwise`.
-Quality picture_quality(const PictureOptions& options, Quality otherwise);
+/// Fails if the options contradict each other. `duration`: of the run, if limited.
+Result<void> check_display_options(const DisplayOptions& options, const std::optional<double>& duration);
+/// Parses "1280x720".
+Result<ImageSize> image_size(const DisplayOptions& options);
+/// Returns the requested quality, else `fallback`.
+Quality render_quality(const DisplayOptions& options, Quality fallback);
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Playing: the simulation's thread, the network's thread; signals, and the window or the status line on the main one.
+// Plays a scene: sets up the threads of the simulation and the network; signals and the window or status line use the
+// main thread.
 #include "app/play.h"
 
 #include <atomic>
@@ -32,7 +33,7 @@ namespace limber {
 
 namespace {
 
-// "PATH=VALUE": numbers parted by blanks or commas, true, false, text
+// parses "PATH=VALUE": numbers separated by spaces or commas, true, false, or text
 Result<Message> parse_set(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -55,8 +56,8 @@ Result<Message> parse_set(const std::string& text) {
     }
   }
   if (message.args.empty()) {
-    return Error{fmt::format(
-        "--set '{}': there is no value after the =; write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
+    return Error{
+        fmt::format("--set '{}': no value after the =; write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
   }
   return message;
 }
@@ -69,7 +70,7 @@ Result<OscOptions> parse_osc(const PlayOptions& options) {
     if (!in) return Error{in.error()};
     osc.in = std::move(*in);
   } else if (options.fast) {
-    osc.in.emplace();  // batches run side by side: no ports unless asked for
+    osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
   }
   for (const std::string& text : options.osc_out) {
     auto out = parse_osc_out(text);
@@ -101,11 +102,11 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.record = options.record;
   engine.replay = options.replay;
   engine.current_scripts = options.current_scripts;
-  // batches, replays and films leave nothing that a performer would miss
+  // batch runs, replays and films save no recovery file
   const std::string state = state_dir();
-  if (!state.empty()) engine.locks = state + "/locks";
-  if (!options.fast && options.replay.empty() && !options.picture.offline() && !state.empty())
-    engine.recovery = state + "/recovery";
+  if (!state.empty()) engine.lock_folder = state + "/locks";
+  if (!options.fast && options.replay.empty() && !options.display.offline() && !state.empty())
+    engine.recovery_folder = state + "/recovery";
   engine.recover = options.recover;
   for (const std::string& text : options.sets) {
     Result<Message> set = parse_set(text);
@@ -119,82 +120,84 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
   if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
   if (!options.replay.empty()) {
-    const TakeVerdict verdict = engine.verdict();
-    print_notice("{}", text_of(verdict));
-    if ((verdict.parted && !options.current_scripts) || !verdict.damage.empty()) return kInput;
+    const ReplayResult result = engine.replay_result();
+    print_notice("{}", text_of(result));
+    if ((result.diverged_at && !options.current_scripts) || !result.damage.empty()) return kInputError;
   }
   if (options.strict && engine.faults() > 0)
-    return fail(kInput, "--strict: there was a script error, a refused value or a health event, see above");
-  return kFine;
+    return fail(kInputError, "--strict: there was a script error, a rejected value or a health event, see above");
+  return kSuccess;
 }
 
-// a show without a console is a show; batches have none, as they have no ports. `again`: a failure was said
-void open_console(ConsoleServer& console, bool again = false) {
+// a console that can't be opened doesn't stop the show; batch runs have none, like ports. `retry`: a failure was
+// already reported
+void open_console(ConsoleServer& console, bool retry = false) {
   if (!console.path().empty()) return;
   if (const Result<void> open = console.start(); !open) {
-    if (!again) log_warning("there is no console, it is tried again: {}", open.error());
+    if (!retry) log_warning("console not available, retrying: {}", open.error());
     return;
   }
   print_notice("console {}", console.path());
 }
 
-// a port that another program had
-void open_query_again(const std::optional<ListenAddress>& at, QueryServer& query) {
+// retries a port that was in use
+void retry_query(const std::optional<ListenAddress>& at, QueryServer& query) {
   if (at && query.port() == 0 && query.start(*at)) print_notice("{}", query_line(at, query));
 }
 
-using QueryWish = std::optional<std::vector<ListenAddress>>;
+using QueryAddresses = std::optional<std::vector<ListenAddress>>;
 
-// OSC's ports and OSCQuery's; the lines that say what is open
+// opens the ports of OSC and OSCQuery and prints them
 Result<void> open_ports(const OscOptions& osc, const std::optional<ListenAddress>& at, Network& network,
                         QueryServer& query) {
   if (Result<void> open = network.start(); !open) return open;
   Result<void> open = at ? query.start(*at) : Result<void>();
   if (!open && !osc.optional) return open;
-  if (!open) log_warning("{}; it is tried again every second", open.error());
-  for (const std::string& line : network.lines()) print_notice("{}", line);
+  if (!open) log_warning("{}; retrying every second", open.error());
+  for (const std::string& line : network.status_lines()) print_notice("{}", line);
   print_notice("{}", query_line(at, query));
   return {};
 }
 
-// SIGUSR2 is a panic, whatever the main thread is doing
+// SIGUSR2 triggers a panic, whatever the main thread is doing
 class PanicSignal {
  public:
   explicit PanicSignal(EngineLink& link) {
-    link_here.store(&link);
+    active_link.store(&link);
     system::on_user_signal([](int) {
-      if (EngineLink* const here = link_here.load()) here->panic_signal.store(true);
+      if (EngineLink* const here = active_link.load()) here->panic_signal.store(true);
     });
   }
-  ~PanicSignal() { link_here.store(nullptr); }
+  ~PanicSignal() { active_link.store(nullptr); }
   PanicSignal(const PanicSignal&) = delete;
   PanicSignal& operator=(const PanicSignal&) = delete;
 
  private:
-  static inline std::atomic<EngineLink*> link_here{nullptr};
+  static inline std::atomic<EngineLink*> active_link{nullptr};
 };
 
-// a show with all that surrounds it, from its scene's run to its end
+// Owns the engine, the network and the other services of a running show.
 class Playing {
  public:
-  Playing(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc, const QueryWish& query_wish)
+  Playing(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
+          const QueryAddresses& query_addresses)
       : options_(options),
         osc_(osc),
-        query_wish_(query_wish),
+        query_addresses_(query_addresses),
         scene_file_(engine_options.scene),
         engine_(link_, with_notifier(std::move(engine_options))),
-        network_(link_, osc, live_offsets()),
+        network_(link_, osc, transient_offsets()),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
-        query_(link_, query_doors(network_, osc.allow, options.query_names)) {
+        query_(link_, query_host(network_, osc.allow, options.query_names)) {
     if ((!options.fast || options.watch) && options.replay.empty()) scene_watch_.emplace(link_, engine_, scene_file_);
   }
 
-  /// The exit code.
+  /// Returns the exit code.
   int play() {
     bool interrupted = false;
     {
       Show show(engine_);
-      FrameWatch frames;
+      DisplayWatchdog frames;
       ShowLoop loop(show, engine_, link_, notifier_, frames, options_);
       if (const std::optional<int> failed = start(show, loop)) return *failed;
       const auto end_without_window = [&](const char* why) {
@@ -205,11 +208,12 @@ class Playing {
       };
       frames.start([&] { end_without_window("the display does not answer"); });
       const bool waits = loop.open_window();
-      if (!show.result() && !waits) return give_up(show.fault(), show.result().error());
-      show.go(waits);
+      if (!show.result() && !waits) return fail_start(show.exit_code(), show.result().error());
+      show.allow_ticks(waits);
       if (scene_watch_) scene_watch_->start();
-      if (!show.result()) log_error("{}\nthe stage is empty and waits for the mended file", show.result().error());
-      // where Xlib ends the program when the display goes, the show goes on in its place, and the program ends with it
+      if (!show.result()) log_error("{}\nthe world stays empty until the file is fixed", show.result().error());
+      // Xlib ends the program when the display is lost: the callback plays on headless instead and ends the program
+      // itself
       Window::on_display_lost([&] { end_without_window("the display is lost; playing on headless"); });
       interrupted = loop.run();
       Window::on_display_lost({});
@@ -221,34 +225,35 @@ class Playing {
 
  private:
   EngineOptions with_notifier(EngineOptions options) {
-    options.on_turn = [this] { notifier_.turn(); };
+    options.on_iteration = [this] { notifier_.on_iteration(); };
     return options;
   }
-  // the scene's run, then the ports; the exit code when the show can't be played
+  // runs the scene, then opens the ports; returns the exit code if the show can't be played
   std::optional<int> start(const Show& show, ShowLoop& loop) {
     loop.wait_for_scene();
-    if (!show.result() && !loop.may_wait_for_mending()) return give_up(show.fault(), show.result().error());
+    if (!show.result() && !loop.may_wait_for_fix()) return fail_start(show.exit_code(), show.result().error());
     const std::optional<ListenAddress> at =
-        query_address(query_wish_, effective_plan(osc_, link_.osc_plan.read().get()));
-    if (const Result<void> open = open_ports(osc_, at, network_, query_); !open) return give_up(kMachine, open.error());
+        query_address(query_addresses_, effective_config(osc_, link_.osc_config.read().get()));
+    if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
+      return fail_start(kMachineError, open.error());
     if (!options_.fast) open_console(console_);
     loop.each_second([this, at] {
-      open_query_again(at, query_);
+      retry_query(at, query_);
       if (!options_.fast) open_console(console_, true);
     });
     return std::nullopt;
   }
-  int give_up(int code, const std::string& why) {
+  int fail_start(int code, const std::string& why) {
     engine_.end_recovery();
     return fail(code, why);
   }
   int close(bool ended) {
     notifier_.stopping();
     {
-      Ending ending([&] { end_program(finish(options_, engine_, ended)); });
+      ShutdownGuard guard([&] { end_program(finish(options_, engine_, ended)); });
       engine_.finish_saving();
       engine_.end_recovery();
-      ending.files_are_whole();
+      guard.files_written();
       scene_watch_.reset();
       query_.stop();
       network_.stop();
@@ -259,7 +264,7 @@ class Playing {
 
   const PlayOptions& options_;
   const OscOptions& osc_;
-  const QueryWish& query_wish_;
+  const QueryAddresses& query_addresses_;
   const std::string scene_file_;
   EngineLink link_;
   const PanicSignal panic_signal_{link_};
@@ -271,8 +276,8 @@ class Playing {
   QueryServer query_;
 };
 
-// what was asked for and has no meaning for stills and films
-std::string left_aside(const PlayOptions& options) {
+// the given options that have no meaning for still images and films
+std::string ignored_options(const PlayOptions& options) {
   std::string names;
   const auto add = [&](bool given, const char* name) {
     if (given) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
@@ -284,27 +289,27 @@ std::string left_aside(const PlayOptions& options) {
   return names;
 }
 
-// a still or a film: time goes as fast as it is drawn, and nobody comes in from outside
+// renders a still image or a film offline, without network
 int render_scene(const PlayOptions& options, EngineOptions engine_options) {
   EngineLink link;
-  if (const std::string aside = left_aside(options); !aside.empty())
-    print_notice("stills and films hear and send nothing: {} {} left aside", aside,
-                 aside.find(',') == std::string::npos ? "is" : "are");
+  if (const std::string ignored = ignored_options(options); !ignored.empty())
+    print_notice("rendering doesn't use the network: {} {} ignored", ignored,
+                 ignored.find(',') == std::string::npos ? "is" : "are");
   const std::optional<double> duration = engine_options.duration;
   Engine engine(link, std::move(engine_options));
-  if (const Result<void> started = engine.start(); !started) return fail(kInput, started.error());
-  const Rendered rendered = render(options.picture, engine, link, duration, system::signal_came);
-  return rendered.code != kFine ? rendered.code : finish(options, engine, rendered.cancelled);
+  if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
+  const RenderResult rendered = render(options.display, engine, link, duration, system::signal_arrived);
+  return rendered.code != kSuccess ? rendered.code : finish(options, engine, rendered.cancelled);
 }
 
 Result<void> open_output(const PlayOptions& options) {
   OutputSetup setup;
-  setup.mode = options.fast || options.picture.offline() ? OutputMode::batch : OutputMode::live;
+  setup.mode = options.fast || options.display.offline() ? OutputMode::batch : OutputMode::live;
   setup.quiet = options.log.quiet;
   if (!options.log.file.empty()) {
     LogRotation rotation;
     rotation.bytes = static_cast<std::uintmax_t>(options.log.megabytes * 1e6);
-    rotation.kept = options.log.kept;
+    rotation.old_files = options.log.old_files;
     Result<std::unique_ptr<LogFile>> log = LogFile::open(options.log.file, rotation);
     if (!log) return Error{log.error()};
     setup.log = std::move(*log);
@@ -317,32 +322,32 @@ Result<void> open_output(const PlayOptions& options) {
 }  // namespace
 
 int play_command(const PlayOptions& options) {
-  const Result<void> enough = system::check_resources({24, 11 + options.threads, std::size_t{512} * 1024});
-  if (!enough) return fail(kMachine, enough.error());
+  const Result<void> resources = system::check_resources({24, 11 + options.threads, std::size_t{512} * 1024});
+  if (!resources) return fail(kMachineError, resources.error());
   system::block_signals();
-  if (const Result<void> open = open_output(options); !open) return fail(kMachine, open.error());
+  if (const Result<void> open = open_output(options); !open) return fail(kMachineError, open.error());
   const bool replays = !options.replay.empty();
   write_message(
       MessageLevel::info,
       fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.replay : options.scene)), "");
-  if (Result<void> picture = check_picture(options.picture, options.duration); !picture)
-    return fail(kUsage, picture.error());
-  if (options.recover && options.picture.offline())
-    return fail(kUsage, "--recover is for a show that plays; leave out --render and --screenshot");
+  if (Result<void> display_check = check_display_options(options.display, options.duration); !display_check)
+    return fail(kUsageError, display_check.error());
+  if (options.recover && options.display.offline())
+    return fail(kUsageError, "--recover can't be combined with --render and --screenshot; leave them out");
   Result<OscOptions> osc = parse_osc(options);
-  if (!osc) return fail(kUsage, osc.error());
-  Result<QueryWish> query = parse_query(options.query);
-  if (!query) return fail(kUsage, query.error());
+  if (!osc) return fail(kUsageError, osc.error());
+  Result<QueryAddresses> query = parse_query(options.query);
+  if (!query) return fail(kUsageError, query.error());
   if (options.fast && !*query) query->emplace();  // no port either
-  std::vector<std::string> looked;
-  const std::string scene = replays ? options.scene : find_scene(options.scene, looked);
-  // the current folder may be replaced while the show plays
+  std::vector<std::string> searched;
+  const std::string scene = replays ? options.scene : find_scene(options.scene, searched);
+  // absolute, because the current folder may be replaced while the show plays
   std::error_code fault;
-  const std::filesystem::path place = std::filesystem::absolute(scene, fault);
-  Result<EngineOptions> engine_options = parse_engine(options, fault || scene.empty() ? scene : place.string());
-  if (!engine_options) return fail(kUsage, engine_options.error());
-  if (scene.empty()) return fail(kInput, no_scene(options.scene, looked));
-  if (options.picture.offline()) return render_scene(options, std::move(*engine_options));
+  const std::filesystem::path scene_path = std::filesystem::absolute(scene, fault);
+  Result<EngineOptions> engine_options = parse_engine(options, fault || scene.empty() ? scene : scene_path.string());
+  if (!engine_options) return fail(kUsageError, engine_options.error());
+  if (scene.empty()) return fail(kInputError, scene_not_found(options.scene, searched));
+  if (options.display.offline()) return render_scene(options, std::move(*engine_options));
   return std::make_unique<Playing>(options, std::move(*engine_options), *osc, *query)->play();
 }
 

@@ -1,4 +1,4 @@
-// `limber play`: a scene, its OSC, a status line a second, until it ends or somebody ends it.
+// `limber play`: plays a scene with OSC, a window or a status line once a second, until it ends or is stopped.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace limber {
 
-/// What becomes of messages.
+/// Options of log messages.
 struct LogOptions {
-  std::string file;  ///< Empty: none.
+  std::string file;  ///< Log file; empty: none.
   double megabytes = 10;
-  int kept = 5;  ///< Old log files.
+  int old_files = 5;  ///< Number of old log files.
   bool quiet = false;
 };
 
-/// The command line of `play`, as it was typed.
+/// Options of `play`, as typed.
 struct PlayOptions {
   std::string scene = "scripts/arms.lua";
   bool fast = false;
@@ -28,9 +28,9 @@ struct PlayOptions {
   std::optional<std::uint64_t> ticks;
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
-  int threads = 1;                ///< That solve islands of bodies side by side.
+  int threads = 1;                ///< Number of threads for the physics.
   std::vector<std::string> sets;  ///< PATH=VALUE
-  std::string preset;             ///< Recalled after the scene ran, before the sets.
+  std::string preset;             ///< Recalled after the scene has run, before `sets`.
   std::vector<std::string> package_paths;
   std::string osc_in;  ///< Empty: not given.
   std::string osc_allow;
@@ -38,15 +38,15 @@ struct PlayOptions {
   bool osc_optional = false;
   std::string query;  ///< Empty: not given.
   std::vector<std::string> query_names;
-  bool recover = false;          ///< Begin with what a run that did not end well has left.
-  std::string record;            ///< A take goes there.
-  std::string replay;            ///< This take is played.
-  bool current_scripts = false;  ///< A replay with the scripts of today.
+  bool recover = false;          ///< Start with the values that a crashed run has left.
+  std::string record;            ///< File of the take to record.
+  std::string replay;            ///< File of the take to replay.
+  bool current_scripts = false;  ///< Replay with the current scripts instead of the recorded ones.
   LogOptions log;
-  PictureOptions picture;
+  DisplayOptions display;
 };
 
-/// Plays; returns the exit code of product.md: 0 fine, 1 the input, 2 usage, 3 the machine. [main]
+/// Plays. Returns the exit code: 0 success, 1 invalid input, 2 usage, 3 the machine. [main]
 int play_command(const PlayOptions& options);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Reads both files, writes one.
+// Reads both files, appends the presets and writes the result.
 #include "app/preset.h"
 
 #include <algorithm>
@@ -19,46 +19,46 @@ namespace limber {
 
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20u;  // of a file of presets of another program
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20u;  // limit for preset files of other programs
 
-// behind those that are there, under names that nobody has
+// appends presets under names that are not in use
 void append(PresetList& list, const PresetList& more) {
   for (const auto& preset : more) {
     std::string name = preset->name;
-    const auto taken = [&] {
+    const auto in_use = [&] {
       return std::any_of(list.begin(), list.end(), [&](const auto& p) { return p->name == name; });
     };
-    for (int n = 2; taken(); n++) name = fmt::format("{} {}", shortened(preset->name, 100), n);
-    list.push_back(std::make_shared<const Preset>(Preset{name, preset->choice, preset->shape, preset->values}));
+    for (int n = 2; in_use(); n++) name = fmt::format("{} {}", shortened(preset->name, 100), n);
+    list.push_back(std::make_shared<const Preset>(Preset{name, preset->selection, preset->schema, preset->values}));
   }
 }
 
 }  // namespace
 
 int preset_command(const PresetCommand& command) {
-  const Result<std::string> text = system::read_file(command.file, kMostBytes);
+  const Result<std::string> text = system::read_file(command.file, kMaxBytes);
   if (!text)
-    return fail(kInput, fmt::format("{}: {}; in Max, pattrstorage writes one by the message writejson",
-                                    printable(command.file), text.error()));
-  const Result<PresetsRead> imported = import_pattrstorage(*text);
-  if (!imported) return fail(kInput, fmt::format("{}: {}", command.file, imported.error()));
-  std::vector<std::string> looked;
-  const std::string scene = find_scene(command.scene, looked);
-  if (scene.empty()) return fail(kInput, no_scene(command.scene, looked));
+    return fail(kInputError, fmt::format("{}: {}; in Max, pattrstorage writes one by the message writejson",
+                                         printable(command.file), text.error()));
+  const Result<ParsedPresets> imported = import_pattrstorage(*text);
+  if (!imported) return fail(kInputError, fmt::format("{}: {}", command.file, imported.error()));
+  std::vector<std::string> searched;
+  const std::string scene = find_scene(command.scene, searched);
+  if (scene.empty()) return fail(kInputError, scene_not_found(command.scene, searched));
   const std::string state = state_dir();
   const std::string locks = state.empty() ? "" : state + "/locks";
-  PresetFile file(PresetFile::beside(scene), PresetFile::owner_of(scene, locks, true));
-  Result<PresetsRead> before = file.load();
-  if (!before) return fail(kInput, before.error());
+  PresetFile file(PresetFile::path_for(scene), PresetFile::write_access_for(scene, locks, true));
+  Result<ParsedPresets> before = file.load();
+  if (!before) return fail(kInputError, before.error());
   append(before->presets, imported->presets);
-  std::string said;
-  if (const Result<void> saved = file.save(before->presets, said); !saved)
-    return fail(kMachine, fmt::format("{}: {}", printable(file.path()), saved.error()));
+  std::string notice;
+  if (const Result<void> saved = file.save(before->presets, notice); !saved)
+    return fail(kMachineError, fmt::format("{}: {}", printable(file.path()), saved.error()));
   for (const std::string& problem : imported->problems) print_notice("{}", printable(problem));
-  if (!said.empty()) print_notice("{}", said);
+  if (!notice.empty()) print_notice("{}", notice);
   print_result("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
                imported->presets.size());
-  return kFine;
+  return kSuccess;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Progress: a line now and then of work that takes its time: how much is done, how fast, how long it will take.
+// Progress: prints the progress of a long operation every few seconds: count, rate and remaining time.
 #pragma once
 
 #include <cmath>
@@ -13,31 +13,32 @@
 
 namespace limber {
 
+/// [one thread]
 class Progress {
  public:
-  /// `unit`: what is counted, "frame".
-  Progress(std::string unit, std::uint64_t all) : unit_(std::move(unit)), all_(all) {}
-  /// Says it on stderr where it is time to.
-  void tell(std::uint64_t done) {
+  /// `unit`: name of the counted thing, such as "frame".
+  Progress(std::string unit, std::uint64_t total) : unit_(std::move(unit)), total_(total) {}
+  /// Prints a line to stderr if the last one is at least two seconds old.
+  void report(std::uint64_t done) {
     const double now = system::clock_seconds();
-    if (now - said_ < kSayEvery || done == 0) return;
-    said_ = now;
+    if (now - last_report_ < kReportInterval || done == 0) return;
+    last_report_ = now;
     const double rate = static_cast<double>(done) / (now - begin_);
-    print_notice("{} {} of {}, {:.1f} a second, {} left", unit_, done, all_, rate,
-                 minutes(static_cast<double>(all_ > done ? all_ - done : 0) / rate));
+    print_notice("{} {} of {}, {:.1f} a second, {} left", unit_, done, total_, rate,
+                 minutes(static_cast<double>(total_ > done ? total_ - done : 0) / rate));
   }
 
  private:
-  static constexpr double kSayEvery = 2;  // s
+  static constexpr double kReportInterval = 2;  // s
   static std::string minutes(double seconds) {
     const long s = std::lround(seconds);
     return fmt::format("{}:{:02}", s / 60, s % 60);
   }
 
   std::string unit_;
-  std::uint64_t all_;
+  std::uint64_t total_;
   double begin_ = system::clock_seconds();
-  double said_ = begin_;
+  double last_report_ = begin_;
 };
 
 }  // namespace limber

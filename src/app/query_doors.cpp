@@ -1,4 +1,4 @@
-// The two rooms beside each other meet here.
+// Connects the modules osc and query, which don't know each other.
 #include "app/query_doors.h"
 
 #include <algorithm>
@@ -26,28 +26,32 @@ std::string host_name_fault(const std::string& name) {
   const bool plain = !name.empty() && name.size() <= 253 && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
   });
-  return plain ? "" : fmt::format("'{}' is no host name; write it without http:// and port, such as vm.example", name);
+  return plain ? ""
+               : fmt::format("'{}' is not a host name; write it without http:// and port, such as vm.example", name);
 }
 
-QueryDoors query_doors(Network& network, std::vector<Cidr> allow, std::vector<std::string> names) {
-  QueryDoors doors;
-  doors.names = std::move(names);
-  doors.encode = [buffer = std::make_shared<PacketBuffer>()](const Message& message, std::string_view tags) {
+QueryHost query_host(Network& network, std::vector<Cidr> allow, std::vector<std::string> names) {
+  QueryHost host;
+  host.names = std::move(names);
+  host.encode = [buffer = std::make_shared<PacketBuffer>()](const Message& message, std::string_view tags) {
     const std::span<const char> packet =
         tags.empty() ? encode_message(message, *buffer) : encode_tagged(message, tags, *buffer);
     return std::string(packet.begin(), packet.end());
   };
-  doors.take = [&network](const Origin& origin, std::string packet) { network.take(origin, std::move(packet)); };
-  doors.osc_port = [&network]() -> std::optional<std::uint16_t> {
+  host.process = [&network](const CommandOrigin& origin, std::string packet) {
+    network.enqueue(origin, std::move(packet));
+  };
+  host.osc_port = [&network]() -> std::optional<std::uint16_t> {
     const std::vector<Endpoint> bound = network.bound();
     return bound.empty() ? std::nullopt : std::optional(bound.front().port);
   };
-  doors.allowed = [allow = std::move(allow)](std::uint32_t ip) { return holds(allow, ip); };
-  return doors;
+  host.is_allowed = [allow = std::move(allow)](std::uint32_t ip) { return is_allowed(allow, ip); };
+  return host;
 }
 
-std::optional<ListenAddress> query_address(const std::optional<std::vector<ListenAddress>>& wish, const OscPlan& osc) {
-  if (wish) return wish->empty() ? std::nullopt : std::optional(wish->front());
+std::optional<ListenAddress> query_address(const std::optional<std::vector<ListenAddress>>& requested,
+                                           const OscConfig& osc) {
+  if (requested) return requested->empty() ? std::nullopt : std::optional(requested->front());
   ListenAddress usual;
   if (!osc.listen.empty()) usual.port = osc.listen.front().port;
   return usual;

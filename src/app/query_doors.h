@@ -1,4 +1,4 @@
-// OSCQuery wired to the OSC room: encoder, the way in, and where it listens.
+// Connects OSCQuery to the OSC network: encoder, input of packets, and listening address.
 #pragma once
 
 #include <optional>
@@ -10,20 +10,21 @@
 
 namespace limber {
 
-/// `--query [ADDR:]PORT|off` as it was typed; empty text: not given. An empty list that is given means off.
+/// Parses `--query [ADDR:]PORT|off`. nullopt: not given (empty text); an empty list: off.
 Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string& text);
 
-/// What the query room is handed. `network` outlives it.
-QueryDoors query_doors(Network& network, std::vector<Cidr> allow, std::vector<std::string> names = {});
+/// Returns the callbacks that the OSCQuery server uses. `network` must outlive it.
+QueryHost query_host(Network& network, std::vector<Cidr> allow, std::vector<std::string> names = {});
 
-/// Why a name of `--query-name` is none; empty: it is one.
+/// Returns the error of an invalid name in `--query-name`, else an empty string.
 std::string host_name_fault(const std::string& name);
 
-/// Where it listens: as the command line says, else on this machine under the number by which OSC comes in (9003 when
-/// none does). Nothing: off.
-std::optional<ListenAddress> query_address(const std::optional<std::vector<ListenAddress>>& wish, const OscPlan& osc);
+/// Returns the listening address: as given on the command line, else 127.0.0.1 with the port number of OSC input (9003
+/// if that is off). nullopt: off.
+std::optional<ListenAddress> query_address(const std::optional<std::vector<ListenAddress>>& requested,
+                                           const OscConfig& osc);
 
-/// "OSCQuery and remote panel http://127.0.0.1:9003/", for the lines at start.
+/// Returns a line for the start, "OSCQuery and remote panel http://127.0.0.1:9003/".
 std::string query_line(const std::optional<ListenAddress>& at, const QueryServer& server);
 
 }  // namespace limber

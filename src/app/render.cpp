@@ -1,4 +1,4 @@
-// One loop for stills and films: time goes on tick by tick, each frame lies between two of them.
+// One loop for still images and films: ticks the engine and interpolates each frame between two ticks.
 #include "app/render.h"
 
 #include <cmath>
@@ -20,12 +20,12 @@ namespace limber {
 
 namespace {
 
-Rendered failed(int code, const std::string& text) { return {fail(code, text), false}; }
+RenderResult failure(int code, const std::string& text) { return {fail(code, text), false}; }
 
-// the panel over a still: it has seen the ticks before, so that its graphs are full
+// the panel over a still image: it processes all ticks before, so that its graphs are filled
 class StillPanel {
  public:
-  StillPanel(const PictureOptions& options, GlApi api, const PictureSize& size, Engine& engine, EngineLink& link)
+  StillPanel(const DisplayOptions& options, GlApi api, const ImageSize& size, Engine& engine, EngineLink& link)
       : engine_(engine), link_(link), gui_(link, panel_options(nullptr, api)) {
     frame_ = {static_cast<double>(size.width), static_cast<double>(size.height), options.panel_scale.value_or(1), 0};
   }
@@ -33,104 +33,104 @@ class StillPanel {
     frame_.clock += 1.0 / 60;
     gui_.frame(frame_);
   }
-  FreePart free() const { return free_part(gui_, static_cast<int>(frame_.width), static_cast<int>(frame_.height)); }
+  FreeArea free() const { return free_part(gui_, static_cast<int>(frame_.width), static_cast<int>(frame_.height)); }
   void draw_over(const Renderer& renderer) {
-    const std::uint64_t ask = link_.ask_image();
-    const auto late = [&] {
-      const std::shared_ptr<const Image> image = link_.images.read();
-      return image == nullptr || image->asks < ask;
+    const std::uint64_t request = link_.request_value_snapshot();
+    const auto outdated = [&] {
+      const std::shared_ptr<const ValueSnapshot> image = link_.value_snapshots.read();
+      return image == nullptr || image->request < request;
     };
-    while (late()) engine_.idle();
-    for (int i = 0; i < kSettle; i++) frame();
+    while (outdated()) engine_.idle();
+    for (int i = 0; i < kLayoutFrames; i++) frame();
     renderer.draw_over([&] { gui_.paint(); });
   }
 
  private:
-  static constexpr int kSettle = 3;  // frames until all has its place
+  static constexpr int kLayoutFrames = 3;  // frames until the layout is stable
   Engine& engine_;
   EngineLink& link_;
   Gui gui_;
   GuiFrame frame_;
 };
 
-Rendered draw_still(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments,
-                    Engine& engine, EngineLink& link) {
+RenderResult draw_still(const DisplayOptions& options, const ImageSize& size, Renderer& renderer, OfflineClock& clock,
+                        Engine& engine, EngineLink& link) {
   const double at = options.at.value_or(0);
   std::optional<StillPanel> panel;
   if (options.panel) {
     panel.emplace(options, renderer.api(), size, engine, link);
-    moments.on_tick([&] { panel->frame(); });
+    clock.on_before_tick([&] { panel->frame(); });
   }
-  const Moments::Went went = moments.go_to(at);
-  if (went == Moments::Went::cancelled) return {kFine, true};
-  if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused before --at");
+  const OfflineClock::Outcome outcome = clock.advance_to(at);
+  if (outcome == OfflineClock::Outcome::cancelled) return {kSuccess, true};
+  if (outcome == OfflineClock::Outcome::stuck)
+    return failure(kInputError, "the simulation is paused before the time of --at");
   if (panel) panel->frame();
-  const FreePart free = panel ? panel->free() : FreePart{};
-  if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height, free);
+  const FreeArea free = panel ? panel->free() : FreeArea{};
+  if (const auto drawn = renderer.draw(clock.before(), clock.now(), clock.mix(at), size.width, size.height, free);
       !drawn)
-    return failed(kMachine, drawn.error());
+    return failure(kMachineError, drawn.error());
   if (panel) panel->draw_over(renderer);
   if (const auto written = write_png(renderer.read(), options.screenshot); !written)
-    return failed(kInput, written.error());
+    return failure(kInputError, written.error());
   print_notice("{}: {} × {}, at {} s", printable(options.screenshot), size.width, size.height, number_text(at));
   return {};
 }
 
-Rendered draw_film(const PictureOptions& options, const PictureSize& size, Renderer& renderer, Moments& moments,
-                   double duration, const std::function<bool()>& cancel) {
+RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, Renderer& renderer, OfflineClock& clock,
+                       double duration, const std::function<bool()>& cancel) {
   const double fps = options.fps.value_or(60);
   const auto frames = static_cast<std::uint64_t>(std::max(std::llround(duration * fps), 1LL));
   Result<std::unique_ptr<FilmFile>> film = FilmFile::open(options.render, size.width, size.height, fps);
-  if (!film) return failed(kMachine, film.error());
+  if (!film) return failure(kMachineError, film.error());
   Progress progress("frame", frames);
   std::uint64_t done = 0;
   bool cancelled = false;
   for (; done < frames; done++) {
     const double at = static_cast<double>(done) / fps;
-    const Moments::Went went = moments.go_to(at);
-    if (went == Moments::Went::stuck)
-      return failed(kInput, fmt::format("time stands still: the scene is paused at {:.2f} s", at));
-    if (went == Moments::Went::ended) break;
-    if (went == Moments::Went::cancelled || cancel()) {
+    const OfflineClock::Outcome outcome = clock.advance_to(at);
+    if (outcome == OfflineClock::Outcome::stuck)
+      return failure(kInputError, fmt::format("the simulation is paused at {:.2f} s", at));
+    if (outcome == OfflineClock::Outcome::ended) break;
+    if (outcome == OfflineClock::Outcome::cancelled || cancel()) {
       cancelled = true;
       break;
     }
-    if (const auto drawn = renderer.draw(moments.before(), moments.now(), moments.mix(at), size.width, size.height);
-        !drawn)
-      return failed(kMachine, drawn.error());
-    if (const auto added = (*film)->add(renderer.read()); !added) return failed(kMachine, added.error());
-    progress.tell(done + 1);
+    if (const auto drawn = renderer.draw(clock.before(), clock.now(), clock.mix(at), size.width, size.height); !drawn)
+      return failure(kMachineError, drawn.error());
+    if (const auto added = (*film)->add(renderer.read()); !added) return failure(kMachineError, added.error());
+    progress.report(done + 1);
   }
-  if (const auto whole = (*film)->finish(); !whole) return failed(kMachine, whole.error());
+  if (const auto finished = (*film)->finish(); !finished) return failure(kMachineError, finished.error());
   print_notice("{}: {} frames, {} × {}, {} a second{}", printable(options.render), done, size.width, size.height,
                number_text(fps),
                done < frames
-                   ? fmt::format("; {}, {} were asked for", cancelled ? "cancelled" : "the take has ended", frames)
+                   ? fmt::format("; {}, {} were requested", cancelled ? "cancelled" : "the take has ended", frames)
                    : "");
-  // to the end, as a run of that duration goes
-  if (cancelled) return {kFine, true};
-  const Moments::Went went = moments.go_to(duration);
-  if (went == Moments::Went::stuck) return failed(kInput, "time stands still: the scene is paused");
-  return {kFine, went == Moments::Went::cancelled};
+  // run to the full duration, like a run without --render
+  if (cancelled) return {kSuccess, true};
+  const OfflineClock::Outcome outcome = clock.advance_to(duration);
+  if (outcome == OfflineClock::Outcome::stuck) return failure(kInputError, "the simulation is paused");
+  return {kSuccess, outcome == OfflineClock::Outcome::cancelled};
 }
 
 }  // namespace
 
-Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
-                const std::function<bool()>& cancel) {
-  const Result<PictureSize> size = picture_size(options);
-  if (!size) return failed(kUsage, size.error());
-  const Result<std::unique_ptr<Offscreen>> context = Offscreen::make(options.gl);
-  if (!context) return failed(kMachine, context.error());
-  const Quality quality = picture_quality(options, Quality::high);
+RenderResult render(const DisplayOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
+                    const std::function<bool()>& cancel) {
+  const Result<ImageSize> size = image_size(options);
+  if (!size) return failure(kUsageError, size.error());
+  const Result<std::unique_ptr<OffscreenContext>> context = OffscreenContext::make(options.gl);
+  if (!context) return failure(kMachineError, context.error());
+  const Quality quality = render_quality(options, Quality::high);
   const Result<std::unique_ptr<Renderer>> renderer = Renderer::make((*context)->api(), shader_dir(), quality);
-  if (!renderer) return failed(kMachine, renderer.error());
+  if (!renderer) return failure(kMachineError, renderer.error());
   print_notice("drawn by {} with {}", gl_driver(), gl_api_info((*context)->api()).name);
   if (gl_is_software() && quality != Quality::low && !options.render.empty())
-    print_notice("that is software, and takes its time; --quality low is several times faster");
-  Moments moments(engine, link, cancel);
-  if (options.render.empty()) return draw_still(options, *size, **renderer, moments, engine, link);
-  return draw_film(options, *size, **renderer, moments, duration.value_or(0), cancel);
+    print_notice("software rendering is slow; --quality low is several times faster");
+  OfflineClock clock(engine, link, cancel);
+  if (options.render.empty()) return draw_still(options, *size, **renderer, clock, engine, link);
+  return draw_film(options, *size, **renderer, clock, duration.value_or(0), cancel);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Offline pictures: stills and films of exact times, drawn as fast as it goes, with time left and a way to stop.
+// Offline rendering: still images and films of exact simulated times, at full speed, with progress and cancellation.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,15 @@
 
 namespace limber {
 
-/// How it ended.
-struct Rendered {
-  int code = 0;            ///< An exit code; what was wrong was said.
-  bool cancelled = false;  ///< By `cancel`: what was drawn so far is whole.
+/// Result of a rendering.
+struct RenderResult {
+  int code = 0;            ///< Exit code; an error was already printed.
+  bool cancelled = false;  ///< Stopped by `cancel`; the frames drawn so far are complete.
 };
 
-/// The engine has started and nobody else runs it: it ticks on this thread. `cancel` is asked before each frame and
-/// tick.
-Rendered render(const PictureOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
-                const std::function<bool()>& cancel);
+/// Renders as the options say. The engine must be started and not running elsewhere: it ticks on this thread. `cancel`
+/// is called before each frame and tick, and returns true to stop.
+RenderResult render(const DisplayOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
+                    const std::function<bool()>& cancel);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// SceneWatch: the thread that runs a scene beside the show, when one of its files was saved, a parameter with `rerun`
-// has changed, or another scene of the folder is asked for.
+// SceneWatch: a thread that reloads the scene when one of its files is saved or a parameter with `rerun` has changed,
+// and that loads other scenes and takes on request.
 #pragma once
 
 #include <atomic>
@@ -14,38 +14,40 @@
 
 namespace limber {
 
+/// [main], unless noted otherwise
 class SceneWatch {
  public:
-  /// Made before the engine starts; `link` and `engine` outlive it. `scene`: the file that plays; its folder is the
-  /// only one that scenes are taken from.
-  SceneWatch(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Way way = FileWatch::Way::events);
+  /// Must be created before the engine starts; `link` and `engine` must outlive it. `scene`: the file that plays; other
+  /// scenes are loaded from its folder only.
+  SceneWatch(EngineLink& link, Engine& engine, const std::string& scene,
+             FileWatch::Mode mode = FileWatch::Mode::events);
   ~SceneWatch() { stop(); }
   SceneWatch(const SceneWatch&) = delete;
   SceneWatch& operator=(const SceneWatch&) = delete;
 
-  /// Once the scene has run: from here on its files are watched. [main]
+  /// Starts to watch the files of the scene, which must have run. [main]
   void start();
-  /// After the engine has ended. [main]
+  /// Stops the thread; called after the engine has ended. [main]
   void stop();
 
  private:
   void run(FileWatch& files);
-  bool serve(const Command& command);
+  bool handle(const Command& command);
   bool play_take(const Command& command);
   std::vector<std::string> scenes() const;
   std::vector<std::string> takes() const;
-  void refuse(const Message& wish, const Origin& origin, const std::string& why);
-  void sleep(const FileWatch& files);
+  void reject(const Message& request, const CommandOrigin& origin, const std::string& reason);
+  void wait(const FileWatch& files);
 
   EngineLink& link_;
   Engine& engine_;
   std::string folder_;
-  std::string takes_;  // the folder of the show's
-  FileWatch::Way way_;
-  // messages about scenes; `arrival`: the panics, or ends of takes, when they came
-  Inbox<Command> wishes_{64, std::size_t{1} << 16};
+  std::string takes_folder_;  // the folder of the show's takes
+  FileWatch::Mode mode_;
+  // requests for scenes and takes; `arrival` holds the panic count (or the count of ended takes) when they arrived
+  BoundedQueue<Command> requests_{64, std::size_t{1} << 16};
   system::Wake wake_;
-  bool late_ = false;  // something was saved while a take played; of the thread
+  bool reload_pending_ = false;  // a file was saved while a take played; used by the thread only
   std::atomic<bool> stop_{false};
   std::atomic<bool> rerun_{false};
   std::thread thread_;

@@ -1,5 +1,5 @@
-// Two questions behind the message, one after the other: the second is answered in a later tick, when the scene's own
-// handlers have heard the message too; then all answers have come.
+// Sends two queries after the message, one after the other. The second is answered in a later tick, when the scene's
+// own handlers have processed the message too; then all replies have arrived.
 #include "app/send.h"
 
 #include <algorithm>
@@ -27,24 +27,24 @@ namespace limber {
 
 namespace {
 
-// answered from beside the simulation
-constexpr const char* kAnsweredLate[] = {"/transport/scene", "/list/scenes", "/take/play"};
-constexpr const char* kLast = "/physics/sim/tick";  // asked for behind the message
+// answered by another thread than the simulation's
+constexpr const char* kDelayedReplies[] = {"/transport/scene", "/list/scenes", "/take/play"};
+constexpr const char* kProbeAddress = "/physics/sim/tick";  // queried after the message
 
 Result<Endpoint> endpoint_named(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   const std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
   const std::optional<double> port = parse_number(text.substr(colon + 1));
   if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
-    return Error{fmt::format("--to '{}' is no place to send to; write --to [HOST:]PORT", printable(text))};
+    return Error{fmt::format("--to '{}' is not an address; write --to [HOST:]PORT", printable(text))};
   Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
   if (!at) return Error{fmt::format("--to '{}': {}", printable(text), at.error())};
   return at;
 }
 
-// what came in one datagram; messages that are none are nobody's answer
+// returns the messages of one datagram; invalid packets are ignored
 std::vector<Message> receive(int fd, double seconds) {
-  system::Waiting waiting{.fd = fd};
+  system::PollEntry waiting{.fd = fd};
   const auto limit = std::chrono::milliseconds(static_cast<int>(std::max(seconds, 0.0) * 1000) + 1);
   if (!system::wait_ready({&waiting, 1}, limit)) return {};
   std::vector<char> bytes(65536);
@@ -55,36 +55,36 @@ std::vector<Message> receive(int fd, double seconds) {
 }
 
 struct Replies {
-  bool last = false;   // of what is answered at once nothing more will come
-  bool whole = false;  // nor anything else
-  bool refused = false;
+  bool queries_answered = false;  // all immediate replies have arrived
+  bool complete = false;          // all replies have arrived
+  bool rejected = false;
 };
 
-// `late`: what is waited for comes from beside the simulation, later than answers to what was asked behind it
-Replies show_answers(int fd, double wait, bool late, const std::function<void()>& ask) {
-  Replies answers;
-  int asked = 1;
-  bool heard = !late;
-  ask();
+// `delayed`: the reply comes from another thread, after the replies to the queries
+Replies show_replies(int fd, double wait, bool delayed, const std::function<void()>& query) {
+  Replies replies;
+  int queries = 1;
+  bool reply_seen = !delayed;
+  query();
   const double end = system::clock_seconds() + wait;
-  while (!answers.whole && system::clock_seconds() < end) {
+  while (!replies.complete && system::clock_seconds() < end) {
     for (const Message& message : receive(fd, end - system::clock_seconds())) {
-      if (message.address == kLast) {
-        answers.last = asked == 2;
-        if (asked++ == 1) ask();
+      if (message.address == kProbeAddress) {
+        replies.queries_answered = queries == 2;
+        if (queries++ == 1) query();
         continue;
       }
-      heard = true;
+      reply_seen = true;
       if (message.address == "/error" && message.args.size() == 2) {
-        answers.refused = true;
+        replies.rejected = true;
         print_notice("{}: {}", printable(message.args[0].text), printable(message.args[1].text));
       } else {
         print_result("{}\n", message_text(message));
       }
     }
-    answers.whole = answers.last && heard;
+    replies.complete = replies.queries_answered && reply_seen;
   }
-  return answers;
+  return replies;
 }
 
 // `tags`: as in SendCommand
@@ -97,7 +97,7 @@ bool send_message(int fd, const Endpoint& to, const Message& message, std::strin
 
 }  // namespace
 
-Arg arg_of(const std::string& word) {
+Arg parse_arg(const std::string& word) {
   const bool quoted = word.size() >= 2 && (word.front() == '\'' || word.front() == '"') && word.back() == word.front();
   if (quoted) return Arg::of(std::string_view(word).substr(1, word.size() - 2));
   if (word == "true" || word == "false") return Arg::of(word == "true");
@@ -108,35 +108,34 @@ Arg arg_of(const std::string& word) {
 int send_command(const SendCommand& command) {
   Message message{command.address, {}};
   if (!message.address.starts_with('/'))
-    return fail(kUsage, fmt::format("send: '{}' is no address: it must begin with /", message.address));
+    return fail(kUsageError, fmt::format("send: address '{}' must begin with /", message.address));
   if (command.tags.empty()) {
-    for (const std::string& word : command.words) message.args.push_back(arg_of(word));
+    for (const std::string& word : command.words) message.args.push_back(parse_arg(word));
   } else {
     Result<Message> tagged = tagged_message(command.address, command.tags, command.words);
-    if (!tagged) return fail(kUsage, "send: " + tagged.error());
+    if (!tagged) return fail(kUsageError, "send: " + tagged.error());
     message = std::move(*tagged);
   }
   const Result<Endpoint> to = endpoint_named(command.to);
-  if (!to) return fail(kUsage, "send: " + to.error());
+  if (!to) return fail(kUsageError, "send: " + to.error());
   const Result<system::UdpSocket> socket = system::open_udp({});
-  if (!socket) return fail(kMachine, "send: " + socket.error());
+  if (!socket) return fail(kMachineError, "send: " + socket.error());
   if (!send_message(socket->fd(), *to, message, command.tags)) {
-    return fail(
-        kMachine,
-        fmt::format("send: the message could not be sent to {}; is it too long, or the address wrong?", command.to));
+    return fail(kMachineError,
+                fmt::format("send: the message could not be sent to {}. Check its length and the address", command.to));
   }
-  if (command.wait <= 0) return kFine;
-  const auto ask = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kLast)}}, {}); };
-  const bool late =
-      std::ranges::any_of(kAnsweredLate, [&](const char* start) { return message.address.starts_with(start); });
-  const Replies answers = show_answers(socket->fd(), command.wait, late, ask);
-  if (answers.refused) return kInput;
-  if (!answers.last) {
-    return fail(
-        kMachine,
-        fmt::format("send: nobody answers at {}; is Limber playing there? (--wait 0 asks for no answer)", command.to));
+  if (command.wait <= 0) return kSuccess;
+  const auto query = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kProbeAddress)}}, {}); };
+  const bool delayed =
+      std::ranges::any_of(kDelayedReplies, [&](const char* start) { return message.address.starts_with(start); });
+  const Replies replies = show_replies(socket->fd(), command.wait, delayed, query);
+  if (replies.rejected) return kInputError;
+  if (!replies.queries_answered) {
+    return fail(kMachineError,
+                fmt::format("send: no reply from {}. Is Limber running there? (--wait 0 doesn't wait for a reply)",
+                            command.to));
   }
-  return kFine;
+  return kSuccess;
 }
 
 }  // namespace limber

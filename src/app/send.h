@@ -1,4 +1,4 @@
-// `limber send ADDRESS ARGS…`: one OSC message from the command line, and what is answered.
+// `limber send ADDRESS ARGS…`: sends one OSC message and prints the replies.
 #pragma once
 
 #include <string>
@@ -8,18 +8,20 @@
 
 namespace limber {
 
+/// Arguments of `send`.
 struct SendCommand {
   std::string address;
-  std::vector<std::string> words;  ///< The arguments as they were typed.
+  std::vector<std::string> words;  ///< The arguments as typed.
   std::string tags;                ///< OSC type tags of the arguments; empty: numbers are f, booleans i, text s.
   std::string to = "127.0.0.1:9003";
-  double wait = 1;  ///< s to wait for the answers; 0: none are waited for.
+  double wait = 1;  ///< Time to wait for replies, s; 0: don't wait.
 };
 
-/// What a word means: a number, true or false, else text; in quotes of its own ("'1'") it is text whatever it says.
-Arg arg_of(const std::string& word);
+/// Converts a word to an argument: a number, true or false, else text. A word in its own quotes ("'1'") is always text.
+Arg parse_arg(const std::string& word);
 
-/// Answers go to stdout, refusals to stderr. The exit code: 1 when it was refused, 3 when nobody answers. [main]
+/// Prints replies to stdout and errors to stderr. Returns the exit code: 1 if the message was rejected, 3 without a
+/// reply. [main]
 int send_command(const SendCommand& command);
 
 }  // namespace limber

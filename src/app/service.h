@@ -1,4 +1,4 @@
-// `limber service`: shows that systemd starts, watches and restarts.
+// `limber service`: installs shows as services that systemd starts, monitors and restarts.
 #pragma once
 
 #include <string>
@@ -8,19 +8,20 @@
 
 namespace limber {
 
+/// Arguments of `service`.
 struct ServiceCommand {
-  enum class What : std::uint8_t { install, remove };
-  What what = What::install;
-  std::string name;                ///< Empty: after the scene; of `remove`: the only one that there is.
-  bool print = false;              ///< Print the unit and write nothing.
-  std::vector<std::string> words;  ///< Of `install`: arguments of `limber play`, as typed.
-  PlayOptions play;                ///< The same, parsed.
+  enum class Action : std::uint8_t { install, remove };
+  Action action = Action::install;
+  std::string name;                ///< Empty: named after the scene; for `remove`: the only installed one.
+  bool print = false;              ///< Print the unit instead of writing it.
+  std::vector<std::string> words;  ///< For `install`: arguments of `limber play`, as typed.
+  PlayOptions play;                ///< The same arguments, parsed.
 };
 
-/// The folder of this user's units; empty when there is no home.
+/// Returns the folder of this user's units; empty if there is no home folder.
 std::string service_folder();
 
-/// Writes or removes a unit; returns the exit code. [main]
+/// Writes or removes a unit. Returns the exit code. [main]
 int service_command(const ServiceCommand& command);
 
 }  // namespace limber

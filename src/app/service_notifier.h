@@ -1,4 +1,4 @@
-// ServiceNotifier: keeps a service manager informed about the show, so that it restarts a program that hangs.
+// ServiceNotifier: reports the state of the show to the service manager, so that it restarts a program that hangs.
 #pragma once
 
 #include <chrono>
@@ -8,33 +8,35 @@
 
 namespace limber {
 
+/// The connection to systemd's service manager, if the program runs as a service.
 class ServiceNotifier {
  public:
   using Clock = std::chrono::steady_clock;
-  /// Loading may take this long in total before the service manager gives up.
-  static constexpr std::chrono::minutes kLongestLoad{10};
+  /// Maximal extension of the startup time limit.
+  static constexpr std::chrono::minutes kMaxLoadTime{10};
 
   /// [main, before other threads start]
   ServiceNotifier() = default;
 
+  /// True if the program runs as a service.
   bool present() const { return manager_.present(); }
-  /// The scene is being read: extends the time limit of the start. Called at least every five seconds. [main]
+  /// Extends the startup time limit while the scene loads. Must be called at least every five seconds. [main]
   void loading(Clock::time_point now = Clock::now());
-  /// One turn of the simulation's loop. The first reports that the show plays; the others feed the watchdog, a few
-  /// times in each of its intervals. Never waits. [sim]
-  void turn(Clock::time_point now = Clock::now());
-  /// The show ends. [main]
+  /// Called in each iteration of the simulation loop. The first call reports that the show plays; later ones feed the
+  /// watchdog, a few times per interval. Never blocks. [sim]
+  void on_iteration(Clock::time_point now = Clock::now());
+  /// Reports that the show ends. [main]
   void stopping() const { (void)manager_.notify("STOPPING=1"); }
-  /// A line about the show, for `systemctl status`. [main]
+  /// Sets the line that `systemctl status` shows. [main]
   void status(const std::string& line) const;
 
  private:
   void ready(Clock::time_point now);
 
   system::ServiceManager manager_;
-  const Clock::time_point begun_ = Clock::now();
-  bool ready_ = false;     // [sim]
-  Clock::time_point fed_;  // [sim]
+  const Clock::time_point start_time_ = Clock::now();
+  bool ready_ = false;          // [sim]
+  Clock::time_point last_fed_;  // [sim]
 };
 
 }  // namespace limber

@@ -17,20 +17,20 @@ bool is_plain(char c) {
          std::string_view("_-./:=,+@").find(c) != std::string_view::npos;
 }
 
-// a path that is not split into words: only specifiers are expanded
+// a path that is not split into words: only specifiers (%) are expanded
 Result<std::string> unit_path(std::string_view text) {
   const bool control = std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (control || text.ends_with(' ') || text.ends_with('\\'))
     return Error{
-        fmt::format("the folder '{}' can't stand in a unit: it has control characters, or ends with a blank "
-                    "or a backslash. Start the show from another folder",
+        fmt::format("the folder '{}' can't be used in a unit: it contains control characters, or ends with a space or "
+                    "a backslash. Start the show from another folder",
                     printable(text))};
   std::string path;
   for (const char c : text) path += c == '%' ? "%%" : std::string(1, c);
   return path;
 }
 
-constexpr std::string_view kHelp = R"(
+constexpr std::string_view kInstructions = R"(
 # Changes of your own: systemctl --user edit {0}
 # Start it, and with each session from now on: systemctl --user enable --now {0}
 # Its log: journalctl --user -u {0} -f
@@ -73,7 +73,7 @@ Result<std::string> service_unit_text(const ServiceUnit& unit) {
   std::string command = unit_word(unit.program) + " play";
   for (const std::string& word : unit.words) command += " " + unit_word(word);
   const Result<std::string> about = unit_path(printable(unit.scene));
-  std::string text = fmt::format("{}{}", kServiceMark, fmt::format(fmt::runtime(kHelp), unit.name));
+  std::string text = fmt::format("{}{}", kServiceHeader, fmt::format(fmt::runtime(kInstructions), unit.name));
   text += fmt::format("\n[Unit]\nDescription=Limber: {}\n", about ? *about : unit.name);
   if (unit.window) text += "After=graphical-session.target\n";
   text += "StartLimitIntervalSec=0\n";

@@ -1,4 +1,4 @@
-// The text of a systemd unit that plays a show.
+// Generates the systemd unit of a show.
 #pragma once
 
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace limber {
 
-/// The first line of each unit that this program writes. It replaces and removes no other.
-inline constexpr std::string_view kServiceMark =
+/// First line of each unit that this program writes. Only files with this line are replaced or removed.
+inline constexpr std::string_view kServiceHeader =
     "# Written by `limber service install`, which may replace it. `limber service remove` deletes it.";
 
+/// Contents of a unit.
 struct ServiceUnit {
-  std::string scene;               ///< For people.
+  std::string scene;               ///< Shown in the description.
   std::string name;                ///< "limber-NAME", without ".service".
   std::string program;             ///< Absolute path.
   std::string folder;              ///< Working directory, absolute.
   std::vector<std::string> words;  ///< Arguments of `limber play`.
-  bool window = true;              ///< It waits for the desktop.
+  bool window = true;              ///< Start after the desktop session.
 };
 
-/// The unit. The error names what a unit can't hold.
+/// Returns the text of the unit, or an error if a path can't be written in one.
 Result<std::string> service_unit_text(const ServiceUnit& unit);
 
-/// One word of a command line in a unit: quoted, with what systemd would expand escaped.
+/// Returns one word of a command line in a unit: quoted, with characters escaped that systemd would expand.
 std::string unit_word(std::string_view text);
 
-/// The name of a show's unit without "limber-": letters, digits, _ and - of the scene's file name.
+/// Returns the name of a show's unit without "limber-": the scene's file name reduced to letters, digits, _ and -.
 std::string service_name(std::string_view scene);
 
 }  // namespace limber

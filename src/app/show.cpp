@@ -1,4 +1,4 @@
-// The simulation's thread.
+// Runs the simulation's thread.
 #include "app/show.h"
 
 #include <new>
@@ -11,17 +11,17 @@
 
 namespace limber {
 
-Show::Show(Engine& engine) : engine_(engine), main_(system::this_thread()), thread_([this] { play(); }) {}
+Show::Show(Engine& engine) : engine_(engine), main_thread_(system::this_thread()), thread_([this] { play(); }) {}
 
-void Show::go(bool anyway) {
-  anyway_.store(anyway);
-  go_.release();
+void Show::allow_ticks(bool even_if_failed) {
+  even_if_failed_.store(even_if_failed);
+  start_semaphore_.release();
 }
 
 void Show::end() {
   if (!thread_.joinable()) return;
   engine_.stop();
-  go_.release();
+  start_semaphore_.release();
   thread_.join();
 }
 
@@ -29,8 +29,8 @@ void Show::play() {
   system::name_this_thread("limber-sim");
   result_ = start();
   change(State::started);
-  go_.acquire();
-  if (result_ || anyway_.load()) engine_.run();
+  start_semaphore_.acquire();
+  if (result_ || even_if_failed_.load()) engine_.run();
   change(State::over);
 }
 
@@ -39,17 +39,17 @@ Result<void> Show::start() {
   try {
     return engine_.start();
   } catch (const std::bad_alloc&) {
-    why = "there is not enough memory for the scene";
-  } catch (const std::system_error& error) {  // of a thread that could not be started
+    why = "not enough memory for the scene";
+  } catch (const std::system_error& error) {  // a thread could not be started
     why = error.code().message();
   }
-  fault_ = kMachine;
+  exit_code_ = kMachineError;
   return Error{why + "; end other programs, or raise ulimit -u and ulimit -v"};
 }
 
 void Show::change(State state) {
   state_.store(state);
-  system::call_thread(main_);
+  system::wake_thread(main_thread_);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Show: the engine on a thread of its own.
+// Show: runs the engine on its own thread.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@ namespace limber {
 
 class Engine;
 
-/// It calls the main thread (system::call_thread) when the scene has run, and when the show is over.
+/// Wakes the main thread (system::wake_thread) when the scene has run, and when the show is over.
 class Show {
  public:
   /// [main]
@@ -24,12 +24,14 @@ class Show {
 
   bool started() const { return state_.load() >= State::started; }
   bool over() const { return state_.load() == State::over; }
-  /// What the scene's run gave; once it has started.
+  /// Result of running the scene; valid once started() is true.
   const Result<void>& result() const { return result_; }
-  /// Whose fault that is: kInput or kMachine.
-  int fault() const { return fault_; }
-  /// The first tick may come. `anyway`: after a fault of the scene's, too; the world is empty and waits for a good run.
-  void go(bool anyway);
+  /// Exit code if it failed: kInputError or kMachineError.
+  int exit_code() const { return exit_code_; }
+  /// Allows the first tick. `even_if_failed`: also if the scene failed; then the world stays empty until a reload
+  /// succeeds.
+  void allow_ticks(bool even_if_failed);
+  /// Stops the engine and joins its thread. Idempotent.
   void end();
 
  private:
@@ -41,12 +43,12 @@ class Show {
 
   Engine& engine_;
   Result<void> result_;
-  int fault_ = kInput;
+  int exit_code_ = kInputError;
   std::atomic<State> state_{State::starting};
-  std::atomic<bool> anyway_{false};
-  std::counting_semaphore<2> go_{0};
-  std::uint64_t main_;
-  std::thread thread_;  // last: it starts when all else is there
+  std::atomic<bool> even_if_failed_{false};
+  std::counting_semaphore<2> start_semaphore_{0};
+  std::uint64_t main_thread_;
+  std::thread thread_;  // must be the last member: it uses the others
 };
 
 }  // namespace limber

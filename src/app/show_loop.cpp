@@ -1,4 +1,4 @@
-// What ends a show, and how long it is waited for.
+// Handles the causes that end a show, and limits the time of each wait.
 #include "app/show_loop.h"
 
 #include <algorithm>
@@ -22,19 +22,19 @@ namespace {
 using namespace std::chrono_literals;
 using system::Signal;
 
-constexpr std::chrono::milliseconds kStatusEvery = 1s;
+constexpr std::chrono::milliseconds kStatusInterval = 1s;
 
-// a thread that does not come back can't be joined: the files are whole, so the process may go
+// a thread that doesn't return can't be joined; all files are written, so the process may end
 [[noreturn]] void leave(std::string_view why) {
   write_message(MessageLevel::warning, why);
-  hurry_output();
-  end_program(kInput);
+  begin_output_shutdown();
+  end_program(kInputError);
 }
 
 }  // namespace
 
-ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, FrameWatch& frames,
-                   const PlayOptions& options)
+ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
+                   DisplayWatchdog& frames, const PlayOptions& options)
     : show_(show),
       engine_(engine),
       link_(link),
@@ -46,39 +46,39 @@ ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNo
 void ShowLoop::wait_for_scene() {
   while (!show_.started()) {
     notifier_.loading();
-    if (system::wait_for_signal(kStatusEvery) == Signal::end) leave("ended while the scene was being read");
+    if (system::wait_for_signal(kStatusInterval) == Signal::terminate) leave("interrupted while the scene was loading");
   }
 }
 
-bool ShowLoop::may_wait_for_mending() const {
-  return options_.replay.empty() && !options_.fast && !options_.picture.headless && Window::has_display();
+bool ShowLoop::may_wait_for_fix() const {
+  return options_.replay.empty() && !options_.fast && !options_.display.headless && Window::has_display();
 }
 
-bool ShowLoop::waits_for_display() const {
-  const PictureOptions& picture = options_.picture;
-  const bool requested = picture.fullscreen || !picture.monitor.empty() || notifier_.present();
-  return requested && !picture.headless && !options_.fast && Window::has_display();
+bool ShowLoop::should_await_display() const {
+  const DisplayOptions& display = options_.display;
+  const bool requested = display.fullscreen || !display.monitor.empty() || notifier_.present();
+  return requested && !display.headless && !options_.fast && Window::has_display();
 }
 
 bool ShowLoop::open_window() {
   if (options_.fast) return false;
   std::string why;
-  if (!options_.picture.headless) {
-    auto window = frames_.call([&] { return WindowShow::open(options_.picture, printable(options_.scene), link_); });
+  if (!options_.display.headless) {
+    auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
     if (window) {
       window_ = std::move(*window);
       return true;
     }
     why = fmt::format(" ({})", window.error());
   }
-  waits_ = waits_for_display();
+  awaits_display_ = should_await_display();
   print_notice("playing headless{}; {}", why,
-               waits_ ? "the window opens as soon as there is a display" : "Ctrl+C ends it");
-  return waits_;
+               awaits_display_ ? "the window opens as soon as there is a display" : "Ctrl+C ends it");
+  return awaits_display_;
 }
 
 bool ShowLoop::try_window() {
-  auto window = frames_.call([&] { return WindowShow::open(options_.picture, printable(options_.scene), link_); });
+  auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
   if (!window) return false;
   window_ = std::move(*window);
   return true;
@@ -88,22 +88,22 @@ void ShowLoop::print_status() const {
   const std::shared_ptr<const Snapshot> now = link_.snapshots.read();
   if (now == nullptr) return;
   std::size_t joints = 0;
-  for (const RosterBody& body : now->roster->bodies) joints += body.joints.size();
+  for (const BodyEntry& body : now->body_list->bodies) joints += body.joint_offsets.size();
   const std::string line =
       fmt::format("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
                   now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
-                  now->roster->bodies.size(), joints, link_.counters.received.load(), link_.counters.sent.load(),
+                  now->body_list->bodies.size(), joints, link_.counters.received.load(), link_.counters.sent.load(),
                   link_.counters.dropped.load() + link_.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
   notifier_.status(line);
   if (prints_status_) write_line(OutputTo::error, "limber: " + line);
 }
 
-// what could not be had at the start
+// retries everything that failed at the start
 void ShowLoop::retry() {
   const auto now = std::chrono::steady_clock::now();
-  if (now - retried_ < kStatusEvery) return;
-  retried_ = now;
-  if (window_ == nullptr && waits_ && try_window()) waits_ = false;
+  if (now - last_retry_ < kStatusInterval) return;
+  last_retry_ = now;
+  if (window_ == nullptr && awaits_display_ && try_window()) awaits_display_ = false;
   retry_();
 }
 
@@ -114,9 +114,9 @@ bool ShowLoop::run() {
         window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
     if (end == WindowShow::End::lost) return run_headless();
     const bool closed = end == WindowShow::End::closed;
-    const Signal heard = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusEvery);
-    if (heard == Signal::none && window_ == nullptr) print_status();
-    if (heard != Signal::end && !closed) continue;
+    const Signal signal = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusInterval);
+    if (signal == Signal::none && window_ == nullptr) print_status();
+    if (signal != Signal::terminate && !closed) continue;
     end_show();
     return true;
   }
@@ -124,12 +124,12 @@ bool ShowLoop::run() {
 }
 
 bool ShowLoop::run_headless() {
-  waits_ = false;
+  awaits_display_ = false;
   while (!show_.over()) {
     retry();
-    const Signal heard = system::wait_for_signal(kStatusEvery);
-    if (heard == Signal::none) print_status();
-    if (heard != Signal::end) continue;
+    const Signal signal = system::wait_for_signal(kStatusInterval);
+    if (signal == Signal::none) print_status();
+    if (signal != Signal::terminate) continue;
     end_show();
     return true;
   }
@@ -141,19 +141,19 @@ void ShowLoop::close_window() {
 }
 
 void ShowLoop::end_show() {
-  hurry_output();
+  begin_output_shutdown();
   notifier_.stopping();
   engine_.stop();
-  // somebody waits: a second, or for less once there was another signal; that may have come with the first, as to a
-  // program and to its group, and is no reason to cut a tick of usual length
+  // wait for up to a second, less after another signal. A second signal may be a duplicate of the first (sent to
+  // the program and to its group), so a tick of normal length may still finish
   using Clock = std::chrono::steady_clock;
-  Clock::time_point last = Clock::now() + 900ms;
-  while (!show_.over() && Clock::now() < last) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(last - Clock::now());
-    if (system::wait_for_signal(left) != Signal::end) continue;
-    last = std::min(last, Clock::now() + std::chrono::milliseconds(250));
+  Clock::time_point deadline = Clock::now() + 900ms;
+  while (!show_.over() && Clock::now() < deadline) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (system::wait_for_signal(left) != Signal::terminate) continue;
+    deadline = std::min(deadline, Clock::now() + std::chrono::milliseconds(250));
   }
-  if (!show_.over()) leave("ended in the middle of a long tick: fewer substeps or solver_iterations would help");
+  if (!show_.over()) leave("interrupted during a long tick. Reduce substeps or solver_iterations");
 }
 
 }  // namespace limber

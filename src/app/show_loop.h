@@ -1,4 +1,4 @@
-// ShowLoop: the main thread while a show plays: signals, the window or the status line, the service manager.
+// ShowLoop: the main thread's loop during a show: signals, window or status line, service manager.
 #pragma once
 
 #include <chrono>
@@ -19,28 +19,30 @@ namespace limber {
 /// [main]
 class ShowLoop {
  public:
-  /// All of them outlive it.
-  ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, FrameWatch& frames,
+  /// All arguments must outlive the loop.
+  ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, DisplayWatchdog& frames,
            const PlayOptions& options);
 
-  /// Until the scene has run. A signal ends the program.
+  /// Waits until the scene has run. A signal ends the program.
   void wait_for_scene();
-  /// Whether an empty stage may wait until its scene is mended: in a window, but nobody mends a take.
-  bool may_wait_for_mending() const;
-  /// Opens the window. False: there is none, which was reported, and none is waited for.
+  /// True if a show with a broken scene may wait until its file is fixed: with a window, and not for a replay.
+  bool may_wait_for_fix() const;
+  /// Opens the window. Returns false if there is none (already reported) and the loop does not wait for
+  /// a display.
   bool open_window();
-  /// Called about once a second while the show plays: what could not be had at the start is tried again.
+  /// `retry` is called about once a second while the show plays, to open ports and the console if that failed before.
   void each_second(std::function<void()> retry) { retry_ = std::move(retry); }
-  /// Until the show is over by itself, or a signal or the window ends it; true: one of them did.
+  /// Runs until the show is over, or a signal or the window ends it. Returns true if a signal or
+  /// the window ended it.
   bool run();
-  /// The same, without the window, whose display is gone.
+  /// Like run(), without the window, after its display was lost.
   bool run_headless();
   /// Closes the window, if there is one.
   void close_window();
 
  private:
-  /// The window was requested, so that it opens as soon as there is a display.
-  bool waits_for_display() const;
+  /// True if the window was requested explicitly and therefore opens as soon as there is a display.
+  bool should_await_display() const;
   bool try_window();
   void print_status() const;
   void retry();
@@ -50,13 +52,13 @@ class ShowLoop {
   Engine& engine_;
   EngineLink& link_;
   ServiceNotifier& notifier_;
-  FrameWatch& frames_;
+  DisplayWatchdog& frames_;
   const PlayOptions& options_;
   const bool prints_status_;
   std::unique_ptr<WindowShow> window_;
-  bool waits_ = false;  // for a display
+  bool awaits_display_ = false;  // the window opens as soon as there is a display
   std::function<void()> retry_ = [] {};
-  std::chrono::steady_clock::time_point retried_;
+  std::chrono::steady_clock::time_point last_retry_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Tag by tag, with the words in their order.
+// Parses tag by tag and consumes the words in order.
 #include "app/tagged_message.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
 }
 
-// a description of what the tag takes, for the error; null: the word is valid
-const char* needed(char tag, const std::string& word) {
+// describes the expected word for an error message; null: the word is valid
+const char* expected_word(char tag, const std::string& word) {
   switch (tag) {
     case 'i':
     case 'h':
@@ -48,7 +48,7 @@ Arg arg_of_tag(char tag, const std::string& word) {
   return Arg::of(word);
 }
 
-// null: fine
+// null: valid
 const char* fault_of_tags(std::string_view tags) {
   int level = 0;
   for (const char tag : tags) {
@@ -77,7 +77,7 @@ Result<Message> tagged_message(const std::string& address, std::string_view tags
       return Error{fmt::format("--tags: '{}' is not an OSC type tag; the tags are {}{}", tag, kWithWord, kWithoutWord)};
     if (at == words.size()) break;
     const std::string& word = words[at++];
-    if (const char* const need = needed(tag, word))
+    if (const char* const need = expected_word(tag, word))
       return Error{fmt::format("'{}' must be {}, since its tag is {}", printable(word), need, tag)};
     message.args.push_back(arg_of_tag(tag, word));
   }

@@ -1,4 +1,4 @@
-// The arguments of `limber send --tags`: words that become OSC types as their tags say.
+// Converts the arguments of `limber send --tags` to the OSC types given by the tags.
 #pragma once
 
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace limber {
 
-/// A message for encode_tagged(). `tags`: i h f d take a number, s S text, c a character, r m eight hexadecimal digits,
-/// t sixteen, b pairs of them; T F N I and brackets take no word. The error says which word doesn't fit. [any]
+/// Returns a message for encode_tagged(). `tags`: i h f d take a number, s S text, c a character, r m eight hexadecimal
+/// digits, t sixteen, b pairs of them; T F N I and brackets take no word. The error names the word that doesn't match.
+/// [any]
 Result<Message> tagged_message(const std::string& address, std::string_view tags,
                                const std::vector<std::string>& words);
 

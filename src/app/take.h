@@ -1,15 +1,16 @@
-// `limber take info`: what a take holds.
+// `limber take info`: prints the contents of a take.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
+/// Arguments of `take info`.
 struct TakeCommand {
   std::string file;
 };
 
-/// The answer goes to stdout; 1: it is no take, or damaged. One that was cut off is fine. [main]
+/// Prints to stdout. Returns 1 if the file is not a take or is damaged. A truncated take is valid. [main]
 int take_command(const TakeCommand& command);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// GLFW, and Xlib's way of ending programs kept from it.
+// Wraps GLFW and prevents Xlib from ending the program.
 #include "app/window.h"
 
 #include <algorithm>
@@ -23,18 +23,18 @@ std::function<void()> display_lost;
 
 int handle_lost_display(void*) {
   if (display_lost) display_lost();
-  std::_Exit(3);  // Xlib would do that
+  std::_Exit(3);  // as Xlib would do
 }
 
-// Xlib would end the program at a wrong request, such as one about a window that somebody has destroyed
+// Xlib would end the program at an invalid request, such as one for a window that was destroyed from outside
 bool request_failed = false;
 int handle_failed_request(void*, void*) {
   request_failed = true;
   return 0;
 }
 
-// Sets a handler of Xlib, if Xlib is in use: GLFW before 3.4 links it, later versions load it where only they see it,
-// and windows of Wayland do without.
+// Sets a handler of Xlib if Xlib is in use. GLFW before 3.4 links it; later versions load it privately, and Wayland
+// windows don't use it.
 template <class Handler>
 void set_handler(const char* setter, Handler handler) {
   using Setter = Handler (*)(Handler);
@@ -44,7 +44,7 @@ void set_handler(const char* setter, Handler handler) {
 std::string glfw_fault() {
   const char* text = nullptr;
   glfwGetError(&text);
-  return text == nullptr ? "GLFW does not say why" : text;
+  return text == nullptr ? "unknown error of GLFW" : text;
 }
 
 bool is_set(const char* variable) {
@@ -61,11 +61,11 @@ KeyMods key_mods(int mods) {
   return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
 }
 
-constexpr int kFromCorner = 64;  // of another screen, in its units
+constexpr int kCornerOffset = 64;  // distance from the corner of the other screen, in its units
 
-Window& of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
+Window& window_of(GLFWwindow* window) { return *static_cast<Window*>(glfwGetWindowUserPointer(window)); }
 
-GLFWmonitor* screen_of(GLFWwindow* window) {
+GLFWmonitor* monitor_of(GLFWwindow* window) {
   int x = 0;
   int y = 0;
   int width = 0;
@@ -75,7 +75,7 @@ GLFWmonitor* screen_of(GLFWwindow* window) {
   int count = 0;
   GLFWmonitor** const screens = glfwGetMonitors(&count);
   GLFWmonitor* best = nullptr;
-  int most = -1;
+  int best_area = -1;
   for (int i = 0; i < count; i++) {
     int left = 0;
     int top = 0;
@@ -84,9 +84,9 @@ GLFWmonitor* screen_of(GLFWwindow* window) {
     if (mode == nullptr) continue;
     const int across = std::min(x + width, left + mode->width) - std::max(x, left);
     const int down = std::min(y + height, top + mode->height) - std::max(y, top);
-    const int shared = std::max(across, 0) * std::max(down, 0);
-    if (shared > most) best = screens[i];
-    most = std::max(most, shared);
+    const int area = std::max(across, 0) * std::max(down, 0);
+    if (area > best_area) best = screens[i];
+    best_area = std::max(best_area, area);
   }
   return best;
 }
@@ -114,7 +114,7 @@ GLFWwindow* make_window(const char* title, int width, int height, const ContextK
   return glfwCreateWindow(width, height, title, nullptr, nullptr);
 }
 
-// EGL beside GLX: some X servers have no GLX, and OpenGL ES comes with EGL
+// EGL in addition to GLX: some X servers have no GLX, and OpenGL ES comes with EGL
 std::vector<ContextKind> context_kinds(GlApi api) {
   const GlApiInfo& info = gl_api_info(api);
   if (!gl_can_load(api)) return {};
@@ -125,10 +125,10 @@ std::vector<ContextKind> context_kinds(GlApi api) {
           {GLFW_OPENGL_API, GLFW_EGL_CONTEXT_API, info.major, info.minor}};
 }
 
-// the versions of any age that the driver has
-std::vector<std::string> offered_versions() {
+// names of the OpenGL versions that the driver offers, of any age
+std::vector<std::string> available_versions() {
   std::vector<std::string> names;
-  const auto look = [&](const char* name, std::initializer_list<ContextKind> kinds) {
+  const auto probe = [&](const char* name, std::initializer_list<ContextKind> kinds) {
     for (const ContextKind& kind : kinds) {
       GLFWwindow* const window = make_window("", 1, 1, kind, false);
       if (window == nullptr) continue;
@@ -138,9 +138,9 @@ std::vector<std::string> offered_versions() {
       return;
     }
   };
-  look("OpenGL", {{GLFW_OPENGL_API, GLFW_NATIVE_CONTEXT_API, 1, 0}, {GLFW_OPENGL_API, GLFW_EGL_CONTEXT_API, 1, 0}});
-  look("OpenGL ES",
-       {{GLFW_OPENGL_ES_API, GLFW_EGL_CONTEXT_API, 2, 0}, {GLFW_OPENGL_ES_API, GLFW_NATIVE_CONTEXT_API, 2, 0}});
+  probe("OpenGL", {{GLFW_OPENGL_API, GLFW_NATIVE_CONTEXT_API, 1, 0}, {GLFW_OPENGL_API, GLFW_EGL_CONTEXT_API, 1, 0}});
+  probe("OpenGL ES",
+        {{GLFW_OPENGL_ES_API, GLFW_EGL_CONTEXT_API, 2, 0}, {GLFW_OPENGL_ES_API, GLFW_NATIVE_CONTEXT_API, 2, 0}});
   return names;
 }
 
@@ -153,7 +153,7 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
   if (!has_display())
     return Error{"no display: DISPLAY and WAYLAND_DISPLAY are not set; a desktop session or xvfb-run sets one"};
 #if defined(GLFW_PLATFORM)
-  // GLFW 3.4 tries Wayland first, also where no session offers it
+  // GLFW 3.4 tries Wayland first, even in sessions without it
   if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() != GLFW_TRUE) {
@@ -172,27 +172,28 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
       if (window != nullptr) return std::unique_ptr<Window>(new Window(window, api));
     }
   }
-  const std::string fault = gl_fault(apis, offered_versions());
+  const std::string fault = gl_context_error(apis, available_versions());
   glfwTerminate();
   return Error{fmt::format("no window can be opened: {}", fault)};
 }
 
 Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const std::string& title, int width,
                                                     int height) {
-  GLFWmonitor* const taken = screen_of(first.window_);
+  GLFWmonitor* const first_monitor = monitor_of(first.window_);
   GLFWwindow* const window = glfwCreateWindow(width, height, title.c_str(), nullptr, first.window_);
   if (window == nullptr) return Error{fmt::format("no second window can be opened: {}", glfw_fault())};
-  std::unique_ptr<Window> made(new Window(window, first.api_));
+  std::unique_ptr<Window> beside(new Window(window, first.api_));
   glfwMakeContextCurrent(first.window_);
   int count = 0;
   GLFWmonitor** const screens = glfwGetMonitors(&count);
-  GLFWmonitor** const other = std::find_if(screens, screens + count, [&](GLFWmonitor* s) { return s != taken; });
-  if (other == screens + count) return made;
+  GLFWmonitor** const other =
+      std::find_if(screens, screens + count, [&](GLFWmonitor* s) { return s != first_monitor; });
+  if (other == screens + count) return beside;
   int x = 0;
   int y = 0;
   glfwGetMonitorPos(*other, &x, &y);
-  glfwSetWindowPos(window, x + kFromCorner, y + kFromCorner);
-  return made;
+  glfwSetWindowPos(window, x + kCornerOffset, y + kCornerOffset);
+  return beside;
 }
 
 Window::Window(GLFWwindow* window, GlApi api) : window_(window), api_(api) {
@@ -200,7 +201,7 @@ Window::Window(GLFWwindow* window, GlApi api) : window_(window), api_(api) {
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
   glfwSetKeyCallback(window_, on_key);
-  glfwSetCharCallback(window_, on_letter);
+  glfwSetCharCallback(window_, on_char);
   glfwSetMouseButtonCallback(window_, on_button);
   glfwSetCursorPosCallback(window_, on_move);
   glfwSetScrollCallback(window_, on_scroll);
@@ -208,29 +209,30 @@ Window::Window(GLFWwindow* window, GlApi api) : window_(window), api_(api) {
   glfwGetCursorPos(window_, &x_, &y_);
 }
 
-// GLFW stays: drivers that are unloaded leave memory behind
+// without glfwTerminate(): drivers that are unloaded leak memory
 Window::~Window() { glfwDestroyWindow(window_); }
 
-void Window::on_display_lost(std::function<void()> go_on) { display_lost = std::move(go_on); }
+void Window::on_display_lost(std::function<void()> callback) { display_lost = std::move(callback); }
 
-// a modifier's own press and release count, too: letters that come after it are letters again
+// presses and releases of modifier keys are events, too: they decide whether later letters are shortcuts
 void Window::on_key(GLFWwindow* window, int key, int, int action, int) {
-  if (action == GLFW_REPEAT) return;  // the panel repeats by itself
+  if (action == GLFW_REPEAT) return;  // the panel repeats keys itself
   InputEvent event{.kind = InputEvent::Kind::key};
   event.key = KeyLayout(printed_on).key(key);
   event.down = action == GLFW_PRESS;
-  const auto held = [&](int left, int right) {
+  const auto either_down = [&](int left, int right) {
     return glfwGetKey(window, left) == GLFW_PRESS || glfwGetKey(window, right) == GLFW_PRESS;
   };
-  event.mods = {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL), held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT),
-                held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
-  of(window).events_.push_back(event);
+  event.mods = {either_down(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
+                either_down(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT),
+                either_down(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
+  window_of(window).events_.push_back(event);
 }
 
-void Window::on_letter(GLFWwindow* window, unsigned letter) {
+void Window::on_char(GLFWwindow* window, unsigned character) {
   InputEvent event{.kind = InputEvent::Kind::text};
-  event.letter = letter;
-  of(window).events_.push_back(event);
+  event.character = character;
+  window_of(window).events_.push_back(event);
 }
 
 void Window::on_button(GLFWwindow* window, int button, int action, int mods) {
@@ -238,45 +240,46 @@ void Window::on_button(GLFWwindow* window, int button, int action, int mods) {
   event.button = button;
   event.down = action == GLFW_PRESS;
   event.mods = key_mods(mods);
-  of(window).events_.push_back(event);
+  window_of(window).events_.push_back(event);
 }
 
 void Window::on_focus(GLFWwindow* window, int focused) {
   InputEvent event{.kind = InputEvent::Kind::focus};
   event.down = focused == GLFW_TRUE;
-  of(window).events_.push_back(event);
+  window_of(window).events_.push_back(event);
 }
 
 void Window::on_move(GLFWwindow* window, double x, double y) {
-  Window& self = of(window);
+  Window& self = window_of(window);
   const double dx = x - std::exchange(self.x_, x);
   const double dy = y - std::exchange(self.y_, y);
   InputEvent event{.kind = InputEvent::Kind::move};
-  // of the picture, which on some screens has more pixels than the window has units
+  // convert from window units to pixels, which differ on some screens
   int width = 0;
   int height = 0;
   glfwGetWindowSize(window, &width, &height);
   event.x = width > 0 ? x * self.width() / width : x;
   event.y = height > 0 ? y * self.height() / height : y;
   self.events_.push_back(event);
-  const auto held = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
-  const auto pressed = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
-  const bool shift = pressed(GLFW_KEY_LEFT_SHIFT) || pressed(GLFW_KEY_RIGHT_SHIFT);
-  if (held(GLFW_MOUSE_BUTTON_LEFT) && !shift) {
-    self.mouse_.turn_x += dx;
-    self.mouse_.turn_y += dy;
-  } else if (held(GLFW_MOUSE_BUTTON_LEFT) || held(GLFW_MOUSE_BUTTON_RIGHT) || held(GLFW_MOUSE_BUTTON_MIDDLE)) {
-    self.mouse_.shift_x += dx;
-    self.mouse_.shift_y += dy;
+  const auto button_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
+  const auto key_down = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
+  const bool shift = key_down(GLFW_KEY_LEFT_SHIFT) || key_down(GLFW_KEY_RIGHT_SHIFT);
+  if (button_down(GLFW_MOUSE_BUTTON_LEFT) && !shift) {
+    self.mouse_.orbit_x += dx;
+    self.mouse_.orbit_y += dy;
+  } else if (button_down(GLFW_MOUSE_BUTTON_LEFT) || button_down(GLFW_MOUSE_BUTTON_RIGHT) ||
+             button_down(GLFW_MOUSE_BUTTON_MIDDLE)) {
+    self.mouse_.pan_x += dx;
+    self.mouse_.pan_y += dy;
   }
 }
 
 void Window::on_scroll(GLFWwindow* window, double x, double y) {
-  of(window).mouse_.wheel += y;
+  window_of(window).mouse_.wheel += y;
   InputEvent event{.kind = InputEvent::Kind::wheel};
   event.x = x;
   event.y = y;
-  of(window).events_.push_back(event);
+  window_of(window).events_.push_back(event);
 }
 
 void Window::poll(double seconds) {
@@ -306,7 +309,7 @@ int Window::height() const {
 }
 
 double Window::refresh_rate() const {
-  GLFWmonitor* const screen = screen_of(window_);
+  GLFWmonitor* const screen = monitor_of(window_);
   const GLFWvidmode* const mode = screen == nullptr ? nullptr : glfwGetVideoMode(screen);
   return mode == nullptr || mode->refreshRate <= 0 ? 60 : mode->refreshRate;
 }
@@ -324,8 +327,8 @@ std::string Window::clipboard() const {
 
 void Window::clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
-std::vector<InputEvent> Window::take_events() { return std::exchange(events_, {}); }
-MouseMoves Window::take_mouse() { return std::exchange(mouse_, {}); }
+std::vector<InputEvent> Window::consume_events() { return std::exchange(events_, {}); }
+MouseMovement Window::consume_mouse() { return std::exchange(mouse_, {}); }
 void Window::title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 
 bool Window::is_full_screen() const { return glfwGetWindowMonitor(window_) != nullptr; }
@@ -344,7 +347,7 @@ Result<void> Window::move_to_monitor(const std::string& which) {
   }
   const GLFWvidmode* const mode = found == nullptr ? nullptr : glfwGetVideoMode(found);
   if (mode == nullptr)
-    return Error{fmt::format("there is no monitor '{}'; there are: {}", printable(which), fmt::join(names, ", "))};
+    return Error{fmt::format("monitor '{}' not found; available: {}", printable(which), fmt::join(names, ", "))};
   int x = 0;
   int y = 0;
   int width = 0;
@@ -352,7 +355,7 @@ Result<void> Window::move_to_monitor(const std::string& which) {
   glfwGetMonitorPos(found, &x, &y);
   glfwGetWindowSize(window_, &width, &height);
   glfwSetWindowPos(window_, x + std::max(0, mode->width - width) / 2, y + std::max(0, mode->height - height) / 2);
-  glfwPollEvents();  // toggle_full_screen() asks where the window is
+  glfwPollEvents();  // toggle_full_screen() reads the window's position
   return {};
 }
 
@@ -360,19 +363,20 @@ void Window::hide_pointer() { glfwSetInputMode(window_, GLFW_CURSOR, GLFW_CURSOR
 
 void Window::toggle_full_screen() {
   if (is_full_screen()) {
-    glfwSetWindowMonitor(window_, nullptr, place_[0], place_[1], place_[2], place_[3], GLFW_DONT_CARE);
+    glfwSetWindowMonitor(window_, nullptr, windowed_rect_[0], windowed_rect_[1], windowed_rect_[2], windowed_rect_[3],
+                         GLFW_DONT_CARE);
     return;
   }
-  GLFWmonitor* const screen = screen_of(window_);
+  GLFWmonitor* const screen = monitor_of(window_);
   const GLFWvidmode* const mode = screen == nullptr ? nullptr : glfwGetVideoMode(screen);
   if (mode == nullptr) return;
-  glfwGetWindowPos(window_, &place_[0], &place_[1]);
-  glfwGetWindowSize(window_, &place_[2], &place_[3]);
+  glfwGetWindowPos(window_, &windowed_rect_[0], &windowed_rect_[1]);
+  glfwGetWindowSize(window_, &windowed_rect_[2], &windowed_rect_[3]);
   glfwSetWindowMonitor(window_, screen, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
 void Window::swap() { glfwSwapBuffers(window_); }
-void Window::use() { glfwMakeContextCurrent(window_); }
-void Window::wait_for_screen(bool waits) { glfwSwapInterval(waits ? 1 : 0); }
+void Window::make_current() { glfwMakeContextCurrent(window_); }
+void Window::set_vsync(bool enabled) { glfwSwapInterval(enabled ? 1 : 0); }
 
 }  // namespace limber

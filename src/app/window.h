@@ -1,4 +1,4 @@
-// Window: one window with OpenGL and what hands do in it, through GLFW, in its order.
+// Window: one window with an OpenGL context and its input events in order, through GLFW.
 #pragma once
 
 #include <functional>
@@ -16,68 +16,69 @@ struct GLFWwindow;
 
 namespace limber {
 
-/// What a mouse has done since the last look: pixels of the window, steps of the wheel.
-struct MouseMoves {
-  double turn_x = 0, turn_y = 0;    ///< Left button held.
-  double shift_x = 0, shift_y = 0;  ///< Right or middle button, or left with Shift.
+/// Mouse movement since the last call: pixels of the window, steps of the wheel.
+struct MouseMovement {
+  double orbit_x = 0, orbit_y = 0;  ///< Left button pressed.
+  double pan_x = 0, pan_y = 0;      ///< Right or middle button pressed, or left with Shift.
   double wheel = 0;                 ///< Up is positive.
-  bool any() const { return turn_x != 0 || turn_y != 0 || shift_x != 0 || shift_y != 0 || wheel != 0; }
+  bool any() const { return orbit_x != 0 || orbit_y != 0 || pan_x != 0 || pan_y != 0 || wheel != 0; }
 };
 
+/// [main]
 class Window {
  public:
-  /// Whether this process was told of one. [any]
+  /// True if DISPLAY or WAYLAND_DISPLAY is set. [any]
   static bool has_display();
-  /// Its context is current on this thread, of the first of `apis` that can be had. An error says why there can be
-  /// none. [main]
+  /// Opens a window with the first of `apis` that is available and makes its context current. The error says why no
+  /// window can be opened. [main]
   static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height,
                                               std::span<const GlApi> apis);
-  /// Another one, whose context shares objects with `first`'s; on another screen where there is one. First's context
-  /// stays current. It goes before `first`. [main]
+  /// Opens a second window with a context that shares objects with that of `first`, on another screen if there is one.
+  /// The context of `first` stays current. `first` must outlive it. [main]
   static Result<std::unique_ptr<Window>> open_beside(const Window& first, const std::string& title, int width,
                                                      int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Called when the display is gone: it never returns, as Xlib would end the program. [main]
-  static void on_display_lost(std::function<void()> go_on);
+  /// Sets the callback for a lost display. It must never return, because Xlib would end the program. [main]
+  static void on_display_lost(std::function<void()> callback);
 
-  /// Takes what came; waits for it so many seconds at most. [main]
+  /// Processes events; waits for one at most `seconds`. [main]
   void poll(double seconds);
   GlApi api() const { return api_; }
   bool closed() const;
-  /// Somebody else took it away. [main]
+  /// True if the window was destroyed from outside. [main]
   bool lost() const;
-  /// Of the framebuffer, pixels; 0 while it is iconified. [main]
+  /// Size of the framebuffer, pixels; 0 while the window is iconified. [main]
   int width() const;
   int height() const;
-  /// Of the screen that it is on, 1/s. [main]
+  /// Refresh rate of the window's screen, 1/s. [main]
   double refresh_rate() const;
-  /// Of the screen that it is on: 2 where there are twice the pixels. [main]
+  /// Scale of the window's screen: 2 on a screen with twice the pixel density. [main]
   double content_scale() const;
-  /// What hands have done since the last call, for the panel. [main]
-  std::vector<InputEvent> take_events();
-  /// Whether hands have done something since then. [main]
+  /// Returns the input events since the last call, for the panel. [main]
+  std::vector<InputEvent> consume_events();
+  /// True if there was input since the last consume_events(). [main]
   bool has_events() const { return !events_.empty() || mouse_.any(); }
-  MouseMoves take_mouse();
-  /// What the keyboard prints on keys that act by their place. [main]
+  MouseMovement consume_mouse();
+  /// Returns the labels of keys that are identified by their position. [main]
   KeyLabels key_labels() const;
   std::string clipboard() const;
   void clipboard(const std::string& text);
   void title(const std::string& text);
-  /// To the middle of a monitor: its number from 1, or its name or a part of it, in any case. The error lists them.
-  /// [main]
+  /// Centers the window on a monitor, given by its number from 1 or by its name or a part of it (case-insensitive). The
+  /// error lists the monitors. [main]
   Result<void> move_to_monitor(const std::string& which);
   void hide_pointer();
-  /// To the whole screen that it is on, and back. [main]
+  /// Switches between the full screen and the window. [main]
   void toggle_full_screen();
   bool is_full_screen() const;
   void swap();
-  /// Its context is current from here on. [main]
-  void use();
-  /// Whether swap() waits for the screen, while its context is current. [main]
-  void wait_for_screen(bool waits);
+  /// Makes the window's context current. [main]
+  void make_current();
+  /// Sets whether swap() waits for the vertical blank; the context must be current. [main]
+  void set_vsync(bool enabled);
 
  private:
   Window(GLFWwindow* window, GlApi api);
@@ -85,16 +86,16 @@ class Window {
   static void on_move(GLFWwindow* window, double x, double y);
   static void on_scroll(GLFWwindow* window, double x, double y);
   static void on_button(GLFWwindow* window, int button, int action, int mods);
-  static void on_letter(GLFWwindow* window, unsigned letter);
+  static void on_char(GLFWwindow* window, unsigned character);
   static void on_focus(GLFWwindow* window, int focused);
 
   GLFWwindow* window_;
   GlApi api_;
   std::vector<InputEvent> events_;
-  MouseMoves mouse_;
+  MouseMovement mouse_;
   double x_ = 0;
   double y_ = 0;
-  int place_[4] = {0, 0, 0, 0};  // before it was full screen
+  int windowed_rect_[4] = {0, 0, 0, 0};  // position and size before full screen
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// WindowShow: the show in a window: draws what the snapshots say, smooth between two of them, and sends what hands do.
+// WindowShow: shows a running scene in a window: draws interpolated snapshots and sends the user's input.
 #pragma once
 
 #include <memory>
@@ -16,66 +16,68 @@
 
 namespace limber {
 
+/// [main]
 class WindowShow {
  public:
-  /// After all other threads were made: this one steps behind them, so that drawing never holds up the simulation. An
-  /// error says why there is no window. [main]
-  static Result<std::unique_ptr<WindowShow>> open(const PictureOptions& options, const std::string& scene,
+  /// Must be called after all other threads were created: this thread lowers its priority, so that drawing never delays
+  /// the simulation. The error says why there is no window. [main]
+  static Result<std::unique_ptr<WindowShow>> open(const DisplayOptions& options, const std::string& scene,
                                                   EngineLink& link);
 
-  /// Keeps what the panel remembers.
+  /// Saves the panel's settings.
   ~WindowShow();
   WindowShow(const WindowShow&) = delete;
   WindowShow& operator=(const WindowShow&) = delete;
 
+  /// Reason why the window has ended.
   enum class End : std::uint8_t { none, closed, lost };
-  /// What hands did, one picture, and the wait for its time. `lost`: nothing can be drawn any more, which was said.
-  /// [main]
+  /// Handles input, draws one frame and waits until it is time for it. `lost`: drawing is no longer possible (already
+  /// reported). [main]
   End frame();
 
  private:
-  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, const PictureOptions& options,
+  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, const DisplayOptions& options,
              const PanelSettings& settings, std::string scene, EngineLink& link);
 
-  void look_at_snapshots(double now);
-  void look_for_changes(double now);
-  void look_from(const Orbit& orbit);
-  void hear_hands(int width, int height, double now);
+  void update_snapshots(double now);
+  void check_for_changes(double now);
+  void set_camera(const Orbit& orbit);
+  void handle_input(int width, int height, double now);
   void act(HotkeyAction action);
   void toggle_output();
   Result<void> draw_window(double mix, int width, int height);
   Result<void> draw_output(double mix);
-  void follow();
-  void hear_mouse();
+  void follow_part();
+  void handle_mouse();
   void send(std::vector<Message> messages);
-  void tell_rate(double now);
+  void update_title(double now);
 
   std::unique_ptr<Window> window_;
-  std::unique_ptr<Renderer> renderer_;    // before its context goes
+  std::unique_ptr<Renderer> renderer_;    // destroyed before its context
   std::unique_ptr<OutputWindow> output_;  // null: there is none
-  PictureHand hand_;
-  std::optional<std::uint32_t> follows_;  // what of hand_.followed() is followed already
-  Vec3 follows_from_{0};                  // the eye, as seen from what is followed
+  ViewportMouse viewport_mouse_;
+  std::optional<std::uint32_t> follow_part_;  // the part that follow_offset_ belongs to
+  Vec3 follow_offset_{0};                     // position of the eye relative to the followed part
   std::string settings_file_;
-  PanelSettings kept_;        // as they are in the file
-  double panel_scale_ = 1;    // of the panel, beside the screen's own
-  bool own_size_ = false;     // the command line says how large the window is
-  std::unique_ptr<Gui> gui_;  // before its context goes, too
+  PanelSettings saved_settings_;  // the settings as saved in the file
+  double panel_scale_ = 1;        // scale of the panel relative to the screen's own
+  bool fixed_size_ = false;       // the command line sets the window's size
+  std::unique_ptr<Gui> gui_;      // destroyed before its context
   std::string scene_;
   EngineLink& link_;
   std::shared_ptr<const Snapshot> before_, now_;
-  double came_ = 0;      // when now_ was seen, s
-  double interval_ = 0;  // between the two, s
-  Orbit orbit_;          // while a hand moves it
-  Orbit home_;           // as it was at first
-  double moved_ = -1;    // when one did last, s
+  double snapshot_time_ = 0;      // time at which now_ was read, s
+  double interval_ = 0;           // time between before_ and now_, s
+  Orbit orbit_;                   // used while the mouse moves the camera
+  Orbit initial_view_;            // default view, of the first snapshot
+  double camera_move_time_ = -1;  // time of the last camera movement, s
   FramePace pace_;
-  std::shared_ptr<const Snapshot> seen_;  // at the last change
+  std::shared_ptr<const Snapshot> last_seen_;  // at the last visible change
   int seen_width_ = 0;
   int seen_height_ = 0;
-  double told_ = 0;
-  double shaders_looked_ = 0;
-  int pictures_ = 0;  // since told_
+  double title_time_ = 0;
+  double shader_check_time_ = 0;
+  int frames_ = 0;  // since title_time_
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A walk over both, name by name.
+// Matches the components of address and pattern in parallel, with backtracking for `//`.
 #include "base/address.h"
 
 #include <span>
@@ -10,9 +10,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostTries = 2000;
+constexpr int kMaxAttempts = 2000;
 
-// an empty name in the pattern (`//`) stands for any depth
+// An empty component of the pattern (`//`) matches any number of components.
 bool pieces_match(std::span<const std::string_view> pattern, std::span<const std::string_view> address, int& budget) {
   if (--budget < 0) return false;
   if (pattern.empty()) return address.empty();
@@ -32,7 +32,7 @@ bool address_matches(std::string_view pattern, std::string_view address) {
   if (pattern.empty() || address.empty()) return false;
   const auto pattern_pieces = split(pattern.substr(1), '/');
   const auto address_pieces = split(address.substr(1), '/');
-  int budget = kMostTries;
+  int budget = kMaxAttempts;
   return pieces_match(pattern_pieces, address_pieces, budget);
 }
 

@@ -1,4 +1,4 @@
-// AddressSpace: stretches of addresses from the system, and the size of its pages, which is 4, 16 or 64 KiB on arm64.
+// AddressSpace: reserves and commits virtual memory for arenas, and reports the page size (4, 16 or 64 KiB on arm64).
 #pragma once
 
 #include <cstddef>
@@ -6,30 +6,31 @@
 
 namespace limber {
 
-/// What an arena asks of the system. Tests replace it to simulate other pages and other layouts of addresses. [any]
+/// The virtual memory functions that an arena uses. Tests override it to simulate other page sizes and address layouts.
+/// [any]
 class AddressSpace {
  public:
-  /// LuaJIT has 47 bits for an address. A system whose addresses have 48 or more gives higher ones unless it is asked
+  /// LuaJIT can only use addresses below 2^47. A system with larger addresses returns higher ones unless a hint asks
   /// for a lower one.
   static constexpr std::uintptr_t kEnd = std::uintptr_t{1} << 47;
 
   virtual ~AddressSpace() = default;
   static AddressSpace& of_system();
 
-  /// Bytes of a page.
-  virtual std::size_t page() const;
-  /// A stretch that begins at a page and ends below kEnd, without access to its memory. Null: there is none.
+  /// Returns the page size in bytes.
+  virtual std::size_t page_size() const;
+  /// Reserves a page-aligned address range that ends below kEnd, without access to its memory. Null on failure.
   std::byte* reserve(std::size_t size);
-  /// Gives access to memory that begins at a page. False: the system has no more.
-  virtual bool open(std::byte* begin, std::size_t size);
+  /// Commits memory, which must be page-aligned. False if the system has no memory left.
+  virtual bool commit(std::byte* begin, std::size_t size);
   virtual void release(std::byte* begin, std::size_t size);
 
  protected:
-  /// A new stretch, at `wish` if the system can; null: there is none.
-  virtual std::byte* map(std::uintptr_t wish, std::size_t size);
+  /// Reserves an address range, at `hint` if possible (0: anywhere). Null on failure.
+  virtual std::byte* map(std::uintptr_t hint, std::size_t size);
 };
 
-/// The place at or after this one where a page begins.
-std::byte* next_page(std::byte* place, std::size_t page);
+/// Rounds an address up to a multiple of `alignment` bytes.
+std::byte* align_up(std::byte* address, std::size_t alignment);
 
 }  // namespace limber

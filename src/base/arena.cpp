@@ -1,5 +1,5 @@
-// Chunks of 16 KiB: each has blocks of one size, or is part of a run that is one large block. Lists of chunks with room
-// by size; what is empty is given back to all.
+// Size-class allocator: chunks of 16 KiB contain blocks of one size class, or form a run of chunks for a large block.
+// Each size class has a list of chunks with free blocks; empty chunks return to the pool of free chunks.
 #include "base/arena.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "base/sanitized.h"
 #include "base/system/virtual_memory.h"
 
-#ifdef LIMBER_WATCHES_ADDRESSES
+#ifdef LIMBER_ADDRESS_SANITIZER
 #include <sanitizer/lsan_interface.h>
 #endif
 
@@ -20,61 +20,61 @@ namespace {
 
 constexpr std::size_t kChunk = 16384;
 constexpr std::size_t kGrain = 16;
-constexpr std::size_t kFine = 512;      // up to here a size for each grain
-constexpr std::size_t kLargest = 4096;  // of a block in a chunk with others
-constexpr std::uint32_t kFineKinds = kFine / kGrain;
-constexpr std::uint32_t kSteps = 4;  // sizes between two powers of two
-constexpr std::uint32_t kKinds = kFineKinds + 3 * kSteps + 1;
-constexpr std::uint32_t kFree = 0;  // a chunk that nobody has; kinds are from 1 on
-constexpr std::uint32_t kRun = kKinds + 1;
-constexpr std::uint32_t kInRun = kKinds + 2;
+constexpr std::size_t kMaxFineSize = 512;    // size classes are multiples of kGrain up to this size
+constexpr std::size_t kMaxClassSize = 4096;  // larger blocks get a run of chunks
+constexpr std::uint32_t kFineClasses = kMaxFineSize / kGrain;
+constexpr std::uint32_t kClassesPerOctave = 4;  // size classes per power of two above kMaxFineSize
+constexpr std::uint32_t kSizeClasses = kFineClasses + 3 * kClassesPerOctave + 1;
+constexpr std::uint32_t kFree = 0;  // a free chunk; size classes begin at 1
+constexpr std::uint32_t kRun = kSizeClasses + 1;
+constexpr std::uint32_t kInRun = kSizeClasses + 2;
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-// Pages of this size are asked for, but not for the first of them: what walks a large world once a step then finds its
-// places sooner, and a small one takes no more than it needs.
+// Requests large pages, except for the first 2 MiB: a large world then has fewer TLB misses, and a small one uses no
+// more memory than it needs.
 constexpr std::size_t kLargePage = std::size_t{2} << 20;
 
-// 1 .. kKinds
-std::uint32_t kind_of(std::size_t size) {
-  if (size <= kFine) return size == 0 ? 1 : static_cast<std::uint32_t>((size + kGrain - 1) / kGrain);
+// Returns the size class, 1 .. kSizeClasses.
+std::uint32_t size_class_of(std::size_t size) {
+  if (size <= kMaxFineSize) return size == 0 ? 1 : static_cast<std::uint32_t>((size + kGrain - 1) / kGrain);
   const auto power = static_cast<std::uint32_t>(std::bit_width(size - 1) - 1);  // 9 .. 11
   const auto step = static_cast<std::uint32_t>((size - 1 - (std::size_t{1} << power)) >> (power - 2));
-  return kFineKinds + (power - 9) * kSteps + step + 1;
+  return kFineClasses + (power - 9) * kClassesPerOctave + step + 1;
 }
 
-constexpr std::size_t size_of(std::uint32_t kind) {
-  if (kind <= kFineKinds) return kind * kGrain;
-  const std::uint32_t at = kind - kFineKinds - 1;
-  const std::size_t power = std::size_t{1} << (9 + at / kSteps);
-  return power + (at % kSteps + 1) * (power / kSteps);
+constexpr std::size_t class_size(std::uint32_t kind) {
+  if (kind <= kFineClasses) return kind * kGrain;
+  const std::uint32_t at = kind - kFineClasses - 1;
+  const std::size_t power = std::size_t{1} << (9 + at / kClassesPerOctave);
+  return power + (at % kClassesPerOctave + 1) * (power / kClassesPerOctave);
 }
 
 }  // namespace
 
 struct Arena::Chunk {
-  void* free = nullptr;  // blocks that were given back, each leads to the next
-  std::uint32_t next = kNone, before = kNone;
+  void* free_list = nullptr;  // linked list of free blocks
+  std::uint32_t next = kNone, previous = kNone;
   std::uint32_t kind = kFree;
-  std::uint32_t length = 0;  // chunks of a run
-  std::uint16_t fresh = 0;   // blocks that nobody had yet begin behind so many
+  std::uint32_t length = 0;        // chunks of a run
+  std::uint16_t first_unused = 0;  // blocks from this index on were never used
   std::uint16_t used = 0;
-  std::uint32_t spare = 0;
+  std::uint32_t padding = 0;
 };
 
 struct Arena::Head {
-  std::array<std::uint32_t, kKinds + 1> open{};  // by kind: the first chunk with room
-  std::uint32_t count = 0;                       // chunks that were ever used
-  std::uint32_t lowest = 0;                      // no chunk before this one is free
-  std::uint32_t ready = 0;                       // chunks whose memory may be touched
+  std::array<std::uint32_t, kSizeClasses + 1> open{};  // by size class: the first chunk with free blocks
+  std::uint32_t count = 0;                             // chunks that were ever used
+  std::uint32_t first_free = 0;                        // no chunk before this one is free
+  std::uint32_t committed = 0;                         // chunks with committed memory
 };
 
 namespace {
 
 constexpr std::size_t kHeadSize = 4096;
 
-// What blocks of an arena point to has an owner: the leak sanitizer looks at them, too.
-void show_to_leak_search([[maybe_unused]] void* begin, [[maybe_unused]] bool shown) {
-#ifdef LIMBER_WATCHES_ADDRESSES
-  (shown ? __lsan_register_root_region : __lsan_unregister_root_region)(begin, Arena::kReserve);
+// Makes the leak sanitizer scan the arena for pointers to memory outside it.
+void set_leak_root([[maybe_unused]] void* begin, [[maybe_unused]] bool registered) {
+#ifdef LIMBER_ADDRESS_SANITIZER
+  (registered ? __lsan_register_root_region : __lsan_unregister_root_region)(begin, Arena::kReserve);
 #endif
 }
 
@@ -84,27 +84,27 @@ Arena::Arena(AddressSpace& space) : space_(space) {
   static_assert(sizeof(Head) <= kHeadSize && sizeof(Chunk) == 32);
   std::byte* const begin = space.reserve(kReserve);
   if (begin == nullptr) return;
-  // memory is committed from the start of a page on, so the data begin at one
+  // Memory is committed in whole pages, so the data must be page-aligned.
   constexpr std::size_t kTable = (kReserve / kChunk * sizeof(Chunk) + kHeadSize + kChunk - 1) / kChunk * kChunk;
-  std::byte* const data = next_page(begin + kTable, space.page());
-  if (!space.open(begin, static_cast<std::size_t>(data - begin))) {
+  std::byte* const data = align_up(begin + kTable, space.page_size());
+  if (!space.commit(begin, static_cast<std::size_t>(data - begin))) {
     space.release(begin, kReserve);
     return;
   }
-  show_to_leak_search(begin, true);
+  set_leak_root(begin, true);
   head_ = new (begin) Head;
   head_->open.fill(kNone);
   chunks_ = reinterpret_cast<Chunk*>(begin + kHeadSize);
   data_ = data;
-  std::byte* const large = next_page(data_ + kLargePage, kLargePage);
-  // a wish: without it all is the same
+  std::byte* const large = align_up(data_ + kLargePage, kLargePage);
+  // A hint: failure has no consequences.
   system::prefer_large_pages(large, static_cast<std::size_t>(begin + kReserve - large));
 }
 
 Arena::~Arena() {
   if (head_ == nullptr) return;
   auto* const begin = reinterpret_cast<std::byte*>(head_);
-  show_to_leak_search(begin, false);
+  set_leak_root(begin, false);
   space_.release(begin, kReserve);
 }
 
@@ -116,27 +116,27 @@ std::uint32_t Arena::chunk_of(const void* block) const {
 
 void Arena::link(std::uint32_t chunk) {
   std::uint32_t& first = head_->open[chunks_[chunk].kind];
-  chunks_[chunk].before = kNone;
+  chunks_[chunk].previous = kNone;
   chunks_[chunk].next = first;
-  if (first != kNone) chunks_[first].before = chunk;
+  if (first != kNone) chunks_[first].previous = chunk;
   first = chunk;
 }
 
 void Arena::unlink(std::uint32_t chunk) {
   const Chunk& c = chunks_[chunk];
-  if (c.before != kNone) {
-    chunks_[c.before].next = c.next;
+  if (c.previous != kNone) {
+    chunks_[c.previous].next = c.next;
   } else {
     head_->open[c.kind] = c.next;
   }
-  if (c.next != kNone) chunks_[c.next].before = c.before;
+  if (c.next != kNone) chunks_[c.next].previous = c.previous;
 }
 
-// so many in a row; kNone: there are none
-std::uint32_t Arena::take_chunks(std::uint32_t count) {
+// Returns the first of `count` consecutive free chunks, or kNone.
+std::uint32_t Arena::allocate_chunks(std::uint32_t count) {
   Head& head = *head_;
-  while (head.lowest < head.count && chunks_[head.lowest].kind != kFree) head.lowest++;
-  std::uint32_t first = head.lowest;
+  while (head.first_free < head.count && chunks_[head.first_free].kind != kFree) head.first_free++;
+  std::uint32_t first = head.first_free;
   std::uint32_t found = 0;
   for (std::uint32_t at = first; at < head.count && found < count; at++) {
     if (chunks_[at].kind == kFree) {
@@ -147,27 +147,28 @@ std::uint32_t Arena::take_chunks(std::uint32_t count) {
     }
   }
   const std::uint32_t end = first + count;
-  const std::size_t most = (kReserve - static_cast<std::size_t>(data_ - reinterpret_cast<std::byte*>(head_))) / kChunk;
-  if (end > most) return kNone;
-  if (end > head.ready) {
-    // commits up to the end of a large page, which the system provides as a whole; the next commit begins there
-    const auto whole = static_cast<std::size_t>(next_page(data_of(end), kLargePage) - data_);
-    const auto ready = static_cast<std::uint32_t>(std::min(most, (whole + kChunk - 1) / kChunk));
-    if (!space_.open(data_of(head.ready), std::size_t{ready - head.ready} * kChunk)) return kNone;
-    head.ready = ready;
+  const std::size_t max_chunks =
+      (kReserve - static_cast<std::size_t>(data_ - reinterpret_cast<std::byte*>(head_))) / kChunk;
+  if (end > max_chunks) return kNone;
+  if (end > head.committed) {
+    // Commits up to the end of a large page, which the system provides as a whole.
+    const auto page_end = static_cast<std::size_t>(align_up(data_of(end), kLargePage) - data_);
+    const auto committed = static_cast<std::uint32_t>(std::min(max_chunks, (page_end + kChunk - 1) / kChunk));
+    if (!space_.commit(data_of(head.committed), std::size_t{committed - head.committed} * kChunk)) return kNone;
+    head.committed = committed;
   }
   for (std::uint32_t at = head.count; at < end; at++) new (&chunks_[at]) Chunk;
   head.count = std::max(head.count, end);
   return first;
 }
 
-void Arena::give_chunks(std::uint32_t first, std::uint32_t count) {
+void Arena::free_chunks(std::uint32_t first, std::uint32_t count) {
   for (std::uint32_t at = first; at < first + count; at++) chunks_[at] = Chunk{};
-  head_->lowest = std::min(head_->lowest, first);
+  head_->first_free = std::min(head_->first_free, first);
 }
 
 bool Arena::open_chunk(std::uint32_t kind) {
-  const std::uint32_t chunk = take_chunks(1);
+  const std::uint32_t chunk = allocate_chunks(1);
   if (chunk == kNone) return false;
   chunks_[chunk].kind = kind;
   link(chunk);
@@ -177,7 +178,7 @@ bool Arena::open_chunk(std::uint32_t kind) {
 void* Arena::allocate_run(std::size_t size) {
   if (size > kReserve) return nullptr;
   const auto count = static_cast<std::uint32_t>((size + kChunk - 1) / kChunk);
-  const std::uint32_t first = take_chunks(count);
+  const std::uint32_t first = allocate_chunks(count);
   if (first == kNone) return nullptr;
   chunks_[first].kind = kRun;
   chunks_[first].length = count;
@@ -187,36 +188,37 @@ void* Arena::allocate_run(std::size_t size) {
 
 void* Arena::allocate(std::size_t size) {
   if (head_ == nullptr) return nullptr;
-  if (size > kLargest) return allocate_run(size);
-  const std::uint32_t kind = kind_of(size);
+  if (size > kMaxClassSize) return allocate_run(size);
+  const std::uint32_t kind = size_class_of(size);
   if (head_->open[kind] == kNone && !open_chunk(kind)) return nullptr;
   const std::uint32_t number = head_->open[kind];
   Chunk& chunk = chunks_[number];
-  const std::size_t bytes = size_of(kind);
-  void* block = chunk.free;
+  const std::size_t bytes = class_size(kind);
+  void* block = chunk.free_list;
   if (block != nullptr) {
-    chunk.free = *static_cast<void**>(block);
+    chunk.free_list = *static_cast<void**>(block);
   } else {
-    block = data_of(number) + chunk.fresh++ * bytes;
+    block = data_of(number) + chunk.first_unused++ * bytes;
   }
   chunk.used++;
-  if (chunk.free == nullptr && (chunk.fresh + std::size_t{1}) * bytes > kChunk) unlink(number);
+  if (chunk.free_list == nullptr && (chunk.first_unused + std::size_t{1}) * bytes > kChunk) unlink(number);
   return block;
 }
 
 void Arena::free(void* block) {
   const std::uint32_t number = chunk_of(block);
   Chunk& chunk = chunks_[number];
-  if (chunk.kind == kRun) return give_chunks(number, chunk.length);
-  const bool was_full = chunk.free == nullptr && (chunk.fresh + std::size_t{1}) * size_of(chunk.kind) > kChunk;
-  *static_cast<void**>(block) = chunk.free;
-  chunk.free = block;
+  if (chunk.kind == kRun) return free_chunks(number, chunk.length);
+  const bool was_full =
+      chunk.free_list == nullptr && (chunk.first_unused + std::size_t{1}) * class_size(chunk.kind) > kChunk;
+  *static_cast<void**>(block) = chunk.free_list;
+  chunk.free_list = block;
   chunk.used--;
   if (was_full) link(number);
-  // the last with room stays, so that a block that comes and goes moves no chunks
-  if (chunk.used > 0 || (chunk.next == kNone && chunk.before == kNone)) return;
+  // Keep the last chunk of a size class, so that repeated allocate/free of one block does not free chunks.
+  if (chunk.used > 0 || (chunk.next == kNone && chunk.previous == kNone)) return;
   unlink(number);
-  give_chunks(number, 1);
+  free_chunks(number, 1);
 }
 
 void* Arena::resize(void* block, std::size_t before, std::size_t after) {
@@ -226,40 +228,40 @@ void* Arena::resize(void* block, std::size_t before, std::size_t after) {
   }
   if (block == nullptr) return allocate(after);
   const Chunk& chunk = chunks_[chunk_of(block)];
-  const std::size_t room = chunk.kind == kRun ? chunk.length * kChunk : size_of(chunk.kind);
-  // in its place where it fits and wastes less than half
-  if (after <= room && (after > room / 2 || room <= kGrain)) return block;
+  const std::size_t capacity = chunk.kind == kRun ? chunk.length * kChunk : class_size(chunk.kind);
+  // Stays in place if it fits and wastes less than half.
+  if (after <= capacity && (after > capacity / 2 || capacity <= kGrain)) return block;
   void* const moved = allocate(after);
-  if (moved == nullptr) return after <= room ? block : nullptr;
+  if (moved == nullptr) return after <= capacity ? block : nullptr;
   std::memcpy(moved, block, std::min(before, after));
   free(block);
   return moved;
 }
 
-void Arena::copy(PageStore& pages, const PageStore::Image* before, PageStore::Image& out) const {
+void Arena::capture(PageStore& pages, const PageStore::PageList* before, PageStore::PageList& out) const {
   out.clear();
   if (head_ == nullptr) return;
   const auto* const head = reinterpret_cast<const std::byte*>(head_);
   pages.append(out, {head, kHeadSize + head_->count * sizeof(Chunk)}, before);
   for (std::uint32_t at = 0; at < head_->count; at++) {
     if (chunks_[at].kind == kFree) {
-      pages.append_none(out, kChunk);
+      pages.append_placeholders(out, kChunk);
     } else {
       pages.append(out, {data_of(at), kChunk}, before);
     }
   }
 }
 
-void Arena::bring_back(const PageStore& pages, const PageStore::Image& image) {
-  if (head_ == nullptr || image.empty()) return;
-  // what may be touched stays so
-  const std::uint32_t ready = head_->ready;
+void Arena::restore(const PageStore& pages, const PageStore::PageList& copy) {
+  if (head_ == nullptr || copy.empty()) return;
+  // Committed memory stays committed.
+  const std::uint32_t committed = head_->committed;
   auto* const head = reinterpret_cast<std::byte*>(head_);
-  std::size_t at = pages.copy_back(image, 0, {head, kHeadSize});
-  at = pages.copy_back(image, at, {head + kHeadSize, head_->count * sizeof(Chunk)});
-  head_->ready = ready;
+  std::size_t at = pages.restore(copy, 0, {head, kHeadSize});
+  at = pages.restore(copy, at, {head + kHeadSize, head_->count * sizeof(Chunk)});
+  head_->committed = committed;
   for (std::uint32_t chunk = 0; chunk < head_->count; chunk++) {
-    at = pages.copy_back(image, at, {data_of(chunk), kChunk});
+    at = pages.restore(copy, at, {data_of(chunk), kChunk});
   }
 }
 

@@ -1,4 +1,4 @@
-// Where a failed CHECK goes.
+// Reports failed checks to the hook or the log.
 #include "base/check.h"
 
 #include "base/log.h"
@@ -11,10 +11,10 @@ std::atomic<CheckHook> hook{nullptr};
 
 void set_check_hook(CheckHook h) { hook.store(h); }
 
-void detail::check_failed(const char* condition, const char* file, int line, std::atomic<bool>& said) {
+void detail::check_failed(const char* condition, const char* file, int line, std::atomic<bool>& reported) {
   if (const CheckHook h = hook.load()) return h(condition, file, line);
-  if (said.exchange(true)) return;
-  log_error("a fault of limber's own at {}:{}: '{}' does not hold; please report it", file, line, condition);
+  if (reported.exchange(true)) return;
+  log_error("internal error at {}:{}: the check '{}' failed. Please report this", file, line, condition);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Files that the build puts inside the program: the prelude, the annotations, the templates, the panel.
+// Files that are embedded in the executable: the prelude, the annotations, the templates, the web panel.
 #pragma once
 
 #include <span>
@@ -7,11 +7,11 @@
 namespace limber {
 
 struct EmbeddedFile {
-  std::string_view name;  ///< Its path below the folder that was embedded.
-  std::string_view text;  ///< Its whole text, for the life of the program.
+  std::string_view name;  ///< Path relative to the embedded folder.
+  std::string_view text;  ///< Contents; valid until the program exits.
 };
 
-/// The file of that name, else null. [any]
+/// Returns the file of that name, or null. [any]
 inline const EmbeddedFile* find_embedded(std::span<const EmbeddedFile> files, std::string_view name) {
   for (const EmbeddedFile& file : files) {
     if (file.name == name) return &file;

@@ -1,4 +1,4 @@
-// Evaluation: what came of a text that somebody at a console gave to the running scene.
+// Evaluation: the result of code or a completion request that a console sent to the running scene.
 #pragma once
 
 #include <cstddef>
@@ -9,20 +9,20 @@ namespace limber {
 
 struct Evaluation {
   enum class Kind : std::uint8_t {
-    done,        ///< It ran and has no value.
-    value,       ///< `text` shows its value, or its values with tabs between.
-    error,       ///< `text`: console:line: what, the source line, the way there. What ran before the error stays done.
-    incomplete,  ///< The text may become a chunk when more is written; nothing was run.
-    names,       ///< `text`: words that may stand at the end of the text, one a line, sorted.
+    done,        ///< The code ran and returned nothing.
+    value,       ///< `text`: the returned values, separated by tabs.
+    error,       ///< `text`: console:line: message, source line, traceback. Effects before the error remain.
+    incomplete,  ///< The code is incomplete and may continue on the next line; nothing was run.
+    names,       ///< `text`: completions of the last word, one per line, sorted.
   };
   Kind kind = Kind::done;
   std::string text;
-  std::size_t word = 0;          ///< Of `names`: bytes at the text's end that they would replace.
-  std::uint64_t log_before = 0;  ///< Lines of the log after this one,
-  std::uint64_t log_after = 0;   ///< up to this one, came while it ran: what it printed.
+  std::size_t word = 0;          ///< For `names`: length in bytes of the word that the completions replace.
+  std::uint64_t log_before = 0;  ///< Log lines after this number,
+  std::uint64_t log_after = 0;   ///< up to and including this one, were written while the code ran.
 };
 
-/// Longest text that is evaluated, and longest that is answered, bytes.
-inline constexpr std::size_t kMostEvaluated = 65536;
+/// Maximum length of the code and of the result, in bytes.
+inline constexpr std::size_t kMaxEvaluatedBytes = 65536;
 
 }  // namespace limber

@@ -25,14 +25,14 @@ using detail::with_sign;
 bool is_arithmetic_exact() {
   // Reads from volatile variables keep the compiler from evaluating this at compile time.
   volatile double near_one = 1 + 0x1p-30;
-  volatile double least = std::numeric_limits<double>::min();
+  volatile double min_normal = std::numeric_limits<double>::min();
   volatile double half_digit = 0x1p-53;
   const double a = near_one;
   const double b = -(1 + 0x1p-29);
   // The rounded square of a is -b; the exact one is larger.
   const bool is_contracted = a * a + b != 0;
-  const double half = least * 0.5;
-  const bool flushes = half == 0 || half * 2 != least;
+  const double half = min_normal * 0.5;
+  const bool flushes = half == 0 || half * 2 != min_normal;
   const double up = 1 + half_digit;
   const double down = -1 - half_digit;
   const double odd = (1 + 0x1p-52) + half_digit;

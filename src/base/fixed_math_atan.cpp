@@ -88,22 +88,22 @@ double atan2_special(double y, double x) {
 }
 
 inline bool is_moderate(double size) {
-  constexpr double kLeast = 0x1p-500;
-  constexpr double kMost = 0x1p+500;
-  return bits_of(size) - bits_of(kLeast) < bits_of(kMost) - bits_of(kLeast);
+  constexpr double kMin = 0x1p-500;
+  constexpr double kMax = 0x1p+500;
+  return bits_of(size) - bits_of(kMin) < bits_of(kMax) - bits_of(kMin);
 }
 
 // Returns asin(x) - x for |x| <= 1/2 and z = x^2, by a minimax polynomial; the relative error of asin(x) is 2^-59. hi
 // is the upper part of the leading term x^3/6 and exact, so that rounding affects the small rest only.
 inline Sum asin_minus_argument(double x, double z) {
-  constexpr double kLead = 0x1.5555555555578p-3;
-  constexpr double kShortLead = 0x1.55p-3;                                       // 9 bits
+  constexpr double kLeadingCoefficient = 0x1.5555555555578p-3;
+  constexpr double kLeadingCoefficientHigh = 0x1.55p-3;                          // 9 bits
   const double x_top = from_bits(bits_of(x) & ~((std::uint64_t{1} << 39) - 1));  // 14 bits
   const double square = x_top * x_top;
-  const double lead_rest = kShortLead * ((x - x_top) * ((z + x * x_top) + square));
+  const double leading_term_low = kLeadingCoefficientHigh * ((x - x_top) * ((z + x * x_top) + square));
   const double z2 = z * z;
   const double z4 = z2 * z2;
-  const double p0 = (kLead - kShortLead) + z * 0x1.333333332df16p-4;
+  const double p0 = (kLeadingCoefficient - kLeadingCoefficientHigh) + z * 0x1.333333332df16p-4;
   const double p2 = 0x1.6db6db722b6bap-5 + z * 0x1.f1c71a8b9b3e5p-6;
   const double p4 = 0x1.6e8bdfe6582cdp-6 + z * 0x1.1c49de0ed236bp-6;
   const double p6 = 0x1.ca21424010f68p-7 + z * 0x1.7577a3b19cd04p-7;
@@ -111,7 +111,7 @@ inline Sum asin_minus_argument(double x, double z) {
   const double p10 = 0x1.64fe73ea36059p-6 + z * -0x1.59f110b6f02bfp-6;
   const double p12 = 0x1.0be295edded06p-5;
   const double p = (p0 + z2 * p2) + z4 * ((p4 + z2 * p6) + z4 * ((p8 + z2 * p10) + z4 * p12));
-  return {square * x_top * kShortLead, lead_rest + (x * z) * p};
+  return {square * x_top * kLeadingCoefficientHigh, leading_term_low + (x * z) * p};
 }
 
 // Returns asin(sqrt(w)) for 0 < w <= 1/4.

@@ -19,7 +19,7 @@ struct ExpTerms {
   double r;
 };
 
-/// Reduces x + x_low, whose rounded value is sum, for |x| < 1000 and |x_low| < 0.02 (Cody, Waite 1980).
+/// Reduces x + x_low, which is sum when rounded, for |x| < 1000 and |x_low| < 0.02 (Cody, Waite 1980).
 inline ExpTerms exp_terms(double x, double x_low, double sum) {
   // ln2/128 in two parts. Products of the first with integers up to 2^19 are exact.
   constexpr double kStep1 = 0x1.62e42fef8p-8;

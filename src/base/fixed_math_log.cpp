@@ -21,7 +21,7 @@ using detail::magnitude;
 using detail::Sum;
 using detail::upper_half;
 
-constexpr std::uint64_t kLeastNormal = std::uint64_t{1} << 52;
+constexpr std::uint64_t kMinNormalBits = std::uint64_t{1} << 52;
 
 // The parts of log x = e ln2 + log of the entry + log(1 + r + r_low). e * kLn2, log_high of the entry and r are
 // multiples of 2^-42 below 2^10, so that their sums are exact.
@@ -73,7 +73,7 @@ inline Sum log_sum(const LogTerms& t) {
 // Sets `bits` for log_terms() and returns true, or returns false and sets `result` if the logarithm is not finite.
 inline bool has_finite_log(double x, std::uint64_t& bits, double& result) {
   bits = bits_of(x);
-  if (bits - kLeastNormal < kInfinityBits - kLeastNormal) return true;
+  if (bits - kMinNormalBits < kInfinityBits - kMinNormalBits) return true;
   if (magnitude(x) == 0) {
     result = -kInfinity;
   } else if (x != x || x < 0) {
@@ -135,7 +135,7 @@ double pow_of_negative_or_special(double x, double y) {
   if (x_size == 1 || y_size < 0x1p-65) return sign;
   if (y_size >= 0x1p63) return sign * ((x_size > 1) == (y > 0) ? kInfinity : 0);
   std::uint64_t bits = bits_of(x_size);
-  if (bits < kLeastNormal) bits = bits_of(x_size * 0x1p52) - (std::uint64_t{52} << 52);
+  if (bits < kMinNormalBits) bits = bits_of(x_size * 0x1p52) - (std::uint64_t{52} << 52);
   return sign * pow_common(bits, y);
 }
 
@@ -169,7 +169,7 @@ double log10(double x) {
 double pow(double x, double y) {
   const std::uint64_t x_bits = bits_of(x);
   const std::uint64_t y_bits = bits_of(magnitude(y));
-  if (x_bits - kLeastNormal < kInfinityBits - kLeastNormal &&
+  if (x_bits - kMinNormalBits < kInfinityBits - kMinNormalBits &&
       y_bits - bits_of(0x1p-65) < bits_of(0x1p63) - bits_of(0x1p-65)) {
     return pow_common(x_bits, y);
   }

@@ -64,7 +64,7 @@ Sum radians_of(const std::uint64_t (&fraction)[4]) {
   return fast_sum(main.hi, main.lo + (turn.hi * kTwoPiLow + turn.lo * kTwoPi));
 }
 
-// Reduces any |x| >= 2^-6 (Payne, Hanek 1983): computes 256 bits of the fraction of x / (2 pi), whose integer part is
+// Reduces any |x| >= 2^-6 (Payne, Hanek 1983): computes 256 bits of the fraction of x / (2 pi); the integer part is
 // irrelevant. The absolute error of 2^-200 is small also for the doubles nearest to a multiple of pi/64, at about
 // 2^-66.
 ReducedAngle reduce_large(double x) {

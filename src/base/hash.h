@@ -1,4 +1,4 @@
-// Hashes: of texts and files, and of the numbers that a state is made of. The same on every machine.
+// Hash functions for text, files and simulation state. The results are the same on all machines.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace limber {
 
-/// One step of splitmix64 (Steele, Lea, Flood 2014): spreads a seed over all 64 bits.
+/// One step of the generator splitmix64 (Steele, Lea, Flood 2014): advances the state and returns 64 mixed bits.
 constexpr std::uint64_t splitmix64(std::uint64_t& state) {
   state += 0x9e3779b97f4a7c15u;
   std::uint64_t z = state;
@@ -18,21 +18,22 @@ constexpr std::uint64_t splitmix64(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
-/// 64-bit FNV-1a over bytes; `start` chains several.
+/// Returns the 64-bit FNV-1a hash of the bytes. To hash several strings, pass the hash of the previous one as `start`.
 constexpr std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t start = 0xcbf29ce484222325u) {
   for (const char c : bytes) start = (start ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return start;
 }
 
-/// Hash of many numbers, bit by bit: some fifteen times as fast as hash_bytes, as four lanes take turns and no
-/// multiplication waits for the one before. Each step can be undone, so one number that differs is always seen.
+/// Hashes the bits of many numbers, about fifteen times as fast as hash_bytes(): four independent states are updated in
+/// turn, so that multiplications overlap. Each step is invertible, so a single different number always changes the
+/// hash.
 class NumberHash {
  public:
-  /// `start` chains several.
+  /// `start`: seed, such as the value of a previous hash.
   explicit constexpr NumberHash(std::uint64_t start)
       : a_(splitmix64(start)), b_(splitmix64(start)), c_(splitmix64(start)), d_(splitmix64(start)) {}
 
-  /// Numbers in their order; the first goes into the first lane.
+  /// Adds the numbers in order, beginning with the first state.
   constexpr void add(std::span<const double> numbers) {
     std::size_t i = 0;
     for (; i + 4 <= numbers.size(); i += 4) {
@@ -50,7 +51,7 @@ class NumberHash {
     mix(b_, b);
     mix(c_, c);
   }
-  /// A word, such as another hash.
+  /// Adds a word, such as another hash.
   constexpr void add_word(std::uint64_t word) { mix(d_, word); }
   constexpr void add(const std::array<std::uint64_t, 4>& words) {
     mix(a_, words[0]);
@@ -61,21 +62,21 @@ class NumberHash {
 
   constexpr std::uint64_t value() const {
     std::uint64_t hash = 0;
-    for (const std::uint64_t lane : {a_, b_, c_, d_}) {
-      hash ^= lane;
+    for (const std::uint64_t state : {a_, b_, c_, d_}) {
+      hash ^= state;
       hash = splitmix64(hash);
     }
     return hash;
   }
 
  private:
-  static constexpr void mix(std::uint64_t& lane, std::uint64_t word) {
-    lane = (lane ^ word) * 0x9fb21c651e98df25u;
-    lane ^= lane >> 32;
+  static constexpr void mix(std::uint64_t& state, std::uint64_t word) {
+    state = (state ^ word) * 0x9fb21c651e98df25u;
+    state ^= state >> 32;
   }
-  static constexpr void mix(std::uint64_t& lane, double number) { mix(lane, std::bit_cast<std::uint64_t>(number)); }
+  static constexpr void mix(std::uint64_t& state, double number) { mix(state, std::bit_cast<std::uint64_t>(number)); }
 
-  std::uint64_t a_, b_, c_, d_;  // by name: as an array they would be kept in memory
+  std::uint64_t a_, b_, c_, d_;  // an array would be stored in memory instead of registers
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Ids at borders: a slot and a generation. A stale id is an answer, not a crash.
+// NodeId: a generational index. A stale id is detected instead of referring to another node.
 #pragma once
 
 #include <compare>
@@ -6,13 +6,13 @@
 
 namespace limber {
 
-/// Names one node of the store. Slots are used again, generations never within a run.
+/// Identifies a node of the store. Slots are reused; a slot's generation never repeats within a run.
 struct NodeId {
   std::uint32_t slot = 0xffffffffu;
   std::uint32_t generation = 0;
 
   bool null() const { return slot == 0xffffffffu; }
-  // NOLINTNEXTLINE(modernize-use-nullptr): seen in the comparison that the compiler writes
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive in the generated comparison
   auto operator<=>(const NodeId&) const = default;
 };
 

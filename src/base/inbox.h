@@ -1,5 +1,5 @@
-// Inbox: many writers, one reader, bounded in items and in bytes. What does not fit is counted. The lock is held for a
-// push or a swap only.
+// BoundedQueue: a queue with many writers and one reader, limited in items and bytes. Items that exceed the limits are
+// dropped and counted. The lock is held for a push or a swap only.
 #pragma once
 
 #include <atomic>
@@ -11,26 +11,26 @@
 
 namespace limber {
 
-/// Where there is a function weight_of(const T&), it says an item's bytes; else an item weighs what its type does.
+/// The size of an item in bytes is weight_of(const T&) if that function exists, else sizeof(T).
 template <class T>
-class Inbox {
+class BoundedQueue {
  public:
-  explicit Inbox(std::size_t capacity, std::size_t bytes = SIZE_MAX) : capacity_(capacity), most_bytes_(bytes) {}
+  explicit BoundedQueue(std::size_t capacity, std::size_t bytes = SIZE_MAX) : capacity_(capacity), max_bytes_(bytes) {}
 
-  /// False when it is full: the item is dropped and counted. [any]
+  /// Adds the item. If the queue is full, drops and counts it and returns false. [any]
   bool push(T item) {
-    const std::size_t weight = weigh(item);
+    const std::size_t size = item_bytes(item);
     const std::scoped_lock lock(mutex_);
-    if (items_.size() >= capacity_ || weight > most_bytes_ - bytes_) {
+    if (items_.size() >= capacity_ || size > max_bytes_ - bytes_) {
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return false;
     }
     items_.push_back(std::move(item));
-    bytes_ += weight;
+    bytes_ += size;
     return true;
   }
 
-  /// Swaps what has come into `out` (cleared first, its memory reused). [the reader]
+  /// Moves all items to `out`, which is cleared first; its memory is reused. [the reader]
   void drain(std::vector<T>& out) {
     out.clear();
     const std::scoped_lock lock(mutex_);
@@ -41,7 +41,7 @@ class Inbox {
   std::uint64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  static std::size_t weigh(const T& item) {
+  static std::size_t item_bytes(const T& item) {
     if constexpr (requires { weight_of(item); }) {
       return weight_of(item);
     } else {
@@ -52,7 +52,7 @@ class Inbox {
   std::mutex mutex_;
   std::vector<T> items_;
   std::size_t capacity_;
-  std::size_t most_bytes_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::atomic<std::uint64_t> dropped_{0};
 };

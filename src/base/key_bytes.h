@@ -1,5 +1,6 @@
-// KeyBytes: values one after the other in memory, to be brought back later. One function lists them for both ways, so
-// that what is taken is what is brought back.
+// Archive: saves values to a byte buffer and loads them again. One serialize() function per type serves both
+// directions, so that both have the same order. Loading does not check bounds: the bytes must come from the same
+// functions of this program.
 #pragma once
 
 #include <cstddef>
@@ -12,57 +13,57 @@
 
 namespace limber {
 
-class KeyBytes {
+class Archive {
  public:
-  /// From here on pass() takes values, over those of before.
-  void begin_taking() {
+  /// Starts saving: clears the buffer; serialize() appends to it.
+  void begin_saving() {
     bytes_.clear();
-    bringing_ = false;
+    loading_ = false;
   }
-  /// From here on pass() brings back what `bytes` has, in the same order.
-  void begin_bringing() {
-    at_ = 0;
-    bringing_ = true;
+  /// Starts loading: serialize() reads the values from the buffer in the same order.
+  void begin_loading() {
+    position_ = 0;
+    loading_ = true;
   }
-  bool bringing() const { return bringing_; }
-  /// How much was brought back.
-  std::size_t at() const { return at_; }
-  /// Only the first so many bytes stay; pass() takes values behind them.
-  void go_on_taking(std::size_t size) {
+  bool loading() const { return loading_; }
+  /// Number of bytes that were loaded.
+  std::size_t position() const { return position_; }
+  /// Truncates the buffer to `size` bytes and continues saving behind them.
+  void resume_saving(std::size_t size) {
     bytes_.resize(size);
-    bringing_ = false;
+    loading_ = false;
   }
-  /// Where all of it is; of that size before it is brought back.
+  /// The buffer. To load saved data, fill it before begin_loading().
   std::vector<std::byte>& bytes() { return bytes_; }
 
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void pass(T& value) { pass_raw(&value, sizeof value); }
+  void serialize(T& value) { serialize_raw(&value, sizeof value); }
   template <class T>
   requires std::is_trivially_copyable_v<T>
-  void pass(std::vector<T>& list) {
+  void serialize(std::vector<T>& list) {
     std::size_t count = list.size();
-    pass(count);
-    if (bringing_) list.resize(count);
-    pass_raw(list.data(), count * sizeof(T));
+    serialize(count);
+    if (loading_) list.resize(count);
+    serialize_raw(list.data(), count * sizeof(T));
   }
-  void pass(std::string& text) {
+  void serialize(std::string& text) {
     std::size_t size = text.size();
-    pass(size);
-    if (bringing_) text.resize(size);
-    pass_raw(text.data(), size);
+    serialize(size);
+    if (loading_) text.resize(size);
+    serialize_raw(text.data(), size);
   }
   template <class... T>
-  void pass_all(T&... values) {
-    (pass(values), ...);
+  void serialize_all(T&... values) {
+    (serialize(values), ...);
   }
 
  private:
-  void pass_raw(void* value, std::size_t size) {
+  void serialize_raw(void* value, std::size_t size) {
     if (size == 0) return;
-    if (bringing_) {
-      std::memcpy(value, bytes_.data() + at_, size);
-      at_ += size;
+    if (loading_) {
+      std::memcpy(value, bytes_.data() + position_, size);
+      position_ += size;
     } else {
       const auto* const from = static_cast<const std::byte*>(value);
       bytes_.insert(bytes_.end(), from, from + size);
@@ -70,8 +71,8 @@ class KeyBytes {
   }
 
   std::vector<std::byte> bytes_;
-  std::size_t at_ = 0;
-  bool bringing_ = false;
+  std::size_t position_ = 0;
+  bool loading_ = false;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Latest: one writer publishes finished values, readers hold what they read as long as they like.
+// Latest: publishes the newest value from one writer to many readers, which can keep a value as long as they need it.
 #pragma once
 
 #include <memory>
@@ -10,26 +10,26 @@ namespace limber {
 template <class T>
 class Latest {
  public:
-  /// The newest value, or null before the first. Shared and never changed again. [any]
+  /// Returns the newest value, or null before the first. It is shared and never modified while a reader has it. [any]
   std::shared_ptr<const T> read() const {
     const std::scoped_lock lock(mutex_);
     return newest_;
   }
 
-  /// A value to fill: one that nobody reads any more, else a new one. Holds old content. [the writer]
-  std::shared_ptr<T> spare() {
+  /// Returns a value to fill and publish: one without readers, with its old contents, or a new one. [the writer]
+  std::shared_ptr<T> acquire_buffer() {
     for (const std::shared_ptr<T>& value : pool_) {
-      std::shared_ptr<T> mine = value;
-      if (mine.use_count() != 2) continue;
-      // a look at the count orders nothing; one more change of it does: it comes after the last reader's release
-      const std::shared_ptr<T> acquired = mine;
-      return mine;
+      std::shared_ptr<T> buffer = value;
+      if (buffer.use_count() != 2) continue;
+      // use_count() is relaxed. Another increment synchronizes with the last reader's decrement.
+      const std::shared_ptr<T> acquired = buffer;
+      return buffer;
     }
     pool_.push_back(std::make_shared<T>());
     return pool_.back();
   }
 
-  /// [the writer]
+  /// Makes the value the newest one. [the writer]
   void publish(std::shared_ptr<T> value) {
     std::shared_ptr<const T> finished = std::move(value);
     const std::scoped_lock lock(mutex_);

@@ -33,8 +33,8 @@ LIMBER_LIBM_UNARY(cbrt)
 LIMBER_LIBM_BINARY(atan2)
 LIMBER_LIBM_BINARY(hypot)
 
-// LuaJIT's compiled code squares x for x ^ 2, while its interpreter calls pow(). Both must give the same bits, since
-// the addresses of code decide when a loop is compiled.
+// LuaJIT's compiled code computes x * x for x ^ 2, while its interpreter calls pow(). Both must give the same bits,
+// because the addresses of code influence when a loop is compiled.
 extern "C" double pow(double x, double y) noexcept { return y == 2 ? x * x : limber::fixed::pow(x, y); }
 extern "C" float powf(float x, float y) noexcept { return y == 2 ? x * x : limber::fixed::powf(x, y); }
 

@@ -1,4 +1,4 @@
-// The log's ring and its line to stderr.
+// The ring buffer of log lines, and the rate-limited output to stderr.
 #include "base/log.h"
 
 #include <algorithm>
@@ -17,24 +17,24 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kRing = 1000;
-constexpr std::size_t kMostText = 4096;  // of a line in the ring, bytes
+constexpr std::size_t kRingSize = 1000;
+constexpr std::size_t kMaxLineBytes = 4096;  // maximum length of a line in the ring, bytes
 
 struct Log {
   std::mutex mutex;
-  std::array<LogLine, kRing> ring;
+  std::array<LogLine, kRingSize> ring;
   std::uint64_t count = 0;
   std::array<std::uint64_t, 4> per_level{};
   bool to_stderr = true;
   LogThrottle throttle;
-  TokenBucket printed{kMostPrintedAtOnce, 1'000'000'000 / kMostPrintedPerSecond};
-  std::uint64_t unprinted = 0;         // in all
-  std::uint64_t unprinted_lately = 0;  // since the last line that was printed
+  TokenBucket printed{kMaxPrintBurst, 1'000'000'000 / kMaxPrintsPerSecond};
+  std::uint64_t suppressed_prints = 0;       // total
+  std::uint64_t suppressed_since_print = 0;  // since the last line that was printed
 };
 
-thread_local int silences = 0;
+thread_local int silence_depth = 0;
 
-// never destroyed: threads that are still there when the program ends may write
+// Never destroyed, because threads that still run when the program exits may write.
 Log& the_log() {
   static Log& log = *new Log;
   return log;
@@ -45,35 +45,35 @@ std::int64_t log_time() { return std::chrono::steady_clock::now().time_since_epo
 void add_to_ring(Log& log, LogLevel level, std::string_view shown) {
   log.count++;
   log.per_level[static_cast<std::size_t>(level)]++;
-  log.ring[log.count % kRing] = {log.count, level, shortened(shown, kMostText)};
+  log.ring[log.count % kRingSize] = {log.count, level, shortened(shown, kMaxLineBytes)};
 }
 
 }  // namespace
 
-LogSilence::LogSilence() { silences++; }
-LogSilence::~LogSilence() { silences--; }
+LogSilence::LogSilence() { silence_depth++; }
+LogSilence::~LogSilence() { silence_depth--; }
 
 void log_line(LogLevel level, std::string_view text, std::string_view source) {
-  if (silences > 0) return;
+  if (silence_depth > 0) return;
   const std::string shown = printable(text);
-  const auto of = static_cast<unsigned char>(level);
-  const std::uint64_t hash = (source.empty() ? log_source(shown) : hash_bytes(source)) ^ of;
+  const auto level_index = static_cast<unsigned char>(level);
+  const std::uint64_t hash = (source.empty() ? log_source(shown) : hash_bytes(source)) ^ level_index;
   Log& log = the_log();
-  std::optional<std::uint64_t> silent;
+  std::optional<std::uint64_t> suppressed;
   {
     const std::scoped_lock lock(log.mutex);
     add_to_ring(log, level, shown);
     if (!log.to_stderr || level == LogLevel::print) return;
-    silent = log.throttle.ask(hash, log_time(), output_is_live());
+    suppressed = log.throttle.admit(hash, log_time(), output_is_live());
   }
-  if (!silent) return;
-  const bool fault = level == LogLevel::error;
-  const char* mark = fault ? "error: " : level == LogLevel::warning ? "warning: " : "";
-  const MessageLevel severity = fault                        ? MessageLevel::error
+  if (!suppressed) return;
+  const bool is_error = level == LogLevel::error;
+  const char* label = is_error ? "error: " : level == LogLevel::warning ? "warning: " : "";
+  const MessageLevel severity = is_error                     ? MessageLevel::error
                                 : level == LogLevel::warning ? MessageLevel::warning
                                                              : MessageLevel::info;
-  const std::string more = *silent > 0 ? fmt::format(" (and {} more since the last one)", *silent) : "";
-  write_message(severity, fmt::format("{}{}{}", mark, shown, more));
+  const std::string more = *suppressed > 0 ? fmt::format(" (and {} more since the last one)", *suppressed) : "";
+  write_message(severity, fmt::format("{}{}{}", label, shown, more));
 }
 
 void log_print(std::string_view text, OutputTo to) {
@@ -82,17 +82,17 @@ void log_print(std::string_view text, OutputTo to) {
   std::uint64_t missing = 0;
   {
     const std::scoped_lock lock(log.mutex);
-    if (silences == 0) add_to_ring(log, LogLevel::print, shown);
-    if (output_is_live() && !log.printed.spend(log_time())) {
-      log.unprinted++;
-      log.unprinted_lately++;
+    if (silence_depth == 0) add_to_ring(log, LogLevel::print, shown);
+    if (output_is_live() && !log.printed.try_consume(log_time())) {
+      log.suppressed_prints++;
+      log.suppressed_since_print++;
       return;
     }
-    missing = std::exchange(log.unprinted_lately, 0);
+    missing = std::exchange(log.suppressed_since_print, 0);
   }
   if (missing > 0)
-    log_warning("print: {} line{} left out; at most {} a second are printed", missing, missing == 1 ? " is" : "s are",
-                kMostPrintedPerSecond);
+    log_warning("print: {} line{} dropped; at most {} per second are printed", missing,
+                missing == 1 ? " was" : "s were", kMaxPrintsPerSecond);
   write_print(to, text);
 }
 
@@ -102,18 +102,18 @@ void log_forget_sources() {
   log.throttle.forget_sources();
 }
 
-std::uint64_t log_left_out() {
+std::uint64_t log_suppressed() {
   Log& log = the_log();
   const std::scoped_lock lock(log.mutex);
-  return log.throttle.left_out() + log.unprinted;
+  return log.throttle.suppressed() + log.suppressed_prints;
 }
 
 std::vector<LogLine> log_since(std::uint64_t seen) {
   Log& log = the_log();
   const std::scoped_lock lock(log.mutex);
-  const std::uint64_t oldest = log.count > kRing ? log.count - kRing : 0;
+  const std::uint64_t oldest = log.count > kRingSize ? log.count - kRingSize : 0;
   std::vector<LogLine> lines;
-  for (std::uint64_t i = std::max(seen, oldest) + 1; i <= log.count; i++) lines.push_back(log.ring[i % kRing]);
+  for (std::uint64_t i = std::max(seen, oldest) + 1; i <= log.count; i++) lines.push_back(log.ring[i % kRingSize]);
   return lines;
 }
 

@@ -1,6 +1,7 @@
-// The log: lines to standard error, and the last thousand kept in a ring for the panel and consoles, with what scripts
-// print. The ring gets every line; standard error gets ten of each source, then one a minute (LogThrottle),
-// and in a show (OutputMode::live) all sources together 2000 lines at once and two a second.
+// The log: writes messages to standard error and keeps the last 1000 in a ring buffer for the panel and consoles,
+// together with the output of scripts' print(). The ring gets every line. Standard error gets ten lines of each source,
+// then one a minute (LogThrottle); in live mode (OutputMode::live), all sources together get at most 2000 lines at once
+// and two a second.
 #pragma once
 
 #include <cstdint>
@@ -18,47 +19,47 @@ enum class LogLevel : std::uint8_t {
   info,
   warning,
   error,
-  print,  ///< What a script printed: in the ring only, in the order of all that was said.
+  print,  ///< Output of a script's print(); goes to the ring only.
 };
 
 struct LogLine {
-  std::uint64_t number = 0;  ///< Counts from 1 over the run, so that a reader knows what it has seen.
+  std::uint64_t number = 0;  ///< Counts from 1 over the run, so that readers can ask for newer lines.
   LogLevel level = LogLevel::info;
   std::string text;
 };
 
-/// Writes one line to stderr and to the ring, `print` to the ring alone. Control characters are shown escaped; the ring
-/// keeps the beginning and the end of a line of more than 4 KiB. `source`: the place that the line is about
-/// ("scene.lua:12"); empty: log_source() of the text. [any]
+/// Writes one line to stderr and to the ring; level `print` goes to the ring only. Control characters are escaped; the
+/// ring stores the beginning and the end of a line longer than 4 KiB. `source`: the place that the line is about
+/// ("scene.lua:12"), for rate limiting; if empty, log_source() of the text. [any]
 void log_line(LogLevel level, std::string_view text, std::string_view source = {});
 
-/// Writes a line that a script printed: unchanged to `to`, and to the ring. In a show (OutputMode::live), `to` gets at
-/// most 2000 lines at once and 200 a second. [any]
+/// Writes a line of a script's print(): unchanged to `to`, and to the ring. In live mode (OutputMode::live), `to` gets
+/// at most 2000 lines at once and 200 a second. [any]
 void log_print(std::string_view text, OutputTo to);
-inline constexpr int kMostPrintedAtOnce = 2000;
-inline constexpr int kMostPrintedPerSecond = 200;
+inline constexpr int kMaxPrintBurst = 2000;
+inline constexpr int kMaxPrintsPerSecond = 200;
 
-/// A file of the scene was saved: its faults are new, and are written even if they repeat themselves. [any]
+/// Resets the rate limits of all sources. Called when a scene file was saved, since its errors are new then. [any]
 void log_forget_sources();
-/// Lines that `to` and stderr did not get because their source repeats itself. [any]
-std::uint64_t log_left_out();
+/// Returns the number of lines that the rate limits suppressed. [any]
+std::uint64_t log_suppressed();
 
-/// The lines after `seen`, oldest first; at most the last 1000. [any]
+/// Returns the lines after number `seen`, oldest first, at most the last 1000. [any]
 std::vector<LogLine> log_since(std::uint64_t seen);
 
-/// The number of the newest line; 0 before the first. [any]
+/// Returns the number of the newest line, 0 before the first. [any]
 std::uint64_t log_newest();
 
-/// How many warnings and errors were said so far: `--strict` and tests ask. [any]
+/// Returns the number of lines of that level so far, for `--strict` and tests. [any]
 std::uint64_t log_count(LogLevel level);
 
-/// Behind a file's name: its faults that were said before are no more.
-inline constexpr std::string_view kMended = ": mended";
+/// Follows a file's name in the message that its earlier errors are resolved.
+inline constexpr std::string_view kResolvedSuffix = ": errors resolved";
 
-/// Silences stderr (the ring still hears): for tests and `--quiet`. [any]
+/// Enables or disables output to stderr, for tests and `--quiet`. The ring still gets all lines. [any]
 void log_to_stderr(bool on);
 
-/// While one lives, this thread says nothing.
+/// While an object of this class exists, this thread logs nothing.
 class LogSilence {
  public:
   LogSilence();

@@ -1,4 +1,4 @@
-// Rotation by renaming.
+// Rotates the log file by renaming.
 #include "base/log_file.h"
 
 #include <algorithm>
@@ -18,14 +18,14 @@ namespace limber {
 namespace fs = std::filesystem;
 
 Result<std::unique_ptr<LogFile>> LogFile::open(const std::string& path, LogRotation rotation) {
-  // the folder that the program was started in may be replaced, and a link is not what is renamed
+  // Resolves the path now: the working directory may be replaced later, and rotation must not rename a symbolic link.
   std::error_code fault;
-  const fs::path place = fs::weakly_canonical(fs::absolute(path, fault), fault);
-  std::unique_ptr<LogFile> log(new LogFile(fault ? path : place.string(), rotation));
+  const fs::path resolved = fs::weakly_canonical(fs::absolute(path, fault), fault);
+  std::unique_ptr<LogFile> log(new LogFile(fault ? path : resolved.string(), rotation));
   if (const int error = log->reopen(); error != 0) {
     const char* const fix = error == ENOENT   ? "Create its folder first"
                             : error == EINVAL ? "It must be a regular file"
-                                              : "Choose another place";
+                                              : "Choose another path";
     return Error{fmt::format("the log file {} can't be written: {}. {}", printable(path),
                              std::generic_category().message(error), fix)};
   }
@@ -44,7 +44,7 @@ system::Written LogFile::write(std::string_view bytes, std::chrono::nanoseconds 
   return written;
 }
 
-// makes sure that the file has room for a line of this size; the errno otherwise
+// Rotates or reopens the file if necessary for a line of this size. Returns 0 or an errno.
 int LogFile::begin_line(std::size_t size) {
   const std::optional<system::FileStatus> now = system::file_status(path_);
   if (!now || now->inode != inode_) return reopen();
@@ -53,10 +53,10 @@ int LogFile::begin_line(std::size_t size) {
 }
 
 int LogFile::reopen() {
-  const std::optional<system::FileStatus> there = system::file_status(path_);
-  if (there && !there->file) return EINVAL;
+  const std::optional<system::FileStatus> existing = system::file_status(path_);
+  if (existing && !existing->file) return EINVAL;
   system::Descriptor file = system::open_file(path_, system::OpenMode::append_any);
-  if (!file.open()) return errno;
+  if (!file.is_open()) return errno;
   const std::optional<system::FileStatus> status = system::file_status(path_);
   if (!status) return errno;
   file_ = std::move(file);
@@ -68,15 +68,15 @@ int LogFile::reopen() {
 int LogFile::rotate() {
   const auto name = [this](int number) { return number == 0 ? path_ : fmt::format("{}.{}", path_, number); };
   std::error_code fault;
-  if (rotation_.kept == 0) {
+  if (rotation_.old_files == 0) {
     if (!system::remove_file(path_)) return errno;
     return reopen();
   }
-  for (int number = 1; number <= rotation_.kept; number++) {
+  for (int number = 1; number <= rotation_.old_files; number++) {
     const std::optional<system::FileStatus> old = system::link_status(name(number));
-    if (old && !old->file) return EEXIST;  // not a log: it stays
+    if (old && !old->file) return EEXIST;  // not a regular file: don't overwrite it
   }
-  for (int number = rotation_.kept; number > 0; number--) {
+  for (int number = rotation_.old_files; number > 0; number--) {
     fs::rename(name(number - 1), name(number), fault);
     if (fault && fault != std::errc::no_such_file_or_directory) return fault.value();
   }

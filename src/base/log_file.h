@@ -1,4 +1,4 @@
-// LogFile: a log on disk that is rotated: FILE, then FILE.1 (the newest of the old ones), FILE.2 and so on.
+// LogFile: a log file with rotation: FILE, then FILE.1 (the newest of the old files), FILE.2 and so on.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@
 namespace limber {
 
 struct LogRotation {
-  std::uintmax_t bytes = 10'000'000;  ///< A file is not larger, unless its first line is.
-  int kept = 5;                       ///< Old files.
+  std::uintmax_t bytes = 10'000'000;  ///< Maximum size of a file, unless its first line is larger.
+  int old_files = 5;                  ///< Number of old files.
 };
 
 class LogFile : public OutputDevice {
  public:
-  /// Appends to the file, or creates it. The error says why it can't be written. [any]
+  /// Opens the file for appending, or creates it. Error: it can't be written. [any]
   static Result<std::unique_ptr<LogFile>> open(const std::string& path, LogRotation rotation);
 
-  /// Also begins a new file when this one is full, was removed, or was renamed by another program. Where that fails it
-  /// writes nothing, so that the log never takes more of the disk than it may. [writer]
+  /// Writes to the file. Starts a new file first if this one is full, was removed, or was renamed by another program.
+  /// If that fails, writes nothing, so that the log never exceeds its configured size. [writer]
   system::Written write(std::string_view bytes, std::chrono::nanoseconds limit) override;
 
  private:

@@ -1,4 +1,4 @@
-// A linear search over a few hundred hashes; it runs once a line.
+// Token buckets, a table of at most 256 sources (searched linearly), and the hash of a line without its numbers.
 #include "base/log_throttle.h"
 
 #include <algorithm>
@@ -10,33 +10,33 @@
 
 namespace limber {
 
-bool TokenBucket::spend(std::int64_t now) {
-  if (!begun_ || tokens_ == burst_) filled_ = now;
-  begun_ = true;
-  const std::int64_t fresh = std::max<std::int64_t>(0, (now - filled_) / interval_);
-  tokens_ = std::min(burst_, tokens_ + fresh);
-  filled_ += fresh * interval_;
+bool TokenBucket::try_consume(std::int64_t now) {
+  if (!started_ || tokens_ == burst_) filled_ = now;
+  started_ = true;
+  const std::int64_t added = std::max<std::int64_t>(0, (now - filled_) / interval_);
+  tokens_ = std::min(burst_, tokens_ + added);
+  filled_ += added * interval_;
   if (tokens_ == 0) return false;
   tokens_--;
   return true;
 }
 
-std::optional<std::uint64_t> LogThrottle::ask(std::uint64_t source, std::int64_t now, bool together) {
+std::optional<std::uint64_t> LogThrottle::admit(std::uint64_t source, std::int64_t now, bool count_in_total) {
   const std::span<Source> known(sources_.data(), count_);
   auto found = std::ranges::find(known, source, &Source::hash);
   if (found == known.end()) {
-    Source& place = count_ < kSources ? sources_[count_++] : *std::ranges::min_element(known, {}, &Source::last);
-    place = {source, 0, now, TokenBucket(kBurst, kInterval)};
-    found = known.begin() + (&place - sources_.data());
+    Source& slot = count_ < kSources ? sources_[count_++] : *std::ranges::min_element(known, {}, &Source::last);
+    slot = {source, 0, now, TokenBucket(kBurst, kInterval)};
+    found = known.begin() + (&slot - sources_.data());
   }
-  Source& of = *found;
-  of.last = now;
-  if (!of.bucket.spend(now) || (together && !all_.spend(now))) {
-    of.silent++;
-    left_out_++;
+  Source& entry = *found;
+  entry.last = now;
+  if (!entry.bucket.try_consume(now) || (count_in_total && !total_.try_consume(now))) {
+    entry.suppressed++;
+    suppressed_++;
     return std::nullopt;
   }
-  return std::exchange(of.silent, 0);
+  return std::exchange(entry.suppressed, 0);
 }
 
 std::uint64_t log_source(std::string_view text) {

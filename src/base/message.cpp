@@ -1,4 +1,4 @@
-// Who sent a message, in words.
+// Formats the sender of a message.
 #include "base/message.h"
 
 #include <array>
@@ -7,14 +7,14 @@
 
 namespace limber {
 
-std::string sender_text(const Origin& origin) {
+std::string sender_text(const CommandOrigin& origin) {
   if (origin.ip != 0) {
     return fmt::format("{}.{}.{}.{}:{}", origin.ip >> 24 & 255u, origin.ip >> 16 & 255u, origin.ip >> 8 & 255u,
                        origin.ip & 255u, origin.port);
   }
-  // in the order of Hand
-  constexpr std::array<std::string_view, 6> kHands{"osc", "query", "command_line", "console", "panel", "script"};
-  return std::string(kHands[static_cast<std::size_t>(origin.hand)]);
+  // in the order of CommandSource
+  constexpr std::array<std::string_view, 6> kSourceNames{"osc", "query", "command_line", "console", "panel", "script"};
+  return std::string(kSourceNames[static_cast<std::size_t>(origin.source)]);
 }
 
 }  // namespace limber

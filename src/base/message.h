@@ -1,5 +1,5 @@
-// Message: an address with arguments. Everything that comes from outside (OSC, command line, console, panel) reaches
-// the simulation in this one form, and a take records it so.
+// Message: an OSC address with arguments. All external input (OSC, command line, console, panel) reaches the simulation
+// as messages, and a take records them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace limber {
 
-/// One argument: a number, a boolean, text, or nothing. Numbers of every width are doubles here.
+/// One argument: a number, a boolean, text, or nil. All OSC number types are converted to double.
 struct Arg {
   enum class Kind : std::uint8_t { number, boolean, text, nil };
   Kind kind = Kind::nil;
@@ -26,24 +26,27 @@ struct Arg {
 };
 
 struct Message {
-  std::string address;  ///< Starts with '/'; may hold OSC patterns when it comes in.
+  std::string address;  ///< Starts with '/'; may contain OSC patterns in incoming messages.
   std::vector<Arg> args;
 };
 
-/// Which hand sent a message, and where an answer goes.
-enum class Hand : std::uint8_t { osc, query, command_line, console, panel, script };
+/// The kind of controller that sent a message.
+enum class CommandSource : std::uint8_t { osc, oscquery, command_line, console, panel, script };
 
-struct Origin {
-  Hand hand = Hand::osc;
-  std::uint32_t ip = 0;    ///< IPv4 in host order; 0: no address to answer to.
-  std::uint16_t port = 0;  ///< Without an address: which of the hand's gestures this belongs to, such as a drag.
-  bool follows = false;    ///< It is told of changes: what it sets is noted, so that it is not told that.
+/// The sender of a message, and where a reply goes.
+struct CommandOrigin {
+  CommandSource source = CommandSource::osc;
+  std::uint32_t ip = 0;        ///< IPv4 address in host byte order; 0: none.
+  std::uint16_t port = 0;      ///< Without an address: number of the gesture (such as a mouse drag) that it belongs to.
+  bool is_subscriber = false;  ///< It receives changes; its own changes are recorded to avoid echoing them.
 
-  /// The same hand, whatever it follows.
-  bool operator==(const Origin& other) const { return hand == other.hand && ip == other.ip && port == other.port; }
+  /// Compares everything except the subscription.
+  bool operator==(const CommandOrigin& other) const {
+    return source == other.source && ip == other.ip && port == other.port;
+  }
 };
 
-/// "192.168.1.5:57120"; without an address the hand: "console". [any]
-std::string sender_text(const Origin& origin);
+/// Returns the sender as text: "192.168.1.5:57120", or the kind of source if there is no address: "console". [any]
+std::string sender_text(const CommandOrigin& origin);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// OscPlan: where OSC comes in and where frames go, as a scene or the command line wishes it.
+// OscConfig: the OSC ports to listen on and the targets to stream to, as a scene or the command line configures them.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,20 @@
 
 namespace limber {
 
-/// Where frames are streamed to, and how.
+/// A host that receives frames, and the contents of its frames.
 struct StreamTarget {
   std::string host = "127.0.0.1";
   std::uint16_t port = 9005;
   double rate = 60;  ///< Frames per second of real time, 0.1 .. 1000.
   bool pos = true, rot = true, relrot = true, relpos = false;
-  std::string bodies = "*";  ///< Name or OSC pattern.
-  int bundle = -1;           ///< Bytes 1472, 8192, 65504; 0: off; -1: off up to 20 bodies, else 1472.
-  bool errors = false;       ///< Wants /error messages too.
+  std::string bodies = "*";  ///< Body name or OSC pattern.
+  int bundle = -1;  ///< Bundle size in bytes: 1472, 8192 or 65504; 0: no bundles; -1: none up to 20 bodies, else 1472.
+  bool errors = false;  ///< Send /error messages too.
 
   bool operator==(const StreamTarget&) const = default;
 };
 
+/// A local IPv4 address and a port to listen on.
 struct ListenAddress {
   std::string address = "127.0.0.1";
   std::uint16_t port = 9003;
@@ -27,12 +28,12 @@ struct ListenAddress {
   bool operator==(const ListenAddress&) const = default;
 };
 
-/// Where OSC comes in and goes out. The command line wins over the scene, the scene over the default.
-struct OscPlan {
+/// The OSC inputs and outputs. The command line overrides the scene, which overrides the default.
+struct OscConfig {
   std::vector<ListenAddress> listen;
   std::vector<StreamTarget> targets;
 
-  bool operator==(const OscPlan&) const = default;
+  bool operator==(const OscConfig&) const = default;
 };
 
 }  // namespace limber

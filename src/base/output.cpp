@@ -1,4 +1,4 @@
-// The program's OutputWriter, results, and text before there is a writer.
+// The program's OutputWriter, results of commands, and direct output before the writer is started.
 #include "base/output.h"
 
 #include <atomic>
@@ -24,9 +24,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kEndPatience = 1s;    // at the end, for a device that takes nothing
-constexpr auto kResultLook = 50ms;   // how often a waiting result looks for signals
-constexpr auto kLastMoment = 500ms;  // for a result once a signal has come
+constexpr auto kExitTimeout = 1s;           // at exit, for a device that accepts nothing
+constexpr auto kResultPollInterval = 50ms;  // interval at which a waiting result checks for signals
+constexpr auto kResultGrace = 500ms;        // time to write a result after a signal
 
 struct DescriptorDevice : OutputDevice {
   explicit DescriptorDevice(int number) : fd(number) {}
@@ -36,19 +36,20 @@ struct DescriptorDevice : OutputDevice {
   int fd;
 };
 
-// never destroyed: its thread may be in a write when the program ends
+// Never destroyed, because its thread may be writing when the program exits.
 std::atomic<OutputWriter*> the_writer{nullptr};
 std::atomic<OutputMode> the_mode{OutputMode::batch};
 std::atomic<bool> is_quiet{false};
 std::atomic<bool> has_log{false};
 std::atomic<int> the_result_error{0};
 
-constexpr std::size_t lane_of(OutputTo to) { return static_cast<std::size_t>(to); }
-constexpr std::size_t kLogLane = 2;
+constexpr std::size_t stream_index(OutputTo to) { return static_cast<std::size_t>(to); }
+constexpr std::size_t kLogStream = 2;
 
 const char* stream_name(OutputTo to) { return to == OutputTo::out ? "standard output" : "standard error"; }
 
-// standard error counts its lost lines itself; those of standard output would be among a script's data
+// Standard error contains the numbers of lost lines. Standard output does not, since they would mix with a script's
+// data.
 OutputStream stream_of(OutputTo to, OutputMode mode) {
   OutputStream stream;
   stream.device =
@@ -57,15 +58,15 @@ OutputStream stream_of(OutputTo to, OutputMode mode) {
   stream.full = live                  ? OutputStream::Full::drop
                 : to == OutputTo::out ? OutputStream::Full::wait
                                       : OutputStream::Full::wait_while;
-  stream.counts = to == OutputTo::error;
+  stream.inserts_notice = to == OutputTo::error;
   stream.on_loss = [to, live](int error) {
     if (error == EPIPE && !live) return;  // as in `| head`
-    log_warning("{} {}; lines for it are lost until it takes them, the show goes on", stream_name(to),
+    log_warning("{} {}; lines are dropped until it accepts them", stream_name(to),
                 error == 0 ? "is not read" : fmt::format("fails: {}", std::generic_category().message(error)));
   };
   if (to == OutputTo::out) {
     stream.on_gap = [](std::uint64_t lines) {
-      log_warning("standard output takes text again; {} line{} lost", lines, lines == 1 ? " is" : "s are");
+      log_warning("standard output accepts text again; {} line{} lost", lines, lines == 1 ? " is" : "s are");
     };
   }
   return stream;
@@ -75,16 +76,16 @@ OutputStream log_stream(std::unique_ptr<OutputDevice> device, const std::string&
   OutputStream stream;
   stream.device = std::move(device);
   stream.on_loss = [name](int error) {
-    log_warning("the log file {} {}; lines for it are lost until it takes them, the show goes on", name,
+    log_warning("the log file {} {}; lines are dropped until it accepts them", name,
                 error == 0 ? "is too slow" : fmt::format("fails: {}", std::generic_category().message(error)));
   };
   stream.on_gap = [name](std::uint64_t lines) {
-    log_warning("the log file {} takes text again; {} line{} lost", name, lines, lines == 1 ? " is" : "s are");
+    log_warning("the log file {} accepts text again; {} line{} lost", name, lines, lines == 1 ? " is" : "s are");
   };
   return stream;
 }
 
-// "<4>warning: a line", for each line
+// Adds the level to each line: "<4>warning: a line".
 std::string journal_text(MessageLevel severity, std::string_view text) {
   std::string out;
   for (const std::string_view line : split(text, '\n'))
@@ -95,11 +96,11 @@ std::string journal_text(MessageLevel severity, std::string_view text) {
 void write_log(std::string_view kind, std::string_view text) {
   OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
   if (writer == nullptr || !has_log.load()) return;
-  writer->write(kLogLane, fmt::format("{} {}{}\n", system::local_time_text(), kind, text));
+  writer->write(kLogStream, fmt::format("{} {}{}\n", system::local_time_text(), kind, text));
 }
 
 void write_directly(int fd, std::string_view text) {
-  static std::mutex& mutex = *new std::mutex;  // lines of several threads; it outlives them
+  static std::mutex& mutex = *new std::mutex;  // never destroyed: threads may outlive main()
   const std::scoped_lock lock(mutex);
   while (!text.empty()) {
     const system::Written written = system::write_within(fd, text, 1s);
@@ -116,7 +117,7 @@ void write_line(OutputTo to, std::string_view line) noexcept {
     text.reserve(line.size() + 1);
     text.append(line).push_back('\n');
     if (OutputWriter* const writer = the_writer.load(std::memory_order_acquire)) {
-      writer->write(lane_of(to), text);
+      writer->write(stream_index(to), text);
     } else {
       write_directly(to == OutputTo::out ? system::kStandardOutput : system::kStandardError, text);
     }
@@ -167,41 +168,42 @@ bool output_is_live() {
   return the_writer.load(std::memory_order_acquire) != nullptr && the_mode.load() == OutputMode::live;
 }
 
-void hurry_output() {
-  if (OutputWriter* const writer = the_writer.load(std::memory_order_acquire)) writer->hurry();
+void begin_output_shutdown() {
+  if (OutputWriter* const writer = the_writer.load(std::memory_order_acquire)) writer->begin_shutdown();
 }
 
 void finish_output() {
   OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
   if (writer == nullptr) return;
   const bool live = the_mode.load() == OutputMode::live;
-  (void)writer->drain(lane_of(OutputTo::out),
-                      live ? std::optional<std::chrono::nanoseconds>(kEndPatience) : std::nullopt);
-  (void)writer->drain(lane_of(OutputTo::error), kEndPatience);
-  if (has_log.load()) (void)writer->drain(kLogLane, kEndPatience);
+  (void)writer->drain(stream_index(OutputTo::out),
+                      live ? std::optional<std::chrono::nanoseconds>(kExitTimeout) : std::nullopt);
+  (void)writer->drain(stream_index(OutputTo::error), kExitTimeout);
+  if (has_log.load()) (void)writer->drain(kLogStream, kExitTimeout);
 }
 
 std::uint64_t lost_output_lines() {
   const OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
   if (writer == nullptr) return 0;
-  const std::uint64_t lines = writer->lost(lane_of(OutputTo::out)) + writer->lost(lane_of(OutputTo::error));
-  return lines + (has_log.load() ? writer->lost(kLogLane) : 0);
+  const std::uint64_t lines = writer->lost(stream_index(OutputTo::out)) + writer->lost(stream_index(OutputTo::error));
+  return lines + (has_log.load() ? writer->lost(kLogStream) : 0);
 }
 
 bool write_result(std::string_view text) noexcept {
   if (the_result_error.load() != 0) return false;
   OutputWriter* const writer = the_writer.load(std::memory_order_acquire);
-  if (writer != nullptr) {  // one file may be both
-    (void)writer->drain(lane_of(OutputTo::error), kEndPatience);
-    (void)writer->drain(lane_of(OutputTo::out), std::nullopt);
+  if (writer != nullptr) {  // both may be the same file
+    (void)writer->drain(stream_index(OutputTo::error), kExitTimeout);
+    (void)writer->drain(stream_index(OutputTo::out), std::nullopt);
   }
   std::optional<std::chrono::steady_clock::time_point> end;
   while (!text.empty()) {
-    const system::Written written = system::write_within(system::kStandardOutput, text, kResultLook);
+    const system::Written written = system::write_within(system::kStandardOutput, text, kResultPollInterval);
     text.remove_prefix(written.count);
     if (written.count > 0) continue;
     const auto now = std::chrono::steady_clock::now();
-    if (!end && ((writer != nullptr && writer->hurried()) || system::end_is_pending())) end = now + kLastMoment;
+    if (!end && ((writer != nullptr && writer->shutting_down()) || system::termination_is_pending()))
+      end = now + kResultGrace;
     const int error = written.error == EAGAIN && end && now > *end ? ETIMEDOUT : written.error;
     if (error == EAGAIN) continue;
     the_result_error.store(error);

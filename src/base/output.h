@@ -1,7 +1,7 @@
-// Output: all text that the program writes for people, and the results of its commands. Nothing here throws.
+// Output: all text that the program writes to standard output, standard error and the log file. Nothing here throws.
 //
-// Text for people (the log, notices, what scripts print) never holds a show up: after start_output() it is queued, and
-// lost and counted where a device does not take it. Results (write_result) are never dropped.
+// Messages (the log, notices, scripts' print()) never block the simulation: after start_output() they are queued, and
+// dropped and counted if a device does not accept them. Results of commands (write_result()) are never dropped.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@ namespace limber {
 
 enum class OutputTo : std::uint8_t { out, error };  ///< Standard output, standard error.
 
-/// Writes a line. Before start_output() this thread waits for the device; a failure is ignored. [any]
+/// Writes a line. Before start_output() this blocks until the device accepts it; errors are ignored. [any]
 void write_line(OutputTo to, std::string_view line) noexcept;
 
-/// The levels of syslog and of systemd's journal.
+/// Severity levels as in syslog and systemd's journal.
 enum class MessageLevel : std::uint8_t { error = 3, warning = 4, info = 6 };
 
-/// Writes a message to standard error, with the prefix, and to the log file. Where standard error is systemd's journal,
-/// each of its lines has the level in front instead. [any]
+/// Writes a message with the prefix to standard error, and to the log file. If standard error is systemd's journal,
+/// each line gets the level instead of the prefix. [any]
 void write_message(MessageLevel severity, std::string_view text, std::string_view prefix = "limber: ") noexcept;
+/// Formats a notice and writes it with write_message(). [any]
 template <class... A>
 void print_notice(fmt::format_string<A...> f, A&&... a) noexcept {
   try {
@@ -31,41 +32,41 @@ void print_notice(fmt::format_string<A...> f, A&&... a) noexcept {
   } catch (...) {  // no memory for it
   }
 }
-/// Writes a line that a script printed, to the log file too. [any]
+/// Writes a line of a script's print(), also to the log file. [any]
 void write_print(OutputTo to, std::string_view line) noexcept;
 
 enum class OutputMode : std::uint8_t {
-  live,   ///< A show: what a device does not take in time is lost and counted.
-  batch,  ///< Nobody watches: standard output is waited for, standard error for up to a second.
+  live,   ///< Never blocks: text that a device does not accept in time is dropped and counted.
+  batch,  ///< Waits for standard output, and up to a second for standard error.
 };
 class OutputDevice;
 struct OutputSetup {
   OutputMode mode = OutputMode::live;
   bool quiet = false;                 ///< Messages to standard error are warnings and errors only.
-  std::unique_ptr<OutputDevice> log;  ///< Gets every message, with its time; null: none.
-  std::string log_name;               ///< For messages about it.
+  std::unique_ptr<OutputDevice> log;  ///< Gets every message with its time; may be null.
+  std::string log_name;               ///< Name of the log for messages.
 };
-/// From here on a thread of its own writes the text for people. Signals are blocked (system::block_signals). Without a
-/// thread left, text is written as before. [main, once]
+/// Starts a thread that writes the queued text. Call system::block_signals() first. If no thread can be started, text
+/// is written directly as before. [main, once]
 void start_output(OutputSetup setup);
 void start_output(OutputMode mode);
 bool output_is_live();
-/// Somebody has asked the program to end: from here on, no device is waited for longer than half a second. [any]
-void hurry_output();
-/// Waits for the text that is queued, as long as the devices take it. [main, at the end]
+/// Limits further waits for a device to half a second. Called when the program was asked to exit. [any]
+void begin_output_shutdown();
+/// Waits until the queued text is written, as long as the devices accept it. [main, at the end]
 void finish_output();
-/// Lines for people that were not written so far. [any]
+/// Returns the number of dropped lines so far. [any]
 std::uint64_t lost_output_lines();
 
-/// Writes a command's result, behind the text that is queued for standard output, and waits for it until a signal that
-/// ends the program. False: it is not written, and later ones won't be (result_error). [main]
+/// Writes a command's result to standard output, after the queued text, and waits until it is written or a signal ends
+/// the program. False if it was not written; later results fail too (see result_error()). [main]
 bool write_result(std::string_view text) noexcept;
 template <class... A>
 bool print_result(fmt::format_string<A...> f, A&&... a) {
   return write_result(fmt::format(f, std::forward<A>(a)...));
 }
-/// The errno of the first result that was not written; ETIMEDOUT: nothing read it when the program ended; 0: none.
-/// [main]
+/// Returns the errno of the first result that was not written, 0 if there is none. ETIMEDOUT: nothing read the result
+/// until the program ended. [main]
 int result_error();
 
 }  // namespace limber

@@ -1,6 +1,6 @@
-// PageStore: copies of memory in pages of 4 KiB, whatever the size of the system's pages. Copies of the same memory
-// share the pages that did not change between them, so that thirty of them take little more than what moves. Its room
-// is used again.
+// PageStore: stores copies of memory in pages of 4 KiB (independent of the system's page size). Successive copies of
+// the same memory share the pages that did not change, so that dozens of them need little more memory than the changes.
+// Freed pages are reused.
 #pragma once
 
 #include <cstddef>
@@ -14,38 +14,38 @@ namespace limber {
 class PageStore {
  public:
   static constexpr std::size_t kPage = 4096;
-  /// The pages of a copy, in order.
-  using Image = std::vector<std::uint32_t>;
+  /// A copy: the numbers of its pages, in order.
+  using PageList = std::vector<std::uint32_t>;
 
-  /// Adds a copy of the memory, the last page of it perhaps a part of one. Pages that stand at the same place of
-  /// `before` and are the same are shared with it.
-  void append(Image& out, std::span<const std::byte> memory, const Image* before);
-  /// Adds pages that copy_back leaves as they are.
-  void append_none(Image& out, std::size_t bytes) const;
-  /// Writes the pages from `at` on back over as much memory; the answer: where the next begin.
-  std::size_t copy_back(const Image& image, std::size_t at, std::span<std::byte> memory) const;
-  /// The image is no longer needed; it is empty then.
-  void release(Image& image);
+  /// Appends a copy of the memory to the list; the last page may be partial. Pages that are equal to those at the same
+  /// positions of `before` are shared with it.
+  void append(PageList& out, std::span<const std::byte> memory, const PageList* before);
+  /// Appends placeholders for this many bytes; restore() leaves their memory unchanged.
+  void append_placeholders(PageList& out, std::size_t bytes) const;
+  /// Copies the pages from index `at` on to the memory. Returns the index of the next page.
+  std::size_t restore(const PageList& copy, std::size_t at, std::span<std::byte> memory) const;
+  /// Frees a copy and clears its list.
+  void release(PageList& copy);
 
-  /// Bytes of all pages that any image has.
+  /// Bytes of all pages in use.
   std::size_t bytes() const { return used_ * kPage; }
-  /// Gives the room back to the system; no image may be left.
+  /// Returns all memory to the system. All copies must have been released.
   void clear();
 
  private:
-  static constexpr std::uint32_t kNone = 0;  // numbers of pages begin with 2
+  static constexpr std::uint32_t kNone = 0;  // stored pages are numbered from 2
   static constexpr std::uint32_t kZeros = 1;
   static constexpr std::uint32_t kFirst = 2;
-  static constexpr std::uint32_t kSlab = 256;  // pages that are taken from the system at a time
+  static constexpr std::uint32_t kSlab = 256;  // pages per allocation
 
   std::byte* page(std::uint32_t number) const {
     return slabs_[(number - kFirst) / kSlab].get() + std::size_t{(number - kFirst) % kSlab} * kPage;
   }
-  std::uint32_t take();
+  std::uint32_t allocate_page();
 
   std::vector<std::unique_ptr<std::byte[]>> slabs_;
-  std::vector<std::uint32_t> shares_;  // of each page: images that have it
-  std::vector<std::uint32_t> spare_;
+  std::vector<std::uint32_t> reference_counts_;  // of each page: number of copies that share it
+  std::vector<std::uint32_t> free_pages_;
   std::size_t used_ = 0;
 };
 

@@ -1,11 +1,11 @@
-// Asking for memory before it is its turn: what lies far off after a tick of physics comes while other things are done.
+// Software prefetch, which loads memory into the cache before it is used.
 #pragma once
 
 #include <cstddef>
 
 namespace limber {
 
-/// Asks for all lines of so many bytes; for none where there is nothing. Reads nothing, so a wrong place does no harm.
+/// Prefetches all cache lines of the memory; null is allowed. An invalid address is harmless, since nothing is read.
 [[gnu::always_inline]] inline void prefetch(const void* begin, std::size_t bytes) {
   if (begin == nullptr || bytes == 0) return;
   constexpr std::size_t kLine = 64;

@@ -1,4 +1,4 @@
-// Seeded generators: one per node, derived from the world's seed and the node's name, so that a run repeats.
+// Random: a seeded generator. Each node has its own, from the world's seed and the node's name, so that runs repeat.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class Random {
   }
 
   std::uint64_t next() {
-    drawn_ = 1;
+    used_ = 1;
     const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
     const std::uint64_t t = state_[1] << 17;
     state_[2] ^= state_[0];
@@ -36,7 +36,7 @@ class Random {
   /// Uniform in [0, 1).
   double uniform() { return static_cast<double>(next() >> 11) * 0x1.0p-53; }
   double uniform(double a, double b) { return a + uniform() * (b - a); }
-  /// Standard normal (Box, Muller 1958, one of the pair).
+  /// Standard normal distribution (Box, Muller 1958; uses one of the pair).
   double normal() {
     const double u = 1 - uniform();
     return std::sqrt(-2 * fixed::log(u)) * fixed::cos(2 * kPi * uniform());
@@ -49,14 +49,14 @@ class Random {
     return {r * fixed::cos(angle), r * fixed::sin(angle), z};
   }
 
-  /// For the state hash.
+  /// The generator's state, for the state hash.
   const std::array<std::uint64_t, 4>& state() const { return state_; }
-  /// Whether next() was called since it was seeded; until then it adds nothing to the state hash.
-  bool drawn() const { return drawn_ != 0; }
+  /// True if next() was called since the seeding; until then the generator is not part of the state hash.
+  bool used() const { return used_ != 0; }
 
  private:
   std::array<std::uint64_t, 4> state_{};
-  std::uint64_t drawn_ = 0;  // as wide as the state: checkpoints copy the bytes, and there is no padding
+  std::uint64_t used_ = 0;  // 64 bits to avoid padding: checkpoints copy the bytes
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Result<T>: a value, or the text of what went wrong. The outside's faults (files, packets, scripts, numbers)
-// travel as these; nothing throws.
+// Result<T>: a value or an error message. Errors of external input (files, packets, scripts, numbers) are returned as
+// results; nothing throws.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace limber {
 
-/// What went wrong, as the user reads it: the thing, the place, the cure.
+/// An error message for the user: the place, the problem, and how to fix it.
 struct Error {
   std::string text;
 };
 
-/// Either a T or an Error. Ask `ok()` before `value()`.
+/// Either a T or an Error. Check ok() before calling value().
 template <class T>
 class [[nodiscard]] Result {
  public:

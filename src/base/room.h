@@ -1,4 +1,4 @@
-// Room for numbers before they come, so that no step waits for memory. [any]
+// Reserves capacity of vectors in advance, so that steps do not allocate. [any]
 #pragma once
 
 #include <algorithm>
@@ -7,15 +7,17 @@
 
 namespace limber {
 
-/// Room for so many, or for twice what there was room for: sizes that creep up do not allocate each time.
+/// Reserves capacity for `count` elements, at least doubling it if it is too small, so that a slowly growing size does
+/// not allocate each time.
 template <class T>
-void make_room(std::vector<T>& things, std::size_t count) {
+void reserve(std::vector<T>& things, std::size_t count) {
   if (count > things.capacity()) things.reserve(std::max(count, 2 * things.capacity()));
 }
 
-/// The same where nothing is kept, in memory that the system has given already: to give it takes microseconds a page.
+/// Like reserve(), but clears the vector and touches the new memory, so that page faults (microseconds each) happen
+/// here.
 template <class T>
-void take_room(std::vector<T>& things, std::size_t count) {
+void clear_and_reserve(std::vector<T>& things, std::size_t count) {
   if (count > things.capacity()) things.resize(std::max(count, 2 * things.capacity()));
   things.clear();
 }

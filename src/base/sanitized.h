@@ -1,31 +1,31 @@
-// What the compiler watches this build with. [any]
+// Detects whether this build uses the address or thread sanitizer. [any]
 #pragma once
 
 namespace limber {
 
 #if defined(__SANITIZE_ADDRESS__)
-#define LIMBER_WATCHES_ADDRESSES 1
+#define LIMBER_ADDRESS_SANITIZER 1
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#define LIMBER_WATCHES_ADDRESSES 1
+#define LIMBER_ADDRESS_SANITIZER 1
 #endif
 #endif
 
 #if defined(__SANITIZE_THREAD__)
-#define LIMBER_WATCHES_THREADS 1
+#define LIMBER_THREAD_SANITIZER 1
 #elif defined(__has_feature)
 #if __has_feature(thread_sanitizer)
-#define LIMBER_WATCHES_THREADS 1
+#define LIMBER_THREAD_SANITIZER 1
 #endif
 #endif
 
-#ifdef LIMBER_WATCHES_ADDRESSES
-inline constexpr bool kWatchesAddresses = true;
+#ifdef LIMBER_ADDRESS_SANITIZER
+inline constexpr bool kAddressSanitizer = true;
 #else
-inline constexpr bool kWatchesAddresses = false;
+inline constexpr bool kAddressSanitizer = false;
 #endif
 
-#if defined(LIMBER_WATCHES_ADDRESSES) || defined(LIMBER_WATCHES_THREADS)
+#if defined(LIMBER_ADDRESS_SANITIZER) || defined(LIMBER_THREAD_SANITIZER)
 inline constexpr bool kSanitized = true;
 #else
 inline constexpr bool kSanitized = false;

@@ -1,4 +1,4 @@
-// Helpers watch for the next round for a moment, then sleep; within one, pieces are taken by counting down.
+// Workers spin briefly for the next round, then sleep. Threads take tasks by decrementing an atomic counter.
 #include "base/team.h"
 
 #include "base/check.h"
@@ -10,12 +10,12 @@ namespace limber {
 
 namespace {
 
-/// So long a member looks for what it waits for before it sleeps, s: what one thread does between two rounds of a tick,
-/// and between two ticks of which one follows the other at once, is mostly shorter. To be woken takes some 70 µs, of
-/// which whoever wakes it spends 45. Where ticks are paced all sleep between them.
-constexpr double kWatch = 400e-6;
+// Time that a thread spins before it sleeps, in seconds. The serial work between two rounds of a tick, and between
+// ticks without a pause, is mostly shorter. Waking a thread takes about 70 µs, 45 µs of them in the thread that wakes
+// it. If ticks are paced, the workers sleep between them.
+constexpr double kSpinSeconds = 400e-6;
 
-void pause_a_moment() {
+void cpu_pause() {
 #if defined(__x86_64__)
   __builtin_ia32_pause();
 #endif
@@ -23,87 +23,87 @@ void pause_a_moment() {
 
 }  // namespace
 
-// Who watches on another's processor only keeps that one from its work.
-Team::Team(int members)
-    : members_(members), watches_(static_cast<unsigned>(members) <= std::thread::hardware_concurrency()) {
-  LIMBER_CHECK(members >= 1 && members <= kMost);
-  for (int member = 1; member < members; member++) {
-    std::thread helper;
-    if (!system::start_thread(helper, [this, member] { help(member); })) {
-      members_ = member;
+// With more threads than processors, spinning would only delay other threads.
+ThreadPool::ThreadPool(int threads)
+    : thread_count_(threads), spins_(static_cast<unsigned>(threads) <= std::thread::hardware_concurrency()) {
+  LIMBER_CHECK(threads >= 1 && threads <= kMaxThreads);
+  for (int thread = 1; thread < threads; thread++) {
+    std::thread worker;
+    if (!system::start_thread(worker, [this, thread] { worker_main(thread); })) {
+      thread_count_ = thread;
       break;
     }
-    helpers_.push_back(std::move(helper));
+    workers_.push_back(std::move(worker));
   }
 }
 
-Team::~Team() {
-  ends_ = true;
+ThreadPool::~ThreadPool() {
+  stopping_ = true;
   round_++;
   round_.notify_all();
-  for (std::thread& helper : helpers_) helper.join();
+  for (std::thread& worker : workers_) worker.join();
 }
 
-void Team::rouse() {
+void ThreadPool::wake() {
   round_++;
   round_.notify_all();
 }
 
-void Team::share(int pieces, Call call, void* of) {
-  if (pieces <= 0) return;
+void ThreadPool::run_tasks(int tasks, Call call, void* context) {
+  if (tasks <= 0) return;
   call_ = call;
-  of_ = of;
-  open_.store(pieces, std::memory_order_relaxed);
+  context_ = context;
+  unfinished_.store(tasks, std::memory_order_relaxed);
   const std::uint32_t round = round_.load(std::memory_order_relaxed) + 1;
   int first = 0;
-  for (int member = 0; member < members_; member++) {
-    Part& part = parts_[static_cast<std::size_t>(member)];
-    part.end = static_cast<int>(std::int64_t{pieces} * (member + 1) / members_);
-    part.ticket.store(static_cast<std::uint64_t>(round) << kPieceBits | static_cast<std::uint32_t>(part.end - first));
-    first = part.end;
+  for (int thread = 0; thread < thread_count_; thread++) {
+    TaskRange& range = ranges_[static_cast<std::size_t>(thread)];
+    range.end = static_cast<int>(std::int64_t{tasks} * (thread + 1) / thread_count_);
+    range.ticket.store(static_cast<std::uint64_t>(round) << kTaskBits | static_cast<std::uint32_t>(range.end - first));
+    first = range.end;
   }
   round_.store(round);
-  if (pieces > 1) round_.notify_all();
-  take_pieces(round, 0);
-  watch([&] { return open_.load() == 0; });
-  for (int left = open_.load(); left != 0; left = open_.load()) open_.wait(left);
+  if (tasks > 1) round_.notify_all();
+  run_available_tasks(round, 0);
+  spin_until([&] { return unfinished_.load() == 0; });
+  for (int assigned = unfinished_.load(); assigned != 0; assigned = unfinished_.load()) unfinished_.wait(assigned);
 }
 
-void Team::help(int member) {
+void ThreadPool::worker_main(int thread) {
   fixed::reset_arithmetic();
-  system::name_this_thread("limber-team");
-  std::uint32_t seen = 0;
-  while (!ends_) {
-    watch([&] { return round_.load() != seen; });
-    round_.wait(seen);
-    seen = round_.load();
-    take_pieces(seen, member);
+  system::name_this_thread("limber-worker");
+  std::uint32_t last_round = 0;
+  while (!stopping_) {
+    spin_until([&] { return round_.load() != last_round; });
+    round_.wait(last_round);
+    last_round = round_.load();
+    run_available_tasks(last_round, thread);
   }
 }
 
-// Until it is done, or the moment is over.
+// Spins until done() or for at most kSpins seconds.
 template <class Done>
-void Team::watch(Done&& done) const {
-  if (!watches_ || done()) return;
-  const double end = system::clock_seconds() + kWatch;
+void ThreadPool::spin_until(Done&& done) const {
+  if (!spins_ || done()) return;
+  const double end = system::clock_seconds() + kSpinSeconds;
   do {
     for (int i = 0; i < 16; i++) {
       if (done()) return;
-      pause_a_moment();
+      cpu_pause();
     }
   } while (system::clock_seconds() < end);
 }
 
-// Its own part, then the others'.
-void Team::take_pieces(std::uint64_t round, int member) {
-  for (int i = 0; i < members_; i++) {
-    Part& part = parts_[static_cast<std::size_t>((member + i) % members_)];
-    std::uint64_t ticket = part.ticket.load();
-    while (ticket >> kPieceBits == round && static_cast<std::uint32_t>(ticket) != 0) {
-      if (!part.ticket.compare_exchange_weak(ticket, ticket - 1)) continue;
-      call_(of_, part.end - static_cast<int>(static_cast<std::uint32_t>(ticket)), member);
-      if (open_.fetch_sub(1) == 1) open_.notify_one();
-      ticket = part.ticket.load();
+// Runs the tasks of the thread's own range, then those left in the ranges of others.
+void ThreadPool::run_available_tasks(std::uint64_t round, int thread) {
+  for (int i = 0; i < thread_count_; i++) {
+    TaskRange& range = ranges_[static_cast<std::size_t>((thread + i) % thread_count_)];
+    std::uint64_t ticket = range.ticket.load();
+    while (ticket >> kTaskBits == round && static_cast<std::uint32_t>(ticket) != 0) {
+      if (!range.ticket.compare_exchange_weak(ticket, ticket - 1)) continue;
+      call_(context_, range.end - static_cast<int>(static_cast<std::uint32_t>(ticket)), thread);
+      if (unfinished_.fetch_sub(1) == 1) unfinished_.notify_one();
+      ticket = range.ticket.load();
     }
   }
 }

@@ -1,6 +1,6 @@
-// Team: some threads that share out the pieces of one work; the caller is one of them. Each has a part of the pieces
-// that it does first, the same part of every work, so that what it will look at again is still in its cache; who is
-// done helps the others.
+// ThreadPool: runs the tasks of a parallel loop on several threads, including the caller. Each thread starts with its
+// own range of tasks, which is the same in each run, so that its data is still in its cache; then it takes tasks of
+// others.
 #pragma once
 
 #include <algorithm>
@@ -14,77 +14,80 @@
 
 namespace limber {
 
-class Team {
+class ThreadPool {
  public:
-  static constexpr int kMost = 64;
+  static constexpr int kMaxThreads = 64;
 
-  /// `members` from 1 to kMost, the caller of run() counted: so many threads less one are started, or as many as the
-  /// system has left; the result of work is the same.
-  explicit Team(int members);
-  ~Team();
-  Team(const Team&) = delete;
-  Team& operator=(const Team&) = delete;
+  /// Starts `threads` - 1 workers (1 <= `threads` <= kMaxThreads; the caller of run() is one of them), or fewer if the
+  /// system can't start more. The results do not depend on the number.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
-  int members() const { return members_; }
+  int thread_count() const { return thread_count_; }
 
-  /// Soon there will be work: who sleeps wakes up meanwhile. [as run()]
-  void rouse();
+  /// Wakes sleeping workers ahead of run(). [same thread as run()]
+  void wake();
 
-  /// Calls work(piece, member) once for each piece from 0 to pieces - 1, by a member each (0: the caller), and
-  /// returns when all are done. Nothing is allocated. The work must not throw. [one thread at a time]
+  /// Calls function(task, thread) for each task in [0, tasks), distributed over the threads (0: the caller), and
+  /// returns when all are done. Does not allocate. The function must not throw. [one thread at a time]
   template <class Work>
-  void run(int pieces, Work&& work) {
-    share(
-        pieces,
-        [](void* of, int piece, int member) { (*static_cast<std::remove_reference_t<Work>*>(of))(piece, member); },
-        static_cast<void*>(std::addressof(work)));
+  void run(int tasks, Work&& function) {
+    run_tasks(
+        tasks,
+        [](void* context, int task, int thread) {
+          (*static_cast<std::remove_reference_t<Work>*>(context))(task, thread);
+        },
+        static_cast<void*>(std::addressof(function)));
   }
 
  private:
-  using Call = void (*)(void* of, int piece, int member);
-  static constexpr int kPieceBits = 32;
+  using Call = void (*)(void* of, int task, int thread);
+  static constexpr int kTaskBits = 32;
 
-  void share(int pieces, Call call, void* of);
-  void help(int member);
-  void take_pieces(std::uint64_t round, int member);
+  void run_tasks(int tasks, Call call, void* context);
+  void worker_main(int thread);
+  void run_available_tasks(std::uint64_t round, int thread);
   template <class Done>
-  void watch(Done&& done) const;
+  void spin_until(Done&& done) const;
 
-  int members_;
-  const bool watches_;  // whether each member has a processor to watch on
-  // A member's part of a round, in a line of the cache of its own.
-  struct alignas(64) Part {
-    // the round's number above, how many of the pieces nobody has taken below: a latecomer can't take another round's
+  int thread_count_;
+  const bool spins_;  // every thread has a processor of its own, so that spinning is useful
+  // The tasks of one thread in a round, in a cache line of its own.
+  struct alignas(64) TaskRange {
+    // Upper half: number of the round; lower half: remaining tasks. A late worker can't take tasks of another round.
     std::atomic<std::uint64_t> ticket{0};
-    int end = 0;  // of its pieces; this and the work are read only by who has taken one: the round can't end before
+    int end = 0;  // of the range; read only after taking a task, which prevents the round from ending
   };
-  std::array<Part, kMost> parts_;
-  alignas(64) std::atomic<std::uint32_t> round_{0};  // what helpers sleep on
-  alignas(64) std::atomic<int> open_{0};             // pieces of this round that are not done
+  std::array<TaskRange, kMaxThreads> ranges_;
+  alignas(64) std::atomic<std::uint32_t> round_{0};  // workers wait for it to change
+  alignas(64) std::atomic<int> unfinished_{0};       // unfinished tasks of this round
   Call call_ = nullptr;
-  void* of_ = nullptr;
-  std::atomic<bool> ends_{false};
-  std::vector<std::thread> helpers_;
+  void* context_ = nullptr;
+  std::atomic<bool> stopping_{false};
+  std::vector<std::thread> workers_;
 };
 
-/// As Team::run; without a team the caller does all pieces, in order, as member 0.
+/// Like ThreadPool::run(). Without a pool, the caller runs all tasks in order as thread 0.
 template <class Work>
-void share_out(Team* team, int pieces, Work&& work) {
-  if (team != nullptr && pieces > 1) {
-    team->run(pieces, work);
+void parallel_for(ThreadPool* pool, int tasks, Work&& function) {
+  if (pool != nullptr && tasks > 1) {
+    pool->run(tasks, function);
   } else {
-    for (int piece = 0; piece < pieces; ++piece) work(piece, 0);
+    for (int task = 0; task < tasks; ++task) function(task, 0);
   }
 }
 
-/// Shares out the places from 0 to count - 1 in ranges of so many: work(range, first, end) for each.
-constexpr int kPlaces = 64;
-constexpr int ranges_of(int count, int places = kPlaces) { return (count + places - 1) / places; }
+constexpr int kDefaultGrain = 64;
+/// Returns the number of ranges of parallel_for_ranges().
+constexpr int range_count(int count, int grain = kDefaultGrain) { return (count + grain - 1) / grain; }
+/// Splits the indices [0, count) into ranges of `grain` and calls function(range, first, end) for each, in parallel.
 template <class Work>
-void share_out_places(Team* team, int count, Work&& work, int places = kPlaces) {
-  share_out(team, ranges_of(count, places), [&](int range, int) {
-    const int first = range * places;
-    work(range, first, std::min(first + places, count));
+void parallel_for_ranges(ThreadPool* pool, int count, Work&& function, int grain = kDefaultGrain) {
+  parallel_for(pool, range_count(count, grain), [&](int range, int) {
+    const int first = range * grain;
+    function(range, first, std::min(first + grain, count));
   });
 }
 

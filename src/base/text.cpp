@@ -1,4 +1,4 @@
-// Text from outside: names, patterns, numbers.
+// Name comparison, OSC pattern matching, edit distance, escaping, numbers.
 #include "base/text.h"
 
 #include <algorithm>
@@ -16,15 +16,15 @@ namespace {
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 constexpr int kMaxSteps = 20000;
-constexpr int kMaxDepth = 200;  // of stars and braces within each other: the stack is bounded too
+constexpr int kMaxDepth = 200;  // recursion depth of stars and braces, which bounds the stack
 
 struct Matcher {
   int steps = 0;
   int depth = 0;
 
-  bool spent() { return ++steps > kMaxSteps; }
+  bool out_of_steps() { return ++steps > kMaxSteps; }
 
-  // one [..] class at p[i]: whether c is in it; i moves behind it. Without a ']' it is none and matches nothing
+  // True if c is in the character class at p[i]; moves i behind it. A class without ']' matches nothing.
   bool in_class(std::string_view p, std::size_t& i, char c) {
     const std::size_t end = p.find(']', i + 1);
     if (end == std::string_view::npos) return false;
@@ -32,7 +32,7 @@ struct Matcher {
     const bool negated = k < end && p[k] == '!';
     if (negated) k++;
     bool in = false;
-    while (k < end && !spent()) {
+    while (k < end && !out_of_steps()) {
       const bool range = k + 2 < end && p[k + 1] == '-';
       in = in || (range ? p[k] <= c && c <= p[k + 2] : p[k] == c);
       k += range ? 3 : 1;
@@ -45,7 +45,7 @@ struct Matcher {
     std::size_t i = 0;
     std::size_t k = 0;
     while (i < p.size()) {
-      if (spent()) return false;
+      if (out_of_steps()) return false;
       if (p[i] == '*') return star(p.substr(i), s.substr(k));
       if (p[i] == '{') return braces(p.substr(i + 1), s.substr(k));
       if (k >= s.size()) return false;
@@ -60,7 +60,7 @@ struct Matcher {
     return k == s.size();
   }
 
-  bool deeper(std::string_view p, std::string_view s) {
+  bool match_nested(std::string_view p, std::string_view s) {
     if (depth >= kMaxDepth) return false;
     depth++;
     const bool hit = match(p, s);
@@ -71,27 +71,27 @@ struct Matcher {
   bool star(std::string_view p, std::string_view s) {
     const std::string_view rest = p.substr(std::min(p.find_first_not_of('*'), p.size()));
     if (rest.empty()) return true;
-    for (std::size_t k = 0; k <= s.size() && !spent(); k++) {
-      if (deeper(rest, s.substr(k))) return true;
+    for (std::size_t k = 0; k <= s.size() && !out_of_steps(); k++) {
+      if (match_nested(rest, s.substr(k))) return true;
     }
     return false;
   }
 
-  // p: what follows the opening brace
+  // p: the pattern after the opening brace
   bool braces(std::string_view p, std::string_view s) {
     const std::size_t end = p.find('}');
     if (end == std::string_view::npos) return false;
-    for (std::size_t start = 0; start <= end && !spent();) {
+    for (std::size_t start = 0; start <= end && !out_of_steps();) {
       const std::size_t comma = std::min(p.find(',', start), end);
       const std::string_view choice = p.substr(start, comma - start);
-      if (s.starts_with(choice) && deeper(p.substr(end + 1), s.substr(choice.size()))) return true;
+      if (s.starts_with(choice) && match_nested(p.substr(end + 1), s.substr(choice.size()))) return true;
       start = comma + 1;
     }
     return false;
   }
 };
 
-// bytes of a whole UTF-8 character at the start of s, or 0 where it is broken
+// Returns the number of bytes of the UTF-8 character at the start of s, or 0 if it is invalid.
 std::size_t utf8_length(std::string_view s) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
   const unsigned char a = byte(0);
@@ -111,7 +111,7 @@ std::size_t utf8_length(std::string_view s) {
   return n;
 }
 
-// letters put in, left out, changed, and neighbours that changed places (optimal string alignment), each one edit
+// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbors; ignores case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   const auto same = [&](std::size_t i, std::size_t k) { return lower(a[i]) == lower(b[k]); };
   std::vector<std::size_t> older(b.size() + 1);
@@ -131,8 +131,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-// comparisons of letters in the search for a near name: a few milliseconds, whoever has made how many names
-constexpr std::size_t kMostWork = 1'000'000;
+// Maximum number of character comparisons of nearest_name(), a few milliseconds, for any number of names.
+constexpr std::size_t kMaxComparisons = 1'000'000;
 
 constexpr std::string_view kForbidden = " #*,/?[]{}%";
 
@@ -183,7 +183,7 @@ std::string_view nearest_name(std::string_view written, std::span<const std::str
   for (const std::string_view name : names) {
     if (name.size() > written.size() + allowed || written.size() > name.size() + allowed) continue;
     work += written.size() * name.size();
-    if (work > kMostWork) break;
+    if (work > kMaxComparisons) break;
     const std::size_t distance = edit_distance(written, name);
     if (distance < best_distance) {
       best = name;
@@ -227,13 +227,13 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
-std::string shortened(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
+std::string shortened(std::string_view text, std::size_t max_bytes) {
+  if (text.size() <= max_bytes) return std::string(text);
   const auto inside = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xc0u) == 0x80u; };
   constexpr std::string_view kCut = " … ";
-  const std::size_t room = most - std::min(most, kCut.size());
-  std::size_t head = room / 2;
-  std::size_t tail = text.size() - (room - head);
+  const std::size_t available = max_bytes - std::min(max_bytes, kCut.size());
+  std::size_t head = available / 2;
+  std::size_t tail = text.size() - (available - head);
   while (head > 0 && inside(head)) head--;
   while (tail < text.size() && inside(tail)) tail++;
   return fmt::format("{}{}{}", text.substr(0, head), kCut, text.substr(tail));
@@ -279,11 +279,11 @@ std::string unescape_name(std::string_view part) {
   return name;
 }
 
-std::optional<std::string> name_fault(std::string_view name) {
+std::optional<std::string> name_error(std::string_view name) {
   if (name.empty()) return "a name must not be empty";
-  if (name.size() > 128) return fmt::format("a name may be 128 bytes long, this one has {}", name.size());
+  if (name.size() > 128) return fmt::format("a name may have at most 128 bytes, not {}", name.size());
   if (printable(name) != name || name.find_first_of("\n\t") != std::string_view::npos) {
-    return fmt::format("the name '{}' holds characters that can't be printed", printable(name));
+    return fmt::format("the name '{}' contains unprintable characters", printable(name));
   }
   return {};
 }

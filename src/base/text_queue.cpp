@@ -1,4 +1,4 @@
-// A text that reaches the end of the block continues at its beginning.
+// Ring buffers: a text that reaches the end of the block continues at its beginning.
 #include "base/text_queue.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// TextQueue: texts in their order, within a fixed number of bytes. It allocates once, at construction.
+// TextQueue: a FIFO queue of texts with a fixed capacity in bytes and texts. It allocates at construction only.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,17 @@
 
 namespace limber {
 
-/// A ring buffer of bytes and one of entries. [no synchronization of its own]
+/// A ring buffer of bytes and a ring buffer of entries. Not thread-safe.
 class TextQueue {
  public:
   TextQueue(std::size_t bytes, std::size_t texts);
 
+  /// True if there is space for a text of this size.
   bool fits(std::size_t size) const { return count_ < texts_ && used_ + size <= bytes_; }
-  /// The text must fit. `order` and `missing` are returned with it.
+  /// Appends a text, which must fit. `order` and `missing` are stored with it.
   void push(std::string_view text, std::uint64_t order, std::uint64_t missing);
   bool empty() const { return count_ == 0; }
-  /// At most half of the bytes and half of the entries are in use.
+  /// True if at most half of the bytes and half of the entries are in use.
   bool half_empty() const { return count_ * 2 <= texts_ && used_ * 2 <= bytes_; }
   std::uint64_t front_order() const { return entries_[first_].order; }
   /// Appends the oldest text to `to` and removes it. Returns its `missing`. The queue is not empty.

@@ -1,5 +1,5 @@
-// Vectors and rotations: glm's double types under the names that the house uses, and the few conversions
-// that everyone needs. SI units, right-handed, Z up; a quaternion's parts are named x y z w.
+// Vectors, quaternions and poses in double precision (glm), and conversions between them. SI units, right-handed, Z up;
+// quaternions are in the order x y z w.
 #pragma once
 
 #include <cmath>
@@ -37,7 +37,7 @@ inline Quat slerp(const Quat& a, const Quat& b, double amount) {
   return glm::normalize(a * fixed::sin((1 - amount) * angle) + end * fixed::sin(amount * angle));
 }
 
-/// Rotation Rz(z)·Ry(y)·Rx(x): fixed axes, roll-pitch-yaw as URDF has it, radians.
+/// Returns the rotation Rz(z)·Ry(y)·Rx(x), the roll-pitch-yaw angles of URDF about fixed axes, in radians.
 inline Quat quat_euler(double x, double y, double z) {
   return quat_axis({0, 0, 1}, z) * quat_axis({0, 1, 0}, y) * quat_axis({1, 0, 0}, x);
 }
@@ -50,7 +50,7 @@ inline Vec3 euler_of(const Quat& q) {
   return {fixed::atan2(m[1][2], m[2][2]), y, fixed::atan2(m[0][1], m[0][0])};
 }
 
-/// Unit vector along v; the zero vector stays zero, so no NaN is born here.
+/// Returns the unit vector along v, or zero for the zero vector (no NaN).
 inline Vec3 normalized(const Vec3& v) {
   const double length = glm::length(v);
   return length > 0 ? v / length : Vec3(0);
@@ -61,7 +61,7 @@ inline bool is_finite(const Quat& q) {
   return std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z) && std::isfinite(q.w);
 }
 
-/// Between three numbers side by side, as stores and streams hold them, and a vector; four, x y z w, and a rotation.
+// Conversions between arrays of numbers, as in the store and in streams, and vectors (3) or quaternions (4: x y z w).
 inline Vec3 vec3_at(const double* v) { return {v[0], v[1], v[2]}; }
 inline Quat quat_at(const double* v) { return quat_xyzw(v[0], v[1], v[2], v[3]); }
 inline void put(double* to, const Vec3& v) {
@@ -76,7 +76,7 @@ inline void put(double* to, const Quat& q) {
   to[3] = q.w;
 }
 
-/// A rigid transform: first rotate, then shift.
+/// A rigid transform: rotation, then translation.
 struct Pose {
   Vec3 position{0, 0, 0};
   Quat rotation = quat_identity();
@@ -89,7 +89,7 @@ struct Pose {
   }
 };
 
-/// The same but for rounding: what one formula gives on two ways. A nanometre, a nanoradian.
+/// True if both differ by rounding errors only: at most about 1e-9 m and 1e-9 rad.
 inline bool nearly_same(const Vec3& a, const Vec3& b) { return glm::length(a - b) <= 1e-9 * (1 + glm::length(a)); }
 inline bool nearly_same(const Quat& a, const Quat& b) {
   const double sign = glm::dot(a, b) < 0 ? -1 : 1;

@@ -1,4 +1,4 @@
-// alignment: gives each part the motion of its neighbours in other bodies.
+// alignment: accelerates each part towards the motion of its neighbors in other bodies.
 #include <algorithm>
 
 #include "sim/behavior_rows.h"
@@ -8,56 +8,59 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
-Vec3 vec_of(const float* v) { return {v[0], v[1], v[2]}; }
+Vec3 to_vec3(const float* v) { return {v[0], v[1], v[2]}; }
 
-// a gain that within a tick brings an inertia to the mean and no further: what is more would overshoot, and grow
-double bounded(double gain, double inertia, double dt) { return std::clamp(gain, -inertia / dt, inertia / dt); }
+// Limits a gain so that one tick changes the velocity of an inertia by at most the difference; more would overshoot
+// and diverge.
+double limited_gain(double gain, double inertia, double dt) { return std::clamp(gain, -inertia / dt, inertia / dt); }
 
-// bounded about each principal axis by itself: a thin part takes less about its long axis than across
-Vec3 bounded_torque(const Part& part, double mass, double gain, const Vec3& spin, double dt) {
+// Limits the gain about each principal axis separately: a thin part allows less about its long axis than across it.
+Vec3 limited_torque(const Part& part, double mass, double gain, const Vec3& spin, double dt) {
   const Vec3 inertia = mass * part.geometry()->unit_inertia;
   const Quat axes = part.principal_axes();
-  Vec3 own = glm::conjugate(axes) * spin;
-  for (int i = 0; i < 3; i++) own[i] *= bounded(gain, inertia[i], dt);
-  return axes * own;
+  Vec3 local = glm::conjugate(axes) * spin;
+  for (int i = 0; i < 3; i++) local[i] *= limited_gain(gain, inertia[i], dt);
+  return axes * local;
 }
 
 class Alignment final : public NeighborBehavior {
  public:
-  enum Parameter : std::uint32_t { linear_amount = first_own, angular_amount, amount };
+  enum Parameter : std::uint32_t { linear_amount = first_specific, angular_amount, amount };
 
  private:
-  unsigned wants() const override { return kWantVelocity; }
+  unsigned needed_means() const override { return kWantVelocity; }
 
-  void act(const Share& own) const override {
-    const double near = own.values[min_dist];
-    const double far = own.values[max_dist];
-    const double linear = own.values[amount] * own.values[linear_amount];
-    const double angular = own.values[amount] * own.values[angular_amount];
-    for (std::size_t i = 0; i < own.parts.size(); i++) {
-      if (own.means[i].count == 0) continue;
-      PartLoads::Load& load = own.load(i);
-      const double s = std::clamp(1 - (glm::length(vec_of(own.means[i].offset)) - near) / (far - near), 0.0, 1.0);
-      load.force += bounded(linear * s, own.mass(i), own.dt) * vec_of(own.means[i].velocity);
+  void apply(const MemberInput& member) const override {
+    const double min_distance = member.values[min_dist];
+    const double max_distance = member.values[max_dist];
+    const double linear = member.values[amount] * member.values[linear_amount];
+    const double angular = member.values[amount] * member.values[angular_amount];
+    for (std::size_t i = 0; i < member.parts.size(); i++) {
+      if (member.means[i].count == 0) continue;
+      ForceAccumulators::Wrench& wrench = member.wrench(i);
+      const double s = std::clamp(
+          1 - (glm::length(to_vec3(member.means[i].offset)) - min_distance) / (max_distance - min_distance), 0.0, 1.0);
+      wrench.force += limited_gain(linear * s, member.mass(i), member.dt) * to_vec3(member.means[i].velocity);
       const double gain = angular * s;
-      const Vec3 spin = vec_of(own.means[i].spin);
-      const bool stable = std::abs(gain) * own.dt <= own.least_inertia(i);
-      load.torque += stable ? gain * spin : bounded_torque(*own.parts[i], own.mass(i), gain, spin, own.dt);
+      const Vec3 spin = to_vec3(member.means[i].spin);
+      const bool stable = std::abs(gain) * member.dt <= member.min_inertia(i);
+      wrench.torque += stable ? gain * spin : limited_torque(*member.parts[i], member.mass(i), gain, spin, member.dt);
     }
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of_group<Alignment>(
-      "alignment", "Gives each part the motion of its neighbours in other bodies.",
-      {distance("min_dist", 0, "Neighbours are further away than this"),
-       distance("max_dist", 10, "and nearer than this."),
-       load("linear_amount", "N·s/m", 1, "Force for each m/s that differs; never more than ends the difference."),
+  return BehaviorType::create_group<Alignment>(
+      "alignment", "Accelerates each part towards the motion of its neighbors in other bodies.",
+      {distance("min_dist", 0, "Minimal distance of neighbors."),
+       distance("max_dist", 10, "Maximal distance of neighbors."),
+       load("linear_amount", "N·s/m", 1,
+            "Force per m/s of difference, limited to the force that removes it in one tick."),
        load("angular_amount", "N·m·s/rad", 1,
-            "Torque for each rad/s that differs; never more than ends the difference."),
-       load("amount", "", 1, "What both are multiplied by; below 0: away from the neighbours' motion.")});
+            "Torque per rad/s of difference, limited to the torque that removes it in one tick."),
+       load("amount", "", 1, "Factor on both; negative: away from the neighbors' motion.")});
 });
 
 }  // namespace

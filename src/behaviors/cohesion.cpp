@@ -1,4 +1,4 @@
-// cohesion: draws each part towards the middle of its neighbours in other bodies.
+// cohesion: pulls each part towards the center of its neighbors in other bodies.
 #include <algorithm>
 
 #include "sim/behavior_rows.h"
@@ -8,34 +8,36 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class Cohesion final : public NeighborBehavior {
  public:
-  enum Parameter : std::uint32_t { amount = first_own };
+  enum Parameter : std::uint32_t { amount = first_specific };
 
  private:
-  unsigned wants() const override { return 0; }
+  unsigned needed_means() const override { return 0; }
 
-  void act(const Share& own) const override {
-    const double near = own.values[min_dist];
-    const double far = own.values[max_dist];
-    const double strength = own.values[amount];
-    for (std::size_t i = 0; i < own.parts.size(); i++) {
-      if (own.means[i].count == 0) continue;
-      const Vec3 way(own.means[i].offset[0], own.means[i].offset[1], own.means[i].offset[2]);
-      const double s = near > 0 ? std::clamp((glm::length(way) - near) / (far - near), 0.0, 1.0) : 1;
-      own.load(i).force += strength * s * normalized(way);
+  void apply(const MemberInput& member) const override {
+    const double min_distance = member.values[min_dist];
+    const double max_distance = member.values[max_dist];
+    const double strength = member.values[amount];
+    for (std::size_t i = 0; i < member.parts.size(); i++) {
+      if (member.means[i].count == 0) continue;
+      const Vec3 offset(member.means[i].offset[0], member.means[i].offset[1], member.means[i].offset[2]);
+      const double s = min_distance > 0
+                           ? std::clamp((glm::length(offset) - min_distance) / (max_distance - min_distance), 0.0, 1.0)
+                           : 1;
+      member.wrench(i).force += strength * s * normalized(offset);
     }
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of_group<Cohesion>("cohesion",
-                                          "Draws each part towards the middle of its neighbours in other bodies.",
-                                          {distance("min_dist", 0, "Neighbours are further away than this"),
-                                           distance("max_dist", 10, "and nearer than this."),
-                                           load("amount", "N", 1, "Force; below 0: away from the neighbours.")});
+  return BehaviorType::create_group<Cohesion>("cohesion",
+                                              "Pulls each part towards the center of its neighbors in other bodies.",
+                                              {distance("min_dist", 0, "Minimal distance of neighbors."),
+                                               distance("max_dist", 10, "Maximal distance of neighbors."),
+                                               load("amount", "N", 1, "Force; negative: away from the neighbors.")});
 });
 
 }  // namespace

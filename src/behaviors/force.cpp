@@ -8,26 +8,26 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class Force final : public Behavior {
  public:
   enum Parameter : std::uint32_t { dir, amp, max_amp, app_interval };
 
   void step(double) override {
-    if (!due(app_interval)) return;
-    const double most = number(max_amp);
-    const Vec3 force = normalized(vec(dir)) * std::clamp(number(amp), -most, most);
+    if (!interval_elapsed(app_interval)) return;
+    const double limit = number(max_amp);
+    const Vec3 force = normalized(vec(dir)) * std::clamp(number(amp), -limit, limit);
     for (Part* part : parts()) part->apply_force(force);
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<Force>(
-      "force", "Pushes every part in one direction.", BehaviorTargets::parts,
-      {direction("dir", {1, 0, 0}, "Where to, world; its length does not matter."),
-       load("amp", "N", 0, "How hard; below 0: the other way."),
-       number("max_amp", "N", 1e4, 0, kMostLoad, "What amp is held below, either way."), app_interval()});
+  return BehaviorType::create<Force>(
+      "force", "Applies a force to every part.", BehaviorTargets::parts,
+      {direction("dir", {1, 0, 0}, "Direction, world; its length has no influence."),
+       load("amp", "N", 0, "Force; negative: opposite direction."),
+       number("max_amp", "N", 1e4, 0, kMaxLoad, "Limit of the magnitude of amp."), app_interval()});
 });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// random_torque: turns each part by a torque that is drawn for it, anew from time to time.
+// random_torque: applies a random torque to each part, which changes at regular intervals.
 #include <vector>
 
 #include "base/key_bytes.h"
@@ -9,36 +9,36 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class RandomTorque final : public Behavior {
  public:
   enum Parameter : std::uint32_t { min_torque, max_torque, scale, rand_interval, app_interval };
 
-  void start() override { drawn_.assign(parts().size(), Vec3(0)); }
-  void pass_memory(KeyBytes& key) override { key.pass(drawn_); }
+  void start() override { torques_.assign(parts().size(), Vec3(0)); }
+  void serialize(Archive& archive) override { archive.serialize(torques_); }
 
   void step(double) override {
-    if (due(rand_interval)) {
-      for (Vec3& torque : drawn_) torque = random_between(vec(min_torque), vec(max_torque));
+    if (interval_elapsed(rand_interval)) {
+      for (Vec3& torque : torques_) torque = random_between(vec(min_torque), vec(max_torque));
     }
-    if (!due(app_interval)) return;
-    const double by = number(scale);
-    for (std::size_t i = 0; i < drawn_.size(); i++) parts()[i]->apply_torque(by * drawn_[i]);
+    if (!interval_elapsed(app_interval)) return;
+    const double factor = number(scale);
+    for (std::size_t i = 0; i < torques_.size(); i++) parts()[i]->apply_torque(factor * torques_[i]);
   }
 
  private:
-  std::vector<Vec3> drawn_;
+  std::vector<Vec3> torques_;
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<RandomTorque>(
-      "random_torque", "Turns each part by a torque of its own that is drawn anew from time to time.",
+  return BehaviorType::create<RandomTorque>(
+      "random_torque", "Applies a random torque to each part, which changes at regular intervals.",
       BehaviorTargets::parts,
-      {load3("min_torque", "N·m", {-1, -1, -1}, "One corner of the box that torques are drawn from, world axes."),
+      {load3("min_torque", "N·m", {-1, -1, -1}, "One corner of the box of random torques, world axes."),
        load3("max_torque", "N·m", {1, 1, 1}, "The other corner."),
-       load("scale", "", 1, "What the torque is multiplied by; acts at once."), rows::rand_interval(),
-       rows::app_interval()});
+       load("scale", "", 1, "Factor on the torque; takes effect at once."), properties::rand_interval(),
+       properties::app_interval()});
 });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// rotation_target: leads servos and springs towards angles, a step at a time.
+// rotation_target: moves servos and springs towards given angles step by step.
 #include "sim/behavior.h"
 #include "sim/behavior_rows.h"
 #include "sim/motor.h"
@@ -6,27 +6,26 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class RotationTarget final : public Behavior {
  public:
   enum Parameter : std::uint32_t { target, speed, app_interval };
 
   void step(double) override {
-    if (!due(app_interval)) return;
-    for (Motor* motor : motors()) motor->lead_to(vec(target), number(speed));
+    if (!interval_elapsed(app_interval)) return;
+    for (Motor* motor : motors()) motor->step_towards(vec(target), number(speed));
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<RotationTarget>(
-      "rotation_target", "Leads servos and springs towards angles, a step at a time.", BehaviorTargets::motors,
+  return BehaviorType::create<RotationTarget>(
+      "rotation_target", "Moves servos and springs towards given angles step by step.", BehaviorTargets::motors,
       {vec3("target", "rad", {0, 0, 0}, -1e4, 1e4,
-            "About the joint's axes, in its own order; z is the own axis. On a free axis it goes the shorter way "
-            "round."),
+            "Angles about the joint's axes, in its own order; z is the own axis. Free axes take the shorter way."),
        number("speed", "rad", 0.1, 0, 1e4,
-              "How far ahead of the joint the servo or spring is set, at each application."),
-       rows::app_interval()});
+              "Maximal lead of the target over the joint's angle, set at each application."),
+       properties::app_interval()});
 });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// separation: keeps each part away from its neighbours in other bodies.
+// separation: pushes each part away from its neighbors in other bodies.
 #include "sim/behavior_rows.h"
 #include "sim/neighbor_behavior.h"
 #include "sim/part.h"
@@ -6,32 +6,32 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class Separation final : public NeighborBehavior {
  public:
-  enum Parameter : std::uint32_t { amount = first_own };
+  enum Parameter : std::uint32_t { amount = first_specific };
 
  private:
-  unsigned wants() const override { return kWantPush; }
+  unsigned needed_means() const override { return kWantPush; }
 
-  void act(const Share& own) const override {
-    const double strength = own.values[amount];
-    for (std::size_t i = 0; i < own.parts.size(); i++) {
-      if (own.means[i].count == 0) continue;
-      const float* push = own.means[i].push;
-      own.load(i).force -= strength * Vec3(push[0], push[1], push[2]);
+  void apply(const MemberInput& member) const override {
+    const double strength = member.values[amount];
+    for (std::size_t i = 0; i < member.parts.size(); i++) {
+      if (member.means[i].count == 0) continue;
+      const float* push = member.means[i].push;
+      member.wrench(i).force -= strength * Vec3(push[0], push[1], push[2]);
     }
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of_group<Separation>(
-      "separation", "Keeps each part away from its neighbours in other bodies, the nearest most.",
+  return BehaviorType::create_group<Separation>(
+      "separation", "Pushes each part away from its neighbors in other bodies, more strongly from near ones.",
 
-      {distance("min_dist", 0, "Neighbours are further away than this"),
-       distance("max_dist", 1, "and nearer than this."),
-       load("amount", "N", 1, "Force of a neighbour close by; below 0: towards them.")});
+      {distance("min_dist", 0, "Minimal distance of neighbors."),
+       distance("max_dist", 1, "Maximal distance of neighbors."),
+       load("amount", "N", 1, "Force of a neighbor at distance 0; negative: towards it.")});
 });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// speed: drives each part to a speed, along the way that it goes.
+// speed: accelerates each part to a given speed in its direction of motion.
 #include "sim/behavior.h"
 #include "sim/behavior_rows.h"
 #include "sim/part.h"
@@ -6,7 +6,7 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class Speed final : public Behavior {
  public:
@@ -21,11 +21,11 @@ class Speed final : public Behavior {
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<Speed>(
-      "speed", "Drives each part to a speed, along the way that it goes; what stands still stays.",
+  return BehaviorType::create<Speed>(
+      "speed", "Accelerates each part to a speed in its direction of motion; parts at rest stay at rest.",
       BehaviorTargets::parts,
-      {number("speed", "m/s", 1, -1e4, 1e4, "The speed to reach."),
-       load("amount", "N·s/m", 1, "Force for each m/s that is missing; below 0: away from that speed.")});
+      {number("speed", "m/s", 1, -1e4, 1e4, "Target speed."),
+       load("amount", "N·s/m", 1, "Force per m/s of difference; negative: away from that speed.")});
 });
 
 }  // namespace

@@ -6,32 +6,33 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class TargetAttraction final : public Behavior {
  public:
   enum Parameter : std::uint32_t { target_pos, min_dist, max_dist, min_amp, max_amp, app_interval };
 
   void step(double) override {
-    if (!due(app_interval)) return;
-    const double far = number(max_dist);
-    const double from = number(min_amp);
+    if (!interval_elapsed(app_interval)) return;
+    const double max_distance = number(max_dist);
+    const double near_force = number(min_amp);
     for (Part* part : parts()) {
-      const Vec3 way = vec(target_pos) - part->center();
-      const double d = glm::length(way);
-      if (d == 0 || d > far || d < number(min_dist)) continue;
-      part->apply_force(way / d * (from + (number(max_amp) - from) * d / far));
+      const Vec3 offset = vec(target_pos) - part->center();
+      const double distance = glm::length(offset);
+      if (distance == 0 || distance > max_distance || distance < number(min_dist)) continue;
+      part->apply_force(offset / distance * (near_force + (number(max_amp) - near_force) * distance / max_distance));
     }
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<TargetAttraction>(
+  return BehaviorType::create<TargetAttraction>(
       "target_attraction", "Pulls each part towards a point.", BehaviorTargets::parts,
-      {vec3("target_pos", "m", {0, 0, 0}, -kMostDistance, kMostDistance, "The point, world."),
-       distance("min_dist", 0, "Nothing acts nearer than this"), distance("max_dist", 10, "or further than this."),
-       load("min_amp", "N", 0, "Force close to the point; below 0: away from it."),
-       load("max_amp", "N", 10, "Force at max_dist."), rows::app_interval()});
+      {vec3("target_pos", "m", {0, 0, 0}, -kMaxDistance, kMaxDistance, "Target point, world."),
+       distance("min_dist", 0, "Minimal distance at which it acts."),
+       distance("max_dist", 10, "Maximal distance at which it acts."),
+       load("min_amp", "N", 0, "Force at distance 0; negative: away from the point."),
+       load("max_amp", "N", 10, "Force at max_dist."), properties::app_interval()});
 });
 
 }  // namespace

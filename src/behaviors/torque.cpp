@@ -6,23 +6,23 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 class Torque final : public Behavior {
  public:
   enum Parameter : std::uint32_t { torque, scale, app_interval };
 
   void step(double) override {
-    if (!due(app_interval)) return;
-    const Vec3 load = number(scale) * vec(torque);
-    for (Part* part : parts()) part->apply_torque(load);
+    if (!interval_elapsed(app_interval)) return;
+    const Vec3 scaled_torque = number(scale) * vec(torque);
+    for (Part* part : parts()) part->apply_torque(scaled_torque);
   }
 };
 
 const BuiltInBehavior registered([] {
-  return BehaviorType::of<Torque>("torque", "Turns every part about one axis.", BehaviorTargets::parts,
-                                  {load3("torque", "N·m", {0, 0, 0}, "About the world's axes."),
-                                   load("scale", "", 1, "What torque is multiplied by."), app_interval()});
+  return BehaviorType::create<Torque>("torque", "Applies a torque to every part.", BehaviorTargets::parts,
+                                      {load3("torque", "N·m", {0, 0, 0}, "Torque, world axes."),
+                                       load("scale", "", 1, "Factor on the torque."), app_interval()});
 });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Connecting, and lines out and in.
+// Connecting to a program, sending requests, reading lines.
 #include "console/console_link.h"
 
 #include <cerrno>
@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kHelloMs = 2000;  // a program that says nothing for so long is not well
+constexpr int kHelloTimeoutMs = 2000;  // ms to wait for the first line of a program
 
 std::string list_text(const std::vector<RunningProgram>& programs) {
   std::string text;
@@ -21,23 +21,23 @@ std::string list_text(const std::vector<RunningProgram>& programs) {
   return text;
 }
 
-// false: nothing came. Signals that are blocked otherwise come in here: none gets lost between two looks
-bool wait_for_some(int fd, int wait_ms) {
-  system::Waiting waiting{.fd = fd};
+// Returns false on timeout or after a signal. Unblocks signals while it waits, so that none is lost between two polls.
+bool wait_readable(int fd, int wait_ms) {
+  system::PollEntry waiting{.fd = fd};
   std::optional<std::chrono::nanoseconds> limit;
   if (wait_ms >= 0) limit = std::chrono::milliseconds(wait_ms);
   return system::wait_ready_or_signal({&waiting, 1}, limit);
 }
 
 // connects and reads the first line
-Result<ConsoleLink> greet(const std::string& path, ConsoleLine& hello) {
+Result<ConsoleLink> connect_and_read_hello(const std::string& path, ConsoleLine& hello) {
   Result<system::Descriptor> connection = connect_console(path);
   if (!connection) return Error{connection.error()};
   ConsoleLink link(std::move(*connection));
-  const std::optional<ConsoleLine> first = link.next(kHelloMs);
-  if (!first) return Error{fmt::format("{}: nothing answers there", path)};
-  if (first->kind == ConsoleLine::Kind::refused) return Error{first->text};
-  if (first->kind != ConsoleLine::Kind::hello) return Error{fmt::format("{}: that is no limber", path)};
+  const std::optional<ConsoleLine> first = link.next(kHelloTimeoutMs);
+  if (!first) return Error{fmt::format("{}: no answer", path)};
+  if (first->kind == ConsoleLine::Kind::rejected) return Error{first->text};
+  if (first->kind != ConsoleLine::Kind::hello) return Error{fmt::format("{}: not a Limber program", path)};
   hello = *first;
   return link;
 }
@@ -51,7 +51,7 @@ bool ConsoleLink::send(const ConsoleRequest& request) {
     if (n > 0) {
       sent += static_cast<std::size_t>(n);
     } else if (errno == EAGAIN) {
-      system::Waiting waiting{.fd = fd(), .read = false, .write = true};
+      system::PollEntry waiting{.fd = fd(), .read = false, .write = true};
       (void)system::wait_ready({&waiting, 1}, std::nullopt);
     } else if (errno != EINTR) {
       return false;
@@ -60,23 +60,23 @@ bool ConsoleLink::send(const ConsoleRequest& request) {
   return true;
 }
 
-std::optional<ConsoleLine> ConsoleLink::take_line() {
+std::optional<ConsoleLine> ConsoleLink::next_buffered_line() {
   while (true) {
-    const std::size_t end = in_.find('\n');
+    const std::size_t end = input_.find('\n');
     if (end == std::string::npos) return {};
-    Result<ConsoleLine> line = parse_line(std::string_view(in_).substr(0, end));
-    in_.erase(0, end + 1);
-    // a newer program may say more than this console knows
+    Result<ConsoleLine> line = parse_line(std::string_view(input_).substr(0, end));
+    input_.erase(0, end + 1);
+    // skip lines of newer programs that this version does not know
     if (line) return std::move(*line);
   }
 }
 
-// false: nothing is there to read now
+// false: nothing to read at the moment
 bool ConsoleLink::read_some() {
   char bytes[16384];
   const std::ptrdiff_t got = system::receive_bytes(fd(), bytes, sizeof bytes);
   if (got > 0) {
-    in_.append(bytes, static_cast<std::size_t>(got));
+    input_.append(bytes, static_cast<std::size_t>(got));
     return true;
   }
   if (got == 0 || (errno != EAGAIN && errno != EINTR)) ended_ = true;
@@ -85,11 +85,11 @@ bool ConsoleLink::read_some() {
 
 std::optional<ConsoleLine> ConsoleLink::next(int wait_ms) {
   while (true) {
-    if (std::optional<ConsoleLine> line = take_line()) return line;
+    if (std::optional<ConsoleLine> line = next_buffered_line()) return line;
     if (ended_) return {};
     if (read_some()) continue;
     if (ended_) return {};
-    if (!wait_for_some(fd(), wait_ms)) return {};
+    if (!wait_readable(fd(), wait_ms)) return {};
   }
 }
 
@@ -98,7 +98,7 @@ std::vector<RunningProgram> running_programs() {
   for (const std::string& folder : runtime_folders()) {
     for (ConsoleSocket& socket : console_sockets(folder)) {
       ConsoleLine hello;
-      const Result<ConsoleLink> link = greet(socket.path, hello);
+      const Result<ConsoleLink> link = connect_and_read_hello(socket.path, hello);
       programs.push_back({std::move(socket), link ? hello.text : link.error()});
     }
   }
@@ -108,14 +108,14 @@ std::vector<RunningProgram> running_programs() {
 Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello) {
   std::vector<RunningProgram> programs = running_programs();
   if (programs.empty()) {
-    return Error{"no limber of yours is running; start one with `limber play`, without --fast, first"};
+    return Error{"no Limber program of this user is running; start one with `limber play`, without --fast"};
   }
   if (pid == 0 && programs.size() > 1)
     return Error{fmt::format("{} of your programs are running; choose one:{}", programs.size(), list_text(programs))};
   for (const RunningProgram& each : programs) {
-    if (pid == 0 || each.socket.pid == pid) return greet(each.socket.path, hello);
+    if (pid == 0 || each.socket.pid == pid) return connect_and_read_hello(each.socket.path, hello);
   }
-  return Error{fmt::format("no limber of yours has the number {}; there are:{}", pid, list_text(programs))};
+  return Error{fmt::format("no running Limber program has the process id {}; there are:{}", pid, list_text(programs))};
 }
 
 }  // namespace limber

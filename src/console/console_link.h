@@ -1,4 +1,4 @@
-// ConsoleLink: a console's end of the connection to a running program.
+// ConsoleLink: the console's end of the connection to a running program.
 #pragma once
 
 #include <optional>
@@ -17,34 +17,34 @@ class ConsoleLink {
   explicit ConsoleLink(system::Descriptor connection) : connection_(std::move(connection)) {}
 
   int fd() const { return connection_.fd(); }
-  /// False when the other end has gone.
+  /// Sends a request, waiting as long as necessary. Returns false if the connection is closed.
   bool send(const ConsoleRequest& request);
-  /// The next line that has come; nothing when none does within `wait_ms` (-1: however long), after a signal, and when
-  /// the other end has gone.
+  /// Returns the next line; nothing after `wait_ms` milliseconds (-1: no limit), after a signal, and when the
+  /// connection is closed.
   std::optional<ConsoleLine> next(int wait_ms);
-  /// The other end has gone, and all that it said was read.
+  /// True if the connection is closed and all lines have been read.
   bool ended() const { return ended_; }
 
  private:
   bool read_some();
-  std::optional<ConsoleLine> take_line();
+  std::optional<ConsoleLine> next_buffered_line();
 
   system::Descriptor connection_;
-  std::string in_;
+  std::string input_;
   bool ended_ = false;
 };
 
-/// A running program, as its first line tells.
+/// A running program and the scene from its first line (or the reason why it did not answer).
 struct RunningProgram {
   ConsoleSocket socket;
   std::string scene;
 };
 
-/// Those of this user, in every runtime folder. [main]
+/// Returns this user's running programs from all runtime folders. [main]
 std::vector<RunningProgram> running_programs();
 
-/// The connection to one of them: the one with that pid, or with 0 the only one. `hello` gets its first line. The error
-/// says which ones there are and how to choose. [main]
+/// Connects to the program with this pid, or with pid 0 to the only one running, and stores its first line in `hello`.
+/// The error lists the running programs. [main]
 Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The console's protocol: lines of JSON, one object each (docs/console.md). Both ends write and read them with these.
+// The console protocol: one JSON object per line (docs/console.md), written and parsed here for both ends.
 #pragma once
 
 #include <cstddef>
@@ -13,63 +13,63 @@
 
 namespace limber {
 
-/// Longest line of either side, bytes: the longest text with every byte escaped, and room for what stands around it.
-inline constexpr std::size_t kMostLine = 8 * kMostEvaluated;
+/// Longest line that either side accepts, bytes: the longest text with every byte escaped, plus the JSON around it.
+inline constexpr std::size_t kMaxLine = 8 * kMaxEvaluatedBytes;
 
-/// What a console asks for.
+/// A request from a console.
 struct ConsoleRequest {
-  enum class Wish : std::uint8_t {
+  enum class Kind : std::uint8_t {
     evaluate,
     complete,
-    traffic,  ///< To be told of messages that come in and go out; `text`: of addresses that this pattern matches.
-    changes,  ///< To be told of changed values; `text`: of what this pattern reaches, empty: of what hands set.
+    traffic,  ///< Subscribe to incoming and outgoing messages; `text`: an address pattern, empty for all.
+    changes,  ///< Subscribe to changed values; `text`: a pattern, empty for all values set by controllers.
   };
-  std::uint64_t id = 0;  ///< The console's own number, which the answer repeats.
-  Wish wish = Wish::evaluate;
+  std::uint64_t id = 0;  ///< Chosen by the console; repeated in the answer.
+  Kind kind = Kind::evaluate;
   std::string text;
 };
 
-/// What a program says. `id` is 0 in what answers nobody.
+/// A line from the program. `id` is 0 in lines that do not answer a request.
 struct ConsoleLine {
   enum class Kind : std::uint8_t {
-    hello,       ///< First of all: `text` is the scene, `version` and `pid` say who speaks.
-    done,        ///< The answers, as in Evaluation.
+    hello,       ///< First line: `text` is the scene; `version` and `pid` identify the program.
+    done,        ///< Results of a request, as in Evaluation.
     value,       //
     error,       //
     incomplete,  //
-    names,       ///< `names`, `word`.
-    print,       ///< A script printed `text`; with an id: while that request ran.
-    warning,     ///< The log, in the same way.
+    names,       ///< Completions: `names`, `word`.
+    print,       ///< A script printed `text`; `id` is the request that was running, if any.
+    warning,     ///< A log line; `id` as for print.
     fault,       //
-    missed,      ///< `count` lines of these three were too many.
-    refused,     ///< `text` says why the connection ends.
-    in,          ///< A message came: `text`, from `end`, at `time`.
-    out,         ///< One went out to `end`.
-    change,  ///< A value is another: `text` is its path, what it was and what it is; `end`: who set it, if a hand did.
+    missed,      ///< `count` lines were dropped because the console did not read them in time.
+    rejected,    ///< The connection is about to close; `text` is the reason.
+    in,          ///< A message arrived from `end` at `time`: `text`.
+    out,         ///< A message was sent to `end`.
+    change,      ///< A value changed: `text` has path, old and new value; `end`: the controller that set it, if any.
   };
   Kind kind = Kind::done;
   std::uint64_t id = 0;
   std::string text;
   std::vector<std::string> names;
-  std::size_t word = 0;
+  std::size_t word = 0;  ///< Number of bytes at the end of the text that a completion replaces.
   std::uint64_t count = 0;
   std::string version;
   int pid = 0;
-  std::string end;
-  double time = 0;  ///< s, of a clock of the program's own.
+  std::string origin;  ///< The other end of a message, or the controller that set a value.
+  double time = 0;     ///< Seconds on the program's monotonic clock.
 };
 
-/// Each with its line's end. Text from scripts has control characters escaped. [any]
+/// Each function returns one line with its line feed. Control characters in text from scripts are escaped. [any]
 std::string request_line(const ConsoleRequest& request);
 std::string hello_line(std::string_view version, int pid, std::string_view scene);
-std::string answer_line(std::uint64_t id, const Evaluation& said);
+std::string result_line(std::uint64_t id, const Evaluation& result);
 std::string log_line(std::uint64_t id, const LogLine& line);
-std::string traffic_line(bool in, double time, std::string_view end, std::string_view text);
-std::string change_line(double time, std::string_view who, std::string_view text);
+std::string traffic_line(bool in, double time, std::string_view peer, std::string_view text);
+std::string change_line(double time, std::string_view source, std::string_view text);
 std::string missed_line(std::uint64_t count);
-std::string refused_line(std::string_view why);
+std::string rejected_line(std::string_view reason);
 
-/// A line without its end. Anything may stand in it; the error says what it should be. [any]
+/// Parses one line without its line feed. The input is untrusted; the error describes the expected form. [any]
 Result<ConsoleRequest> parse_request(std::string_view line);
 Result<ConsoleLine> parse_line(std::string_view line);
 

@@ -1,4 +1,4 @@
-// Folders, sockets and who may use them.
+// Finding and checking runtime folders, listing their sockets.
 #include "console/runtime_folder.h"
 
 #include <algorithm>
@@ -21,19 +21,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::string_view kBegin = "limber-";
-constexpr std::string_view kEnd = ".sock";
-constexpr int kMostWait = 2;  // seconds
+constexpr std::string_view kSocketPrefix = "limber-";
+constexpr std::string_view kSocketSuffix = ".sock";
+constexpr int kConnectTimeout = 2;  // seconds
 
-std::string why(int error_number) { return std::generic_category().message(error_number); }
+std::string error_text(int error_number) { return std::generic_category().message(error_number); }
 
-// what is wrong with a folder; empty: it is this user's alone
+// returns the reason why a folder is not private to this user; empty if it is
 std::string folder_fault(const std::string& folder) {
-  const std::optional<system::FileStatus> about = system::link_status(folder);
-  if (!about) return why(errno);
-  if (!about->folder) return "it is no folder";
-  if (about->owner != system::user_id()) return "it belongs to somebody else";
-  if ((about->permissions & 077u) != 0) return fmt::format("others may look into it; chmod 700 {} mends that", folder);
+  const std::optional<system::FileStatus> status = system::link_status(folder);
+  if (!status) return error_text(errno);
+  if (!status->folder) return "it is not a folder";
+  if (status->owner != system::user_id()) return "it belongs to another user";
+  if ((status->permissions & 077u) != 0) return fmt::format("other users can access it; run chmod 700 {}", folder);
   return {};
 }
 
@@ -42,10 +42,10 @@ std::string temp_folder() {
   return fmt::format("{}/limber-{}", temp != nullptr && temp[0] == '/' ? temp : "/tmp", system::user_id());
 }
 
-// limber-123.sock: 123
+// parses "limber-123.sock" as 123
 std::optional<int> pid_of(std::string_view name) {
-  if (!name.starts_with(kBegin) || !name.ends_with(kEnd)) return {};
-  name = name.substr(kBegin.size(), name.size() - kBegin.size() - kEnd.size());
+  if (!name.starts_with(kSocketPrefix) || !name.ends_with(kSocketSuffix)) return {};
+  name = name.substr(kSocketPrefix.size(), name.size() - kSocketPrefix.size() - kSocketSuffix.size());
   int pid = 0;
   const auto [end, fault] = std::from_chars(name.data(), name.data() + name.size(), pid);
   if (fault != std::errc{} || end != name.data() + name.size() || pid <= 0) return {};
@@ -60,24 +60,24 @@ std::vector<std::string> runtime_folders() {
     if (folder.starts_with('/') && folder_fault(folder).empty() && std::ranges::count(folders, folder) == 0)
       folders.push_back(folder);
   };
-  const char* named = std::getenv("XDG_RUNTIME_DIR");
-  add(named != nullptr && named[0] == '/' ? named : fmt::format("/run/user/{}", system::user_id()));
+  const char* runtime_dir = std::getenv("XDG_RUNTIME_DIR");
+  add(runtime_dir != nullptr && runtime_dir[0] == '/' ? runtime_dir : fmt::format("/run/user/{}", system::user_id()));
   add(temp_folder());
   return folders;
 }
 
 Result<std::string> make_runtime_folder() {
-  if (std::vector<std::string> there = runtime_folders(); !there.empty()) return std::move(there.front());
+  if (std::vector<std::string> existing = runtime_folders(); !existing.empty()) return std::move(existing.front());
   const std::string folder = temp_folder();
   if (!system::make_folder(folder, 0700) && errno != EEXIST)
-    return Error{fmt::format("the folder {} can't be made: {}", folder, why(errno))};
+    return Error{fmt::format("the folder {} can't be created: {}", folder, error_text(errno))};
   if (const std::string fault = folder_fault(folder); !fault.empty())
     return Error{fmt::format("the folder {} can't be used: {}", folder, fault)};
   return folder;
 }
 
 std::string socket_path(std::string_view folder, int pid) {
-  return fmt::format("{}/{}{}{}", folder, kBegin, pid, kEnd);
+  return fmt::format("{}/{}{}{}", folder, kSocketPrefix, pid, kSocketSuffix);
 }
 
 std::vector<ConsoleSocket> console_sockets(const std::string& folder) {
@@ -91,7 +91,7 @@ std::vector<ConsoleSocket> console_sockets(const std::string& folder) {
     const system::Listener listener = system::find_listener(path);
     if (listener == system::Listener::present) {
       found.push_back({*pid, path});
-    } else if (listener == system::Listener::gone) {
+    } else if (listener == system::Listener::absent) {
       system::remove_file(path);
     }
   }
@@ -100,10 +100,10 @@ std::vector<ConsoleSocket> console_sockets(const std::string& folder) {
 }
 
 Result<system::Descriptor> connect_console(const std::string& path) {
-  Result<system::Descriptor> socket = system::connect_local(path, kMostWait);
+  Result<system::Descriptor> socket = system::connect_local(path, kConnectTimeout);
   if (!socket) return socket;
   if (system::peer_user(*socket) != system::user_id())
-    return Error{fmt::format("{}: the program there belongs to somebody else", path)};
+    return Error{fmt::format("{}: the program belongs to another user", path)};
   return socket;
 }
 

@@ -1,4 +1,4 @@
-// Where running programs can be found: a socket for each in a folder that belongs to the user alone.
+// Discovery of running programs: each has a socket in a folder that only its user can access.
 #pragma once
 
 #include <string>
@@ -10,27 +10,27 @@
 
 namespace limber {
 
-/// The folders that there are and that are this user's alone (0700), best first: $XDG_RUNTIME_DIR (without one,
-/// /run/user/<uid>), limber-<uid> in the temp folder ($TMPDIR, else /tmp). [any]
+/// Returns the existing folders that only this user can access (0700), in order of preference: $XDG_RUNTIME_DIR (if
+/// unset, /run/user/<uid>), then limber-<uid> in the folder for temporary files ($TMPDIR, else /tmp). [any]
 std::vector<std::string> runtime_folders();
 
-/// The best of them; when there is none, the one in the temp folder is made. The error says what is wrong with it.
-/// [any]
+/// Returns the preferred runtime folder; if none exists, creates the one for temporary files. [any]
 Result<std::string> make_runtime_folder();
 
-/// A running program's socket.
+/// The socket of a running program.
 struct ConsoleSocket {
   int pid = 0;
   std::string path;
 };
 
-/// The path of a program's socket: limber-<pid>.sock. [any]
+/// Returns the path of a program's socket: limber-<pid>.sock. [any]
 std::string socket_path(std::string_view folder, int pid);
 
-/// The sockets in a folder behind which somebody listens, by pid. Those of dead programs are removed. [any]
+/// Returns the sockets in a folder that have a listener, sorted by pid. Removes sockets of programs that have exited.
+/// [any]
 std::vector<ConsoleSocket> console_sockets(const std::string& folder);
 
-/// A non-blocking connection to one of this user's programs. The error says why there is none. [any]
+/// Returns a non-blocking connection to a program of this user. [any]
 Result<system::Descriptor> connect_console(const std::string& path);
 
 }  // namespace limber

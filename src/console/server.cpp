@@ -1,4 +1,4 @@
-// One loop, one poll, as the network's.
+// One thread that polls the listening socket, all connections and the result queue.
 #include "console/server.h"
 
 #include <cerrno>
@@ -20,7 +20,7 @@ namespace limber {
 
 namespace {
 
-constexpr auto kLookAtLog = std::chrono::milliseconds(50);  // between two looks at the log while a console listens
+constexpr auto kLogPollInterval = std::chrono::milliseconds(50);  // log polling interval while a console is connected
 
 }  // namespace
 
@@ -32,7 +32,7 @@ Result<void> ConsoleServer::start() {
   if (thread_.joinable()) return {};
   const Result<std::string> folder = options_.folder.empty() ? make_runtime_folder() : options_.folder;
   if (!folder) return Error{folder.error()};
-  console_sockets(*folder);  // the look at them removes the dead ones
+  console_sockets(*folder);  // also removes sockets of programs that have exited
   std::string path = socket_path(*folder, system::process_id());
   Result<system::Descriptor> listener = system::listen_local(path);
   if (!listener) return Error{listener.error()};
@@ -46,89 +46,90 @@ Result<void> ConsoleServer::start() {
 void ConsoleServer::stop() {
   if (!thread_.joinable()) return;
   stop_ = true;
-  mail_->wake.notify();
+  result_queue_->wake.notify();
   thread_.join();
   system::remove_file(path_);
   path_.clear();
   listener_ = system::Descriptor();
-  visitors_.clear();
+  connections_.clear();
 }
 
 void ConsoleServer::run() {
   system::name_this_thread("limber-console");
   while (!stop_.load()) {
-    wait_for_something();
-    mail_->wake.clear();
-    let_in();
-    hand_out_answers();
-    for (auto& [number, visitor] : visitors_) {
-      visitor.receive([this, number = number](const ConsoleRequest& request) { return ask(number, request); },
-                      [this](const ConsoleRequest& request) { return make_watcher(link_, request); });
-      visitor.tell_log();
-      visitor.tell_watched();
-      visitor.send();
+    wait_for_events();
+    result_queue_->wake.clear();
+    accept_connections();
+    deliver_results();
+    for (auto& [number, connection] : connections_) {
+      connection.receive([this, number = number](const ConsoleRequest& request) { return submit(number, request); },
+                         [this](const ConsoleRequest& request) { return make_subscription(link_, request); });
+      connection.send_log();
+      connection.send_subscribed();
+      connection.send();
     }
-    std::erase_if(visitors_, [](const auto& each) { return each.second.gone(); });
+    std::erase_if(connections_, [](const auto& each) { return each.second.finished(); });
   }
-  // what was answered before the end still goes out
-  hand_out_answers();
-  for (auto& [number, visitor] : visitors_) visitor.send();
+  // send the results that arrived before stop()
+  deliver_results();
+  for (auto& [number, connection] : connections_) connection.send();
 }
 
-void ConsoleServer::wait_for_something() {
-  std::vector<system::Waiting> waiting = {{.fd = mail_->wake.fd()}, {.fd = rests_ ? -1 : listener_.fd()}};
-  for (const auto& [number, visitor] : visitors_) waiting.push_back(visitor.waits_for());
+void ConsoleServer::wait_for_events() {
+  std::vector<system::PollEntry> waiting = {{.fd = result_queue_->wake.fd()},
+                                            {.fd = accept_paused_ ? -1 : listener_.fd()}};
+  for (const auto& [number, connection] : connections_) waiting.push_back(connection.poll_request());
   std::optional<std::chrono::nanoseconds> limit;
-  if (!visitors_.empty() || rests_) limit = kLookAtLog;
-  // interrupted or not: the loop looks at everything anyway
+  if (!connections_.empty() || accept_paused_) limit = kLogPollInterval;
+  // no need to check the result: the loop checks every source after each wake-up
   (void)system::wait_ready(waiting, limit);
-  rests_ = false;
+  accept_paused_ = false;
 }
 
-void ConsoleServer::let_in() {
-  const long user = options_.user < 0 ? system::user_id() : options_.user;
-  for (std::size_t i = 0; i < 2 * kMostVisitors; i++) {
+void ConsoleServer::accept_connections() {
+  const long user = options_.allowed_user < 0 ? system::user_id() : options_.allowed_user;
+  for (std::size_t i = 0; i < 2 * kMaxConnections; i++) {
     system::Descriptor connection = system::accept_connection(listener_.fd());
-    if (!connection.open()) {
-      rests_ = errno != EAGAIN && errno != EINTR && errno != ECONNABORTED;
+    if (!connection.is_open()) {
+      accept_paused_ = errno != EAGAIN && errno != EINTR && errno != ECONNABORTED;
       return;
     }
     if (system::peer_user(connection) != user) {
-      log_warning("console: a program of another user was turned away");
+      log_warning("console: rejected a program of another user");
       continue;
     }
-    Visitor visitor(std::move(connection), log_newest());
-    if (visitors_.size() >= kMostVisitors) {
-      visitor.say(refused_line(fmt::format("{} consoles are open already; close one", kMostVisitors)));
-      visitor.send();
+    ConsoleConnection client(std::move(connection), log_newest());
+    if (connections_.size() >= kMaxConnections) {
+      client.append(rejected_line(fmt::format("{} consoles are open already; close one", kMaxConnections)));
+      client.send();
       continue;
     }
-    visitor.say(hello_line(version(), system::process_id(), options_.scene));
-    visitors_.emplace(++last_visitor_, std::move(visitor));
+    client.append(hello_line(version(), system::process_id(), options_.scene));
+    connections_.emplace(++last_connection_, std::move(client));
   }
 }
 
-void ConsoleServer::hand_out_answers() {
-  mail_->answers.drain(answers_);
-  for (const Mail::Answer& answer : answers_) {
-    const auto at = visitors_.find(answer.visitor);
-    if (at != visitors_.end()) at->second.answer(answer.id, answer.said);
+void ConsoleServer::deliver_results() {
+  result_queue_->results.drain(results_);
+  for (const ResultQueue::Entry& result : results_) {
+    const auto at = connections_.find(result.connection);
+    if (at != connections_.end()) at->second.finish_request(result.id, result.evaluation);
   }
 }
 
-std::string ConsoleServer::ask(std::uint64_t visitor, const ConsoleRequest& request) {
-  auto wish = std::make_shared<Evaluate>();
-  const bool completes = request.wish == ConsoleRequest::Wish::complete;
-  wish->wish = completes ? Evaluate::Wish::complete : Evaluate::Wish::run;
-  wish->text = request.text;
-  wish->answer = [mail = mail_, visitor, id = request.id](Evaluation said) {
-    mail->answers.push({visitor, id, std::move(said)});
-    mail->wake.notify();
+std::string ConsoleServer::submit(std::uint64_t connection, const ConsoleRequest& request) {
+  auto job = std::make_shared<EvaluationRequest>();
+  const bool completes = request.kind == ConsoleRequest::Kind::complete;
+  job->action = completes ? EvaluationRequest::Action::complete : EvaluationRequest::Action::run;
+  job->text = request.text;
+  job->on_result = [queue = result_queue_, connection, id = request.id](Evaluation evaluation) {
+    queue->results.push({connection, id, std::move(evaluation)});
+    queue->wake.notify();
   };
   Command command;
-  command.origin.hand = Hand::console;
-  command.evaluate = std::move(wish);
-  if (!link_.inbox.push(std::move(command))) return "too much is waiting for the scene; try again";
+  command.origin.source = CommandSource::console;
+  command.evaluation = std::move(job);
+  if (!link_.command_queue.push(std::move(command))) return "the command queue is full; try again";
   link_.wake_engine();
   return {};
 }

@@ -1,5 +1,5 @@
-// ConsoleServer: lets consoles into the running scene by a socket that only this user can open. A thread of its own
-// makes commands and hands out answers; whatever comes in, no tick waits for it.
+// ConsoleServer: serves consoles over a local socket that only this user can open. A thread of its own turns requests
+// into commands for the simulation thread and sends back the results; no simulation step ever waits for it.
 #pragma once
 
 #include <atomic>
@@ -17,14 +17,14 @@
 namespace limber {
 
 struct ConsoleOptions {
-  std::string folder;  ///< Where the socket lies; empty: make_runtime_folder().
-  std::string scene;   ///< What those who connect are told is played.
-  long user = -1;      ///< Whose consoles are let in; -1: the user that the program runs as.
+  std::string folder;      ///< Folder of the socket; empty: make_runtime_folder().
+  std::string scene;       ///< Scene name, sent to each console in the first line.
+  long allowed_user = -1;  ///< User id of the accepted consoles; -1: the user that runs the program.
 };
 
 class ConsoleServer {
  public:
-  static constexpr std::size_t kMostVisitors = 8;
+  static constexpr std::size_t kMaxConnections = 8;
 
   /// `link` outlives it.
   ConsoleServer(EngineLink& link, ConsoleOptions options);
@@ -32,40 +32,40 @@ class ConsoleServer {
   ConsoleServer(const ConsoleServer&) = delete;
   ConsoleServer& operator=(const ConsoleServer&) = delete;
 
-  /// Opens the socket, removes those of dead programs, starts the thread. The error says what can't be had. [main]
+  /// Opens the socket, removes those of programs that have exited, starts the thread. [main]
   Result<void> start();
-  /// Ends the thread and removes the socket. Idempotent. [main]
+  /// Stops the thread and removes the socket. Idempotent. [main]
   void stop();
-  /// Where the socket is; empty when there is none. [main]
+  /// Returns the path of the socket; empty when stopped. [main]
   const std::string& path() const { return path_; }
 
  private:
-  // how answers come from the simulation's thread; it outlives the server when one is still under way
-  struct Mail {
-    struct Answer {
-      std::uint64_t visitor = 0;
+  // Results from the simulation thread. Shared, because a pending request may outlive the server.
+  struct ResultQueue {
+    struct Entry {
+      std::uint64_t connection = 0;
       std::uint64_t id = 0;
-      Evaluation said;
+      Evaluation evaluation;
     };
-    Inbox<Answer> answers{kMostVisitors};  // each waits for one at most
+    BoundedQueue<Entry> results{kMaxConnections};  // at most one pending request per connection
     system::Wake wake;
   };
 
   void run();
-  void wait_for_something();
-  void let_in();
-  void hand_out_answers();
-  std::string ask(std::uint64_t visitor, const ConsoleRequest& request);
+  void wait_for_events();
+  void accept_connections();
+  void deliver_results();
+  std::string submit(std::uint64_t connection, const ConsoleRequest& request);
 
   EngineLink& link_;
   const ConsoleOptions options_;
   std::string path_;
   system::Descriptor listener_;
-  std::shared_ptr<Mail> mail_ = std::make_shared<Mail>();
-  std::map<std::uint64_t, Visitor> visitors_;
-  std::uint64_t last_visitor_ = 0;
-  bool rests_ = false;  // no more connections can be had just now
-  std::vector<Mail::Answer> answers_;
+  std::shared_ptr<ResultQueue> result_queue_ = std::make_shared<ResultQueue>();
+  std::map<std::uint64_t, ConsoleConnection> connections_;
+  std::uint64_t last_connection_ = 0;
+  bool accept_paused_ = false;  // accept() failed for lack of resources: skip the listener in the next poll
+  std::vector<ResultQueue::Entry> results_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// One connection's buffers.
+// Buffering and request handling of one console connection.
 #include "console/visitor.h"
 
 #include <cerrno>
@@ -9,133 +9,135 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostWaiting = 256 * 1024;  // bytes that wait to be read before nothing more is said or asked
-constexpr std::size_t kSlice = 16384;             // bytes read at a time
+constexpr std::size_t kMaxUnreadOutput = 256 * 1024;  // bytes of unread output at which reading and sending pause
+constexpr std::size_t kReadSize = 16384;              // bytes per read
 
 }  // namespace
 
-Visitor::Visitor(system::Descriptor connection, std::uint64_t seen) : connection_(std::move(connection)), seen_(seen) {}
+ConsoleConnection::ConsoleConnection(system::Descriptor connection, std::uint64_t seen)
+    : connection_(std::move(connection)), seen_(seen) {}
 
-bool Visitor::waits_to_be_read() const { return out_.size() > kMostWaiting; }
+bool ConsoleConnection::output_full() const { return output_.size() > kMaxUnreadOutput; }
 
-void Visitor::say(std::string_view line) {
-  if (!gone_) out_ += line;
+void ConsoleConnection::append(std::string_view line) {
+  if (!broken_) output_ += line;
 }
 
-// the other end is not there any more
-void Visitor::leave() {
-  gone_ = true;
-  out_.clear();
-  in_.clear();
+// drops both buffers: the connection is broken
+void ConsoleConnection::drop_connection() {
+  broken_ = true;
+  output_.clear();
+  input_.clear();
 }
 
-system::Waiting Visitor::waits_for() const {
-  if (gone_) return {};
-  // one that is busy or does not read must wait; what it sends fills the kernel's buffer and then its own
-  const bool read = !busy_ && !ends_ && !waits_to_be_read();
-  // one that waits for its answer is left out, so that it does not wake us by hanging up
-  return {.fd = read || !out_.empty() ? fd() : -1, .read = read, .write = !out_.empty()};
+system::PollEntry ConsoleConnection::poll_request() const {
+  if (broken_) return {};
+  // stop reading while a request is pending or the output is not read: further input fills the kernel's buffer
+  const bool read = !pending_ && !input_ended_ && !output_full();
+  // a connection that only waits for its result is not polled, so that a hang-up does not wake the thread repeatedly
+  return {.fd = read || !output_.empty() ? fd() : -1, .read = read, .write = !output_.empty()};
 }
 
-void Visitor::receive(const Ask& ask, const Watch& watch) {
-  const bool has_line = in_.find('\n') != std::string::npos;
-  if (!busy_ && !ends_ && !gone_ && !has_line && !waits_to_be_read()) read_some();
+void ConsoleConnection::receive(const Submit& submit, const Subscribe& subscribe) {
+  const bool has_line = input_.find('\n') != std::string::npos;
+  if (!pending_ && !input_ended_ && !broken_ && !has_line && !output_full()) read_some();
   std::string line;
-  while (!busy_ && !gone_ && !waits_to_be_read() && next_line(line)) handle(line, ask, watch);
+  while (!pending_ && !broken_ && !output_full() && next_line(line)) handle(line, submit, subscribe);
 }
 
-void Visitor::read_some() {
-  char bytes[kSlice];
+void ConsoleConnection::read_some() {
+  char bytes[kReadSize];
   const std::ptrdiff_t got = system::receive_bytes(fd(), bytes, sizeof bytes);
   if (got > 0) {
-    in_.append(bytes, static_cast<std::size_t>(got));
+    input_.append(bytes, static_cast<std::size_t>(got));
   } else if (got == 0) {
-    ends_ = true;
+    input_ended_ = true;
   } else if (errno != EAGAIN && errno != EINTR) {
-    leave();
+    drop_connection();
   }
 }
 
-// the next whole line; at the end what is left counts as one
-bool Visitor::next_line(std::string& line) {
-  const std::size_t end = in_.find('\n');
-  if (end == std::string::npos && in_.size() > kMostLine) {
-    say(refused_line("a line may have 512 KiB"));
-    in_.clear();
-    ends_ = true;
+// the next complete line; at the end of the input the rest counts as one
+bool ConsoleConnection::next_line(std::string& line) {
+  const std::size_t end = input_.find('\n');
+  if (end == std::string::npos && input_.size() > kMaxLine) {
+    append(rejected_line("a line can have at most 512 KiB"));
+    input_.clear();
+    input_ended_ = true;
     return false;
   }
-  if (end == std::string::npos && (!ends_ || in_.empty())) return false;
-  line = in_.substr(0, end);
-  in_.erase(0, end == std::string::npos ? end : end + 1);
+  if (end == std::string::npos && (!input_ended_ || input_.empty())) return false;
+  line = input_.substr(0, end);
+  input_.erase(0, end == std::string::npos ? end : end + 1);
   if (line.ends_with('\r')) line.pop_back();
   return true;
 }
 
-void Visitor::handle(const std::string& line, const Ask& ask, const Watch& watch) {
+void ConsoleConnection::handle(const std::string& line, const Submit& submit, const Subscribe& subscribe) {
   if (line.empty()) return;
   Result<ConsoleRequest> request = parse_request(line);
   if (!request) {
-    say(answer_line(0, {Evaluation::Kind::error, request.error()}));
+    append(result_line(0, {Evaluation::Kind::error, request.error()}));
     return;
   }
-  if (request->wish == ConsoleRequest::Wish::traffic || request->wish == ConsoleRequest::Wish::changes) {
-    Result<std::unique_ptr<Watcher>> watcher = watch(*request);
-    say(answer_line(request->id, watcher ? Evaluation{} : Evaluation{Evaluation::Kind::error, watcher.error()}));
-    if (watcher) watcher_ = std::move(*watcher);
+  if (request->kind == ConsoleRequest::Kind::traffic || request->kind == ConsoleRequest::Kind::changes) {
+    Result<std::unique_ptr<Subscription>> subscription = subscribe(*request);
+    append(result_line(request->id,
+                       subscription ? Evaluation{} : Evaluation{Evaluation::Kind::error, subscription.error()}));
+    if (subscription) subscription_ = std::move(*subscription);
     return;
   }
-  if (const std::string fault = ask(*request); !fault.empty()) {
-    say(answer_line(request->id, {Evaluation::Kind::error, fault}));
+  if (const std::string fault = submit(*request); !fault.empty()) {
+    append(result_line(request->id, {Evaluation::Kind::error, fault}));
     return;
   }
-  busy_ = true;
+  pending_ = true;
 }
 
-void Visitor::answer(std::uint64_t id, const Evaluation& said) {
-  busy_ = false;
-  tell_lines(said.log_before, 0);
-  tell_lines(said.log_after, id);
-  say(answer_line(id, said));
+void ConsoleConnection::finish_request(std::uint64_t id, const Evaluation& result) {
+  pending_ = false;
+  send_log_lines(result.log_before, 0);
+  send_log_lines(result.log_after, id);
+  append(result_line(id, result));
 }
 
-void Visitor::tell_log() {
-  if (!busy_) tell_lines(log_newest(), 0);
+void ConsoleConnection::send_log() {
+  if (!pending_) send_log_lines(log_newest(), 0);
 }
 
-void Visitor::tell_lines(std::uint64_t up_to, std::uint64_t id) {
+void ConsoleConnection::send_log_lines(std::uint64_t up_to, std::uint64_t id) {
   if (up_to <= seen_) return;
   for (const LogLine& line : log_since(seen_)) {
     if (line.number > up_to) break;
-    missed_ += line.number - seen_ - 1;  // the ring has gone round
+    dropped_ += line.number - seen_ - 1;  // lines have been overwritten in the log's ring buffer
     seen_ = line.number;
     if (line.level == LogLevel::info) continue;
-    say_or_miss(log_line(id, line));
+    append_or_drop(log_line(id, line));
   }
 }
 
-void Visitor::tell_watched() {
-  if (watcher_ == nullptr || gone_ || ends_) return;
-  watcher_->tell([this](const std::string& line) { say_or_miss(line); },
-                 [this](std::uint64_t count) { missed_ += count; });
+void ConsoleConnection::send_subscribed() {
+  if (subscription_ == nullptr || broken_ || input_ended_) return;
+  subscription_->poll([this](const std::string& line) { append_or_drop(line); },
+                      [this](std::uint64_t count) { dropped_ += count; });
 }
 
-// one that does not read what it is told hears how much that was
-void Visitor::say_or_miss(std::string_view line) {
-  if (waits_to_be_read()) return (void)missed_++;
-  if (missed_ > 0) say(missed_line(std::exchange(missed_, 0)));
-  say(line);
+// counts dropped lines while the console does not read, and reports the count before the next line
+void ConsoleConnection::append_or_drop(std::string_view line) {
+  if (output_full()) return (void)dropped_++;
+  if (dropped_ > 0) append(missed_line(std::exchange(dropped_, 0)));
+  append(line);
 }
 
-void Visitor::send() {
-  while (!out_.empty() && !gone_) {
-    const std::ptrdiff_t sent = system::send_bytes(fd(), out_);
+void ConsoleConnection::send() {
+  while (!output_.empty() && !broken_) {
+    const std::ptrdiff_t sent = system::send_bytes(fd(), output_);
     if (sent > 0) {
-      out_.erase(0, static_cast<std::size_t>(sent));
+      output_.erase(0, static_cast<std::size_t>(sent));
     } else if (sent == 0 || errno == EAGAIN) {
       return;
     } else if (errno != EINTR) {
-      leave();
+      drop_connection();
     }
   }
 }

@@ -1,4 +1,5 @@
-// Visitor: one console that is connected. Bounded: one request at a time, a line's length, and what waits to be read.
+// ConsoleConnection: the server's end of a connection to a console. Limits pending requests to one, the length of a
+// line, and unread output.
 #pragma once
 
 #include <cstdint>
@@ -12,54 +13,54 @@
 
 namespace limber {
 
-/// [the server's thread]
-class Visitor {
+/// [server thread]
+class ConsoleConnection {
  public:
-  /// Hands a request on; the answer comes later by answer(). The text of why it can't be, or nothing.
-  using Ask = std::function<std::string(const ConsoleRequest&)>;
-  /// Makes what tells of what is watched.
-  using Watch = std::function<Result<std::unique_ptr<Watcher>>(const ConsoleRequest&)>;
+  /// Queues a request; its result arrives later through finish_request(). Returns an error text, or an empty one.
+  using Submit = std::function<std::string(const ConsoleRequest&)>;
+  /// Creates the subscription for a request.
+  using Subscribe = std::function<Result<std::unique_ptr<Subscription>>(const ConsoleRequest&)>;
 
-  /// Lines of the log after `seen` are told.
-  Visitor(system::Descriptor connection, std::uint64_t seen);
+  /// Log lines after number `seen` will be sent.
+  ConsoleConnection(system::Descriptor connection, std::uint64_t seen);
 
   int fd() const { return connection_.fd(); }
-  /// The descriptor that the server waits for, and until when.
-  system::Waiting waits_for() const;
-  /// Says a line as it is.
-  void say(std::string_view line);
-  /// Reads some of what has come, and asks for the next request unless one is under way.
-  void receive(const Ask& ask, const Watch& watch);
-  void answer(std::uint64_t id, const Evaluation& said);
-  /// What the log has for it; while a request is under way it waits, so that what the request printed can be told
-  /// apart.
-  void tell_log();
-  /// What is new of what it watches.
-  void tell_watched();
-  /// Writes what the other end takes.
+  /// Returns the descriptor and the events to poll for.
+  system::PollEntry poll_request() const;
+  /// Appends a line to the output buffer.
+  void append(std::string_view line);
+  /// Reads available input and handles the next request unless one is pending.
+  void receive(const Submit& submit, const Subscribe& subscribe);
+  /// Sends the log lines and the result of the pending request.
+  void finish_request(std::uint64_t id, const Evaluation& result);
+  /// Sends new log lines. Deferred while a request is pending, so that its own output can be labeled with its id.
+  void send_log();
+  /// Sends new lines of the subscription.
+  void send_subscribed();
+  /// Writes as much output as the socket accepts.
   void send();
-  /// Nothing more can come of it. One that left while its request is under way stays until that is answered: so what is
-  /// under way is bounded by how many are let in.
-  bool gone() const { return !busy_ && (gone_ || (ends_ && out_.empty())); }
+  /// True if the connection can be removed. A closed connection with a pending request stays until its result arrives,
+  /// so the number of pending requests is bounded by the number of connections.
+  bool finished() const { return !pending_ && (broken_ || (input_ended_ && output_.empty())); }
 
  private:
   void read_some();
   bool next_line(std::string& line);
-  void handle(const std::string& line, const Ask& ask, const Watch& watch);
-  void say_or_miss(std::string_view line);
-  void leave();
-  void tell_lines(std::uint64_t up_to, std::uint64_t id);
-  bool waits_to_be_read() const;
+  void handle(const std::string& line, const Submit& submit, const Subscribe& subscribe);
+  void append_or_drop(std::string_view line);
+  void drop_connection();
+  void send_log_lines(std::uint64_t up_to, std::uint64_t id);
+  bool output_full() const;
 
   system::Descriptor connection_;
-  std::string in_;
-  std::string out_;
+  std::string input_;
+  std::string output_;
   std::uint64_t seen_;
-  std::uint64_t missed_ = 0;
-  std::unique_ptr<Watcher> watcher_;
-  bool busy_ = false;  // a request is under way
-  bool ends_ = false;  // the other end says no more
-  bool gone_ = false;
+  std::uint64_t dropped_ = 0;
+  std::unique_ptr<Subscription> subscription_;
+  bool pending_ = false;      // a request is pending
+  bool input_ended_ = false;  // the other end has closed its side
+  bool broken_ = false;
 };
 
 }  // namespace limber

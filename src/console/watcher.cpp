@@ -1,4 +1,5 @@
-// Traffic and what hands set are read from the link's rings; changes of a pattern are what two images differ in.
+// Messages and values set by controllers are read from the link's ring buffers; changes of a pattern are found by
+// comparing two value snapshots.
 #include "console/watcher.h"
 
 #include <algorithm>
@@ -16,44 +17,47 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostPlaces = 200000;  // values of a pattern that are compared
-constexpr int kWork = 20 * PatternBudget::kMessage;
-constexpr double kLate = 0.5;  // s that an image may be behind
+constexpr std::size_t kMaxValues = 200000;  // max. number of values compared for a pattern
+constexpr int kMatchWork = 20 * PatternBudget::kStepsPerMessage;
+constexpr double kMaxLag = 0.5;  // s that a snapshot may be late
 
 std::string change_text(const std::string& path, const std::string& from, const std::string& to) {
   return from.empty() && to.empty() ? path : fmt::format("{} {} → {}", path, from, to);
 }
 
-class TrafficWatcher : public Watcher {
+class MessageSubscription : public Subscription {
  public:
-  TrafficWatcher(EngineLink& link, std::string pattern)
-      : traffic_(link.traffic), watch_(link.traffic), pattern_(std::move(pattern)), seen_(traffic_.newest()) {}
+  MessageSubscription(EngineLink& link, std::string pattern)
+      : messages_(link.message_log),
+        watch_(link.message_log),
+        pattern_(std::move(pattern)),
+        seen_(messages_.newest()) {}
 
-  void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>& miss) override {
-    for (const TrafficLine& line : traffic_.since(seen_)) {
-      if (const std::uint64_t gone = line.number - seen_ - 1; gone > 0) miss(gone);
+  void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>& drop) override {
+    for (const LoggedMessage& line : messages_.since(seen_)) {
+      if (const std::uint64_t overwritten = line.number - seen_ - 1; overwritten > 0) drop(overwritten);
       seen_ = line.number;
       if (!pattern_.empty() && !address_matches(pattern_, line.message.address)) continue;
-      say(traffic_line(line.in, line.time, line.end, message_text(line.message)));
+      send(traffic_line(line.incoming, line.time, line.peer, message_text(line.message)));
     }
   }
 
  private:
-  Traffic& traffic_;
-  Traffic::Watch watch_;
+  MessageLog& messages_;
+  MessageLog::Watch watch_;
   const std::string pattern_;
   std::uint64_t seen_;
 };
 
-// what hands set, beginning with what they have set lately
-class HandWatcher : public Watcher {
+// values set by controllers, starting with the recent ones
+class ControllerSubscription : public Subscription {
  public:
-  explicit HandWatcher(ChangeLog& changes) : changes_(changes) {}
+  explicit ControllerSubscription(ChangeLog& changes) : changes_(changes) {}
 
-  void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>&) override {
-    for (const ChangeLine& line : changes_.after(seen_)) {
+  void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>&) override {
+    for (const ChangeEntry& line : changes_.after(seen_)) {
       seen_ = line.version;
-      say(change_line(line.time, line.who, change_text(line.path, line.from, line.to)));
+      send(change_line(line.time, line.source, change_text(line.path, line.from, line.to)));
     }
   }
 
@@ -62,103 +66,105 @@ class HandWatcher : public Watcher {
   std::uint64_t seen_ = 0;
 };
 
-// whatever becomes another value of what a pattern reaches, whoever sets it
-class ChangeWatcher : public Watcher {
+// all values that match a pattern, regardless of the source of the change
+class PatternSubscription : public Subscription {
  public:
-  ChangeWatcher(EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
+  PatternSubscription(EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
 
-  void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>&) override {
-    const std::shared_ptr<const Image> image = link_.images.read();
-    const bool fresh = asked_ != 0 && image != nullptr && image->asks >= asked_;
-    if (fresh) hear(image, say);
-    if (fresh || asked_ == 0) asked_ = link_.ask_image();
+  void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>&) override {
+    const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+    const bool is_new = requested_ != 0 && snapshot != nullptr && snapshot->request >= requested_;
+    if (is_new) compare(snapshot, send);
+    if (is_new || requested_ == 0) requested_ = link_.request_value_snapshot();
   }
 
  private:
   struct Value {
-    TreePlace place;
-    TreeNumbers numbers;
-    std::size_t before = 0;  // in the values of the tree before; kNew: it was not there
+    TreePropertyRef ref;
+    ValueLocation location;
+    std::size_t old_index = 0;  // index in the previous tree's values; kNew: was not in that tree
   };
   static constexpr std::size_t kNew = ~std::size_t{0};
 
-  void hear(const std::shared_ptr<const Image>& image, const std::function<void(std::string)>& say) {
-    const bool other = image_ == nullptr || image_->tree != image->tree;
-    if (other) bind(*image->tree);
+  void compare(const std::shared_ptr<const ValueSnapshot>& snapshot, const std::function<void(std::string)>& send) {
+    const bool tree_changed = snapshot_ == nullptr || snapshot_->tree != snapshot->tree;
+    if (tree_changed) bind(*snapshot->tree);
     const double now = system::clock_seconds();
-    const std::unordered_map<std::string, std::string> hands = hands_since(heard_);
-    heard_ = now - kLate;
-    for (std::size_t i = 0; image_ != nullptr && i < values_.size(); i++) {
-      const std::size_t before = other ? values_[i].before : i;
+    const std::unordered_map<std::string, std::string> sources = sources_since(compared_at_);
+    compared_at_ = now - kMaxLag;
+    for (std::size_t i = 0; snapshot_ != nullptr && i < values_.size(); i++) {
+      const std::size_t before = tree_changed ? values_[i].old_index : i;
       if (before == kNew) continue;
-      const RowValue was = image_->value((other ? old_ : values_)[before].numbers);
-      const RowValue is = image->value(values_[i].numbers);
-      const Row& row = *values_[i].place.row;
-      const bool same = was.text == is.text && std::equal(is.numbers, is.numbers + row.width, was.numbers);
+      const PropertyValue old_value = snapshot_->value((tree_changed ? old_values_ : values_)[before].location);
+      const PropertyValue new_value = snapshot->value(values_[i].location);
+      const Property& property = *values_[i].ref.property;
+      const bool same = old_value.text == new_value.text &&
+                        std::equal(new_value.numbers, new_value.numbers + property.width, old_value.numbers);
       if (same) continue;
-      const std::string path = image->tree->path(values_[i].place);
-      const auto who = hands.find(path);
-      say(change_line(now, who == hands.end() ? "" : who->second,
-                      change_text(path, text_of(row, was), text_of(row, is))));
+      const std::string path = snapshot->tree->path(values_[i].ref);
+      const auto source = sources.find(path);
+      send(change_line(now, source == sources.end() ? "" : source->second,
+                       change_text(path, text_of(property, old_value), text_of(property, new_value))));
     }
-    image_ = image;
-    old_.clear();
+    snapshot_ = snapshot;
+    old_values_.clear();
   }
 
-  // the rows that are compared, and which of the tree before each was
-  void bind(const Tree& tree) {
-    old_ = std::exchange(values_, {});
-    PatternBudget work{kWork};
-    Result<std::vector<TreePlace>> places = tree.match(pattern_, work, kMostPlaces);
-    if (!places) return;
+  // collects the properties to compare and their indices in the previous tree
+  void bind(const TreeSnapshot& tree) {
+    old_values_ = std::exchange(values_, {});
+    PatternBudget work{kMatchWork};
+    Result<std::vector<TreePropertyRef>> refs = tree.match(pattern_, work, kMaxValues);
+    if (!refs) return;
     std::unordered_map<std::uint64_t, std::size_t> known;
-    const auto key = [](const Tree& of, const TreePlace& place) {
-      return std::uint64_t{of.nodes()[place.node].id.slot} << 32 | place.row->index;
+    const auto key = [](const TreeSnapshot& of, const TreePropertyRef& place) {
+      return std::uint64_t{of.nodes()[place.node].id.slot} << 32 | place.property->index;
     };
-    for (std::size_t i = 0; i < old_.size(); i++) known.emplace(key(*image_->tree, old_[i].place), i);
-    for (const TreePlace& place : *places) {
-      if (place.row == nullptr || place.row->kind == RowKind::action) continue;
-      const auto at = known.find(key(tree, place));
-      const bool same_thing = at != known.end() && old_[at->second].place.row == place.row &&
-                              image_->tree->nodes()[old_[at->second].place.node].id == tree.nodes()[place.node].id;
-      values_.push_back({place, tree.numbers(place), same_thing ? at->second : kNew});
+    for (std::size_t i = 0; i < old_values_.size(); i++) known.emplace(key(*snapshot_->tree, old_values_[i].ref), i);
+    for (const TreePropertyRef& ref : *refs) {
+      if (ref.property == nullptr || ref.property->kind == PropertyKind::action) continue;
+      const auto at = known.find(key(tree, ref));
+      const bool same_object =
+          at != known.end() && old_values_[at->second].ref.property == ref.property &&
+          snapshot_->tree->nodes()[old_values_[at->second].ref.node].id == tree.nodes()[ref.node].id;
+      values_.push_back({ref, tree.location(ref), same_object ? at->second : kNew});
     }
   }
 
-  static std::string text_of(const Row& row, const RowValue& value) {
-    return row.type == RowType::text ? printable(value.text) : value_text(row, value.numbers);
+  static std::string text_of(const Property& property, const PropertyValue& value) {
+    return property.type == PropertyType::text ? printable(value.text) : value_text(property, value.numbers);
   }
 
-  // who set each path since then, of hands
-  std::unordered_map<std::string, std::string> hands_since(double time) const {
-    std::unordered_map<std::string, std::string> who;
-    for (ChangeLine& line : link_.changes.since(time)) who[line.path] = std::move(line.who);
-    return who;
+  // the controller that last set each path since `time`
+  std::unordered_map<std::string, std::string> sources_since(double time) const {
+    std::unordered_map<std::string, std::string> sources;
+    for (ChangeEntry& line : link_.changes.since(time)) sources[line.path] = std::move(line.source);
+    return sources;
   }
 
   EngineLink& link_;
   const std::string pattern_;
-  std::uint64_t asked_ = 0;
-  double heard_ = system::clock_seconds();
-  std::shared_ptr<const Image> image_;
+  std::uint64_t requested_ = 0;
+  double compared_at_ = system::clock_seconds();
+  std::shared_ptr<const ValueSnapshot> snapshot_;
   std::vector<Value> values_;
-  std::vector<Value> old_;  // of the tree before, while another one is compared with it
+  std::vector<Value> old_values_;  // values of the previous tree, while it is compared with the new one
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Watcher>> make_watcher(EngineLink& link, const ConsoleRequest& request) {
+Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const ConsoleRequest& request) {
   if (!request.text.empty() && request.text.front() != '/')
-    return Error{fmt::format("'{}' is no address: it must begin with /", printable(shortened(request.text, 100)))};
-  std::unique_ptr<Watcher> watcher;
-  if (request.wish == ConsoleRequest::Wish::traffic) {
-    watcher = std::make_unique<TrafficWatcher>(link, request.text);
+    return Error{fmt::format("'{}' is not an address; it must begin with /", printable(shortened(request.text, 100)))};
+  std::unique_ptr<Subscription> subscription;
+  if (request.kind == ConsoleRequest::Kind::traffic) {
+    subscription = std::make_unique<MessageSubscription>(link, request.text);
   } else if (request.text.empty()) {
-    watcher = std::make_unique<HandWatcher>(link.changes);
+    subscription = std::make_unique<ControllerSubscription>(link.changes);
   } else {
-    watcher = std::make_unique<ChangeWatcher>(link, request.text);
+    subscription = std::make_unique<PatternSubscription>(link, request.text);
   }
-  return watcher;
+  return subscription;
 }
 
 }  // namespace limber

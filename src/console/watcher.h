@@ -1,5 +1,4 @@
-// Watcher: what a console that watches is told: messages as they come and go, or values as they change. [the server's
-// thread]
+// Subscription: produces the lines for a subscribed console: messages sent and received, or changed values.
 #pragma once
 
 #include <functional>
@@ -12,15 +11,16 @@
 
 namespace limber {
 
-class Watcher {
+/// [server thread]
+class Subscription {
  public:
-  virtual ~Watcher() = default;
+  virtual ~Subscription() = default;
 
-  /// Calls say(line) for each that is new, and miss(count) for those that were forgotten before they could be told.
-  virtual void tell(const std::function<void(std::string)>& say, const std::function<void(std::uint64_t)>& miss) = 0;
+  /// Calls send(line) for each new line, and drop(count) for lines that were overwritten before they could be sent.
+  virtual void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>& drop) = 0;
 };
 
-/// For a request to watch; the error says what is wrong with its pattern. `link` outlives it.
-Result<std::unique_ptr<Watcher>> make_watcher(EngineLink& link, const ConsoleRequest& request);
+/// Creates the subscription for a request; the error describes the fault in its pattern. `link` outlives it.
+Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const ConsoleRequest& request);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Questions from outside, answered from the store.
+// Answers to queries, read from the store.
 #include "engine/answers.h"
 
 #include <algorithm>
@@ -13,11 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostValues = 256;  // values that one /get answers with
+constexpr std::size_t kMaxValues = 256;  // maximum number of values in the answers to one /get
 
-// no answer looks like a question: else two programs that are aimed at each other would ask for ever
-Outcome answered(Message answer, std::size_t question) {
-  if (answer.args.size() == question) answer.args.push_back(Arg::of(""));
+// Appends an empty text if the answer has no more arguments than the query: an answer must not look like a query, or
+// two programs that send to each other would query each other forever.
+Outcome answered(Message answer, std::size_t query_args) {
+  if (answer.args.size() == query_args) answer.args.push_back(Arg::of(""));
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
   outcome.answers.push_back(std::move(answer));
@@ -26,10 +27,10 @@ Outcome answered(Message answer, std::size_t question) {
 
 }  // namespace
 
-Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
+Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) const {
   Message answer{fmt::format("/list/{}", kind), {}};
   if (kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups") {
-    if (!args.empty()) return Outcome::refused("takes no arguments");
+    if (!args.empty()) return Outcome::rejected("takes no arguments");
     for (const auto& body : world_.bodies()) {
       if (kind == "bodies") answer.args.push_back(Arg::of(body->name()));
     }
@@ -44,12 +45,12 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
     }
     return answered(std::move(answer), 0);
   }
-  if (args.size() != 1 || args[0].kind == Arg::Kind::nil) return Outcome::refused("takes the name of a body");
-  const std::string name = Selector::text(args[0]);
+  if (args.size() != 1 || args[0].kind == Arg::Kind::nil) return Outcome::rejected("takes the name of a body");
+  const std::string name = Selector::name_text(args[0]);
   const Body* body = world_.find_body(name);
   if (body == nullptr) {
-    return Outcome::refused(fmt::format("there is no body '{}'{}", printable(name),
-                                        hints_.take() ? name_hint(name, world_.body_names()) : ""));
+    return Outcome::rejected(fmt::format("there is no body '{}'{}", printable(name),
+                                         hints_.consume() ? name_hint(name, world_.body_names()) : ""));
   }
   answer.args.push_back(Arg::of(name));
   const Store& store = world_.store();
@@ -65,41 +66,43 @@ Outcome Answers::list(std::string_view kind, std::span<const Arg> args) const {
   return answered(std::move(answer), 1);
 }
 
-Outcome Answers::get(std::span<const Arg> args) const {
-  if (args.size() != 1 || !args[0].is_text()) return Outcome::refused("takes a path, such as /physics/sim/gravity");
+Outcome QueryHandler::get(std::span<const Arg> args) const {
+  if (args.size() != 1 || !args[0].is_text()) return Outcome::rejected("takes a path, such as /physics/sim/gravity");
   const Store& store = world_.store();
   const std::string& path = args[0].text;
-  const Result<std::vector<Place>> places = match_places(store, path, work_, kMostValues + 1);
-  if (!places) return Outcome::refused(places.error());
-  if (places->size() > kMostValues) {
-    return Outcome::refused(
-        fmt::format("'{}' is more than {} values; ask for fewer at a time", printable(path), kMostValues));
+  const Result<std::vector<PropertyRef>> refs = match_properties(store, path, budget_, kMaxValues + 1);
+  if (!refs) return Outcome::rejected(refs.error());
+  if (refs->size() > kMaxValues) {
+    return Outcome::rejected(
+        fmt::format("'{}' matches more than {} values; query fewer at a time", printable(path), kMaxValues));
   }
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
-  for (const Place& place : *places) {
-    if (place.row == nullptr || place.row->kind == RowKind::action) continue;
+  for (const PropertyRef& ref : *refs) {
+    if (ref.property == nullptr || ref.property->kind == PropertyKind::action) continue;
     std::array<double, 4> values{};
-    store.get(place.node, *place.row, values.data());
+    store.get(ref.node, *ref.property, values.data());
     Message& answer = outcome.answers.emplace_back();
-    answer.address = store.path(place.node) + "/" + place.row->name;
-    for (std::uint32_t i = 0; i < place.row->width; i++) answer.args.push_back(Arg::of(values[i]));
-    if (place.row->type == RowType::text) answer.args.push_back(Arg::of(place.row->say(store.thing(place.node))));
+    answer.address = store.path(ref.node) + "/" + ref.property->name;
+    for (std::uint32_t i = 0; i < ref.property->width; i++) answer.args.push_back(Arg::of(values[i]));
+    if (ref.property->type == PropertyType::text)
+      answer.args.push_back(Arg::of(ref.property->read_text(store.object(ref.node))));
   }
-  if (outcome.answers.empty()) return Outcome::refused(fmt::format("'{}' is no value", printable(path)));
+  if (outcome.answers.empty()) return Outcome::rejected(fmt::format("'{}' is not a property", printable(path)));
   return outcome;
 }
 
-std::string Answers::near_address(std::string_view address, const std::vector<std::string>& by_name) const {
-  if (!hints_.take()) return "";
-  std::vector<std::string> all = by_name;
+std::string QueryHandler::address_hint(std::string_view address, const std::vector<std::string>& by_name) const {
+  if (!hints_.consume()) return "";
+  std::vector<std::string> candidates = by_name;
   const Store& store = world_.store();
   for (const NodeId id : store.children(store.root())) {
-    for (const Row& row : store.table(id).rows()) all.push_back(store.path(id) + "/" + row.name);
+    for (const Property& property : store.table(id).properties())
+      candidates.push_back(store.path(id) + "/" + property.name);
   }
-  const std::vector<std::string_view> views(all.begin(), all.end());
-  const std::string_view near = nearest_name(plain_name(address), views);
-  return near.empty() ? "; `limber describe` lists all" : fmt::format("; did you mean '{}'?", near);
+  const std::vector<std::string_view> views(candidates.begin(), candidates.end());
+  const std::string_view nearest = nearest_name(plain_name(address), views);
+  return nearest.empty() ? "; `limber describe` lists all" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 }  // namespace limber

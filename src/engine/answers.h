@@ -1,4 +1,4 @@
-// Answers: the messages that ask: /list/… and /get; and what is said to an address that there is not. [sim]
+// QueryHandler: executes the queries /list/… and /get, and suggests similar addresses for unknown ones. [sim]
 #pragma once
 
 #include "base/message.h"
@@ -8,23 +8,27 @@
 
 namespace limber {
 
-class Answers {
+class QueryHandler {
  public:
-  /// `work` is what patterns of a question may cost.
-  Answers(World& world, HintBudget& hints, PatternBudget& work) : world_(world), hints_(hints), work_(work) {}
+  /// `hints`: limits the number of "did you mean" hints per tick. `budget`: limits the work of the patterns in a
+  /// query.
+  QueryHandler(World& world, HintBudget& hints, PatternBudget& budget)
+      : world_(world), hints_(hints), budget_(budget) {}
 
-  /// /list/bodies, /list/shapes, /list/gears, /list/groups; /list/parts, joints, motors, behaviors of a body: names in
-  /// the streams' order; an empty text where there is none.
+  /// Answers /list/bodies, shapes, gears and groups, and /list/parts, joints, motors and behaviors of a body, with
+  /// names in stream order, or with an empty text if there are none.
   Outcome list(std::string_view kind, std::span<const Arg> args) const;
-  /// /get: the row's address and value; a pattern answers for each.
+  /// Answers /get with address and value of each property that the path or pattern matches.
   Outcome get(std::span<const Arg> args) const;
-  /// What else an address may have meant, among `by_name` and the rows of /transport, /osc, /scene.
-  std::string near_address(std::string_view address, const std::vector<std::string>& by_name) const;
+  /// Returns a hint to append to the error about an unknown address: the most similar one of `by_name` and of the
+  /// properties of the top-level nodes (/transport, /scene, …), else how to list all. Empty once the hints of the tick
+  /// are used up.
+  std::string address_hint(std::string_view address, const std::vector<std::string>& by_name) const;
 
  private:
   World& world_;
   HintBudget& hints_;
-  PatternBudget& work_;
+  PatternBudget& budget_;
 };
 
 }  // namespace limber

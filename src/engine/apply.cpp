@@ -1,4 +1,4 @@
-// Bringing a difference into a world: shapes, bodies, values, places, order.
+// ScenePatch: applies a scene diff to a world: shapes, bodies, values, poses, order.
 #include "engine/apply.h"
 
 #include <algorithm>
@@ -13,274 +13,282 @@ namespace limber {
 namespace {
 
 template <class T>
-T* living(const World& world, NodeId id) {
+T* find_alive(const World& world, NodeId id) {
   const Store& store = world.store();
   if (!store.alive(id) || &store.table(id) != &T::table()) return nullptr;
-  return static_cast<T*>(store.thing(id));
+  return static_cast<T*>(store.object(id));
 }
 
-std::uint64_t bit_of(std::string_view row) { return std::uint64_t{1} << Part::table().at(row).index; }
+std::uint64_t part_property_bit(std::string_view property) {
+  return std::uint64_t{1} << Part::table().at(property).index;
+}
 
-// values of a body's things before it is made anew, by kind and name
-class Keepsakes {
+// Saves the values of a body's objects while the body is rebuilt, by class and name.
+class SavedValues {
  public:
-  explicit Keepsakes(const Body& body) {
-    keep(body, body.id(), "");
-    for (const auto& part : body.parts()) keep(body, part->id(), part->name());
-    for (const auto& joint : body.joints()) keep(body, joint->id(), joint->name());
-    for (const auto& motor : body.motors()) keep(body, motor->id(), motor->name());
+  explicit SavedValues(const Body& body) {
+    save(body, body.id(), "");
+    for (const auto& part : body.parts()) save(body, part->id(), part->name());
+    for (const auto& joint : body.joints()) save(body, joint->id(), joint->name());
+    for (const auto& motor : body.motors()) save(body, motor->id(), motor->name());
     for (const PartPair& pair : body.pairs().list) {
       pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
     }
   }
 
-  // edits of pairs whose parts are still there
-  void give_pairs_to(Body& body) const {
-    for (const KeptPair& pair : pairs_) {
+  // Restores the edits of pairs if both parts still exist.
+  void restore_pairs_to(Body& body) const {
+    for (const SavedPair& pair : pairs_) {
       const Part* const a = body.find_part(pair.a);
       const Part* const b = body.find_part(pair.b);
       if (a != nullptr && b != nullptr) (void)body.edit_pair(*a, *b, pair.edit);
     }
   }
 
-  // rows of `leave` and velocities, which go with the posture, are left alone
-  void give_to(Store& store, NodeId id, std::string_view name, std::uint64_t leave) const {
-    const Table& table = store.table(id);
-    const auto found =
-        std::find_if(all_.begin(), all_.end(), [&](const Keepsake& k) { return k.table == &table && k.name == name; });
-    if (found == all_.end()) return;
-    if (&table == &Part::table()) leave |= bit_of("linear_velocity") | bit_of("angular_velocity");
-    const std::uint64_t rows = described_rows(table) & ~leave;
-    for (const Row& row : table.rows()) {
-      if ((rows >> row.index & 1u) == 0) continue;
-      const double* const was = (row.live ? found->live : found->kept).data() + row.offset;
-      if (std::equal(was, was + row.width, std::as_const(store).values(id, row))) continue;
-      (void)store.set(id, row, {was, row.width});  // a mass that can't be set any more stays as it was made
+  // Restores the saved values, except the properties of `except`, and velocities, which belong to the body state.
+  void restore_to(Store& store, NodeId id, std::string_view name, std::uint64_t except) const {
+    const PropertyTable& table = store.table(id);
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Entry& entry) { return entry.table == &table && entry.name == name; });
+    if (found == entries_.end()) return;
+    if (&table == &Part::table())
+      except |= part_property_bit("linear_velocity") | part_property_bit("angular_velocity");
+    const std::uint64_t mask = described_mask(table) & ~except;
+    for (const Property& property : table.properties()) {
+      if ((mask >> property.index & 1u) == 0) continue;
+      const double* const saved = (property.transient ? found->transient : found->persistent).data() + property.offset;
+      if (std::equal(saved, saved + property.width, std::as_const(store).values(id, property))) continue;
+      (void)store.set(id, property, {saved, property.width});  // may fail, for example if a mass can no longer be set
     }
   }
 
  private:
-  struct KeptPair {
+  struct SavedPair {
     std::string a, b;
     PairEdit edit;
   };
-  struct Keepsake {
-    const Table* table;
+  struct Entry {
+    const PropertyTable* table;
     std::string name;
-    std::vector<double> kept, live;
+    std::vector<double> persistent, transient;
   };
-  void keep(const Body& body, NodeId id, const std::string& name) {
+  void save(const Body& body, NodeId id, const std::string& name) {
     const Store& store = body.store();
-    const Table& table = store.table(id);
-    const double* const kept = store.kept_block(id);
-    const double* const live = store.live_block(id);
-    all_.push_back({&table, name, {kept, kept + table.kept_width()}, {live, live + table.live_width()}});
+    const PropertyTable& table = store.table(id);
+    const double* const persistent = store.persistent_block(id);
+    const double* const transient = store.transient_block(id);
+    entries_.push_back({&table,
+                        name,
+                        {persistent, persistent + table.persistent_width()},
+                        {transient, transient + table.transient_width()}});
   }
 
-  std::vector<Keepsake> all_;
-  std::vector<KeptPair> pairs_;
+  std::vector<Entry> entries_;
+  std::vector<SavedPair> pairs_;
 };
 
-class Applying {
+class PatchApplier {
  public:
-  explicit Applying(const Application& a) : a_(a), store_(a.world.store()) {}
+  explicit PatchApplier(const ScenePatch& patch) : patch_(patch), store_(patch.world.store()) {}
 
-  void run(LiveThings& things) {
-    set_rows(a_.draft.id(), a_.world.id(), a_.difference.world);
-    const Visuals& drawn = a_.draft.visuals();
-    set_rows(drawn.id(), a_.world.visuals().id(), a_.difference.visuals);
-    set_rows(drawn.camera().id(), a_.world.visuals().camera().id(), a_.difference.camera);
-    set_rows(drawn.look().id(), a_.world.visuals().look().id(), a_.difference.look);
-    remove_bodies(things);
-    shapes(things);
-    bodies(things);
-    gears();
-    apply_behaviors(a_, bodies_, kept_behaviors_);
-    for (const std::size_t gone : a_.difference.gone_shapes) {
-      if (Shape* const shape = living<Shape>(a_.world, things.shapes[gone])) a_.world.remove_shape(*shape);
+  void run(LiveObjects& objects) {
+    set_properties(patch_.candidate.id(), patch_.world.id(), patch_.diff.world);
+    const Visuals& visuals = patch_.candidate.visuals();
+    set_properties(visuals.id(), patch_.world.visuals().id(), patch_.diff.visuals);
+    set_properties(visuals.camera().id(), patch_.world.visuals().camera().id(), patch_.diff.camera);
+    set_properties(visuals.appearance().id(), patch_.world.visuals().appearance().id(), patch_.diff.appearance);
+    remove_bodies(objects);
+    apply_shapes(objects);
+    apply_bodies(objects);
+    apply_gears();
+    apply_behaviors(patch_, bodies_, saved_behaviors_);
+    for (const std::size_t removed : patch_.diff.removed_shapes) {
+      if (Shape* const shape = find_alive<Shape>(patch_.world, objects.shapes[removed]))
+        patch_.world.remove_shape(*shape);
     }
-    a_.world.order_shapes(shapes_);
-    a_.world.order_bodies(bodies_);
-    things = {};
-    for (const Shape* shape : shapes_) things.shapes.push_back(shape->id());
-    for (const Body* body : bodies_) things.bodies.push_back(body->id());
+    patch_.world.move_shapes_to_front(shapes_);
+    patch_.world.move_bodies_to_front(bodies_);
+    objects = {};
+    for (const Shape* shape : shapes_) objects.shapes.push_back(shape->id());
+    for (const Body* body : bodies_) objects.bodies.push_back(body->id());
   }
 
  private:
-  void set_rows(NodeId from, NodeId to, std::uint64_t rows) {
-    const Store& theirs = a_.draft.store();
-    for (; rows != 0; rows &= rows - 1) {
-      const Row& row = store_.table(to).row(static_cast<std::uint32_t>(std::countr_zero(rows)));
-      const double* const values = theirs.values(from, row);
-      a_.on_set(to, row);
-      if (std::equal(values, values + row.width, std::as_const(store_).values(to, row))) continue;
-      const Result<SetOutcome> set = store_.set(to, row, {values, row.width});
+  void set_properties(NodeId from, NodeId to, std::uint64_t mask) {
+    const Store& source_store = patch_.candidate.store();
+    for (; mask != 0; mask &= mask - 1) {
+      const Property& property = store_.table(to).property(static_cast<std::uint32_t>(std::countr_zero(mask)));
+      const double* const values = source_store.values(from, property);
+      patch_.on_set(to, property);
+      if (std::equal(values, values + property.width, std::as_const(store_).values(to, property))) continue;
+      const Result<SetOutcome> set = store_.set(to, property, {values, property.width});
       LIMBER_CHECK(set.ok());
     }
   }
 
-  void remove_bodies(const LiveThings& things) {
-    for (const std::size_t gone : a_.difference.gone_bodies) {
-      if (Body* const body = living<Body>(a_.world, things.bodies[gone])) a_.world.remove_body(*body);
+  void remove_bodies(const LiveObjects& objects) {
+    for (const std::size_t removed : patch_.diff.removed_bodies) {
+      if (Body* const body = find_alive<Body>(patch_.world, objects.bodies[removed])) patch_.world.remove_body(*body);
     }
   }
 
-  void shapes(const LiveThings& things) {
-    auto next = a_.difference.shapes.begin();
-    for (std::size_t i = 0; i < a_.now.shapes.size(); i++) {
-      const std::optional<std::size_t> before = a_.difference.shapes_before[i];
-      const Shape& described = *a_.draft.shapes()[i];
-      Shape* shape = before ? living<Shape>(a_.world, things.shapes[*before]) : nullptr;
-      const bool differs = next != a_.difference.shapes.end() && next->now == i;
+  void apply_shapes(const LiveObjects& objects) {
+    auto next = patch_.diff.shapes.begin();
+    for (std::size_t i = 0; i < patch_.now.shapes.size(); i++) {
+      const std::optional<std::size_t> before = patch_.diff.old_shape_indices[i];
+      const Shape& source = *patch_.candidate.shapes()[i];
+      Shape* shape = before ? find_alive<Shape>(patch_.world, objects.shapes[*before]) : nullptr;
+      const bool differs = next != patch_.diff.shapes.end() && next->new_index == i;
       if (shape == nullptr) {
-        shape = a_.world.find_shape(described.name());
-        const bool fresh = shape == nullptr;
-        if (fresh) shape = *a_.world.add_shape(described.name(), described.model());
-        shape->become(described);
-        // the colours that a robot's file gives a new one are not said
-        set_rows(described.id(), shape->id(),
-                 fresh ? described_rows(Shape::table()) : said_rows(a_.now.shapes[i]->rows));
+        shape = patch_.world.find_shape(source.name());
+        const bool is_new = shape == nullptr;
+        if (is_new) shape = *patch_.world.add_shape(source.name(), source.model());
+        shape->assign_geometry(source);
+        // a new shape gets all values, because colors of a URDF file are not explicitly set
+        set_properties(source.id(), shape->id(),
+                       is_new ? described_mask(Shape::table()) : explicit_mask(patch_.now.shapes[i]->values));
       } else if (differs) {
-        if (next->geometry) shape->become(described);
-        set_rows(described.id(), shape->id(), next->rows);
+        if (next->geometry_changed) shape->assign_geometry(source);
+        set_properties(source.id(), shape->id(), next->changed);
       }
       if (differs) ++next;
       shapes_.push_back(shape);
     }
   }
 
-  void bodies(const LiveThings& things) {
-    auto next = a_.difference.bodies.begin();
-    for (std::size_t i = 0; i < a_.now.bodies.size(); i++) {
-      const std::optional<std::size_t> before = a_.difference.bodies_before[i];
-      const bool differs = next != a_.difference.bodies.end() && next->now == i;
-      Body* body = before ? living<Body>(a_.world, things.bodies[*before]) : nullptr;
+  void apply_bodies(const LiveObjects& objects) {
+    auto next = patch_.diff.bodies.begin();
+    for (std::size_t i = 0; i < patch_.now.bodies.size(); i++) {
+      const std::optional<std::size_t> before = patch_.diff.old_body_indices[i];
+      const bool differs = next != patch_.diff.bodies.end() && next->new_index == i;
+      Body* body = before ? find_alive<Body>(patch_.world, objects.bodies[*before]) : nullptr;
       if (body == nullptr) {
-        body = newcomer(i);
+        body = add_body(i);
       } else if (differs) {
-        body = &changed(*body, *next);
+        body = &patch_body(*body, *next);
       }
       if (differs) ++next;
       bodies_.push_back(body);
     }
   }
 
-  // A gear that was removed, or whose body was, comes back with the values of the scene; others keep theirs.
-  void gears() {
-    for (const std::string& name : a_.difference.gone_gears) {
-      if (Gear* const gone = a_.world.find_gear(name)) a_.world.remove_gear(*gone);
+  // A gear that was removed, or lost a body, is added again with the values of the scene; others keep their values.
+  void apply_gears() {
+    for (const std::string& name : patch_.diff.removed_gears) {
+      if (Gear* const removed = patch_.world.find_gear(name)) patch_.world.remove_gear(*removed);
     }
     std::vector<Gear*> order;
-    for (std::size_t i = 0; i < a_.now.gears.size(); i++) {
-      const GearDescription& now = a_.now.gears[i];
-      const Gear& described = *a_.draft.gears()[i];
+    for (std::size_t i = 0; i < patch_.now.gears.size(); i++) {
+      const GearDescription& now = patch_.now.gears[i];
+      const Gear& source = *patch_.candidate.gears()[i];
       Joint* const a = joint_of(now.body_a, now.joint_a);
       Joint* const b = joint_of(now.body_b, now.joint_b);
       LIMBER_CHECK(a != nullptr && b != nullptr);
-      Gear* live = a_.world.find_gear(now.name);
+      Gear* live = patch_.world.find_gear(now.name);
       if (live != nullptr && (&live->joint_a() != a || &live->joint_b() != b)) {
-        a_.world.remove_gear(*live);
+        patch_.world.remove_gear(*live);
         live = nullptr;
       }
       if (live == nullptr) {
-        const Result<Gear*> made = a_.world.add_gear(now.name, *a, *b, described.ratio(), described.offset());
-        LIMBER_CHECK(made.ok());
-        live = *made;
-        set_rows(described.id(), live->id(), described_rows(Gear::table()));
+        const Result<Gear*> added = patch_.world.add_gear(now.name, *a, *b, source.ratio(), source.offset());
+        LIMBER_CHECK(added.ok());
+        live = *added;
+        set_properties(source.id(), live->id(), described_mask(Gear::table()));
       } else {
-        const GearDifference& difference = a_.difference.gears[i];
-        set_rows(described.id(), live->id(), difference.rows);
+        const GearDiff& diff = patch_.diff.gears[i];
+        set_properties(source.id(), live->id(), diff.changed);
       }
       order.push_back(live);
     }
-    a_.world.order_gears(order);
+    patch_.world.move_gears_to_front(order);
   }
 
   Joint* joint_of(const std::string& body, const std::string& joint) const {
-    for (Body* const each : bodies_) {
-      if (each->name() == body) return each->find_joint(joint);
+    for (Body* const candidate : bodies_) {
+      if (candidate->name() == body) return candidate->find_joint(joint);
     }
     return nullptr;
   }
 
-  // new, or back after it was removed, or one of the performance that the scene now describes
-  Body* newcomer(std::size_t i) {
-    const Body& described = *a_.draft.bodies()[i];
-    Body* const stranger = a_.world.find_body(described.name());
-    if (stranger == nullptr) return *a_.world.copy_body(described, described.name());
-    BodyDifference difference = compare_stranger(describe_body(*stranger), a_.now.bodies[i]);
-    difference.now = i;
-    return &changed(*stranger, difference);
+  // Adds a body that is new or was removed, or adopts an unmanaged body of this name.
+  Body* add_body(std::size_t i) {
+    const Body& source = *patch_.candidate.bodies()[i];
+    Body* const unmanaged = patch_.world.find_body(source.name());
+    if (unmanaged == nullptr) return *patch_.world.copy_body(source, source.name());
+    BodyDiff diff = compare_unmanaged(describe_body(*unmanaged), patch_.now.bodies[i]);
+    diff.new_index = i;
+    return &patch_body(*unmanaged, diff);
   }
 
-  Body& changed(Body& body, const BodyDifference& d) {
-    const Body& described = *a_.draft.bodies()[d.now];
-    Body& live = d.anew ? made_anew(body, described, d) : body;
-    if (!d.anew && d.start) live.take_start_pose(described);
-    set_rows(described.id(), live.id(), d.rows);
-    for (std::size_t i = 0; i < d.parts.size(); i++)
-      set_rows(described.parts()[i]->id(), live.parts()[i]->id(), d.parts[i]);
-    for (std::size_t i = 0; i < d.joints.size(); i++)
-      set_rows(described.joints()[i]->id(), live.joints()[i]->id(), d.joints[i]);
-    for (std::size_t i = 0; i < d.motors.size(); i++)
-      set_rows(described.motors()[i]->id(), live.motors()[i]->id(), d.motors[i]);
-    for (const PairDescription& pair : d.pairs) {
+  Body& patch_body(Body& body, const BodyDiff& diff) {
+    const Body& source = *patch_.candidate.bodies()[diff.new_index];
+    Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
+    if (!diff.rebuild && diff.start_changed) live.save_start_pose(source);
+    set_properties(source.id(), live.id(), diff.changed);
+    for (std::size_t i = 0; i < diff.parts.size(); i++)
+      set_properties(source.parts()[i]->id(), live.parts()[i]->id(), diff.parts[i]);
+    for (std::size_t i = 0; i < diff.joints.size(); i++)
+      set_properties(source.joints()[i]->id(), live.joints()[i]->id(), diff.joints[i]);
+    for (std::size_t i = 0; i < diff.motors.size(); i++)
+      set_properties(source.motors()[i]->id(), live.motors()[i]->id(), diff.motors[i]);
+    for (const PairDescription& pair : diff.pairs) {
       (void)live.edit_pair(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
     }
-    move(live, described, d);
+    move_body(live, source, diff);
     return live;
   }
 
-  Body& made_anew(Body& body, const Body& described, const BodyDifference& d) {
-    const Keepsakes keepsakes(body);
-    keep_behaviors(body, kept_behaviors_);
-    Body& live = a_.world.rebuild_body(body, described, d.joints_start_anew);
-    keepsakes.give_pairs_to(live);
-    keepsakes.give_to(store_, live.id(), "", d.rows);
-    for (std::size_t i = 0; i < d.parts.size(); i++)
-      keepsakes.give_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), d.parts[i]);
-    for (std::size_t i = 0; i < d.joints.size(); i++)
-      keepsakes.give_to(store_, live.joints()[i]->id(), live.joints()[i]->name(), d.joints[i]);
-    for (std::size_t i = 0; i < d.motors.size(); i++)
-      keepsakes.give_to(store_, live.motors()[i]->id(), live.motors()[i]->name(), d.motors[i]);
+  Body& rebuild(Body& body, const Body& source, const BodyDiff& diff) {
+    const SavedValues saved(body);
+    save_behaviors(body, saved_behaviors_);
+    Body& live = patch_.world.rebuild_body(body, source, diff.joints_to_reset);
+    saved.restore_pairs_to(live);
+    saved.restore_to(store_, live.id(), "", diff.changed);
+    for (std::size_t i = 0; i < diff.parts.size(); i++)
+      saved.restore_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), diff.parts[i]);
+    for (std::size_t i = 0; i < diff.joints.size(); i++)
+      saved.restore_to(store_, live.joints()[i]->id(), live.joints()[i]->name(), diff.joints[i]);
+    for (std::size_t i = 0; i < diff.motors.size(); i++)
+      saved.restore_to(store_, live.motors()[i]->id(), live.motors()[i]->name(), diff.motors[i]);
     return live;
   }
 
-  static void move(Body& live, const Body& described, const BodyDifference& d) {
+  static void move_body(Body& live, const Body& source, const BodyDiff& diff) {
     const Pose before = live.pose();
-    const Pose wanted = described.pose();
-    const Pose to{d.position ? wanted.position : before.position, d.rotation ? wanted.rotation : before.rotation};
+    const Pose target = source.pose();
+    const Pose to{diff.position_changed ? target.position : before.position,
+                  diff.rotation_changed ? target.rotation : before.rotation};
     if (live.parts().empty()) return live.set_pose(to);
-    if (d.position || d.rotation) {
+    if (diff.position_changed || diff.rotation_changed) {
       const Pose moved = to * before.inverse();
       const std::size_t root_tree = live.trees().front();
-      const auto along = [&](std::size_t first) { live.move_tree(first, moved * live.parts()[first]->pose()); };
+      const auto move_along = [&](std::size_t first) { live.move_tree(first, moved * live.parts()[first]->pose()); };
       if (root_tree == 0) {
         live.move_tree(0, to);
       } else {
-        along(root_tree);
+        move_along(root_tree);
       }
-      for (const std::size_t first : d.trees_along) along(first);
+      for (const std::size_t first : diff.trees_with_root) move_along(first);
     }
-    for (const std::size_t first : d.trees_placed) live.move_tree(first, described.parts()[first]->pose());
+    for (const std::size_t first : diff.trees_placed) live.move_tree(first, source.parts()[first]->pose());
   }
 
-  const Application& a_;
+  const ScenePatch& patch_;
   Store& store_;
   std::vector<Shape*> shapes_;
   std::vector<Body*> bodies_;
-  std::vector<KeptBehavior> kept_behaviors_;  // of bodies that are made anew
+  std::vector<SavedBehavior> saved_behaviors_;  // of rebuilt bodies
 };
 
 }  // namespace
 
-LiveThings things_of(const World& world) {
-  LiveThings things;
-  for (const auto& shape : world.shapes()) things.shapes.push_back(shape->id());
-  for (const auto& body : world.bodies()) things.bodies.push_back(body->id());
-  return things;
+LiveObjects live_objects_of(const World& world) {
+  LiveObjects objects;
+  for (const auto& shape : world.shapes()) objects.shapes.push_back(shape->id());
+  for (const auto& body : world.bodies()) objects.bodies.push_back(body->id());
+  return objects;
 }
 
-void apply(const Application& application, LiveThings& things) { Applying(application).run(things); }
+void apply(const ScenePatch& patch, LiveObjects& objects) { PatchApplier(patch).run(objects); }
 
 }  // namespace limber

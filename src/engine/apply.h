@@ -1,5 +1,5 @@
-// Applying a difference to the live world, between two ticks. What does not differ is not touched: pose, velocity and
-// everything of Bullet's stay to the bit, and ids stay. [sim]
+// ScenePatch: applies a scene diff to the live world, between two ticks. Unchanged objects are not touched: their pose,
+// velocity, Bullet state and ids stay identical to the bit. [sim]
 #pragma once
 
 #include <functional>
@@ -10,28 +10,28 @@
 
 namespace limber {
 
-/// The live things of the description in force, in its order. One that was removed by hand has a stale id.
-struct LiveThings {
+/// Ids of the live objects of the current spec, in its order. An object that was removed since has a stale id.
+struct LiveObjects {
   std::vector<NodeId> shapes;
   std::vector<NodeId> bodies;
 };
 
-/// Of a world that its description was taken from just now.
-LiveThings things_of(const World& world);
+/// Returns the ids of all objects of a world that was captured as a spec just now.
+LiveObjects live_objects_of(const World& world);
 
-/// What changes hands in an application.
-struct Application {
-  World& world;        ///< The live one.
-  const World& draft;  ///< The one that `now` was taken from.
-  const Description& before;
-  const Description& now;
-  const Difference& difference;
-  /// Told of every row that is set.
-  std::function<void(NodeId, const Row&)> on_set = [](NodeId, const Row&) {};
+/// The input of apply().
+struct ScenePatch {
+  World& world;            ///< The live world.
+  const World& candidate;  ///< The world of the new run, from which `now` was captured.
+  const SceneSpec& before;
+  const SceneSpec& now;
+  const SceneDiff& diff;
+  /// Called for every property that is set.
+  std::function<void(NodeId, const Property&)> on_set = [](NodeId, const Property&) {};
 };
 
-/// `things`: of the description before; becomes those of the one now. A thing of the performance (made in a callback)
-/// whose name is described now is taken over; one that is described but was removed comes back.
-void apply(const Application& application, LiveThings& things);
+/// Applies a patch. `objects`: in, the objects of the old spec; out, those of the new spec. An unmanaged object (made
+/// in a callback) with the name of a new one becomes managed. An object of the spec that was removed is added again.
+void apply(const ScenePatch& patch, LiveObjects& objects);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Behaviours and groups of a reload.
+// ScenePatch: behaviors and groups.
 #include "engine/apply_behaviors.h"
 
 #include <algorithm>
@@ -10,183 +10,185 @@ namespace limber {
 
 namespace {
 
-KeptBehavior kept_of(const Behavior& behavior) {
-  const Table& table = *behavior.type().table;
-  const double* const values = std::as_const(behavior.store()).kept_block(behavior.id());
+SavedBehavior saved_behavior(const Behavior& behavior) {
+  const PropertyTable& table = *behavior.type().table;
+  const double* const values = std::as_const(behavior.store()).persistent_block(behavior.id());
   return {behavior.body().name(), behavior.name(), behavior.type().name,
-          behavior.setup(),       &table,          {values, values + table.kept_width()}};
+          behavior.setup(),       &table,          {values, values + table.persistent_width()}};
 }
 
-class ApplyingBehaviors {
+class BehaviorPatcher {
  public:
-  ApplyingBehaviors(const Application& a, const std::vector<Body*>& bodies, const std::vector<KeptBehavior>& kept)
-      : a_(a), bodies_(bodies), kept_(kept), list_(a.world.behaviors()) {}
+  BehaviorPatcher(const ScenePatch& patch, const std::vector<Body*>& bodies, const std::vector<SavedBehavior>& saved)
+      : patch_(patch), bodies_(bodies), saved_(saved), list_(patch.world.behaviors()) {}
 
   void run() {
-    take_types();
-    for (const auto& [body, name] : a_.difference.gone_behaviors) {
-      if (Behavior* const gone = bodies_[body]->find_behavior(name)) list_.remove(*gone);
+    replace_types();
+    for (const auto& [body, name] : patch_.diff.removed_behaviors) {
+      if (Behavior* const removed = bodies_[body]->find_behavior(name)) list_.remove(*removed);
     }
-    for (const std::string& name : a_.difference.gone_groups) {
-      if (BehaviorGroup* const gone = list_.find_group(name)) list_.remove_group(*gone);
+    for (const std::string& name : patch_.diff.removed_groups) {
+      if (BehaviorGroup* const removed = list_.find_group(name)) list_.remove_group(*removed);
     }
     for (std::size_t i = 0; i < bodies_.size(); i++) {
-      for (std::size_t k = 0; k < a_.now.bodies[i].behaviors.size(); k++) single(i, k);
+      for (std::size_t k = 0; k < patch_.now.bodies[i].behaviors.size(); k++) apply_behavior(i, k);
     }
-    strangers();
-    for (std::size_t i = 0; i < a_.now.groups.size(); i++) group(i);
-    for (std::size_t i = 0; i < bodies_.size(); i++) members(i);
-    if (a_.difference.other_order || made_) list_.bring_into(a_.now.behavior_order);
+    restore_unmanaged();
+    for (std::size_t i = 0; i < patch_.now.groups.size(); i++) apply_group(i);
+    for (std::size_t i = 0; i < bodies_.size(); i++) apply_members(i);
+    if (patch_.diff.order_changed || added_) list_.set_order(patch_.now.behavior_order);
   }
 
  private:
-  // types of files: all of the draft's, and instances as these now are
-  void take_types() {
-    const BehaviorTypes& theirs = a_.draft.behaviors().types();
+  // Replaces the types that come from files by those of the new run, and rebuilds their instances.
+  void replace_types() {
+    const BehaviorTypes& source_types = patch_.candidate.behaviors().types();
     BehaviorTypes& types = list_.types();
-    std::vector<std::string> gone;
+    std::vector<std::string> removed;
     for (const auto& type : types.all()) {
-      if (!type->is_built_in && theirs.find(type->name) == nullptr) gone.push_back(type->name);
+      if (!type->is_built_in && source_types.find(type->name) == nullptr) removed.push_back(type->name);
     }
-    for (const auto& type : theirs.all()) {
+    for (const auto& type : source_types.all()) {
       if (type->is_built_in) continue;
-      (void)types.add(*type);  // the draft's list has taken it too
-      list_.renew(type->name);
+      (void)types.add(*type);  // can't fail: it was valid in the new run
+      list_.replace_instances(type->name);
     }
-    for (const std::string& name : gone) types.remove(name);
+    for (const std::string& name : removed) types.remove(name);
   }
 
-  void set_rows(NodeId from, NodeId to, const Table& described, std::uint64_t rows) {
-    const Store& theirs = a_.draft.store();
-    Store& store = a_.world.store();
-    for (; rows != 0; rows &= rows - 1) {
-      const Row& row = described.row(static_cast<std::uint32_t>(std::countr_zero(rows)));
-      const Row& live = store.table(to).at(row.name);
-      a_.on_set(to, live);
-      (void)store.set(to, live, {theirs.values(from, row), row.width});  // the draft's store has taken it
-    }
-  }
-
-  // values of one that goes, for the one that comes in its place; those of `leave` are said otherwise
-  void give(const KeptBehavior& from, const Behavior& to, std::uint64_t leave) {
-    Store& store = a_.world.store();
-    for (const Row& row : to.type().table->rows()) {
-      if (!row.stored() || !row.writable() || (leave >> row.index & 1u) != 0) continue;
-      const Row* const old = from.table->find(row.name);
-      if (old == nullptr || !old->stored() || old->type != row.type) continue;
-      (void)store.set(to.id(), row, {from.values.data() + old->offset, row.width});
+  void set_properties(NodeId from, NodeId to, const PropertyTable& source_table, std::uint64_t mask) {
+    const Store& source_store = patch_.candidate.store();
+    Store& store = patch_.world.store();
+    for (; mask != 0; mask &= mask - 1) {
+      const Property& property = source_table.property(static_cast<std::uint32_t>(std::countr_zero(mask)));
+      const Property& live = store.table(to).at(property.name);
+      patch_.on_set(to, live);
+      (void)store.set(
+          to, live, {source_store.values(from, property), property.width});  // can't fail: it was valid in the new run
     }
   }
 
-  const KeptBehavior* kept(std::string_view body, std::string_view name) const {
+  // Copies saved values to the replacement of a behavior, except the properties of `except`, which the scene sets.
+  void copy_values(const SavedBehavior& from, const Behavior& to, std::uint64_t except) {
+    Store& store = patch_.world.store();
+    for (const Property& property : to.type().table->properties()) {
+      if (!property.stored() || !property.writable() || (except >> property.index & 1u) != 0) continue;
+      const Property* const old = from.table->find(property.name);
+      if (old == nullptr || !old->stored() || old->type != property.type) continue;
+      (void)store.set(to.id(), property, {from.values.data() + old->offset, property.width});
+    }
+  }
+
+  const SavedBehavior* find_saved(std::string_view body, std::string_view name) const {
     const auto found =
-        std::find_if(kept_.begin(), kept_.end(), [&](const auto& k) { return k.body == body && k.name == name; });
-    return found == kept_.end() ? nullptr : &*found;
+        std::find_if(saved_.begin(), saved_.end(), [&](const auto& k) { return k.body == body && k.name == name; });
+    return found == saved_.end() ? nullptr : &*found;
   }
 
-  void single(std::size_t body, std::size_t number) {
-    const BehaviorDescription& now = a_.now.bodies[body].behaviors[number];
+  void apply_behavior(std::size_t body, std::size_t index) {
+    const BehaviorDescription& now = patch_.now.bodies[body].behaviors[index];
     if (now.of_group) return;
-    const BehaviorDifference& difference = a_.difference.behaviors[body][number];
-    const Behavior& described = *a_.draft.bodies()[body]->behaviors()[number];
+    const BehaviorDiff& diff = patch_.diff.behaviors[body][index];
+    const Behavior& source = *patch_.candidate.bodies()[body]->behaviors()[index];
     Behavior* live = bodies_[body]->find_behavior(now.name);
-    const KeptBehavior* before = kept(bodies_[body]->name(), now.name);
-    KeptBehavior replaced;
-    const bool other =
+    const SavedBehavior* before = find_saved(bodies_[body]->name(), now.name);
+    SavedBehavior replaced;
+    const bool must_replace =
         live != nullptr && (live->group() != nullptr || live->type().name != now.type || !(live->setup() == now.setup));
-    if (other) {
-      replaced = kept_of(*live);
+    if (must_replace) {
+      replaced = saved_behavior(*live);
       before = &replaced;
       list_.remove(*live);
       live = nullptr;
     }
     if (live == nullptr) {
-      live = make(*bodies_[body], now.type, now.name, now.setup);
+      live = add(*bodies_[body], now.type, now.name, now.setup);
       if (live == nullptr) return;
-      if (before != nullptr && difference.described) {
-        give(*before, *live, difference.rows);
+      if (before != nullptr && diff.in_old_spec) {
+        copy_values(*before, *live, diff.changed);
       } else {
-        return set_rows(described.id(), live->id(), *now.table, said_rows(now.rows));
+        return set_properties(source.id(), live->id(), *now.table, explicit_mask(now.values));
       }
     }
-    set_rows(described.id(), live->id(), *now.table, difference.rows);
+    set_properties(source.id(), live->id(), *now.table, diff.changed);
   }
 
-  Behavior* make(Body& body, const std::string& type, const std::string& name, const BehaviorSetup& setup) {
+  Behavior* add(Body& body, const std::string& type, const std::string& name, const BehaviorSetup& setup) {
     const Result<Behavior*> added = list_.add(body, type, name, setup);
-    made_ = true;
+    added_ = true;
     if (added) return *added;
-    log_warning("behavior '{}/{}' goes: {}", body.name(), name, added.error());
+    log_warning("behavior '{}/{}' was removed: {}", body.name(), name, added.error());
     return nullptr;
   }
 
-  // attached in callbacks to bodies that were made anew
-  void strangers() {
-    for (const KeptBehavior& k : kept_) {
-      Body* const body = a_.world.find_body(k.body);
-      if (body == nullptr || body->find_behavior(k.name) != nullptr || was_described(k)) continue;
-      if (const Behavior* const behavior = make(*body, k.type, k.name, k.setup)) give(k, *behavior, 0);
+  // Attaches unmanaged behaviors (made in callbacks) to rebuilt bodies again.
+  void restore_unmanaged() {
+    for (const SavedBehavior& saved : saved_) {
+      Body* const body = patch_.world.find_body(saved.body);
+      if (body == nullptr || body->find_behavior(saved.name) != nullptr || in_old_spec(saved)) continue;
+      if (const Behavior* const behavior = add(*body, saved.type, saved.name, saved.setup))
+        copy_values(saved, *behavior, 0);
     }
   }
 
-  bool was_described(const KeptBehavior& k) const {
-    return std::any_of(a_.before.bodies.begin(), a_.before.bodies.end(), [&](const BodyDescription& body) {
-      return body.name == k.body && std::any_of(body.behaviors.begin(), body.behaviors.end(),
-                                                [&](const BehaviorDescription& b) { return b.name == k.name; });
+  bool in_old_spec(const SavedBehavior& saved) const {
+    return std::any_of(patch_.before.bodies.begin(), patch_.before.bodies.end(), [&](const BodyDescription& body) {
+      return body.name == saved.body && std::any_of(body.behaviors.begin(), body.behaviors.end(),
+                                                    [&](const BehaviorDescription& b) { return b.name == saved.name; });
     });
   }
 
-  void group(std::size_t number) {
-    const GroupDescription& now = a_.now.groups[number];
-    const BehaviorDifference& difference = a_.difference.groups[number];
-    const BehaviorGroup& described = *a_.draft.behaviors().groups()[number];
+  void apply_group(std::size_t index) {
+    const GroupDescription& now = patch_.now.groups[index];
+    const BehaviorDiff& diff = patch_.diff.groups[index];
+    const BehaviorGroup& source = *patch_.candidate.behaviors().groups()[index];
     BehaviorGroup* live = list_.find_group(now.name);
-    const bool other = live != nullptr && (live->type().name != now.type || !(live->setup() == now.setup));
-    std::uint64_t rows = difference.rows;
-    if (other) {
+    const bool must_replace = live != nullptr && (live->type().name != now.type || !(live->setup() == now.setup));
+    std::uint64_t mask = diff.changed;
+    if (must_replace) {
       list_.remove_group(*live);
       live = nullptr;
     }
     if (live == nullptr) {
-      made_ = true;
+      added_ = true;
       const Result<BehaviorGroup*> added = list_.add_group(now.type, now.name, now.setup);
-      if (!added) return log_warning("group behavior '{}' goes: {}", now.name, added.error());
+      if (!added) return log_warning("group behavior '{}' was removed: {}", now.name, added.error());
       live = *added;
-      rows = said_rows(now.rows);
+      mask = explicit_mask(now.values);
     }
-    set_rows(described.id(), live->id(), *now.table, rows);
+    set_properties(source.id(), live->id(), *now.table, mask);
   }
 
-  // what is said of single members
-  void members(std::size_t body) {
-    const std::vector<BehaviorDescription>& now = a_.now.bodies[body].behaviors;
+  // Sets the values of single members of groups.
+  void apply_members(std::size_t body) {
+    const std::vector<BehaviorDescription>& now = patch_.now.bodies[body].behaviors;
     for (std::size_t k = 0; k < now.size(); k++) {
-      const std::uint64_t rows = a_.difference.behaviors[body][k].rows;
-      if (!now[k].of_group || rows == 0) continue;
+      const std::uint64_t mask = patch_.diff.behaviors[body][k].changed;
+      if (!now[k].of_group || mask == 0) continue;
       const Behavior* const live = bodies_[body]->find_behavior(now[k].name);
       if (live == nullptr || live->group() == nullptr) continue;
-      set_rows(a_.draft.bodies()[body]->behaviors()[k]->id(), live->id(), *now[k].table, rows);
+      set_properties(patch_.candidate.bodies()[body]->behaviors()[k]->id(), live->id(), *now[k].table, mask);
     }
   }
 
-  const Application& a_;
+  const ScenePatch& patch_;
   const std::vector<Body*>& bodies_;
-  const std::vector<KeptBehavior>& kept_;
+  const std::vector<SavedBehavior>& saved_;
   BehaviorList& list_;
-  bool made_ = false;
+  bool added_ = false;
 };
 
 }  // namespace
 
-void keep_behaviors(const Body& body, std::vector<KeptBehavior>& kept) {
+void save_behaviors(const Body& body, std::vector<SavedBehavior>& saved) {
   for (const Behavior* behavior : body.behaviors()) {
-    if (behavior->group() == nullptr) kept.push_back(kept_of(*behavior));
+    if (behavior->group() == nullptr) saved.push_back(saved_behavior(*behavior));
   }
 }
 
-void apply_behaviors(const Application& application, const std::vector<Body*>& bodies,
-                     const std::vector<KeptBehavior>& kept) {
-  ApplyingBehaviors(application, bodies, kept).run();
+void apply_behaviors(const ScenePatch& patch, const std::vector<Body*>& bodies,
+                     const std::vector<SavedBehavior>& saved) {
+  BehaviorPatcher(patch, bodies, saved).run();
 }
 
 }  // namespace limber

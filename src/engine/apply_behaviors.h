@@ -1,4 +1,4 @@
-// Bringing what a difference says of behaviours and groups into a world: types, what goes, what comes, values, order.
+// Applies the differences of behaviors and groups to the live world: types, removed and added ones, values, order.
 // [sim]
 #pragma once
 
@@ -10,21 +10,21 @@
 
 namespace limber {
 
-/// A behaviour that goes because its body is made anew.
-struct KeptBehavior {
+/// The saved state of a behavior that is removed because its body is rebuilt.
+struct SavedBehavior {
   std::string body;
   std::string name;
   std::string type;
   BehaviorSetup setup;
-  const Table* table = nullptr;
-  std::vector<double> values;  ///< The kept block.
+  const PropertyTable* table = nullptr;
+  std::vector<double> values;  ///< Its persistent values.
 };
 
-/// Those of a body that belong to no group.
-void keep_behaviors(const Body& body, std::vector<KeptBehavior>& kept);
+/// Appends the behaviors of a body that belong to no group.
+void save_behaviors(const Body& body, std::vector<SavedBehavior>& saved);
 
-/// After shapes and bodies have been applied; `bodies`: the live ones, by their number in the description now.
-void apply_behaviors(const Application& application, const std::vector<Body*>& bodies,
-                     const std::vector<KeptBehavior>& kept);
+/// Call it after shapes and bodies have been applied. `bodies`: the live ones, in the order of the new spec.
+void apply_behaviors(const ScenePatch& patch, const std::vector<Body*>& bodies,
+                     const std::vector<SavedBehavior>& saved);
 
 }  // namespace limber

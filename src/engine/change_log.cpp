@@ -1,4 +1,4 @@
-// A ring of lines under a lock that is held for a copy or a search.
+// ChangeLog: a bounded queue under a mutex, held for the time of a copy or a search.
 #include "engine/change_log.h"
 
 #include <algorithm>
@@ -7,41 +7,42 @@
 
 namespace limber {
 
-std::uint64_t ChangeLog::add(ChangeLine line) {
+std::uint64_t ChangeLog::add(ChangeEntry entry) {
   const std::scoped_lock lock(mutex_);
-  line.number = ++newest_;
-  line.version = ++versions_;
-  lines_.push_back(std::move(line));
-  if (lines_.size() > kMostLines) lines_.pop_front();
+  entry.number = ++newest_;
+  entry.version = ++versions_;
+  entries_.push_back(std::move(entry));
+  if (entries_.size() > kMaxEntries) entries_.pop_front();
   return newest_;
 }
 
-bool ChangeLog::renew(std::uint64_t number, double time, std::string to) {
+bool ChangeLog::update(std::uint64_t number, double time, std::string to) {
   const std::scoped_lock lock(mutex_);
-  if (lines_.empty() || number < lines_.front().number) return false;
-  ChangeLine& line = lines_[number - lines_.front().number];
-  line.version = ++versions_;
-  line.time = time;
-  line.to = std::move(to);
+  if (entries_.empty() || number < entries_.front().number) return false;
+  ChangeEntry& entry = entries_[number - entries_.front().number];
+  entry.version = ++versions_;
+  entry.time = time;
+  entry.to = std::move(to);
   return true;
 }
 
-std::vector<ChangeLine> ChangeLog::after(std::uint64_t version) const {
-  std::vector<ChangeLine> lines;
+std::vector<ChangeEntry> ChangeLog::after(std::uint64_t version) const {
+  std::vector<ChangeEntry> entries;
   {
     const std::scoped_lock lock(mutex_);
-    std::ranges::copy_if(lines_, std::back_inserter(lines),
-                         [&](const ChangeLine& line) { return line.version > version; });
+    std::ranges::copy_if(entries_, std::back_inserter(entries),
+                         [&](const ChangeEntry& entry) { return entry.version > version; });
   }
-  std::ranges::sort(lines, {}, &ChangeLine::version);
-  return lines;
+  std::ranges::sort(entries, {}, &ChangeEntry::version);
+  return entries;
 }
 
-std::vector<ChangeLine> ChangeLog::since(double time) const {
-  std::vector<ChangeLine> lines;
+std::vector<ChangeEntry> ChangeLog::since(double time) const {
+  std::vector<ChangeEntry> entries;
   const std::scoped_lock lock(mutex_);
-  std::ranges::copy_if(lines_, std::back_inserter(lines), [&](const ChangeLine& line) { return line.time >= time; });
-  return lines;
+  std::ranges::copy_if(entries_, std::back_inserter(entries),
+                       [&](const ChangeEntry& entry) { return entry.time >= time; });
+  return entries;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// ChangeLog: who set which value lately, from what to what. The simulation writes, monitors read. [any]
+// ChangeLog: recent changes of values: source, path, old and new value. The simulation writes, monitors read. [any]
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,31 @@
 
 namespace limber {
 
-struct ChangeLine {
+struct ChangeEntry {
   std::uint64_t number = 0;  ///< Counts from 1.
-  double time = 0;           ///< system::clock_seconds(), when it was set last.
-  std::string who;           ///< As sender_text() names a hand.
+  double time = 0;           ///< Time of the last change, system::clock_seconds().
+  std::string source;        ///< The source, formatted by sender_text().
   std::string path;
-  std::string from, to;       ///< As value_text() has them; of a hand that goes on, the first and the last.
-  std::uint64_t version = 0;  ///< Counts what was added or renewed.
+  std::string from, to;       ///< Formatted by value_text(); of merged changes the first old and the last new value.
+  std::uint64_t version = 0;  ///< Version of the log when the line was added or updated.
 };
 
 class ChangeLog {
  public:
-  static constexpr std::size_t kMostLines = 4096;
+  static constexpr std::size_t kMaxEntries = 4096;
 
-  /// The oldest line goes when there are too many. The answer: its number.
-  std::uint64_t add(ChangeLine line);
-  /// The hand went on: it is another value now. False: the line has gone.
-  bool renew(std::uint64_t number, double time, std::string to);
-  /// Those that were added or renewed after that version, in that order.
-  std::vector<ChangeLine> after(std::uint64_t version) const;
-  /// Those that were set at that time or later, the oldest first.
-  std::vector<ChangeLine> since(double time) const;
+  /// Adds a line and drops the oldest if there are too many. Returns its number.
+  std::uint64_t add(ChangeEntry entry);
+  /// Updates time and new value of a line. Returns false if the line was dropped.
+  bool update(std::uint64_t number, double time, std::string to);
+  /// Returns the lines added or updated after that version, in that order.
+  std::vector<ChangeEntry> after(std::uint64_t version) const;
+  /// Returns the lines with this time or a later one, oldest first.
+  std::vector<ChangeEntry> since(double time) const;
 
  private:
   mutable std::mutex mutex_;
-  std::deque<ChangeLine> lines_;
+  std::deque<ChangeEntry> entries_;
   std::uint64_t newest_ = 0;
   std::uint64_t versions_ = 0;
 };

@@ -1,4 +1,4 @@
-// Values that are set again and again make one line, which has the first and the last.
+// ChangeRecorder: repeated changes of a value are merged into one line, with the first old and the last new value.
 #include "engine/change_notes.h"
 
 #include <algorithm>
@@ -10,54 +10,56 @@
 
 namespace limber {
 
-void ChangeNotes::begin(const Origin& who, double time) {
-  who_ = who;
+void ChangeRecorder::begin(const CommandOrigin& source, double time) {
+  source_ = source;
   time_ = time;
 }
 
-void ChangeNotes::heard(NodeId id, const Row& row, const double* before) {
-  if (row.kind != RowKind::property) return;
-  const std::uint32_t key = (id.slot * 0x9e3779b9u) ^ (row.index * 0x85ebca6bu) ^ (who_.port * 0xc2b2ae35u);
-  const auto place = static_cast<std::uint8_t>(key >> 24);
-  Note& note = notes_[place];
-  const bool same = note.id == id && note.row == &row && note.who == who_ && time_ - note.time <= kGesture;
+void ChangeRecorder::on_write(NodeId id, const Property& property, const double* old_values) {
+  if (property.kind != PropertyKind::setting) return;
+  const std::uint32_t key = (id.slot * 0x9e3779b9u) ^ (property.index * 0x85ebca6bu) ^ (source_.port * 0xc2b2ae35u);
+  const auto slot = static_cast<std::uint8_t>(key >> 24);
+  Note& note = notes_[slot];
+  const bool same =
+      note.id == id && note.property == &property && note.source == source_ && time_ - note.time <= kMergeSeconds;
   if (same && note.touched) {
     note.time = time_;
     return;
   }
-  if (note.touched || touched_.size() >= kMostATick) {
-    more_++;
+  if (note.touched || touched_.size() >= kMaxPerTick) {
+    omitted_++;
     return;
   }
   if (!same) {
-    note = {who_, id, &row, {}, 0, time_, true};
-    std::copy_n(before, row.width, note.from.begin());
+    note = {source_, id, &property, {}, 0, time_, true};
+    std::copy_n(old_values, property.width, note.old_value.begin());
   }
   note.time = time_;
   note.touched = true;
-  touched_.push_back(place);
+  touched_.push_back(slot);
 }
 
-void ChangeNotes::tell(const Store& store, Note& note) {
+void ChangeRecorder::flush(const Store& store, Note& note) {
   std::array<double, 4> now{};
-  store.get(note.id, *note.row, now.data());
-  const bool same = std::equal(now.begin(), now.begin() + note.row->width, note.from.begin());
-  if (same && note.line == 0) return;  // it was set to what it was
-  std::string to = value_text(*note.row, now.data());
-  if (note.line != 0 && log_.renew(note.line, note.time, to)) return;
-  note.line = log_.add({0, note.time, sender_text(note.who), fmt::format("{}/{}", store.path(note.id), note.row->name),
-                        value_text(*note.row, note.from.data()), std::move(to), 0});
+  store.get(note.id, *note.property, now.data());
+  const bool same = std::equal(now.begin(), now.begin() + note.property->width, note.old_value.begin());
+  if (same && note.entry_number == 0) return;  // set to the same value
+  std::string to = value_text(*note.property, now.data());
+  if (note.entry_number != 0 && log_.update(note.entry_number, note.time, to)) return;
+  note.entry_number =
+      log_.add({0, note.time, sender_text(note.source), fmt::format("{}/{}", store.path(note.id), note.property->name),
+                value_text(*note.property, note.old_value.data()), std::move(to), 0});
 }
 
-void ChangeNotes::tell(const Store& store) {
-  for (const std::uint8_t place : touched_) {
-    Note& note = notes_[place];
+void ChangeRecorder::flush(const Store& store) {
+  for (const std::uint8_t slot : touched_) {
+    Note& note = notes_[slot];
     note.touched = false;
-    if (store.alive(note.id)) tell(store, note);
+    if (store.alive(note.id)) flush(store, note);
   }
   touched_.clear();
-  if (more_ > 0) log_.add({0, time_, sender_text(who_), fmt::format("({} more values)", more_), "", "", 0});
-  more_ = 0;
+  if (omitted_ > 0) log_.add({0, time_, sender_text(source_), fmt::format("({} more values)", omitted_), "", "", 0});
+  omitted_ = 0;
 }
 
 }  // namespace limber

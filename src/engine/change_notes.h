@@ -1,4 +1,4 @@
-// ChangeNotes: what hands set in this tick, on its way to the log. [sim]
+// ChangeRecorder: collects the changes of controllers in a tick and writes them to the change log. [sim]
 #pragma once
 
 #include <array>
@@ -11,38 +11,38 @@
 
 namespace limber {
 
-class ChangeNotes {
+class ChangeRecorder {
  public:
-  static constexpr std::size_t kMostATick = 64;  ///< Values; of the others the log has only how many they were.
-  static constexpr double kGesture = 0.5;        ///< s: who sets a value again within it goes on.
+  static constexpr std::size_t kMaxPerTick = 64;  ///< Values logged per tick; of the others only the number is logged.
+  static constexpr double kMergeSeconds = 0.5;    ///< s, within which changes of a value by one source are merged.
 
-  explicit ChangeNotes(ChangeLog& log) : log_(log) {}
+  explicit ChangeRecorder(ChangeLog& log) : log_(log) {}
 
-  /// What is set from here on is set by this hand, at that time (system::clock_seconds()).
-  void begin(const Origin& who, double time);
-  /// The row was `before`, and is written. Allocates nothing.
-  void heard(NodeId id, const Row& row, const double* before);
-  /// The tick's values are what they are: the log is told.
-  void tell(const Store& store);
+  /// Attributes the following writes to this controller, at this time (system::clock_seconds()).
+  void begin(const CommandOrigin& source, double time);
+  /// Records a write. `old_values`: the previous value. Does not allocate.
+  void on_write(NodeId id, const Property& property, const double* old_values);
+  /// Writes the changes of the tick to the log, with the current values.
+  void flush(const Store& store);
 
  private:
   struct Note {
-    Origin who;
+    CommandOrigin source;
     NodeId id;
-    const Row* row = nullptr;
-    std::array<double, 4> from{};
-    std::uint64_t line = 0;  // in the log; 0: not yet
+    const Property* property = nullptr;
+    std::array<double, 4> old_value{};
+    std::uint64_t entry_number = 0;  // number of its line in the log; 0: none
     double time = 0;
-    bool touched = false;  // in this tick
+    bool touched = false;  // written in this tick
   };
-  void tell(const Store& store, Note& note);
+  void flush(const Store& store, Note& note);
 
   ChangeLog& log_;
-  Origin who_;
+  CommandOrigin source_;
   double time_ = 0;
-  std::array<Note, 256> notes_{};  // lately; each has one place that it may be at
-  std::vector<std::uint8_t> touched_;
-  std::size_t more_ = 0;
+  std::array<Note, 256> notes_{};      // direct-mapped cache, by a hash of source, node and property
+  std::vector<std::uint8_t> touched_;  // indices of the notes written in this tick
+  std::size_t omitted_ = 0;            // number of writes that are not noted
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The clock's schedule.
+// Tick schedule, speed measurement and detection of stalls.
 #include "engine/clock.h"
 
 #include <utility>
@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kMostBehind = 0.25;  // s
+constexpr double kMaxLateness = 0.25;  // s
 
 Clock::Time after(Clock::Time t, double seconds) {
   return t + std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(seconds));
@@ -16,7 +16,7 @@ Clock::Time after(Clock::Time t, double seconds) {
 }  // namespace
 
 void Clock::restart(Time now) {
-  due_ = now;
+  next_tick_ = now;
   window_start_ = now;
   window_seconds_ = 0;
   started_ = true;
@@ -24,50 +24,50 @@ void Clock::restart(Time now) {
 
 void Clock::tick(Time now, double tick_seconds, double speed) {
   if (!started_) restart(now);
-  const double behind = Seconds(now - due_).count();
-  lost_ = behind > kMostBehind ? behind : 0;
-  if (lost_ > 0) {
-    due_ = now;
-    let_go_++;
+  const double lateness = Seconds(now - next_tick_).count();
+  lost_seconds_ = lateness > kMaxLateness ? lateness : 0;
+  if (lost_seconds_ > 0) {
+    next_tick_ = now;
+    stalls_++;
   }
-  due_ = after(due_, tick_seconds / speed);
+  next_tick_ = after(next_tick_, tick_seconds / speed);
 
   const double real = close_window(now, tick_seconds);
   if (real == 0) return;
-  if (reached_ < 0.95 * speed) {
+  if (speed_reached_ < 0.95 * speed) {
     late_seconds_ += real;
-    if (late_seconds_ >= 2 && !std::exchange(said_, true)) late_ = true;
+    if (late_seconds_ >= 2 && !std::exchange(late_reported_, true)) late_ = true;
   } else {
     late_seconds_ = 0;
-    said_ = false;
+    late_reported_ = false;
   }
 }
 
-void Clock::measure(Time now, double tick_seconds) {
+void Clock::measure_speed(Time now, double tick_seconds) {
   if (!started_) restart(now);
-  due_ = now;
+  next_tick_ = now;
   (void)close_window(now, tick_seconds);
 }
 
-// the length of the window that ends now, or 0 while it is open
+// Returns the real length of the measurement window if it ends at `now` (0.5 s or more), else 0.
 double Clock::close_window(Time now, double tick_seconds) {
   window_seconds_ += tick_seconds;
   const double real = Seconds(now - window_start_).count();
   if (real < 0.5) return 0;
-  reached_ = (window_seconds_ - tick_seconds) / real;
+  speed_reached_ = (window_seconds_ - tick_seconds) / real;
   window_start_ = now;
   window_seconds_ = tick_seconds;
   return real;
 }
 
-double Clock::lost(double suspended) {
-  const double asleep = suspended - suspended_.value_or(suspended);
+double Clock::lost_seconds(double suspended) {
+  const double suspension = suspended - suspended_.value_or(suspended);
   suspended_ = suspended;
-  if (asleep <= kMostBehind) return lost_;
-  let_go_++;
-  return lost_ + asleep;
+  if (suspension <= kMaxLateness) return lost_seconds_;
+  stalls_++;
+  return lost_seconds_ + suspension;
 }
 
-bool Clock::take_late() { return std::exchange(late_, false); }
+bool Clock::consume_late() { return std::exchange(late_, false); }
 
 }  // namespace limber

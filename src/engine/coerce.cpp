@@ -1,4 +1,4 @@
-// Coerce: from arguments to a row's numbers.
+// Conversion of message arguments to the numbers of a property.
 #include "engine/coerce.h"
 
 #include <cmath>
@@ -14,147 +14,154 @@ namespace limber {
 
 namespace {
 
-bool is_gravity(const Row& row) {
-  static const Row* const gravity = &World::table().at("gravity");
-  return &row == gravity;
+bool is_gravity(const Property& property) {
+  static const Property* const gravity = &World::table().at("gravity");
+  return &property == gravity;
 }
 
-bool is_flag(const Row& row) { return row.type == RowType::boolean || row.type == RowType::flags3; }
-
-// one number may stand for three
-bool takes_one(const Row& row) {
-  return row.width == 1 || row.type == RowType::flags3 || row.own_axis || is_gravity(row);
+bool is_flag(const Property& property) {
+  return property.type == PropertyType::boolean || property.type == PropertyType::flags3;
 }
 
-bool counts(const Row& row, std::size_t n) {
-  if (row.kind == RowKind::action) return takes_count(row, n);
-  return n == row.width || (n == 1 && takes_one(row));
+// True if one number is accepted, possibly expanded to three.
+bool accepts_one(const Property& property) {
+  return property.width == 1 || property.type == PropertyType::flags3 || property.own_axis || is_gravity(property);
 }
 
-std::optional<double> label_of(const Row& row, std::string_view text) {
-  for (std::size_t i = 0; i < row.choices.size(); i++) {
-    if (same_name(row.choices[i], text)) return static_cast<double>(i);
+bool accepts_count(const Property& property, std::size_t n) {
+  if (property.kind == PropertyKind::action) return action_accepts_count(property, n);
+  return n == property.width || (n == 1 && accepts_one(property));
+}
+
+std::optional<double> label_index(const Property& property, std::string_view text) {
+  for (std::size_t i = 0; i < property.choices.size(); i++) {
+    if (same_name(property.choices[i], text)) return static_cast<double>(i);
   }
   return {};
 }
 
-std::optional<double> truth_of(std::string_view text) {
+std::optional<double> bool_of(std::string_view text) {
   if (same_name(text, "true") || same_name(text, "on")) return 1;
   if (same_name(text, "false") || same_name(text, "off")) return 0;
   return {};
 }
 
-// what an argument says for this row, if it says a number at all
-std::optional<double> number_of(const Row& row, const Arg& arg) {
+// Converts an argument to a number of this property, if possible.
+std::optional<double> number_of(const Property& property, const Arg& arg) {
   if (arg.is_numeric()) return arg.number;
   if (!arg.is_text()) return {};
-  if (row.type == RowType::choice) {
-    if (const auto label = label_of(row, arg.text)) return label;
+  if (property.type == PropertyType::choice) {
+    if (const auto label = label_index(property, arg.text)) return label;
   }
-  if (is_flag(row)) {
-    if (const auto truth = truth_of(arg.text)) return truth;
+  if (is_flag(property)) {
+    if (const auto truth = bool_of(arg.text)) return truth;
   }
   return parse_number(arg.text);
 }
 
-std::string shown(const Arg& arg) {
+std::string arg_text(const Arg& arg) {
   if (arg.is_text()) return fmt::format("'{}'", printable(arg.text));
   return arg.is_numeric() ? number_text(arg.number) : "an argument without a value";
 }
 
-// the own axis's place among three, for linear or angular rows of a joint or motor; -1: none there
-int own_place(const Store& store, NodeId node, const Row& row) {
-  const Table* table = &store.table(node);
-  int own = -1;
-  if (table == &Joint::table()) own = static_cast<const Joint*>(store.thing(node))->own_axis();
-  if (table == &Motor::table()) own = static_cast<const Motor*>(store.thing(node))->joint().own_axis();
-  if (own < 0) return -1;
-  const bool angular = row.name.find("angular") != std::string::npos;
-  return (own >= 3) == angular ? own % 3 : -1;
+// Returns the index (0 to 2) of the own axis, for linear or angular properties of a joint or motor; -1: no own axis.
+int own_axis_index(const Store& store, NodeId node, const Property& property) {
+  const PropertyTable* table = &store.table(node);
+  int own_axis = -1;
+  if (table == &Joint::table()) own_axis = static_cast<const Joint*>(store.object(node))->own_axis();
+  if (table == &Motor::table()) own_axis = static_cast<const Motor*>(store.object(node))->joint().own_axis();
+  if (own_axis < 0) return -1;
+  const bool angular = property.name.find("angular") != std::string::npos;
+  return (own_axis >= 3) == angular ? own_axis % 3 : -1;
 }
 
-Error wrong_count(const Row& row, std::size_t given) {
-  return Error{fmt::format("takes {}, not {}", takes_text(row), given)};
+Error wrong_count(const Property& property, std::size_t given) {
+  return Error{fmt::format("takes {}, not {}", expected_text(property), given)};
 }
 
 }  // namespace
 
-bool takes_count(const Row& action, std::size_t numbers) {
+bool action_accepts_count(const Property& action, std::size_t numbers) {
   return numbers >= action.min_args && numbers <= action.max_args && (action.max_args < 3 || numbers % 3 == 0);
 }
 
-std::string takes_text(const Row& row) {
-  if (row.kind == RowKind::action) {
-    if (row.max_args == 0) return "no value";
-    if (row.min_args == 0) return fmt::format("no value or {} number{}", row.max_args, row.max_args == 1 ? "" : "s");
-    return row.min_args == row.max_args ? fmt::format("{} numbers", row.min_args)
-                                        : fmt::format("{} or {} numbers", row.min_args, row.max_args);
+std::string expected_text(const Property& property) {
+  if (property.kind == PropertyKind::action) {
+    if (property.max_args == 0) return "no value";
+    if (property.min_args == 0)
+      return fmt::format("no value or {} number{}", property.max_args, property.max_args == 1 ? "" : "s");
+    return property.min_args == property.max_args
+               ? fmt::format("{} numbers", property.min_args)
+               : fmt::format("{} or {} numbers", property.min_args, property.max_args);
   }
-  if (row.type == RowType::choice) return fmt::format("one of {}", fmt::join(row.choices, ", "));
-  if (row.type == RowType::boolean) return "true or false";
-  if (row.type == RowType::flags3) return "1 or 3 times true or false";
-  if (row.width == 1) return "1 number";
-  return takes_one(row) ? fmt::format("1 or {} numbers", row.width) : fmt::format("{} numbers", row.width);
+  if (property.type == PropertyType::choice) return fmt::format("one of {}", fmt::join(property.choices, ", "));
+  if (property.type == PropertyType::boolean) return "true or false";
+  if (property.type == PropertyType::flags3) return "1 or 3 times true or false";
+  if (property.width == 1) return "1 number";
+  return accepts_one(property) ? fmt::format("1 or {} numbers", property.width)
+                               : fmt::format("{} numbers", property.width);
 }
 
-Result<ValueSplit> split_value(const Row& row, std::span<const Arg> args) {
+Result<ValueSplit> split_value(const Property& property, std::span<const Arg> args) {
   std::size_t numbers = 0;
   while (numbers < args.size() && args[args.size() - 1 - numbers].is_numeric()) numbers++;
-  if (counts(row, numbers)) return ValueSplit{numbers, false};
-  // text may say a number, a label, "true"
-  std::size_t said = numbers;
-  while (said < args.size() && number_of(row, args[args.size() - 1 - said])) said++;
-  if (counts(row, said)) return ValueSplit{said, false};
-  // a word where a label should be: coerce will say which there are
-  const bool labels = row.type == RowType::choice || row.type == RowType::boolean;
-  if (labels && said == 0 && !args.empty() && args.back().is_text()) return ValueSplit{1, false};
-  // somebody's body is called "1": numbers too many in front are names
-  const std::size_t words = args.size() - said;
-  for (std::size_t names = 1; row.kind != RowKind::action && names + words <= 2 && names < said; names++) {
-    if (counts(row, said - names)) return ValueSplit{said - names, true};
+  if (accepts_count(property, numbers)) return ValueSplit{numbers, false};
+  // text can be a number, a label or "true"
+  std::size_t convertible = numbers;
+  while (convertible < args.size() && number_of(property, args[args.size() - 1 - convertible])) convertible++;
+  if (accepts_count(property, convertible)) return ValueSplit{convertible, false};
+  // a word in place of a label is the value: coerce() reports the valid labels
+  const bool labels = property.type == PropertyType::choice || property.type == PropertyType::boolean;
+  if (labels && convertible == 0 && !args.empty() && args.back().is_text()) return ValueSplit{1, false};
+  // bodies may be named "1": surplus leading numbers are names
+  const std::size_t words = args.size() - convertible;
+  for (std::size_t names = 1; property.kind != PropertyKind::action && names + words <= 2 && names < convertible;
+       names++) {
+    if (accepts_count(property, convertible - names)) return ValueSplit{convertible - names, true};
   }
-  return wrong_count(row, said);
+  return wrong_count(property, convertible);
 }
 
-Result<RowValues> coerce(const Row& row, std::span<const Arg> args) {
-  RowValues result;
-  if (!counts(row, args.size())) return wrong_count(row, args.size());
+Result<PropertyValues> coerce(const Property& property, std::span<const Arg> args) {
+  PropertyValues result;
+  if (!accepts_count(property, args.size())) return wrong_count(property, args.size());
   for (const Arg& arg : args) {
-    const std::optional<double> value = number_of(row, arg);
-    if (!value) return Error{fmt::format("takes {}, not {}", takes_text(row), shown(arg))};
-    if (!std::isfinite(*value)) return Error{fmt::format("takes {}; {} is none", takes_text(row), *value)};
+    const std::optional<double> value = number_of(property, arg);
+    if (!value) return Error{fmt::format("takes {}, not {}", expected_text(property), arg_text(arg))};
+    if (!std::isfinite(*value))
+      return Error{fmt::format("takes {}; {} is not finite", expected_text(property), *value)};
     result.values[result.count++] = *value;
   }
-  if (row.type == RowType::choice) {
+  if (property.type == PropertyType::choice) {
     const double index = std::round(result.values[0]);
-    if (index < row.min || index > row.max)
-      return Error{fmt::format("takes {} (0 to {}), not {}", takes_text(row), row.max, result.values[0])};
+    if (index < property.min || index > property.max)
+      return Error{fmt::format("takes {} (0 to {}), not {}", expected_text(property), property.max, result.values[0])};
   }
-  if (row.type == RowType::quat) {
+  if (property.type == PropertyType::quat) {
     const double* q = result.values.data();
     if (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] < 1e-18)
-      return Error{"takes a rotation x y z w; 0 0 0 0 is none"};
+      return Error{"takes a rotation x y z w; 0 0 0 0 is not a rotation"};
   }
   return result;
 }
 
-Result<RowValues> spread(const Store& store, NodeId node, const Row& row, const RowValues& given) {
-  if (given.count == row.width) return given;
-  RowValues all = given;
-  all.count = row.width;
-  if (row.type == RowType::flags3) {
-    all.values = {given.values[0], given.values[0], given.values[0], 0};
-    return all;
+Result<PropertyValues> expand(const Store& store, NodeId node, const Property& property, const PropertyValues& given) {
+  if (given.count == property.width) return given;
+  PropertyValues expanded = given;
+  expanded.count = property.width;
+  if (property.type == PropertyType::flags3) {
+    expanded.values = {given.values[0], given.values[0], given.values[0], 0};
+    return expanded;
   }
-  if (is_gravity(row)) {
-    all.values = {0, 0, given.values[0], 0};
-    return all;
+  if (is_gravity(property)) {
+    expanded.values = {0, 0, given.values[0], 0};
+    return expanded;
   }
-  const int place = own_place(store, node, row);
-  if (place < 0) return Error{fmt::format("has no own axis for {}; give three numbers", row.name)};
-  store.get(node, row, all.values.data());
-  all.values[static_cast<std::size_t>(place)] = given.values[0];
-  return all;
+  const int axis = own_axis_index(store, node, property);
+  if (axis < 0) return Error{fmt::format("has no own axis for {}; give three numbers", property.name)};
+  store.get(node, property, expanded.values.data());
+  expanded.values[static_cast<std::size_t>(axis)] = given.values[0];
+  return expanded;
 }
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Coerce: arguments of a message into a row's numbers, generous in what it takes, never guessing. [sim]
+// Converts the arguments of a message to the numbers of a property. It accepts several notations but no ambiguous
+// value. [sim]
 #pragma once
 
 #include <array>
@@ -10,33 +11,34 @@
 
 namespace limber {
 
-/// Numbers for one row: `count` of `values`. One number may stand for three (see `spread`).
-struct RowValues {
+/// Numbers for one property: the first `count` of `values`. One number may be expanded to three; see expand().
+struct PropertyValues {
   std::array<double, 4> values{};
   std::uint32_t count = 0;
 };
 
-/// Where a message's names end and its value begins.
+/// Splits the arguments of a message into names and value.
 struct ValueSplit {
-  std::size_t count = 0;  ///< Arguments, from the end, that are the value.
-  bool guessed = false;   ///< Numbers stand where names are: a body may be called "1", or there are too many numbers.
+  std::size_t count = 0;   ///< Number of arguments, from the end, that form the value.
+  bool ambiguous = false;  ///< Leading numbers count as names (a body may be named "1"): perhaps too many numbers.
 };
 
-/// Finds the value at the end of the arguments: numbers, or text that says some. An error says what the row takes.
-Result<ValueSplit> split_value(const Row& row, std::span<const Arg> args);
+/// Finds the value at the end of the arguments: numbers, or text that can be converted. The error names the expected
+/// number of arguments.
+Result<ValueSplit> split_value(const Property& property, std::span<const Arg> args);
 
-/// The value's arguments as numbers: booleans as 1 and 0, labels by the one naming rule, text that is a number.
-/// Refuses NaN, infinities, a choice that there is not, a rotation of length zero.
-Result<RowValues> coerce(const Row& row, std::span<const Arg> args);
+/// Converts the arguments of a value to numbers: booleans to 1 and 0, labels to their index, text to the number in it.
+/// Rejects NaN, infinities, unknown labels and rotations of length zero.
+Result<PropertyValues> coerce(const Property& property, std::span<const Arg> args);
 
-/// The values as this node takes them: one number for three axes becomes all axes (booleans), the own axis (motors,
-/// joints; the others stay), or z (gravity). An error where the thing has no own axis there.
-Result<RowValues> spread(const Store& store, NodeId node, const Row& row, const RowValues& given);
+/// Expands one number for three axes to the values of this node: booleans to all axes, gravity to z, joints and motors
+/// to their own axis (the other axes keep their value). It is an error if the joint has no own axis of this kind.
+Result<PropertyValues> expand(const Store& store, NodeId node, const Property& property, const PropertyValues& given);
 
-/// "3 numbers", "1 or 3 numbers", "one of off, spin, servo, spring": what a row takes, for error texts.
-std::string takes_text(const Row& row);
+/// Returns the expected value for error messages: "3 numbers", "1 or 3 numbers", "one of off, spin, servo, spring".
+std::string expected_text(const Property& property);
 
-/// Whether an action takes so many numbers: vectors come whole.
-bool takes_count(const Row& action, std::size_t numbers);
+/// True if an action accepts this number of arguments. Vectors must be complete.
+bool action_accepts_count(const Property& action, std::size_t numbers);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What travels between the outside and the simulation: commands in, answers and events out.
+// Commands to the simulation thread, and answers and events from it.
 #pragma once
 
 #include <atomic>
@@ -16,63 +16,63 @@
 
 namespace limber {
 
-/// A text for the running scene, from a console or the panel. No message means it, so nothing on the network can send
-/// it.
-struct Evaluate {
-  enum class Wish : std::uint8_t { run, complete };
-  Wish wish = Wish::run;
-  std::string text;  ///< Up to kMostEvaluated bytes.
-  /// What came of it, at once between two ticks. It must neither wait nor throw. [sim]
-  std::function<void(Evaluation)> answer = [](const Evaluation&) {};
+/// A Lua text for the running scene, from a console or the panel: run it, or complete its last word. There is no
+/// message for it, so it can't come from the network.
+struct EvaluationRequest {
+  enum class Action : std::uint8_t { run, complete };
+  Action action = Action::run;
+  std::string text;  ///< Up to kMaxEvaluatedBytes.
+  /// Called with the result, between two ticks. It must neither block nor throw. [sim]
+  std::function<void(Evaluation)> on_result = [](const Evaluation&) {};
 };
 
-/// Messages that belong together (one datagram): applied as one, in one tick. Or an evaluation.
+/// The messages of one datagram, applied in the same tick, or an evaluation.
 struct Command {
   std::vector<Message> messages;
-  Origin origin;
-  std::shared_ptr<const Evaluate> evaluate = nullptr;  ///< Done after the messages.
-  std::uint64_t arrival = 0;                           ///< CommandInbox::arrive(); 0: the inbox numbers it.
+  CommandOrigin origin;
+  std::shared_ptr<const EvaluationRequest> evaluation = nullptr;  ///< Evaluated after the messages.
+  std::uint64_t arrival = 0;  ///< CommandQueue::next_arrival(); 0: the queue sets it.
 };
 
-/// A message on its way out.
+/// An outgoing message and its destination.
 struct Outgoing {
-  enum class To : std::uint8_t {
-    sender,   ///< An answer, to `origin`.
-    error,    ///< An answer to `origin`, and to targets that ask for errors.
-    targets,  ///< A scene's osc:send: every target.
-    event,    ///< Contacts, transport, script errors: every target (and later subscribers).
-    direct,   ///< To `origin` as an address that the scene named.
+  enum class Destination : std::uint8_t {
+    sender,   ///< An answer to `origin`.
+    error,    ///< An error, to `origin` and to targets that subscribe to errors.
+    targets,  ///< A message of the scene (osc:send), to every target.
+    event,    ///< Contacts, transport, script errors: to every target and subscriber.
+    direct,   ///< To the address in `origin`, which the scene has specified.
   };
-  To to = To::targets;
-  Origin origin;
+  Destination destination = Destination::targets;
+  CommandOrigin origin;
   Message message;
 };
 
-/// Bytes that they hold in memory, for the bounds of inboxes. [any]
+/// Returns the memory that the object occupies, in bytes, for the limits of queues. [any]
 std::size_t weight_of(const Message& message);
 std::size_t weight_of(const Command& command);
 std::size_t weight_of(const Outgoing& out);
 
-/// Longest text of a fault that goes out, bytes: receivers take strings of 1024.
-inline constexpr std::size_t kMostFaultText = 1000;
-/// `/error <address> <text>`, the text short enough for every receiver. [any]
+/// Maximum length of an outgoing error text in bytes: some receivers accept strings up to 1024.
+inline constexpr std::size_t kMaxErrorText = 1000;
+/// Returns `/error <address> <text>`, with the text shortened to kMaxErrorText. [any]
 Message error_message(std::string_view address, std::string_view text);
 
-/// What the receiver and the dispatch have counted; readouts under /osc. Any thread adds. [any]
+/// Message counters of the network and the dispatch, readouts under /osc. Any thread may increment them. [any]
 struct Counters {
-  std::atomic<std::uint64_t> received{0};        ///< Messages that came in whole.
-  std::atomic<std::uint64_t> malformed{0};       ///< Datagrams that are no OSC.
-  std::atomic<std::uint64_t> denied{0};          ///< Datagrams from senders whom --osc-allow leaves out.
-  std::atomic<std::uint64_t> unknown{0};         ///< Messages with an address that nobody answers.
-  std::atomic<std::uint64_t> refused{0};         ///< Known address, wrong arguments or names.
-  std::atomic<std::uint64_t> clamped{0};         ///< Values outside their range.
-  std::atomic<std::uint64_t> dropped{0};         ///< Lost here: the inbox was full.
-  std::atomic<std::uint64_t> dropped_kernel{0};  ///< Lost by the kernel: the socket's buffer was full.
+  std::atomic<std::uint64_t> received{0};        ///< Messages received and decoded.
+  std::atomic<std::uint64_t> malformed{0};       ///< Datagrams that are not valid OSC.
+  std::atomic<std::uint64_t> denied{0};          ///< Datagrams from senders that --osc-allow excludes.
+  std::atomic<std::uint64_t> unknown{0};         ///< Messages with an unknown address and no handler.
+  std::atomic<std::uint64_t> refused{0};         ///< Rejected messages: known address, invalid arguments or names.
+  std::atomic<std::uint64_t> clamped{0};         ///< Values clamped to their range.
+  std::atomic<std::uint64_t> dropped{0};         ///< Dropped because the command queue was full.
+  std::atomic<std::uint64_t> dropped_kernel{0};  ///< Dropped by the kernel because the socket's buffer was full.
   std::atomic<std::uint64_t> sent{0};            ///< Datagrams sent.
-  std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that the system did not take, or that came back.
-  std::atomic<std::uint64_t> discarded{0};       ///< Requests that a later urgent one overtook and discarded.
-  std::atomic<std::uint64_t> unheard{0};         ///< Messages that the scene's handlers missed: too many waited.
-  std::atomic<std::uint64_t> disabled{0};        ///< Handlers that failed and are disabled now.
+  std::atomic<std::uint64_t> unsent{0};          ///< Datagrams that could not be sent or were returned by ICMP.
+  std::atomic<std::uint64_t> discarded{0};       ///< Requests that a later urgent request discarded.
+  std::atomic<std::uint64_t> unheard{0};         ///< Messages dropped because the handler queue was full.
+  std::atomic<std::uint64_t> disabled{0};        ///< Handlers that are disabled because they failed.
 };
 
 }  // namespace limber

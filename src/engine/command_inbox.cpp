@@ -1,22 +1,22 @@
-// Urgent requests leave their command.
+// CommandQueue: separates urgent requests from their command.
 #include "engine/command_inbox.h"
 
 #include <algorithm>
 
 namespace limber {
 
-bool CommandInbox::push(Command command, bool urgent_pushed) {
-  if (command.arrival == 0) command.arrival = arrive();
+bool CommandQueue::push(Command command, bool urgent_pushed) {
+  if (command.arrival == 0) command.arrival = next_arrival();
   const bool urgent =
       std::ranges::any_of(command.messages, [](const Message& m) { return urgent_kind(m).has_value(); });
   if (urgent) {
     move_urgent(command, urgent_pushed);
-    if (command.messages.empty() && command.evaluate == nullptr) return true;
+    if (command.messages.empty() && command.evaluation == nullptr) return true;
   }
   return waiting_.push(std::move(command));
 }
 
-void CommandInbox::move_urgent(Command& command, bool urgent_pushed) {
+void CommandQueue::move_urgent(Command& command, bool urgent_pushed) {
   std::vector<Message> rest;
   for (Message& message : command.messages) {
     const std::optional<UrgentKind> kind = urgent_kind(message);
@@ -24,23 +24,23 @@ void CommandInbox::move_urgent(Command& command, bool urgent_pushed) {
       rest.push_back(std::move(message));
       continue;
     }
-    discarded_ += std::erase_if(rest, [&](const Message& before) { return Overtaken::discards(before, *kind); });
+    discarded_ += std::erase_if(rest, [&](const Message& before) { return UrgentPrecedence::discards(before, *kind); });
     if (urgent_pushed) continue;
     push_urgent({*kind, std::move(message), command.origin, command.arrival});
   }
   command.messages = std::move(rest);
 }
 
-void CommandInbox::push_urgent(UrgentRequest request) {
+void CommandQueue::push_urgent(UrgentRequest request) {
   const std::scoped_lock lock(urgent_mutex_);
   const auto same = [&](const UrgentRequest& other) {
     return other.kind == request.kind && other.origin == request.origin;
   };
   const auto same_kind = [&](const UrgentRequest& other) { return other.kind == request.kind; };
   auto older = std::ranges::find_if(urgent_, same);
-  if (older == urgent_.end() && urgent_.size() >= kMostUrgent) older = std::ranges::find_if(urgent_, same_kind);
-  // the lane is full of other kinds, so one of these has a later request of its kind
-  if (older == urgent_.end() && urgent_.size() >= kMostUrgent) {
+  if (older == urgent_.end() && urgent_.size() >= kMaxUrgent) older = std::ranges::find_if(urgent_, same_kind);
+  // the queue is full of other kinds, so one of them has more than one request
+  if (older == urgent_.end() && urgent_.size() >= kMaxUrgent) {
     older = std::ranges::find_if(urgent_, [&](const UrgentRequest& candidate) {
       return std::ranges::count(urgent_, candidate.kind, &UrgentRequest::kind) > 1;
     });
@@ -50,7 +50,7 @@ void CommandInbox::push_urgent(UrgentRequest request) {
   urgent_count_.store(urgent_.size(), std::memory_order_relaxed);
 }
 
-void CommandInbox::drain_urgent(std::vector<UrgentRequest>& out) {
+void CommandQueue::drain_urgent(std::vector<UrgentRequest>& out) {
   out.clear();
   if (urgent_count_.load(std::memory_order_relaxed) == 0) return;
   const std::scoped_lock lock(urgent_mutex_);
@@ -58,7 +58,7 @@ void CommandInbox::drain_urgent(std::vector<UrgentRequest>& out) {
   urgent_count_.store(0, std::memory_order_relaxed);
 }
 
-bool CommandInbox::waits(UrgentKind kind) {
+bool CommandQueue::has_urgent(UrgentKind kind) {
   if (urgent_count_.load(std::memory_order_relaxed) == 0) return false;
   const std::scoped_lock lock(urgent_mutex_);
   return std::ranges::any_of(urgent_, [&](const UrgentRequest& request) { return request.kind == kind; });

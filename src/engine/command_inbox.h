@@ -1,5 +1,5 @@
-// CommandInbox: the commands that wait for the simulation, bounded; and, in a lane of their own, urgent requests, none
-// of which is ever dropped.
+// CommandQueue: the bounded queue of commands to the simulation thread, with a separate queue for urgent requests,
+// which are never dropped.
 #pragma once
 
 #include <atomic>
@@ -14,36 +14,37 @@
 
 namespace limber {
 
-class CommandInbox {
+class CommandQueue {
  public:
-  /// Urgent requests that wait; of more than that, an older one of the same kind is replaced.
-  static constexpr std::size_t kMostUrgent = 64;
+  /// Maximum number of waiting urgent requests; beyond that an older one of the same kind is replaced.
+  static constexpr std::size_t kMaxUrgent = 64;
 
-  CommandInbox(std::size_t capacity, std::size_t bytes) : waiting_(capacity, bytes) {}
+  CommandQueue(std::size_t capacity, std::size_t bytes) : waiting_(capacity, bytes) {}
 
-  /// Urgent requests move to their lane, and messages before them in the command that they discard are removed. False:
-  /// there is no room for the rest of the command; its messages are dropped and counted. [any]
-  /// `urgent_pushed`: push_urgent() has them already.
+  /// Queues a command. Moves its urgent requests to their own queue and removes earlier messages of the command that
+  /// they discard. Returns false if the queue is full; the remaining messages are then dropped and counted. [any]
+  /// `urgent_pushed`: the urgent requests were already passed to push_urgent().
   bool push(Command command, bool urgent_pushed = false);
-  /// An urgent request that was recognized before the rest of its packet was decoded. [any]
+  /// Queues an urgent request, possibly before the rest of its packet is decoded. [any]
   void push_urgent(UrgentRequest request);
-  /// Swaps the waiting commands into `out` (cleared first, its memory reused). [sim]
+  /// Moves the waiting commands into `out`, which is cleared first; its memory is reused. [sim]
   void drain(std::vector<Command>& out) { waiting_.drain(out); }
-  /// The urgent requests in order of arrival; several of one kind and origin are one, at the place of the last. [sim]
+  /// Moves the urgent requests into `out`, in order of arrival. Of several with the same kind and origin only the last
+  /// remains. [sim]
   void drain_urgent(std::vector<UrgentRequest>& out);
-  /// Whether an urgent request of that kind waits. [any]
-  bool waits(UrgentKind kind);
+  /// True if an urgent request of this kind is waiting. [any]
+  bool has_urgent(UrgentKind kind);
 
-  /// A number for what arrives now, larger than all before. [any]
-  std::uint64_t arrive() { return arrivals_.fetch_add(1, std::memory_order_relaxed) + 1; }
+  /// Returns the next arrival number, larger than all before. [any]
+  std::uint64_t next_arrival() { return arrivals_.fetch_add(1, std::memory_order_relaxed) + 1; }
   std::uint64_t dropped() const { return waiting_.dropped(); }
-  /// Messages that an urgent request in the same command discarded since the last call. [any]
+  /// Returns the number of messages that urgent requests in the same command discarded since the last call. [any]
   std::uint64_t fetch_discarded() { return discarded_.exchange(0, std::memory_order_relaxed); }
 
  private:
   void move_urgent(Command& command, bool urgent_pushed);
 
-  Inbox<Command> waiting_;
+  BoundedQueue<Command> waiting_;
   std::mutex urgent_mutex_;
   std::vector<UrgentRequest> urgent_;
   std::atomic<std::size_t> urgent_count_{0};

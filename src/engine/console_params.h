@@ -1,5 +1,5 @@
-// ConsoleParams: parameters of the scene (`params`) that a console's text sets are the performer's, as those set by
-// messages are: a reset keeps them. [sim]
+// ConsoleParams: records the scene parameters (`params`) that a console evaluation sets, so that they become overrides,
+// like parameters set by messages. [sim]
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@ namespace limber {
 
 class ConsoleParams {
  public:
-  /// While it lives, what is set at the node is noted; who listens to the store hears it still.
+  /// During its lifetime, records writes to the node `params`. The previous listener of the store is still called.
   ConsoleParams(Store& store, NodeId params);
   ~ConsoleParams();
   ConsoleParams(const ConsoleParams&) = delete;
   ConsoleParams& operator=(const ConsoleParams&) = delete;
 
-  /// The values that were set, as messages that the hand remembers.
-  void remember(PerformerHand& hand) const;
+  /// Adds the current values of the recorded parameters to the overrides.
+  void add_to(Overrides& overrides) const;
 
  private:
-  void heard(NodeId id, const Row& row, bool later, const double* before);
+  void on_write(NodeId id, const Property& property, bool over_time, const double* old_values);
 
   Store& store_;
   NodeId params_;
-  Store::Listener outer_;
-  std::uint64_t rows_ = 0;  // set, a bit a row
+  Store::Listener previous_;
+  std::uint64_t written_ = 0;  // bit mask of the parameters that were set
 };
 
 }  // namespace limber

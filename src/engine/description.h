@@ -1,5 +1,5 @@
-// Description: what a run of a scene says: things by name, how each was made, and a value for each of their rows, the
-// one said last, else the default. Plain data, taken once after a run; two of them are compared on any thread.
+// SceneSpec: plain data that describes the result of a scene's run: all objects by name, their construction, and the
+// value of each property: the one set last, else the default. Captured once after a run; can be compared on any thread.
 #pragma once
 
 #include <array>
@@ -13,80 +13,80 @@
 
 namespace limber {
 
-/// A row as the run left it: said by the script (or by what was copied), or a default. Rows that were not said and hold
-/// the table's own default are left out.
-struct SaidRow {
-  std::uint32_t row = 0;
-  bool said = false;
+/// A property after the run: set by the script (or copied from another object), or a default of the object. Properties
+/// that were not set and have the table's default are omitted.
+struct SpecValue {
+  std::uint32_t property = 0;
+  bool is_set = false;
   std::array<double, 4> values{};
 };
-using SaidRows = std::vector<SaidRow>;  ///< In the table's order.
+using SpecValues = std::vector<SpecValue>;  ///< In the table's order.
 
-/// Where a part, or a body's root, begins.
-struct StartPlace {
+/// Start pose of a part or of a body's root.
+struct StartPose {
   Pose pose;
-  bool said_position = false;
-  bool said_rotation = false;
+  bool position_set = false;
+  bool rotation_set = false;
 };
 
 struct ShapeDescription {
   std::string name;
-  SaidRows rows;
+  SpecValues values;
   ShapeModel model;
   std::vector<PlacedShape> children;
 };
 struct PartDescription {
   std::string name;
-  SaidRows rows;
-  StartPlace start;
+  SpecValues values;
+  StartPose start;
   bool is_static = false;
   std::shared_ptr<const ShapeDescription> shape;  ///< Null: a link of the body's model.
-  std::size_t tree = 0;                           ///< The first part of its tree (Body::trees).
+  std::size_t tree = 0;                           ///< Index of the first part of its tree (Body::trees).
 };
 struct JointDescription {
   std::string name;
-  SaidRows rows;
+  SpecValues values;
   JointSpec spec;
-  std::size_t parent = 0;
-  std::size_t child = 0;
-  Pose start;  ///< The child's joint frame in the parent's, at the start.
+  std::size_t parent = 0;  ///< Index of the part.
+  std::size_t child = 0;   ///< Index of the part.
+  Pose start;              ///< The child's joint frame in the parent's, at the start.
 };
 struct MotorDescription {
-  std::size_t joint = 0;
-  SaidRows rows;
+  std::size_t joint = 0;  ///< Index of the joint.
+  SpecValues values;
 };
-/// A pair of parts, by their places, that a script excluded from collision or included.
+/// A pair of parts, by index, that a script excluded from or included in collision.
 struct PairDescription {
   std::size_t a = 0;
   std::size_t b = 0;
   PairEdit edit = PairEdit::none;
 };
-/// A behaviour of a body; of a group's member only the rows count.
+/// A behavior of a body. For members of a group only `values` is used.
 struct BehaviorDescription {
   std::string name;
   std::string type;
-  const Table* table = nullptr;
+  const PropertyTable* table = nullptr;
   BehaviorSetup setup;
-  bool of_group = false;
-  SaidRows rows;
+  bool of_group = false;  ///< It is a member of a group.
+  SpecValues values;
 };
 struct GroupDescription {
   std::string name;
   std::string type;
-  const Table* table = nullptr;
+  const PropertyTable* table = nullptr;
   GroupSetup setup;
-  SaidRows rows;
+  SpecValues values;
 };
 struct GearDescription {
   std::string name;
   std::string body_a, joint_a;
   std::string body_b, joint_b;
-  SaidRows rows;
+  SpecValues values;
 };
 struct BodyDescription {
   std::string name;
-  SaidRows rows;
-  StartPlace start;
+  SpecValues values;
+  StartPose start;
   std::shared_ptr<const BodyModel> model;
   std::vector<PartDescription> parts;
   std::vector<JointDescription> joints;
@@ -94,11 +94,11 @@ struct BodyDescription {
   std::vector<PairDescription> pairs;
   std::vector<BehaviorDescription> behaviors;
 };
-struct Description {
-  SaidRows world;
-  SaidRows visuals;
-  SaidRows camera;
-  SaidRows look;
+struct SceneSpec {
+  SpecValues world;
+  SpecValues visuals;
+  SpecValues camera;
+  SpecValues appearance;
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
   std::vector<GearDescription> gears;
@@ -106,13 +106,13 @@ struct Description {
   std::vector<std::string> behavior_order;  ///< BehaviorList::order()
 };
 
-/// What stands in a world, in its order, right after a run and before anything else happened to it.
-Description describe(const World& world);
+/// Captures the objects of a world in their order. Call it right after a run, before anything else changes the world.
+SceneSpec describe(const World& world);
 BodyDescription describe_body(const Body& body);
 
-/// The rows that a description tells of, a bit a row: what may be set and is stored, but no poses.
-std::uint64_t described_rows(const Table& table);
-/// Of those the ones that were said.
-std::uint64_t said_rows(const SaidRows& rows);
+/// Returns a bit mask of the properties that a description contains: stored and writable ones, except poses of parts.
+std::uint64_t described_mask(const PropertyTable& table);
+/// Returns a bit mask of the properties that were explicitly set.
+std::uint64_t explicit_mask(const SpecValues& values);
 
 }  // namespace limber

@@ -1,5 +1,6 @@
-// Difference: what one description says otherwise than the one before. The one rule: what is said otherwise is applied;
-// what is said as before stays as the performer's hand left it; what is no longer said returns to its default. [any]
+// SceneDiff: the differences between the specs of two runs of a scene. The rule: values that the script has changed are
+// applied; values that it sets as before keep their overrides; values that it no longer sets return to their default.
+// [any]
 #pragma once
 
 #include <cstdint>
@@ -12,75 +13,75 @@
 
 namespace limber {
 
-/// A body that is new, or that the two descriptions tell differently. Rows stand as a bit a row.
-struct BodyDifference {
-  std::size_t now = 0;                ///< In the description now.
-  std::optional<std::size_t> before;  ///< In the one before.
-  bool anew = false;                  ///< Its making is another one.
-  std::uint64_t rows = 0;             ///< To be set, of the body's node.
-  std::vector<std::uint64_t> parts;   ///< To be set, for each of its parts, joints, motors now.
+/// A body that is added or differs between the two specs. Sets of properties are bit masks.
+struct BodyDiff {
+  std::size_t new_index = 0;             ///< Index in the new spec.
+  std::optional<std::size_t> old_index;  ///< Index in the old spec.
+  bool rebuild = false;                  ///< Its construction differs, so it must be rebuilt.
+  std::uint64_t changed = 0;             ///< Properties of the body to set.
+  std::vector<std::uint64_t> parts;      ///< Properties to set of each of its parts, joints and motors in the new spec.
   std::vector<std::uint64_t> joints;
   std::vector<std::uint64_t> motors;
-  std::vector<PairDescription> pairs;  ///< To be set; none: its default.
-  bool position = false;               ///< The root is to go where it is said now.
-  bool rotation = false;
-  std::vector<std::size_t> trees_along;   ///< First parts of other trees that go with the root.
-  std::vector<std::size_t> trees_placed;  ///< And of those that go where they are said now.
-  bool start = false;                     ///< Start poses are others.
-  std::vector<bool> joints_start_anew;    ///< Joints whose start is said otherwise, when the body is made anew.
+  std::vector<PairDescription> pairs;        ///< Pairs to set; PairEdit::none restores the default.
+  bool position_changed = false;             ///< The root must move to its new start position.
+  bool rotation_changed = false;             ///< The root must turn to its new start rotation.
+  std::vector<std::size_t> trees_with_root;  ///< First parts of other trees that move along with the root.
+  std::vector<std::size_t> trees_placed;     ///< First parts of other trees that move to their own new start pose.
+  bool start_changed = false;                ///< Start poses differ.
+  std::vector<bool> joints_to_reset;         ///< If the body is rebuilt: the joints with another start pose.
 
   bool empty() const;
 };
 
-struct ShapeDifference {
-  std::size_t now = 0;
-  bool geometry = false;
-  std::uint64_t rows = 0;
+struct ShapeDiff {
+  std::size_t new_index = 0;
+  bool geometry_changed = false;
+  std::uint64_t changed = 0;
 };
 
-/// What a behaviour, or a group, is to become.
-struct BehaviorDifference {
-  bool described = false;  ///< The description before had it.
-  bool anew = false;       ///< Another type, or it acts on others.
-  std::uint64_t rows = 0;  ///< To be set, by the table that it has now.
+/// Changes of a behavior or a group.
+struct BehaviorDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool rebuild = false;       ///< Its type or targets differ, so it must be rebuilt.
+  std::uint64_t changed = 0;  ///< Properties to set, as bits of the new table.
 };
 
-/// What a gear is to become. A gear between other joints is made again.
-struct GearDifference {
-  bool described = false;   ///< The description before had it.
-  bool same_joints = true;  ///< Between the same joints.
-  std::uint64_t rows = 0;   ///< To be set.
+/// Changes of a gear. A gear between other joints is rebuilt.
+struct GearDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_joints = true;    ///< It connects the same joints.
+  std::uint64_t changed = 0;  ///< Properties to set.
 };
 
-struct Difference {
-  std::uint64_t world = 0;                                ///< Rows of the world to be set.
-  std::uint64_t visuals = 0;                              ///< Of the picture's background,
-  std::uint64_t camera = 0;                               ///< of its camera,
-  std::uint64_t look = 0;                                 ///< of its look.
-  std::vector<std::optional<std::size_t>> shapes_before;  ///< For each shape now, which one it was.
-  std::vector<std::optional<std::size_t>> bodies_before;
-  std::vector<ShapeDifference> shapes;  ///< Those that were there and are told differently.
-  std::vector<BodyDifference> bodies;   ///< The same, of bodies.
-  std::vector<std::size_t> gone_shapes;
-  std::vector<std::size_t> gone_bodies;
-  std::vector<std::vector<BehaviorDifference>> behaviors;  ///< Of each body now, each of its behaviours.
-  std::vector<BehaviorDifference> groups;                  ///< Each group now.
-  /// Behaviours that are no longer described, by body (a number of the description now) and name.
-  std::vector<std::pair<std::size_t, std::string>> gone_behaviors;
-  std::vector<std::string> gone_groups;
-  std::vector<GearDifference> gears;  ///< Each gear now.
-  std::vector<std::string> gone_gears;
-  bool other_order = false;  ///< Behaviours act in another order.
+struct SceneDiff {
+  std::uint64_t world = 0;                                    ///< Properties of the world to set.
+  std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
+  std::uint64_t camera = 0;                                   ///< Properties of the camera to set.
+  std::uint64_t appearance = 0;                               ///< Properties of the appearance to set.
+  std::vector<std::optional<std::size_t>> old_shape_indices;  ///< For each new shape its index in the old spec.
+  std::vector<std::optional<std::size_t>> old_body_indices;   ///< For each new body its index in the old spec.
+  std::vector<ShapeDiff> shapes;                              ///< Changed shapes, without added ones.
+  std::vector<BodyDiff> bodies;                               ///< Changed bodies, without added ones.
+  std::vector<std::size_t> removed_shapes;                    ///< Removed shapes, by index in the old spec.
+  std::vector<std::size_t> removed_bodies;                    ///< Removed bodies, by index in the old spec.
+  std::vector<std::vector<BehaviorDiff>> behaviors;           ///< For each new body, each of its behaviors.
+  std::vector<BehaviorDiff> groups;                           ///< For each new group.
+  /// Removed behaviors, by body (index in the new spec) and name.
+  std::vector<std::pair<std::size_t, std::string>> removed_behaviors;
+  std::vector<std::string> removed_groups;  ///< Removed groups.
+  std::vector<GearDiff> gears;              ///< For each new gear.
+  std::vector<std::string> removed_gears;   ///< Removed gears.
+  bool order_changed = false;               ///< The order of the behaviors differs.
 
   bool empty() const;
 };
 
-Difference compare(const Description& before, const Description& now);
-/// What `now` says of a body that stands there without having been described, as `stands`: what is said counts, the
-/// rest stays.
-BodyDifference compare_stranger(const BodyDescription& stands, const BodyDescription& now);
+SceneDiff compare(const SceneSpec& before, const SceneSpec& now);
+/// Compares an unmanaged body (one that was made in a callback, not by the spec) with its spec `now`. Only explicitly
+/// set values are applied; the others stay. `existing`: the state of the body, captured as a spec.
+BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescription& now);
 
-/// Rows that differ in value or in whether they were said.
-std::uint64_t changed_rows(const SaidRows& before, const SaidRows& now);
+/// Returns a bit mask of the properties that differ in value or in being explicitly set.
+std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now);
 
 }  // namespace limber

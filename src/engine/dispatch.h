@@ -1,5 +1,6 @@
-// Dispatch: what a message means. The seed's messages and paths end in the same rows and the same door; everything is
-// derived from the tables but a few irregular addresses. A refused message changes nothing. [sim]
+// MessageDispatcher: executes messages. Legacy addresses of ofxDabPhysics and paths are resolved to the same properties
+// and set by the same setter. All addresses are derived from the property tables, except a few special addresses. A
+// rejected message changes nothing. [sim]
 #pragma once
 
 #include <span>
@@ -21,106 +22,111 @@
 
 namespace limber {
 
-/// An address that comes from no row.
-struct Irregular {
+/// A special address: one that is not derived from a property.
+struct SpecialAddress {
   std::string_view address;
-  std::string_view takes;
+  std::string_view args;
   std::string_view doc;
 };
 
-class Dispatch {
+class MessageDispatcher {
  public:
-  /// Work of all patterns between two ticks; see PatternBudget.
-  static constexpr int kTickWork = 4 * PatternBudget::kMessage;
+  /// Work budget of all address patterns between two ticks; see PatternBudget.
+  static constexpr int kTickWork = 4 * PatternBudget::kStepsPerMessage;
 
-  /// Without presets their messages are refused. `more`: classes beside the world's own, whose things stand in a group
-  /// of their name in each body; one with a class's own addresses goes before it.
-  explicit Dispatch(World& world, Presets* presets = nullptr, std::span<const Table* const> more = {});
+  /// If `presets` is null, preset messages are rejected. `extra_classes`: more classes, with their objects in a group
+  /// of that name in each body; their legacy addresses take precedence over those of the built-in classes.
+  explicit MessageDispatcher(World& world, Presets* presets = nullptr,
+                             std::span<const PropertyTable* const> extra_classes = {});
 
-  /// Without it there is no answer to /list/health.
-  void use(const Health& health) { health_ = &health; }
+  /// Sets the source of /list/health, which is empty without it.
+  void set_health(const Health& health) { health_ = &health; }
 
+  /// Executes a message. Its effect on values is immediate.
   Outcome execute(const Message& message);
-  /// Near names are looked for in so many messages between two calls; others are refused with a shorter text.
+  /// Refills the work budgets of patterns and of "did you mean" hints. Call it once a tick.
   void begin_tick() {
-    hints_.left = HintBudget::kPerTick;
-    work_.left = kTickWork;
+    hints_.remaining = HintBudget::kPerTick;
+    tick_budget_.remaining = kTickWork;
   }
-  /// What hands hold in the picture pulls; before each step.
-  void pull_grips() { grips_.pull(world_); }
-  /// They let go of everything.
-  void let_go() { grips_.clear(); }
-  /// What hands hold, for a key state.
-  Grips& grips() { return grips_; }
-  /// What the last message set.
+  /// Applies the forces of the mouse springs. Call it before each step.
+  void apply_mouse_springs() { mouse_springs_.apply_forces(world_); }
+  /// Removes all mouse springs.
+  void release_mouse_springs() { mouse_springs_.clear(); }
+  /// The mouse springs, for checkpoints.
+  MouseSprings& mouse_springs() { return mouse_springs_; }
+  /// A value that is set by a message.
   struct Write {
-    Place place;
-    RowValues values;
+    PropertyRef ref;
+    PropertyValues values;
   };
-  std::span<const Write> written() const { return writes_; }
+  /// The values that the last message set.
+  std::span<const Write> writes() const { return writes_; }
 
-  /// The seed's address of a row: "/physics/part/mass"; empty where the class has none, or the row can't be set.
-  static std::string seed_address(const Table& table, const Row& row);
-  /// What is answered beside the tables' rows.
-  static std::span<const Irregular> irregulars();
+  /// Returns the legacy address of a property, such as "/physics/part/mass"; empty if the class has none or the
+  /// property is read-only.
+  static std::string legacy_address(const PropertyTable& table, const Property& property);
+  /// The special addresses.
+  static std::span<const SpecialAddress> special_addresses();
 
  private:
-  /// A message that names things by arguments.
-  struct ByName {
-    const Table* table = nullptr;
-    const Row* row = nullptr;
-    Outcome (Dispatch::*irregular)(const Message&) = nullptr;
+  /// A legacy or special address, with objects named by arguments.
+  struct AddressEntry {
+    const PropertyTable* table = nullptr;
+    const Property* property = nullptr;
+    Outcome (MessageDispatcher::*handler)(const Message&) = nullptr;
   };
   struct TextHash {
     using is_transparent = void;
     std::size_t operator()(std::string_view text) const { return std::hash<std::string_view>{}(text); }
   };
   template <class T>
-  using ByText = std::unordered_map<std::string, T, TextHash, std::equal_to<>>;
+  using StringMap = std::unordered_map<std::string, T, TextHash, std::equal_to<>>;
 
-  void add_class(const Table& table);
+  void add_class(const PropertyTable& table);
   Outcome execute_one(const Message& message);
-  /// The one thing of a class that has one only, such as the world; else a null id.
-  NodeId only_thing(const Table& table) const;
-  Outcome by_name(const ByName& entry, const Message& message);
-  Outcome by_path(const Message& message);
-  Outcome by_pattern(const Message& message);
-  /// Sets `places_` to the value; many leave out those that can't take it, a single one is refused with the reason.
+  /// Returns the object of a singleton class such as World; null for other classes.
+  NodeId singleton(const PropertyTable& table) const;
+  Outcome execute_named(const AddressEntry& entry, const Message& message);
+  Outcome execute_path(const Message& message);
+  Outcome execute_pattern(const Message& message);
+  /// Sets all properties in `refs_` to the value. If `single` is false, objects that don't accept the value are
+  /// skipped; the message is rejected if no object accepts it.
   Outcome apply(bool single, std::span<const Arg> value);
   Outcome collect_writes(bool single, std::span<const Arg> value);
-  /// Sets `writes_`.
-  Outcome set_all();
-  /// Does the action of each of `places_`.
-  Outcome act(std::span<const Arg> value);
+  /// Sets the values in `writes_`.
+  Outcome write_all();
+  /// Executes all actions in `refs_`.
+  Outcome execute_action(std::span<const Arg> value);
   Outcome part_force(const Message& message);
   Outcome part_hold(const Message& message);
   Outcome part_release(const Message& message);
   Outcome projection(const Message& message);
   Outcome behavior_parameter(const Message& message);
-  Outcome list(const Message& message);
-  Outcome scenes(const Message& message);
-  Outcome health(const Message& message);
-  Outcome get(const Message& message);
-  Outcome gone(const Message& message);
-  Outcome preset(const Message& message);
-  Outcome take(const Message& message);
+  Outcome answer_list(const Message& message);
+  Outcome request_scene(const Message& message);
+  Outcome answer_health(const Message& message);
+  Outcome answer_get(const Message& message);
+  Outcome reject_unsupported(const Message& message);
+  Outcome execute_preset(const Message& message);
+  Outcome request_take(const Message& message);
 
   World& world_;
   Presets* presets_;
   const Health* health_ = nullptr;
   Store& store_;
   HintBudget hints_;
-  PatternBudget work_{kTickWork};  // left of this tick
-  PatternBudget message_work_;     // left of this message
-  Selector selector_{world_, hints_, message_work_};
-  Answers answers_{world_, hints_, message_work_};
-  ByText<ByName> by_name_;              // by plain address
-  std::vector<std::string> addresses_;  // all of them, for near ones
-  ByText<Place> paths_;                 // exact paths seen since the structure last changed
-  std::uint64_t paths_version_ = 0;
-  Grips grips_;
-  std::vector<Place> places_;  // scratch: what the message means
-  std::vector<Write> writes_;  // what it will write, once all of it is known to be right
+  PatternBudget tick_budget_{kTickWork};  // of this tick
+  PatternBudget message_budget_;          // of this message
+  Selector selector_{world_, hints_, message_budget_};
+  QueryHandler query_handler_{world_, hints_, message_budget_};
+  StringMap<AddressEntry> entries_;     // by plain_address()
+  std::vector<std::string> addresses_;  // keys of entries_, for "did you mean"
+  StringMap<PropertyRef> paths_;        // cache of exact paths, cleared when the tree changes
+  std::uint64_t paths_version_ = 0;     // structure version of paths_
+  MouseSprings mouse_springs_;
+  std::vector<PropertyRef> refs_;  // scratch: the properties that the message addresses
+  std::vector<Write> writes_;      // the validated values of the message
 };
 
 }  // namespace limber

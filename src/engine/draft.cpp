@@ -1,4 +1,4 @@
-// Running a scene beside the show.
+// ReloadCandidate: a run of the scene detached from the show.
 #include "engine/draft.h"
 
 #include <utility>
@@ -7,73 +7,73 @@
 
 namespace limber {
 
-Draft::Draft(DraftOrder order, ScriptHost& host)
-    : order_(std::move(order)), scene_(std::make_unique<Scene>(world_, host, order_.options)) {
-  ran_ = scene_->run(order_.file, &order_.inputs);
-  if (!ran_) return;
-  world_.stand();
-  description_ = std::make_shared<const Description>(describe(world_));
-  difference_ = compare(*order_.before, *description_);
-  script_ = PresetTaker::take_script(store_);
-  find_spots();
+ReloadCandidate::ReloadCandidate(ReloadRequest request, ScriptHost& host)
+    : request_(std::move(request)), scene_(std::make_unique<Scene>(world_, host, request_.options)) {
+  result_ = scene_->run(request_.file, &request_.inputs);
+  if (!result_) return;
+  world_.flush_detached();
+  spec_ = std::make_shared<const SceneSpec>(describe(world_));
+  diff_ = compare(*request_.base_spec, *spec_);
+  script_preset_ = PresetCapturer::capture_script(store_);
+  index_slots();
   scene_->prepare();
 }
 
-std::vector<SourceFile> Draft::files() const { return scene_->sources()->files(); }
+std::vector<SourceFile> ReloadCandidate::files() const { return scene_->sources()->files(); }
 
-void Draft::find_spots() {
-  spots_.resize(store_.view()->slot_count);
-  const auto put = [&](NodeId id, Kind kind, std::size_t owner, std::size_t number = 0) {
-    spots_[id.slot] = {kind, static_cast<std::uint32_t>(owner), static_cast<std::uint32_t>(number)};
+void ReloadCandidate::index_slots() {
+  slots_.resize(store_.view()->slot_count);
+  const auto set_slot = [&](NodeId id, Kind kind, std::size_t owner, std::size_t index = 0) {
+    slots_[id.slot] = {kind, static_cast<std::uint32_t>(owner), static_cast<std::uint32_t>(index)};
   };
-  const auto put_all = [&](const auto& list, Kind kind, std::size_t owner) {
-    for (std::size_t i = 0; i < list.size(); i++) put(list[i]->id(), kind, owner, i);
+  const auto set_slots = [&](const auto& list, Kind kind, std::size_t owner) {
+    for (std::size_t i = 0; i < list.size(); i++) set_slot(list[i]->id(), kind, owner, i);
   };
-  put(world_.id(), Kind::world, 0);
-  put(world_.visuals().id(), Kind::visuals, 0);
-  put(world_.visuals().camera().id(), Kind::camera, 0);
-  put(world_.visuals().look().id(), Kind::look, 0);
-  for (std::size_t i = 0; i < world_.shapes().size(); i++) put(world_.shapes()[i]->id(), Kind::shape, i);
+  set_slot(world_.id(), Kind::world, 0);
+  set_slot(world_.visuals().id(), Kind::visuals, 0);
+  set_slot(world_.visuals().camera().id(), Kind::camera, 0);
+  set_slot(world_.visuals().appearance().id(), Kind::appearance, 0);
+  for (std::size_t i = 0; i < world_.shapes().size(); i++) set_slot(world_.shapes()[i]->id(), Kind::shape, i);
   for (std::size_t i = 0; i < world_.bodies().size(); i++) {
     const Body& body = *world_.bodies()[i];
-    put(body.id(), Kind::body, i);
-    put_all(body.parts(), Kind::part, i);
-    put_all(body.joints(), Kind::joint, i);
-    put_all(body.motors(), Kind::motor, i);
-    put_all(body.behaviors(), Kind::behavior, i);
+    set_slot(body.id(), Kind::body, i);
+    set_slots(body.parts(), Kind::part, i);
+    set_slots(body.joints(), Kind::joint, i);
+    set_slots(body.motors(), Kind::motor, i);
+    set_slots(body.behaviors(), Kind::behavior, i);
   }
-  put_all(world_.gears(), Kind::gear, 0);
-  put_all(world_.behaviors().groups(), Kind::group, 0);
+  set_slots(world_.gears(), Kind::gear, 0);
+  set_slots(world_.behaviors().groups(), Kind::group, 0);
 }
 
-NodeId Draft::live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
-                      const std::vector<NodeId>& bodies) const {
-  if (id.slot >= spots_.size()) return {};
-  const Spot spot = spots_[id.slot];
-  if (spot.kind == Kind::none) return {};
-  if (spot.kind == Kind::world) return live.id();
-  if (spot.kind == Kind::visuals) return live.visuals().id();
-  if (spot.kind == Kind::camera) return live.visuals().camera().id();
-  if (spot.kind == Kind::look) return live.visuals().look().id();
-  if (spot.kind == Kind::shape) return shapes[spot.owner];
-  if (spot.kind == Kind::gear) {
-    const Gear* const gear = live.find_gear(description_->gears[spot.number].name);
+NodeId ReloadCandidate::live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
+                                const std::vector<NodeId>& bodies) const {
+  if (id.slot >= slots_.size()) return {};
+  const SlotObject slot = slots_[id.slot];
+  if (slot.kind == Kind::none) return {};
+  if (slot.kind == Kind::world) return live.id();
+  if (slot.kind == Kind::visuals) return live.visuals().id();
+  if (slot.kind == Kind::camera) return live.visuals().camera().id();
+  if (slot.kind == Kind::appearance) return live.visuals().appearance().id();
+  if (slot.kind == Kind::shape) return shapes[slot.owner];
+  if (slot.kind == Kind::gear) {
+    const Gear* const gear = live.find_gear(spec_->gears[slot.index].name);
     return gear == nullptr ? NodeId{} : gear->id();
   }
-  if (spot.kind == Kind::group) {
-    const BehaviorGroup* const group = live.behaviors().find_group(description_->groups[spot.number].name);
+  if (slot.kind == Kind::group) {
+    const BehaviorGroup* const group = live.behaviors().find_group(spec_->groups[slot.index].name);
     return group == nullptr ? NodeId{} : group->id();
   }
-  const NodeId of = bodies[spot.owner];
-  if (spot.kind == Kind::body) return of;
-  const Body& body = *static_cast<const Body*>(live.store().thing(of));
-  if (spot.kind == Kind::behavior) {
-    const Behavior* const behavior = body.find_behavior(description_->bodies[spot.owner].behaviors[spot.number].name);
+  const NodeId body_id = bodies[slot.owner];
+  if (slot.kind == Kind::body) return body_id;
+  const Body& body = *static_cast<const Body*>(live.store().object(body_id));
+  if (slot.kind == Kind::behavior) {
+    const Behavior* const behavior = body.find_behavior(spec_->bodies[slot.owner].behaviors[slot.index].name);
     return behavior == nullptr ? NodeId{} : behavior->id();
   }
-  if (spot.kind == Kind::part) return body.parts()[spot.number]->id();
-  if (spot.kind == Kind::joint) return body.joints()[spot.number]->id();
-  return body.motors()[spot.number]->id();
+  if (slot.kind == Kind::part) return body.parts()[slot.index]->id();
+  if (slot.kind == Kind::joint) return body.joints()[slot.index]->id();
+  return body.motors()[slot.index]->id();
 }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Draft: a scene that is run beside the show, in a store and a world of its own, and what it says otherwise than the
-// last good run. Nothing live is touched, so it may take its time. [any]
+// ReloadCandidate: a new run of the scene, detached from the show in its own store and world, and its differences from
+// the last successful run. It touches nothing live, so it can run on any thread and take any time. [any]
 #pragma once
 
 #include <memory>
@@ -14,36 +14,37 @@
 
 namespace limber {
 
-/// What a draft is made from; copied from the show between two ticks.
-struct DraftOrder {
+/// The input of a candidate, copied from the show between two ticks.
+struct ReloadRequest {
   std::string file;
   SceneOptions options;
   RunInputs inputs;
-  std::shared_ptr<const Description> before;  ///< Of the last good run.
+  std::shared_ptr<const SceneSpec> base_spec;  ///< Of the last successful run.
 };
 
-class Draft {
+class ReloadCandidate {
  public:
-  /// Runs the file. `host` hears what the top level prints, on this thread.
-  Draft(DraftOrder order, ScriptHost& host);
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
+  /// Runs the file. `host` receives the output of its top level, on this thread.
+  ReloadCandidate(ReloadRequest request, ScriptHost& host);
+  ReloadCandidate(const ReloadCandidate&) = delete;
+  ReloadCandidate& operator=(const ReloadCandidate&) = delete;
 
-  const DraftOrder& order() const { return order_; }
-  /// Whether the run was good; if not, `error` and its place say why, and nothing below counts.
-  const Result<void>& ran() const { return ran_; }
+  const ReloadRequest& request() const { return request_; }
+  /// The result of the run. After an error only fault() and files() are valid.
+  const Result<void>& result() const { return result_; }
   const ScriptPlace& fault() const { return scene_->fault(); }
 
   const World& world() const { return world_; }
-  const std::shared_ptr<const Description>& description() const { return description_; }
-  const Difference& difference() const { return difference_; }
+  const std::shared_ptr<const SceneSpec>& spec() const { return spec_; }
+  const SceneDiff& diff() const { return diff_; }
   std::vector<SourceFile> files() const;
-  /// Every property as the run describes it.
-  const std::shared_ptr<const Preset>& script() const { return script_; }
+  /// The values of all properties after the run.
+  const std::shared_ptr<const Preset>& script_preset() const { return script_preset_; }
 
-  /// The scene that becomes the show; what is left in its place goes with the draft.
+  /// The scene, to be swapped with the live one, which is then destroyed with the candidate.
   std::unique_ptr<Scene>& scene() { return scene_; }
-  /// The live id of one of the draft's things. [sim]
+  /// Returns the live id of an object of the candidate; null if there is none. `shapes`, `bodies`: the live ones, in
+  /// the order of the spec. [sim]
   NodeId live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
                  const std::vector<NodeId>& bodies) const;
 
@@ -53,7 +54,7 @@ class Draft {
     world,
     visuals,
     camera,
-    look,
+    appearance,
     shape,
     body,
     part,
@@ -63,22 +64,22 @@ class Draft {
     behavior,
     group
   };
-  struct Spot {  // what a slot of the store is
+  struct SlotObject {  // the object in a slot of the store
     Kind kind = Kind::none;
-    std::uint32_t owner = 0;  // number of the body or shape
-    std::uint32_t number = 0;
+    std::uint32_t owner = 0;  // index of the body or shape
+    std::uint32_t index = 0;  // index in its list
   };
-  void find_spots();
+  void index_slots();
 
-  DraftOrder order_;
+  ReloadRequest request_;
   Store store_;
   World world_{store_};
-  std::vector<Spot> spots_;
-  std::unique_ptr<Scene> scene_;  // before the world goes
-  Result<void> ran_;
-  std::shared_ptr<const Description> description_;
-  Difference difference_;
-  std::shared_ptr<const Preset> script_;
+  std::vector<SlotObject> slots_;  // by slot
+  std::unique_ptr<Scene> scene_;   // after world_: must be destroyed first
+  Result<void> result_;
+  std::shared_ptr<const SceneSpec> spec_;
+  SceneDiff diff_;
+  std::shared_ptr<const Preset> script_preset_;
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Drawing: what a picture needs beside poses: who is drawn with which form, and the numbers of materials, camera and
-// look as a snapshot carries them.
+// RenderScene: the data that a renderer needs besides poses: render shapes and their instances on parts, and the
+// properties of materials, camera and appearance in a snapshot.
 #pragma once
 
 #include <cstdint>
@@ -14,39 +14,40 @@ namespace limber {
 struct Snapshot;
 class World;
 
-/// A geometry and its material; shared by all pieces that look alike.
-struct DrawnForm {
-  ShapeModel shape;
+/// A geometry and its material, shared by its instances.
+struct RenderShape {
+  ShapeModel geometry;
   std::uint32_t material = 0;  ///< For material_of().
 };
 
-/// One form on one part.
-struct DrawnPiece {
-  std::uint32_t part_at = 0;     ///< Where the part's block begins in Snapshot::live.
-  std::uint32_t enabled_at = 0;  ///< Where its body's `enabled` (1 or 0) stands there.
-  std::uint32_t form = 0;
+/// An instance of a render shape on a part.
+struct RenderInstance {
+  std::uint32_t part_offset = 0;     ///< Index of the part's block in Snapshot::transient.
+  std::uint32_t enabled_offset = 0;  ///< Index of its body's `enabled` (1 or 0) in Snapshot::transient.
+  std::uint32_t shape = 0;
   Pose origin;  ///< In the part's link frame.
 };
 
-/// Made anew only when bodies or shapes come, go or change; shared by all snapshots in between.
-struct Drawing {
-  explicit Drawing(const World& world);  ///< [sim]
+/// Rebuilt only when bodies or shapes are added, removed or changed; shared by the snapshots in between.
+struct RenderScene {
+  explicit RenderScene(const World& world);  ///< [sim]
 
-  std::vector<DrawnForm> forms;
-  std::vector<DrawnPiece> pieces;
+  std::vector<RenderShape> shapes;
+  std::vector<RenderInstance> instances;
 
-  /// Copies what snapshots carry as `visuals`. Allocates only while that grows. [sim]
-  void copy_visuals(std::span<const double> kept, std::vector<double>& to) const;
+  /// Copies the persistent values of visuals, camera, look and materials to Snapshot::visuals. Allocates only if they
+  /// have grown. [sim]
+  void copy_visuals(std::span<const double> persistent, std::vector<double>& to) const;
 
  private:
   struct Block {
-    std::uint32_t at = 0;  // in the kept block
+    std::uint32_t offset = 0;  // index in the persistent values
     std::uint32_t width = 0;
   };
   std::vector<Block> blocks_;  // visuals, camera, look, then materials
 };
 
-/// What shapes of a form are painted with; colours as hue, saturation, brightness.
+/// A material. Colors are hue, saturation, brightness.
 struct Material {
   double transparency = 0;
   double ambient_scale = 0;
@@ -58,20 +59,20 @@ struct Material {
 };
 Material material_of(const Snapshot& snapshot, std::uint32_t material);
 
-/// The view is T(position)·Rx·Ry·Rz, in degrees.
+/// The camera. The view matrix is T(position)·Rx·Ry·Rz, with rotations in degrees.
 struct CameraView {
   Vec3 position{0};
   Vec3 rotation{0};
   double fovy = 40;
-  double aspect = 0;  ///< 0: the picture's.
+  double aspect = 0;  ///< 0: of the render target.
   double near = 0.05;
   double far = 200;
   double distance = 1;
 };
 CameraView camera_of(const Snapshot& snapshot);
 
-/// The rows of /visuals/look, and the background.
-struct LookView {
+/// The properties of /visuals/look, and the background.
+struct AppearanceView {
   bool studio = false;
   double exposure = 1;
   double ambient = 1;
@@ -82,9 +83,9 @@ struct LookView {
   double grid = 1;
   double mirror = 1;
   bool floor = true;
-  Vec3 background{0};           ///< Hue, saturation, brightness.
-  bool own_background = false;  ///< It is not the default, which stands for the style's own.
+  Vec3 background{0};              ///< Hue, saturation, brightness.
+  bool custom_background = false;  ///< `background` was set; else the style's own background is used.
 };
-LookView look_of(const Snapshot& snapshot);
+AppearanceView appearance_of(const Snapshot& snapshot);
 
 }  // namespace limber

@@ -1,27 +1,28 @@
-// The rows of /edit.
+// The properties of /edit.
 #include "engine/edit_node.h"
 
 namespace limber {
 
-const Table& EditNode::table() {
-  using namespace rows;
-  static const Table table(
+const PropertyTable& EditNode::table() {
+  using namespace properties;
+  static const PropertyTable table(
       "edit", "/edit", "",
       {
-          say<&EditNode::say_undo>(text("undo_of", "What undo would take back, and who set it; empty: nothing.")),
-          say<&EditNode::say_redo>(text("redo_of", "What redo would do again, and who set it; empty: nothing.")),
-          act<&EditNode::act_undo>(
-              action("undo", 0, 0, "Values are what they were before the newest step, whichever hand made it.")),
-          act<&EditNode::act_redo>(action("redo", 0, 0, "The step that was undone last is done again.")),
+          text_from<&EditNode::undo_text>(
+              text("undo_of", "The change that undo would revert, and its source; empty: none.")),
+          text_from<&EditNode::redo_text>(
+              text("redo_of", "The change that redo would apply again, and its source; empty: none.")),
+          invokes<&EditNode::undo>(action("undo", 0, 0, "Reverts the newest step, regardless of its source.")),
+          invokes<&EditNode::redo>(action("redo", 0, 0, "Applies the step again that was undone last.")),
       });
   return table;
 }
 
-EditNode::EditNode(World& world, Edits& edits) : world_(world), edits_(edits) {
+EditNode::EditNode(World& world, UndoStack& undo_stack) : world_(world), undo_stack_(undo_stack) {
   world.store().add(table(), world.store().root(), "edit", this);
 }
 
-Result<void> EditNode::act_undo(std::span<const double>) { return edits_.undo(world_); }
-Result<void> EditNode::act_redo(std::span<const double>) { return edits_.redo(world_); }
+Result<void> EditNode::undo(std::span<const double>) { return undo_stack_.undo(world_); }
+Result<void> EditNode::redo(std::span<const double>) { return undo_stack_.redo(world_); }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// EditNode: undo and redo in the tree, at /edit. [sim]
+// EditNode: the tree node /edit, with undo and redo. [sim]
 #pragma once
 
 #include <span>
@@ -10,18 +10,18 @@ namespace limber {
 
 class EditNode {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
-  EditNode(World& world, Edits& edits);
+  EditNode(World& world, UndoStack& undo_stack);
 
  private:
-  std::string_view say_undo() const { return edits_.undo_text(); }
-  std::string_view say_redo() const { return edits_.redo_text(); }
-  Result<void> act_undo(std::span<const double> args);
-  Result<void> act_redo(std::span<const double> args);
+  std::string_view undo_text() const { return undo_stack_.undo_text(); }
+  std::string_view redo_text() const { return undo_stack_.redo_text(); }
+  Result<void> undo(std::span<const double> args);
+  Result<void> redo(std::span<const double> args);
 
   World& world_;
-  Edits& edits_;
+  UndoStack& undo_stack_;
 };
 
 }  // namespace limber

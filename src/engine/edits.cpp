@@ -1,4 +1,5 @@
-// A step keeps the values that its rows do not have; undoing it and doing it again are the same exchange.
+// UndoStack: a step stores one value per property. Undo and redo both swap the stored values with the current ones, so
+// that the same step can be redone or undone again.
 #include "engine/edits.h"
 
 #include <algorithm>
@@ -12,274 +13,281 @@
 
 namespace limber {
 
-bool Edits::Open::has(NodeId id, const Row& row) const {
-  if (id.slot >= rows.size()) return false;
-  const Rows& of = rows[id.slot];
-  return of.step == number && of.generation == id.generation && (of.rows >> row.index & 1u) != 0;
+bool UndoStack::OpenStep::has(NodeId id, const Property& property) const {
+  if (id.slot >= masks.size()) return false;
+  const SlotMask& slot_mask = masks[id.slot];
+  return slot_mask.step == number && slot_mask.generation == id.generation &&
+         (slot_mask.mask >> property.index & 1u) != 0;
 }
 
-// false: it has it already
-bool Edits::Open::take(NodeId id, const Row& row) {
-  if (has(id, row)) return false;
-  if (id.slot >= rows.size()) rows.resize(id.slot + 1);
-  Rows& of = rows[id.slot];
-  if (of.step != number || of.generation != id.generation) of = {id.generation, number, 0};
-  of.rows |= std::uint64_t{1} << row.index;
+// Returns false if the step already contains the property.
+bool UndoStack::OpenStep::add(NodeId id, const Property& property) {
+  if (has(id, property)) return false;
+  if (id.slot >= masks.size()) masks.resize(id.slot + 1);
+  SlotMask& slot_mask = masks[id.slot];
+  if (slot_mask.step != number || slot_mask.generation != id.generation) slot_mask = {id.generation, number, 0};
+  slot_mask.mask |= std::uint64_t{1} << property.index;
   return true;
 }
 
-void Edits::begin(const Origin& who, const World& world) {
-  static const Row& paused = World::table().at("paused");
-  who_ = who;
+void UndoStack::begin(const CommandOrigin& source, const World& world) {
+  static const Property& paused = World::table().at("paused");
+  source_ = source;
   time_ = world.time();
   running_ = world.store().values(world.id(), paused)[0] == 0;
-  structure_ = world.store().structure_version();
-  now_ = nullptr;
-  hand_.note_in(nullptr);
+  structure_version_ = world.store().structure_version();
+  current_ = nullptr;
+  overrides_.record_into(nullptr);
 }
 
-void Edits::heard(const Store& store, NodeId id, const Row& row, bool later, const double* before) {
-  // what comes with a thing that was made in this call goes with the thing
-  if (quiet_ || row.kind != RowKind::property || store.born(id) > structure_) return;
+void UndoStack::on_write(const Store& store, NodeId id, const Property& property, bool over_time,
+                         const double* old_values) {
+  // ignore initial values of objects that were created by this command: they are removed with the object
+  if (exchanging_ || property.kind != PropertyKind::setting || store.added_version(id) > structure_version_) return;
   version_++;
-  if (now_ == nullptr) now_ = &open_for(id, row);
-  Step& step = *now_->step;
-  hand_.note_in(&step.hand);
+  if (current_ == nullptr) current_ = &open_step_for(id, property);
+  Step& step = *current_->step;
+  overrides_.record_into(&step.overrides);
   step.pass = pass_;
   step.time = time_;
-  step.later = step.later || later;
-  if (!now_->take(id, row)) return;
-  if (step.edits.size() >= step.look_at) forget_gone(step, store);
-  step.edits.push_back({id, &row, step.values.size()});
-  step.values.insert(step.values.end(), before, before + row.width);
-  values_ += row.width;
+  step.over_time = step.over_time || over_time;
+  if (!current_->add(id, property)) return;
+  if (step.edits.size() >= step.purge_at) purge_removed(step, store);
+  step.edits.push_back({id, &property, step.values.size()});
+  step.values.insert(step.values.end(), old_values, old_values + property.width);
+  values_ += property.width;
 }
 
-// What has gone can't be undone. A hand that never pauses goes on with one step, which would gather all that ever came.
-void Edits::forget_gone(Step& step, const Store& store) {
+// Purges edits of removed objects, which can't be undone. Without it the step of a controller that never pauses would
+// collect the edits of all objects that ever existed.
+void UndoStack::purge_removed(Step& step, const Store& store) {
   std::size_t values = 0;
   std::size_t edits = 0;
   for (Edit edit : step.edits) {
     if (!store.alive(edit.id)) continue;
-    std::copy_n(&step.values[edit.at], edit.row->width, &step.values[values]);
-    edit.at = std::exchange(values, values + edit.row->width);
+    std::copy_n(&step.values[edit.offset], edit.property->width, &step.values[values]);
+    edit.offset = std::exchange(values, values + edit.property->width);
     step.edits[edits++] = edit;
   }
   values_ -= step.values.size() - values;
   step.values.resize(values);
   step.edits.resize(edits);
-  step.look_at = std::max(step.look_at, 2 * step.edits.size());
+  step.purge_at = std::max(step.purge_at, 2 * step.edits.size());
 }
 
-// the step of this hand that goes on, or a new one
-Edits::Open& Edits::open_for(NodeId id, const Row& row) {
-  for (Open& open : open_) {
-    if (open.step == nullptr || !(open.step->who == who_) || time_ - open.step->time > kGesture) continue;
-    if (open.step->pass != pass_ && !open.has(id, row)) continue;
-    open.used = ++uses_;
+// Returns the step of this controller that the write extends, or a new one.
+UndoStack::OpenStep& UndoStack::open_step_for(NodeId id, const Property& property) {
+  for (OpenStep& open : open_steps_) {
+    if (open.step == nullptr || !(open.step->source == source_) || time_ - open.step->time > kMergeSeconds) continue;
+    if (open.step->pass != pass_ && !open.has(id, property)) continue;
+    open.last_use = ++uses_;
     return open;
   }
-  return open_new();
+  return open_step();
 }
 
-Edits::Open& Edits::open_new() {
-  done_.push_back(std::make_unique<Step>());
-  done_.back()->who = who_;
-  Open& open = *std::min_element(open_.begin(), open_.end(), [](const Open& a, const Open& b) {
-    return std::pair(a.step != nullptr, a.used) < std::pair(b.step != nullptr, b.used);
+UndoStack::OpenStep& UndoStack::open_step() {
+  undo_steps_.push_back(std::make_unique<Step>());
+  undo_steps_.back()->source = source_;
+  OpenStep& open = *std::min_element(open_steps_.begin(), open_steps_.end(), [](const OpenStep& a, const OpenStep& b) {
+    return std::pair(a.step != nullptr, a.last_use) < std::pair(b.step != nullptr, b.last_use);
   });
-  open.step = done_.back().get();
-  open.number = open.used = ++uses_;
+  open.step = undo_steps_.back().get();
+  open.number = open.last_use = ++uses_;
   return open;
 }
 
-bool Edits::differs(const Step& step, const Store& store) {
+bool UndoStack::differs(const Step& step, const Store& store) {
   return std::any_of(step.edits.begin(), step.edits.end(), [&](const Edit& edit) {
-    return store.alive(edit.id) &&
-           std::memcmp(store.values(edit.id, *edit.row), &step.values[edit.at], edit.row->width * sizeof(double)) != 0;
+    return store.alive(edit.id) && std::memcmp(store.values(edit.id, *edit.property), &step.values[edit.offset],
+                                               edit.property->width * sizeof(double)) != 0;
   });
 }
 
-void Edits::end(const Store& store) {
+void UndoStack::end(const Store& store) {
   pass_++;
-  settle(store);
+  complete_steps(store);
 }
 
-void Edits::settle(const Store& store) {
-  now_ = nullptr;
-  hand_.note_in(nullptr);
-  bool settled = false;
-  for (std::size_t i = done_.size(); i > 0 && !done_[i - 1]->settled; i--) {
-    if (done_[i - 1]->later || differs(*done_[i - 1], store)) {
-      settled = done_[i - 1]->settled = true;
+void UndoStack::complete_steps(const Store& store) {
+  current_ = nullptr;
+  overrides_.record_into(nullptr);
+  bool any_complete = false;
+  for (std::size_t i = undo_steps_.size(); i > 0 && !undo_steps_[i - 1]->complete; i--) {
+    if (undo_steps_[i - 1]->over_time || differs(*undo_steps_[i - 1], store)) {
+      any_complete = undo_steps_[i - 1]->complete = true;
       continue;
     }
-    drop(done_[i - 1].get());
-    done_.erase(done_.begin() + static_cast<std::ptrdiff_t>(i) - 1);
+    drop(undo_steps_[i - 1].get());
+    undo_steps_.erase(undo_steps_.begin() + static_cast<std::ptrdiff_t>(i) - 1);
   }
-  // what was undone before another step can't be done again
-  if (settled) {
-    for (const auto& step : undone_) drop(step.get());
-    undone_.clear();
+  // a new step clears the redo stack
+  if (any_complete) {
+    for (const auto& step : redo_steps_) drop(step.get());
+    redo_steps_.clear();
     trim();
-    told_ = false;
+    texts_valid_ = false;
   }
-  if (!std::exchange(told_, true)) tell_texts(store);
+  if (!std::exchange(texts_valid_, true)) update_texts(store);
 }
 
-void Edits::drop(const Step* step) {
+void UndoStack::drop(const Step* step) {
   values_ -= step->values.size();
-  for (Open& open : open_) {
+  for (OpenStep& open : open_steps_) {
     if (open.step == step) open.step = nullptr;
   }
 }
 
-void Edits::trim() {
-  while (done_.size() > kMostSteps || (values_ > kMostValues && done_.size() > 1)) {
-    drop(done_.front().get());
-    done_.pop_front();
+void UndoStack::trim() {
+  while (undo_steps_.size() > kMaxSteps || (values_ > kMaxValues && undo_steps_.size() > 1)) {
+    drop(undo_steps_.front().get());
+    undo_steps_.pop_front();
   }
 }
 
-// undoing what is set again at once would be for nothing
-bool Edits::goes_on(const Step& step, const World& world) const {
-  const bool own = step.who.hand == who_.hand && step.who.ip == who_.ip && (who_.ip == 0 || step.who.port == who_.port);
-  return running_ && !own && world.time() - step.time <= kGesture;
+// True if another controller is still extending the step, so that an undo would be overwritten at once.
+bool UndoStack::extended_by_other(const Step& step, const World& world) const {
+  const bool same_source = step.source.source == source_.source && step.source.ip == source_.ip &&
+                           (source_.ip == 0 || step.source.port == source_.port);
+  return running_ && !same_source && world.time() - step.time <= kMergeSeconds;
 }
 
-// In the order in which they were set: a group's value goes to its members, whose own stand behind it. What is now is
-// read before any of it is set, for the same reason.
-void Edits::exchange(Step& step, Store& store, std::size_t& changed, std::size_t& gone) {
-  std::vector<double> now = step.values;
+// Sets the values in the order in which they were set, because the value of a group is copied to its members, which may
+// have been set after it. For the same reason all current values are read before the first is set.
+void UndoStack::exchange(Step& step, Store& store, std::size_t& changed, std::size_t& removed) {
+  std::vector<double> current = step.values;
   for (const Edit& edit : step.edits) {
-    if (store.alive(edit.id)) std::copy_n(store.values(edit.id, *edit.row), edit.row->width, &now[edit.at]);
+    if (store.alive(edit.id))
+      std::copy_n(store.values(edit.id, *edit.property), edit.property->width, &current[edit.offset]);
   }
   for (const Edit& edit : step.edits) {
-    const std::span<const double> kept(&step.values[edit.at], edit.row->width);
+    const std::span<const double> stored(&step.values[edit.offset], edit.property->width);
     if (!store.alive(edit.id)) {
-      gone++;
+      removed++;
       continue;
     }
-    if (std::memcmp(&now[edit.at], kept.data(), kept.size_bytes()) != 0) changed++;
-    (void)store.set(edit.id, *edit.row, kept);
+    if (std::memcmp(&current[edit.offset], stored.data(), stored.size_bytes()) != 0) changed++;
+    (void)store.set(edit.id, *edit.property, stored);
   }
-  step.values = std::move(now);
+  step.values = std::move(current);
 }
 
-Result<void> Edits::exchange(Steps& from, Steps& to, World& world, const char* what) {
+Result<void> UndoStack::exchange(Steps& from, Steps& to, World& world, const char* verb) {
   version_++;
-  settle(world.store());
+  complete_steps(world.store());
   for (std::size_t i = from.size(); i > 0; i--) {
     Step& step = *from[i - 1];
-    if (goes_on(step, world)) continue;
+    if (extended_by_other(step, world)) continue;
     std::size_t changed = 0;
-    std::size_t gone = 0;
-    quiet_ = true;
-    exchange(step, world.store(), changed, gone);
-    quiet_ = false;
+    std::size_t removed = 0;
+    exchanging_ = true;
+    exchange(step, world.store(), changed, removed);
+    exchanging_ = false;
     const auto at = from.begin() + static_cast<std::ptrdiff_t>(i) - 1;
-    told_ = false;
-    for (Open& open : open_) {
+    texts_valid_ = false;
+    for (OpenStep& open : open_steps_) {
       if (open.step == &step) open.step = nullptr;
     }
-    if (changed == 0) {  // things have gone, or are as they were: the one before is meant
+    if (changed == 0) {  // objects were removed or values are the same: skip this step
       drop(&step);
       from.erase(at);
       continue;
     }
-    hand_.exchange(step.hand);
+    overrides_.swap(step.overrides);
     to.push_back(std::move(*at));
     from.erase(at);
-    if (gone > 0) {
-      log_warning("{}: {} value{} of things that have gone {} left out", what, gone, gone == 1 ? "" : "s",
-                  gone == 1 ? "was" : "were");
+    if (removed > 0) {
+      log_warning("{}: {} value{} of removed objects {} skipped", verb, removed, removed == 1 ? "" : "s",
+                  removed == 1 ? "was" : "were");
     }
     return {};
   }
-  return Error{fmt::format("there is nothing to {}", what)};
+  return Error{fmt::format("there is nothing to {}", verb)};
 }
 
-Result<void> Edits::undo(World& world) { return exchange(done_, undone_, world, "undo"); }
-Result<void> Edits::redo(World& world) { return exchange(undone_, done_, world, "redo"); }
+Result<void> UndoStack::undo(World& world) { return exchange(undo_steps_, redo_steps_, world, "undo"); }
+Result<void> UndoStack::redo(World& world) { return exchange(redo_steps_, undo_steps_, world, "redo"); }
 
-void Edits::tell_texts(const Store& store) {
+void UndoStack::update_texts(const Store& store) {
   const auto text_of = [&](const Steps& steps) {
     if (steps.empty()) return std::string();
     const Step& step = *steps.back();
-    std::string text = fmt::format("{}/{}", store.path(step.edits[0].id), step.edits[0].row->name);
+    std::string text = fmt::format("{}/{}", store.path(step.edits[0].id), step.edits[0].property->name);
     if (step.edits.size() > 1) text += fmt::format(" and {} more", step.edits.size() - 1);
-    return fmt::format("{} ({})", text, sender_text(step.who));
+    return fmt::format("{} ({})", text, sender_text(step.source));
   };
-  undo_text_ = text_of(done_);
-  redo_text_ = text_of(undone_);
+  undo_text_ = text_of(undo_steps_);
+  redo_text_ = text_of(redo_steps_);
 }
 
-void Edits::follow(const Store& before, const Store& now) {
-  for (Steps* steps : {&done_, &undone_}) {
+void UndoStack::rebind(const Store& before, const Store& now) {
+  for (Steps* steps : {&undo_steps_, &redo_steps_}) {
     for (const auto& step : *steps) {
       NodeId known, found;
       for (Edit& edit : step->edits) {
         if (!(edit.id == known)) {
           known = edit.id;
-          const Result<Place> place = before.alive(known) ? find_place(now, before.path(known)) : Place{};
-          found = place ? place->node : NodeId{};
+          const Result<PropertyRef> ref = before.alive(known) ? find_property(now, before.path(known)) : PropertyRef{};
+          found = ref ? ref->node : NodeId{};
         }
-        const Row* const row = now.alive(found) ? now.table(found).find(edit.row->name) : nullptr;
-        const bool same = row != nullptr && row->type == edit.row->type && row->width == edit.row->width;
+        const Property* const property = now.alive(found) ? now.table(found).find(edit.property->name) : nullptr;
+        const bool same =
+            property != nullptr && property->type == edit.property->type && property->width == edit.property->width;
         edit.id = same ? found : NodeId{};
-        if (same) edit.row = row;
+        if (same) edit.property = property;
       }
     }
   }
-  for (Open& open : open_) open.step = nullptr;
-  now_ = nullptr;
+  for (OpenStep& open : open_steps_) open.step = nullptr;
+  current_ = nullptr;
 }
 
-void Edits::clear() {
-  done_.clear();
-  undone_.clear();
-  for (Open& open : open_) open.step = nullptr;
-  now_ = nullptr;
+void UndoStack::clear() {
+  undo_steps_.clear();
+  redo_steps_.clear();
+  for (OpenStep& open : open_steps_) open.step = nullptr;
+  current_ = nullptr;
   values_ = 0;
   undo_text_.clear();
   redo_text_.clear();
   version_++;
 }
 
-std::shared_ptr<const Edits::Memory> Edits::memory() const {
-  auto memory = std::make_shared<Memory>();
-  for (const auto& step : done_) memory->done_.push_back(*step);
-  for (const auto& step : undone_) memory->undone_.push_back(*step);
-  for (const Open& open : open_) {
-    const auto at = std::find_if(done_.begin(), done_.end(), [&](const auto& step) { return step.get() == open.step; });
-    std::optional<Memory::Going>& going = memory->open_.emplace_back();
-    if (at != done_.end()) going = {static_cast<std::size_t>(at - done_.begin()), open.number, open.used};
+std::shared_ptr<const UndoStack::State> UndoStack::state() const {
+  auto state = std::make_shared<State>();
+  for (const auto& step : undo_steps_) state->undo_steps_.push_back(*step);
+  for (const auto& step : redo_steps_) state->redo_steps_.push_back(*step);
+  for (const OpenStep& open : open_steps_) {
+    const auto at =
+        std::find_if(undo_steps_.begin(), undo_steps_.end(), [&](const auto& step) { return step.get() == open.step; });
+    std::optional<State::OpenRef>& ref = state->open_steps_.emplace_back();
+    if (at != undo_steps_.end()) ref = {static_cast<std::size_t>(at - undo_steps_.begin()), open.number, open.last_use};
   }
-  memory->uses_ = uses_;
-  memory->pass_ = pass_;
-  memory->values_ = values_;
-  memory->undo_text_ = undo_text_;
-  memory->redo_text_ = redo_text_;
-  return memory;
+  state->uses_ = uses_;
+  state->pass_ = pass_;
+  state->values_ = values_;
+  state->undo_text_ = undo_text_;
+  state->redo_text_ = redo_text_;
+  return state;
 }
 
-void Edits::bring_back(const Memory& memory) {
+void UndoStack::restore(const State& state) {
   clear();
-  for (const Step& step : memory.done_) done_.push_back(std::make_unique<Step>(step));
-  for (const Step& step : memory.undone_) undone_.push_back(std::make_unique<Step>(step));
-  pass_ = memory.pass_;
-  values_ = memory.values_;
-  undo_text_ = memory.undo_text_;
-  redo_text_ = memory.redo_text_;
-  uses_ = memory.uses_;
-  for (std::size_t i = 0; i < memory.open_.size(); i++) {
-    Open& open = open_[i];
-    open.rows.clear();
-    if (!memory.open_[i]) continue;
-    open.step = done_[memory.open_[i]->step].get();
-    open.number = memory.open_[i]->number;
-    open.used = memory.open_[i]->used;
-    for (const Edit& edit : open.step->edits) open.take(edit.id, *edit.row);
+  for (const Step& step : state.undo_steps_) undo_steps_.push_back(std::make_unique<Step>(step));
+  for (const Step& step : state.redo_steps_) redo_steps_.push_back(std::make_unique<Step>(step));
+  pass_ = state.pass_;
+  values_ = state.values_;
+  undo_text_ = state.undo_text_;
+  redo_text_ = state.redo_text_;
+  uses_ = state.uses_;
+  for (std::size_t i = 0; i < state.open_steps_.size(); i++) {
+    OpenStep& open = open_steps_[i];
+    open.masks.clear();
+    if (!state.open_steps_[i]) continue;
+    open.step = undo_steps_[state.open_steps_[i]->step].get();
+    open.number = state.open_steps_[i]->number;
+    open.last_use = state.open_steps_[i]->last_use;
+    for (const Edit& edit : open.step->edits) open.add(edit.id, *edit.property);
   }
 }
 

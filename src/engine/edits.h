@@ -1,5 +1,5 @@
-// Edits: what hands have set, step by step, so that it can be undone and done again, whichever hand it was. Values that
-// a scene's callbacks and behaviours set as time goes on are the performance, and no steps. [sim]
+// UndoStack: undo and redo of the values that controllers (OSC, panel, console) set, as steps in one common stack.
+// Values that callbacks and behaviors of the scene set are part of the performance and can't be undone. [sim]
 #pragma once
 
 #include <array>
@@ -16,120 +16,122 @@
 
 namespace limber {
 
-class Edits {
+class UndoStack {
  public:
-  static constexpr std::size_t kMostSteps = 1000;
-  static constexpr std::size_t kMostValues = std::size_t{1} << 20;  ///< Of all steps; the oldest go.
-  /// Simulated seconds: a hand that sets a value again within them goes on with its step.
-  static constexpr double kGesture = 0.5;
+  static constexpr std::size_t kMaxSteps = 1000;
+  static constexpr std::size_t kMaxValues = std::size_t{1} << 20;  ///< Of all steps; beyond it the oldest are dropped.
+  /// Simulated seconds within which writes of a controller to the same property are merged into one step.
+  static constexpr double kMergeSeconds = 0.5;
 
-  /// What `hand` remembers for a reset is undone with the values.
-  explicit Edits(PerformerHand& hand) : hand_(hand) {}
+  /// Undo also restores the overrides.
+  explicit UndoStack(Overrides& overrides) : overrides_(overrides) {}
 
-  /// What is set from here on is set by this hand: what comes in one tick, or at once while time stands still, is one
-  /// step.
-  void begin(const Origin& who, const World& world);
-  /// The row was `before`, and is written, now or later on.
-  void heard(const Store& store, NodeId id, const Row& row, bool later, const double* before);
-  /// The tick's values are what they are: what was set to what it was is no step.
+  /// Attributes the following writes to this controller. Its writes within one pass form one step.
+  void begin(const CommandOrigin& source, const World& world);
+  /// Records a write. `old_values`: the previous value. `over_time`: the value will be written by a morph.
+  void on_write(const Store& store, NodeId id, const Property& property, bool over_time, const double* old_values);
+  /// Ends the pass: completes its steps and drops those that have changed nothing.
   void end(const Store& store);
 
-  /// The newest step's values are what they were before it; but one that another hand goes on with is passed over, and
-  /// so is what can't be undone any more. The error says that there is none.
+  /// Undoes the newest step. Skips a step that another controller is still extending, and steps that can't be undone
+  /// any more. Returns an error if there is nothing to undo.
   Result<void> undo(World& world);
-  /// What was undone last is done again.
+  /// Redoes the step that was undone last.
   Result<void> redo(World& world);
-  /// What undo and redo would change, as people read it: "/physics/body/arm/part/tip/mass (console)"; empty: nothing.
+  /// Readable description of the next step to undo or redo, such as "/physics/body/arm/part/tip/mass (console)"; empty:
+  /// none.
   std::string_view undo_text() const { return undo_text_; }
   std::string_view redo_text() const { return redo_text_; }
 
-  /// The things of another store, of the same names, are meant from now on.
-  void follow(const Store& before, const Store& now);
+  /// Makes all steps refer to the objects with the same paths in another store.
+  void rebind(const Store& before, const Store& now);
   void clear();
 
  private:
   struct Edit {
     NodeId id;
-    const Row* row = nullptr;
-    std::size_t at = 0;  // of its value
+    const Property* property = nullptr;
+    std::size_t offset = 0;  // index in Step::values
   };
   struct Step {
-    Origin who;
+    CommandOrigin source;
     std::uint64_t pass = 0;
-    double time = 0;  // of the last that was set
+    double time = 0;  // of the last write, simulated seconds
     std::vector<Edit> edits;
-    std::vector<double> values;  // that the rows do not have: before the step, or after it once it is undone
-    PerformerHand::Before hand;
-    bool settled = false;       // it is a step
-    bool later = false;         // it sets values as time goes on
-    std::size_t look_at = 256;  // so many edits, of which some may be of what has gone
+    std::vector<double> values;  // the values to exchange: those before the step, or after it once it is undone
+    Overrides::Backup overrides;
+    bool complete = false;       // the step is complete
+    bool over_time = false;      // it writes values over time
+    std::size_t purge_at = 256;  // number of edits at which edits of removed objects are purged
   };
-  // which rows a step that may go on has
-  struct Open {
-    struct Rows {
+  // a step that may be extended, with an index of its properties
+  struct OpenStep {
+    struct SlotMask {
       std::uint32_t generation = 0;
-      std::uint64_t step = 0;  // that they are of
-      std::uint64_t rows = 0;
+      std::uint64_t step = 0;  // OpenStep::number of the step that `mask` belongs to
+      std::uint64_t mask = 0;  // bit mask
     };
     Step* step = nullptr;
-    std::uint64_t number = 0;  // of the step
-    std::vector<Rows> rows;    // by slot
-    std::uint64_t used = 0;
-    bool has(NodeId id, const Row& row) const;
-    bool take(NodeId id, const Row& row);
+    std::uint64_t number = 0;     // unique number of the step
+    std::vector<SlotMask> masks;  // by slot
+    std::uint64_t last_use = 0;   // of uses_, for replacement of the least recently used
+    bool has(NodeId id, const Property& property) const;
+    bool add(NodeId id, const Property& property);
   };
   using Steps = std::deque<std::unique_ptr<Step>>;
 
  public:
-  /// All of it between two ticks, by itself.
-  class Memory {
-    friend class Edits;
-    struct Going {
-      std::size_t step = 0;  // among `done`
-      std::uint64_t number = 0, used = 0;
+  /// A copy of the whole stack, for checkpoints.
+  class State {
+    friend class UndoStack;
+    struct OpenRef {
+      std::size_t step = 0;  // index in done_
+      std::uint64_t number = 0, last_use = 0;
     };
-    std::vector<Step> done_, undone_;
-    std::vector<std::optional<Going>> open_;
+    std::vector<Step> undo_steps_, redo_steps_;
+    std::vector<std::optional<OpenRef>> open_steps_;
     std::uint64_t uses_ = 0, pass_ = 0;
     std::size_t values_ = 0;
     std::string undo_text_, redo_text_;
 
    public:
-    /// About so many bytes.
-    std::size_t size() const { return values_ * 2 * sizeof(double) + (done_.size() + undone_.size()) * sizeof(Step); }
+    /// Approximate size in bytes.
+    std::size_t size() const {
+      return values_ * 2 * sizeof(double) + (undo_steps_.size() + redo_steps_.size()) * sizeof(Step);
+    }
   };
-  std::shared_ptr<const Memory> memory() const;
-  void bring_back(const Memory& memory);
-  /// Another number whenever memory() may be something else.
+  std::shared_ptr<const State> state() const;
+  void restore(const State& state);
+  /// Changes whenever state() may have changed.
   std::uint64_t version() const { return version_; }
 
  private:
-  Open& open_for(NodeId id, const Row& row);
-  Open& open_new();
-  void settle(const Store& store);
-  void forget_gone(Step& step, const Store& store);
+  OpenStep& open_step_for(NodeId id, const Property& property);
+  OpenStep& open_step();
+  void complete_steps(const Store& store);
+  void purge_removed(Step& step, const Store& store);
   void trim();
   void drop(const Step* step);
-  bool goes_on(const Step& step, const World& world) const;
-  Result<void> exchange(Steps& from, Steps& to, World& world, const char* what);
-  static void exchange(Step& step, Store& store, std::size_t& changed, std::size_t& gone);
+  bool extended_by_other(const Step& step, const World& world) const;
+  Result<void> exchange(Steps& from, Steps& to, World& world, const char* verb);
+  static void exchange(Step& step, Store& store, std::size_t& changed, std::size_t& removed);
   static bool differs(const Step& step, const Store& store);
-  void tell_texts(const Store& store);
+  void update_texts(const Store& store);
 
-  PerformerHand& hand_;
-  Steps done_, undone_;
-  std::array<Open, 8> open_;
+  Overrides& overrides_;
+  Steps undo_steps_, redo_steps_;
+  std::array<OpenStep, 8> open_steps_;
   std::uint64_t uses_ = 0;
   std::size_t values_ = 0;
-  // of the hand that sets now
-  Origin who_;
-  std::uint64_t pass_ = 0;  // counts ticks, and those in which time stands still
-  std::uint64_t structure_ = 0;
+  // of the controller that writes now
+  CommandOrigin source_;
+  std::uint64_t pass_ = 0;               // counts passes, with and without a time step
+  std::uint64_t structure_version_ = 0;  // structure version of the store at begin()
   double time_ = 0;
   bool running_ = false;
-  Open* now_ = nullptr;
-  bool quiet_ = false;  // it undoes itself
-  bool told_ = true;
+  OpenStep* current_ = nullptr;  // the step of this controller in this pass
+  bool exchanging_ = false;      // during undo and redo: their writes are not recorded
+  bool texts_valid_ = true;      // undo_text_ and redo_text_ are up to date
   std::uint64_t version_ = 0;
   std::string undo_text_, redo_text_;
 };

@@ -1,4 +1,4 @@
-// The simulation thread's loop.
+// Engine: start, reset, the loop and the phases of a tick.
 #include "engine/engine.h"
 
 #include <algorithm>
@@ -16,14 +16,14 @@ namespace limber {
 
 namespace {
 
-// while the next tick is further away than this, commands take effect without waiting for it
-constexpr auto kLongestWait = std::chrono::milliseconds(50);
-// of a tick's work: a refusal or an answer, and what the scene's handlers may hear
+// Longest wait between two checks of the command queue, so that commands take effect even if the next tick is far away.
+constexpr auto kMaxWait = std::chrono::milliseconds(50);
+// Costs in units of kTickWork: a rejection or an answer, a message to the scene's handlers, a console evaluation.
 constexpr int kTextWork = 7;
-constexpr int kHeardWork = 3;
-constexpr int kEvaluationWork = 512;  // a text of a console may compute for long
+constexpr int kHandlerWork = 3;
+constexpr int kEvaluationWork = 512;
 
-// the time since the last lap
+// Measures intervals: lap() returns the seconds since the previous lap() or the construction.
 class Stopwatch {
  public:
   double lap() {
@@ -40,16 +40,16 @@ class Stopwatch {
 Engine::Engine(EngineLink& link, EngineOptions options)
     : link_(link),
       options_(std::move(options)),
-      team_(options_.threads > 1 ? std::make_shared<Team>(options_.threads) : nullptr),
-      stage_(new_stage()),
-      reload_(options_.scene, *this, hand_) {
-  link_.wake_engine = [this] { commands_wait_.store(true, std::memory_order_relaxed); };
+      thread_pool_(options_.threads > 1 ? std::make_shared<ThreadPool>(options_.threads) : nullptr),
+      session_(new_session()),
+      reloader_(options_.scene, *this, overrides_) {
+  link_.wake_engine = [this] { commands_waiting_.store(true, std::memory_order_relaxed); };
 }
 
-std::unique_ptr<Stage> Engine::new_stage() {
+std::unique_ptr<Session> Engine::new_session() {
   WorldSetup setup;
-  setup.team = team_;
-  return std::make_unique<Stage>(link_, presets_, edits_, setup);
+  setup.thread_pool = thread_pool_;
+  return std::make_unique<Session>(link_, presets_, undo_stack_, setup);
 }
 
 Engine::~Engine() {
@@ -61,175 +61,176 @@ Result<void> Engine::start() {
   if (!options_.replay.empty()) return start_replay();
   open_recovery();
   if (!options_.record.empty()) {
-    if (Result<void> recorded = start_record(); !recorded) return recorded;
+    if (Result<void> recorded = start_recording(); !recorded) return recorded;
   }
   presets_.open(read_presets(options_.scene));
   Result<void> started = start_show();
-  if (started) take_tick(false, true);
-  if (!started) drop_take();
+  if (started) finish_take_tick(false, true);
+  if (!started) abandon_recording();
   if (recovery_ != nullptr) recovery_->begin();
   return started;
 }
 
 Result<void> Engine::start_show() {
-  const TakenRun run = begin_run(TakeRun::Kind::start);
-  const SceneOptions live = scene_options();
-  SceneOptions run_options = live;
+  const RecordedRun run = begin_run(TakeSceneRun::Kind::start);
+  const SceneOptions options = scene_options();
+  SceneOptions run_options = options;
   run_options.sources = run.sources;
-  if (run.fails) return Error{"the scene did not run when the take was recorded either"};
-  if (Result<void> ran = stage_->run(options_.scene, *this, run_options); !ran) {
-    std::vector<SourceFile> tried = stage_->scene->sources()->files();
-    stage_ = new_stage();
-    reload_.begin(*stage_, live, options_.scene, std::move(tried));
-    presets_.scene_says(reload_.script());
-    return ran;
+  if (run.fails) return Error{"the scene failed when the take was recorded, too"};
+  if (Result<void> result = session_->run(options_.scene, *this, run_options); !result) {
+    std::vector<SourceFile> tried_files = session_->scene->sources()->files();
+    session_ = new_session();
+    reloader_.capture(*session_, options, options_.scene, std::move(tried_files));
+    presets_.set_script_preset(reloader_.script_preset());
+    return result;
   }
-  if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
-  run_was_good(run, *stage_, presets_.list(), presets_.file());
-  reload_.begin(*stage_, live, options_.scene);
-  presets_.scene_says(reload_.script());
-  World& world = stage_->world;
+  if (session_->scene != nullptr) session_->scene->set_call_log(call_log_);
+  run_succeeded(run, *session_, presets_.list(), presets_.file());
+  reloader_.capture(*session_, options, options_.scene);
+  presets_.set_script_preset(reloader_.script_preset());
+  World& world = session_->world;
   if (options_.scene_options.seed) {
     const auto seed = static_cast<double>(*options_.scene_options.seed);
-    (void)stage_->store.set(world.id(), "seed", {&seed, 1});  // any 53-bit seed is in its range
+    (void)session_->store.set(world.id(), "seed", {&seed, 1});  // can't fail: any 53-bit seed is in range
   }
   scene_seed_ = world.seed();
-  if (Result<void> set = first_hand(); !set) return set;
+  if (Result<void> set = apply_initial_overrides(); !set) return set;
   begin_show();
   publish();
   return {};
 }
 
-// what the hand has set may want another run before the scene's on_start sees it
+// The initial overrides may require another run of the scene (parameters with `rerun`), before its on_start.
 void Engine::begin_show() {
-  if (reload_.take_rerun(*stage_)) run_now(TakeRun::Kind::rerun, true);
-  stage_->world.settle();
-  if (stage_->scene != nullptr) stage_->scene->start();
-  presets_.make_ready(stage_->world);
+  if (reloader_.consume_rerun(*session_)) run_scene_now(TakeSceneRun::Kind::rerun, true);
+  session_->world.flush();
+  if (session_->scene != nullptr) session_->scene->start();
+  presets_.finish_planning(session_->world);
 }
 
 bool Engine::reset() {
   stall_excused_ = true;
-  const TakenRun run = begin_run(TakeRun::Kind::reset);
-  // a scene that fails now leaves the show as it is
-  auto fresh = new_stage();
-  SceneOptions live = scene_options();
-  const World& before = stage_->world;
-  if (before.seed() != scene_seed_) live.seed = before.seed();  // the performer's
-  SceneOptions run_options = live;
+  const RecordedRun run = begin_run(TakeSceneRun::Kind::reset);
+  // a scene that fails leaves the show unchanged
+  auto fresh = new_session();
+  SceneOptions options = scene_options();
+  const World& before = session_->world;
+  if (before.seed() != scene_seed_) options.seed = before.seed();  // the performer has set it
+  SceneOptions run_options = options;
   run_options.sources = run.sources;
-  const Result<void> ran = run.fails ? Result<void>(Error{"as it had when the take was recorded"})
-                                     : fresh->run(options_.scene, *this, run_options);
-  if (!ran) {
+  const Result<void> result = run.fails ? Result<void>(Error{"it failed when the take was recorded, too"})
+                                        : fresh->run(options_.scene, *this, run_options);
+  if (!result) {
     faults_++;
-    log_error("reset: the scene plays on as it was, its file has an error: {}", ran.error());
+    log_error("reset: the scene file has an error, so the show continues unchanged: {}", result.error());
     return false;
   }
-  run_was_good(run, *fresh);
-  reload_.begin(*fresh, live, options_.scene);
-  presets_.scene_says(reload_.script());
-  if (live.seed) keep_state(*fresh, "seed");
-  take_stage(std::move(fresh));
-  if (stage_->scene != nullptr) stage_->scene->arm();  // while both were there, the new one ran interpreted
-  replay_hand();
+  run_succeeded(run, *fresh);
+  reloader_.capture(*fresh, options, options_.scene);
+  presets_.set_script_preset(reloader_.script_preset());
+  if (options.seed) copy_session_value(*fresh, "seed");
+  install_session(std::move(fresh));
+  if (session_->scene != nullptr) session_->scene->arm();  // the JIT was off while two scenes existed
+  reapply_overrides();
   begin_show();
   send_transport();
   return true;
 }
 
-// what belongs to the hour, not to the scene
-void Engine::keep_state(Stage& fresh, std::string_view name) const {
-  const Row& row = World::table().at(name);
-  (void)fresh.store.set(fresh.world.id(), row, {stage_->store.values(stage_->world.id(), row), 1});
+// Copies a value that is session state, not scene state (paused, speed, history), into a new session.
+void Engine::copy_session_value(Session& fresh, std::string_view name) const {
+  const Property& property = World::table().at(name);
+  (void)fresh.store.set(fresh.world.id(), property, {session_->store.values(session_->world.id(), property), 1});
 }
 
-std::unique_ptr<Stage> Engine::take_stage(std::unique_ptr<Stage> fresh) {
-  for (const char* state : {"paused", "speed", "history"}) keep_state(*fresh, state);
-  return swap_stage(std::move(fresh));
+std::unique_ptr<Session> Engine::install_session(std::unique_ptr<Session> fresh) {
+  for (const char* state : {"paused", "speed", "history"}) copy_session_value(*fresh, state);
+  return swap_session(std::move(fresh));
 }
 
-// the debug picture is whoever looks's, whatever plays
-std::unique_ptr<Stage> Engine::swap_stage(std::unique_ptr<Stage> fresh) {
-  const Row& overlay = Look::table().at("overlay");
-  (void)fresh->store.set(fresh->world.visuals().look().id(), overlay,
-                         {stage_->store.values(stage_->world.visuals().look().id(), overlay), 1});
-  faults_ += stage_->world.health_events();
-  heard_.clear();
-  std::swap(stage_, fresh);
-  history_.begin_anew("the scene has begun there");
-  edits_.follow(fresh->store, stage_->store);
-  if (stage_->scene != nullptr) stage_->scene->count_calls(calls_);
-  images_.forget_store();
+// The debug overlay belongs to the user, so it stays as it is across scenes.
+std::unique_ptr<Session> Engine::swap_session(std::unique_ptr<Session> fresh) {
+  const Property& overlay = Appearance::table().at("overlay");
+  (void)fresh->store.set(fresh->world.visuals().appearance().id(), overlay,
+                         {session_->store.values(session_->world.visuals().appearance().id(), overlay), 1});
+  faults_ += session_->world.health_events();
+  handler_queue_.clear();
+  std::swap(session_, fresh);
+  history_.clear("the scene starts there");
+  undo_stack_.rebind(fresh->store, session_->store);
+  if (session_->scene != nullptr) session_->scene->set_call_log(call_log_);
+  value_snapshotter_.reset_store();
   presets_.forget_store();
   return fresh;
 }
 
-// what the performer set and the scene still has; but what a reload has given back since is as the scene says
-void Engine::replay_hand() {
+// Applies the overrides to the new session in their order. A value that a reload has released since gets the value of
+// the scene again.
+void Engine::reapply_overrides() {
   struct Value {
-    Place place;
+    PropertyRef ref;
     std::array<double, 4> values{};
   };
-  const std::vector<HandStep> steps = hand_.in_order();
-  Store& store = stage_->store;
-  std::vector<Value> scenes;
-  for (const HandStep& step : steps) {
+  const std::vector<Override> steps = overrides_.in_order();
+  Store& store = session_->store;
+  std::vector<Value> scene_values;
+  for (const Override& step : steps) {
     if (step.address == nullptr) continue;
-    const Result<Place> place = find_place(store, *step.address);
-    scenes.push_back({place ? *place : Place{}, {}});
-    if (place && place->row != nullptr) store.get(place->node, *place->row, scenes.back().values.data());
+    const Result<PropertyRef> ref = find_property(store, *step.address);
+    scene_values.push_back({ref ? *ref : PropertyRef{}, {}});
+    if (ref && ref->property != nullptr) store.get(ref->node, *ref->property, scene_values.back().values.data());
   }
-  auto next = scenes.begin();
-  for (const HandStep& step : steps) {
-    if (step.message != nullptr) (void)stage_->dispatch.execute(*step.message);
-    if (step.blend != nullptr) presets_.repeat(stage_->world, *step.blend);
+  auto next = scene_values.begin();
+  for (const Override& step : steps) {
+    if (step.message != nullptr) (void)session_->dispatcher.execute(*step.message);
+    if (step.blend != nullptr) presets_.reapply(session_->world, *step.blend);
     if (step.address == nullptr) continue;
     const Value& value = *next++;
-    if (value.place.row != nullptr)
-      (void)store.set(value.place.node, *value.place.row, {value.values.data(), value.place.row->width});
+    if (value.ref.property != nullptr)
+      (void)store.set(value.ref.node, *value.ref.property, {value.values.data(), value.ref.property->width});
   }
 }
 
 void Engine::run() {
-  if (!replays()) requests_.open();
+  if (!is_replaying()) executor_.open();
   clock_.restart(Clock::Time::clock::now());
   while (!stop_.load(std::memory_order_relaxed) && !finished()) {
-    options_.on_turn();
-    // while time stood still a replay does not wait
-    const bool at_once =
-        replays() ? options_.fast || !player_->steps_next() : options_.fast && !stage_->transport.paused();
-    if (at_once) {
-      clock_.measure(Clock::Time::clock::now(), stage_->world.timestep());
-      pass(true);
+    options_.on_iteration();
+    // a replay does not wait for passes without a time step
+    const bool immediately =
+        is_replaying() ? options_.fast || !player_->steps_next() : options_.fast && !session_->transport.paused();
+    if (immediately) {
+      clock_.measure_speed(Clock::Time::clock::now(), session_->world.timestep());
+      run_pass(true);
     } else if (wait_for_tick()) {
       pace();
-      pass(true);
-    } else if (commands_wait_.exchange(false, std::memory_order_relaxed) || link_.panic_signal.load() ||
-               !heard_.empty()) {
-      pass(false);
+      run_pass(true);
+    } else if (commands_waiting_.exchange(false, std::memory_order_relaxed) || link_.panic_signal.load() ||
+               !handler_queue_.empty()) {
+      run_pass(false);
     }
   }
-  requests_.close();
+  executor_.close();
   end_take();
 }
 
-// false: the tick is not due yet, but somebody may wait for an answer
+// Returns false if the tick is not due yet, but requests or commands may wait for a pass.
 bool Engine::wait_for_tick() {
-  const auto due = clock_.due();
-  const auto until = std::min(due, Clock::Time::clock::now() + kLongestWait);
+  const auto next_tick = clock_.next_tick();
+  const auto until = std::min(next_tick, Clock::Time::clock::now() + kMaxWait);
   std::unique_lock lock(wake_mutex_);
-  const bool called =
-      wake_.wait_until(lock, until, [this] { return stop_.load(std::memory_order_relaxed) || requests_.waiting(); });
-  return until == due && !called;
+  const bool requested =
+      wake_.wait_until(lock, until, [this] { return stop_.load(std::memory_order_relaxed) || executor_.waiting(); });
+  return until == next_tick && !requested;
 }
 
 void Engine::pace() {
-  static const Row& speed_row = World::table().at("speed");
-  World& world = stage_->world;
-  const double speed = stage_->store.values(world.id(), speed_row)[0];
+  static const Property& speed_property = World::table().at("speed");
+  World& world = session_->world;
+  const double speed = session_->store.values(world.id(), speed_property)[0];
   clock_.tick(Clock::Time::clock::now(), world.timestep(), speed);
   count_stall();
-  if (clock_.take_late() && !stage_->transport.paused()) {
+  if (clock_.consume_late() && !session_->transport.paused()) {
     log_warning(
         "time runs at {:.2f} × real time instead of {}: this machine can't keep up; fewer substeps or "
         "solver_iterations would help",
@@ -237,25 +238,24 @@ void Engine::pace() {
   }
 }
 
-// a machine that is too slow all the time loses it in small pieces, which is said otherwise
+// Counts interruptions. A machine that is permanently too slow loses time in small pieces, which pace() reports.
 void Engine::count_stall() {
-  constexpr double kWorthSaying = 0.5;  // s
-  const double lost = clock_.lost(system::suspended_seconds());
-  if (std::exchange(stall_excused_, false) || stage_->transport.paused()) return;
+  constexpr double kReportSeconds = 0.5;  // s
+  const double lost = clock_.lost_seconds(system::suspended_seconds());
+  if (std::exchange(stall_excused_, false) || session_->transport.paused()) return;
   lost_time_ += lost;
-  if (lost < kWorthSaying || std::exchange(stall_said_, true)) return;
+  if (lost < kReportSeconds || std::exchange(stall_reported_, true)) return;
   log_warning(
-      "the show stood still for {:.1f} s: the program was stopped, or the machine was suspended or busy. This is not "
-      "made "
-      "up, and is said once; /transport/lost_time counts on",
+      "the show was stalled for {:.1f} s: the program was stopped, or the machine was suspended or busy. The lost time "
+      "is not caught up. Reported once; /transport/lost_time has the total",
       lost);
 }
 
 bool Engine::finished() const {
-  if (replays() && !plays_ && player_->over()) return true;
+  if (is_replaying() && !plays_in_show_ && player_->finished()) return true;
   if (options_.strict && faults() > 0) return true;
-  if (options_.ticks && stage_->world.tick() >= *options_.ticks) return true;
-  return options_.duration && stage_->world.time() >= *options_.duration - 1e-9;
+  if (options_.ticks && session_->world.tick() >= *options_.ticks) return true;
+  return options_.duration && session_->world.time() >= *options_.duration - 1e-9;
 }
 
 void Engine::stop() {
@@ -266,202 +266,206 @@ void Engine::stop() {
   wake_.notify_all();
 }
 
-void Engine::pass(bool may_step) {
+void Engine::run_pass(bool may_step) {
   fixed::reset_arithmetic();
   Stopwatch watch;
-  calls_.begin_tick();
-  requests_.serve();
-  if (plays_ && (link_.panic_signal.load() || link_.inbox.waits(UrgentKind::panic))) end_play();
-  if (replays() && !next_of_take(may_step)) {
-    if (!plays_) return;
+  call_log_.begin_tick();
+  executor_.serve();
+  if (plays_in_show_ && (link_.panic_signal.load() || link_.command_queue.has_urgent(UrgentKind::panic))) end_play();
+  if (is_replaying() && !next_replay_tick(may_step)) {
+    if (!plays_in_show_) return;
     end_play();
   }
-  rerun();
-  age_panic(may_step);
-  drain();
+  rerun_if_requested();
+  update_panic_age(may_step);
+  execute_commands();
   times_.commands = watch.lap();
 
-  Stage& stage = *stage_;
-  const bool goes_on = may_step && (!stage.transport.paused() || stage.transport.take_step());
-  const bool running = replays() ? may_step : goes_on;  // the take has it
-  play(running);
+  Session& session = *session_;
+  const bool advances = may_step && (!session.transport.paused() || session.transport.consume_step());
+  const bool running = is_replaying() ? may_step : advances;  // in a replay the take decides
+  simulate(running);
   watch.lap();
 
-  if (take_wanted_) {
-    begin_take();
+  if (requested_take_) {
+    begin_recording();
   } else {
-    if (stage.world.take_reset_request()) reset();
-    take_tick(running);
+    if (session.world.consume_reset_request()) reset();
+    finish_take_tick(running);
   }
-  if (std::exchange(take_ends_, false)) {
+  if (std::exchange(take_end_requested_, false)) {
     end_take();
-    if (plays_) end_play();
+    if (plays_in_show_) end_play();
   }
-  tell_health();
+  update_health();
   publish();
-  make_image(asks_);
-  if (was_paused_ != stage_->transport.paused()) send_transport();
+  make_value_snapshot(snapshot_requests_);
+  if (was_paused_ != session_->transport.paused()) send_transport();
   times_.snapshot = watch.lap();
-  presets_.prepare(stage_->world);
-  if (recovery_ != nullptr && !replays() && recovery_->asks()) give_recovery();
-  if (stage_->scene != nullptr) stage_->scene->collect_garbage();
+  presets_.prepare(session_->world);
+  if (recovery_ != nullptr && !is_replaying() && recovery_->wants_values()) update_recovery();
+  if (session_->scene != nullptr) session_->scene->collect_garbage();
   end_pass(running);
-  times_.collector = watch.lap();
+  times_.gc = watch.lap();
 }
 
-// what the tick is made of once its commands are done
-void Engine::play(bool running) {
-  Stage& stage = *stage_;
+// The part of a tick after its commands: morphs, handlers, scene callbacks and, if `running`, a physics step.
+void Engine::simulate(bool running) {
+  Session& session = *session_;
   Stopwatch watch;
   end_panic();
-  if (running) presets_.advance(stage.world);
+  if (running) presets_.advance(session.world);
   call_handlers();
-  if (running && stage.scene != nullptr && !stage.world.panic().on()) stage.scene->tick(stage.world.timestep());
-  carry_out_wishes();
+  if (running && session.scene != nullptr && !session.world.panic().on()) session.scene->tick(session.world.timestep());
+  execute_preset_requests();
   begin_panic();
-  edits_.end(stage.store);
-  if (!again_) notes_.tell(stage.store);
+  undo_stack_.end(session.store);
+  if (!resimulating_) change_recorder_.flush(session.store);
   times_.scripts = watch.lap();
-  if (!running) return stage.world.settle();
-  stage.dispatch.pull_grips();
-  stage.world.step();
-  const TickTimes& physics = stage.world.times();
+  if (!running) return session.world.flush();
+  session.dispatcher.apply_mouse_springs();
+  session.world.step();
+  const TickTimes& physics = session.world.times();
   times_.behaviors = physics.behaviors;
-  times_.effects = physics.effects;
+  times_.callbacks = physics.flush;
   times_.physics = physics.physics;
   times_.readouts = physics.readouts;
   send_contacts();
 }
 
 void Engine::publish() {
-  stage_->counters.tell();
-  stage_->preset_node.tell();
-  tell_transport();
-  tell_take();
-  stage_->publisher.publish(stage_->transport.paused(), clock_.speed_reached(), times_);
+  session_->counters.publish();
+  session_->preset_node.publish();
+  update_transport();
+  update_take_node();
+  session_->publisher.publish(session_->transport.paused(), clock_.speed_reached(), times_);
 }
 
-void Engine::make_image(std::uint64_t asks) {
-  if (!images_.make(stage_->store, link_.snapshots.read(), asks)) return;
+void Engine::make_value_snapshot(std::uint64_t requests) {
+  if (!value_snapshotter_.make(session_->store, link_.snapshots.read(), requests)) return;
   link_.wake_network();
   link_.wake_query();
 }
 
-void Engine::drain() {
-  stage_->dispatch.begin_tick();
-  (void)stage_->transport.take_back();  // of the command line
-  Hands hands(stage_->world, presets_, edits_, notes_);
-  if (replays()) return replay_messages(hands);
-  execute_urgent(hands);
-  answer_questions(hands);
-  const double begun = options_.clock();
-  bool taken = false;
+void Engine::execute_commands() {
+  session_->dispatcher.begin_tick();
+  (void)session_->transport.consume_rewind();  // drops a rewind request of the command line
+  EditScope edit_scope(session_->world, presets_, undo_stack_, change_recorder_);
+  if (is_replaying()) return replay_messages(edit_scope);
+  execute_urgent(edit_scope);
+  answer_pending_queries(edit_scope);
+  const double start_time = options_.clock();
+  bool drained = false;
   for (int work = kTickWork; work > 0;) {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
-      hands.begin(command.origin);
+      edit_scope.begin(command.origin);
       for (Message& message : command.messages) {
         work--;
-        if (overtaken(message, command.arrival) || waits_for_steps(message, command.origin)) continue;
+        if (discard_if_overtaken(message, command.arrival) || postpone_query(message, command.origin)) continue;
         work -= execute(message, command.origin);
-        if (std::exchange(went_back_, false)) hands.begin(command.origin);
+        if (std::exchange(rewound_, false)) edit_scope.begin(command.origin);
       }
-      if (command.evaluate == nullptr) continue;
-      evaluate(*command.evaluate, command.origin);
+      if (command.evaluation == nullptr) continue;
+      evaluate(*command.evaluation, command.origin);
       work -= kEvaluationWork;
-      if (!options_.fast && options_.clock() - begun > kHandlerSeconds) break;
+      if (!options_.fast && options_.clock() - start_time > kHandlerSeconds) break;
       continue;
     }
-    asks_ = asks_of_batch_;
-    if (std::exchange(taken, true)) break;
-    asks_of_batch_ = link_.image_asks.load();  // an image holds whatever had come when it was asked for
-    link_.inbox.drain(commands_);
+    snapshot_requests_ = snapshot_requests_of_batch_;
+    if (std::exchange(drained, true)) break;
+    // before the queue is drained, because a value snapshot must contain all commands that came before its request
+    snapshot_requests_of_batch_ = link_.value_snapshot_requests.load();
+    link_.command_queue.drain(commands_);
     next_command_ = 0;
   }
 }
 
-// `params` that it sets are the performer's; in takes of before they were not
+// Scene parameters that the text sets become overrides, except in replays of older takes.
 Evaluation Engine::evaluate_text(std::string_view text) {
-  Scene& scene = *stage_->scene;
-  const ConsoleParams set(stage_->store, scene.params());
-  Evaluation said = scene.evaluate(text);
-  if (!replays() || player_->keeps_timers()) set.remember(hand_);
-  return said;
+  Scene& scene = *session_->scene;
+  const ConsoleParams console_params(session_->store, scene.params());
+  Evaluation result = scene.evaluate(text);
+  if (!is_replaying() || player_->keeps_timers()) console_params.add_to(overrides_);
+  return result;
 }
 
-// what a person mistypes is answered to them and is no fault of the show
-void Engine::evaluate(const Evaluate& wish, const Origin& origin) {
-  Evaluation said{Evaluation::Kind::error, "there is no scene to evaluate in"};
+// An error in the text is returned to its author and is not counted as a fault of the show.
+void Engine::evaluate(const EvaluationRequest& request, const CommandOrigin& origin) {
+  Evaluation result{Evaluation::Kind::error, "there is no scene to evaluate in"};
   const std::uint64_t before = log_newest();
-  if (wish.text.size() > kMostEvaluated) {
-    said.text = fmt::format("a text for the scene has up to {} bytes, this one {}", kMostEvaluated, wish.text.size());
-  } else if (stage_->scene != nullptr) {
-    Scene& scene = *stage_->scene;
-    if (wish.wish == Evaluate::Wish::run) {
-      if (recorder_ != nullptr) recorder_->evaluation(wish.text, origin);
-      history_.note({wish.text, {}}, origin, true);
+  if (request.text.size() > kMaxEvaluatedBytes) {
+    result.text = fmt::format("the text must have at most {} bytes, got {}", kMaxEvaluatedBytes, request.text.size());
+  } else if (session_->scene != nullptr) {
+    Scene& scene = *session_->scene;
+    if (request.action == EvaluationRequest::Action::run) {
+      if (recorder_ != nullptr) recorder_->record_evaluation(request.text, origin);
+      history_.record_input({request.text, {}}, origin, true);
     }
-    said = wish.wish == Evaluate::Wish::run ? evaluate_text(wish.text) : scene.complete(wish.text);
+    result =
+        request.action == EvaluationRequest::Action::run ? evaluate_text(request.text) : scene.complete(request.text);
   }
-  said.log_before = before;
-  said.log_after = log_newest();
-  wish.answer(std::move(said));
+  result.log_before = before;
+  result.log_after = log_newest();
+  request.on_result(std::move(result));
 }
 
-int Engine::execute(Message& message, const Origin& origin) {
-  Outcome outcome = stage_->dispatch.execute(message);
-  const std::optional<Transport::Back> back = stage_->transport.take_back();
-  if (back && !again_) {
-    outcome = go_back(*back, origin);
-    went_back_ = true;
-  } else if (!again_) {
-    if (recorder_ != nullptr) recorder_->message(message, origin);
-    history_.note(message, origin);
+int Engine::execute(Message& message, const CommandOrigin& origin) {
+  Outcome outcome = session_->dispatcher.execute(message);
+  const std::optional<Transport::RewindRequest> rewind_request = session_->transport.consume_rewind();
+  if (rewind_request && !resimulating_) {
+    outcome = rewind(*rewind_request, origin);
+    rewound_ = true;
+  } else if (!resimulating_) {
+    if (recorder_ != nullptr) recorder_->record_message(message, origin);
+    history_.record_input(message, origin);
   }
-  if (outcome.kind == Outcome::Kind::takes && !again_) outcome = ask_take(message);
-  if (outcome.kind == Outcome::Kind::scenes && (!link_.ask_scenes || again_)) outcome.kind = Outcome::Kind::refused;
-  if (outcome.clamped != nullptr && !again_) {
+  if (outcome.kind == Outcome::Kind::take_request && !resimulating_) outcome = request_take(message);
+  if (outcome.kind == Outcome::Kind::scene_request && (!link_.on_scene_request || resimulating_))
+    outcome.kind = Outcome::Kind::rejected;
+  if (outcome.clamped != nullptr && !resimulating_) {
     link_.counters.clamped.fetch_add(1, std::memory_order_relaxed);
-    say_clamped(message, *outcome.clamped);
+    report_clamped(message, *outcome.clamped);
   }
-  if (outcome.kept) hand_.remember(message);
-  if (origin.follows && !again_ && outcome.kind == Outcome::Kind::applied) {
-    for (const Dispatch::Write& write : stage_->dispatch.written())
-      images_.note(stage_->store, origin, write.place, write.place.row == outcome.clamped);
+  if (outcome.sets_override) overrides_.add(message);
+  if (origin.is_subscriber && !resimulating_ && outcome.kind == Outcome::Kind::applied) {
+    for (const MessageDispatcher::Write& write : session_->dispatcher.writes())
+      value_snapshotter_.note_write(session_->store, origin, write.ref, write.ref.property == outcome.clamped);
   }
-  if (!outcome.said.empty() && !again_) {
-    say_left_out(outcome.said);
-    refuse(message.address, origin, outcome.said);
+  if (!outcome.warning.empty() && !resimulating_) {
+    report_warning(outcome.warning);
+    send_error(message.address, origin, outcome.warning);
   }
-  for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
-  if (outcome.kind == Outcome::Kind::refused && !again_) {
+  for (Message& answer : outcome.answers) push_out({Outgoing::Destination::sender, origin, std::move(answer)});
+  if (outcome.kind == Outcome::Kind::rejected && !resimulating_) {
     link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
     faults_++;
-    refuse(message.address, origin, outcome.error);
+    send_error(message.address, origin, outcome.error);
   }
-  if (outcome.kind == Outcome::Kind::scenes) link_.ask_scenes(message, origin);
+  if (outcome.kind == Outcome::Kind::scene_request) link_.on_scene_request(message, origin);
   const bool unknown = outcome.kind == Outcome::Kind::unknown;
-  const bool listens = stage_->scene != nullptr && stage_->scene->listens();
+  const bool has_handlers = session_->scene != nullptr && session_->scene->has_handlers();
   const bool applied = outcome.kind == Outcome::Kind::applied;
-  const int work =
-      static_cast<int>(stage_->dispatch.written().size()) + (applied ? 0 : kTextWork) + (listens ? kHeardWork : 0);
-  // the scene's handlers hear it after every message of the tick took effect
-  if (back) return work;
-  if (listens) {
-    const bool fits = heard_.push({std::move(message), origin, unknown, std::move(outcome.error)}, has_rules());
-    if (!fits && !again_) link_.counters.unheard.fetch_add(1, std::memory_order_relaxed);
-  } else if (unknown && !again_) {
+  const int work = static_cast<int>(session_->dispatcher.writes().size()) + (applied ? 0 : kTextWork) +
+                   (has_handlers ? kHandlerWork : 0);
+  // the scene's handlers are called after all messages of the tick have taken effect
+  if (rewind_request) return work;
+  if (has_handlers) {
+    const bool fits =
+        handler_queue_.push({std::move(message), origin, unknown, std::move(outcome.error)}, has_current_rules());
+    if (!fits && !resimulating_) link_.counters.unheard.fetch_add(1, std::memory_order_relaxed);
+  } else if (unknown && !resimulating_) {
     link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-    refuse(message.address, origin, outcome.error);
+    send_error(message.address, origin, outcome.error);
   }
   return work;
 }
 
 std::uint64_t Engine::state_hash() const {
-  const std::uint64_t hash = stage_->world.state_hash();
-  return stage_->scene == nullptr ? hash : stage_->scene->state_hash(hash);
+  const std::uint64_t hash = session_->world.state_hash();
+  return session_->scene == nullptr ? hash : session_->scene->state_hash(hash);
 }
 
-void Engine::ask_reset() { stage_->world.ask_reset(); }
+void Engine::request_reset() { session_->world.request_reset(); }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Engine: the simulation thread's loop. One tick: commands, scene callbacks, physics, snapshot; and pacing. It owns the
-// world and the scene; the outside sees only its EngineLink.
+// Engine: the main loop of the simulation thread. Each tick executes commands, scene callbacks and physics, publishes a
+// snapshot and waits for the next tick. It owns the world and the scene; other threads use its EngineLink only.
 #pragma once
 
 #include <atomic>
@@ -33,209 +33,212 @@
 namespace limber {
 
 struct EngineOptions {
-  std::string scene;                   ///< File of the scene; empty: an empty world.
+  std::string scene;                   ///< Scene file; empty: an empty world.
   SceneOptions scene_options;          ///< Seed, package paths, installed data.
-  bool fast = false;                   ///< Ticks as fast as they can be computed, with the same result.
-  std::optional<std::uint64_t> ticks;  ///< Ends after so many; else runs until stop().
-  std::optional<double> duration;      ///< Ends at that simulated time, s.
+  bool fast = false;                   ///< Computes ticks without waiting for real time. The result is the same.
+  std::optional<std::uint64_t> ticks;  ///< Ends after this number of ticks; else runs until stop().
+  std::optional<double> duration;      ///< Ends at this simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
-  bool print = true;                   ///< Scripts' print goes to stdout; false: to stderr, where stdout is an answer.
+  bool print = true;                   ///< Scripts print to stdout; false: to stderr, because stdout is the output.
   std::string preset;                  ///< `--preset`: recalled before the first tick.
-  std::string record;                  ///< A take goes there, from the start on.
-  std::string replay;                  ///< This take is played; it has the scene and all that came in.
-  bool current_scripts = false;        ///< A replay reads the scene from the disk, as it is now.
-  std::string locks;     ///< Folder of the locks with which one program owns a scene's presets; empty: none.
-  std::string recovery;  ///< The show's values are kept in that folder as long as it plays; empty: not.
-  std::chrono::milliseconds recovery_every = RecoveryKeeper::kEvery;
-  bool recover = false;       ///< `--recover`: what a run that did not end well has left is brought back.
-  int threads = 1;            ///< That share out a step, 1 to Team::kMost, with the same result.
-  std::vector<Message> sets;  ///< `--set`: the performer's hand before the first tick, after the preset.
-  /// Called by run() in each turn of its loop, at least 20 times a second, also while paused. It never waits. [sim]
-  std::function<void()> on_turn = [] {};
-  /// Real time in seconds, for budgets and for the first second of a panic; for tests.
+  std::string record;                  ///< Records a take to this file, from the start on.
+  std::string replay;                  ///< Replays this take, which contains the scene and all input.
+  bool current_scripts = false;        ///< A replay reads the scene from the disk, in its current state.
+  /// Folder of the lock files that make one program the owner of a scene's presets; empty: no locks.
+  std::string lock_folder;
+  std::string recovery_folder;  ///< Folder of the recovery file, written while the show plays; empty: no recovery.
+  std::chrono::milliseconds recovery_interval = RecoverySaver::kInterval;
+  bool recover = false;       ///< `--recover`: restores the values of a run that crashed.
+  int threads = 1;            ///< Threads for each physics step. The result is the same for any number.
+  std::vector<Message> sets;  ///< `--set`: overrides, applied before the first tick and after the preset.
+  /// Called in each iteration of the loop of run(), at least 20 times a second, also while paused. Must not block.
+  /// [sim]
+  std::function<void()> on_iteration = [] {};
+  /// Real time in seconds, for time budgets and for the first second of a panic. Tests replace it.
   std::function<double()> clock = system::clock_seconds;
 };
 
 class Engine : private ScriptHost {
  public:
-  /// Work that messages may make in one tick: 1 each and 1 a value, more where a text is made or the scene listens. The
-  /// rest waits for the next ticks, in its order, so that a flood does not hold up time. A datagram is never split.
+  /// Work budget of the messages of one tick: 1 per message and per value, more if a text is formatted or the scene has
+  /// handlers. The remaining messages wait in order for the next ticks, so a flood does not stop time. A datagram is
+  /// never split.
   static constexpr int kTickWork = 8192;
-  /// Another request for a panic within its first second is ignored, so that a second press by mistake doesn't end it,
-  /// s.
-  static constexpr double kPanicFirst = 1;
-  /// Time that handlers (osc:on) get: this part of real time, saved up to this many seconds. One call may exceed it;
-  /// then the next ones wait until that is made up. Messages wait in order, and what they set acts at once. With --fast
-  /// there is no limit.
+  /// Seconds in which another panic request is ignored, so that pressing the button twice does not end the panic.
+  static constexpr double kPanicGuardSeconds = 1;
+  /// Time budget of handlers (osc:on), a token bucket: it refills by this share of real time, up to kHandlerSeconds.
+  /// One call may overdraw it; the next calls then wait until it is positive again. Messages are handled in order, and
+  /// the values that they set take effect at once. With --fast there is no limit.
   static constexpr double kHandlerShare = 0.5;
   static constexpr double kHandlerSeconds = 0.008;
-  /// Questions (/get) that wait for the ticks of a step before them.
-  static constexpr std::size_t kMostQuestions = 256;
+  /// Maximum number of queries (/get) that wait for an earlier /transport/step of the same sender.
+  static constexpr std::size_t kMaxQueries = 256;
 
-  /// The link outlives the engine, and nobody calls its `wake_engine` while the engine goes.
+  /// The link must outlive the engine. No thread may call its `wake_engine` during the destructor.
   Engine(EngineLink& link, EngineOptions options);
   ~Engine() override;
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Runs the scene's file and the `sets`: what is wrong with either, with file and line. After a scene's fault the
-  /// world is empty and waits: the first good reload is then the start. [sim]
+  /// Runs the scene file and applies the `sets`. An error names file and line. After a failed scene the world stays
+  /// empty, and the first successful reload becomes the start. [sim]
   Result<void> start();
-  /// Ticks until the end that the options name, or stop(). [sim]
+  /// Runs ticks until the end that the options specify, or until stop(). [sim]
   void run();
-  /// One tick now, whatever the clock says; while paused only commands and handlers. [sim]
-  void tick() { pass(true); }
-  /// What happens while time stands still: commands, handlers, what was asked for; no time passes. [sim]
-  void idle() { pass(false); }
-  /// Ends run() soon. [any]
+  /// Runs one tick now, regardless of the clock; while paused only commands and handlers. [sim]
+  void tick() { run_pass(true); }
+  /// Executes commands, handlers and requests without a time step. [sim]
+  void idle() { run_pass(false); }
+  /// Makes run() return soon. [any]
   void stop();
 
-  /// Runs the scene beside the show and has what it says otherwise than the last good run applied between two ticks; a
-  /// fault is told, and the show plays on as it is. Waits until that is done. `again`: a run of what the last good one
-  /// has read, because a parameter has changed, not the disk. False: nothing was tried, since a take plays, or the show
-  /// has ended. [any but sim, while run() goes]
-  bool reload(bool again = false);
-  /// The same at once, on the simulation's own thread. [sim]
-  Reload::End reload_now(bool again = false);
-  /// Runs another scene's file beside the show; it plays from its start instead, between two ticks, without what the
-  /// performer has set. An error: what is wrong with it, and the show plays on. [any but sim, while run() goes]
-  /// `panics`: EngineLink::panics when it was asked for; another panic since then discards it.
+  /// Runs the scene file detached from the show and applies its differences from the last successful run between two
+  /// ticks. A script error is reported, and the show continues unchanged. Blocks until that is done. `reuse_files`:
+  /// runs the sources of the last successful run instead of the files on disk, because a parameter has changed. Returns
+  /// false if nothing was tried, because a take plays or the show has ended. [any but sim, during run()]
+  bool reload(bool reuse_files = false);
+  /// Reloads at once, on the simulation thread. [sim]
+  SceneReloader::ApplyResult reload_now(bool reuse_files = false);
+  /// Runs another scene file detached from the show, then replaces the show with it between two ticks and drops all
+  /// overrides. If the scene fails, returns the error, and the show continues. [any but sim, during run()]
+  /// `panics`: EngineLink::panics at the time of the request; the request is discarded if there was a panic since.
   Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {});
-  /// A take plays in the place of the show, from its begin to its end or /take/stop; from there the show goes on in the
-  /// performer's hands. An error: what is wrong with the take, and the show plays on. [any but sim, while run() goes]
-  /// `stops`: stops_of_takes() when it was asked for; another one since then discards it.
+  /// Replaces the show with a take, which plays to its end or until /take/stop; from there the show continues under
+  /// live control. If the take is invalid, returns the error, and the show continues. [any but sim, during run()]
+  /// `stops`: take_stop_count() at the time of the request; the request is discarded if it has changed since.
   Result<void> play_take(const std::string& file, std::optional<std::uint64_t> stops = {});
-  /// Panics and ends of takes so far. [any]
-  static std::uint64_t stops_of_takes(const EngineLink& link) { return link.panics.load() + link.take_stops.load(); }
-  /// Files that are worth a reload when they change. [any]
-  std::vector<SourceFile> files() const { return reload_.files(); }
+  /// Number of panics and ends of takes so far. [any]
+  static std::uint64_t take_stop_count(const EngineLink& link) { return link.panics.load() + link.take_stops.load(); }
+  /// The source files to watch: a change of one of them calls for a reload. [any]
+  std::vector<SourceFile> files() const { return reloader_.files(); }
 
-  World& world() { return stage_->world; }
-  Store& store() { return stage_->store; }
+  World& world() { return session_->world; }
+  Store& store() { return session_->store; }
   const PhaseTimes& times() const { return times_; }
   const History& history() const { return history_; }
   const Presets& presets() const { return presets_; }
-  /// Waits until what presets have to write is on the disk. [any but sim]
+  /// Blocks until presets and takes are written to disk. [any but sim]
   void finish_saving();
-  /// The show has ended well: nothing needs to be brought back. [any but sim, after run()]
+  /// Marks the show as properly ended, so that the next start does not offer a recovery. [any but sim, after run()]
   void end_recovery();
-  /// Ends the take that is recorded, if one is. [sim]
+  /// Ends the recording of a take, if there is one. [sim]
   void end_take();
-  /// Whether a take is replayed, and what came of it so far.
-  bool replays() const { return player_ != nullptr; }
-  TakeVerdict verdict() const { return player_->verdict(); }
-  /// Everything is as it was at the newest key state before that tick, and what came since never was; presets stay.
-  /// Between two passes, or where messages are carried out. A take is not told. False: there is no such state, nothing
-  /// is changed. [sim]
-  bool return_before(std::uint64_t tick);
-  /// Nothing more comes of it. [sim]
-  bool replay_over() const { return player_->over(); }
-  /// World, scene and generators. [sim]
+  /// True while a take is replayed.
+  bool is_replaying() const { return player_ != nullptr; }
+  /// The result of the replay so far. Requires is_replaying().
+  ReplayResult replay_result() const { return player_->result(); }
+  /// Restores the newest checkpoint before this tick and discards everything since, except presets. Call it between two
+  /// passes or while messages are executed. It is not recorded in a take. Returns false, without a change, if there is
+  /// no such checkpoint. [sim]
+  bool restore_before(std::uint64_t tick);
+  /// True when the replay has reached the end of the take. Requires is_replaying(). [sim]
+  bool replay_finished() const { return player_->finished(); }
+  /// Hash of the world, the scene and the random number generators. [sim]
   std::uint64_t state_hash() const;
-  /// Script errors and refused values so far, health events: what `--strict` asks for. [sim]
-  std::uint64_t faults() const { return faults_ + stage_->world.health_events(); }
+  /// Number of script errors, rejected values and health events so far, for `--strict`. [sim]
+  std::uint64_t faults() const { return faults_ + session_->world.health_events(); }
 
  private:
   void send(Message message) override;
-  void reply(const Origin& to, Message message) override;
-  void send_direct(const Origin& to, Message message) override;
-  void plan_osc(const OscPlan& plan) override;
-  void ask_reset() override;
-  void ask_panic() override;
-  Result<void> check_preset(const Message& wish, std::span<const Message> before) override;
-  void ask_preset(Message&& wish) override;
+  void reply(const CommandOrigin& to, Message message) override;
+  void send_direct(const CommandOrigin& to, Message message) override;
+  void configure_osc(const OscConfig& config) override;
+  void request_reset() override;
+  void request_panic() override;
+  Result<void> check_preset(const Message& request, std::span<const Message> earlier) override;
+  void request_preset(Message&& request) override;
   std::vector<std::string> preset_names() override;
   void script_error(std::string_view file, int line, std::string_view text) override;
   void print(std::string_view text) override;
 
-  /// A tick; or, when `may_step` is false, only what happens while time stands still.
-  void pass(bool may_step);
-  void play(bool running);
+  /// One iteration: commands, handlers, requests, publishing and, if `may_step` and not paused, a time step.
+  void run_pass(bool may_step);
+  void simulate(bool running);
   void end_pass(bool running);
-  void tell_transport();
-  Outcome go_back(const Transport::Back& back, const Origin& origin);
-  void do_again_until(const PastGoal& goal);
-  void begin_again(bool on);
-  void do_again(PastPass& pass);
+  void update_transport();
+  Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin);
+  void resimulate_until(const RewindTarget& target);
+  void set_resimulating(bool on);
+  void resimulate(RecordedPass& pass);
   bool reset();
   void begin_panic();
   void end_panic();
   Result<void> start_show();
-  void keep_state(Stage& fresh, std::string_view name) const;
-  /// The stage becomes the show; the answer is the one before.
-  std::unique_ptr<Stage> take_stage(std::unique_ptr<Stage> fresh);
-  std::unique_ptr<Stage> new_stage();
-  std::unique_ptr<Stage> swap_stage(std::unique_ptr<Stage> fresh);
-  void replay_hand();
-  Presets::Book read_presets(const std::string& scene);
-  Result<void> first_hand();
+  void copy_session_value(Session& fresh, std::string_view name) const;
+  /// Makes a session the show, with the session state that survives a reset. Returns the previous session.
+  std::unique_ptr<Session> install_session(std::unique_ptr<Session> fresh);
+  std::unique_ptr<Session> new_session();
+  std::unique_ptr<Session> swap_session(std::unique_ptr<Session> fresh);
+  void reapply_overrides();
+  Presets::Bank read_presets(const std::string& scene);
+  Result<void> apply_initial_overrides();
   void open_recovery();
-  Result<void> bring_back();
-  void give_recovery();
-  void carry_out_wishes();
-  Reload::End take(Draft& draft);
-  Reload::End run_now(TakeRun::Kind kind, bool again);
-  void play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book);
+  Result<void> apply_recovered();
+  void update_recovery();
+  void execute_preset_requests();
+  SceneReloader::ApplyResult apply_candidate(ReloadCandidate& candidate);
+  SceneReloader::ApplyResult run_scene_now(TakeSceneRun::Kind kind, bool reuse_files);
+  void play_scene(const std::string& file, std::unique_ptr<Session>& fresh, Presets::Bank& bank);
 
-  /// A run of the scene, in a take.
-  struct TakenRun {
-    std::size_t place = 0;                   // where it is recorded
-    const TakeRun* told = nullptr;           // as the take that is replayed has it
-    std::shared_ptr<const Sources> sources;  // what it is to read instead of the disk
-    bool fails = false;                      // it failed then
+  /// A run of the scene in a take that is recorded or replayed.
+  struct RecordedRun {
+    std::size_t index = 0;                   // its index in the recording
+    const TakeSceneRun* recorded = nullptr;  // its entry in the take that is replayed
+    std::shared_ptr<const Sources> sources;  // read instead of the files on disk
+    bool fails = false;                      // it failed when it was recorded
   };
-  TakenRun begin_run(TakeRun::Kind kind, bool again = false, const std::string& scene = "");
-  void run_was_good(const TakenRun& run, const Stage& stage, std::optional<PresetList> presets = {},
-                    const std::string& preset_file = "");
-  Result<void> start_record();
+  RecordedRun begin_run(TakeSceneRun::Kind kind, bool reuse_files = false, const std::string& scene = "");
+  void run_succeeded(const RecordedRun& run, const Session& session, std::optional<PresetList> presets = {},
+                     const std::string& preset_file = "");
+  Result<void> start_recording();
   Result<void> start_replay();
   Result<void> begin_replay(std::unique_ptr<TakePlayer> player, const std::string& file);
-  Result<void> replay_beginning();
+  Result<void> start_from_take();
   SceneOptions scene_options() const;
-  Result<void> try_take(TakePlayer& player);
-  std::unique_ptr<Stage> begin_play(std::unique_ptr<TakePlayer> player, const std::string& file, Presets::Book& book);
+  Result<void> check_take(TakePlayer& player);
+  std::unique_ptr<Session> begin_play(std::unique_ptr<TakePlayer> player, const std::string& file, Presets::Bank& bank);
   void end_play();
-  bool next_of_take(bool& may_step);
-  void refuse_commands();
-  void refuse_urgent();
-  void refuse_hand(const Message& message, const Origin& origin);
-  TakeBegin take_begin(bool reset) const;
+  bool next_replay_tick(bool& may_step);
+  void reject_commands();
+  void reject_urgent();
+  void reject_message(const Message& message, const CommandOrigin& origin);
+  TakeInitialState make_initial_state(bool reset) const;
   void replay_runs();
-  void replay_run(const TakeRun& run);
-  void replay_messages(Hands& hands);
-  Outcome ask_take(const Message& message);
-  void begin_take();
-  void drop_take();
-  void tell_take();
-  void take_tick(bool running, bool begins = false);
-  std::function<void(const std::string&)> say_take_failed();
+  void replay_run(const TakeSceneRun& run);
+  void replay_messages(EditScope& edit_scope);
+  Outcome request_take(const Message& message);
+  void begin_recording();
+  void abandon_recording();
+  void update_take_node();
+  void finish_take_tick(bool running, bool begins = false);
+  std::function<void(const std::string&)> take_error_reporter();
   void begin_show();
-  void rerun();
-  Result<void> between_ticks(const std::function<void()>& work);
-  void drain();
-  void execute_urgent(Hands& hands);
-  bool overtaken(const Message& message, std::uint64_t arrival);
-  bool waits_for_steps(const Message& message, const Origin& origin);
-  void answer_questions(Hands& hands);
-  void age_panic(bool may_step);
-  void note_event(const TakeEvent& event);
-  bool carry_out_event(const Message& message);
-  /// Whether the rules of kTakeRules hold: not in takes of before.
-  bool has_rules() const { return player_ == nullptr || player_->rules() > 0; }
-  /// What the message cost of kTickWork, beside 1.
-  int execute(Message& message, const Origin& origin);
-  void evaluate(const Evaluate& wish, const Origin& origin);
+  void rerun_if_requested();
+  Result<void> run_between_ticks(const std::function<void()>& work);
+  void execute_commands();
+  void execute_urgent(EditScope& edit_scope);
+  bool discard_if_overtaken(const Message& message, std::uint64_t arrival);
+  bool postpone_query(const Message& message, const CommandOrigin& origin);
+  void answer_pending_queries(EditScope& edit_scope);
+  void update_panic_age(bool may_step);
+  void record_event(const TakeEvent& event);
+  bool execute_event(const Message& message);
+  /// True if the rules of kTakeRules apply; false in replays of older takes.
+  bool has_current_rules() const { return player_ == nullptr || player_->rules() > 0; }
+  /// Returns the cost of the message in units of kTickWork, in addition to 1.
+  int execute(Message& message, const CommandOrigin& origin);
+  void evaluate(const EvaluationRequest& request, const CommandOrigin& origin);
   Evaluation evaluate_text(std::string_view text);
-  void refuse(std::string_view address, const Origin& origin, std::string_view error);
+  void send_error(std::string_view address, const CommandOrigin& origin, std::string_view error);
   void call_handlers();
   void call_handler();
   void publish();
-  void make_image(std::uint64_t asks);
-  void say_clamped(const Message& message, const Row& row);
-  void say_left_out(const std::string& text);
+  void make_value_snapshot(std::uint64_t requests);
+  void report_clamped(const Message& message, const Property& property);
+  void report_warning(const std::string& text);
   void send_contacts();
   void send_transport();
-  void tell_health();
+  void update_health();
   bool wait_for_tick();
   void pace();
   void count_stall();
@@ -244,77 +247,77 @@ class Engine : private ScriptHost {
 
   EngineLink& link_;
   EngineOptions options_;
-  PerformerHand hand_;
-  Presets presets_{hand_};
-  Edits edits_{hand_};
-  ChangeNotes notes_{link_.changes};
-  ChangeLog unread_;
-  ChangeNotes quiet_notes_{unread_};
-  HandlerQueue heard_;  // messages for the scene's handlers
-  History history_{hand_, edits_, presets_, heard_};
-  bool went_back_ = false;  // with the last message
-  bool again_ = false;      // what was done once is done again
-  std::optional<LogSilence> silence_;
-  const std::shared_ptr<Team> team_;  // null: this thread alone
-  std::unique_ptr<Stage> stage_;
-  std::uint64_t scene_seed_ = 0;  // as the scene's run left it
-  Reload reload_;
-  Requests requests_;
-  ImageMaker images_{link_.images};
-  CallLedger calls_;
+  Overrides overrides_;
+  Presets presets_{overrides_};
+  UndoStack undo_stack_{overrides_};
+  ChangeRecorder change_recorder_{link_.changes};
+  ChangeLog muted_log_;
+  ChangeRecorder muted_recorder_{muted_log_};
+  HandlerQueue handler_queue_;  // messages that wait for the scene's handlers
+  History history_{overrides_, undo_stack_, presets_, handler_queue_};
+  bool rewound_ = false;       // the last message rewound time
+  bool resimulating_ = false;  // while a rewind simulates recorded ticks again: no output, no logging
+  std::optional<LogSilence> log_silence_;
+  const std::shared_ptr<ThreadPool> thread_pool_;  // null: this thread alone
+  std::unique_ptr<Session> session_;
+  std::uint64_t scene_seed_ = 0;  // the random seed after the scene's run
+  SceneReloader reloader_;
+  SimThreadExecutor executor_;
+  ValueSnapshotter value_snapshotter_{link_.value_snapshots};
+  CallLog call_log_;
   std::unique_ptr<TakeRecorder> recorder_;
   std::unique_ptr<TakePlayer> player_;
-  bool plays_ = false;                                // what is replayed plays in the place of a show
-  Presets::Book after_play_;                          // the presets, once that is over
-  std::vector<std::unique_ptr<TakeWriter>> written_;  // takes that have ended, and may still be written
-  std::string take_name_;                             // of the one that is recorded or replayed
-  std::optional<std::string> take_wanted_;            // the file of a take that begins at the tick's end
-  bool take_ends_ = false;
-  bool answers_taken_ = false;                // what is sent now answers a message of the take that is replayed
-  std::optional<DraftOrder> ordered_;         // of the take that is replayed
-  std::unique_ptr<RecoveryKeeper> recovery_;  // null: values are not kept
-  std::shared_ptr<const Preset> recovered_;   // what the show begins with
-  std::string recovered_when_;                // empty: of a take
-  std::uint64_t given_version_ = 0;           // of the store, when values were given last
-  std::string given_scene_;                   // the scene then
+  bool plays_in_show_ = false;                            // the replayed take plays in a live show (/take/play)
+  Presets::Bank presets_after_play_;                      // the presets to restore after /take/play
+  std::vector<std::unique_ptr<TakeWriter>> ended_takes_;  // ended takes that may still be written to disk
+  std::string take_name_;                                 // of the take that is recorded or replayed
+  std::optional<std::string> requested_take_;             // file of the recording that begins at the end of this tick
+  bool take_end_requested_ = false;                       // the recording or replay ends at the end of this tick
+  bool suppress_answers_ = false;                // answers go to messages of the replayed take, so they are not sent
+  std::optional<ReloadRequest> reload_request_;  // of the replayed take
+  std::unique_ptr<RecoverySaver> recovery_;      // null: no recovery file
+  std::shared_ptr<const Preset> recovered_;      // recovered values to apply at the start
+  std::string recovered_time_;                   // time of the crash; empty: the values come from a take
+  std::uint64_t recovery_version_ = 0;           // store version that was last passed to `recovery_`
+  std::string recovery_scene_;                   // scene that was last passed to `recovery_`
   Clock clock_;
-  double lost_time_ = 0;  // s, by stalls
-  bool stall_said_ = false;
-  bool stall_excused_ = true;  // the loop was away for a reset or a rewind, which somebody has asked for
+  double lost_time_ = 0;         // s, lost in stalls
+  bool stall_reported_ = false;  // the stall warning was logged
+  bool stall_excused_ = true;    // the next delay is caused by a requested reset or rewind and is not counted
   PhaseTimes times_;
 
-  struct Question {
+  struct PendingQuery {
     Message message;
-    Origin origin;
+    CommandOrigin origin;
   };
-  std::vector<UrgentRequest> urgent_;   // scratch
-  Overtaken overtaken_;                 // what urgent requests discard
-  double panic_age_ = 0;                // s, of one that is not settled
-  bool ignored_said_ = false;           // that a request was ignored
-  double pass_at_ = 0;                  // the clock in the last pass
-  double handler_seconds_ = 0;          // left for handlers; negative: to be made up
-  double handlers_at_ = 0;              // the clock when they were called last
-  std::optional<std::uint64_t> hears_;  // of a replay: messages that handlers hear in this tick
-  std::vector<Origin> step_origins_;    // whose steps are being made
-  std::vector<Question> questions_;     // of theirs, until the steps are made
+  std::vector<UrgentRequest> urgent_;                    // scratch
+  UrgentPrecedence urgent_precedence_;                   // decides which messages urgent requests discard
+  double panic_age_ = 0;                                 // s, since the start of a panic that is not settled
+  bool ignored_panic_reported_ = false;                  // an ignored panic request was logged
+  double last_pass_time_ = 0;                            // time of the last pass, s
+  double handler_budget_ = 0;                            // time left for handlers, s; negative: debt
+  double handlers_time_ = 0;                             // time of the last handler calls, s
+  std::optional<std::uint64_t> replayed_handler_calls_;  // in a replay: number of handler calls in this tick
+  std::vector<CommandOrigin> step_origins_;              // senders of an unfinished /transport/step
+  std::vector<PendingQuery> pending_queries_;            // queries of these senders, answered after the steps
   std::vector<Command> commands_;
-  std::size_t next_command_ = 0;            // the first that is yet to be done
-  std::uint64_t asks_of_batch_ = 0;         // images asked for before commands_ was taken
-  std::uint64_t asks_ = 0;                  // images that may be made: all that came before was done
-  std::vector<Message> wishes_;             // of scripts, about presets
-  std::vector<const Row*> said_clamped_;    // rows whose clamping was said
-  std::vector<std::string> said_left_out_;  // lately, of presets
+  std::size_t next_command_ = 0;                   // index of the first command that is not executed
+  std::uint64_t snapshot_requests_of_batch_ = 0;   // value snapshot requests made before commands_ was drained
+  std::uint64_t snapshot_requests_ = 0;            // value snapshot requests that can be served now
+  std::vector<Message> preset_requests_;           // preset requests of scripts
+  std::vector<const Property*> reported_clamped_;  // properties with a reported clamping
+  std::vector<std::string> reported_warnings_;     // recently reported preset warnings
   std::uint64_t faults_ = 0;
-  std::uint64_t health_events_ = 0;  // of the stage, that are in link_.health
+  std::uint64_t health_events_ = 0;  // of this session, already counted in link_.health
   std::uint64_t passes_ = 0;
-  // of the whole program, before this engine was
+  // program-wide counters at the construction of this engine
   const std::uint64_t lines_lost_before_ = lost_output_lines();
-  const std::uint64_t left_out_before_ = log_left_out();
+  const std::uint64_t log_suppressed_before_ = log_suppressed();
   const std::uint64_t writes_failed_before_ = failed_writes();
   bool was_paused_ = false;
 
   std::atomic<bool> stop_{false};
-  std::atomic<bool> commands_wait_{false};
+  std::atomic<bool> commands_waiting_{false};
   std::mutex wake_mutex_;
   std::condition_variable wake_;
 };

@@ -1,4 +1,4 @@
-// Engine: time that goes back.
+// Engine: rewind.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,135 +10,139 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kMostBytesOfReplay = std::size_t{1} << 30;  // it must get as far as the show did
+constexpr std::size_t kMaxReplayHistoryBytes = std::size_t{1}
+                                               << 30;  // a replay must be able to rewind as far as the recorded session
 }  // namespace
 
 void Engine::end_pass(bool running) {
-  if (replays()) history_.allow(kMostBytesOfReplay);
-  history_.end_pass(*stage_, calls_, running, stage_->world_value("history"));
+  if (is_replaying()) history_.set_max_bytes(kMaxReplayHistoryBytes);
+  history_.end_pass(*session_, call_log_, running, session_->world_value("history"));
 }
 
-void Engine::tell_transport() {
-  const double rewindable = history_.empty() ? 0 : stage_->world.time() - history_.oldest_time();
-  stage_->transport.tell(clock_.speed_reached(), rewindable, static_cast<double>(history_.bytes()) / (1u << 20u),
-                         lost_time_);
+void Engine::update_transport() {
+  const double rewindable = history_.empty() ? 0 : session_->world.time() - history_.oldest_time();
+  session_->transport.publish(clock_.speed_reached(), rewindable, static_cast<double>(history_.bytes()) / (1u << 20u),
+                              lost_time_);
 }
 
-// Everything is as it was then; what of this tick was done before goes with the rest, what comes after it is done
-// there.
-Outcome Engine::go_back(const Transport::Back& back, const Origin& origin) {
+// Rewinds. Inputs of the current tick that were executed before are discarded as well; the remaining ones are executed
+// at the restored time.
+Outcome Engine::rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) {
   stall_excused_ = true;
-  World& world = stage_->world;
+  World& world = session_->world;
   const std::uint64_t tick = world.tick();
   const double time = world.time();
-  if (!history_.fits(*stage_) || tick <= history_.oldest_tick()) {
-    return Outcome::refused(fmt::format("time can't go back: {}", history_.why()));
+  if (!history_.validate(*session_) || tick <= history_.oldest_tick()) {
+    return Outcome::rejected(fmt::format("can't rewind: {}", history_.limit_reason()));
   }
-  PastGoal goal;
-  if (back.ticks > 0) {
-    goal.tick = back.ticks < tick ? tick - back.ticks : 0;
+  RewindTarget target;
+  if (request.ticks > 0) {
+    target.tick = request.ticks < tick ? tick - request.ticks : 0;
   } else {
-    goal.time = time - back.seconds;
+    target.time = time - request.seconds;
   }
-  std::string short_of;
+  std::string limit_reason;
   const bool too_far =
-      goal.time ? *goal.time < history_.oldest_time() - world.timestep() / 2 : goal.tick < history_.oldest_tick();
+      target.time ? *target.time < history_.oldest_time() - world.timestep() / 2 : target.tick < history_.oldest_tick();
   if (too_far) {
-    goal = {history_.oldest_tick(), {}};
-    short_of = history_.why();
+    target = {history_.oldest_tick(), {}};
+    limit_reason = history_.limit_reason();
   }
-  if (goal.time && *goal.time > time - world.timestep() / 2) goal = {tick - 1, {}};  // less than half a tick: one
-  do_again_until(goal);
-  if (back.stands) stage_->transport.stand_still();
+  if (target.time && *target.time > time - world.timestep() / 2)
+    target = {tick - 1, {}};  // less than half a tick: one tick
+  resimulate_until(target);
+  if (request.pause) session_->transport.pause();
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
-  Message& said = outcome.answers.emplace_back(Message{"/transport/rewound", {}});
-  said.args = {Arg::of(std::round(1e6 * (time - world.time())) / 1e6), Arg::of(static_cast<double>(world.tick()))};
-  if (!short_of.empty()) said.args.push_back(Arg::of(short_of));
+  Message& answer = outcome.answers.emplace_back(Message{"/transport/rewound", {}});
+  answer.args = {Arg::of(std::round(1e6 * (time - world.time())) / 1e6), Arg::of(static_cast<double>(world.tick()))};
+  if (!limit_reason.empty()) answer.args.push_back(Arg::of(limit_reason));
   if (recorder_ != nullptr) {
-    // as far as it went: a replay may have kept more, or less
-    if (back.stands) recorder_->message({"/transport/pause", {}}, origin);
-    recorder_->message({"/transport/rewind_ticks", {Arg::of(static_cast<double>(tick - world.tick()))}}, origin);
+    // record the ticks that were actually rewound: the history of a replay may reach back further, or less far
+    if (request.pause) recorder_->record_message({"/transport/pause", {}}, origin);
+    recorder_->record_message({"/transport/rewind_ticks", {Arg::of(static_cast<double>(tick - world.tick()))}}, origin);
   }
   send_transport();
   return outcome;
 }
 
-void Engine::do_again_until(const PastGoal& goal) {
-  // what belongs to the hour; and presets, which nobody wants to lose
-  constexpr std::array<const char*, 3> kOfTheHour = {"paused", "speed", "history"};
-  std::array<double, kOfTheHour.size()> of_the_hour{};
-  for (std::size_t i = 0; i < kOfTheHour.size(); i++) of_the_hour[i] = stage_->world_value(kOfTheHour[i]);
-  const int steps = stage_->transport.steps();
+void Engine::resimulate_until(const RewindTarget& target) {
+  // session state and presets survive a rewind
+  constexpr std::array<const char*, 3> kSessionProperties = {"paused", "speed", "history"};
+  std::array<double, kSessionProperties.size()> session_values{};
+  for (std::size_t i = 0; i < kSessionProperties.size(); i++)
+    session_values[i] = session_->world_value(kSessionProperties[i]);
+  const int steps = session_->transport.steps();
   PresetList presets = presets_.list();
-  const CallLedger calls = calls_;
-  Store& store = stage_->store;
-  const Store::Listener hands = store.listen({});
-  heard_.clear();
-  wishes_.clear();
-  history_.bring_back(*stage_, goal);
-  begin_again(true);
-  bool there = false;
-  bool stopped = false;  // a call that was good then: what follows would differ more and more, and take long
-  for (PastPass pass; !there && !stopped && history_.next(pass);) {
-    there = pass.running && goal.reached(stage_->world);
-    if (there) continue;
-    do_again(pass);
-    stopped = calls_.unforeseen() > 0;
+  const CallLog calls = call_log_;
+  Store& store = session_->store;
+  const Store::Listener listener = store.set_listener({});
+  handler_queue_.clear();
+  preset_requests_.clear();
+  history_.restore(*session_, target);
+  set_resimulating(true);
+  bool reached = false;
+  bool stopped = false;  // a call exceeded its limit that did not before: the rest would diverge and be slow
+  for (RecordedPass pass; !reached && !stopped && history_.next(pass);) {
+    reached = pass.running && target.reached(session_->world);
+    if (reached) continue;
+    resimulate(pass);
+    stopped = call_log_.unexpected_stops() > 0;
   }
-  history_.cut(there);
-  begin_again(false);
-  if (stopped) log_warning("rewind: a script computes too long in what is repeated; time went back further than asked");
-  hears_.reset();
-  presets_.take_list(std::move(presets));
-  for (std::size_t i = 0; i < kOfTheHour.size(); i++)
-    (void)store.set(stage_->world.id(), kOfTheHour[i], {&of_the_hour[i], 1});
-  stage_->transport.keep_steps(steps);
-  calls_ = calls;
-  calls_.note_rewind();
-  store.listen(hands);
-  stage_->dispatch.begin_tick();
+  history_.truncate(reached);
+  set_resimulating(false);
+  if (stopped)
+    log_warning("rewind: a script exceeded its time limit in the replayed ticks; rewound further than requested");
+  replayed_handler_calls_.reset();
+  presets_.set_list(std::move(presets));
+  for (std::size_t i = 0; i < kSessionProperties.size(); i++)
+    (void)store.set(session_->world.id(), kSessionProperties[i], {&session_values[i], 1});
+  session_->transport.set_steps(steps);
+  call_log_ = calls;
+  call_log_.record_rewind();
+  store.set_listener(listener);
+  session_->dispatcher.begin_tick();
 }
 
-// nothing of what was said, sent or stored once is said, sent or stored again
-void Engine::begin_again(bool on) {
-  again_ = on;
-  silence_.reset();
-  if (on) silence_.emplace();
-  presets_.do_again(on);
-  if (stage_->scene != nullptr) stage_->scene->do_again(on);
+// Suppresses logging, sending and saving while recorded passes are replayed.
+void Engine::set_resimulating(bool on) {
+  resimulating_ = on;
+  log_silence_.reset();
+  if (on) log_silence_.emplace();
+  presets_.set_replaying(on);
+  if (session_->scene != nullptr) session_->scene->set_replaying(on);
 }
 
-void Engine::do_again(PastPass& pass) {
-  calls_.begin_tick(std::move(pass.stopped));
-  stage_->dispatch.begin_tick();
+void Engine::resimulate(RecordedPass& pass) {
+  call_log_.begin_tick(std::move(pass.stopped));
+  session_->dispatcher.begin_tick();
   {
-    Hands hands(stage_->world, presets_, edits_, quiet_notes_);
-    hears_.reset();
+    EditScope edit_scope(session_->world, presets_, undo_stack_, muted_recorder_);
+    replayed_handler_calls_.reset();
     for (TakeMessage& input : pass.messages) {
-      if (!input.evaluate && carry_out_event(input.message)) continue;
-      hands.begin(input.origin);
+      if (!input.evaluate && execute_event(input.message)) continue;
+      edit_scope.begin(input.origin);
       if (!input.evaluate) {
         execute(input.message, input.origin);
-      } else if (stage_->scene != nullptr) {
+      } else if (session_->scene != nullptr) {
         (void)evaluate_text(input.message.address);
       }
     }
   }
-  play(pass.running);
-  (void)stage_->world.take_reset_request();  // it failed then
-  stage_->preset_node.tell();
-  if (stage_->scene != nullptr) stage_->scene->collect_garbage();
+  simulate(pass.running);
+  (void)session_->world.consume_reset_request();  // the reset failed in the original run
+  session_->preset_node.publish();
+  if (session_->scene != nullptr) session_->scene->collect_garbage();
 }
 
-bool Engine::return_before(std::uint64_t tick) {
+bool Engine::restore_before(std::uint64_t tick) {
   const PresetList presets = presets_.list();
-  if (!history_.fits(*stage_) || !history_.return_before(*stage_, tick)) return false;
-  presets_.take_list(presets);
-  heard_.clear();
-  wishes_.clear();
-  calls_.note_rewind();
-  went_back_ = true;
+  if (!history_.validate(*session_) || !history_.restore_before(*session_, tick)) return false;
+  presets_.set_list(presets);
+  handler_queue_.clear();
+  preset_requests_.clear();
+  call_log_.record_rewind();
+  rewound_ = true;
   return true;
 }
 

@@ -1,4 +1,4 @@
-// Engine: what goes out: answers, events, what scripts send and print.
+// Engine: output: answers, events, health, and the messages and prints of scripts.
 #include <algorithm>
 #include <utility>
 
@@ -11,33 +11,33 @@
 
 namespace limber {
 
-void Engine::refuse(std::string_view address, const Origin& origin, std::string_view error) {
-  push_out({Outgoing::To::error, origin, error_message(address, error)});
+void Engine::send_error(std::string_view address, const CommandOrigin& origin, std::string_view error) {
+  push_out({Outgoing::Destination::error, origin, error_message(address, error)});
 }
 
-void Engine::say_clamped(const Message& message, const Row& row) {
-  if (std::find(said_clamped_.begin(), said_clamped_.end(), &row) != said_clamped_.end()) return;
-  said_clamped_.push_back(&row);
-  log_warning("{}: a value outside {} was brought into this range (said once for {})", printable(message.address),
-              range_text(row), row.name);
+void Engine::report_clamped(const Message& message, const Property& property) {
+  if (std::find(reported_clamped_.begin(), reported_clamped_.end(), &property) != reported_clamped_.end()) return;
+  reported_clamped_.push_back(&property);
+  log_warning("{}: value clamped to {} (reported once for {})", printable(message.address), range_text(property),
+              property.name);
 }
 
-// a slider on a preset would fill the log
-void Engine::say_left_out(const std::string& text) {
-  constexpr std::size_t kLately = 64;
-  if (std::find(said_left_out_.begin(), said_left_out_.end(), text) != said_left_out_.end()) return;
-  if (said_left_out_.size() >= kLately) said_left_out_.erase(said_left_out_.begin());
-  said_left_out_.push_back(text);
-  log_warning("{} (said once)", text);
+// Reports each text once, because a slider on a preset would fill the log.
+void Engine::report_warning(const std::string& text) {
+  constexpr std::size_t kMaxTexts = 64;
+  if (std::find(reported_warnings_.begin(), reported_warnings_.end(), text) != reported_warnings_.end()) return;
+  if (reported_warnings_.size() >= kMaxTexts) reported_warnings_.erase(reported_warnings_.begin());
+  reported_warnings_.push_back(text);
+  log_warning("{} (reported once)", text);
 }
 
 void Engine::send_contacts() {
-  const Store& store = stage_->store;
-  for (const ContactEvent& contact : stage_->world.contacts()) {
+  const Store& store = session_->store;
+  for (const ContactEvent& contact : session_->world.contacts()) {
     if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
-    const auto* part = static_cast<const Part*>(store.thing(contact.part));
-    const auto* other = static_cast<const Part*>(store.thing(contact.other));
-    push_out({Outgoing::To::event,
+    const auto* part = static_cast<const Part*>(store.object(contact.part));
+    const auto* other = static_cast<const Part*>(store.object(contact.other));
+    push_out({Outgoing::Destination::event,
               {},
               {"/physics/contact",
                {Arg::of(part->body().name()), Arg::of(part->name()), Arg::of(other->body().name()),
@@ -47,80 +47,83 @@ void Engine::send_contacts() {
 }
 
 void Engine::push_out(Outgoing out) {
-  const bool answer = out.to == Outgoing::To::sender || out.to == Outgoing::To::error;
-  if (again_ || (answer && answers_taken_)) return;
+  const bool answer =
+      out.destination == Outgoing::Destination::sender || out.destination == Outgoing::Destination::error;
+  if (resimulating_ || (answer && suppress_answers_)) return;
   link_.push_out(std::move(out));
 }
 
 void Engine::send_transport() {
-  was_paused_ = stage_->transport.paused();
-  push_out({Outgoing::To::event,
+  was_paused_ = session_->transport.paused();
+  push_out({Outgoing::Destination::event,
             {},
             {"/transport/state",
-             {Arg::of(was_paused_), Arg::of(static_cast<double>(stage_->world.tick())), Arg::of(stage_->world.time()),
-              Arg::of(clock_.speed_reached())}}});
+             {Arg::of(was_paused_), Arg::of(static_cast<double>(session_->world.tick())),
+              Arg::of(session_->world.time()), Arg::of(clock_.speed_reached())}}});
 }
 
-// what others count, read once a pass
-void Engine::tell_health() {
-  constexpr std::uint64_t kLookEvery = 16;  // passes between two looks at what takes longer
+// Copies the counters of other modules into Health, once a pass.
+void Engine::update_health() {
+  constexpr std::uint64_t kReadInterval = 16;  // passes between two reads of counters that take longer
   Health& health = link_.health;
   Counters& counters = link_.counters;
-  const std::size_t handlers = stage_->scene == nullptr ? 0 : stage_->scene->disabled_handlers();
+  const std::size_t handlers = session_->scene == nullptr ? 0 : session_->scene->disabled_handlers();
   counters.disabled.store(handlers, std::memory_order_relaxed);
   health.set(HealthItem::handlers, handlers);
   health.set(HealthItem::dropped, counters.dropped.load(std::memory_order_relaxed));
   health.set(HealthItem::dropped_kernel, counters.dropped_kernel.load(std::memory_order_relaxed));
   health.set(HealthItem::discarded, counters.discarded.load(std::memory_order_relaxed));
   health.set(HealthItem::unheard, counters.unheard.load(std::memory_order_relaxed));
-  health.set(HealthItem::unanswered, link_.outbox.dropped() + link_.query_outbox.dropped());
+  health.set(HealthItem::unanswered, link_.output_queue.dropped() + link_.query_output_queue.dropped());
   health.set(HealthItem::output, lost_output_lines() - lines_lost_before_);
   health.set(HealthItem::files, failed_writes() - writes_failed_before_);
   health.set(HealthItem::not_owned, recovery_ != nullptr && !recovery_->owned() ? 1 : 0);
-  health.set(HealthItem::late, clock_.let_go());
-  health.add(HealthItem::stopped, calls_.stopped().size());
-  // another stage and a rewind begin with other numbers
-  const std::uint64_t events = stage_->world.health_events();
+  health.set(HealthItem::late, clock_.stalls());
+  health.add(HealthItem::stopped, call_log_.stopped().size());
+  // a new session or a rewind may have a smaller number
+  const std::uint64_t events = session_->world.health_events();
   if (events > health_events_) health.add(HealthItem::bodies, events - health_events_);
   health_events_ = events;
-  if (passes_++ % kLookEvery != 0) return;
-  health.set(HealthItem::behaviors, stage_->world.behaviors().suspended());
-  health.set(HealthItem::log, log_left_out() - left_out_before_);
+  if (passes_++ % kReadInterval != 0) return;
+  health.set(HealthItem::behaviors, session_->world.behaviors().suspended_count());
+  health.set(HealthItem::log, log_suppressed() - log_suppressed_before_);
 }
 
-void Engine::send(Message message) { push_out({Outgoing::To::targets, {}, std::move(message)}); }
-void Engine::reply(const Origin& to, Message message) { push_out({Outgoing::To::sender, to, std::move(message)}); }
-void Engine::send_direct(const Origin& to, Message message) {
-  push_out({Outgoing::To::direct, to, std::move(message)});
+void Engine::send(Message message) { push_out({Outgoing::Destination::targets, {}, std::move(message)}); }
+void Engine::reply(const CommandOrigin& to, Message message) {
+  push_out({Outgoing::Destination::sender, to, std::move(message)});
+}
+void Engine::send_direct(const CommandOrigin& to, Message message) {
+  push_out({Outgoing::Destination::direct, to, std::move(message)});
 }
 
-void Engine::plan_osc(const OscPlan& plan) {
-  if (again_) return;
-  const std::shared_ptr<OscPlan> planned = link_.osc_plan.spare();
-  *planned = plan;
-  link_.osc_plan.publish(planned);
+void Engine::configure_osc(const OscConfig& config) {
+  if (resimulating_) return;
+  const std::shared_ptr<OscConfig> published = link_.osc_config.acquire_buffer();
+  *published = config;
+  link_.osc_config.publish(published);
   link_.wake_network();
 }
 
 void Engine::print(std::string_view text) {
-  if (again_) return;
+  if (resimulating_) return;
   log_print(text, options_.print ? OutputTo::out : OutputTo::error);
 }
 
 void Engine::script_error(std::string_view file, int line, std::string_view text) {
-  if (again_) return;
+  if (resimulating_) return;
   if (text.empty()) {
-    push_out({Outgoing::To::event, {}, {"/script/ok", {Arg::of(file)}}});
-    log_info("{}{}", file, kMended);
+    push_out({Outgoing::Destination::event, {}, {"/script/ok", {Arg::of(file)}}});
+    log_info("{}{}", file, kResolvedSuffix);
     return;
   }
   faults_++;
-  reload_.faulty(file);
+  reloader_.note_error(file);
   log_line(LogLevel::error, text, fmt::format("{}:{}", file, line));
-  push_out({Outgoing::To::event,
+  push_out({Outgoing::Destination::event,
             {},
             {"/script/error",
-             {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, kMostFaultText))}}});
+             {Arg::of(file), Arg::of(static_cast<double>(line)), Arg::of(shortened(text, kMaxErrorText))}}});
 }
 
 }  // namespace limber

@@ -1,61 +1,61 @@
-// Engine: the panic button.
+// Engine: start and end of a panic.
 #include "base/log.h"
 #include "engine/engine.h"
 
 namespace limber {
 
-void Engine::ask_panic() { stage_->world.ask_panic(); }
+void Engine::request_panic() { session_->world.request_panic(); }
 
-// behind all that hands and scripts have done in this tick, so that nothing of it is left
+// Runs after all commands and scripts of the tick, so that the panic overrides all their effects.
 void Engine::begin_panic() {
-  World& world = stage_->world;
-  if (world.panic().on() || !world.take_panic_request()) return;
+  World& world = session_->world;
+  if (world.panic().on() || !world.consume_panic_request()) return;
   presets_.stop();
-  stage_->dispatch.let_go();
+  session_->dispatcher.release_mouse_springs();
   world.panic().begin();
-  if (!has_rules()) world.panic().settle();
-  ignored_said_ = false;
-  history_.hold();
+  if (!has_current_rules()) world.panic().end_first_second();
+  ignored_panic_reported_ = false;
+  history_.pin();
   log_warning(
-      "panic: behaviours, forces and the scene's callbacks stop, motors are {}; /transport/panic_end ends it, and so "
-      "does /transport/panic after its first second; /transport/reset begins anew",
+      "panic: behaviors, forces and callbacks of the scene are stopped, motors are {}. /transport/panic_end ends it, "
+      "as does /transport/panic after its first second; /transport/reset restarts the scene",
       world.panic().holds_motors() ? "held" : "limp");
 }
 
-// ahead of all that the tick does: it is done to the moment that comes back
+// Runs before the other phases of the tick, so that they act on the restored checkpoint.
 void Engine::end_panic() {
-  World& world = stage_->world;
-  const bool end = world.take_panic_end_request();
+  World& world = session_->world;
+  const bool end = world.consume_panic_end_request();
   if (!world.panic().on()) return;
   if (!end) {
-    if (!world.take_panic_request()) return;
-    if (!world.panic().settled()) {
-      if (!std::exchange(ignored_said_, true))
-        log_info("panic: another request in its first second is ignored; /transport/panic_end ends it");
+    if (!world.consume_panic_request()) return;
+    if (!world.panic().first_second_over()) {
+      if (!std::exchange(ignored_panic_reported_, true))
+        log_info("panic: another request in the first second is ignored; /transport/panic_end ends the panic");
       return;
     }
   }
-  const std::uint64_t began = world.panic().began();
+  const std::uint64_t start_tick = world.panic().start_tick();
   world.panic().end();
-  const bool pressed = world.take_panic_request();  // behind /transport/panic_end: it begins again
-  const bool back = return_before(began);
-  if (pressed) world.ask_panic();
-  log_info("the panic is over{}", back ? "; the show goes on from the newest good moment before it" : "");
+  const bool panic_requested = world.consume_panic_request();  // a panic after /transport/panic_end begins another one
+  const bool restored = restore_before(start_tick);
+  if (panic_requested) world.request_panic();
+  log_info("panic ended{}", restored ? "; the show continues from the last checkpoint before it" : "");
 }
 
-// Real time in a show; with --fast the time of ticks, so that equal runs are equal.
-void Engine::age_panic(bool may_step) {
+// Measures the age of a panic in real time, or with --fast in simulated time, so that equal runs have equal results.
+void Engine::update_panic_age(bool may_step) {
   const double now = options_.clock();
-  const double real = now - std::exchange(pass_at_, now);
-  World& world = stage_->world;
-  if (replays() || !world.panic().on() || world.panic().settled()) {
+  const double real_seconds = now - std::exchange(last_pass_time_, now);
+  World& world = session_->world;
+  if (is_replaying() || !world.panic().on() || world.panic().first_second_over()) {
     panic_age_ = 0;
     return;
   }
-  panic_age_ += !options_.fast ? real : may_step ? world.timestep() : 0;
-  if (panic_age_ < kPanicFirst - 1e-9) return;
-  world.panic().settle();
-  note_event({TakeEvent::Kind::panic_settled, 0});
+  panic_age_ += !options_.fast ? real_seconds : may_step ? world.timestep() : 0;
+  if (panic_age_ < kPanicGuardSeconds - 1e-9) return;
+  world.panic().end_first_second();
+  record_event({TakeEvent::Kind::panic_settled, 0});
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Engine: the beginning and the end of a replay: of the program's, and of a take that plays in the place of a show.
+// Engine: start and end of a replay, of --replay and of a take that is played inside a running session.
 #include <utility>
 
 #include "base/log.h"
@@ -9,12 +9,12 @@ namespace limber {
 
 namespace {
 
-// Limits of a replay. The take lists the calls that were stopped; another call exceeds these limits only when the
-// replay differs from the recording. In a show that plays the take, it must end soon enough for the performer.
-ScriptLimits wide_limits(bool in_show) {
+// Script limits of a replay. The take lists the calls that were stopped, so another call exceeds these limits only if
+// the replay differs from the recording. They are lower in a running session, which must not hang for long.
+ScriptLimits replay_limits(bool in_show) {
   ScriptLimits limits;
   limits.call_ms *= in_show ? 10 : 100;
-  limits.again_ms *= in_show ? 1 : 10;
+  limits.replay_ms *= in_show ? 1 : 10;
   limits.run_ms *= 10;
   limits.memory *= 16;
   return limits;
@@ -22,12 +22,12 @@ ScriptLimits wide_limits(bool in_show) {
 
 }  // namespace
 
-// a run of the scene that is made now, or a later one
+// Options for runs of the scene in the current state of the engine.
 SceneOptions Engine::scene_options() const {
   SceneOptions options = options_.scene_options;
-  if (replays() && !player_->current_scripts()) options.limits = wide_limits(plays_);
-  if (replays()) options.keep_timers = player_->keeps_timers();
-  if (!has_rules()) options.limits.disable_failed_handlers = false;
+  if (is_replaying() && !player_->current_scripts()) options.limits = replay_limits(plays_in_show_);
+  if (is_replaying()) options.keep_timers = player_->keeps_timers();
+  if (!has_current_rules()) options.limits.disable_failed_handlers = false;
   return options;
 }
 
@@ -38,106 +38,107 @@ Result<void> Engine::start_replay() {
   return begin_replay(std::move(*player), options_.replay);
 }
 
-// on an empty stage, by the take's first tick
+// Starts the replay in an empty session, with the first tick of the take.
 Result<void> Engine::begin_replay(std::unique_ptr<TakePlayer> player, const std::string& file) {
   player_ = std::move(player);
-  take_name_ = take_title(file);
-  const TakeBegin& begin = player_->begin();
-  options_.scene = begin.scene;
-  options_.scene_options.seed = begin.seed;
-  options_.scene_options.package_paths = begin.package_paths;
-  options_.preset = begin.preset;
-  options_.sets = begin.sets;
-  recovered_ = begin.recovered.empty() ? nullptr : begin.recovered.front();
-  calls_.begin_tick(player_->stopped());
-  Result<void> begun = replay_beginning();
-  if (!begun) return begun;
-  take_tick(false);
+  take_name_ = title_of_take(file);
+  const TakeInitialState& initial_state = player_->initial_state();
+  options_.scene = initial_state.scene;
+  options_.scene_options.seed = initial_state.seed;
+  options_.scene_options.package_paths = initial_state.package_paths;
+  options_.preset = initial_state.preset;
+  options_.sets = initial_state.sets;
+  recovered_ = initial_state.recovered.empty() ? nullptr : initial_state.recovered.front();
+  call_log_.begin_tick(player_->stopped_calls());
+  Result<void> started = start_from_take();
+  if (!started) return started;
+  finish_take_tick(false);
   publish();
-  if (begin.reset) end_pass(false);  // a rewind goes back to there, as it did when the take was recorded in a show
-  return begun;
+  if (initial_state.reset) end_pass(false);  // a rewind can return to this state, as it could in the recorded session
+  return started;
 }
 
-// false: the take has no more
-bool Engine::next_of_take(bool& may_step) {
+// Prepares the next tick of the take. False at its end.
+bool Engine::next_replay_tick(bool& may_step) {
   if (!player_->next()) return false;
   may_step = player_->tick().running;
-  calls_.begin_tick(player_->stopped());
+  call_log_.begin_tick(player_->stopped_calls());
   replay_runs();
   return true;
 }
 
 Result<void> Engine::play_take(const std::string& file, std::optional<std::uint64_t> stops) {
-  const std::uint64_t asked = stops.value_or(stops_of_takes(link_));
+  const std::uint64_t stops_when_requested = stops.value_or(take_stop_count(link_));
   auto player = TakePlayer::open(file, false);
   if (!player) return Error{player.error()};
   (*player)->next();
-  if (Result<void> runs = try_take(**player); !runs) return runs;
-  Presets::Book book = read_presets((*player)->begin().scene);
-  std::unique_ptr<Stage> before;  // it goes at the end of this, beside the show
-  Result<void> begun;
-  const Result<void> done = between_ticks([&] {
-    if (recorder_ != nullptr || take_wanted_) {
-      begun = Error{"a take is being recorded; /take/stop ends it"};
-    } else if (stops_of_takes(link_) != asked) {
+  if (Result<void> runs = check_take(**player); !runs) return runs;
+  Presets::Bank bank = read_presets((*player)->initial_state().scene);
+  std::unique_ptr<Session> previous;  // destroyed on this thread, so that the simulation doesn't wait for it
+  Result<void> started;
+  const Result<void> done = run_between_ticks([&] {
+    if (recorder_ != nullptr || requested_take_) {
+      started = Error{"a take is being recorded; /take/stop ends it"};
+    } else if (take_stop_count(link_) != stops_when_requested) {
       link_.counters.discarded.fetch_add(1, std::memory_order_relaxed);
-      begun = Error{"discarded: a panic or /take/stop came before it could begin"};
+      started = Error{"discarded: a panic or /take/stop was requested before it could start"};
     } else {
-      before = begin_play(std::move(*player), file, book);
+      previous = begin_play(std::move(*player), file, bank);
     }
   });
-  return done ? begun : done;
+  return done ? started : done;
 }
 
-// what plays is not given up for a take whose scene does not run
-Result<void> Engine::try_take(TakePlayer& player) {
-  const std::vector<TakeRun>& runs = player.tick().runs;
-  if (runs.empty() || !runs.front().good) return Error{"its scene did not run when it was recorded either"};
+// Runs the take's scene detached: the running session isn't replaced if the scene fails.
+Result<void> Engine::check_take(TakePlayer& player) {
+  const std::vector<TakeSceneRun>& runs = player.tick().runs;
+  if (runs.empty() || !runs.front().succeeded) return Error{"its scene failed when it was recorded, too"};
   SceneOptions options = options_.scene_options;
-  options.package_paths = player.begin().package_paths;
-  options.limits = wide_limits(true);
+  options.package_paths = player.initial_state().package_paths;
+  options.limits = replay_limits(true);
   options.sources = player.sources(runs.front());
-  Stage stage(link_, presets_, edits_, {});  // never steps
-  return stage.run_beside(player.begin().scene, *this, options);
+  Session session(link_, presets_, undo_stack_, {});  // never steps
+  return session.run_detached(player.initial_state().scene, *this, options);
 }
 
-// `book`: the presets of the take's scene, as they are on the disk; those that were open, where they are of another one
-std::unique_ptr<Stage> Engine::begin_play(std::unique_ptr<TakePlayer> player, const std::string& file,
-                                          Presets::Book& book) {
-  refuse_commands();
-  plays_ = true;
-  hand_.clear();
-  edits_.clear();
-  after_play_ = presets_.exchange({});
-  if (after_play_.file != book.file) std::swap(after_play_, book);
-  if (stage_->scene != nullptr) stage_->scene->disarm();
-  std::unique_ptr<Stage> before = swap_stage(new_stage());
-  if (const Result<void> begun = begin_replay(std::move(player), file); !begun) {
+// Replaces the session by the replay and returns the previous one. `bank`: presets of the take's scene from the disk,
+// which are used after the replay; on return the presets that were open, if they belong to another scene.
+std::unique_ptr<Session> Engine::begin_play(std::unique_ptr<TakePlayer> player, const std::string& file,
+                                            Presets::Bank& bank) {
+  reject_commands();
+  plays_in_show_ = true;
+  overrides_.clear();
+  undo_stack_.clear();
+  presets_after_play_ = presets_.exchange({});
+  if (presets_after_play_.file != bank.file) std::swap(presets_after_play_, bank);
+  if (session_->scene != nullptr) session_->scene->disarm();
+  std::unique_ptr<Session> previous = swap_session(new_session());
+  if (const Result<void> started = begin_replay(std::move(player), file); !started) {
     faults_++;
-    log_error("{}: {}", printable(file), begun.error());
+    log_error("{}: {}", printable(file), started.error());
     end_play();
-    return before;
+    return previous;
   }
-  log_info("the take {} plays; /take/stop brings the hands back", printable(take_name_));
+  log_info("playing the take {}; /take/stop ends it", printable(take_name_));
   send_transport();
-  return before;
+  return previous;
 }
 
 void Engine::end_play() {
-  const TakeVerdict verdict = player_->verdict();
+  const ReplayResult result = player_->result();
   player_ = nullptr;
-  plays_ = false;
-  ordered_.reset();
-  presets_.exchange(std::exchange(after_play_, {}));
+  plays_in_show_ = false;
+  reload_request_.reset();
+  presets_.exchange(std::exchange(presets_after_play_, {}));
   const ScriptLimits& limits = options_.scene_options.limits;
-  if (stage_->scene != nullptr) stage_->scene->limit(limits);
-  reload_.limit(limits);
-  history_.begin_anew("a take was played until there");
-  log_info("{}: {}; the show goes on in your hands", printable(take_name_), text_of(verdict));
-  const double parted = verdict.parted ? static_cast<double>(*verdict.parted) : -1;
-  push_out({Outgoing::To::event,
+  if (session_->scene != nullptr) session_->scene->set_limits(limits);
+  reloader_.set_limits(limits);
+  history_.clear("a take was played before");
+  log_info("{}: {}; live input resumed", printable(take_name_), text_of(result));
+  const double diverged_at = result.diverged_at ? static_cast<double>(*result.diverged_at) : -1;
+  push_out({Outgoing::Destination::event,
             {},
-            {"/take/played", {Arg::of(take_name_), Arg::of(static_cast<double>(verdict.ticks)), Arg::of(parted)}}});
+            {"/take/played", {Arg::of(take_name_), Arg::of(static_cast<double>(result.ticks)), Arg::of(diverged_at)}}});
   send_transport();
 }
 

@@ -1,4 +1,4 @@
-// Engine: values that outlive a crash.
+// Engine: crash recovery of property values.
 #include <fmt/format.h>
 
 #include "base/log.h"
@@ -8,51 +8,52 @@
 namespace limber {
 
 namespace {
-constexpr std::uint32_t kFewThings = 4096;  // so many are looked through in a tick without being missed
+constexpr std::uint32_t kCheapNodeCount = 4096;  // nodes that can be visited in one tick at negligible cost
 }
 
-// before the scene runs
+// Opens the recovery file, before the scene runs. Offers or loads values of a run that crashed.
 void Engine::open_recovery() {
-  if (options_.recovery.empty() || options_.scene.empty()) return;
-  recovery_ = std::make_unique<RecoveryKeeper>(options_.recovery, options_.recovery_every);
-  const Result<std::optional<LostValues>> lost = recovery_->open(options_.scene);
+  if (options_.recovery_folder.empty() || options_.scene.empty()) return;
+  recovery_ = std::make_unique<RecoverySaver>(options_.recovery_folder, options_.recovery_interval);
+  const Result<std::optional<RecoverableValues>> recoverable = recovery_->open(options_.scene);
   if (!recovery_->owned()) {
-    log_warning("{}{}", options_.recover ? "--recover: " : "", RecoveryKeeper::kElsewhere);
-  } else if (!lost) {
-    log_error("{}", lost.error());
-  } else if (!*lost) {
-    if (options_.recover) log_warning("--recover: there is nothing to recover; the last run of this scene ended well");
+    log_warning("{}{}", options_.recover ? "--recover: " : "", RecoverySaver::kOwnedElsewhere);
+  } else if (!recoverable) {
+    log_error("{}", recoverable.error());
+  } else if (!*recoverable) {
+    if (options_.recover)
+      log_warning("--recover: there is nothing to recover; the last run of this scene exited cleanly");
   } else if (options_.recover) {
-    recovered_ = (*lost)->values;
-    recovered_when_ = (*lost)->when();
+    recovered_ = (*recoverable)->values;
+    recovered_time_ = (*recoverable)->time_text();
   } else {
-    log_warning("{}", (*lost)->offer());
+    log_warning("{}", (*recoverable)->message());
   }
 }
 
-// what the command line says goes before
-Result<void> Engine::bring_back() {
+// Applies recovered values. Called before the values of --preset and --set, which take precedence.
+Result<void> Engine::apply_recovered() {
   if (recovered_ == nullptr) return {};
-  const Result<std::string> said = presets_.bring_back(stage_->world, recovered_);
-  if (!said) return Error{fmt::format("--recover: {}", said.error())};
-  const std::size_t count = recovered_->shape->row_count();
-  log_info("--recover: {} value{} at {}{}{}", count, count == 1 ? " is back as it was" : "s are back as they were",
-           recovered_when_.empty() ? "the take's beginning" : recovered_when_, said->empty() ? "" : "; ", *said);
-  if (recovery_ != nullptr && !replays()) recovery_->brought_back();
+  const Result<std::string> notice = presets_.restore(session_->world, recovered_);
+  if (!notice) return Error{fmt::format("--recover: {}", notice.error())};
+  const std::size_t count = recovered_->schema->property_count();
+  log_info("--recover: {} value{} as of {}{}{}", count, count == 1 ? " was restored" : "s were restored",
+           recovered_time_.empty() ? "the start of the take" : recovered_time_, notice->empty() ? "" : "; ", *notice);
+  if (recovery_ != nullptr && !is_replaying()) recovery_->set_recovered();
   return {};
 }
 
-void Engine::give_recovery() {
-  const Store& store = stage_->store;
-  if (given_version_ == store.kept_version() && given_scene_ == options_.scene) {
-    recovery_->give(options_.scene, nullptr, nullptr);
+void Engine::update_recovery() {
+  const Store& store = session_->store;
+  if (recovery_version_ == store.persistent_version() && recovery_scene_ == options_.scene) {
+    recovery_->submit(options_.scene, nullptr, nullptr);
     return;
   }
-  const bool cheap = presets_.ready(store) || store.view()->slot_count <= kFewThings;
-  if (stage_->scene == nullptr || (!cheap && !recovery_->urges())) return;
-  given_version_ = store.kept_version();
-  given_scene_ = options_.scene;
-  recovery_->give(options_.scene, presets_.everything(store), reload_.script());
+  const bool cheap = presets_.ready(store) || store.view()->slot_count <= kCheapNodeCount;
+  if (session_->scene == nullptr || (!cheap && !recovery_->overdue())) return;
+  recovery_version_ = store.persistent_version();
+  recovery_scene_ = options_.scene;
+  recovery_->submit(options_.scene, presets_.capture_all(store), reloader_.script_preset());
 }
 
 void Engine::end_recovery() {

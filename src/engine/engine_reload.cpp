@@ -1,4 +1,4 @@
-// Engine: the scene's runs beside the show.
+// Engine: reloads and scene changes. The new scene runs detached from the show.
 #include <utility>
 
 #include "base/log.h"
@@ -7,122 +7,124 @@
 
 namespace limber {
 
-// a take that is replayed has all that reaches the show
-Result<void> Engine::between_ticks(const std::function<void()>& work) {
+// Runs `work` on the simulation thread between two ticks. Fails during a replay, because the take contains all input.
+Result<void> Engine::run_between_ticks(const std::function<void()>& work) {
   Result<void> done = Error{"the show has ended"};
   const auto work_of_show = [&] {
-    done = replays() ? Result<void>(Error{"a take plays; /take/stop ends it"}) : Result<void>();
+    done = is_replaying() ? Result<void>(Error{"a take plays; /take/stop ends it"}) : Result<void>();
     if (done) work();
   };
-  requests_.ask(work_of_show, [this] {
-    commands_wait_.store(true, std::memory_order_relaxed);
+  executor_.run_and_wait(work_of_show, [this] {
+    commands_waiting_.store(true, std::memory_order_relaxed);
     { const std::scoped_lock lock(wake_mutex_); }
     wake_.notify_all();
   });
   return done;
 }
 
-bool Engine::reload(bool again) {
+bool Engine::reload(bool reuse_files) {
   constexpr int kTries = 3;
   for (int i = 0; i < kTries; i++) {
-    DraftOrder order;
-    const auto copy_order = [&] {
-      begin_run(TakeRun::Kind::order, again);
-      order = reload_.order(*stage_, again);
+    ReloadRequest request;
+    const auto copy_request = [&] {
+      begin_run(TakeSceneRun::Kind::reload_requested, reuse_files);
+      request = reloader_.make_request(*session_, reuse_files);
     };
-    if (!between_ticks(copy_order)) return false;
-    Draft draft(std::move(order), *this);
-    Reload::End end = Reload::End::outdated;
-    const auto apply_draft = [&] {
-      const TakenRun run = begin_run(TakeRun::Kind::take);
-      end = take(draft);
-      if (end == Reload::End::applied) run_was_good(run, *stage_);
+    if (!run_between_ticks(copy_request)) return false;
+    ReloadCandidate candidate(std::move(request), *this);
+    SceneReloader::ApplyResult result = SceneReloader::ApplyResult::outdated;
+    const auto apply_request = [&] {
+      const RecordedRun run = begin_run(TakeSceneRun::Kind::reload_finished);
+      result = apply_candidate(candidate);
+      if (result == SceneReloader::ApplyResult::applied) run_succeeded(run, *session_);
     };
-    if (!between_ticks(apply_draft)) return false;
-    if (end != Reload::End::outdated) return true;
+    if (!run_between_ticks(apply_request)) return false;
+    if (result != SceneReloader::ApplyResult::outdated) return true;
   }
-  // resets come so fast that each draft is late: this one stretches a tick
-  return between_ticks([&] { reload_now(again); }).ok();
+  // resets have made each candidate outdated, so reload within a tick
+  return run_between_ticks([&] { reload_now(reuse_files); }).ok();
 }
 
-Reload::End Engine::reload_now(bool again) { return run_now(TakeRun::Kind::reload, again); }
-
-Reload::End Engine::run_now(TakeRun::Kind kind, bool again) {
-  const TakenRun run = begin_run(kind, again);
-  DraftOrder order = reload_.order(*stage_, again);
-  if (run.fails) return Reload::End::failed;
-  order.options.sources = run.sources;
-  Draft draft(std::move(order), *this);
-  const Reload::End end = take(draft);
-  if (end == Reload::End::applied) run_was_good(run, *stage_);
-  return end;
+SceneReloader::ApplyResult Engine::reload_now(bool reuse_files) {
+  return run_scene_now(TakeSceneRun::Kind::reload, reuse_files);
 }
 
-Reload::End Engine::take(Draft& draft) {
-  const bool is_start = stage_->scene == nullptr;
-  draft.scene()->count_calls(calls_);
-  const Reload::End end = [&] {
-    const Hands hands(stage_->world, presets_, edits_, notes_);
-    return reload_.take(draft, *stage_);
+SceneReloader::ApplyResult Engine::run_scene_now(TakeSceneRun::Kind kind, bool reuse_files) {
+  const RecordedRun run = begin_run(kind, reuse_files);
+  ReloadRequest request = reloader_.make_request(*session_, reuse_files);
+  if (run.fails) return SceneReloader::ApplyResult::failed;
+  request.options.sources = run.sources;
+  ReloadCandidate candidate(std::move(request), *this);
+  const SceneReloader::ApplyResult result = apply_candidate(candidate);
+  if (result == SceneReloader::ApplyResult::applied) run_succeeded(run, *session_);
+  return result;
+}
+
+SceneReloader::ApplyResult Engine::apply_candidate(ReloadCandidate& candidate) {
+  const bool is_start = session_->scene == nullptr;
+  candidate.scene()->set_call_log(call_log_);
+  const SceneReloader::ApplyResult result = [&] {
+    const EditScope edit_scope(session_->world, presets_, undo_stack_, change_recorder_);
+    return reloader_.apply_candidate(candidate, *session_);
   }();
-  if (end != Reload::End::applied) return end;
-  history_.begin_anew("the scene was run anew there");
-  presets_.scene_says(reload_.script());
-  static const Row& seed = World::table().at("seed");
-  if ((draft.difference().world >> seed.index & 1u) != 0) scene_seed_ = stage_->world.seed();
-  if (!is_start) return end;
-  scene_seed_ = stage_->world.seed();
-  if (const Result<void> set = first_hand(); !set) log_error("{}", set.error());
+  if (result != SceneReloader::ApplyResult::applied) return result;
+  history_.clear("the scene was run again there");
+  presets_.set_script_preset(reloader_.script_preset());
+  static const Property& seed = World::table().at("seed");
+  if ((candidate.diff().world >> seed.index & 1u) != 0) scene_seed_ = session_->world.seed();
+  if (!is_start) return result;
+  scene_seed_ = session_->world.seed();
+  if (const Result<void> set = apply_initial_overrides(); !set) log_error("{}", set.error());
   begin_show();
-  return end;
+  return result;
 }
 
 Result<void> Engine::change_scene(const std::string& file, std::optional<std::uint64_t> panics) {
-  const std::uint64_t asked = panics.value_or(link_.panics.load());
-  auto fresh = new_stage();
-  Result<void> ran = fresh->run_beside(file, *this, options_.scene_options);
-  if (!ran) return ran;
-  Presets::Book book = read_presets(file);
-  // the stage and the presets before go at the end of this, beside the show
-  Result<void> begun;
-  const Result<void> done = between_ticks([&] {
-    if (link_.panics.load() != asked) {
+  const std::uint64_t panics_at_request = panics.value_or(link_.panics.load());
+  auto fresh = new_session();
+  Result<void> run_result = fresh->run_detached(file, *this, options_.scene_options);
+  if (!run_result) return run_result;
+  Presets::Bank bank = read_presets(file);
+  // the previous session and presets are destroyed at the end of this function, on this thread
+  Result<void> result;
+  const Result<void> done = run_between_ticks([&] {
+    if (link_.panics.load() != panics_at_request) {
       link_.counters.discarded.fetch_add(1, std::memory_order_relaxed);
-      begun = Error{"discarded: a panic came before it could begin"};
+      result = Error{"discarded: a panic was requested before it could start"};
       return;
     }
-    const TakenRun run = begin_run(TakeRun::Kind::scene, false, file);
-    run_was_good(run, *fresh, book.list, book.file);
-    play_scene(file, fresh, book);
+    const RecordedRun run = begin_run(TakeSceneRun::Kind::scene, false, file);
+    run_succeeded(run, *fresh, bank.list, bank.file);
+    play_scene(file, fresh, bank);
   });
-  return done ? begun : done;
+  return done ? result : done;
 }
 
-void Engine::play_scene(const std::string& file, std::unique_ptr<Stage>& fresh, Presets::Book& book) {
+void Engine::play_scene(const std::string& file, std::unique_ptr<Session>& fresh, Presets::Bank& bank) {
   options_.scene = file;
-  hand_.clear();
-  edits_.clear();
-  reload_.begin(*fresh, scene_options(), file);
-  presets_.scene_says(reload_.script());
-  book = presets_.open(std::move(book));
-  if (stage_->scene != nullptr) stage_->scene->disarm();
-  fresh = take_stage(std::move(fresh));
-  stage_->begin(*this);
-  scene_seed_ = stage_->world.seed();
+  overrides_.clear();
+  undo_stack_.clear();
+  reloader_.capture(*fresh, scene_options(), file);
+  presets_.set_script_preset(reloader_.script_preset());
+  bank = presets_.open(std::move(bank));
+  if (session_->scene != nullptr) session_->scene->disarm();
+  fresh = install_session(std::move(fresh));
+  session_->make_live(*this);
+  scene_seed_ = session_->world.seed();
   begin_show();
   send_transport();
 }
 
-void Engine::rerun() {
-  if (!reload_.take_rerun(*stage_)) return;
-  const bool beside = link_.rerun_scene && !options_.fast;
-  if (replays() && !player_->current_scripts()) {
-    // where it was run beside the show, the take has that by itself
-    if (player_->comes(TakeRun::Kind::rerun)) run_now(TakeRun::Kind::rerun, true);
-  } else if (beside) {
-    link_.rerun_scene();
+void Engine::rerun_if_requested() {
+  if (!reloader_.consume_rerun(*session_)) return;
+  const bool detached = link_.on_rerun && !options_.fast;
+  if (is_replaying() && !player_->current_scripts()) {
+    // a detached run is in the take as an input of its own
+    if (player_->next_run_is(TakeSceneRun::Kind::rerun)) run_scene_now(TakeSceneRun::Kind::rerun, true);
+  } else if (detached) {
+    link_.on_rerun();
   } else {
-    run_now(TakeRun::Kind::rerun, true);
+    run_scene_now(TakeSceneRun::Kind::rerun, true);
   }
 }
 

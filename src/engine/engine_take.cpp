@@ -1,4 +1,4 @@
-// Engine: recording takes and playing them again.
+// Engine: recording and replay of takes.
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
@@ -15,297 +15,303 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostName = 100;
-constexpr int kRefusalWork = 8;  // as a refused message costs
-constexpr const char* kReplays = "a take is replayed; it takes no messages";
-constexpr const char* kPlays = "a take plays in the place of the show; /take/stop brings the hands back";
+constexpr std::size_t kMaxName = 100;
+constexpr int kRejectionWork = 8;  // same cost as a rejected message
+constexpr const char* kReplayingError = "a take is being replayed; messages are rejected";
+constexpr const char* kPlayingError = "a take plays; /take/stop ends it";
 
-// a name that came by a message leads into no other folder
-Result<std::string> take_name(const Message& message, const std::string& scene) {
+// Returns the name of a new take from the message, or one made of scene and time. A name from a message must not lead
+// into another folder.
+Result<std::string> requested_take_name(const Message& message, const std::string& scene) {
   if (!message.args.empty() && !message.args[0].text.empty()) {
     std::string name = message.args[0].text;
     if (name.ends_with(".take")) name.resize(name.size() - 5);
-    const bool plain = !name.empty() && name.size() <= kMostName && name.front() != '.' &&
+    const bool plain = !name.empty() && name.size() <= kMaxName && name.front() != '.' &&
                        name.find_first_of("/\\") == name.npos &&
                        std::ranges::none_of(name, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-    if (!plain) return Error{fmt::format("'{}' is no name of a take: a word without / is", printable(name))};
+    if (!plain)
+      return Error{fmt::format(
+          "'{}' is not a valid name of a take; use a name without / that does not begin with a dot", printable(name))};
     return name;
   }
-  // the hour names the file; no tick sees it
+  // the time is only used for the file name: the simulation never reads it
   const std::time_t now = std::time(nullptr);
-  std::tm here{};
-  localtime_r(&now, &here);
+  std::tm local_time{};
+  localtime_r(&now, &local_time);
   char text[32] = {};
-  (void)std::strftime(text, sizeof text, "%Y-%m-%d-%H%M%S", &here);
+  (void)std::strftime(text, sizeof text, "%Y-%m-%d-%H%M%S", &local_time);
   return fmt::format("{}-{}", std::filesystem::path(scene).stem().string(), text);
 }
 
 }  // namespace
 
-std::function<void(const std::string&)> Engine::say_take_failed() {
+std::function<void(const std::string&)> Engine::take_error_reporter() {
   return [this](const std::string& why) {
     log_error("{}", why);
-    link_.push_out({Outgoing::To::error, {}, error_message("/take/record", why)});
+    link_.push_out({Outgoing::Destination::error, {}, error_message("/take/record", why)});
   };
 }
 
-TakeBegin Engine::take_begin(bool reset) const {
-  TakeBegin begin;
-  begin.reset = reset;
-  begin.scene = options_.scene;
-  begin.seed = options_.scene_options.seed;
-  begin.package_paths = options_.scene_options.package_paths;
-  begin.preset = options_.preset;
-  begin.sets = options_.sets;
-  if (recovered_ != nullptr && !reset) begin.recovered = {recovered_};
-  if (!reset) return begin;
-  begin.world_seed = stage_->world.seed();
-  begin.scene_seed = scene_seed_;
-  begin.paused = stage_->world_value("paused") != 0;
-  begin.speed = stage_->world_value("speed");
-  begin.preset_file = presets_.file();
-  begin.presets = presets_.list();
-  for (const HandStep& step : hand_.in_order()) {
-    TakeHand& kept = begin.hand.emplace_back();
-    if (step.message != nullptr) kept.message = *step.message;
-    if (step.address != nullptr) {
-      kept.kind = TakeHand::Kind::given_back;
-      kept.message.address = *step.address;
+TakeInitialState Engine::make_initial_state(bool reset) const {
+  TakeInitialState state;
+  state.reset = reset;
+  state.scene = options_.scene;
+  state.seed = options_.scene_options.seed;
+  state.package_paths = options_.scene_options.package_paths;
+  state.preset = options_.preset;
+  state.sets = options_.sets;
+  if (recovered_ != nullptr && !reset) state.recovered = {recovered_};
+  if (!reset) return state;
+  state.world_seed = session_->world.seed();
+  state.scene_seed = scene_seed_;
+  state.paused = session_->world_value("paused") != 0;
+  state.speed = session_->world_value("speed");
+  state.preset_file = presets_.file();
+  state.presets = presets_.list();
+  for (const Override& override_entry : overrides_.in_order()) {
+    TakeOverride& entry = state.overrides.emplace_back();
+    if (override_entry.message != nullptr) entry.message = *override_entry.message;
+    if (override_entry.address != nullptr) {
+      entry.kind = TakeOverride::Kind::released;
+      entry.message.address = *override_entry.address;
     }
-    if (step.blend == nullptr) continue;
-    kept.kind = TakeHand::Kind::blend;
-    kept.presets = {step.blend->a};
-    if (step.blend->amount > 0) kept.presets.push_back(step.blend->b);
-    kept.amount = step.blend->amount;
+    if (override_entry.blend == nullptr) continue;
+    entry.kind = TakeOverride::Kind::blend;
+    entry.presets = {override_entry.blend->a};
+    if (override_entry.blend->amount > 0) entry.presets.push_back(override_entry.blend->b);
+    entry.amount = override_entry.blend->amount;
   }
-  return begin;
+  return state;
 }
 
-Result<void> Engine::start_record() {
-  calls_.begin_tick();
-  recorder_ =
-      std::make_unique<TakeRecorder>(TakeWriter::Place{options_.record, false}, take_begin(false), say_take_failed());
-  Result<void> opened = recorder_->opened();
+Result<void> Engine::start_recording() {
+  call_log_.begin_tick();
+  recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Target{options_.record, false}, make_initial_state(false),
+                                             take_error_reporter());
+  Result<void> opened = recorder_->wait_until_open();
   if (!opened) recorder_ = nullptr;
-  take_name_ = take_title(options_.record);
+  take_name_ = title_of_take(options_.record);
   return opened;
 }
 
-Engine::TakenRun Engine::begin_run(TakeRun::Kind kind, bool again, const std::string& scene) {
-  TakenRun run;
-  if (recorder_ != nullptr) run.place = recorder_->begin_run({kind, false, again, 0, scene});
-  if (player_ == nullptr) return run;
-  run.told = player_->take_run(kind);
-  if (player_->current_scripts()) return run;
-  run.fails = run.told == nullptr || !run.told->good;
-  if (!run.fails) run.sources = player_->sources(*run.told);
-  return run;
+Engine::RecordedRun Engine::begin_run(TakeSceneRun::Kind kind, bool reuse_files, const std::string& scene) {
+  RecordedRun scene_run;
+  if (recorder_ != nullptr) scene_run.index = recorder_->begin_run({kind, false, reuse_files, 0, scene});
+  if (player_ == nullptr) return scene_run;
+  scene_run.recorded = player_->consume_run(kind);
+  if (player_->current_scripts()) return scene_run;
+  scene_run.fails = scene_run.recorded == nullptr || !scene_run.recorded->succeeded;
+  if (!scene_run.fails) scene_run.sources = player_->sources(*scene_run.recorded);
+  return scene_run;
 }
 
-void Engine::run_was_good(const TakenRun& run, const Stage& stage, std::optional<PresetList> presets,
-                          const std::string& preset_file) {
+void Engine::run_succeeded(const RecordedRun& run, const Session& session, std::optional<PresetList> presets,
+                           const std::string& preset_file) {
   if (recorder_ == nullptr) return;
-  recorder_->run_was_good(run.place,
-                          {stage.scene == nullptr ? nullptr : stage.scene->sources(), std::move(presets), preset_file});
+  recorder_->run_succeeded(
+      run.index, {session.scene == nullptr ? nullptr : session.scene->sources(), std::move(presets), preset_file});
 }
 
-Outcome Engine::ask_take(const Message& message) {
+Outcome Engine::request_take(const Message& message) {
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
-  if (replays()) return outcome;
-  const std::string what = plain_name(message.address);
-  if (what == "/take/stop") {
-    if (recorder_ == nullptr) return Outcome::refused("no take is being recorded; /take/record begins one");
-    take_ends_ = true;
+  if (is_replaying()) return outcome;
+  const std::string address = plain_name(message.address);
+  if (address == "/take/stop") {
+    if (recorder_ == nullptr) return Outcome::rejected("no take is being recorded; /take/record starts one");
+    take_end_requested_ = true;
     outcome.answers.push_back({"/take/stopped", {}});
     return outcome;
   }
-  if (recorder_ != nullptr || take_wanted_)
-    return Outcome::refused("a take is being recorded already; /take/stop ends it");
-  if (what == "/take/play") {
-    if (!link_.ask_scenes) return Outcome::refused("a take is played in a show (limber play, without --fast)");
-    outcome.kind = Outcome::Kind::scenes;
+  if (recorder_ != nullptr || requested_take_)
+    return Outcome::rejected("a take is being recorded already; /take/stop ends it");
+  if (address == "/take/play") {
+    if (!link_.on_scene_request) return Outcome::rejected("takes can be played only in limber play, without --fast");
+    outcome.kind = Outcome::Kind::scene_request;
     return outcome;
   }
-  if (stage_->scene == nullptr) return Outcome::refused("there is no scene that could be recorded");
-  const Result<std::string> name = take_name(message, options_.scene);
-  if (!name) return Outcome::refused(name.error());
-  const std::string& show = stage_->scene->show_folder();
+  if (session_->scene == nullptr) return Outcome::rejected("there is no scene to record");
+  const Result<std::string> name = requested_take_name(message, options_.scene);
+  if (!name) return Outcome::rejected(name.error());
+  const std::string& show = session_->scene->show_folder();
   const std::string folder = (std::filesystem::path(show) / "takes").string();
   if (!is_inside(folder, show))
-    return Outcome::refused("takes/ is a link that leads out of the show's folder; put a folder in its place");
-  take_wanted_ = folder + "/" + *name + ".take";
+    return Outcome::rejected("takes/ is a link that leads out of the show's folder; put a folder in its place");
+  requested_take_ = folder + "/" + *name + ".take";
   outcome.answers.push_back({"/take/recording", {Arg::of(*name)}});
   return outcome;
 }
 
-// all that a take holds comes after the scene's start
-void Engine::begin_take() {
-  const std::string file = *std::exchange(take_wanted_, std::nullopt);
-  (void)stage_->world.take_reset_request();
-  take_name_ = take_title(file);
-  edits_.clear();  // a replay does not know of them
-  calls_.begin_tick();
-  recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Place{file, true}, take_begin(true), say_take_failed());
+// Resets the scene and records from there: a take begins with a run of the scene from its start.
+void Engine::begin_recording() {
+  const std::string file = *std::exchange(requested_take_, std::nullopt);
+  (void)session_->world.consume_reset_request();
+  take_name_ = title_of_take(file);
+  undo_stack_.clear();  // undo steps from before the take can't be replayed
+  call_log_.begin_tick();
+  recorder_ =
+      std::make_unique<TakeRecorder>(TakeWriter::Target{file, true}, make_initial_state(true), take_error_reporter());
   if (reset()) {
-    log_info("a take is recorded: {}", printable(file));
-    take_tick(false, true);
+    log_info("recording the take {}", printable(file));
+    finish_take_tick(false, true);
   } else {
-    drop_take();
-    say_take_failed()("a take begins with the scene's start, and its file has an error");
+    abandon_recording();
+    take_error_reporter()("the take was not started: the scene's file has an error");
   }
 }
 
-void Engine::drop_take() {
+void Engine::abandon_recording() {
   if (recorder_ == nullptr) return;
-  written_.push_back(recorder_->abandon());
+  ended_takes_.push_back(recorder_->abandon());
   recorder_ = nullptr;
 }
 
 void Engine::end_take() {
   if (recorder_ == nullptr) return;
-  written_.push_back(recorder_->finish({stage_->world.tick(), state_hash()}));
+  ended_takes_.push_back(recorder_->finish({session_->world.tick(), state_hash()}));
   recorder_ = nullptr;
 }
 
 void Engine::finish_saving() {
   presets_.finish_saving();
-  written_.clear();
+  ended_takes_.clear();
 }
 
-void Engine::tell_take() {
-  TakeNode::Told told;
-  if (player_ != nullptr) told = {take_name_, true, player_->ticks(), player_->whole(), plays_};
-  if (recorder_ != nullptr) told = {take_name_, false, recorder_->ticks(), 0, false};
-  stage_->take_node.tell(told);
+void Engine::update_take_node() {
+  TakeNode::Status status;
+  if (player_ != nullptr) status = {take_name_, true, player_->ticks(), player_->total_ticks(), plays_in_show_};
+  if (recorder_ != nullptr) status = {take_name_, false, recorder_->ticks(), 0, false};
+  session_->take_node.publish(status);
 }
 
-void Engine::take_tick(bool running, bool begins) {
+void Engine::finish_take_tick(bool running, bool begins) {
   const auto hash = [this] { return state_hash(); };
-  if (player_ != nullptr) player_->compare(stage_->world, calls_, hash);
+  if (player_ != nullptr) player_->compare(session_->world, call_log_, hash);
   if (recorder_ != nullptr && recorder_->failed()) end_take();
-  if (recorder_ != nullptr) recorder_->end_tick(running, stage_->world, calls_, hash, begins);
-  if (!written_.empty()) std::erase_if(written_, [](const auto& writer) { return writer->done(); });
+  if (recorder_ != nullptr) recorder_->end_tick(running, session_->world, call_log_, hash, begins);
+  if (!ended_takes_.empty()) std::erase_if(ended_takes_, [](const auto& writer) { return writer->done(); });
 }
 
-Result<void> Engine::replay_beginning() {
-  const TakeBegin& begin = player_->begin();
-  if (!begin.reset) {
-    const std::vector<TakeRun>& runs = player_->tick().runs;
-    auto book = runs.empty() ? std::nullopt : player_->presets(runs.front());
-    if (book) presets_.open({std::move(book->list), nullptr, book->file});
+Result<void> Engine::start_from_take() {
+  const TakeInitialState& initial_state = player_->initial_state();
+  if (!initial_state.reset) {
+    const std::vector<TakeSceneRun>& runs = player_->tick().runs;
+    auto bank = runs.empty() ? std::nullopt : player_->presets(runs.front());
+    if (bank) presets_.open({std::move(bank->list), nullptr, bank->file});
     return start_show();
   }
-  presets_.open({begin.presets, nullptr, begin.preset_file});
-  for (const TakeHand& step : begin.hand) {
-    if (step.kind == TakeHand::Kind::message) hand_.remember(step.message);
-    if (step.kind == TakeHand::Kind::given_back) hand_.give_back(step.message.address);
-    if (step.kind != TakeHand::Kind::blend) continue;
-    Blend blend = step.presets.size() == 1 ? Blend::of(step.presets[0]) : aligned(step.presets[0], step.presets[1]);
-    if (step.presets.size() > 1) blend.amount = step.amount;
-    hand_.recall(blend);
+  presets_.open({initial_state.presets, nullptr, initial_state.preset_file});
+  for (const TakeOverride& entry : initial_state.overrides) {
+    if (entry.kind == TakeOverride::Kind::message) overrides_.add(entry.message);
+    if (entry.kind == TakeOverride::Kind::released) overrides_.release(entry.message.address);
+    if (entry.kind != TakeOverride::Kind::blend) continue;
+    Blend blend = entry.presets.size() == 1 ? Blend::of(entry.presets[0]) : align(entry.presets[0], entry.presets[1]);
+    if (entry.presets.size() > 1) blend.amount = entry.amount;
+    overrides_.add_recall(blend);
   }
-  const auto set = [&](const char* row, double value) {
-    (void)stage_->store.set(stage_->world.id(), World::table().at(row), {&value, 1});
+  const auto set = [&](const char* property, double value) {
+    (void)session_->store.set(session_->world.id(), World::table().at(property), {&value, 1});
   };
-  set("seed", static_cast<double>(begin.world_seed));
-  set("paused", begin.paused ? 1 : 0);
-  set("speed", begin.speed);
-  scene_seed_ = begin.scene_seed;
+  set("seed", static_cast<double>(initial_state.world_seed));
+  set("paused", initial_state.paused ? 1 : 0);
+  set("speed", initial_state.speed);
+  scene_seed_ = initial_state.scene_seed;
   return reset() ? Result<void>() : Result<void>(Error{"the scene's file has an error"});
 }
 
 void Engine::replay_runs() {
-  while (const TakeRun* run = player_->run_from_outside()) replay_run(*run);
+  while (const TakeSceneRun* run = player_->next_external_run()) replay_run(*run);
 }
 
-void Engine::replay_run(const TakeRun& run) {
-  if (run.kind == TakeRun::Kind::reload) {
-    run_now(run.kind, run.again);
+void Engine::replay_run(const TakeSceneRun& run) {
+  if (run.kind == TakeSceneRun::Kind::reload) {
+    run_scene_now(run.kind, run.reuses_files);
     return;
   }
-  const TakenRun taken = begin_run(run.kind, run.again, run.scene);
-  if (run.kind == TakeRun::Kind::order) {
-    ordered_ = reload_.order(*stage_, run.again);
-  } else if (run.kind == TakeRun::Kind::take) {
-    if (taken.fails || !ordered_) return;
-    ordered_->options.sources = taken.sources;
-    Draft draft(*std::exchange(ordered_, std::nullopt), *this);
-    take(draft);
+  const RecordedRun scene_run = begin_run(run.kind, run.reuses_files, run.scene);
+  if (run.kind == TakeSceneRun::Kind::reload_requested) {
+    reload_request_ = reloader_.make_request(*session_, run.reuses_files);
+  } else if (run.kind == TakeSceneRun::Kind::reload_finished) {
+    if (scene_run.fails || !reload_request_) return;
+    reload_request_->options.sources = scene_run.sources;
+    ReloadCandidate candidate(*std::exchange(reload_request_, std::nullopt), *this);
+    apply_candidate(candidate);
   } else {
-    auto fresh = new_stage();
+    auto session = new_session();
     SceneOptions run_options = scene_options();
-    run_options.sources = taken.sources;
-    if (!fresh->run_beside(run.scene, *this, run_options)) return;
-    auto kept = player_->presets(run);
-    Presets::Book book;
-    if (kept) book = {std::move(kept->list), nullptr, kept->file};
-    play_scene(run.scene, fresh, book);
+    run_options.sources = scene_run.sources;
+    if (!session->run_detached(run.scene, *this, run_options)) return;
+    auto loaded = player_->presets(run);
+    Presets::Bank bank;
+    if (loaded) bank = {std::move(loaded->list), nullptr, loaded->file};
+    play_scene(run.scene, session, bank);
   }
 }
 
-// what comes in while a take has the hands: questions are answered; as much as a tick takes
-void Engine::refuse_commands() {
+// Handles messages that arrive during a replay: answers queries, rejects the others, within the work budget of a tick.
+void Engine::reject_commands() {
   for (int work = kTickWork; work > 0 && next_command_ < commands_.size(); next_command_++) {
     const Command& command = commands_[next_command_];
-    for (const Message& message : command.messages) refuse_hand(message, command.origin);
-    if (command.evaluate != nullptr)
-      command.evaluate->answer({Evaluation::Kind::error, plays_ ? kPlays : kReplays, 0, 0, 0});
-    work -= kRefusalWork * static_cast<int>(1 + command.messages.size());
+    for (const Message& message : command.messages) reject_message(message, command.origin);
+    if (command.evaluation != nullptr)
+      command.evaluation->on_result(
+          {Evaluation::Kind::error, plays_in_show_ ? kPlayingError : kReplayingError, 0, 0, 0});
+    work -= kRejectionWork * static_cast<int>(1 + command.messages.size());
   }
-  asks_ = link_.image_asks.load();
+  snapshot_requests_ = link_.value_snapshot_requests.load();
 }
 
-void Engine::refuse_urgent() {
-  link_.inbox.drain_urgent(urgent_);
+void Engine::reject_urgent() {
+  link_.command_queue.drain_urgent(urgent_);
   for (const UrgentRequest& request : urgent_) {
-    overtaken_.note(request);
-    // the next pass ends the take for it
-    if (plays_ && request.kind == UrgentKind::panic) {
-      link_.inbox.push_urgent(request);
+    urgent_precedence_.record(request);
+    // a panic stops playback in the next pass, and is executed then
+    if (plays_in_show_ && request.kind == UrgentKind::panic) {
+      link_.command_queue.push_urgent(request);
       continue;
     }
     if (request.kind == UrgentKind::take_stop) link_.take_stops.fetch_add(1);
-    refuse_hand(request.message, request.origin);
+    reject_message(request.message, request.origin);
   }
 }
 
-void Engine::refuse_hand(const Message& message, const Origin& origin) {
-  const std::string what = plain_name(message.address);
-  Outcome outcome = Outcome::refused(plays_ ? kPlays : kReplays);
-  if (plays_ && what == "/take/stop") {
-    take_ends_ = true;
+void Engine::reject_message(const Message& message, const CommandOrigin& origin) {
+  const std::string address = plain_name(message.address);
+  Outcome outcome = Outcome::rejected(plays_in_show_ ? kPlayingError : kReplayingError);
+  if (plays_in_show_ && address == "/take/stop") {
+    take_end_requested_ = true;
     outcome.kind = Outcome::Kind::answered;
     outcome.answers.push_back({"/take/stopped", {}});
-  } else if (what == "/get" || what.starts_with("/list/")) {
-    outcome = stage_->dispatch.execute(message);
+  } else if (address == "/get" || address.starts_with("/list/")) {
+    outcome = session_->dispatcher.execute(message);
   }
-  for (Message& answer : outcome.answers) push_out({Outgoing::To::sender, origin, std::move(answer)});
-  if (outcome.kind == Outcome::Kind::scenes && link_.ask_scenes) return link_.ask_scenes(message, origin);
-  if (outcome.kind != Outcome::Kind::answered) refuse(message.address, origin, outcome.error);
+  for (Message& answer : outcome.answers) push_out({Outgoing::Destination::sender, origin, std::move(answer)});
+  if (outcome.kind == Outcome::Kind::scene_request && link_.on_scene_request)
+    return link_.on_scene_request(message, origin);
+  if (outcome.kind != Outcome::Kind::answered) send_error(message.address, origin, outcome.error);
 }
 
-void Engine::replay_messages(Hands& hands) {
-  refuse_urgent();
+void Engine::replay_messages(EditScope& edit_scope) {
+  reject_urgent();
   if (next_command_ >= commands_.size()) {
-    link_.inbox.drain(commands_);
+    link_.command_queue.drain(commands_);
     next_command_ = 0;
   }
-  refuse_commands();
-  answers_taken_ = true;
-  hears_.reset();
-  for (TakeMessage& taken : player_->messages()) {
-    if (!taken.evaluate && carry_out_event(taken.message)) {
-      history_.note(taken.message, taken.origin);
+  reject_commands();
+  suppress_answers_ = true;
+  replayed_handler_calls_.reset();
+  for (TakeMessage& input : player_->messages()) {
+    if (!input.evaluate && execute_event(input.message)) {
+      history_.record_input(input.message, input.origin);
       continue;
     }
-    hands.begin(taken.origin);
-    if (taken.evaluate) {
-      Evaluate wish;
-      wish.text = std::move(taken.message.address);
-      evaluate(wish, taken.origin);
+    edit_scope.begin(input.origin);
+    if (input.evaluate) {
+      EvaluationRequest request;
+      request.text = std::move(input.message.address);
+      evaluate(request, input.origin);
     } else {
-      execute(taken.message, taken.origin);
+      execute(input.message, input.origin);
     }
   }
 }

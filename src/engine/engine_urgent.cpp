@@ -1,5 +1,4 @@
-// Engine: what may not wait (urgent requests), what may not make others wait (handlers), and questions that wait for a
-// step.
+// Engine: urgent requests, handlers (osc:on) with their time budget, and queries that wait for a /transport/step.
 #include <algorithm>
 #include <utility>
 
@@ -7,98 +6,102 @@
 
 namespace limber {
 
-// ahead of all commands that wait
-void Engine::execute_urgent(Hands& hands) {
-  link_.inbox.drain_urgent(urgent_);
-  link_.counters.discarded.fetch_add(link_.inbox.fetch_discarded(), std::memory_order_relaxed);
+// Executes urgent requests ahead of all queued commands.
+void Engine::execute_urgent(EditScope& edit_scope) {
+  link_.command_queue.drain_urgent(urgent_);
+  link_.counters.discarded.fetch_add(link_.command_queue.fetch_discarded(), std::memory_order_relaxed);
   if (link_.panic_signal.exchange(false))
-    urgent_.push_back({UrgentKind::panic, {"/transport/panic", {}}, {Hand::command_line}, link_.inbox.arrive()});
+    urgent_.push_back({UrgentKind::panic,
+                       {"/transport/panic", {}},
+                       {CommandSource::command_line},
+                       link_.command_queue.next_arrival()});
   for (UrgentRequest& request : urgent_) {
-    overtaken_.note(request);
-    if (request.kind == UrgentKind::panic && !stage_->world.panic().on()) link_.panics.fetch_add(1);
+    urgent_precedence_.record(request);
+    if (request.kind == UrgentKind::panic && !session_->world.panic().on()) link_.panics.fetch_add(1);
     if (request.kind == UrgentKind::take_stop) link_.take_stops.fetch_add(1);
-    hands.begin(request.origin);
+    edit_scope.begin(request.origin);
     execute(request.message, request.origin);
   }
 }
 
-bool Engine::overtaken(const Message& message, std::uint64_t arrival) {
-  if (!overtaken_.discards(message, arrival)) return false;
+bool Engine::discard_if_overtaken(const Message& message, std::uint64_t arrival) {
+  if (!urgent_precedence_.discards(message, arrival)) return false;
   link_.counters.discarded.fetch_add(1, std::memory_order_relaxed);
   return true;
 }
 
-// /get behind a step of the same sender is answered when the step's ticks are made
-bool Engine::waits_for_steps(const Message& message, const Origin& origin) {
+// Postpones a /get after a /transport/step of the same sender until the ticks of the step are done.
+bool Engine::postpone_query(const Message& message, const CommandOrigin& origin) {
   if (same_address(message.address, "/transport/step")) {
     const bool known = std::ranges::find(step_origins_, origin) != step_origins_.end();
-    if (!known && step_origins_.size() < kMostQuestions) step_origins_.push_back(origin);
+    if (!known && step_origins_.size() < kMaxQueries) step_origins_.push_back(origin);
     return false;
   }
-  if (step_origins_.empty() || stage_->transport.steps() == 0 || !same_address(message.address, "/get")) return false;
+  if (step_origins_.empty() || session_->transport.steps() == 0 || !same_address(message.address, "/get")) return false;
   if (std::ranges::find(step_origins_, origin) == step_origins_.end()) return false;
-  if (questions_.size() >= kMostQuestions) return false;
-  questions_.push_back({message, origin});
+  if (pending_queries_.size() >= kMaxQueries) return false;
+  pending_queries_.push_back({message, origin});
   return true;
 }
 
-void Engine::answer_questions(Hands& hands) {
-  if (stage_->transport.steps() > 0) return;
+void Engine::answer_pending_queries(EditScope& edit_scope) {
+  if (session_->transport.steps() > 0) return;
   step_origins_.clear();
-  for (Question& question : std::exchange(questions_, {})) {
-    hands.begin(question.origin);
-    execute(question.message, question.origin);
+  for (PendingQuery& query : std::exchange(pending_queries_, {})) {
+    edit_scope.begin(query.origin);
+    execute(query.message, query.origin);
   }
 }
 
-void Engine::note_event(const TakeEvent& event) {
+void Engine::record_event(const TakeEvent& event) {
   const Message message = message_of(event);
-  if (recorder_ != nullptr) recorder_->message(message, {});
-  history_.note(message, {});
+  if (recorder_ != nullptr) recorder_->record_message(message, {});
+  history_.record_input(message, {});
 }
 
-// what a replay, or a rewind, has as an input; false: it is a message
-bool Engine::carry_out_event(const Message& message) {
+// Executes an internal event that a take or a rewind has recorded as input. Returns false for an ordinary message.
+bool Engine::execute_event(const Message& message) {
   const std::optional<TakeEvent> event = event_of(message);
   if (!event) return false;
-  if (event->kind == TakeEvent::Kind::panic_settled) stage_->world.panic().settle();
-  if (event->kind == TakeEvent::Kind::heard) hears_ = event->value;
+  if (event->kind == TakeEvent::Kind::panic_settled) session_->world.panic().end_first_second();
+  if (event->kind == TakeEvent::Kind::messages_handled) replayed_handler_calls_ = event->value;
   return true;
 }
 
 void Engine::call_handler() {
-  HandlerQueue::Entry heard = heard_.pop();
-  const bool handled = stage_->scene != nullptr && stage_->scene->message(heard.message, heard.origin);
-  if (handled || !heard.unknown || again_) return;
+  HandlerQueue::Entry entry = handler_queue_.pop();
+  const bool handled = session_->scene != nullptr && session_->scene->handle_message(entry.message, entry.origin);
+  if (handled || !entry.unknown || resimulating_) return;
   link_.counters.unknown.fetch_add(1, std::memory_order_relaxed);
-  refuse(heard.message.address, heard.origin, heard.error);
+  send_error(entry.message.address, entry.origin, entry.error);
 }
 
-// Messages that find no time in this tick wait, and the number of those that were heard is an input of the tick.
+// Calls handlers until the queue is empty or the time budget is spent; the rest waits for the next pass. The number of
+// calls depends on real time, so it is recorded as an input of the tick.
 void Engine::call_handlers() {
-  Hands hands(stage_->world, presets_, edits_, notes_);
-  const bool live = !replays() && !again_;
+  EditScope edit_scope(session_->world, presets_, undo_stack_, change_recorder_);
+  const bool live = !is_replaying() && !resimulating_;
   const double now = options_.clock();
   if (live) {
-    const double passed = std::max(now - std::exchange(handlers_at_, now), 0.0);
-    handler_seconds_ = std::min(handler_seconds_ + kHandlerShare * passed, kHandlerSeconds);
+    const double elapsed = std::max(now - std::exchange(handlers_time_, now), 0.0);
+    handler_budget_ = std::min(handler_budget_ + kHandlerShare * elapsed, kHandlerSeconds);
   }
-  const double until = now + handler_seconds_;
-  const auto goes_on = [&](std::uint64_t called) {
-    if (!live) return !hears_ || called < *hears_;
+  const double until = now + handler_budget_;
+  const auto may_continue = [&](std::uint64_t called) {
+    if (!live) return !replayed_handler_calls_ || called < *replayed_handler_calls_;
     return options_.fast || options_.clock() < until;
   };
   std::uint64_t called = 0;
-  while (!heard_.empty() && goes_on(called)) {
-    hands.begin(heard_.front().origin);
+  while (!handler_queue_.empty() && may_continue(called)) {
+    edit_scope.begin(handler_queue_.front().origin);
     call_handler();
     called++;
   }
-  hears_.reset();
-  answers_taken_ = false;
+  replayed_handler_calls_.reset();
+  suppress_answers_ = false;
   if (!live) return;
-  handler_seconds_ -= options_.clock() - now;
-  if (!heard_.empty()) note_event({TakeEvent::Kind::heard, called});
+  handler_budget_ -= options_.clock() - now;
+  if (!handler_queue_.empty()) record_event({TakeEvent::Kind::messages_handled, called});
 }
 
 }  // namespace limber

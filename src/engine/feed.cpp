@@ -1,4 +1,4 @@
-// Values are compared to the bit: what a client knows is what it was sent.
+// Feed: values are compared bit by bit with those that the client knows.
 #include "engine/feed.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kBindWork = 10 * PatternBudget::kMessage;  // of all patterns of a client, when things come or go
+constexpr int kResolveWork = 10 * PatternBudget::kStepsPerMessage;  // budget to resolve all patterns of a client
 
-std::uint64_t key(NodeId node, const Row& row) { return std::uint64_t{node.slot} << 32 | row.index; }
+std::uint64_t key(NodeId node, const Property& property) { return std::uint64_t{node.slot} << 32 | property.index; }
 
 bool same(const double* a, const double* b, std::size_t count) {
   return count == 0 || std::memcmp(a, b, count * sizeof *a) == 0;
@@ -27,15 +27,15 @@ bool same(const double* a, const double* b, std::size_t count) {
 bool Feed::add(std::string_view path, std::int64_t order) {
   const auto found = std::ranges::find(paths_, path, &Path::text);
   if (found != paths_.end() && found->order == order) {
-    // asked for again: told again
-    for (Value& v : values_) v.told = v.told && v.path != path;
+    // a repeated subscription sends the value again
+    for (Value& v : values_) v.sent = v.sent && v.path != path;
     return true;
   }
   if (found != paths_.end()) paths_.erase(found);
-  if (paths_.size() >= kMostPaths) return false;
+  if (paths_.size() >= kMaxPaths) return false;
   const auto at = std::ranges::upper_bound(paths_, order, {}, &Path::order);
   paths_.insert(at, {std::string(path), order, 0, 0, 0, {}});
-  unbound_ = true;
+  unresolved_ = true;
   return true;
 }
 
@@ -43,83 +43,83 @@ bool Feed::remove(std::string_view path) {
   const auto found = std::ranges::find(paths_, path, &Path::text);
   if (found == paths_.end()) return false;
   paths_.erase(found);
-  unbound_ = true;
+  unresolved_ = true;
   return true;
 }
 
-void Feed::begin_bind(const std::shared_ptr<const Tree>& tree) {
+void Feed::begin_resolve(const std::shared_ptr<const TreeSnapshot>& tree) {
   tree_ = tree;
-  known_.clear();
-  // those of a binding that did not end are newer than what was left of the one before
-  std::ranges::move(values_, std::back_inserter(before_));
+  old_by_path_.clear();
+  // values of an unfinished resolution are newer than those before it
+  std::ranges::move(values_, std::back_inserter(old_values_));
   values_.clear();
-  by_place_.clear();
-  for (Value& v : before_) known_.insert_or_assign(v.path, &v);
-  bind_work_ = {kBindWork};
-  binds_next_ = 0;
+  by_key_.clear();
+  for (Value& v : old_values_) old_by_path_.insert_or_assign(v.path, &v);
+  resolve_budget_ = {kResolveWork};
+  next_path_ = 0;
   truncated_ = false;
-  unbound_ = false;
+  unresolved_ = false;
 }
 
-// false: there is more to be done
-bool Feed::bind_some() {
-  const int enough = bind_work_.left - kSliceWork;
-  while (binds_next_ < paths_.size()) {
-    if (bind_work_.left < enough) return false;
-    bind(paths_[binds_next_++]);
+// Returns false if there is more to resolve.
+bool Feed::resolve_some() {
+  const int stop_at = resolve_budget_.remaining - kSliceWork;
+  while (next_path_ < paths_.size()) {
+    if (resolve_budget_.remaining < stop_at) return false;
+    resolve(paths_[next_path_++]);
   }
-  known_.clear();
-  before_.clear();
+  old_by_path_.clear();
+  old_values_.clear();
   tree_ = nullptr;
   return true;
 }
 
-void Feed::bind(Path& path) {
+void Feed::resolve(Path& path) {
   path.first = path.end = values_.size();
   path.next = 0;
   path.problem.clear();
-  if (values_.size() >= kMostValues) {
+  if (values_.size() >= kMaxValues) {
     truncated_ = true;
     return;
   }
-  bind_work_.spend(PatternBudget::kName);
-  PatternBudget budget{std::clamp(bind_work_.left, 0, PatternBudget::kMessage)};
-  const int before = budget.left;
-  const Result<std::vector<TreePlace>> places = tree_->match(path.text, budget, kMostValues);
-  bind_work_.spend(before - budget.left);
-  if (!places) {
-    path.problem = places.error();
+  resolve_budget_.charge(PatternBudget::kStepsPerName);
+  PatternBudget budget{std::clamp(resolve_budget_.remaining, 0, PatternBudget::kStepsPerMessage)};
+  const int before = budget.remaining;
+  const Result<std::vector<TreePropertyRef>> refs = tree_->match(path.text, budget, kMaxValues);
+  resolve_budget_.charge(before - budget.remaining);
+  if (!refs) {
+    path.problem = refs.error();
     return;
   }
-  truncated_ = truncated_ || places->size() >= kMostValues;
-  bool reaches = false;
-  for (const TreePlace& place : *places) {
-    if (place.row == nullptr || place.row->kind == RowKind::action) continue;
-    reaches = true;
-    add_value(place);
+  truncated_ = truncated_ || refs->size() >= kMaxValues;
+  bool matches = false;
+  for (const TreePropertyRef& ref : *refs) {
+    if (ref.property == nullptr || ref.property->kind == PropertyKind::action) continue;
+    matches = true;
+    add_value(ref);
   }
   path.end = values_.size();
-  if (!reaches) path.problem = fmt::format("'{}' is no value", printable(path.text));
+  if (!matches) path.problem = fmt::format("'{}' is not a property", printable(path.text));
 }
 
-void Feed::add_value(const TreePlace& place) {
-  const std::uint64_t where = key(tree_->nodes()[place.node].id, *place.row);
-  if (values_.size() >= kMostValues) {
-    truncated_ = truncated_ || !by_place_.contains(where);
+void Feed::add_value(const TreePropertyRef& ref) {
+  const std::uint64_t value_key = key(tree_->nodes()[ref.node].id, *ref.property);
+  if (values_.size() >= kMaxValues) {
+    truncated_ = truncated_ || !by_key_.contains(value_key);
     return;
   }
-  if (!by_place_.emplace(where, static_cast<std::uint32_t>(values_.size())).second) return;
+  if (!by_key_.emplace(value_key, static_cast<std::uint32_t>(values_.size())).second) return;
   Value value;
-  value.path = tree_->path(place);
-  value.row = place.row;
-  value.place = where;
-  value.numbers = tree_->numbers(place);
-  // another class in its place may have another type of value under that name
-  const auto old = known_.find(value.path);
-  if (old != known_.end() && old->second->row == place.row) {
-    value.told = old->second->told;
-    value.known = old->second->known;
-    value.known_text = std::move(old->second->known_text);
+  value.path = tree_->path(ref);
+  value.property = ref.property;
+  value.key = value_key;
+  value.numbers = tree_->location(ref);
+  // a new object at this path may have another type of property of that name
+  const auto old = old_by_path_.find(value.path);
+  if (old != old_by_path_.end() && old->second->property == ref.property) {
+    value.sent = old->second->sent;
+    value.sent_value = old->second->sent_value;
+    value.sent_text = std::move(old->second->sent_text);
   }
   values_.push_back(std::move(value));
 }
@@ -129,69 +129,71 @@ std::string_view Feed::problem(std::string_view path) const {
   return found == paths_.end() ? std::string_view() : found->problem;
 }
 
-void Feed::note(const WriteNote& note) {
-  const auto at = by_place_.find(key(note.node, *note.row));
-  if (at == by_place_.end()) return;
+void Feed::note_own_write(const ClientWrite& write) {
+  const auto at = by_key_.find(key(write.node, *write.property));
+  if (at == by_key_.end()) return;
   Value& value = values_[at->second];
-  value.own = !note.clamped;
-  value.set = note.values;
-  // what was brought into the range is not what the client believes: it is told, even if it was so before
-  if (note.clamped) value.told = false;
+  value.own_write = !write.clamped;
+  value.own_value = write.values;
+  // a clamped value differs from the one the client has sent: send it even if it has not changed
+  if (write.clamped) value.sent = false;
 }
 
-void Feed::hear(const std::shared_ptr<const Image>& image, const Origin& self) {
-  while (!hear_some(image, self)) continue;
+void Feed::update(const std::shared_ptr<const ValueSnapshot>& snapshot, const CommandOrigin& self) {
+  while (!update_some(snapshot, self)) continue;
 }
 
-bool Feed::hear_some(const std::shared_ptr<const Image>& image, const Origin& self) {
-  if (unbound_ || (tree_ != nullptr ? tree_ != image->tree : image_ == nullptr || image_->tree != image->tree))
-    begin_bind(image->tree);
-  if (tree_ != nullptr && !bind_some()) return false;
-  image_ = image;
-  for (const WriteNote& n : image->notes) {
-    if (n.number <= heard_note_) continue;
-    heard_note_ = n.number;
-    if (n.origin == self) note(n);
+bool Feed::update_some(const std::shared_ptr<const ValueSnapshot>& snapshot, const CommandOrigin& self) {
+  if (unresolved_ ||
+      (tree_ != nullptr ? tree_ != snapshot->tree : snapshot_ == nullptr || snapshot_->tree != snapshot->tree))
+    begin_resolve(snapshot->tree);
+  if (tree_ != nullptr && !resolve_some()) return false;
+  snapshot_ = snapshot;
+  for (const ClientWrite& write : snapshot->writes) {
+    if (write.number <= last_write_) continue;
+    last_write_ = write.number;
+    if (write.origin == self) note_own_write(write);
   }
   return true;
 }
 
-void Feed::tell(const Tell& tell_one) {
-  if (image_ != nullptr) tell(0, values_.size(), next_, tell_one);
+void Feed::send_changes(const Sender& send) {
+  if (snapshot_ != nullptr) send_changes(0, values_.size(), next_value_, send);
 }
 
-std::pair<std::size_t, bool> Feed::tell(std::string_view path, const Tell& tell_one) {
+std::pair<std::size_t, bool> Feed::send_changes(std::string_view path, const Sender& send) {
   const auto found = std::ranges::find(paths_, path, &Path::text);
-  if (image_ == nullptr || unbound_ || tree_ != nullptr || found == paths_.end()) return {0, true};
-  return {found->end - found->first, tell(found->first, found->end, found->next, tell_one)};
+  if (snapshot_ == nullptr || unresolved_ || tree_ != nullptr || found == paths_.end()) return {0, true};
+  return {found->end - found->first, send_changes(found->first, found->end, found->next, send)};
 }
 
-bool Feed::tell(std::size_t first, std::size_t end, std::size_t& next, const Tell& tell_one) {
+bool Feed::send_changes(std::size_t first, std::size_t end, std::size_t& next, const Sender& send) {
   const std::size_t count = end - first;
   if (count == 0) return true;
   next %= count;
   for (std::size_t i = 0; i < count; i++) {
     const std::size_t at = (next + i) % count;
-    if (tell_value(values_[first + at], tell_one)) continue;
+    if (send_value(values_[first + at], send)) continue;
     next = at;
     return false;
   }
   return true;
 }
 
-// false: there was no room for it
-bool Feed::tell_value(Value& value, const Tell& tell_one) {
-  const RowValue now = image_->value(value.numbers);
-  const std::size_t count = value.row->width;
-  // who set it itself believes that, whatever it was told before
-  if (!value.own && value.told && same(now.numbers, value.known.data(), count) && now.text == value.known_text)
+// Returns false if the value did not fit.
+bool Feed::send_value(Value& value, const Sender& send) {
+  const PropertyValue now = snapshot_->value(value.numbers);
+  const std::size_t count = value.property->width;
+  // after its own write the client assumes that value, regardless of the value it was sent before
+  if (!value.own_write && value.sent && same(now.numbers, value.sent_value.data(), count) &&
+      now.text == value.sent_text)
     return true;
-  const bool knows = value.own && same(now.numbers, value.set.data(), count);
-  if (!knows && !tell_one(value.path, *value.row, now)) return false;
-  value.own = false;
-  value.told = true;
-  std::copy_n(now.numbers, count, value.known.begin());
-  value.known_text = now.text;
+  const bool client_has_value = value.own_write && same(now.numbers, value.own_value.data(), count);
+  if (!client_has_value && !send(value.path, *value.property, now)) return false;
+  value.own_write = false;
+  value.sent = true;
+  std::copy_n(now.numbers, count, value.sent_value.begin());
+  value.sent_text = now.text;
   return true;
 }
 

@@ -1,6 +1,6 @@
-// Feed: what one client is told of changes: the newest value of each path that it follows where that is not what it
-// knows. What it set itself it knows. A value that several paths reach is told once. One for OSC's subscribers and
-// OSCQuery's listeners alike. [one thread]
+// Feed: computes the change notifications of one subscriber (OSC or OSCQuery): the current value of each subscribed
+// path that differs from the value last sent to the client or set by it. A value that several paths match is sent once.
+// [one thread]
 #pragma once
 
 #include <array>
@@ -20,77 +20,80 @@ namespace limber {
 
 class Feed {
  public:
-  static constexpr std::size_t kMostPaths = 4096;  ///< Paths and patterns asked for.
-  static constexpr std::size_t kMostValues = 4096;
-  static constexpr int kSliceWork = 200'000;  ///< Steps of matching, some nanoseconds each.
+  static constexpr std::size_t kMaxPaths = 4096;   ///< Maximum number of subscribed paths and patterns.
+  static constexpr std::size_t kMaxValues = 4096;  ///< Maximum number of values that they match.
+  static constexpr int kSliceWork = 200'000;       ///< Matching steps per slice, some nanoseconds each.
 
-  /// A value to tell; false: no room, it comes next time.
-  using Tell = std::function<bool(const std::string& path, const Row& row, const RowValue& value)>;
+  /// Sends a value. Returns false if it does not fit; it is then offered again the next time.
+  using Sender = std::function<bool(const std::string& path, const Property& property, const PropertyValue& value)>;
 
-  /// Follows a row's path, or a pattern: the values that it reaches. One that reaches none yet waits. Of several paths
-  /// that reach a value, the one with the least `order` has it. False: too many.
+  /// Subscribes to a path or a pattern, which may match values later only. If several paths match a value, it belongs
+  /// to the one with the smallest `order`. A repeated subscription sends the value again. Returns false if there are
+  /// too many.
   bool add(std::string_view path, std::int64_t order = 0);
-  /// Follows it no longer; what was told of it is forgotten. False: it was not followed.
+  /// Cancels a subscription and forgets the values sent for it. Returns false if there is none.
   bool remove(std::string_view path);
   bool empty() const { return paths_.empty(); }
   std::size_t size() const { return paths_.size(); }
 
-  /// Looks at an image: who is there, and what `self` set since the one before. Every image is to be heard.
-  void hear(const std::shared_ptr<const Image>& image, const Origin& self);
-  /// The same in slices of kSliceWork at most. False: call it again; nothing is told before.
-  bool hear_some(const std::shared_ptr<const Image>& image, const Origin& self);
-  /// Tells what differs in the image heard last. What there was no room for comes first the next time.
-  void tell(const Tell& tell_one);
-  /// The same for the values that a path has. Returns how many these are, and false if there was no room for one.
-  std::pair<std::size_t, bool> tell(std::string_view path, const Tell& tell_one);
-  /// Why a path has reached no value in the image heard last; empty: it has, or is not followed.
+  /// Sets the current snapshot: resolves paths if the tree has changed, and notes the values that `self` has set since
+  /// the previous snapshot. Call it for every snapshot.
+  void update(const std::shared_ptr<const ValueSnapshot>& snapshot, const CommandOrigin& self);
+  /// Like update(), but does at most kSliceWork per call. Returns false if it must be called again; nothing can be sent
+  /// until it returns true.
+  bool update_some(const std::shared_ptr<const ValueSnapshot>& snapshot, const CommandOrigin& self);
+  /// Sends the values of the current snapshot that have changed. A value that does not fit is the first the next time.
+  void send_changes(const Sender& send);
+  /// Sends the changed values of one path. Returns the number of values that it matches, and false if one did not fit.
+  std::pair<std::size_t, bool> send_changes(std::string_view path, const Sender& send);
+  /// Returns the reason why a path matches no value in the current snapshot; empty if it does or is not subscribed.
   std::string_view problem(std::string_view path) const;
-  /// Whether the paths reach more than kMostValues: the others are not told.
+  /// True if the paths match more than kMaxValues values; the others are not sent.
   bool truncated() const { return truncated_; }
 
  private:
   struct Value {
     std::string path;
-    const Row* row = nullptr;
-    TreeNumbers numbers;
-    std::uint64_t place = 0;  // key of node and row
-    bool told = false;
-    bool own = false;  // set by the client itself, since the last tell, to `set`
-    std::array<double, 4> known{};
-    std::string known_text;
-    std::array<double, 4> set{};
+    const Property* property = nullptr;
+    ValueLocation numbers;
+    std::uint64_t key = 0;   // key of node and property
+    bool sent = false;       // the client knows this value
+    bool own_write = false;  // the client has set the value since the last notification
+    std::array<double, 4> sent_value{};
+    std::string sent_text;
+    std::array<double, 4> own_value{};
   };
 
   struct Path {
     std::string text;
     std::int64_t order = 0;
-    std::size_t first = 0, end = 0;  // its values
-    std::size_t next = 0;            // of these, which is told first
+    std::size_t first = 0, end = 0;  // range of its values in values_
+    std::size_t next = 0;            // the value of this range to send first
     std::string problem;
   };
 
-  void begin_bind(const std::shared_ptr<const Tree>& tree);
-  bool bind_some();
-  void bind(Path& path);
-  void add_value(const TreePlace& place);
-  void note(const WriteNote& note);
-  bool tell_value(Value& value, const Tell& tell_one);
-  bool tell(std::size_t first, std::size_t end, std::size_t& next, const Tell& tell_one);
+  void begin_resolve(const std::shared_ptr<const TreeSnapshot>& tree);
+  bool resolve_some();
+  void resolve(Path& path);
+  void add_value(const TreePropertyRef& ref);
+  void note_own_write(const ClientWrite& write);
+  bool send_value(Value& value, const Sender& send);
+  bool send_changes(std::size_t first, std::size_t end, std::size_t& next, const Sender& send);
 
-  std::vector<Path> paths_;                                    // by order
-  std::vector<Value> values_;                                  // by path
-  std::unordered_map<std::uint64_t, std::uint32_t> by_place_;  // where in values_
-  bool unbound_ = true;                                        // paths have changed
+  std::vector<Path> paths_;                                  // sorted by order
+  std::vector<Value> values_;                                // grouped by path
+  std::unordered_map<std::uint64_t, std::uint32_t> by_key_;  // index in values_ by Value::key
+  bool unresolved_ = true;                                   // paths_ has changed since values_ was built
   bool truncated_ = false;
-  std::shared_ptr<const Image> image_;
-  std::uint64_t heard_note_ = 0;
-  std::size_t next_ = 0;
-  // while values are looked for
-  std::shared_ptr<const Tree> tree_;
-  std::size_t binds_next_ = 0;  // path
-  PatternBudget bind_work_;
-  std::vector<Value> before_;
-  std::unordered_map<std::string_view, Value*> known_;
+  std::shared_ptr<const ValueSnapshot> snapshot_;
+  std::uint64_t last_write_ = 0;
+  std::size_t next_value_ = 0;
+  // state of a resolution in progress
+  std::shared_ptr<const TreeSnapshot> tree_;  // null: none in progress
+  std::size_t next_path_ = 0;                 // index in paths_
+  PatternBudget resolve_budget_;
+  std::vector<Value> old_values_;
+  std::unordered_map<std::string_view, Value*> old_by_path_;
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Grips: what hands hold in the picture. A spring pulls a point of a part to where the hand is, strong enough for its
-// whole body and damped; a hand that says nothing more lets go. [sim]
+// MouseSprings: the springs of the mouse in the view and of /physics/part/hold. A damped spring, strong enough for the
+// whole body, pulls a point of a part to a target. It is removed if it is not renewed for half a second. [sim]
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,29 @@
 
 namespace limber {
 
-class Grips {
+class MouseSprings {
  public:
-  static constexpr double kLasts = 0.5;      ///< Simulated seconds that a grip lasts without another word.
-  static constexpr double kOmega = 10;       ///< 1/s: how fast a free body comes, without swinging over.
-  static constexpr std::size_t kMost = 256;  ///< Parts that are held at once.
+  static constexpr double kTimeout = 0.5;          ///< Simulated seconds until a spring that is not renewed is removed.
+  static constexpr double kOmega = 10;             ///< 1/s: natural frequency with a free body, critically damped.
+  static constexpr std::size_t kMaxSprings = 256;  ///< Maximum number of springs.
 
-  /// `point` in the part's frame, `target` in the world. One that is held already is led on. False: too many.
-  bool hold(World& world, NodeId part, const Vec3& point, const Vec3& target);
-  void let_go(NodeId part);
-  void clear() { grips_.clear(); }
-  /// The forces of this tick; before the step.
-  void pull(World& world);
-  std::size_t size() const { return grips_.size(); }
+  /// Attaches a spring to `point` (in the part's frame), or moves the part's existing spring. `target` is in the world.
+  /// Returns false if there are too many.
+  bool attach(World& world, NodeId part, const Vec3& point, const Vec3& target);
+  void release(NodeId part);
+  void clear() { springs_.clear(); }
+  /// Removes expired springs and applies the forces of the others. Call it before each step.
+  void apply_forces(World& world);
+  std::size_t size() const { return springs_.size(); }
 
  private:
-  struct Grip {
+  struct Spring {
     NodeId part;
     Vec3 point{0};
     Vec3 target{0};
     double until = 0;  // s
   };
-  std::vector<Grip> grips_;
+  std::vector<Spring> springs_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What the performer's hand left, in the order in which it was left.
+// Overrides in the order in which they were set.
 #include "engine/hand.h"
 
 #include <algorithm>
@@ -6,17 +6,17 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kMostRemembered = 65536;  // a flood of ever new addresses ends here
-constexpr std::size_t kMostRecalls = 64;
+constexpr std::size_t kMaxOverrides = 65536;  // limits a flood of different addresses
+constexpr std::size_t kMaxRecalls = 64;
 
-// whether the second sets every row that the first does
-bool covers(const Blend& first, const Blend& second) {
-  return first.a->shape == second.a->shape && first.a->choice.except == second.a->choice.except &&
-         first.b->choice.except == second.b->choice.except;
+// True if `second` sets every property that `first` sets.
+bool replaces(const Blend& first, const Blend& second) {
+  return first.a->schema == second.a->schema && first.a->selection.except == second.a->selection.except &&
+         first.b->selection.except == second.b->selection.except;
 }
 }  // namespace
 
-void PerformerHand::remember(const Message& message) {
+void Overrides::add(const Message& message) {
   version_++;
   key_ = message.address;
   for (const Arg& arg : message.args) {
@@ -26,35 +26,35 @@ void PerformerHand::remember(const Message& message) {
   }
   auto known = values_.find(key_);
   if (known == values_.end()) {
-    if (values_.size() >= kMostRemembered) return;
+    if (values_.size() >= kMaxOverrides) return;
     known = values_.emplace(key_, Value{}).first;
-    if (noted_ != nullptr) noted_->values_.try_emplace(key_);
-  } else if (noted_ != nullptr && known->second.noted != noted_->number_) {
-    noted_->values_.try_emplace(key_, known->second);
+    if (backup_ != nullptr) backup_->values_.try_emplace(key_);
+  } else if (backup_ != nullptr && known->second.backup != backup_->number_) {
+    backup_->values_.try_emplace(key_, known->second);
   }
-  if (noted_ != nullptr) known->second.noted = noted_->number_;
+  if (backup_ != nullptr) known->second.backup = backup_->number_;
   known->second.message = message;
   known->second.order = ++order_;
 }
 
-void PerformerHand::give_back(const std::string& address) {
+void Overrides::release(const std::string& address) {
   if (size() == 0) return;
   version_++;
-  if (returned_.size() >= kMostRemembered && !returned_.contains(address)) return;
-  returned_[address] = ++order_;
+  if (released_.size() >= kMaxOverrides && !released_.contains(address)) return;
+  released_[address] = ++order_;
 }
 
-void PerformerHand::recall(const Blend& blend) {
+void Overrides::add_recall(const Blend& blend) {
   version_++;
-  if (noted_ != nullptr && !noted_->recalls_) noted_->recalls_ = recalls_;
-  std::erase_if(recalls_, [&](const Recall& r) { return covers(r.blend, blend); });
-  if (recalls_.size() >= kMostRecalls) recalls_.erase(recalls_.begin());
+  if (backup_ != nullptr && !backup_->recalls_) backup_->recalls_ = recalls_;
+  std::erase_if(recalls_, [&](const Recall& recall) { return replaces(recall.blend, blend); });
+  if (recalls_.size() >= kMaxRecalls) recalls_.erase(recalls_.begin());
   recalls_.push_back({blend, ++order_});
 }
 
-void PerformerHand::exchange(Before& before) {
+void Overrides::swap(Backup& backup) {
   version_++;
-  for (auto& [key, value] : before.values_) {
+  for (auto& [key, value] : backup.values_) {
     std::optional<Value> now;
     if (const auto known = values_.find(key); known != values_.end()) now = known->second;
     if (value) {
@@ -64,19 +64,19 @@ void PerformerHand::exchange(Before& before) {
     }
     value = std::move(now);
   }
-  if (before.recalls_) std::swap(recalls_, *before.recalls_);
+  if (backup.recalls_) std::swap(recalls_, *backup.recalls_);
 }
 
-std::vector<HandStep> PerformerHand::in_order() const {
-  std::vector<std::pair<std::uint64_t, HandStep>> steps;
-  steps.reserve(values_.size() + returned_.size() + recalls_.size());
+std::vector<Override> Overrides::in_order() const {
+  std::vector<std::pair<std::uint64_t, Override>> steps;
+  steps.reserve(values_.size() + released_.size() + recalls_.size());
   for (const auto& [key, value] : values_) steps.push_back({value.order, {&value.message, nullptr, nullptr}});
-  for (const auto& [address, order] : returned_) steps.push_back({order, {nullptr, &address, nullptr}});
+  for (const auto& [address, order] : released_) steps.push_back({order, {nullptr, &address, nullptr}});
   for (const Recall& recall : recalls_) steps.push_back({recall.order, {nullptr, nullptr, &recall.blend}});
   std::sort(steps.begin(), steps.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<HandStep> list;
+  std::vector<Override> list;
   list.reserve(steps.size());
-  for (const auto& [order, step] : steps) list.push_back(step);
+  for (const auto& [order, entry] : steps) list.push_back(entry);
   return list;
 }
 

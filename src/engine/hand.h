@@ -1,4 +1,5 @@
-// PerformerHand: the last value that was set by hand for each address and names, so that a reset keeps them. [sim]
+// Overrides: the values that controllers have set over those of the scene, as the last message for each address and
+// names, so that a reset can apply them again. [sim]
 #pragma once
 
 #include <cstdint>
@@ -13,18 +14,19 @@
 
 namespace limber {
 
-/// One of three: a message that was sent, the address of a value that is the scene's again, a preset that was recalled.
-struct HandStep {
+/// One of three: a message, the address of a released value (it has the scene's value again), or a recalled preset. The
+/// others are null.
+struct Override {
   const Message* message = nullptr;
   const std::string* address = nullptr;
   const Blend* blend = nullptr;
 };
 
-class PerformerHand {
+class Overrides {
   struct Value {
     Message message;
     std::uint64_t order = 0;
-    std::uint64_t noted = 0;  // the newest Before that it is noted in
+    std::uint64_t backup = 0;  // number of the last backup that contains the previous value
   };
   struct Recall {
     Blend blend;
@@ -32,36 +34,36 @@ class PerformerHand {
   };
 
  public:
-  /// What it remembered before some of it was replaced.
-  class Before {
-    friend class PerformerHand;
+  /// The previous state of replaced overrides, for undo.
+  class Backup {
+    friend class Overrides;
     std::uint64_t number_ = 0;
     std::unordered_map<std::string, std::optional<Value>> values_;
     std::optional<std::vector<Recall>> recalls_;
   };
-  /// From here on what is replaced is noted there as well, each once; null: no more.
-  void note_in(Before* before) {
-    noted_ = before;
-    if (before != nullptr && before->number_ == 0) before->number_ = ++befores_;
+  /// From now on stores the previous state of each override that is replaced in `backup`; null: stops.
+  void record_into(Backup* backup) {
+    backup_ = backup;
+    if (backup != nullptr && backup->number_ == 0) backup->number_ = ++backup_count_;
   }
-  /// Remembers what is noted there, and notes what it remembered until now.
-  void exchange(Before& before);
+  /// Restores the state in `backup`, and stores the current state there.
+  void swap(Backup& backup);
 
-  /// The message set a property. It replaces an earlier one of the same address and names, and counts as the newest.
-  /// Allocates nothing for one that is known.
-  void remember(const Message& message);
-  /// A reload gave this value what the scene says: nothing that was sent before counts for it any more.
-  void give_back(const std::string& address);
-  /// The preset was recalled. It replaces an earlier one of the same rows.
-  void recall(const Blend& blend);
-  /// All of them, the oldest first: done again in this order they leave what the performer left.
-  std::vector<HandStep> in_order() const;
+  /// Adds a message that has set a property. It replaces an earlier one with the same address and names, and becomes
+  /// the newest. Does not allocate for a known address.
+  void add(const Message& message);
+  /// Releases a value, because a reload has set it to the scene's value: earlier overrides no longer apply to it.
+  void release(const std::string& address);
+  /// Adds a recalled preset. It replaces an earlier one of the same properties.
+  void add_recall(const Blend& blend);
+  /// Returns all overrides, oldest first. Applied in this order they restore the values of the performer.
+  std::vector<Override> in_order() const;
   std::size_t size() const { return values_.size() + recalls_.size(); }
-  void clear() { bring_back({}); }
-  /// Another number whenever it may remember something else.
+  void clear() { restore({}); }
+  /// Changes whenever the overrides may have changed.
   std::uint64_t version() const { return version_; }
-  /// Remembers what that one remembers.
-  void bring_back(const PerformerHand& other) {
+  /// Copies the overrides of `other`.
+  void restore(const Overrides& other) {
     const std::uint64_t version = version_ + 1;
     *this = other;
     version_ = version;
@@ -69,10 +71,10 @@ class PerformerHand {
 
  private:
   std::unordered_map<std::string, Value> values_;            // by address and names
-  std::unordered_map<std::string, std::uint64_t> returned_;  // order of the reload, by address
+  std::unordered_map<std::string, std::uint64_t> released_;  // order of the release, by address
   std::vector<Recall> recalls_;
-  Before* noted_ = nullptr;
-  std::uint64_t befores_ = 0;
+  Backup* backup_ = nullptr;
+  std::uint64_t backup_count_ = 0;
   std::string key_;  // scratch
   std::uint64_t order_ = 0;
   std::uint64_t version_ = 0;

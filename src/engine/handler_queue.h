@@ -1,4 +1,4 @@
-// HandlerQueue: messages of this tick and of earlier ones that the scene's handlers (osc:on) have not heard yet.
+// HandlerQueue: messages that wait for the scene's handlers (osc:on), of this tick and of earlier ones.
 #pragma once
 
 #include <cstddef>
@@ -10,29 +10,29 @@
 
 namespace limber {
 
-/// Bounded: a message that finds no room is not heard. The bound depends on what was pushed alone, so that a replay
-/// drops the same messages. [sim]
+/// A bounded FIFO. A message that does not fit is dropped. The limits depend only on the pushed messages, so a replay
+/// drops the same ones. [sim]
 class HandlerQueue {
  public:
-  static constexpr std::size_t kMost = 16384;
-  static constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+  static constexpr std::size_t kMaxEntries = 16384;
+  static constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
 
   struct Entry {
     Message message;
-    Origin origin;
-    bool unknown = false;  ///< No address of ours: refused with `error` where no handler hears it.
+    CommandOrigin origin;
+    bool unknown = false;  ///< Not an address of Limber: rejected with `error` if no handler handles it.
     std::string error;
   };
 
-  /// False: there is no room. `bounded`: false for takes of before there was a bound.
+  /// Returns false if the queue is full. `bounded`: false for replays of takes older than the limits.
   bool push(Entry entry, bool bounded = true) {
     const std::size_t bytes = size_of(entry);
-    if (bounded && (entries_.size() >= kMost || bytes_ + bytes > kMostBytes)) return false;
+    if (bounded && (entries_.size() >= kMaxEntries || bytes_ + bytes > kMaxBytes)) return false;
     bytes_ += bytes;
     entries_.push_back(std::move(entry));
     return true;
   }
-  /// The oldest one. Not while it is empty.
+  /// The oldest entry. Requires that the queue is not empty.
   const Entry& front() const { return entries_.front(); }
   Entry pop() {
     Entry entry = std::move(entries_.front());

@@ -1,5 +1,5 @@
-// Hands: while one lives, rows that are set are set by a hand: they leave the morphs that move them; and what began
-// with begin() can be undone, and stands in the log. [sim]
+// EditScope: during its lifetime, writes to properties are edits of a controller: they release the property from
+// running morphs, and after begin() they are recorded for undo and in the change log. [sim]
 #pragma once
 
 #include "base/system/clock.h"
@@ -9,40 +9,41 @@
 
 namespace limber {
 
-class Hands {
+class EditScope {
  public:
-  Hands(World& world, Presets& presets, Edits& edits, ChangeNotes& notes)
-      : world_(world), presets_(presets), edits_(edits), notes_(notes) {
-    const auto heard = [](void* who, NodeId id, const Row& row, bool later, const double* before) {
-      static_cast<Hands*>(who)->heard(id, row, later, before);
+  EditScope(World& world, Presets& presets, UndoStack& undo_stack, ChangeRecorder& change_recorder)
+      : world_(world), presets_(presets), undo_stack_(undo_stack), change_recorder_(change_recorder) {
+    const auto on_write = [](void* self, NodeId id, const Property& property, bool over_time,
+                             const double* old_values) {
+      static_cast<EditScope*>(self)->on_write(id, property, over_time, old_values);
     };
-    before_ = world.store().listen({heard, this});
+    previous_ = world.store().set_listener({on_write, this});
   }
-  ~Hands() { world_.store().listen(before_); }
-  Hands(const Hands&) = delete;
-  Hands& operator=(const Hands&) = delete;
+  ~EditScope() { world_.store().set_listener(previous_); }
+  EditScope(const EditScope&) = delete;
+  EditScope& operator=(const EditScope&) = delete;
 
-  /// What is set from here on is this hand's; before the first call it is the scene's, which is neither undone nor
-  /// noted.
-  void begin(const Origin& who) {
+  /// Attributes the following writes to this controller. Writes before the first call belong to the scene and are not
+  /// recorded.
+  void begin(const CommandOrigin& source) {
     begun_ = true;
-    edits_.begin(who, world_);
-    notes_.begin(who, now_);
+    undo_stack_.begin(source, world_);
+    change_recorder_.begin(source, now_);
   }
 
  private:
-  void heard(NodeId id, const Row& row, bool later, const double* before) {
-    presets_.release(id, row);
+  void on_write(NodeId id, const Property& property, bool over_time, const double* old_values) {
+    presets_.release(id, property);
     if (!begun_) return;
-    edits_.heard(world_.store(), id, row, later, before);
-    if (!later) notes_.heard(id, row, before);
+    undo_stack_.on_write(world_.store(), id, property, over_time, old_values);
+    if (!over_time) change_recorder_.on_write(id, property, old_values);
   }
 
   World& world_;
   Presets& presets_;
-  Edits& edits_;
-  ChangeNotes& notes_;
-  Store::Listener before_;
+  UndoStack& undo_stack_;
+  ChangeRecorder& change_recorder_;
+  Store::Listener previous_;
   const double now_ = system::clock_seconds();
   bool begun_ = false;
 };

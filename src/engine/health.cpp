@@ -1,4 +1,4 @@
-// Names and texts of what is counted.
+// Health: names and descriptions of the items.
 #include "engine/health.h"
 
 #include <ctime>
@@ -17,23 +17,23 @@ struct ItemText {
 
 // in the order of HealthItem
 constexpr std::array<ItemText, Health::kItems> kItemTexts = {{
-    {"dropped", "OSC messages lost: more came than a tick takes"},
-    {"dropped_kernel", "OSC datagrams lost by the system: the socket's buffer was full"},
+    {"dropped", "OSC messages dropped because the command queue was full"},
+    {"dropped_kernel", "OSC datagrams dropped by the system because the socket's buffer was full"},
     {"discarded", "requests that a later panic, pause or end of a take discarded"},
-    {"unheard", "messages that handlers (osc:on) missed"},
-    {"unanswered", "answers and events that were not sent: too many waited"},
-    {"reduced", "subscribers that get less than they asked for, by now"},
+    {"unheard", "messages dropped because the queue of handlers (osc:on) was full"},
+    {"unanswered", "answers and events dropped because the output queue was full"},
+    {"reduced", "subscribers that currently receive less than they subscribed to"},
     {"limited", "datagrams not sent to senders that have not returned their token"},
     {"loops", "programs that answer /error, and targets that are this program itself"},
     {"handlers", "handlers (osc:on) that failed and are disabled"},
     {"behaviors", "behaviors that failed and are disabled"},
     {"stopped", "calls of scripts that were stopped: too much time or memory"},
     {"bodies", "bodies that the stability check restored or disabled"},
-    {"late", "times that the show was a quarter of a second late and let it go"},
+    {"late", "times that the show was a quarter of a second late and skipped the delay"},
     {"files", "files that could not be written: presets, recovery, takes"},
     {"not_owned", "another program owns this scene's presets and recovery file"},
-    {"output", "lines of text that no device took"},
-    {"log", "lines that the log left out because their source repeats"},
+    {"output", "lines of output that no device accepted"},
+    {"log", "repeated log lines that were suppressed"},
 }};
 
 std::atomic<std::uint64_t> failed_writes_count{0};
@@ -43,17 +43,17 @@ std::atomic<std::uint64_t> failed_writes_count{0};
 std::int64_t Health::clock() { return static_cast<std::int64_t>(std::time(nullptr)); }
 
 void Health::set(HealthItem item, std::uint64_t count) {
-  Item& it = items_[static_cast<std::size_t>(item)];
-  const std::uint64_t before = it.count.load(std::memory_order_relaxed);
+  Item& entry = items_[static_cast<std::size_t>(item)];
+  const std::uint64_t before = entry.count.load(std::memory_order_relaxed);
   if (before == count) return;
-  if (before == 0) it.since.store(now_(), std::memory_order_relaxed);
-  it.count.store(count, std::memory_order_relaxed);
+  if (before == 0) entry.since.store(now_(), std::memory_order_relaxed);
+  entry.count.store(count, std::memory_order_relaxed);
 }
 
 void Health::add(HealthItem item, std::uint64_t count) {
-  Item& it = items_[static_cast<std::size_t>(item)];
-  if (count > 0 && it.count.fetch_add(count, std::memory_order_relaxed) == 0)
-    it.since.store(now_(), std::memory_order_relaxed);
+  Item& entry = items_[static_cast<std::size_t>(item)];
+  if (count > 0 && entry.count.fetch_add(count, std::memory_order_relaxed) == 0)
+    entry.since.store(now_(), std::memory_order_relaxed);
 }
 
 std::vector<HealthEntry> Health::entries() const {
@@ -67,7 +67,7 @@ std::vector<HealthEntry> Health::entries() const {
   return list;
 }
 
-bool Health::well() const {
+bool Health::healthy() const {
   for (const Item& item : items_) {
     if (item.count.load(std::memory_order_relaxed) != 0) return false;
   }
@@ -75,7 +75,7 @@ bool Health::well() const {
 }
 
 std::string Health::text() const {
-  if (well()) return {};
+  if (healthy()) return {};
   std::string text;
   for (const HealthEntry& entry : entries())
     text +=
@@ -83,7 +83,7 @@ std::string Health::text() const {
   return text;
 }
 
-Message Health::answer(std::string address) const {
+Message Health::answer_message(std::string address) const {
   Message answer{std::move(address), {}};
   const std::int64_t now = now_();
   for (const HealthEntry& entry : entries()) {
@@ -96,12 +96,12 @@ Message Health::answer(std::string address) const {
 
 std::string time_of_day(std::int64_t seconds) {
   const auto time = static_cast<std::time_t>(seconds);
-  std::tm here{};
-  localtime_r(&time, &here);
-  return fmt::format("{:02}:{:02}:{:02}", here.tm_hour, here.tm_min, here.tm_sec);
+  std::tm local_time{};
+  localtime_r(&time, &local_time);
+  return fmt::format("{:02}:{:02}:{:02}", local_time.tm_hour, local_time.tm_min, local_time.tm_sec);
 }
 
 std::uint64_t failed_writes() { return failed_writes_count.load(std::memory_order_relaxed); }
-void note_failed_write() { failed_writes_count.fetch_add(1, std::memory_order_relaxed); }
+void count_failed_write() { failed_writes_count.fetch_add(1, std::memory_order_relaxed); }
 
 }  // namespace limber

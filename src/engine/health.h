@@ -1,5 +1,5 @@
-// Health: whatever the program has dropped, reduced, disabled or lost, how much, and since when. One collection for all
-// sources: they report to it, or Engine reads their counters into it after each tick. [any]
+// Health: counts everything that the program has dropped, reduced, disabled or lost, and since when. One collection for
+// all sources: they report to it, or Engine copies their counters into it after each tick. [any]
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 
 namespace limber {
 
+/// Kinds of problems. health.cpp has their names and descriptions.
 enum class HealthItem : std::uint8_t {
   dropped,
   dropped_kernel,
@@ -39,31 +40,31 @@ struct HealthEntry {
   const char* name = "";  ///< "dropped_kernel"
   const char* doc = "";   ///< "OSC datagrams that the system dropped: ..."
   std::uint64_t count = 0;
-  std::int64_t since = 0;  ///< When it left 0, seconds since 1970.
+  std::int64_t since = 0;  ///< Time when `count` became nonzero, seconds since 1970.
 };
 
 class Health {
  public:
   static constexpr std::size_t kItems = static_cast<std::size_t>(HealthItem::count);
 
-  /// The clock is of seconds since 1970.
+  /// `now` returns seconds since 1970.
   explicit Health(std::int64_t (*now)() = &clock) : now_(now) {}
 
-  /// Its number now: a total, or how many are disabled at the moment; 0: all is well with it. Allocates nothing.
+  /// Sets the count of an item: a total, or the number that is disabled at the moment; 0: healthy. Does not allocate.
   void set(HealthItem item, std::uint64_t count);
-  /// So many more.
+  /// Increases the count of an item.
   void add(HealthItem item, std::uint64_t count = 1);
 
   std::uint64_t count(HealthItem item) const { return at(item).count.load(std::memory_order_relaxed); }
-  /// Those that are not well, in the order of the items.
+  /// Returns the items with a nonzero count, in the order of HealthItem.
   std::vector<HealthEntry> entries() const;
-  /// Whether entries() is empty. Allocates nothing.
-  bool well() const;
+  /// True if all counts are 0. Does not allocate.
+  bool healthy() const;
 
-  /// "dropped 17 since 21:14:03, handlers 1 since 21:20:45"; empty: all is well.
+  /// Returns a text such as "dropped 17 since 21:14:03, handlers 1 since 21:20:45"; empty if healthy().
   std::string text() const;
-  /// Name, count, and seconds ago of each entry.
-  Message answer(std::string address) const;
+  /// Returns a message with name, count and age in seconds of each entry.
+  Message answer_message(std::string address) const;
 
  private:
   struct Item {
@@ -77,11 +78,11 @@ class Health {
   std::array<Item, kItems> items_;
 };
 
-/// "21:14:03", local time. [any]
+/// Formats seconds since 1970 as local time, such as "21:14:03". [any]
 std::string time_of_day(std::int64_t seconds);
 
-/// Files of this program that could not be written so far: presets, recovery, takes. [any]
+/// Returns the number of failed writes of presets, recovery files and takes by this program. [any]
 std::uint64_t failed_writes();
-void note_failed_write();
+void count_failed_write();
 
 }  // namespace limber

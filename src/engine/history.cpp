@@ -1,4 +1,4 @@
-// Key states and what lies between them: taken, found, brought back, let go.
+// Capture, restore and disposal of checkpoints, and the recorded inputs between them.
 #include "engine/history.h"
 
 #include <algorithm>
@@ -10,243 +10,247 @@ namespace limber {
 
 namespace {
 
-enum class Record : std::uint8_t { input, stop, rested, ran };
+enum class Record : std::uint8_t { input, stopped_call, paused_pass, running_pass };
 
-constexpr std::size_t kMostInputs = std::size_t{4} << 20;  // bytes behind one key state
-constexpr std::uint64_t kStopsApart = 15;  // ticks: a call that is stopped again and again costs no more than that
+constexpr std::size_t kMaxInputBytes = std::size_t{4} << 20;  // bytes of inputs after one checkpoint
+constexpr std::uint64_t kTicksBetweenStops = 15;  // ticks: limits checkpoints caused by repeatedly stopped calls
 
 }  // namespace
 
 std::size_t History::bytes() const {
-  std::size_t all = pages_.bytes();
-  const Edits::Memory* edits = nullptr;
-  for (const auto& key : keys_) {
-    all += const_cast<KeyBytes&>(key->inputs).bytes().capacity() + key->heard.bytes();
-    if (key->edits.get() != edits) all += key->edits->size();
-    edits = key->edits.get();
+  std::size_t total = pages_.bytes();
+  const UndoStack::State* last_undo = nullptr;
+  for (const auto& checkpoint : checkpoints_) {
+    total += const_cast<Archive&>(checkpoint->inputs).bytes().capacity() + checkpoint->handler_queue.bytes();
+    if (checkpoint->undo.get() != last_undo) total += checkpoint->undo->size();
+    last_undo = checkpoint->undo.get();
   }
-  return all;
+  return total;
 }
 
-void History::begin_anew(std::string_view why) {
-  while (!keys_.empty()) drop(keys_.size() - 1);
-  if (held_ != nullptr) forget(std::move(held_));
-  hold_ = kNoTick;
-  why_ = why;
+void History::clear(std::string_view why) {
+  while (!checkpoints_.empty()) drop(checkpoints_.size() - 1);
+  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  pinned_tick_ = kNoTick;
+  limit_reason_ = why;
   too_large_ = false;
 }
 
-// a key state lists things in their order, so it fits only the structure from which it was taken
-bool History::fits(const Stage& stage) {
-  const std::uint64_t structure = stage.store.structure_version();
-  if (std::exchange(structure_, structure) != structure && !keys_.empty()) begin_anew("things came or went");
-  return !keys_.empty();
+// a checkpoint lists nodes in order, so it fits only the structure that it was captured from
+bool History::validate(const Session& session) {
+  const std::uint64_t structure = session.store.structure_version();
+  if (std::exchange(structure_version_, structure) != structure && !checkpoints_.empty())
+    clear("objects were added or removed");
+  return !checkpoints_.empty();
 }
 
-void History::drop(std::size_t number) {
-  std::unique_ptr<Key> key = std::move(keys_[number]);
-  keys_.erase(keys_.begin() + static_cast<std::ptrdiff_t>(number));
-  forget(std::move(key));
+void History::drop(std::size_t index) {
+  std::unique_ptr<Checkpoint> checkpoint = std::move(checkpoints_[index]);
+  checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(index));
+  recycle(std::move(checkpoint));
 }
 
-void History::forget(std::unique_ptr<Key> key) {
-  key->world.release(pages_);
-  key->scene.release(pages_);
-  key->heard.clear();
-  key->inputs.go_on_taking(0);
-  spare_.push_back(std::move(key));
+void History::recycle(std::unique_ptr<Checkpoint> checkpoint) {
+  checkpoint->world.release(pages_);
+  checkpoint->scene.release(pages_);
+  checkpoint->handler_queue.clear();
+  checkpoint->inputs.resume_saving(0);
+  free_.push_back(std::move(checkpoint));
 }
 
-void History::let_go_oldest() {
-  if (keys_.front()->tick != hold_) return drop(0);
-  held_ = std::move(keys_.front());
-  held_->inputs.go_on_taking(0);
-  keys_.erase(keys_.begin());
+void History::drop_oldest() {
+  if (checkpoints_.front()->tick != pinned_tick_) return drop(0);
+  pinned_ = std::move(checkpoints_.front());
+  pinned_->inputs.resume_saving(0);
+  checkpoints_.erase(checkpoints_.begin());
 }
 
-void History::hold() {
-  if (held_ != nullptr) forget(std::move(held_));
-  hold_ = keys_.empty() ? kNoTick : keys_.back()->tick;
+void History::pin() {
+  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  pinned_tick_ = checkpoints_.empty() ? kNoTick : checkpoints_.back()->tick;
 }
 
-void History::note(const Message& message, const Origin& origin, bool evaluate) {
-  if (keys_.empty()) return;
+void History::record_input(const Message& message, const CommandOrigin& origin, bool evaluate) {
+  if (checkpoints_.empty()) return;
   input_.message = message;
   input_.origin = origin;
   input_.evaluate = evaluate;
-  KeyBytes& inputs = keys_.back()->inputs;
+  Archive& inputs = checkpoints_.back()->inputs;
   auto record = Record::input;
-  inputs.pass(record);
-  pass_input(inputs, input_);
+  inputs.serialize(record);
+  serialize_input(inputs, input_);
 }
 
-void History::pass_input(KeyBytes& bytes, TakeMessage& input) {
-  bytes.pass_all(input.evaluate, input.origin, input.message.address);
+void History::serialize_input(Archive& bytes, TakeMessage& input) {
+  bytes.serialize_all(input.evaluate, input.origin, input.message.address);
   std::size_t count = input.message.args.size();
-  bytes.pass(count);
+  bytes.serialize(count);
   input.message.args.resize(count);
-  for (Arg& arg : input.message.args) bytes.pass_all(arg.kind, arg.number, arg.text);
+  for (Arg& arg : input.message.args) bytes.serialize_all(arg.kind, arg.number, arg.text);
 }
 
-void History::pass_stop(KeyBytes& bytes, StoppedCall& stop) {
-  bytes.pass_all(stop.number, stop.file, stop.line, stop.text);
+void History::serialize_stop(Archive& bytes, StoppedCall& stop) {
+  bytes.serialize_all(stop.number, stop.file, stop.line, stop.text);
 }
 
-void History::end_pass(Stage& stage, const CallLedger& calls, bool running, double seconds) {
+void History::end_pass(Session& session, const CallLog& calls, bool running, double seconds) {
   if (seconds <= 0) {
-    if (!keys_.empty()) begin_anew("history is switched off");
-    why_ = "history is switched off";
-    spare_.clear();
+    if (!checkpoints_.empty()) clear("history is switched off");
+    limit_reason_ = "history is switched off";
+    free_.clear();
     if (pages_.bytes() == 0) pages_.clear();
-    release_runs(stage);
+    release_ended_runs(session);
     return;
   }
-  if (fits(stage)) {
-    KeyBytes& inputs = keys_.back()->inputs;
+  if (validate(session)) {
+    Archive& inputs = checkpoints_.back()->inputs;
     for (const StoppedCall& stop : calls.stopped_since_rewind()) {
-      auto record = Record::stop;
-      inputs.pass(record);
+      auto record = Record::stopped_call;
+      inputs.serialize(record);
       stop_ = stop;
-      pass_stop(inputs, stop_);
+      serialize_stop(inputs, stop_);
     }
-    const bool empty = inputs.bytes().size() == pass_begins_;
+    const bool empty = inputs.bytes().size() == pass_start_;
     if (running || !empty) {
-      auto record = running ? Record::ran : Record::rested;
-      inputs.pass(record);
+      auto record = running ? Record::running_pass : Record::paused_pass;
+      inputs.serialize(record);
     }
-    pass_begins_ = inputs.bytes().size();
+    pass_start_ = inputs.bytes().size();
   }
-  if (due(stage.world, !calls.stopped().empty())) take(stage);
-  trim(stage.world, seconds);
-  release_runs(stage);
+  if (checkpoint_due(session.world, !calls.stopped().empty())) capture_checkpoint(session);
+  trim(session.world, seconds);
+  release_ended_runs(session);
 }
 
-// runs of the scene whose last timer had ended before the oldest state
-void History::release_runs(Stage& stage) const {
-  if (stage.scene == nullptr) return;
-  stage.scene->release_ended(held_ != nullptr ? held_->tick : empty() ? kNoTick : oldest_tick());
+// Releases scene runs with no timer that was active at or after the oldest checkpoint.
+void History::release_ended_runs(Session& session) const {
+  if (session.scene == nullptr) return;
+  session.scene->release_ended(pinned_ != nullptr ? pinned_->tick : empty() ? kNoTick : oldest_tick());
 }
 
-bool History::due(const World& world, bool stopped) const {
+bool History::checkpoint_due(const World& world, bool stopped) const {
   if (too_large_) return false;
-  const bool apart = world.time() >= last_time_ + kApart - 1e-9 || world.tick() < last_tick_;
-  if (keys_.empty()) return apart || last_tick_ == 0;
-  if (apart) return true;
-  // what a call had changed in Lua before it was stopped is in no list of inputs
-  if (stopped && world.tick() >= last_tick_ + kStopsApart) return true;
-  return pass_begins_ > kMostInputs;
+  const bool interval_over =
+      world.time() >= checkpoint_time_ + kCheckpointInterval - 1e-9 || world.tick() < checkpoint_tick_;
+  if (checkpoints_.empty()) return interval_over || checkpoint_tick_ == 0;
+  if (interval_over) return true;
+  // changes that a call made in Lua before it was stopped can't be reproduced from inputs
+  if (stopped && world.tick() >= checkpoint_tick_ + kTicksBetweenStops) return true;
+  return pass_start_ > kMaxInputBytes;
 }
 
-void History::take(Stage& stage) {
-  if (spare_.empty()) spare_.push_back(std::make_unique<Key>());
-  std::unique_ptr<Key> key = std::move(spare_.back());
-  spare_.pop_back();
-  const Key* const before = keys_.empty() ? nullptr : keys_.back().get();
-  key->tick = last_tick_ = stage.world.tick();
-  key->time = last_time_ = stage.world.time();
-  key->world.take(stage.world, pages_, before == nullptr ? nullptr : &before->world, scratch_);
-  key->has_scene = stage.scene != nullptr;
-  if (key->has_scene) key->scene.take(*stage.scene, pages_, before == nullptr ? nullptr : &before->scene, scratch_);
-  if (const std::uint64_t now = hand_.version(); known_hand_.copy == nullptr || known_hand_.version != now)
-    known_hand_ = {std::make_shared<const PerformerHand>(hand_), now};
-  if (const std::uint64_t now = edits_.version(); known_edits_.copy == nullptr || known_edits_.version != now)
-    known_edits_ = {edits_.memory(), now};
-  key->hand = known_hand_.copy;
-  key->edits = known_edits_.copy;
-  presets_.keep(key->presets);
-  key->grips = stage.dispatch.grips();
-  key->heard = heard_;
-  key->inputs.begin_taking();
-  pass_begins_ = 0;
-  keys_.push_back(std::move(key));
+void History::capture_checkpoint(Session& session) {
+  if (free_.empty()) free_.push_back(std::make_unique<Checkpoint>());
+  std::unique_ptr<Checkpoint> checkpoint = std::move(free_.back());
+  free_.pop_back();
+  const Checkpoint* const previous = checkpoints_.empty() ? nullptr : checkpoints_.back().get();
+  checkpoint->tick = checkpoint_tick_ = session.world.tick();
+  checkpoint->time = checkpoint_time_ = session.world.time();
+  checkpoint->world.capture(session.world, pages_, previous == nullptr ? nullptr : &previous->world, scratch_);
+  checkpoint->has_scene = session.scene != nullptr;
+  if (checkpoint->has_scene)
+    checkpoint->scene.capture(*session.scene, pages_, previous == nullptr ? nullptr : &previous->scene, scratch_);
+  if (const std::uint64_t now = overrides_.version();
+      shared_overrides_.copy == nullptr || shared_overrides_.version != now)
+    shared_overrides_ = {std::make_shared<const Overrides>(overrides_), now};
+  if (const std::uint64_t now = undo_.version(); shared_undo_.copy == nullptr || shared_undo_.version != now)
+    shared_undo_ = {undo_.state(), now};
+  checkpoint->overrides = shared_overrides_.copy;
+  checkpoint->undo = shared_undo_.copy;
+  presets_.capture(checkpoint->presets);
+  checkpoint->mouse_springs = session.dispatcher.mouse_springs();
+  checkpoint->handler_queue = handler_queue_;
+  checkpoint->inputs.begin_saving();
+  pass_start_ = 0;
+  checkpoints_.push_back(std::move(checkpoint));
 }
 
 void History::trim(const World& world, double seconds) {
-  while (keys_.size() > 1 && keys_[1]->time <= world.time() - seconds + 1e-9) {
-    let_go_oldest();
-    why_ = "that is as much as is kept";
+  while (checkpoints_.size() > 1 && checkpoints_[1]->time <= world.time() - seconds + 1e-9) {
+    drop_oldest();
+    limit_reason_ = "history is limited by /physics/sim/history";
   }
-  bool short_of_room = false;
-  while (keys_.size() > 1 && bytes() > most_) {
-    let_go_oldest();
-    short_of_room = true;
-    why_ = "more does not fit into 256 MB";
+  bool shortage = false;
+  while (checkpoints_.size() > 1 && bytes() > max_bytes_) {
+    drop_oldest();
+    shortage = true;
+    limit_reason_ = "history is limited to 256 MB";
   }
-  if (keys_.size() == 1 && bytes() > most_) {
-    begin_anew("a state of this scene takes more than 256 MB");
-    too_large_ = short_of_room = true;
+  if (checkpoints_.size() == 1 && bytes() > max_bytes_) {
+    clear("one checkpoint of this scene takes more than 256 MB");
+    too_large_ = shortage = true;
   }
-  if (!short_of_room || std::exchange(said_short_, true)) return;
-  log_info("history: {:.0f} s of the past can be kept instead of {:.0f}: {} (said once)",
-           keys_.empty() ? 0 : world.time() - oldest_time(), seconds, why_);
+  if (!shortage || std::exchange(shortage_reported_, true)) return;
+  log_info("history: {:.0f} s instead of {:.0f} s: {} (reported once)",
+           checkpoints_.empty() ? 0 : world.time() - oldest_time(), seconds, limit_reason_);
 }
 
-void History::restore(Stage& stage, std::size_t number) {
-  while (keys_.size() > number + 1) drop(keys_.size() - 1);
-  Key& key = *keys_[number];
-  key.world.bring_back(stage.world, pages_, scratch_);
-  if (key.has_scene) key.scene.bring_back(*stage.scene, pages_, scratch_);
-  hand_.bring_back(*key.hand);
-  edits_.bring_back(*key.edits);
-  presets_.bring_back(key.presets);
-  known_hand_ = {key.hand, hand_.version()};
-  known_edits_ = {key.edits, edits_.version()};
-  stage.dispatch.grips() = key.grips;
-  heard_ = key.heard;
-  last_tick_ = key.tick;
-  last_time_ = key.time;
-  key.inputs.begin_bringing();
-  given_from_ = 0;
+void History::restore_checkpoint(Session& session, std::size_t index) {
+  while (checkpoints_.size() > index + 1) drop(checkpoints_.size() - 1);
+  Checkpoint& checkpoint = *checkpoints_[index];
+  checkpoint.world.restore(session.world, pages_, scratch_);
+  if (checkpoint.has_scene) checkpoint.scene.restore(*session.scene, pages_, scratch_);
+  overrides_.restore(*checkpoint.overrides);
+  undo_.restore(*checkpoint.undo);
+  presets_.restore(checkpoint.presets);
+  shared_overrides_ = {checkpoint.overrides, overrides_.version()};
+  shared_undo_ = {checkpoint.undo, undo_.version()};
+  session.dispatcher.mouse_springs() = checkpoint.mouse_springs;
+  handler_queue_ = checkpoint.handler_queue;
+  checkpoint_tick_ = checkpoint.tick;
+  checkpoint_time_ = checkpoint.time;
+  checkpoint.inputs.begin_loading();
+  last_pass_start_ = 0;
 }
 
-void History::bring_back(Stage& stage, const PastGoal& goal) {
-  const double half = stage.world.timestep() / 2;
-  std::size_t number = keys_.size();
-  while (--number > 0) {
-    const Key& key = *keys_[number];
-    if (goal.time ? key.time <= *goal.time + half : key.tick <= goal.tick) break;
+void History::restore(Session& session, const RewindTarget& target) {
+  const double half_tick = session.world.timestep() / 2;
+  std::size_t index = checkpoints_.size();
+  while (--index > 0) {
+    const Checkpoint& checkpoint = *checkpoints_[index];
+    if (target.time ? checkpoint.time <= *target.time + half_tick : checkpoint.tick <= target.tick) break;
   }
-  // inputs of this pass, so far, are of the future that goes
-  keys_.back()->inputs.go_on_taking(pass_begins_);
-  restore(stage, number);
+  // the inputs of the current, unfinished pass belong to the discarded future
+  checkpoints_.back()->inputs.resume_saving(pass_start_);
+  restore_checkpoint(session, index);
 }
 
-bool History::next(PastPass& pass) {
-  KeyBytes& inputs = keys_.back()->inputs;
+bool History::next(RecordedPass& pass) {
+  Archive& inputs = checkpoints_.back()->inputs;
   pass.messages.clear();
   pass.stopped.clear();
-  given_from_ = inputs.at();
-  while (inputs.at() < inputs.bytes().size()) {
+  last_pass_start_ = inputs.position();
+  while (inputs.position() < inputs.bytes().size()) {
     auto record = Record::input;
-    inputs.pass(record);
+    inputs.serialize(record);
     if (record == Record::input) {
-      pass_input(inputs, pass.messages.emplace_back());
-    } else if (record == Record::stop) {
-      pass_stop(inputs, pass.stopped.emplace_back());
+      serialize_input(inputs, pass.messages.emplace_back());
+    } else if (record == Record::stopped_call) {
+      serialize_stop(inputs, pass.stopped.emplace_back());
     } else {
-      pass.running = record == Record::ran;
+      pass.running = record == Record::running_pass;
       return true;
     }
   }
   return false;
 }
 
-void History::cut(bool last) {
-  KeyBytes& inputs = keys_.back()->inputs;
-  pass_begins_ = last ? given_from_ : inputs.at();
-  inputs.go_on_taking(pass_begins_);
+void History::truncate(bool last) {
+  Archive& inputs = checkpoints_.back()->inputs;
+  pass_start_ = last ? last_pass_start_ : inputs.position();
+  inputs.resume_saving(pass_start_);
 }
 
-bool History::return_before(Stage& stage, std::uint64_t tick) {
-  std::size_t number = keys_.size();
-  while (number > 0 && keys_[number - 1]->tick >= tick) number--;
-  if (number == 0) {
-    if (held_ == nullptr || held_->tick >= tick) return false;
-    keys_.insert(keys_.begin(), std::move(held_));
-    number = 1;
+bool History::restore_before(Session& session, std::uint64_t tick) {
+  std::size_t index = checkpoints_.size();
+  while (index > 0 && checkpoints_[index - 1]->tick >= tick) index--;
+  if (index == 0) {
+    if (pinned_ == nullptr || pinned_->tick >= tick) return false;
+    checkpoints_.insert(checkpoints_.begin(), std::move(pinned_));
+    index = 1;
   }
-  restore(stage, number - 1);
-  cut();
+  restore_checkpoint(session, index - 1);
+  truncate();
   return true;
 }
 

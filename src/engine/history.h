@@ -1,5 +1,5 @@
-// History: the last seconds of the show, so that time can go back: key states at most a second apart, and all that
-// reached the ticks between them. [sim]
+// History: the last seconds of the simulation, for rewind: checkpoints at most a second apart, and all inputs between
+// them. An earlier tick is reached by restoring a checkpoint and replaying the inputs. [sim]
 #pragma once
 
 #include <cstdint>
@@ -24,18 +24,19 @@
 
 namespace limber {
 
-/// What reached one pass of the engine.
-struct PastPass {
-  bool running = false;  ///< Time went on.
+/// All inputs of one pass of the engine (Engine::run_pass).
+struct RecordedPass {
+  bool running = false;  ///< Simulated time advanced.
   std::vector<TakeMessage> messages;
   std::vector<StoppedCall> stopped;
 };
 
-/// Where time is to go back to.
-struct PastGoal {
+/// Target of a rewind.
+struct RewindTarget {
   std::uint64_t tick = 0;
-  std::optional<double> time;  ///< s; then this one counts.
+  std::optional<double> time;  ///< s; takes precedence over `tick`.
 
+  /// True if the world is at the target or past it.
   bool reached(const World& world) const {
     return time ? world.time() + world.timestep() / 2 > *time : world.tick() >= tick;
   }
@@ -43,100 +44,101 @@ struct PastGoal {
 
 class History {
  public:
-  static constexpr double kApart = 1;                                ///< Simulated seconds between key states.
-  static constexpr std::size_t kMostBytes = std::size_t{256} << 20;  ///< Of all of it.
+  static constexpr double kCheckpointInterval = 1;                  ///< Simulated seconds between checkpoints.
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  ///< Memory limit of the history, in bytes.
 
-  History(PerformerHand& hand, Edits& edits, Presets& presets, HandlerQueue& heard)
-      : hand_(hand), edits_(edits), presets_(presets), heard_(heard) {}
+  History(Overrides& overrides, UndoStack& undo, Presets& presets, HandlerQueue& handler_queue)
+      : overrides_(overrides), undo_(undo), presets_(presets), handler_queue_(handler_queue) {}
 
-  /// All of it goes: what comes from here on can't be undone by going back. `why`: for who asks how far that goes.
-  void begin_anew(std::string_view why);
-  /// A message or a text of a console reaches this pass.
-  void note(const Message& message, const Origin& origin, bool evaluate = false);
-  /// The pass is over: what was stopped in it stands in the ledger. A key state is taken where one is due, and what is
-  /// older than `seconds` goes; 0: all of it.
-  void end_pass(Stage& stage, const CallLedger& calls, bool running, double seconds);
-  /// More than usual, for who plays a take again.
-  void allow(std::size_t bytes) { most_ = bytes; }
+  /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
+  void clear(std::string_view why);
+  /// Records a message, or Lua code from a console, as input of the current pass.
+  void record_input(const Message& message, const CommandOrigin& origin, bool evaluate = false);
+  /// Ends the pass: records the stopped calls in `calls`, captures a checkpoint if one is due and discards everything
+  /// older than `seconds`; 0 switches history off.
+  void end_pass(Session& session, const CallLog& calls, bool running, double seconds);
+  /// Sets the memory limit: a replay may use more than kMaxBytes.
+  void set_max_bytes(std::size_t bytes) { max_bytes_ = bytes; }
 
-  bool empty() const { return keys_.empty(); }
-  /// Whether there is a state to go back to. Things that came or went since the last call end history. [sim]
-  bool fits(const Stage& stage);
-  /// Why it goes no further back.
-  const std::string& why() const { return why_; }
-  double oldest_time() const { return keys_.empty() ? 0 : keys_.front()->time; }
-  std::uint64_t oldest_tick() const { return keys_.empty() ? 0 : keys_.front()->tick; }
-  /// Of the newest key state.
-  std::uint64_t newest_tick() const { return keys_.empty() ? 0 : keys_.back()->tick; }
-  /// Bytes that it takes.
+  bool empty() const { return checkpoints_.empty(); }
+  /// True if there is a checkpoint to restore. Discards the history if nodes were added or removed since the last call:
+  /// checkpoints fit only the structure that they were captured from. [sim]
+  bool validate(const Session& session);
+  /// Reason why older checkpoints were discarded, for error messages.
+  const std::string& limit_reason() const { return limit_reason_; }
+  double oldest_time() const { return checkpoints_.empty() ? 0 : checkpoints_.front()->time; }
+  std::uint64_t oldest_tick() const { return checkpoints_.empty() ? 0 : checkpoints_.front()->tick; }
+  /// Tick of the newest checkpoint.
+  std::uint64_t newest_tick() const { return checkpoints_.empty() ? 0 : checkpoints_.back()->tick; }
+  /// Memory use in bytes.
   std::size_t bytes() const;
 
-  /// Brings the newest key state back that is not behind the goal, else the oldest. Not while it is empty. What is kept
-  /// between key states follows from next().
-  void bring_back(Stage& stage, const PastGoal& goal);
-  /// The next pass after that; false: there is none.
-  bool next(PastPass& pass);
-  /// What next() has not given never was; `last`: nor was what it gave last.
-  void cut(bool last = false);
-  /// The newest key state stays until begin_anew() or the next hold(), however long ago it may be: for return_before().
-  void hold();
-  /// The newest key state before a tick is brought back, and all behind it never was; false: there is none.
-  bool return_before(Stage& stage, std::uint64_t tick);
+  /// Restores the newest checkpoint that is not after the target, else the oldest; must not be empty. Then next()
+  /// supplies the recorded passes after the checkpoint.
+  void restore(Session& session, const RewindTarget& target);
+  /// Reads the next recorded pass. False at the end of the recording.
+  bool next(RecordedPass& pass);
+  /// Discards the passes that next() has not read yet. `last`: also the last one that it has read.
+  void truncate(bool last = false);
+  /// Keeps the newest checkpoint, regardless of its age, for restore_before(), until clear() or the next pin().
+  void pin();
+  /// Restores the newest checkpoint before a tick and discards everything after it. False if there is none.
+  bool restore_before(Session& session, std::uint64_t tick);
 
  private:
-  struct Key {
+  struct Checkpoint {
     std::uint64_t tick = 0;
     double time = 0;
-    WorldKey world;
-    SceneKey scene;
+    WorldCheckpoint world;
+    SceneCheckpoint scene;
     bool has_scene = false;
-    std::shared_ptr<const PerformerHand> hand;
-    std::shared_ptr<const Edits::Memory> edits;
-    Presets::Memory presets;
-    Grips grips;
-    HandlerQueue heard;
-    KeyBytes inputs;  // of the passes behind it
+    std::shared_ptr<const Overrides> overrides;
+    std::shared_ptr<const UndoStack::State> undo;
+    Presets::State presets;
+    MouseSprings mouse_springs;
+    HandlerQueue handler_queue;
+    Archive inputs;  // inputs of the passes after the checkpoint
   };
-  /// A copy, and the version of what it is a copy of.
+  /// A shared copy and the version of the original, to avoid copying unchanged data.
   template <class T>
-  struct Known {
+  struct Shared {
     std::shared_ptr<const T> copy;
     std::uint64_t version = 0;
   };
 
   static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
-  bool due(const World& world, bool stopped) const;
-  void take(Stage& stage);
-  void restore(Stage& stage, std::size_t number);
-  void drop(std::size_t number);
-  void forget(std::unique_ptr<Key> key);
-  void let_go_oldest();
+  bool checkpoint_due(const World& world, bool stopped) const;
+  void capture_checkpoint(Session& session);
+  void restore_checkpoint(Session& session, std::size_t index);
+  void drop(std::size_t index);
+  void recycle(std::unique_ptr<Checkpoint> checkpoint);
+  void drop_oldest();
   void trim(const World& world, double seconds);
-  void release_runs(Stage& stage) const;
-  static void pass_input(KeyBytes& bytes, TakeMessage& input);
-  static void pass_stop(KeyBytes& bytes, StoppedCall& stop);
+  void release_ended_runs(Session& session) const;
+  static void serialize_input(Archive& bytes, TakeMessage& input);
+  static void serialize_stop(Archive& bytes, StoppedCall& stop);
 
-  PerformerHand& hand_;
-  Edits& edits_;
+  Overrides& overrides_;
+  UndoStack& undo_;
   Presets& presets_;
-  HandlerQueue& heard_;
+  HandlerQueue& handler_queue_;
   PageStore pages_;
-  std::vector<std::unique_ptr<Key>> keys_;   // the oldest first
-  std::unique_ptr<Key> held_;                // one that would have gone, without what lies behind it
-  std::uint64_t hold_ = kNoTick;             // its tick
-  std::vector<std::unique_ptr<Key>> spare_;  // their room is used again
-  Known<PerformerHand> known_hand_;
-  Known<Edits::Memory> known_edits_;
-  std::uint64_t structure_ = 0;  // of the store, that holds for all keys
-  std::uint64_t last_tick_ = 0;  // when a key was taken last
-  double last_time_ = 0;
+  std::vector<std::unique_ptr<Checkpoint>> checkpoints_;  // oldest first
+  std::unique_ptr<Checkpoint> pinned_;                    // pinned checkpoint that left the list, without inputs
+  std::uint64_t pinned_tick_ = kNoTick;                   // tick of the pinned checkpoint
+  std::vector<std::unique_ptr<Checkpoint>> free_;         // discarded checkpoints; their memory is reused
+  Shared<Overrides> shared_overrides_;
+  Shared<UndoStack::State> shared_undo_;
+  std::uint64_t structure_version_ = 0;  // structure version of the store, the same for all checkpoints
+  std::uint64_t checkpoint_tick_ = 0;    // of the last checkpoint
+  double checkpoint_time_ = 0;
   bool too_large_ = false;
-  bool said_short_ = false;
-  std::size_t most_ = kMostBytes;
-  std::size_t pass_begins_ = 0;  // in the newest key's inputs
-  std::size_t given_from_ = 0;   // where the pass that next() gave last begins
-  std::string why_ = "the scene has begun there";
-  KeyBytes scratch_;
+  bool shortage_reported_ = false;
+  std::size_t max_bytes_ = kMaxBytes;
+  std::size_t pass_start_ = 0;       // offset of the current pass in the inputs of the newest checkpoint
+  std::size_t last_pass_start_ = 0;  // offset of the pass that next() has read last
+  std::string limit_reason_ = "the scene starts there";
+  Archive scratch_;
   TakeMessage input_;  // scratch
   StoppedCall stop_;   // scratch
 };

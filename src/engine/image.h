@@ -1,5 +1,5 @@
-// Image: a finished copy of the whole tree with every value, made when somebody outside asks; and what hands outside
-// have set lately, so that nobody is told what it has said itself.
+// ValueSnapshot: an immutable copy of the whole tree with all values, made on request, and the values that clients have
+// set recently, so that no client is notified of its own changes.
 #pragma once
 
 #include <array>
@@ -15,44 +15,45 @@
 
 namespace limber {
 
-/// A value that a hand set which follows changes (Origin::follows).
-struct WriteNote {
+/// A value set by a client that subscribes to changes (CommandOrigin::is_subscriber).
+struct ClientWrite {
   std::uint64_t number = 0;  ///< Counts from 1.
-  Origin origin;
+  CommandOrigin origin;
   NodeId node;
-  const Row* row = nullptr;
-  std::array<double, 4> values{};  ///< As they were taken.
-  bool clamped = false;            ///< They are not what was sent.
+  const Property* property = nullptr;
+  std::array<double, 4> values{};  ///< The values after clamping.
+  bool clamped = false;            ///< `values` differ from those in the message.
 };
 
-/// A row's value in an image: numbers, or a text's words. Valid as long as the image.
-struct RowValue {
+/// A property's value in a snapshot: numbers, or text. Valid as long as the snapshot.
+struct PropertyValue {
   const double* numbers = nullptr;
   std::string_view text;
 };
 
-struct Image {
-  std::uint64_t number = 0;  ///< Counts from 1 over the engine's life.
-  std::uint64_t asks = 0;    ///< It answers EngineLink::ask_image up to this one.
-  std::shared_ptr<const Tree> tree;
-  std::shared_ptr<const Snapshot> snapshot;  ///< Of the same moment: time, live values.
-  std::vector<double> kept;
-  std::vector<double> views;
+struct ValueSnapshot {
+  std::uint64_t number = 0;   ///< Counts from 1 over the engine's life.
+  std::uint64_t request = 0;  ///< Serves the requests of EngineLink::request_value_snapshot up to this number.
+  std::shared_ptr<const TreeSnapshot> tree;
+  std::shared_ptr<const Snapshot> snapshot;  ///< Of the same pass: time and transient values.
+  std::vector<double> persistent;
+  std::vector<double> computed;
   std::vector<std::string> texts;
-  std::vector<WriteNote> notes;  ///< Each stays for so many images, for readers that leave some out.
+  std::vector<ClientWrite>
+      writes;  ///< Repeated in ValueSnapshotter::kWriteLifetime snapshots, for readers that skip some.
 
-  /// Of an action: nothing.
-  RowValue value(const TreeNumbers& where) const {
+  /// Returns the value at `where`; an empty one for actions.
+  PropertyValue value(const ValueLocation& where) const {
     switch (where.block) {
-      case TreeNumbers::Block::kept:
-        return {kept.data() + where.at, {}};
-      case TreeNumbers::Block::live:
-        return {snapshot->live.data() + where.at, {}};
-      case TreeNumbers::Block::views:
-        return {views.data() + where.at, {}};
-      case TreeNumbers::Block::texts:
-        return {nullptr, texts[where.at]};
-      case TreeNumbers::Block::none:
+      case ValueLocation::Block::persistent:
+        return {persistent.data() + where.offset, {}};
+      case ValueLocation::Block::transient:
+        return {snapshot->transient.data() + where.offset, {}};
+      case ValueLocation::Block::computed:
+        return {computed.data() + where.offset, {}};
+      case ValueLocation::Block::texts:
+        return {nullptr, texts[where.offset]};
+      case ValueLocation::Block::none:
         break;
     }
     return {};

@@ -1,4 +1,4 @@
-// Copies of blocks, and the views computed one by one.
+// Value snapshots: persistent values are copied as a block; computed values and texts are read one by one.
 #include "engine/image_maker.h"
 
 #include <algorithm>
@@ -6,62 +6,64 @@
 
 namespace limber {
 
-void ImageMaker::note(const Store& store, const Origin& origin, const Place& place, bool clamped) {
-  // a slider that moves writes one place again and again
+void ValueSnapshotter::note_write(const Store& store, const CommandOrigin& origin, const PropertyRef& ref,
+                                  bool clamped) {
+  // search only the most recent writes: a moving slider sets the same property again and again
   constexpr std::ptrdiff_t kLookBack = 8;
-  const auto near = notes_.end() - std::min(kLookBack, std::distance(notes_.begin(), notes_.end()));
-  const auto same = std::find_if(near, notes_.end(), [&](const Noted& n) {
-    return n.note.node == place.node && n.note.row == place.row && n.note.origin == origin;
+  const auto recent = writes_.end() - std::min(kLookBack, std::distance(writes_.begin(), writes_.end()));
+  const auto same = std::find_if(recent, writes_.end(), [&](const PendingWrite& pending) {
+    return pending.write.node == ref.node && pending.write.property == ref.property && pending.write.origin == origin;
   });
-  if (same != notes_.end()) notes_.erase(same);
-  if (notes_.size() >= kMostNotes) notes_.erase(notes_.begin(), notes_.begin() + kMostNotes / 4);
-  Noted& noted = notes_.emplace_back();
-  noted.made_then = made_;
-  noted.note = {++noted_, origin, place.node, place.row, {}, clamped};
-  store.get(place.node, *place.row, noted.note.values.data());
+  if (same != writes_.end()) writes_.erase(same);
+  if (writes_.size() >= kMaxWrites) writes_.erase(writes_.begin(), writes_.begin() + kMaxWrites / 4);
+  PendingWrite& pending = writes_.emplace_back();
+  pending.made_at = made_;
+  pending.write = {++write_count_, origin, ref.node, ref.property, {}, clamped};
+  store.get(ref.node, *ref.property, pending.write.values.data());
 }
 
-bool ImageMaker::make(const Store& store, const std::shared_ptr<const Snapshot>& snapshot, std::uint64_t asks) {
-  if (asks == answered_) return false;
+bool ValueSnapshotter::make(const Store& store, const std::shared_ptr<const Snapshot>& snapshot,
+                            std::uint64_t requests) {
+  if (requests == served_) return false;
   if (now_() < next_) return false;
-  const double begin = spent_();
-  if (tree_ == nullptr || structure_ != store.structure_version()) {
-    tree_ = std::make_shared<const Tree>(store);
-    structure_ = store.structure_version();
+  const double begin = cpu_time_();
+  if (tree_ == nullptr || structure_version_ != store.structure_version()) {
+    tree_ = std::make_shared<const TreeSnapshot>(store);
+    structure_version_ = store.structure_version();
   }
-  std::erase_if(notes_, [&](const Noted& n) { return made_ >= n.made_then + kNoteLasts; });
-  const std::shared_ptr<Image> image = out_.spare();
-  image->number = ++made_;
-  image->asks = answered_ = asks;
-  image->tree = tree_;
-  image->snapshot = snapshot;
-  image->kept.assign(store.kept().begin(), store.kept().end());
-  fill_computed(store, *image);
-  image->notes.clear();
-  for (const Noted& n : notes_) image->notes.push_back(n.note);
-  out_.publish(image);
-  const double cost = spent_() - begin;
-  next_ = now_() + cost * (1 / kShare - 1);
+  std::erase_if(writes_, [&](const PendingWrite& pending) { return made_ >= pending.made_at + kWriteLifetime; });
+  const std::shared_ptr<ValueSnapshot> out = out_.acquire_buffer();
+  out->number = ++made_;
+  out->request = served_ = requests;
+  out->tree = tree_;
+  out->snapshot = snapshot;
+  out->persistent.assign(store.persistent_values().begin(), store.persistent_values().end());
+  fill_computed(store, *out);
+  out->writes.clear();
+  for (const PendingWrite& pending : writes_) out->writes.push_back(pending.write);
+  out_.publish(out);
+  const double cost = cpu_time_() - begin;
+  next_ = now_() + cost * (1 / kMaxShare - 1);
   return true;
 }
 
-void ImageMaker::forget_store() {
+void ValueSnapshotter::reset_store() {
   tree_ = nullptr;
-  notes_.clear();
+  writes_.clear();
 }
 
-void ImageMaker::fill_computed(const Store& store, Image& image) const {
-  image.views.resize(tree_->views_width());
-  image.texts.resize(tree_->text_count());
-  double* out = image.views.data();
-  auto text = image.texts.begin();
-  for (const Tree::Node& node : tree_->nodes()) {
-    const void* const thing = store.thing(node.id);
-    for (const Row& row : node.table->rows()) {
-      if (row.type == RowType::text) *text++ = row.say(thing);
-      if (!row.view()) continue;
-      row.read(thing, out);
-      out += row.width;
+void ValueSnapshotter::fill_computed(const Store& store, ValueSnapshot& snapshot) const {
+  snapshot.computed.resize(tree_->computed_width());
+  snapshot.texts.resize(tree_->text_count());
+  double* out = snapshot.computed.data();
+  auto text = snapshot.texts.begin();
+  for (const TreeSnapshot::Node& node : tree_->nodes()) {
+    const void* const object = store.object(node.id);
+    for (const Property& property : node.table->properties()) {
+      if (property.type == PropertyType::text) *text++ = property.read_text(object);
+      if (!property.computed()) continue;
+      property.read(object, out);
+      out += property.width;
     }
   }
 }

@@ -1,4 +1,4 @@
-// A list of rows with both their ends, gone through at each tick.
+// Interpolation of a list of properties, each with its start and end value.
 #include "engine/morph.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
 
 bool is_member(const Store& store, NodeId id) {
-  return store.table(id).name() == "behavior" && static_cast<const Behavior*>(store.thing(id))->group() != nullptr;
+  return store.table(id).name() == "behavior" && static_cast<const Behavior*>(store.object(id))->group() != nullptr;
 }
 
 }  // namespace
@@ -30,163 +30,169 @@ std::optional<Easing> easing_of(std::string_view name) {
 
 std::string_view easing_names() { return "linear, smooth, in, out"; }
 
-double eased(Easing easing, double part) {
+double ease(Easing easing, double fraction) {
   switch (easing) {
     case Easing::smooth:
-      return part * part * (3 - 2 * part);
+      return fraction * fraction * (3 - 2 * fraction);
     case Easing::in:
-      return part * part;
+      return fraction * fraction;
     case Easing::out:
-      return part * (2 - part);
+      return fraction * (2 - fraction);
     case Easing::linear:
       break;
   }
-  return part;
+  return fraction;
 }
 
-Morph::Morph(const Store& store, const PresetBinding& binding, Blend to, double time, double seconds, Easing easing)
-    : to_(std::move(to)),
+Morph::Morph(const Store& store, const PresetBinding& binding, Blend goal, double time, double seconds, Easing easing)
+    : goal_(std::move(goal)),
       except_(binding.except()),
       begin_(time),
       seconds_(seconds),
       easing_(easing),
-      structure_(store.structure_version()) {
-  bool group_moves = false;
-  each_value(binding, to_, [&](const PresetBinding::Thing& thing, const Row& row, const double* values) {
-    const double* const now = store.values(thing.id, row);
-    const bool moves = !same_bits(values, now, row.width);
-    group_moves = group_moves || (moves && row.written != nullptr && store.table(thing.id).name() == "group");
-    if (!moves && !(group_moves && is_member(store, thing.id))) return;
-    const Step step{&row, static_cast<std::uint32_t>(values_.size())};
-    values_.insert(values_.end(), now, now + row.width);
-    values_.insert(values_.end(), values, values + row.width);
-    if (!take(store, thing.id, step)) return values_.resize(step.at);
-    const auto at = static_cast<std::uint32_t>(steps_.size());
-    if (movers_.empty() || movers_.back().id != thing.id) movers_.push_back({thing.id, thing.number, at, at});
-    steps_.push_back(step);
-    movers_.back().end++;
+      structure_version_(store.structure_version()) {
+  bool group_changes = false;
+  for_each_value(binding, goal_, [&](const PresetBinding::Node& node, const Property& property, const double* values) {
+    const double* const now = store.values(node.id, property);
+    const bool changes = !same_bits(values, now, property.width);
+    group_changes =
+        group_changes || (changes && property.on_write != nullptr && store.table(node.id).name() == "group");
+    if (!changes && !(group_changes && is_member(store, node.id))) return;
+    const Track track{&property, static_cast<std::uint32_t>(values_.size())};
+    values_.insert(values_.end(), now, now + property.width);
+    values_.insert(values_.end(), values, values + property.width);
+    if (!validate_track(store, node.id, track)) return values_.resize(track.offset);
+    const auto at = static_cast<std::uint32_t>(tracks_.size());
+    if (targets_.empty() || targets_.back().id != node.id) targets_.push_back({node.id, node.index, at, at});
+    tracks_.push_back(track);
+    targets_.back().tracks_end++;
   });
-  left_ = steps_.size();
-  index(store);
+  active_tracks_ = tracks_.size();
+  index_targets(store);
 }
 
-void Morph::index(const Store& store) {
-  mover_of_.assign(store.view()->slot_count, static_cast<std::uint32_t>(movers_.size()));
-  for (std::size_t i = 0; i < movers_.size(); i++) {
-    if (!movers_[i].id.null()) mover_of_[movers_[i].id.slot] = static_cast<std::uint32_t>(i);
+void Morph::index_targets(const Store& store) {
+  target_of_slot_.assign(store.view()->slot_count, static_cast<std::uint32_t>(targets_.size()));
+  for (std::size_t i = 0; i < targets_.size(); i++) {
+    if (!targets_[i].id.null()) target_of_slot_[targets_[i].id.slot] = static_cast<std::uint32_t>(i);
   }
 }
 
 void Morph::announce(Store& store) const {
-  for (const Mover& mover : movers_) {
-    for (std::uint32_t i = mover.begin; i < mover.end; i++) {
-      if (!steps_[i].gone) store.announce(mover.id, *steps_[i].row, true);
+  for (const Target& target : targets_) {
+    for (std::uint32_t i = target.tracks_begin; i < target.tracks_end; i++) {
+      if (!tracks_[i].missing) store.notify(target.id, *tracks_[i].property, true);
     }
   }
 }
 
-void Morph::release(NodeId id, const Row& row) {
-  if (id.slot >= mover_of_.size() || mover_of_[id.slot] >= movers_.size()) return;
-  const Mover& mover = movers_[mover_of_[id.slot]];
-  if (mover.id != id) return;
-  for (std::uint32_t i = mover.begin; i < mover.end; i++) {
-    if (steps_[i].row != &row || steps_[i].gone || steps_[i].over) continue;
-    steps_[i].over = true;
-    left_--;
+void Morph::release(NodeId id, const Property& property) {
+  if (id.slot >= target_of_slot_.size() || target_of_slot_[id.slot] >= targets_.size()) return;
+  const Target& target = targets_[target_of_slot_[id.slot]];
+  if (target.id != id) return;
+  for (std::uint32_t i = target.tracks_begin; i < target.tracks_end; i++) {
+    if (tracks_[i].property != &property || tracks_[i].missing || tracks_[i].released) continue;
+    tracks_[i].released = true;
+    active_tracks_--;
   }
 }
 
-double Morph::part(double time) const { return seconds_ > 0 ? std::clamp((time - begin_) / seconds_, 0.0, 1.0) : 1; }
+double Morph::progress(double time) const {
+  return seconds_ > 0 ? std::clamp((time - begin_) / seconds_, 0.0, 1.0) : 1;
+}
 
-// thing by thing, each with its effects: what has been looked at is still at hand
+// Runs the on-change callbacks node by node, while the data of the node is still in the cache.
 bool Morph::advance(Store& store, double time) {
-  if (structure_ != store.structure_version()) find_again(store);
-  const double now = part(time);
-  const double amount = now >= 1 ? 1 : eased(easing_, now);
-  for (std::size_t i = 0; i < movers_.size(); i++) {
-    store.fetch_ahead(i, movers_.size(), [this](std::size_t place) { return movers_[place].id; });
-    const Mover& mover = movers_[i];
-    std::uint64_t rows = 0;
-    for (std::uint32_t k = mover.begin; k < mover.end; k++) {
-      if (!steps_[k].gone && !steps_[k].over) rows |= go_on(store, mover.id, steps_[k], amount);
+  if (structure_version_ != store.structure_version()) rebind(store);
+  const double fraction = progress(time);
+  const double amount = fraction >= 1 ? 1 : ease(easing_, fraction);
+  for (std::size_t i = 0; i < targets_.size(); i++) {
+    store.prefetch_ahead(i, targets_.size(), [this](std::size_t index) { return targets_[index].id; });
+    const Target& target = targets_[i];
+    std::uint64_t properties = 0;
+    for (std::uint32_t k = target.tracks_begin; k < target.tracks_end; k++) {
+      if (!tracks_[k].missing && !tracks_[k].released) properties |= write_track(store, target.id, tracks_[k], amount);
     }
-    if (rows != 0) store.run_effects(mover.id, rows);
+    if (properties != 0) store.run_callbacks(target.id, properties);
   }
-  return now < 1 && left_ > 0;
+  return fraction < 1 && active_tracks_ > 0;
 }
 
-// the row that was written, as a bit
-std::uint64_t Morph::go_on(Store& store, NodeId id, const Step& step, double amount) const {
-  const Row& row = *step.row;
-  const double* const from = values_.data() + step.at;
+// Writes one property if its value changes; returns its bit, else 0.
+std::uint64_t Morph::write_track(Store& store, NodeId id, const Track& track, double amount) const {
+  const Property& property = *track.property;
+  const double* const from = values_.data() + track.offset;
   std::array<double, 4> out{};
-  mix(row, from, from + row.width, amount, out.data());
-  if (same_bits(out.data(), std::as_const(store).values(id, row), row.width)) return 0;
-  store.go_on(id, row, out.data());
-  return std::uint64_t{1} << row.index;
+  mix(property, from, from + property.width, amount, out.data());
+  if (same_bits(out.data(), std::as_const(store).values(id, property), property.width)) return 0;
+  store.write_unchecked(id, property, out.data());
+  return std::uint64_t{1} << property.index;
 }
 
-// Both ends as the row takes them, so that it takes all that lies between; false: it does not take them.
-bool Morph::take(const Store& store, NodeId id, const Step& step) {
-  const Row& row = *step.row;
-  for (double* const end : {&values_[step.at], &values_[step.at + row.width]}) {
-    std::array<double, 4> taken{};
-    if (!store.take(id, row, {end, row.width}, taken.data())) return false;
-    std::copy_n(taken.data(), row.width, end);
+// Validates both end values, so that all values between them are valid. False if one is rejected.
+bool Morph::validate_track(const Store& store, NodeId id, const Track& track) {
+  const Property& property = *track.property;
+  for (double* const end : {&values_[track.offset], &values_[track.offset + property.width]}) {
+    std::array<double, 4> valid{};
+    if (!store.validate(id, property, {end, property.width}, valid.data())) return false;
+    std::copy_n(valid.data(), property.width, end);
   }
   return true;
 }
 
-// things came or went: what stands under the same name goes on from where the morph is
-void Morph::find_again(const Store& store) {
-  structure_ = store.structure_version();
-  const bool all_there = std::all_of(movers_.begin(), movers_.end(), [&](const Mover& m) { return store.alive(m.id); });
+// Nodes were added or removed: binds again by name, continuing from the current progress.
+void Morph::rebind(const Store& store) {
+  structure_version_ = store.structure_version();
+  const bool all_there =
+      std::all_of(targets_.begin(), targets_.end(), [&](const Target& target) { return store.alive(target.id); });
   if (all_there) return;
-  const auto binding = PresetBinding::make(store, to_.a->shape, except_, false);
-  if (!binding) return;  // its patterns were right when it began
-  std::vector<const PresetBinding::Thing*> things(to_.a->shape->things().size());
-  for (const PresetBinding::Thing& thing : (*binding)->things()) things[thing.number] = &thing;
-  for (Mover& mover : movers_) {
-    const PresetBinding::Thing* const thing = things[mover.thing];
-    mover.id = thing == nullptr ? NodeId{} : thing->id;
-    for (std::uint32_t i = mover.begin; i < mover.end; i++)
-      steps_[i].gone = thing == nullptr || !find_again(store, (*binding)->fit(*thing), mover.id, steps_[i]);
+  const auto binding = PresetBinding::make(store, goal_.a->schema, except_, false);
+  if (!binding) return;  // can't fail: its patterns were valid at the start
+  std::vector<const PresetBinding::Node*> nodes(goal_.a->schema->nodes().size());
+  for (const PresetBinding::Node& node : (*binding)->nodes()) nodes[node.index] = &node;
+  for (Target& target : targets_) {
+    const PresetBinding::Node* const node = nodes[target.node];
+    target.id = node == nullptr ? NodeId{} : node->id;
+    for (std::uint32_t i = target.tracks_begin; i < target.tracks_end; i++)
+      tracks_[i].missing = node == nullptr || !rebind(store, (*binding)->layout(*node), target.id, tracks_[i]);
   }
-  index(store);
+  index_targets(store);
 }
 
-// whether it has a row of that name and kind
-bool Morph::find_again(const Store& store, const PresetBinding::Fit& fit, NodeId id, Step& step) {
-  const auto same = std::find_if(fit.rows.begin(), fit.rows.end(), [&](const PresetBinding::FitRow& row) {
-    return row.row->name == step.row->name && row.row->type == step.row->type && row.row->choices == step.row->choices;
-  });
-  if (same == fit.rows.end()) return false;
-  step.row = same->row;
-  return take(store, id, step);
+// Binds to a property of the same name and type. False if there is none.
+bool Morph::rebind(const Store& store, const PresetBinding::LayoutBinding& layout, NodeId id, Track& track) {
+  const auto same = std::find_if(
+      layout.properties.begin(), layout.properties.end(), [&](const PresetBinding::BoundProperty& property) {
+        return property.property->name == track.property->name && property.property->type == track.property->type &&
+               property.property->choices == track.property->choices;
+      });
+  if (same == layout.properties.end()) return false;
+  track.property = same->property;
+  return validate_track(store, id, track);
 }
 
 void Morphs::advance(Store& store, double time) {
   std::erase_if(morphs_, [&](Morph& morph) { return !morph.advance(store, time); });
 }
 
-void Morphs::release(NodeId id, const Row& row) {
-  for (Morph& morph : morphs_) morph.release(id, row);
+void Morphs::release(NodeId id, const Property& property) {
+  for (Morph& morph : morphs_) morph.release(id, property);
 }
 
 void Morphs::release(const PresetBinding& binding) {
   if (morphs_.empty()) return;
-  for (const PresetBinding::Thing& thing : binding.things()) {
-    for (const PresetBinding::FitRow& fit : binding.fit(thing).rows) {
-      if ((thing.left_alone >> fit.row->index & 1u) == 0) release(thing.id, *fit.row);
+  for (const PresetBinding::Node& node : binding.nodes()) {
+    for (const PresetBinding::BoundProperty& bound : binding.layout(node).properties) {
+      if ((node.excluded >> bound.property->index & 1u) == 0) release(node.id, *bound.property);
     }
   }
-  std::erase_if(morphs_, [](const Morph& morph) { return !morph.moves(); });
+  std::erase_if(morphs_, [](const Morph& morph) { return !morph.active(); });
 }
 
-double Morphs::part(double time) const {
-  double least = 1;
-  for (const Morph& morph : morphs_) least = std::min(least, morph.part(time));
-  return least;
+double Morphs::progress(double time) const {
+  double slowest = 1;
+  for (const Morph& morph : morphs_) slowest = std::min(slowest, morph.progress(time));
+  return slowest;
 }
 
 }  // namespace limber

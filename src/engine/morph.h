@@ -1,5 +1,5 @@
-// Morphs: values on their way from where they are to a preset, moved on at each tick. A row that a hand sets on the way
-// stays with that hand. [sim]
+// Morph: interpolates values from their current state to a preset over time, at each tick. A property that is set by a
+// controller meanwhile leaves the morph. [sim]
 #pragma once
 
 #include <cstdint>
@@ -13,79 +13,82 @@
 
 namespace limber {
 
-/// How a way is gone: evenly; slow at both ends; slow at the beginning; slow at the end.
+/// Easing curve: constant speed; slow at both ends; slow at the start; slow at the end.
 enum class Easing : std::uint8_t { linear, smooth, in, out };
 std::optional<Easing> easing_of(std::string_view name);
-/// "linear, smooth, in, out"
+/// Returns "linear, smooth, in, out".
 std::string_view easing_names();
-/// How much of the way is gone after that part of the time, 0 .. 1 both.
-double eased(Easing easing, double part);
+/// Returns the eased fraction, 0 to 1, for a fraction of the time, 0 to 1.
+double ease(Easing easing, double fraction);
 
 class Morph {
  public:
-  /// From the values as they are now. Only what differs moves; but the members of a group that moves do, since what is
-  /// written to it goes to them. `time`, `seconds`: simulated.
-  Morph(const Store& store, const PresetBinding& binding, Blend to, double time, double seconds, Easing easing);
+  /// Starts from the current values at simulated time `time`, s. Includes only properties that differ from the preset;
+  /// of a behavior group that changes also all members, because writes to a group are forwarded to its members.
+  Morph(const Store& store, const PresetBinding& binding, Blend goal, double time, double seconds, Easing easing);
 
-  /// False: it is at its end, where every value is the preset's to the bit. Allocates nothing unless things came or
-  /// went.
+  /// Writes the values for simulated time `time`. False at the end, where every value equals the preset's bit by bit.
+  /// Doesn't allocate unless nodes were added or removed.
   bool advance(Store& store, double time);
-  /// Tells the store's listener of its rows, before it is among those that the listener releases rows of.
+  /// Reports the properties of this morph to the listener of the store, which then releases them from older morphs.
+  /// Call before this morph is added to them.
   void announce(Store& store) const;
-  /// From here on the row is somebody else's.
-  void release(NodeId id, const Row& row);
-  /// What part of its time is over, 0 .. 1.
-  double part(double time) const;
-  /// Whether any row is still its own.
-  bool moves() const { return left_ > 0; }
+  /// Removes a property from the morph, because something else has set it.
+  void release(NodeId id, const Property& property);
+  /// Returns the elapsed fraction of the time, 0 to 1.
+  double progress(double time) const;
+  /// True if any property is left in the morph.
+  bool active() const { return active_tracks_ > 0; }
 
  private:
-  struct Step {
-    const Row* row = nullptr;
-    std::uint32_t at = 0;  // where it begins and, behind that, where it ends
-    bool gone = false;     // its thing has no such row now
-    bool over = false;
+  struct Track {
+    const Property* property = nullptr;
+    std::uint32_t offset = 0;  // offset in values_ of its start values, followed by its end values
+    bool missing = false;      // its node or property doesn't exist at present
+    bool released = false;
   };
-  struct Mover {
-    NodeId id;                // null: it is gone
-    std::uint32_t thing = 0;  // number in the preset's shape
-    std::uint32_t begin = 0;  // of its steps
-    std::uint32_t end = 0;
+  struct Target {
+    NodeId id;                       // null: the node doesn't exist at present
+    std::uint32_t node = 0;          // index of the node in the preset
+    std::uint32_t tracks_begin = 0;  // range of its tracks
+    std::uint32_t tracks_end = 0;
   };
-  void index(const Store& store);
-  std::uint64_t go_on(Store& store, NodeId id, const Step& step, double amount) const;
-  void find_again(const Store& store);
-  bool find_again(const Store& store, const PresetBinding::Fit& fit, NodeId id, Step& step);
-  bool take(const Store& store, NodeId id, const Step& step);
+  void index_targets(const Store& store);
+  std::uint64_t write_track(Store& store, NodeId id, const Track& track, double amount) const;
+  void rebind(const Store& store);
+  bool rebind(const Store& store, const PresetBinding::LayoutBinding& layout, NodeId id, Track& track);
+  bool validate_track(const Store& store, NodeId id, const Track& track);
 
-  Blend to_;
+  Blend goal_;
   std::vector<std::string> except_;
   double begin_ = 0;
   double seconds_ = 0;
   Easing easing_ = Easing::smooth;
-  std::uint64_t structure_ = 0;
-  std::vector<Mover> movers_;
-  std::vector<Step> steps_;
+  std::uint64_t structure_version_ = 0;
+  std::vector<Target> targets_;
+  std::vector<Track> tracks_;
   std::vector<double> values_;
-  std::vector<std::uint32_t> mover_of_;  // by slot; their number: none
-  std::size_t left_ = 0;
+  std::vector<std::uint32_t> target_of_slot_;  // by slot of the store; number of targets: none
+  std::size_t active_tracks_ = 0;
 };
 
-/// All that run at a time.
+/// The running morphs.
 class Morphs {
  public:
-  static constexpr std::size_t kMost = 64;
+  static constexpr std::size_t kMax = 64;
 
-  bool full() const { return morphs_.size() >= kMost; }
+  bool full() const { return morphs_.size() >= kMax; }
   bool empty() const { return morphs_.empty(); }
   void begin(Morph morph) { morphs_.push_back(std::move(morph)); }
+  /// Advances all morphs to simulated time `time` and removes those that have ended.
   void advance(Store& store, double time);
-  void release(NodeId id, const Row& row);
-  /// Of all rows that the binding has.
+  /// Removes a property from all morphs, because something else has set it.
+  void release(NodeId id, const Property& property);
+  /// Removes all properties of the binding from the morphs.
   void release(const PresetBinding& binding);
   void clear() { morphs_.clear(); }
-  /// Of the one that has most to go; 1 when there is none.
-  double part(double time) const;
+  /// Returns the progress of the morph that is least advanced, 0 to 1; 1 if none runs.
+  double progress(double time) const;
 
  private:
   std::vector<Morph> morphs_;

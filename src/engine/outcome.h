@@ -1,4 +1,4 @@
-// Outcome: what became of a message.
+// Outcome: the result of executing a message.
 #pragma once
 
 #include <string>
@@ -12,29 +12,29 @@ namespace limber {
 struct Outcome {
   enum class Kind : std::uint8_t {
     applied,
-    answered,  ///< `answers` go to the sender.
-    refused,   ///< `error` says why; nothing was changed.
-    unknown,   ///< No such address of Limber's; `error` names near ones.
-    takes,     ///< It is about takes: for the engine, at the tick's end.
-    scenes,    ///< It is about the show's scenes: for who may read files (EngineLink::ask_scenes), and who answers.
+    answered,       ///< `answers` must be sent to the sender.
+    rejected,       ///< Rejected without a change; `error` is the reason.
+    unknown,        ///< Unknown address; `error` suggests similar ones.
+    take_request,   ///< A request about takes, which the engine executes at the end of the tick.
+    scene_request,  ///< A request about scenes, which needs file access: to be passed to EngineLink::on_scene_request.
   };
   Kind kind = Kind::applied;
-  bool kept = false;             ///< It set a property: a performer's value, which a reset keeps.
-  const Row* clamped = nullptr;  ///< A row whose range the value was outside of.
+  bool sets_override = false;         ///< A persistent property was set: an override, which a reset keeps.
+  const Property* clamped = nullptr;  ///< A property with a value that was clamped to its range.
   std::string error;
-  std::string said;  ///< What was left out of what was done.
+  std::string warning;  ///< Warning about values that were skipped.
   std::vector<Message> answers;
 
-  static Outcome refused(std::string why) {
+  static Outcome rejected(std::string reason) {
     Outcome outcome;
-    outcome.kind = Kind::refused;
-    outcome.error = std::move(why);
+    outcome.kind = Kind::rejected;
+    outcome.error = std::move(reason);
     return outcome;
   }
-  static Outcome unknown(std::string why) {
+  static Outcome unknown(std::string reason) {
     Outcome outcome;
     outcome.kind = Kind::unknown;
-    outcome.error = std::move(why);
+    outcome.error = std::move(reason);
     return outcome;
   }
 };

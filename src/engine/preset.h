@@ -1,5 +1,5 @@
-// Preset: a named copy of chosen values by the paths of their things. Finished, it is never changed; the live world is
-// not needed to read it, mix it or write it down. [any]
+// Preset: a named, immutable copy of selected property values, addressed by the paths of their nodes. Reading, mixing
+// and saving a preset doesn't need the live world. [any]
 #pragma once
 
 #include <cstdint>
@@ -13,126 +13,130 @@
 
 namespace limber {
 
-/// A row in a preset, known by its name and by what its values look like.
-struct PresetRow {
+/// A property in a preset, identified by its name and the type of its values.
+struct PresetProperty {
   std::string name;
-  RowType type = RowType::number;   ///< number, boolean, choice, vec3, flags3, quat; none: other numbers in a row.
-  std::uint32_t width = 1;          ///< Numbers.
-  std::vector<std::string> labels;  ///< Of a choice: what its number means.
-  bool operator==(const PresetRow&) const = default;
+  /// One of number, boolean, choice, vec3, flags3, quat; none: another list of numbers.
+  PropertyType type = PropertyType::number;
+  std::uint32_t width = 1;          ///< Number of values.
+  std::vector<std::string> labels;  ///< Of a choice: names of its values; the value is an index.
+  bool operator==(const PresetProperty&) const = default;
 };
 
-/// The rows that several things of a preset have alike.
-struct PresetClass {
-  std::vector<PresetRow> rows;
-  std::vector<std::uint32_t> offsets;  ///< Where each row begins in a thing's numbers.
-  std::uint32_t width = 0;
+/// A list of properties that is shared by the nodes that have the same ones.
+struct PresetLayout {
+  std::vector<PresetProperty> properties;
+  std::vector<std::uint32_t> offsets;  ///< Offset of each property in the values of a node.
+  std::uint32_t value_count = 0;
 
-  void add(PresetRow row) {
-    offsets.push_back(width);
-    width += row.width;
-    rows.push_back(std::move(row));
+  void add(PresetProperty property) {
+    offsets.push_back(value_count);
+    value_count += property.width;
+    properties.push_back(std::move(property));
   }
-  /// The row of that name, or -1.
+  /// Returns the index of the property of that name, or -1.
   int find(std::string_view name) const;
-  bool operator==(const PresetClass& other) const { return rows == other.rows; }
+  bool operator==(const PresetLayout& other) const { return properties == other.properties; }
 };
 
-/// Which things a preset tells of and where their numbers stand; presets that tell of the same share one.
-class PresetShape {
+/// The nodes of a preset, and where their values are in Preset::values. Shared by presets of the same nodes and
+/// properties.
+class PresetSchema {
  public:
-  static constexpr std::uint32_t kNoRows = UINT32_MAX;
-  struct Thing {
+  static constexpr std::uint32_t kNoLayout = UINT32_MAX;
+  struct Node {
     std::uint32_t parent = 0;
-    std::uint32_t rows = kNoRows;  ///< Its class.
-    std::uint32_t at = 0;          ///< Its first number.
-    std::uint32_t name_at = 0;
+    std::uint32_t layout = kNoLayout;  ///< Index in layouts().
+    std::uint32_t offset = 0;          ///< Index of its first value.
+    std::uint32_t name_offset = 0;
     std::uint32_t name_size = 0;
   };
 
-  PresetShape() : things_(1) {}
+  PresetSchema() : nodes_(1) {}
 
-  /// Parents first; the first is the root. Those without rows only lead to others.
-  const std::vector<Thing>& things() const { return things_; }
-  const std::vector<std::shared_ptr<const PresetClass>>& classes() const { return classes_; }
-  const PresetClass* rows(const Thing& thing) const {
-    return thing.rows == kNoRows ? nullptr : classes_[thing.rows].get();
+  /// All nodes, parents first; the first is the root. Nodes without properties are only ancestors of others.
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const std::vector<std::shared_ptr<const PresetLayout>>& layouts() const { return layouts_; }
+  const PresetLayout* layout(const Node& node) const {
+    return node.layout == kNoLayout ? nullptr : layouts_[node.layout].get();
   }
-  std::string_view name(const Thing& thing) const {
-    return std::string_view(names_).substr(thing.name_at, thing.name_size);
+  std::string_view name(const Node& node) const {
+    return std::string_view(names_).substr(node.name_offset, node.name_size);
   }
-  /// "/physics/body/my%20arm".
-  std::string path(std::uint32_t thing) const;
-  std::uint32_t width() const { return width_; }
-  /// Of a thing or, where it has none, of the first below it that has; of a shape like add_all() takes.
-  std::uint32_t first_number(std::uint32_t thing) const;
-  std::size_t row_count() const;
-  bool operator==(const PresetShape& other) const;
+  /// Returns the path of a node, such as "/physics/body/my%20arm".
+  std::string path(std::uint32_t node) const;
+  /// Number of values of a preset.
+  std::uint32_t value_count() const { return value_count_; }
+  /// Index of the first value of a node or, if it has none, of the first descendant with values. The nodes must be in
+  /// the order that copy_subtree() requires.
+  std::uint32_t first_value(std::uint32_t node) const;
+  std::size_t property_count() const;
+  bool operator==(const PresetSchema& other) const;
 
-  // for those who make one
-  /// There will be so many things.
-  void expect(std::size_t things);
+  // Construction:
+  /// Reserves memory for a number of nodes.
+  void reserve(std::size_t nodes);
   std::uint32_t add(std::uint32_t parent, std::string_view name);
-  /// Gives the thing rows; their numbers stand behind all that were given so far.
-  void give(std::uint32_t thing, std::uint32_t rows);
-  std::uint32_t add_class(std::shared_ptr<const PresetClass> rows);
-  /// A thing of another shape, which has these classes, and all below it; those of `from` stand parents first, each
-  /// with what is below it, and were given their rows in that order. The answer: its number here.
-  std::uint32_t add_all(const PresetShape& from, std::uint32_t thing, std::uint32_t parent);
+  /// Sets the properties of a node. Its values follow those of all nodes before.
+  void set_layout(std::uint32_t node, std::uint32_t layout);
+  std::uint32_t add_layout(std::shared_ptr<const PresetLayout> layout);
+  /// Copies a node and all its descendants from another schema with the same layouts, and returns the new index. The
+  /// nodes of `from` must be in depth-first order, and must have been given their properties in this order.
+  std::uint32_t copy_subtree(const PresetSchema& from, std::uint32_t node, std::uint32_t parent);
 
  private:
-  std::vector<Thing> things_;
-  std::vector<std::shared_ptr<const PresetClass>> classes_;
+  std::vector<Node> nodes_;
+  std::vector<std::shared_ptr<const PresetLayout>> layouts_;
   std::string names_;
-  std::uint32_t width_ = 0;
+  std::uint32_t value_count_ = 0;
 };
 
-/// What a preset is made of.
-struct PresetChoice {
-  std::vector<std::string> rows;    ///< Patterns of what is kept; none: every property.
-  std::vector<std::string> except;  ///< Patterns of what a recall leaves alone.
-  bool poses = false;               ///< With where every part is.
-  bool velocities = false;          ///< With how it moves.
-  bool operator==(const PresetChoice&) const = default;
+/// Selects the values of a preset.
+struct PresetSelection {
+  std::vector<std::string> include;  ///< Patterns of the properties to include; none: all properties.
+  std::vector<std::string> except;   ///< Patterns of the properties that a recall doesn't change.
+  bool poses = false;                ///< Include positions and rotations of parts.
+  bool velocities = false;           ///< Include velocities of parts.
+  bool operator==(const PresetSelection&) const = default;
 };
 
 struct Preset {
   std::string name;
-  PresetChoice choice;
-  std::shared_ptr<const PresetShape> shape;
-  std::vector<double> values;  ///< shape->width() of them.
+  PresetSelection selection;
+  std::shared_ptr<const PresetSchema> schema;
+  std::vector<double> values;  ///< schema->value_count() values.
 };
 
 using PresetList = std::vector<std::shared_ptr<const Preset>>;
 
-/// A preset, or what lies between two that share their shape.
+/// A preset, or a mix of two presets with the same schema.
 struct Blend {
   std::shared_ptr<const Preset> a, b;
-  double amount = 0;
+  double amount = 0;  ///< Weight of `b`, 0 to 1.
 
   static Blend of(const std::shared_ptr<const Preset>& preset) { return {preset, preset, 0}; }
 };
 
-/// Two presets cut down to the rows that both have, with one shape.
-Blend aligned(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b);
+/// Reduces two presets to the properties that both have, with a common schema.
+Blend align(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b);
 
-/// Makes a preset thing by thing, of texts.
+/// Builds a preset node by node, from paths.
 class PresetBuilder {
  public:
-  PresetBuilder() : shape_(std::make_shared<PresetShape>()) {}
+  PresetBuilder() : schema_(std::make_shared<PresetSchema>()) {}
 
-  /// The thing of that path, which begins with /. It may be there already.
-  std::uint32_t thing(std::string_view path);
-  bool has_rows(std::uint32_t thing) const { return shape_->things()[thing].rows != PresetShape::kNoRows; }
-  /// Gives the thing these rows with their numbers. Once only.
-  void give(std::uint32_t thing, PresetClass rows, const std::vector<double>& values);
-  std::shared_ptr<const Preset> finish(std::string name, PresetChoice choice);
+  /// Returns the node of a path, which must begin with /; adds it if it doesn't exist.
+  std::uint32_t node(std::string_view path);
+  bool has_layout(std::uint32_t node) const { return schema_->nodes()[node].layout != PresetSchema::kNoLayout; }
+  /// Sets the properties of a node and their values. At most once per node.
+  void set_values(std::uint32_t node, PresetLayout layout, const std::vector<double>& values);
+  std::shared_ptr<const Preset> finish(std::string name, PresetSelection selection);
 
  private:
-  std::shared_ptr<PresetShape> shape_;
+  std::shared_ptr<PresetSchema> schema_;
   std::vector<double> values_;
-  std::unordered_map<std::string, std::uint32_t> things_;   // by parent and name
-  std::unordered_map<std::string, std::uint32_t> classes_;  // by all that is in them
+  std::unordered_map<std::string, std::uint32_t> nodes_;    // by parent and name
+  std::unordered_map<std::string, std::uint32_t> layouts_;  // by their content
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Names to things, rows to rows.
+// Lookup of nodes and properties by name.
 #include "engine/preset_binding.h"
 
 #include <algorithm>
@@ -16,179 +16,186 @@ namespace limber {
 
 namespace {
 
-bool same_kind(const PresetRow& row, const Row& live) {
-  if (row.type == RowType::number) return live.type == RowType::number || live.type == RowType::integer;
-  return row.type == live.type && row.width == live.width;
+bool same_type(const PresetProperty& property, const Property& target) {
+  if (property.type == PropertyType::number)
+    return target.type == PropertyType::number || target.type == PropertyType::integer;
+  return property.type == target.type && property.width == target.width;
 }
 
-// "part, part and part", as far as it is worth reading
-std::string some(const std::vector<std::string>& names, std::size_t count) {
+// Joins names: "a, b, c …"; `count` is the total number.
+std::string join_some(const std::vector<std::string>& names, std::size_t count) {
   std::string text = fmt::format("{}", fmt::join(names, ", "));
   return count > names.size() ? text + " …" : text;
 }
 
-constexpr std::size_t kNamed = 3;
+constexpr std::size_t kMaxNamed = 3;
 
 bool is_group(const Store& store, NodeId id) { return store.table(id).name() == "group" && !store.is_group(id); }
 
 }  // namespace
 
-class PresetBinding::Making {
+class PresetBinding::Builder {
  public:
-  Making(const Store& store, PresetBinding& binding) : store_(store), b_(binding) {}
+  Builder(const Store& store, PresetBinding& binding) : store_(store), binding_(binding) {}
 
-  Result<void> run(bool tells_of_all) {
-    if (const Result<void> left = leave_alone(); !left) return left;
-    const PresetShape& shape = *b_.shape_;
-    std::vector<NodeId> ids(shape.things().size());
+  Result<void> run(bool of_everything) {
+    if (const Result<void> collected = collect_exclusions(); !collected) return collected;
+    const PresetSchema& schema = *binding_.schema_;
+    std::vector<NodeId> ids(schema.nodes().size());
     ids[0] = store_.root();
-    for (std::uint32_t i = 0; i < shape.things().size(); i++) {
-      const PresetShape::Thing& thing = shape.things()[i];
-      if (i != 0 && !ids[thing.parent].null()) ids[i] = store_.child(ids[thing.parent], shape.name(thing));
-      if (shape.rows(thing) == nullptr) continue;
+    for (std::uint32_t i = 0; i < schema.nodes().size(); i++) {
+      const PresetSchema::Node& node = schema.nodes()[i];
+      if (i != 0 && !ids[node.parent].null()) ids[i] = store_.child(ids[node.parent], schema.name(node));
+      if (schema.layout(node) == nullptr) continue;
       if (ids[i].null()) {
-        note(gone_, gone_count_, [&] { return shape.path(i); });
+        add_name(missing_, missing_count_, [&] { return schema.path(i); });
       } else {
         bind(ids[i], i);
       }
     }
-    std::stable_partition(b_.things_.begin(), b_.things_.end(),
-                          [&](const Thing& thing) { return is_group(store_, thing.id); });
-    say(tells_of_all);
+    std::stable_partition(binding_.nodes_.begin(), binding_.nodes_.end(),
+                          [&](const Node& node) { return is_group(store_, node.id); });
+    describe_omissions(of_everything);
     return {};
   }
 
  private:
   template <class F>
-  static void note(std::vector<std::string>& names, std::size_t& count, F&& name) {
-    if (count++ < kNamed) names.push_back(name());
+  static void add_name(std::vector<std::string>& names, std::size_t& count, F&& name) {
+    if (count++ < kMaxNamed) names.push_back(name());
   }
 
-  Result<void> leave_alone() {
-    for (const std::string& pattern : b_.except_) {
+  Result<void> collect_exclusions() {
+    for (const std::string& pattern : binding_.except_) {
       PatternBudget budget;
-      const Result<std::vector<Place>> places = match_places(store_, pattern, budget);
-      if (!places && (is_pattern(pattern) || pattern.find("//") != std::string::npos))
-        return Error{fmt::format("except: {}", places.error())};
-      if (!places) continue;  // a thing that is gone needs no leaving alone
-      for (const Place& place : *places) {
-        if (place.row == nullptr) {
-          store_.walk(place.node, [&](NodeId id) { left_alone_[id.slot] = ~std::uint64_t{0}; });
+      const Result<std::vector<PropertyRef>> refs = match_properties(store_, pattern, budget);
+      if (!refs && (is_pattern(pattern) || pattern.find("//") != std::string::npos))
+        return Error{fmt::format("except: {}", refs.error())};
+      if (!refs) continue;  // the node doesn't exist, so there is nothing to exclude
+      for (const PropertyRef& ref : *refs) {
+        if (ref.property == nullptr) {
+          store_.walk(ref.node, [&](NodeId id) { excluded_[id.slot] = ~std::uint64_t{0}; });
         } else {
-          left_alone_[place.node.slot] |= std::uint64_t{1} << place.row->index;
+          excluded_[ref.node.slot] |= std::uint64_t{1} << ref.property->index;
         }
       }
     }
     return {};
   }
 
-  void bind(NodeId id, std::uint32_t number) {
-    const PresetShape::Thing& thing = b_.shape_->things()[number];
-    const Table& table = store_.table(id);
-    const std::uint32_t fit = fit_of(*b_.shape_->rows(thing), table);
-    const Fit& made = b_.fits_[fit];
-    if (made.misfits > 0) {
-      note(misfits_, misfit_count_, [&] { return b_.shape_->path(number) + "/" + made.misfit; });
-      misfit_count_ += made.misfits - 1;
+  void bind(NodeId id, std::uint32_t index) {
+    const PresetSchema::Node& node = binding_.schema_->nodes()[index];
+    const PropertyTable& table = store_.table(id);
+    const std::uint32_t layout = layout_index(*binding_.schema_->layout(node), table);
+    const LayoutBinding& binding = binding_.layouts_[layout];
+    if (binding.mismatches > 0) {
+      add_name(mismatches_, mismatch_count_,
+               [&] { return binding_.schema_->path(index) + "/" + binding.first_mismatch; });
+      mismatch_count_ += binding.mismatches - 1;
     }
-    const auto left = left_alone_.find(id.slot);
-    const std::uint64_t alone = left == left_alone_.end() ? 0 : left->second;
-    b_.things_.push_back({id, number, fit, thing.at, alone});
+    const auto found = excluded_.find(id.slot);
+    const std::uint64_t excluded = found == excluded_.end() ? 0 : found->second;
+    binding_.nodes_.push_back({id, index, layout, node.offset, excluded});
   }
 
-  std::uint32_t fit_of(const PresetClass& rows, const Table& table) {
-    const auto [known, fresh] = known_.try_emplace({&rows, &table}, static_cast<std::uint32_t>(b_.fits_.size()));
-    if (!fresh) return known->second;
-    Fit fit{&rows, &table, {}, {}, {}, 0};
-    for (std::size_t i = 0; i < rows.rows.size(); i++) {
-      const PresetRow& row = rows.rows[i];
-      const Row* const live = table.find(row.name);
-      if (live == nullptr || !live->writable() || !live->stored() || !same_kind(row, *live)) {
-        if (fit.misfits++ == 0) fit.misfit = row.name;
+  std::uint32_t layout_index(const PresetLayout& source, const PropertyTable& table) {
+    const auto [entry, inserted] =
+        layout_indices_.try_emplace({&source, &table}, static_cast<std::uint32_t>(binding_.layouts_.size()));
+    if (!inserted) return entry->second;
+    LayoutBinding layout{&source, &table, {}, {}, {}, 0};
+    for (std::size_t i = 0; i < source.properties.size(); i++) {
+      const PresetProperty& property = source.properties[i];
+      const Property* const target = table.find(property.name);
+      if (target == nullptr || !target->writable() || !target->stored() || !same_type(property, *target)) {
+        if (layout.mismatches++ == 0) layout.first_mismatch = property.name;
         continue;
       }
-      FitRow& made = fit.rows.emplace_back(FitRow{live, &row, rows.offsets[i], {}});
-      for (const std::string& label : row.labels) {
-        const auto at = std::find_if(live->choices.begin(), live->choices.end(),
+      BoundProperty& bound = layout.properties.emplace_back(BoundProperty{target, &property, source.offsets[i], {}});
+      for (const std::string& label : property.labels) {
+        const auto at = std::find_if(target->choices.begin(), target->choices.end(),
                                      [&](const std::string& choice) { return same_name(choice, label); });
-        made.choices.push_back(at == live->choices.end() ? -1 : static_cast<double>(at - live->choices.begin()));
+        bound.choice_map.push_back(at == target->choices.end() ? -1
+                                                               : static_cast<double>(at - target->choices.begin()));
       }
-      if (std::ranges::find(made.choices, -1) != made.choices.end())
-        fit.poorer.push_back(static_cast<std::uint32_t>(fit.rows.size() - 1));
+      if (std::ranges::find(bound.choice_map, -1) != bound.choice_map.end())
+        layout.incomplete_choices.push_back(static_cast<std::uint32_t>(layout.properties.size() - 1));
     }
-    b_.fits_.push_back(std::move(fit));
-    return known->second;
+    binding_.layouts_.push_back(std::move(layout));
+    return entry->second;
   }
 
-  // properties that the world has and a preset of all of them does not
-  std::size_t newcomers() {
-    std::unordered_map<const Table*, std::size_t> counts;
+  // Returns the number of properties of the world that a preset of all properties lacks.
+  std::size_t count_added() {
+    std::unordered_map<const PropertyTable*, std::size_t> counts;
     std::size_t all = 0;
-    std::size_t statics = 0;
+    std::size_t read_only = 0;
     store_.walk(store_.root(), [&](NodeId id) {
-      const Table& table = store_.table(id);
-      const auto [known, fresh] = counts.try_emplace(&table, 0);
-      if (fresh) {
-        known->second = static_cast<std::size_t>(std::ranges::count_if(
-            table.rows(), [](const Row& row) { return row.kind == RowKind::property && row.stored(); }));
+      const PropertyTable& table = store_.table(id);
+      const auto [entry, inserted] = counts.try_emplace(&table, 0);
+      if (inserted) {
+        entry->second =
+            static_cast<std::size_t>(std::ranges::count_if(table.properties(), [](const Property& property) {
+              return property.kind == PropertyKind::setting && property.stored();
+            }));
       }
-      all += known->second;
-      for (const Row& row : table.rows()) {
-        if (row.kind == RowKind::property && row.refuse != nullptr)
-          statics += row.refuse(store_.thing(id), store_.values(id, row)) ? 0 : 1;
+      all += entry->second;
+      for (const Property& property : table.properties()) {
+        if (property.kind == PropertyKind::setting && property.validate != nullptr)
+          read_only += property.validate(store_.object(id), store_.values(id, property)) ? 0 : 1;
       }
     });
     std::size_t properties = 0;
-    for (const Thing& thing : b_.things_) {
-      for (const FitRow& row : b_.fits_[thing.fit].rows) properties += row.row->kind == RowKind::property ? 1 : 0;
+    for (const Node& node : binding_.nodes_) {
+      for (const BoundProperty& property : binding_.layouts_[node.layout].properties)
+        properties += property.property->kind == PropertyKind::setting ? 1 : 0;
     }
-    all -= std::min(all, statics);
+    all -= std::min(all, read_only);
     return all - std::min(all, properties);
   }
 
-  void say(bool tells_of_all) {
+  void describe_omissions(bool of_everything) {
     std::vector<std::string> texts;
-    if (gone_count_ > 0)
-      texts.push_back(fmt::format("{} thing{} gone ({})", gone_count_, gone_count_ == 1 ? " is" : "s are",
-                                  some(gone_, gone_count_)));
-    if (misfit_count_ > 0)
-      texts.push_back(fmt::format("{} row{} no longer there or of another type ({})", misfit_count_,
-                                  misfit_count_ == 1 ? " is" : "s are", some(misfits_, misfit_count_)));
-    const std::size_t came = tells_of_all ? newcomers() : 0;
-    if (came > 0)
-      texts.push_back(fmt::format("{} came since and {}", came == 1 ? "1 value" : fmt::format("{} values", came),
-                                  came == 1 ? "stays as it is" : "stay as they are"));
-    b_.left_out_ = fmt::format("{}", fmt::join(texts, "; "));
+    if (missing_count_ > 0)
+      texts.push_back(fmt::format("{} object{} not found ({})", missing_count_, missing_count_ == 1 ? " was" : "s were",
+                                  join_some(missing_, missing_count_)));
+    if (mismatch_count_ > 0)
+      texts.push_back(fmt::format("{} propert{} missing or of another type ({})", mismatch_count_,
+                                  mismatch_count_ == 1 ? "y is" : "ies are", join_some(mismatches_, mismatch_count_)));
+    const std::size_t added = of_everything ? count_added() : 0;
+    if (added > 0)
+      texts.push_back(fmt::format("{} new and {}", added == 1 ? "1 value is" : fmt::format("{} values are", added),
+                                  added == 1 ? "stays unchanged" : "stay unchanged"));
+    binding_.omissions_ = fmt::format("{}", fmt::join(texts, "; "));
   }
 
   const Store& store_;
-  PresetBinding& b_;
-  std::unordered_map<std::uint32_t, std::uint64_t> left_alone_;  // by slot
-  std::map<std::pair<const PresetClass*, const Table*>, std::uint32_t> known_;
-  std::vector<std::string> gone_, misfits_;
-  std::size_t gone_count_ = 0;
-  std::size_t misfit_count_ = 0;
+  PresetBinding& binding_;
+  std::unordered_map<std::uint32_t, std::uint64_t> excluded_;  // by slot
+  std::map<std::pair<const PresetLayout*, const PropertyTable*>, std::uint32_t> layout_indices_;
+  std::vector<std::string> missing_, mismatches_;
+  std::size_t missing_count_ = 0;
+  std::size_t mismatch_count_ = 0;
 };
 
 Result<std::shared_ptr<const PresetBinding>> PresetBinding::make(const Store& store,
-                                                                 std::shared_ptr<const PresetShape> shape,
+                                                                 std::shared_ptr<const PresetSchema> schema,
                                                                  std::span<const std::string> except,
-                                                                 bool tells_of_all) {
+                                                                 bool of_everything) {
   auto binding = std::make_shared<PresetBinding>();
-  binding->structure_ = store.structure_version();
-  binding->shape_ = std::move(shape);
+  binding->structure_version_ = store.structure_version();
+  binding->schema_ = std::move(schema);
   binding->except_.assign(except.begin(), except.end());
-  if (const Result<void> made = Making(store, *binding).run(tells_of_all); !made) return Error{made.error()};
+  if (const Result<void> made = Builder(store, *binding).run(of_everything); !made) return Error{made.error()};
   return std::shared_ptr<const PresetBinding>(std::move(binding));
 }
 
-bool PresetBinding::read(const FitRow& row, const double* values, double* out) {
-  const double* const from = values + row.at;
-  if (row.row->type != RowType::choice) {
-    std::copy_n(from, row.row->width, out);
+bool PresetBinding::read(const BoundProperty& property, const double* values, double* out) {
+  const double* const from = values + property.offset;
+  if (property.property->type != PropertyType::choice) {
+    std::copy_n(from, property.property->width, out);
     return true;
   }
-  out[0] = row.choices[static_cast<std::size_t>(from[0])];
+  out[0] = property.choice_map[static_cast<std::size_t>(from[0])];
   return out[0] >= 0;
 }
 

@@ -1,5 +1,5 @@
-// PresetBinding: where the rows of a preset are in the live world, by the names of things and rows. What went, what is
-// of another type and what the preset leaves alone is left out. [sim]
+// PresetBinding: maps the properties of a preset to those of the live world, by name. Skips properties that don't exist
+// any more, have another type or are excluded by the preset. [sim]
 #pragma once
 
 #include <array>
@@ -17,55 +17,58 @@ namespace limber {
 
 class PresetBinding {
  public:
-  /// A preset's row that its thing's class still has.
-  struct FitRow {
-    const Row* row = nullptr;
-    const PresetRow* from = nullptr;
-    std::uint32_t at = 0;         ///< In the thing's numbers.
-    std::vector<double> choices;  ///< Of a choice: the row's number for each of the preset's labels; −1: it has none.
+  /// A property of the preset that the live node still has.
+  struct BoundProperty {
+    const Property* property = nullptr;
+    const PresetProperty* source = nullptr;
+    std::uint32_t offset = 0;        ///< Offset in the values of the node.
+    std::vector<double> choice_map;  ///< Of a choice: live value for each label of the preset; −1: no such choice.
   };
-  struct Fit {
-    const PresetClass* from = nullptr;
-    const Table* table = nullptr;
-    std::vector<FitRow> rows;
-    std::vector<std::uint32_t> poorer;  ///< Of rows, those that have not every label of the preset's.
-    std::string misfit;                 ///< The name of the first row that did not fit.
-    std::size_t misfits = 0;
+  /// Mapping of a layout to the properties of a node type.
+  struct LayoutBinding {
+    const PresetLayout* source = nullptr;
+    const PropertyTable* table = nullptr;
+    std::vector<BoundProperty> properties;
+    std::vector<std::uint32_t> incomplete_choices;  ///< Indices of choices that lack a label of the preset.
+    std::string first_mismatch;                     ///< Name of the first property without a match.
+    std::size_t mismatches = 0;
   };
-  struct Thing {
+  struct Node {
     NodeId id;
-    std::uint32_t number = 0;      ///< Among the shape's things.
-    std::uint32_t fit = 0;         ///< Among the fits.
-    std::uint32_t at = 0;          ///< Its first number.
-    std::uint64_t left_alone = 0;  ///< Rows of its class, a bit a row.
+    std::uint32_t index = 0;     ///< Index in the nodes of the preset.
+    std::uint32_t layout = 0;    ///< Index of its LayoutBinding.
+    std::uint32_t offset = 0;    ///< Index of its first value.
+    std::uint64_t excluded = 0;  ///< Excluded properties, one bit each.
   };
 
-  /// Errors: an `except` that is no pattern.
-  static Result<std::shared_ptr<const PresetBinding>> make(const Store& store, std::shared_ptr<const PresetShape> shape,
-                                                           std::span<const std::string> except, bool tells_of_all);
+  /// Binds a preset's schema. `of_everything`: the preset should contain all properties, so new ones are reported in
+  /// omissions(). Error: a pattern in `except` is invalid.
+  static Result<std::shared_ptr<const PresetBinding>> make(const Store& store,
+                                                           std::shared_ptr<const PresetSchema> schema,
+                                                           std::span<const std::string> except, bool of_everything);
 
-  /// Whether it still holds.
-  bool holds(const Store& store) const { return structure_ == store.structure_version(); }
-  const std::shared_ptr<const PresetShape>& shape() const { return shape_; }
+  /// True if the binding is still valid: no node was added or removed since.
+  bool up_to_date(const Store& store) const { return structure_version_ == store.structure_version(); }
+  const std::shared_ptr<const PresetSchema>& schema() const { return schema_; }
   const std::vector<std::string>& except() const { return except_; }
-  /// Group behaviours first, since what is written to them goes to their members; then in the shape's order.
-  const std::vector<Thing>& things() const { return things_; }
-  const Fit& fit(const Thing& thing) const { return fits_[thing.fit]; }
-  /// What was left out because it came or went: empty, or "2 things are gone (/physics/body/arm, …); …".
-  const std::string& left_out() const { return left_out_; }
+  /// Behavior groups first, since writes to them are forwarded to their members; then in the order of the preset.
+  const std::vector<Node>& nodes() const { return nodes_; }
+  const LayoutBinding& layout(const Node& node) const { return layouts_[node.layout]; }
+  /// Describes skipped and missing properties: empty, or "2 objects were not found (/physics/body/arm, …); …".
+  const std::string& omissions() const { return omissions_; }
 
-  /// The row's numbers in a preset of this shape; false: a label that the row does not have.
-  static bool read(const FitRow& row, const double* values, double* out);
+  /// Reads the values of a property from those of its node in the preset. False if it has no such choice.
+  static bool read(const BoundProperty& property, const double* values, double* out);
 
  private:
-  class Making;
+  class Builder;
 
-  std::uint64_t structure_ = 0;
-  std::shared_ptr<const PresetShape> shape_;
+  std::uint64_t structure_version_ = 0;
+  std::shared_ptr<const PresetSchema> schema_;
   std::vector<std::string> except_;
-  std::vector<Thing> things_;
-  std::vector<Fit> fits_;
-  std::string left_out_;
+  std::vector<Node> nodes_;
+  std::vector<LayoutBinding> layouts_;
+  std::string omissions_;
 };
 
 }  // namespace limber

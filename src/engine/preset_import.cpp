@@ -1,4 +1,4 @@
-// Slots to presets, clients to rows.
+// Conversion of slots to presets and of clients to properties.
 #include "engine/preset_import.h"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDeepest = 64;
+constexpr int kMaxDepth = 64;
 
-// the thing's path and the row's name; nothing where it is none
-std::optional<std::pair<std::string, std::string>> place_of(const std::string& client) {
+// Returns the path of the node and the name of the property; nothing if the name is invalid.
+std::optional<std::pair<std::string, std::string>> split_client(const std::string& client) {
   std::string path;
   if (client.starts_with('/')) {
     path = client;
@@ -40,32 +40,32 @@ std::optional<std::pair<std::string, std::string>> place_of(const std::string& c
   return std::pair{path.substr(0, slash), path.substr(slash + 1)};
 }
 
-// Max keeps every value as a list
-std::optional<PresetRow> row_from(const std::string& name, const json& value, std::vector<double>& numbers) {
+// Converts a value, which Max writes as a list. Nothing if no property has such a value.
+std::optional<PresetProperty> property_from(const std::string& name, const json& value, std::vector<double>& numbers) {
   const json list = value.is_array() ? value : json::array({value});
   if (list.size() == 1 && list[0].is_string()) {
     numbers.push_back(0);
-    return PresetRow{name, RowType::choice, 1, {list[0].get<std::string>()}};
+    return PresetProperty{name, PropertyType::choice, 1, {list[0].get<std::string>()}};
   }
   const bool all_numbers = std::all_of(list.begin(), list.end(), [](const json& v) { return v.is_number(); });
   const std::size_t n = list.size();
   if (!all_numbers || (n != 1 && n != 3 && n != 4)) return {};
   for (const json& v : list) numbers.push_back(v.get<double>());
-  return PresetRow{name,
-                   n == 1   ? RowType::number
-                   : n == 3 ? RowType::vec3
-                            : RowType::quat,
-                   static_cast<std::uint32_t>(n),
-                   {}};
+  return PresetProperty{name,
+                        n == 1   ? PropertyType::number
+                        : n == 3 ? PropertyType::vec3
+                                 : PropertyType::quat,
+                        static_cast<std::uint32_t>(n),
+                        {}};
 }
 
-class Import {
+class PattrstorageImporter {
  public:
-  Result<PresetsRead> run(const json& file) {
+  Result<ParsedPresets> run(const json& file) {
     const auto storage = file.find("pattrstorage");
     if (storage == file.end() || !storage->is_object() || !storage->contains("slots") ||
         !(*storage)["slots"].is_object()) {
-      return Error{"it is no pattrstorage; in Max, it writes one by the message writejson"};
+      return Error{"it is not a pattrstorage file; in Max, it writes one by the message writejson"};
     }
     std::map<double, std::pair<std::string, const json*>> slots;  // by number
     for (const auto& [key, slot] : (*storage)["slots"].items()) {
@@ -73,41 +73,41 @@ class Import {
       if (number && slot.is_object()) {
         slots[*number] = {key, &slot};
       } else {
-        read_.problems.push_back(fmt::format("slot '{}' is none", printable(shortened(key, 40))));
+        read_.problems.push_back(fmt::format("'{}' is not a valid slot; ignored", printable(shortened(key, 40))));
       }
     }
-    for (const auto& [number, slot] : slots) take(slot.first, *slot.second);
+    for (const auto& [number, slot] : slots) convert_slot(slot.first, *slot.second);
     return std::move(read_);
   }
 
  private:
-  void take(const std::string& key, const json& slot) {
+  void convert_slot(const std::string& key, const json& slot) {
     const std::string name = name_of(key, slot);
     PresetBuilder builder;
-    std::map<std::string, std::pair<PresetClass, std::vector<double>>> things;
+    std::map<std::string, std::pair<PresetLayout, std::vector<double>>> nodes;
     const auto data = slot.find("data");
     if (data != slot.end() && data->is_object()) {
       for (const auto& [client, value] : data->items()) {
-        const auto place = place_of(client);
+        const auto target = split_client(client);
         std::vector<double> numbers;
-        const auto row = place ? row_from(place->second, value, numbers) : std::nullopt;
-        if (!row || things[place->first].first.find(place->second) >= 0) {
-          read_.problems.push_back(fmt::format("preset '{}': '{}' is left out: no row has such a value", name,
+        const auto property = target ? property_from(target->second, value, numbers) : std::nullopt;
+        if (!property || nodes[target->first].first.find(target->second) >= 0) {
+          read_.problems.push_back(fmt::format("preset '{}': '{}' is ignored: no property has such a value", name,
                                                printable(shortened(client, 100))));
           continue;
         }
-        auto& [rows, values] = things[place->first];
-        rows.add(*row);
+        auto& [layout, values] = nodes[target->first];
+        layout.add(*property);
         values.insert(values.end(), numbers.begin(), numbers.end());
       }
     }
-    for (auto& [path, thing] : things) {
-      const std::uint32_t number = builder.thing(path);
-      if (thing.first.rows.empty()) continue;
-      if (builder.has_rows(number)) {
-        read_.problems.push_back(fmt::format("preset '{}': '{}' is written in two ways", name, printable(path)));
+    for (auto& [path, node] : nodes) {
+      const std::uint32_t node_index = builder.node(path);
+      if (node.first.properties.empty()) continue;
+      if (builder.has_layout(node_index)) {
+        read_.problems.push_back(fmt::format("preset '{}': '{}' is a duplicate", name, printable(path)));
       } else {
-        builder.give(number, std::move(thing.first), thing.second);
+        builder.set_values(node_index, std::move(node.first), node.second);
       }
     }
     read_.presets.push_back(builder.finish(name, {}));
@@ -115,25 +115,26 @@ class Import {
 
   std::string name_of(const std::string& key, const json& slot) {
     std::string name = fmt::format("slot {}", key);
-    const auto said = slot.find("name");
-    if (said != slot.end() && said->is_string() && !name_fault(said->get<std::string>()) && *said != "script")
-      name = said->get<std::string>();
+    const auto name_entry = slot.find("name");
+    if (name_entry != slot.end() && name_entry->is_string() && !name_error(name_entry->get<std::string>()) &&
+        *name_entry != "script")
+      name = name_entry->get<std::string>();
     for (int n = 2; !names_.insert(name).second; n++) name = fmt::format("{} {}", shortened(name, 100), n);
     return name;
   }
 
-  PresetsRead read_;
+  ParsedPresets read_;
   std::set<std::string> names_;
 };
 
 }  // namespace
 
-Result<PresetsRead> import_pattrstorage(std::string_view text) {
-  const auto too_deep = [](int depth, json::parse_event_t, json&) { return depth < kDeepest; };
+Result<ParsedPresets> import_pattrstorage(std::string_view text) {
+  const auto too_deep = [](int depth, json::parse_event_t, json&) { return depth < kMaxDepth; };
   const json file = json::parse(text, too_deep, false);
   if (file.is_discarded() || !file.is_object())
-    return Error{"it is no JSON file; in Max, pattrstorage writes one by the message writejson"};
-  return Import().run(file);
+    return Error{"it is not a JSON file; in Max, pattrstorage writes one by the message writejson"};
+  return PattrstorageImporter().run(file);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Presets of other programs: Max's pattrstorage, as it writes JSON. [any]
+// Import of presets from other programs: JSON files of Max's pattrstorage. [any]
 #pragma once
 
 #include <string_view>
@@ -8,9 +8,10 @@
 
 namespace limber {
 
-/// The slots of a pattrstorage in the order of their numbers, called by their names, else "slot 3". A client
-/// `arms::speed` becomes the row /arms/speed, one without :: a parameter of the scene, /scene/speed; a client whose
-/// name is a whole path keeps it. Values that no row has are left out and said. Errors: it is no such file.
-Result<PresetsRead> import_pattrstorage(std::string_view text);
+/// Converts the slots of a pattrstorage file, in the order of their numbers, to presets with the names of the slots, or
+/// "slot 3" for one without. A client `arms::speed` becomes the property /arms/speed, one without :: a parameter of the
+/// scene, /scene/speed; a client named by a path keeps it. Values of types that no property has are skipped and
+/// reported as problems. Error: the text isn't a pattrstorage file.
+Result<ParsedPresets> import_pattrstorage(std::string_view text);
 
 }  // namespace limber

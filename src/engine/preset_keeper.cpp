@@ -1,4 +1,4 @@
-// The lock is held to take what is wanted, never while it is written.
+// The mutex is locked only to swap the presets out, never while writing.
 #include "engine/preset_keeper.h"
 
 #include <utility>
@@ -10,57 +10,57 @@
 
 namespace limber {
 
-PresetKeeper::~PresetKeeper() {
+PresetSaver::~PresetSaver() {
   {
     const std::scoped_lock lock(mutex_);
-    end_ = true;
+    stopping_ = true;
   }
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
 }
 
-void PresetKeeper::save(std::shared_ptr<const PresetList> presets) {
+void PresetSaver::save(std::shared_ptr<const PresetList> presets) {
   {
     const std::scoped_lock lock(mutex_);
-    wanted_.swap(presets);
+    pending_.swap(presets);
     saved_.store(false);
   }
   changed_.notify_all();
   if (!thread_.joinable() && !system::start_thread(thread_, [this] { run(); }))
-    failed_("the system has no thread left to write it; the next save tries again");
+    on_failure_("could not create a thread to save presets; the next save tries again");
 }
 
-void PresetKeeper::finish() {
-  if (!thread_.joinable()) {  // there was none to start
-    end_ = true;
+void PresetSaver::finish() {
+  if (!thread_.joinable()) {  // no thread could be started
+    stopping_ = true;
     run();
-    end_ = false;
+    stopping_ = false;
     return;
   }
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return wanted_ == nullptr && !writing_; });
+  changed_.wait(lock, [this] { return pending_ == nullptr && !writing_; });
 }
 
-void PresetKeeper::run() {
+void PresetSaver::run() {
   system::name_this_thread("limber-presets");
   std::unique_lock lock(mutex_);
   while (true) {
-    changed_.wait(lock, [this] { return wanted_ != nullptr || end_; });
-    if (wanted_ == nullptr) return;
-    const std::shared_ptr<const PresetList> presets = std::exchange(wanted_, nullptr);
+    changed_.wait(lock, [this] { return pending_ != nullptr || stopping_; });
+    if (pending_ == nullptr) return;
+    const std::shared_ptr<const PresetList> presets = std::exchange(pending_, nullptr);
     writing_ = true;
     lock.unlock();
-    std::string said;
-    const Result<void> saved = file_.save(*presets, said);
-    if (!said.empty()) log_warning("{}", said);
+    std::string notice;
+    const Result<void> saved = file_.save(*presets, notice);
+    if (!notice.empty()) log_warning("{}", notice);
     if (!saved) {
-      note_failed_write();
+      count_failed_write();
       log_error("{}: {}", printable(file_.path()), saved.error());
-      failed_(saved.error());
+      on_failure_(saved.error());
     }
     lock.lock();
     writing_ = false;
-    if (saved.ok() && wanted_ == nullptr) saved_.store(true);
+    if (saved.ok() && pending_ == nullptr) saved_.store(true);
     changed_.notify_all();
   }
 }

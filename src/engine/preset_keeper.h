@@ -1,5 +1,5 @@
-// PresetKeeper: writes presets to their file on a thread of its own, so that a tick never waits for a disk. Of several
-// saves in a burst the last one is written.
+// PresetSaver: saves presets on its own thread, so that a tick never waits for the disk. Of several saves in a burst
+// only the last one is written.
 #pragma once
 
 #include <atomic>
@@ -15,38 +15,38 @@
 
 namespace limber {
 
-class PresetKeeper {
+class PresetSaver {
  public:
-  /// `failed` is told why a save failed. [the keeper's thread]
-  PresetKeeper(PresetFile file, std::function<void(const std::string&)> failed)
-      : file_(std::move(file)), failed_(std::move(failed)) {}
-  /// What was to be saved is saved before it goes.
-  ~PresetKeeper();
-  PresetKeeper(const PresetKeeper&) = delete;
-  PresetKeeper& operator=(const PresetKeeper&) = delete;
+  /// `on_failure` is called with the reason when a save fails. [the saver's thread]
+  PresetSaver(PresetFile file, std::function<void(const std::string&)> on_failure)
+      : file_(std::move(file)), on_failure_(std::move(on_failure)) {}
+  /// Completes the pending save.
+  ~PresetSaver();
+  PresetSaver(const PresetSaver&) = delete;
+  PresetSaver& operator=(const PresetSaver&) = delete;
 
-  /// Before anything is saved.
-  Result<PresetsRead> load() { return file_.load(); }
+  /// Reads the file. Call before the first save().
+  Result<ParsedPresets> load() { return file_.load(); }
   const std::string& path() const { return file_.path(); }
-  /// Soon it is on the disk. Waits for nothing. [sim]
+  /// Requests a save and returns at once. [sim]
   void save(std::shared_ptr<const PresetList> presets);
-  /// Whether what save() was given last is on the disk. [any]
+  /// True if the latest presets passed to save() are on the disk. [any]
   bool saved() const { return saved_.load(); }
-  /// Returns when all that was to be saved is, or has failed. [any but sim]
+  /// Waits until the pending save has succeeded or failed. [any but sim]
   void finish();
 
  private:
   void run();
 
-  PresetFile file_;  // of the thread, once it runs
-  std::function<void(const std::string&)> failed_;
+  PresetFile file_;  // used only by the thread, once it runs
+  std::function<void(const std::string&)> on_failure_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::shared_ptr<const PresetList> wanted_;
+  std::shared_ptr<const PresetList> pending_;
   bool writing_ = false;
   std::atomic<bool> saved_{true};
-  bool end_ = false;
-  std::thread thread_;  // from the first save on
+  bool stopping_ = false;
+  std::thread thread_;  // started by the first save
 };
 
 }  // namespace limber

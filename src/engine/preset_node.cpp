@@ -1,21 +1,22 @@
-// The rows of /preset.
+// The properties and actions of /preset.
 #include "engine/preset_node.h"
 
 namespace limber {
 
-const Table& PresetNode::table() {
-  using namespace rows;
-  static const Table table(
+const PropertyTable& PresetNode::table() {
+  using namespace properties;
+  static const PropertyTable table(
       "preset", "/preset", "",
       {
-          say<&PresetNode::say_names>(text("names", "Names of the presets, a line each, in their order.")),
-          live(readout(integer("count", 0, 0, kUnbounded, "How many presets there are."))),
-          live(readout(number("progress", "", 1, 0, 1, "How far the morph is that has most to go; 1: none runs."))),
-          live(readout(boolean("saved", true, "All that was stored is on the disk."))),
-          act<&PresetNode::act_recall>(action(
+          text_from<&PresetNode::read_names>(text("names", "Names of the presets, one per line, in order.")),
+          transient(readout(integer("count", 0, 0, kUnbounded, "Number of presets."))),
+          transient(readout(
+              number("progress", "", 1, 0, 1, "Progress of the running morph that is least advanced; 1: none runs."))),
+          transient(readout(boolean("saved", true, "True if all stored presets are on the disk."))),
+          invokes<&PresetNode::act_recall>(action(
               "recall", 1, 2,
-              "The preset of that number (or of a name), at once or over seconds; 2.5: between the second and third.")),
-          act<&PresetNode::act_stop>(action("stop", 0, 0, "Running morphs stay where they are.")),
+              "Recalls a preset by number (or name), at once or over seconds; 2.5 blends the second and third.")),
+          invokes<&PresetNode::act_stop>(action("stop", 0, 0, "Stops running morphs at their current values.")),
       });
   return table;
 }
@@ -23,11 +24,11 @@ const Table& PresetNode::table() {
 PresetNode::PresetNode(World& world, Presets& presets)
     : world_(world), presets_(presets), id_(world.store().add(table(), world.store().root(), "preset", this)) {}
 
-void PresetNode::tell() {
+void PresetNode::publish() {
   Store& store = world_.store();
-  store.tell(id_, table().at("count"))[0] = static_cast<double>(presets_.list().size());
-  store.tell(id_, table().at("progress"))[0] = presets_.part(world_);
-  store.tell(id_, table().at("saved"))[0] = presets_.saved() ? 1 : 0;
+  store.mutable_values(id_, table().at("count"))[0] = static_cast<double>(presets_.list().size());
+  store.mutable_values(id_, table().at("progress"))[0] = presets_.progress(world_);
+  store.mutable_values(id_, table().at("saved"))[0] = presets_.saved() ? 1 : 0;
 }
 
 Result<void> PresetNode::act_recall(std::span<const double> args) {

@@ -1,4 +1,4 @@
-// PresetNode: what the tree tells of presets, at /preset. [sim]
+// PresetNode: publishes the presets in the property tree, at /preset. [sim]
 #pragma once
 
 #include <span>
@@ -10,14 +10,14 @@ namespace limber {
 
 class PresetNode {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   PresetNode(World& world, Presets& presets);
-  /// Tells `count` and `progress`.
-  void tell();
+  /// Publishes `count`, `progress` and `saved`.
+  void publish();
 
  private:
-  std::string_view say_names() const { return presets_.names(); }
+  std::string_view read_names() const { return presets_.names(); }
   Result<void> act_recall(std::span<const double> args);
   Result<void> act_stop(std::span<const double> args);
 

@@ -1,6 +1,6 @@
-// PresetPlan: which numbers of the store are a preset, and where they stand in it. That of every property is found by a
-// walk over the store, a little at a time where that is wanted; that of a choice is found in it, without another look
-// at the things. [sim]
+// PresetPlan: the list of value ranges to copy from the store into a preset. The plan for all properties is built by a
+// traversal of the store, optionally in slices; the plan for a selection is derived from it without another traversal.
+// [sim]
 #pragma once
 
 #include <cstdint>
@@ -17,74 +17,77 @@
 namespace limber {
 
 struct PresetPlan {
-  struct Piece {  // numbers that stand side by side in the store and in the preset
-    std::uint32_t from = 0;
+  struct CopyRange {  // a range of values that is contiguous in the store and in the preset
+    std::uint32_t source = 0;
     std::uint32_t count = 0;
-    bool live = false;
-    std::uint32_t at = 0;  // in the preset
+    bool transient = false;
+    std::uint32_t destination = 0;  // offset in the preset
   };
-  PresetChoice choice;
-  std::shared_ptr<const PresetShape> shape;
-  std::vector<Piece> pieces;
+  PresetSelection selection;
+  std::shared_ptr<const PresetSchema> schema;
+  std::vector<CopyRange> ranges;
 
-  /// What `choice` names of a plan of every property, which holds: nothing has come or gone since. Errors: a pattern
-  /// that is none, is too much work, or reaches no property.
-  static Result<PresetPlan> of_choice(const Store& store, const PresetPlan& every, const PresetChoice& choice);
+  /// Returns the plan for a selection. `everything`: plan for all properties, which must be up to date with the
+  /// structure of the store. Error: a pattern is invalid, costs too much work or matches no property.
+  static Result<PresetPlan> for_selection(const Store& store, const PresetPlan& everything,
+                                          const PresetSelection& selection);
 
  private:
-  friend class PresetPlanning;
-  // some rows of a class, as a thing that has them gives them
-  struct Cut {
-    const Table* table = nullptr;
-    std::uint64_t rows = 0;
-    std::uint32_t number = 0;   // of the shape's class
-    std::vector<Piece> pieces;  // from where the thing's own numbers begin
+  friend class PresetPlanner;
+  // a subset of the properties of a node type, and the ranges of values that a node of it contributes
+  struct NodePlan {
+    const PropertyTable* table = nullptr;
+    std::uint64_t properties = 0;
+    std::uint32_t layout = 0;       // index of the layout in the schema
+    std::vector<CopyRange> ranges;  // relative to the first value of the node
   };
-  class Things;
-  class Choosing;
+  class NodeView;
+  class Selector;
 
-  const Cut& cut_of(PresetShape& shape, const Table& table, std::uint64_t rows);
-  void take(const Cut& cut, const NodeSlot& slot, std::uint32_t at);
-  void append(const Piece& piece) { append(piece, pieces); }
-  static void append(const Piece& piece, std::vector<Piece>& pieces);
+  const NodePlan& node_plan(PresetSchema& schema, const PropertyTable& table, std::uint64_t properties);
+  void append_node(const NodePlan& node_plan, const NodeSlot& slot, std::uint32_t at);
+  void append(const CopyRange& range) { append(range, ranges); }
+  static void append(const CopyRange& range, std::vector<CopyRange>& ranges);
 
-  std::uint64_t structure_ = 0;                                 // the store's
-  std::vector<NodeId> nodes_;                                   // of the shape's things
-  std::map<std::pair<const Table*, std::uint64_t>, Cut> cuts_;  // the shape's classes
-  const Cut* last_cut_ = nullptr;                               // neighbours are alike
+  std::uint64_t structure_version_ = 0;  // structure version of the store
+  std::vector<NodeId> node_ids_;         // nodes of the store, for each node of the schema
+  std::map<std::pair<const PropertyTable*, std::uint64_t>, NodePlan> node_plans_;  // one for each layout of the schema
+  const NodePlan* last_node_plan_ = nullptr;  // consecutive nodes are usually alike
 };
 
-/// The walk to a plan of every property.
-class PresetPlanning {
+/// Builds the plan for all properties by a traversal of the store, which can be spread over several ticks.
+class PresetPlanner {
  public:
-  /// `before`: such a plan from when less had come or gone, or null; it stays until this is finished.
-  PresetPlanning(const Store& store, const PresetPlan* before);
-  /// Looks at so many things; true: at all of them.
-  bool go(std::size_t count);
+  /// `previous`: an older plan for all properties, or null. Unchanged subtrees are copied from it. It must outlive
+  /// this.
+  PresetPlanner(const Store& store, const PresetPlan* previous);
+  /// Visits up to `count` nodes; true once all nodes were visited.
+  bool advance(std::size_t count);
   PresetPlan finish();
-  static PresetPlan make(const Store& store, const PresetPlan* before);
+  static PresetPlan make(const Store& store, const PresetPlan* previous);
 
  private:
-  // what a class may give
-  struct Kind {
-    std::uint64_t rows = 0;
-    std::vector<const Row*> picky;  // of these some things take none: the mass of a part that never moves
+  // the stored properties of a node type
+  struct NodeType {
+    std::uint64_t properties = 0;
+    // properties that are read-only on some nodes, such as the mass of a static part
+    std::vector<const Property*> conditional;
   };
-  const Kind& kind_of(const Table& table);
+  const NodeType& node_type(const PropertyTable& table);
   void add(NodeId id);
-  void keep(NodeId id);
-  void keep_pieces(std::uint32_t from, std::uint32_t to, std::uint32_t count);
-  std::uint32_t thing(NodeId id);
+  void copy_unchanged(NodeId id);
+  void copy_ranges(std::uint32_t from, std::uint32_t to, std::uint32_t count);
+  std::uint32_t node_index(NodeId id);
 
   const Store& store_;
-  const PresetPlan* before_;
-  std::vector<std::uint32_t> before_things_;  // by slot
+  const PresetPlan* previous_;
+  std::vector<std::uint32_t> previous_indices_;  // by slot
   PresetPlan plan_;
-  std::shared_ptr<PresetShape> shape_ = std::make_shared<PresetShape>();
-  std::unordered_map<const Table*, Kind> kinds_;
-  std::pair<const Table*, const Kind*> last_kind_{};  // neighbours are alike
-  std::vector<std::uint32_t> things_;                 // by slot
-  std::vector<NodeId> way_;                           // to be looked at, the next one last
+  std::shared_ptr<PresetSchema> schema_ = std::make_shared<PresetSchema>();
+  std::unordered_map<const PropertyTable*, NodeType> node_types_;
+  std::pair<const PropertyTable*, const NodeType*> last_node_type_{};  // consecutive nodes are usually alike
+  std::vector<std::uint32_t> node_indices_;                            // by slot
+  std::vector<NodeId> stack_;                                          // stack of nodes to be visited
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Plans are kept; along one for a preset.
+// Caching of plans, and copying of values.
 #include "engine/preset_taker.h"
 
 #include <algorithm>
@@ -15,136 +15,137 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostPlans = 8;
-// What comes takes far more of its tick than a look at it: where this part of all came or went, all is looked at.
-constexpr std::uint64_t kMuch = 8;
+constexpr std::size_t kMaxPlans = 8;
+// If at least this fraction (1/8) of the nodes was added or removed, plan at once: the change itself took far longer.
+constexpr std::uint64_t kLargeChange = 8;
 
-// many megabytes that are touched for the first time would be a fault in every page; without large pages it works too
-void ask_for_large_pages(const std::vector<double>& room) {
-  constexpr std::size_t kLarge = std::size_t{4} << 20u;
-  const std::size_t bytes = room.capacity() * sizeof(double);
-  if (bytes < kLarge) return;
+// Requests large pages, to reduce page faults when a large buffer is first written. A failure is harmless.
+void request_large_pages(const std::vector<double>& buffer) {
+  constexpr std::size_t kMinBytes = std::size_t{4} << 20u;
+  const std::size_t bytes = buffer.capacity() * sizeof(double);
+  if (bytes < kMinBytes) return;
   const std::size_t page = system::page_size();
-  auto* const first = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(room.data()));
-  system::prefer_large_pages(next_page(first, page), bytes - page);
+  auto* const first = const_cast<std::byte*>(reinterpret_cast<const std::byte*>(buffer.data()));
+  system::prefer_large_pages(align_up(first, page), bytes - page);
 }
 
 }  // namespace
 
-PresetTaker::PresetTaker() = default;
-PresetTaker::~PresetTaker() = default;
+PresetCapturer::PresetCapturer() = default;
+PresetCapturer::~PresetCapturer() = default;
 
-void PresetTaker::forget_store() {
-  every_.reset();
-  choices_.clear();
-  before_.reset();
-  ahead_.reset();
-  quiet_ = 0;
+void PresetCapturer::forget_store() {
+  everything_.reset();
+  selections_.clear();
+  previous_.reset();
+  planner_.reset();
+  settled_calls_ = 0;
 }
 
-// plans hold as long as nothing comes or goes
-void PresetTaker::follow(const Store& store) {
-  if (structure_ == store.structure_version()) return;
-  structure_ = store.structure_version();
-  ahead_.reset();
-  quiet_ = 0;
-  if (every_) before_ = std::move(every_);
-  every_.reset();
-  choices_.clear();
+// Discards outdated plans after a structural change; keeps the one for all properties as a base for the next.
+void PresetCapturer::discard_outdated(const Store& store) {
+  if (structure_version_ == store.structure_version()) return;
+  structure_version_ = store.structure_version();
+  planner_.reset();
+  settled_calls_ = 0;
+  if (everything_) previous_ = std::move(everything_);
+  everything_.reset();
+  selections_.clear();
 }
 
-// What is touched for the first time is a fault in every page, which take longer than the copy: beside the show.
-void PresetTaker::make_room(const Store& store) {
-  const std::size_t numbers = store.kept().size();
-  if (numbers < kRoomWorth) return;
-  if (making_room_.valid()) {
-    if (making_room_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-    room_ = making_room_.get();
+// Allocates and touches a buffer on another thread: the page faults of new memory take longer than copying the values.
+void PresetCapturer::allocate_buffer(const Store& store) {
+  const std::size_t numbers = store.persistent_values().size();
+  if (numbers < kMinBufferValues) return;
+  if (next_buffer_.valid()) {
+    if (next_buffer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+    buffer_ = next_buffer_.get();
   }
-  if (room_.size() >= numbers) return;
+  if (buffer_.size() >= numbers) return;
   try {
-    making_room_ = std::async(std::launch::async, [count = numbers + numbers / 8] {
-      system::name_this_thread("limber-room");
-      std::vector<double> room;
-      room.reserve(count);
-      ask_for_large_pages(room);
-      room.resize(count);
-      return room;
+    next_buffer_ = std::async(std::launch::async, [count = numbers + numbers / 8] {
+      system::name_this_thread("limber-buffer");
+      std::vector<double> buffer;
+      buffer.reserve(count);
+      request_large_pages(buffer);
+      buffer.resize(count);
+      return buffer;
     });
   } catch (const std::system_error&) {
-    // no thread is to be had: the copy will take longer
+    // no thread available: the next capture takes longer
   }
 }
 
-void PresetTaker::prepare(const Store& store) {
-  const std::uint64_t changes = store.structure_version() - structure_;
-  follow(store);
-  make_room(store);
-  if (changes * kMuch >= store.view()->slot_count) return make_ready(store);
-  if (quiet_ <= kQuiet) quiet_++;
-  if (quiet_ <= kQuiet || every_) return;
-  plan_ahead(store, kSlice);
+void PresetCapturer::prepare(const Store& store) {
+  const std::uint64_t changes = store.structure_version() - structure_version_;
+  discard_outdated(store);
+  allocate_buffer(store);
+  if (changes * kLargeChange >= store.view()->slot_count) return finish_planning(store);
+  if (settled_calls_ <= kSettleCalls) settled_calls_++;
+  if (settled_calls_ <= kSettleCalls || everything_) return;
+  advance_plan(store, kNodesPerCall);
 }
 
-void PresetTaker::plan_ahead(const Store& store, std::size_t things) {
-  if (ahead_ == nullptr) ahead_ = std::make_unique<PresetPlanning>(store, before_ ? &*before_ : nullptr);
-  if (!ahead_->go(things)) return;
-  every_ = ahead_->finish();
-  ahead_.reset();
+void PresetCapturer::advance_plan(const Store& store, std::size_t nodes) {
+  if (planner_ == nullptr) planner_ = std::make_unique<PresetPlanner>(store, previous_ ? &*previous_ : nullptr);
+  if (!planner_->advance(nodes)) return;
+  everything_ = planner_->finish();
+  planner_.reset();
 }
 
-const PresetPlan& PresetTaker::every(const Store& store) {
-  follow(store);
-  if (!every_) plan_ahead(store, SIZE_MAX);
-  return *every_;
+const PresetPlan& PresetCapturer::plan_everything(const Store& store) {
+  discard_outdated(store);
+  if (!everything_) advance_plan(store, SIZE_MAX);
+  return *everything_;
 }
 
-// it stays until the next is asked for
-Result<const PresetPlan*> PresetTaker::plan_for(const Store& store, const PresetChoice& choice) {
-  const PresetPlan& all = every(store);
-  if (choice == PresetChoice{}) return &all;
-  const auto known = std::ranges::find(choices_, choice, &PresetPlan::choice);
-  if (known != choices_.end()) return &*known;
-  Result<PresetPlan> made = PresetPlan::of_choice(store, all, choice);
-  if (!made) return Error{made.error()};
-  if (choices_.size() >= kMostPlans) choices_.erase(choices_.begin());
-  return &choices_.emplace_back(std::move(*made));
-}
-
-Result<std::shared_ptr<const Preset>> PresetTaker::take(const Store& store, std::string name,
-                                                        const PresetChoice& choice) {
-  const Result<const PresetPlan*> plan = plan_for(store, choice);
+// Returns the plan for a selection; valid until the next call.
+Result<const PresetPlan*> PresetCapturer::plan_for(const Store& store, const PresetSelection& selection) {
+  const PresetPlan& all = plan_everything(store);
+  if (selection == PresetSelection{}) return &all;
+  const auto cached = std::ranges::find(selections_, selection, &PresetPlan::selection);
+  if (cached != selections_.end()) return &*cached;
+  Result<PresetPlan> plan = PresetPlan::for_selection(store, all, selection);
   if (!plan) return Error{plan.error()};
-  // what is much smaller is not worth all of the room
-  std::vector<double> room;
-  if ((*plan)->shape->width() > room_.size() / 2) room.swap(room_);
-  return copy(store, **plan, std::move(name), std::move(room));
+  if (selections_.size() >= kMaxPlans) selections_.erase(selections_.begin());
+  return &selections_.emplace_back(std::move(*plan));
 }
 
-std::shared_ptr<const Preset> PresetTaker::copy(const Store& store, const PresetPlan& plan, std::string name,
-                                                std::vector<double> room) {
-  room.clear();
-  auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.choice, plan.shape, std::move(room)});
-  preset->values.reserve(plan.shape->width());
-  ask_for_large_pages(preset->values);
-  for (const PresetPlan::Piece& piece : plan.pieces) {
-    const double* const from = (piece.live ? store.live() : store.kept()).data() + piece.from;
-    preset->values.insert(preset->values.end(), from, from + piece.count);
+Result<std::shared_ptr<const Preset>> PresetCapturer::capture(const Store& store, std::string name,
+                                                              const PresetSelection& selection) {
+  const Result<const PresetPlan*> plan = plan_for(store, selection);
+  if (!plan) return Error{plan.error()};
+  // a much smaller preset must not waste the buffer
+  std::vector<double> buffer;
+  if ((*plan)->schema->value_count() > buffer_.size() / 2) buffer.swap(buffer_);
+  return copy(store, **plan, std::move(name), std::move(buffer));
+}
+
+std::shared_ptr<const Preset> PresetCapturer::copy(const Store& store, const PresetPlan& plan, std::string name,
+                                                   std::vector<double> buffer) {
+  buffer.clear();
+  auto preset = std::make_shared<Preset>(Preset{std::move(name), plan.selection, plan.schema, std::move(buffer)});
+  preset->values.reserve(plan.schema->value_count());
+  request_large_pages(preset->values);
+  for (const PresetPlan::CopyRange& range : plan.ranges) {
+    const double* const from =
+        (range.transient ? store.transient_values() : store.persistent_values()).data() + range.source;
+    preset->values.insert(preset->values.end(), from, from + range.count);
   }
   return preset;
 }
 
-std::shared_ptr<const Preset> PresetTaker::take_script(const Store& store) {
-  auto preset = std::make_shared<Preset>(*copy(store, PresetPlanning::make(store, nullptr), "script", {}));
-  const Result<Place> scene = find_place(store, "/scene", false);
-  if (!scene || scene->row != nullptr) return preset;
-  const Table& table = store.table(scene->node);
-  for (const PresetShape::Thing& thing : preset->shape->things()) {
-    const PresetClass* const rows = preset->shape->rows(thing);
-    if (rows == nullptr || thing.parent != 0 || preset->shape->name(thing) != "scene") continue;
-    for (std::size_t i = 0; i < rows->rows.size(); i++) {
-      const Row& row = table.at(rows->rows[i].name);
-      std::copy_n(row.initial.begin(), row.width, preset->values.begin() + thing.at + rows->offsets[i]);
+std::shared_ptr<const Preset> PresetCapturer::capture_script(const Store& store) {
+  auto preset = std::make_shared<Preset>(*copy(store, PresetPlanner::make(store, nullptr), "script", {}));
+  const Result<PropertyRef> scene = find_property(store, "/scene", false);
+  if (!scene || scene->property != nullptr) return preset;
+  const PropertyTable& table = store.table(scene->node);
+  for (const PresetSchema::Node& node : preset->schema->nodes()) {
+    const PresetLayout* const layout = preset->schema->layout(node);
+    if (layout == nullptr || node.parent != 0 || preset->schema->name(node) != "scene") continue;
+    for (std::size_t i = 0; i < layout->properties.size(); i++) {
+      const Property& property = table.at(layout->properties[i].name);
+      std::copy_n(property.initial.begin(), property.width, preset->values.begin() + node.offset + layout->offsets[i]);
     }
   }
   return preset;

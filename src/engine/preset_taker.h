@@ -1,6 +1,5 @@
-// PresetTaker: copies chosen values of the live world into a preset. Which numbers these are is found out once for as
-// long as nothing comes or goes; after that a preset is a few copies of memory. What came or went is found out without
-// a look at the rest. [sim]
+// PresetCapturer: captures presets from the live world. The list of values to copy (PresetPlan) is cached until nodes
+// are added or removed, so that a capture is a few memory copies. Updating the list visits only changed nodes. [sim]
 #pragma once
 
 #include <cstdint>
@@ -17,55 +16,57 @@
 
 namespace limber {
 
-class PresetTaker {
+class PresetCapturer {
  public:
-  /// Things that prepare() looks at, at a time.
-  static constexpr std::size_t kSlice = 500;
-  /// For so many calls of prepare() nothing has come or gone before it begins; but much that came is looked at at once.
-  static constexpr int kQuiet = 30;
+  /// Number of nodes that prepare() visits per call.
+  static constexpr std::size_t kNodesPerCall = 500;
+  /// Number of calls of prepare() without structural changes before it starts planning. After large changes it plans at
+  /// once.
+  static constexpr int kSettleCalls = 30;
 
-  /// Numbers: for fewer no room is made ahead.
-  static constexpr std::size_t kRoomWorth = std::size_t{1} << 15u;
+  /// Smallest number of values for which a buffer is allocated ahead.
+  static constexpr std::size_t kMinBufferValues = std::size_t{1} << 15u;
 
-  PresetTaker();
-  ~PresetTaker();
-  PresetTaker(const PresetTaker&) = delete;
-  PresetTaker& operator=(const PresetTaker&) = delete;
+  PresetCapturer();
+  ~PresetCapturer();
+  PresetCapturer(const PresetCapturer&) = delete;
+  PresetCapturer& operator=(const PresetCapturer&) = delete;
 
-  /// A little of the way to a preset of every property, so that the first one in a large world costs no more than the
-  /// next: once a tick.
+  /// Does a slice of the planning for a preset of all properties, so that the first capture in a large world costs no
+  /// more than later ones. Call once per tick.
   void prepare(const Store& store);
-  /// All of the way, where there is time.
-  void make_ready(const Store& store) { (void)every(store); }
-  /// Whether that is done.
-  bool ready(const Store& store) const { return structure_ == store.structure_version() && every_; }
-  /// What `choice` names, as it is now. Errors: a pattern that is none, is too much work, or reaches no property.
-  Result<std::shared_ptr<const Preset>> take(const Store& store, std::string name, const PresetChoice& choice);
-  /// From now on it is another store.
+  /// Completes the planning at once; for use when no tick waits.
+  void finish_planning(const Store& store) { (void)plan_everything(store); }
+  /// True if the planning is complete.
+  bool ready(const Store& store) const { return structure_version_ == store.structure_version() && everything_; }
+  /// Captures the selected values. Error: a pattern is invalid, costs too much work or matches no property.
+  Result<std::shared_ptr<const Preset>> capture(const Store& store, std::string name, const PresetSelection& selection);
+  /// Discards the plans, because another store will be passed.
   void forget_store();
 
-  /// Every property as a scene's run has left it; of the scene's own parameters their defaults.
-  static std::shared_ptr<const Preset> take_script(const Store& store);
+  /// Captures all properties after a run of the scene as the preset "script". The scene's parameters get their
+  /// defaults.
+  static std::shared_ptr<const Preset> capture_script(const Store& store);
 
  private:
-  /// `room`: its memory holds the numbers, if there is enough.
+  /// Copies the values. `buffer`: memory to reuse if it is large enough.
   static std::shared_ptr<const Preset> copy(const Store& store, const PresetPlan& plan, std::string name,
-                                            std::vector<double> room);
+                                            std::vector<double> buffer);
 
-  void make_room(const Store& store);
-  void follow(const Store& store);
-  void plan_ahead(const Store& store, std::size_t things);
-  const PresetPlan& every(const Store& store);
-  Result<const PresetPlan*> plan_for(const Store& store, const PresetChoice& choice);
+  void allocate_buffer(const Store& store);
+  void discard_outdated(const Store& store);
+  void advance_plan(const Store& store, std::size_t nodes);
+  const PresetPlan& plan_everything(const Store& store);
+  Result<const PresetPlan*> plan_for(const Store& store, const PresetSelection& selection);
 
-  std::optional<PresetPlan> every_;        // of every property
-  std::vector<PresetPlan> choices_;        // made of that
-  std::optional<PresetPlan> before_;       // of every property, before something came or went
-  std::unique_ptr<PresetPlanning> ahead_;  // of every property, on its way
-  std::uint64_t structure_ = 0;            // the plans'
-  int quiet_ = 0;
-  std::vector<double> room_;  // for the numbers of the next one
-  std::future<std::vector<double>> making_room_;
+  std::optional<PresetPlan> everything_;    // for all properties
+  std::vector<PresetPlan> selections_;      // for recent selections
+  std::optional<PresetPlan> previous_;      // the previous plan for all properties, from before a structural change
+  std::unique_ptr<PresetPlanner> planner_;  // builds the next plan for all properties
+  std::uint64_t structure_version_ = 0;     // structure version of the plans
+  int settled_calls_ = 0;
+  std::vector<double> buffer_;  // buffer for the next preset
+  std::future<std::vector<double>> next_buffer_;
 };
 
 }  // namespace limber

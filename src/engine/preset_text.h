@@ -1,4 +1,4 @@
-// The text of a file of presets: JSON that a person can read, and two versions of it compared line by line. [any]
+// Text format of preset files: JSON that is readable and suited to line-by-line diffs. [any]
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace limber {
 
-inline constexpr const char* kPresetHead = "limber presets";  ///< The key that holds the version.
+inline constexpr const char* kPresetVersionKey = "limber presets";  ///< The key that holds the version.
 inline constexpr int kPresetVersion = 1;
 
-/// What a text of presets holds.
-struct PresetsRead {
-  PresetList presets;                 ///< In the text's order, no two of a name.
-  std::vector<std::string> problems;  ///< What could not be taken as it stands; the rest is good.
+/// Result of parsing a preset file.
+struct ParsedPresets {
+  PresetList presets;                 ///< In the order of the file; names are unique.
+  std::vector<std::string> problems;  ///< Descriptions of parts that were skipped or changed.
 };
 
-/// Errors: it is no such text, ends in the middle, or is of a newer version. An empty text has no presets.
-Result<PresetsRead> presets_of(std::string_view text);
+/// Parses presets. An empty text has no presets. Error: another format, a truncated text or a newer version.
+Result<ParsedPresets> parse_presets(std::string_view text);
 
-/// Reads back as the same to the bit. The names of things stand as their paths, a value a line.
+/// Formats presets, one value per line. Parsing the text returns bit-identical values.
 std::string text_of(const PresetList& presets);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Arguments to wishes.
+// Parsing of arguments.
 #include "engine/preset_words.h"
 
 #include <algorithm>
@@ -13,17 +13,19 @@ namespace limber {
 
 namespace {
 
-std::optional<double> number_in(const Arg& arg) {
+std::optional<double> number_of(const Arg& arg) {
   if (arg.is_text()) return parse_number(arg.text);
   if (arg.kind == Arg::Kind::nil || !std::isfinite(arg.number)) return {};
   return arg.number;
 }
 
-bool is_which(const Arg& arg) { return arg.is_text() || (arg.kind == Arg::Kind::number && std::isfinite(arg.number)); }
+bool is_preset_reference(const Arg& arg) {
+  return arg.is_text() || (arg.kind == Arg::Kind::number && std::isfinite(arg.number));
+}
 
-// one word after the name; false: there is no such word
-bool take_word(std::string_view word, bool& excepting, PresetChoice& choice) {
-  std::vector<std::string>& patterns = excepting ? choice.except : choice.rows;
+// Parses one word after the name. False if the word is unknown.
+bool parse_word(std::string_view word, bool& after_except, PresetSelection& selection) {
+  std::vector<std::string>& patterns = after_except ? selection.except : selection.include;
   if (word.starts_with('/')) {
     patterns.emplace_back(word);
   } else if (same_name(word, "behaviors")) {
@@ -31,11 +33,11 @@ bool take_word(std::string_view word, bool& excepting, PresetChoice& choice) {
   } else if (same_name(word, "looks")) {
     patterns.emplace_back("/visuals//*");
   } else if (same_name(word, "poses")) {
-    choice.poses = true;
+    selection.poses = true;
   } else if (same_name(word, "velocities")) {
-    choice.velocities = true;
+    selection.velocities = true;
   } else if (same_name(word, "except")) {
-    excepting = true;
+    after_except = true;
   } else {
     return same_name(word, "all");
   }
@@ -44,58 +46,59 @@ bool take_word(std::string_view word, bool& excepting, PresetChoice& choice) {
 
 }  // namespace
 
-Result<StoreWish> store_wish(const Message& message) {
+Result<StoreCommand> parse_store(const Message& message) {
   const std::vector<Arg>& args = message.args;
-  if (args.empty() || !is_which(args[0])) return Error{"takes a name, and what is kept if that is not all"};
-  StoreWish wish;
+  if (args.empty() || !is_preset_reference(args[0]))
+    return Error{"expected a name, and optionally the properties to store"};
+  StoreCommand command;
   if (args[0].is_text()) {
-    wish.name = args[0].text;
-    if (const auto fault = name_fault(wish.name)) return Error{fmt::format("this is no name: {}", *fault)};
-    if (wish.name == "script") return Error{"'script' is what the scene describes; take another name"};
+    command.name = args[0].text;
+    if (const auto fault = name_error(command.name)) return Error{fmt::format("invalid name: {}", *fault)};
+    if (command.name == "script") return Error{"'script' is reserved for the values of the scene; use another name"};
   } else {
-    wish.number = args[0].number;
+    command.number = args[0].number;
   }
-  bool excepting = false;
+  bool after_except = false;
   for (std::size_t i = 1; i < args.size(); i++) {
-    if (!wish.choice) wish.choice.emplace();
-    if (args[i].is_text() && take_word(args[i].text, excepting, *wish.choice)) continue;
+    if (!command.selection) command.selection.emplace();
+    if (args[i].is_text() && parse_word(args[i].text, after_except, *command.selection)) continue;
     return Error{
-        fmt::format("'{}' is none of the words behind the name: patterns of paths, behaviors, looks, all, poses, "
+        fmt::format("unknown word '{}'; expected path patterns, behaviors, looks, all, poses, "
                     "velocities, except",
                     args[i].is_text() ? printable(shortened(args[i].text, 100)) : number_text(args[i].number))};
   }
-  return wish;
+  return command;
 }
 
-Result<RecallWish> recall_wish(const Message& message) {
+Result<RecallCommand> parse_recall(const Message& message) {
   const std::vector<Arg>& args = message.args;
-  if (args.empty() || args.size() > 3 || !is_which(args[0]))
-    return Error{"takes a name or a number, seconds if it is to take some, and how: " + std::string(easing_names())};
-  RecallWish wish{args[0], 0, Easing::smooth};
+  if (args.empty() || args.size() > 3 || !is_preset_reference(args[0]))
+    return Error{"expected a name or a number, optionally seconds and an easing: " + std::string(easing_names())};
+  RecallCommand command{args[0], 0, Easing::smooth};
   if (args.size() > 1) {
-    const std::optional<double> seconds = number_in(args[1]);
-    if (!seconds || *seconds < 0 || *seconds > Presets::kLongest)
-      return Error{fmt::format("takes 0 to {} seconds behind the name", Presets::kLongest)};
-    wish.seconds = *seconds;
+    const std::optional<double> seconds = number_of(args[1]);
+    if (!seconds || *seconds < 0 || *seconds > Presets::kMaxMorphSeconds)
+      return Error{fmt::format("the duration must be 0 to {} s", Presets::kMaxMorphSeconds)};
+    command.seconds = *seconds;
   }
   if (args.size() > 2) {
     const std::optional<Easing> easing = args[2].is_text() ? easing_of(args[2].text) : std::nullopt;
     if (!easing) {
-      return Error{fmt::format("'{}' is no easing; there are: {}",
+      return Error{fmt::format("unknown easing '{}'; expected one of: {}",
                                args[2].is_text() ? printable(shortened(args[2].text, 40)) : number_text(args[2].number),
                                easing_names())};
     }
-    wish.easing = *easing;
+    command.easing = *easing;
   }
-  return wish;
+  return command;
 }
 
-Result<MorphWish> morph_wish(const Message& message) {
+Result<MorphCommand> parse_morph(const Message& message) {
   const std::vector<Arg>& args = message.args;
-  const std::optional<double> amount = args.size() == 3 ? number_in(args[2]) : std::nullopt;
-  if (!amount || !is_which(args[0]) || !is_which(args[1]))
-    return Error{"takes two presets and how far from the first to the second, 0 to 1"};
-  return MorphWish{args[0], args[1], std::clamp(*amount, 0.0, 1.0)};
+  const std::optional<double> amount = args.size() == 3 ? number_of(args[2]) : std::nullopt;
+  if (!amount || !is_preset_reference(args[0]) || !is_preset_reference(args[1]))
+    return Error{"expected two presets and an amount from 0 to 1"};
+  return MorphCommand{args[0], args[1], std::clamp(*amount, 0.0, 1.0)};
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What messages of presets say, read without looking at any preset. [any]
+// Parsing of preset messages into commands, without access to the presets. [any]
 #pragma once
 
 #include <optional>
@@ -11,27 +11,28 @@
 
 namespace limber {
 
-/// name [word …]: patterns of paths, behaviors, looks, all, poses, velocities, except and the patterns behind it.
-struct StoreWish {
+/// Arguments: name [word …]. Words: path patterns, behaviors, looks, all, poses, velocities; patterns after `except`
+/// are excluded from recalls.
+struct StoreCommand {
   std::string name;
-  std::optional<double> number;        ///< Instead of a name: one that is there.
-  std::optional<PresetChoice> choice;  ///< Nothing: as it was before, else all.
+  std::optional<double> number;              ///< Number of an existing preset, instead of a name.
+  std::optional<PresetSelection> selection;  ///< Nothing: the selection of the preset that is replaced, else all.
 };
-Result<StoreWish> store_wish(const Message& message);
+Result<StoreCommand> parse_store(const Message& message);
 
-/// name|number [seconds [easing]]
-struct RecallWish {
-  Arg which;
+/// Arguments: name|number [seconds [easing]]
+struct RecallCommand {
+  Arg preset;
   double seconds = 0;
   Easing easing = Easing::smooth;
 };
-Result<RecallWish> recall_wish(const Message& message);
+Result<RecallCommand> parse_recall(const Message& message);
 
-/// name|number name|number amount
-struct MorphWish {
+/// Arguments: name|number name|number amount
+struct MorphCommand {
   Arg a, b;
   double amount = 0;  ///< 0 .. 1
 };
-Result<MorphWish> morph_wish(const Message& message);
+Result<MorphCommand> parse_morph(const Message& message);
 
 }  // namespace limber

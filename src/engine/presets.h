@@ -1,5 +1,5 @@
-// Presets: the named states of a show, in order, and what messages do with them: store, recall, morph, delete. They
-// outlive resets; what they hold on the disk is their keeper's. [sim]
+// Presets: the ordered list of presets of a session, and the commands on them: store, recall, morph, delete. Presets
+// survive resets; a PresetSaver writes them to the disk. [sim]
 #pragma once
 
 #include <cstdint>
@@ -23,119 +23,120 @@ namespace limber {
 
 class Presets {
  public:
-  static constexpr std::size_t kMost = 10000;
-  static constexpr double kLongest = 86400;  ///< Seconds of a morph.
+  static constexpr std::size_t kMax = 10000;
+  static constexpr double kMaxMorphSeconds = 86400;  ///< Longest duration of a morph, s.
 
-  /// `hand` remembers what is recalled.
-  explicit Presets(PerformerHand& hand) : hand_(hand) {}
+  /// `overrides`: records recalls.
+  explicit Presets(Overrides& overrides) : overrides_(overrides) {}
 
-  /// The presets of a scene, and who writes them to the file beside it.
-  struct Book {
+  /// The presets of a scene, and the writer of their file.
+  struct Bank {
     PresetList list;
-    std::unique_ptr<PresetKeeper> keeper;
-    std::string file;  ///< The one name of it.
+    std::unique_ptr<PresetSaver> saver;
+    std::string file;  ///< Canonical path of the file.
   };
-  /// As the file beside the scene has them; what is wrong with it is logged. `failed` is told why a save failed.
-  /// [any, no tick waits for it]
-  static Book read(const std::string& scene, PresetFile::Owner owner, std::function<void(const std::string&)> failed);
-  /// From now on it is this one; but a file that is open already stays as it is. The answer: the other one, which
-  /// must go where a thread may wait for a disk. [sim]
-  Book open(Book book);
-  /// The same, whichever file is open. [sim]
-  Book exchange(Book book);
-  /// What "script" is from now on: as the scene's last good run describes everything.
-  void scene_says(std::shared_ptr<const Preset> script) { script_ = std::move(script); }
-  /// From now on it is another store; running morphs end.
+  /// Loads the presets of a scene from the file next to it; logs problems. `on_failure` is called with the reason when
+  /// a save fails. May wait for the disk. [any]
+  static Bank read(const std::string& scene, PresetFile::WriteAccess access,
+                   std::function<void(const std::string&)> on_failure);
+  /// Replaces the bank, unless the same file is open already. Returns the bank that isn't used, which must be destroyed
+  /// on a thread that may wait for the disk. [sim]
+  Bank open(Bank bank);
+  /// Replaces the bank in any case and returns the previous one. [sim]
+  Bank exchange(Bank bank);
+  /// Sets the preset "script": all values as the last successful run of the scene left them.
+  void set_script_preset(std::shared_ptr<const Preset> script) { script_ = std::move(script); }
+  /// Prepares for another store; ends running morphs.
   void forget_store();
 
-  /// The one name of the file that they are kept in; empty: they are in none.
+  /// Canonical path of the preset file; empty: none.
   const std::string& file() const { return file_; }
 
-  /// /preset/store, recall, morph, delete, /list/presets, by its last word in small letters.
-  Outcome execute(std::string_view what, const Message& message, World& world);
-  /// Whether such a message would be taken, were those of `before` done.
+  /// Executes /preset/store, recall, morph, delete or /list/presets, selected by the last word of the address.
+  Outcome execute(std::string_view command, const Message& message, World& world);
+  /// Checks whether a message would succeed after the messages in `before`.
   Result<void> check(const Message& message, std::span<const Message> before) const;
-  /// A preset by its number from 1, over `seconds`; between two whole ones lies a blend of both.
+  /// Recalls a preset by its number, from 1, over `seconds`; a fractional number is a blend of its two neighbors.
   Result<void> recall_number(World& world, double number, double seconds);
-  /// Running morphs stay where they are.
+  /// Stops running morphs at their current values.
   void stop() { morphs_.clear(); }
-  /// Morphs go on to where they are at that time.
+  /// Advances running morphs to the world's time.
   void advance(World& world);
-  /// Makes ready for a store; once a tick.
-  void prepare(const World& world) { taker_.prepare(world.store()); }
-  /// The same at once, where no tick waits.
-  void make_ready(const World& world) { taker_.make_ready(world.store()); }
-  /// These values are in force, as after a recall; the answer: what was left out.
-  Result<std::string> bring_back(World& world, const std::shared_ptr<const Preset>& values) {
-    return go(world, Blend::of(values), 0, Easing::linear);
+  /// Prepares for the next /preset/store in slices; call once per tick.
+  void prepare(const World& world) { capturer_.prepare(world.store()); }
+  /// Completes that preparation at once, when no tick waits.
+  void finish_planning(const World& world) { capturer_.finish_planning(world.store()); }
+  /// Applies recovered values like a recall; returns a description of values that were skipped.
+  Result<std::string> restore(World& world, const std::shared_ptr<const Preset>& values) {
+    return apply(world, Blend::of(values), 0, Easing::linear);
   }
-  /// Every property as it is now.
-  std::shared_ptr<const Preset> everything(const Store& store) { return *taker_.take(store, "everything", {}); }
-  /// Whether that costs no more than copying.
-  bool ready(const Store& store) const { return taker_.ready(store); }
-  /// Whether all that was stored is on the disk.
-  bool saved() const { return keeper_ == nullptr || keeper_->saved(); }
-  /// A recall that the hand remembers, after a reset.
-  void repeat(World& world, const Blend& blend);
+  /// Captures all properties.
+  std::shared_ptr<const Preset> capture_all(const Store& store) { return *capturer_.capture(store, "everything", {}); }
+  /// True if capture_all() costs no more than copying the values.
+  bool ready(const Store& store) const { return capturer_.ready(store); }
+  /// True if all stored presets are on the disk.
+  bool saved() const { return saver_ == nullptr || saver_->saved(); }
+  /// Applies a recall again that was recorded as an override, after a reset.
+  void reapply(World& world, const Blend& blend);
 
   const PresetList& list() const { return list_; }
-  /// Names, a line each.
+  /// Names, one per line.
   std::string_view names() const { return names_; }
-  /// How far the running morph that has most to go is, 0 .. 1; 1 when none runs.
-  double part(const World& world) const { return morphs_.part(world.time()); }
-  /// Waits until all is on the disk. [any but sim]
+  /// Progress of the running morph that is least advanced, 0 to 1; 1 if none runs.
+  double progress(const World& world) const { return morphs_.progress(world.time()); }
+  /// Waits until all presets are on the disk. [any but sim]
   void finish_saving();
 
-  /// What messages may change of it, between two ticks.
-  struct Memory {
+  /// The part of the state that messages can change, for checkpoints.
+  struct State {
     PresetList list;
     Morphs morphs;
   };
-  void keep(Memory& memory) const {
-    memory.list = list_;
-    memory.morphs = morphs_;
+  void capture(State& state) const {
+    state.list = list_;
+    state.morphs = morphs_;
   }
-  void bring_back(const Memory& memory);
-  /// The presets are these.
-  void take_list(PresetList list);
-  /// While `on`, what was done once is done again: nothing is written to the disk.
-  void do_again(bool on) { again_ = on; }
+  void restore(const State& state);
+  /// Replaces the list of presets.
+  void set_list(PresetList list);
+  /// While `on`, recorded inputs are replayed: nothing is saved to the disk.
+  void set_replaying(bool on) { replaying_ = on; }
 
-  /// A hand sets the row: it leaves the morphs that move it.
-  void release(NodeId id, const Row& row) { morphs_.release(id, row); }
+  /// Removes a property from running morphs, because a controller has set it.
+  void release(NodeId id, const Property& property) { morphs_.release(id, property); }
 
  private:
   Outcome store(const Message& message, World& world);
   Outcome recall(const Message& message, World& world);
   Outcome morph(const Message& message, World& world);
   Outcome erase(const Message& message);
-  Outcome names_asked(const Message& message) const;
+  Outcome list_names(const Message& message) const;
 
   const std::shared_ptr<const Preset>* find(std::string_view name) const;
-  Result<std::shared_ptr<const Preset>> named(const Arg& arg) const;
-  Result<Blend> at_number(double number);
-  Blend between(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b, double amount);
-  Result<std::string> go(World& world, const Blend& blend, double seconds, Easing easing);
+  Result<std::shared_ptr<const Preset>> resolve(const Arg& arg) const;
+  Result<Blend> blend_at(double number);
+  Blend blend_of(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b, double amount);
+  Result<std::string> apply(World& world, const Blend& blend, double seconds, Easing easing);
   Result<std::shared_ptr<const PresetBinding>> bind(const Store& store, const Blend& blend);
-  Error unknown(std::string_view name) const;
-  void changed();
+  Error not_found(std::string_view name) const;
+  void update_names();
   void save();
 
-  PerformerHand& hand_;
-  bool again_ = false;
+  Overrides& overrides_;
+  bool replaying_ = false;
   PresetList list_;
-  std::unique_ptr<PresetKeeper> keeper_;
+  std::unique_ptr<PresetSaver> saver_;
   std::string file_;
   std::string names_;
   std::shared_ptr<const Preset> script_;
-  PresetTaker taker_;
+  PresetCapturer capturer_;
   Morphs morphs_;
-  std::vector<std::shared_ptr<const PresetBinding>> bindings_;  // used lately
+  std::vector<std::shared_ptr<const PresetBinding>> bindings_;  // recently used
   struct Pair {
     std::shared_ptr<const Preset> a, b;
     Blend aligned;
   };
-  std::vector<Pair> pairs_;  // blended lately
+  std::vector<Pair> pairs_;  // recently blended
 };
 
 }  // namespace limber

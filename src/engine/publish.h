@@ -1,4 +1,4 @@
-// Publisher: makes the snapshot after each tick, and the roster when bodies come and go. [sim]
+// Publisher: makes the snapshot after each tick, and the list of bodies when bodies are added or removed. [sim]
 #pragma once
 
 #include <memory>
@@ -13,16 +13,17 @@ class Publisher {
  public:
   Publisher(World& world, Latest<Snapshot>& out) : world_(world), out_(out) {}
 
-  void publish(bool paused, double speed_reached, const PhaseTimes& times = {});
+  /// Publishes a snapshot of the current state. `speed_factor`: measured simulated seconds per real second.
+  void publish(bool paused, double speed_factor, const PhaseTimes& times = {});
 
  private:
-  void renew_roster();
+  void update_body_list();
 
   World& world_;
   Latest<Snapshot>& out_;
-  std::shared_ptr<const Roster> roster_;
-  std::shared_ptr<const Drawing> drawing_;
-  std::uint64_t structure_ = 0;
+  std::shared_ptr<const BodyList> body_list_;
+  std::shared_ptr<const RenderScene> render_scene_;
+  std::uint64_t structure_version_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Recall: a preset, or what lies between two, goes through the door into the live world. [sim]
+// Recall: applies a preset, or a blend of two, to the live world through the property setters. [sim]
 #pragma once
 
 #include <array>
@@ -13,25 +13,25 @@
 
 namespace limber {
 
-/// Calls f(thing, row, numbers) for each value of the blend that the world takes, in the binding's order.
+/// Calls f(node, property, values) for each value of the blend that applies to the world, in the order of the binding.
 template <class F>
-void each_value(const PresetBinding& binding, const Blend& blend, F&& f) {
+void for_each_value(const PresetBinding& binding, const Blend& blend, F&& f) {
   std::array<double, 4> a{};
   std::array<double, 4> b{};
-  for (const PresetBinding::Thing& thing : binding.things()) {
-    for (const PresetBinding::FitRow& fit : binding.fit(thing).rows) {
-      if ((thing.left_alone >> fit.row->index & 1u) != 0) continue;
-      if (!PresetBinding::read(fit, blend.a->values.data() + thing.at, a.data())) continue;
+  for (const PresetBinding::Node& node : binding.nodes()) {
+    for (const PresetBinding::BoundProperty& bound : binding.layout(node).properties) {
+      if ((node.excluded >> bound.property->index & 1u) != 0) continue;
+      if (!PresetBinding::read(bound, blend.a->values.data() + node.offset, a.data())) continue;
       if (blend.amount > 0) {
-        if (!PresetBinding::read(fit, blend.b->values.data() + thing.at, b.data())) continue;
-        mix(*fit.row, a.data(), b.data(), blend.amount, a.data());
+        if (!PresetBinding::read(bound, blend.b->values.data() + node.offset, b.data())) continue;
+        mix(*bound.property, a.data(), b.data(), blend.amount, a.data());
       }
-      f(thing, *fit.row, a.data());
+      f(node, *bound.property, a.data());
     }
   }
 }
 
-// of so few numbers that a call would cost more
+// Compares bit by bit. Inline: for up to four values a call would cost more than the comparison.
 inline bool same_bits(const double* a, const double* b, std::size_t count) {
   for (std::size_t i = 0; i < count; i++) {
     if (std::bit_cast<std::uint64_t>(a[i]) != std::bit_cast<std::uint64_t>(b[i])) return false;
@@ -39,16 +39,17 @@ inline bool same_bits(const double* a, const double* b, std::size_t count) {
   return true;
 }
 
-/// What was not taken as it is.
-struct Recalled {
-  std::size_t clamped = 0;  ///< Outside their ranges as they are now.
-  std::size_t refused = 0;
-  std::string first;  ///< The first of both, and why.
+/// Values that could not be applied unchanged.
+struct RecallResult {
+  std::size_t clamped = 0;  ///< Outside the current range of the property.
+  std::size_t rejected = 0;
+  std::string first_problem;  ///< Path of the first one of both, with the reason.
 };
 
-/// What stays as it is because its row has no such choice any more; empty: nothing does.
-std::string lost_choices(const Store& store, const PresetBinding& binding, const Blend& blend);
+/// Describes values that stay unchanged because their property has lost that choice; empty if there are none.
+std::string missing_choices(const Store& store, const PresetBinding& binding, const Blend& blend);
 
-Recalled recall(Store& store, const PresetBinding& binding, const Blend& blend);
+/// Applies the blend at once. Values that are equal already are not written, so that they cause no on-change callbacks.
+RecallResult recall(Store& store, const PresetBinding& binding, const Blend& blend);
 
 }  // namespace limber

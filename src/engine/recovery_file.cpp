@@ -1,4 +1,5 @@
-// A lock on a file beside makes it one program's; a first line says what the values are of, presets' text follows.
+// Format: a line of JSON (version, scene, time), then the values as preset JSON. A lock file grants one program
+// ownership.
 #include "engine/recovery_file.h"
 
 #include <cerrno>
@@ -22,9 +23,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kHead = "limber recovery";
+constexpr const char* kFormatKey = "limber recovery";
 constexpr int kVersion = 1;
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20u;
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20u;
 
 std::string reason() { return std::generic_category().message(errno); }
 
@@ -32,104 +33,107 @@ bool same_values(const double* a, const double* b, std::uint32_t count) {
   return std::memcmp(a, b, count * sizeof *a) == 0;
 }
 
-// whether the label of a choice, or the numbers of another row, are the same
-bool same_row(const PresetRow& a, const double* in_a, const PresetRow& b, const double* in_b) {
+// True if the labels of two choices, or the values of other properties, are equal.
+bool same_value(const PresetProperty& a, const double* in_a, const PresetProperty& b, const double* in_b) {
   if (a.type != b.type || a.width != b.width) return false;
-  if (a.type != RowType::choice) return same_values(in_a, in_b, a.width);
+  if (a.type != PropertyType::choice) return same_values(in_a, in_b, a.width);
   return a.labels[static_cast<std::size_t>(in_a[0])] == b.labels[static_cast<std::size_t>(in_b[0])];
 }
 
 }  // namespace
 
-std::string LostValues::when() const {
+std::string RecoverableValues::time_text() const {
   const auto text = [](std::time_t time, const char* form) {
-    std::tm here{};
-    localtime_r(&time, &here);
+    std::tm local_time{};
+    localtime_r(&time, &local_time);
     char out[32] = {};
-    (void)std::strftime(out, sizeof out, form, &here);
+    (void)std::strftime(out, sizeof out, form, &local_time);
     return std::string(out);
   };
-  const bool today = text(saved, "%F") == text(std::time(nullptr), "%F");
-  return text(saved, today ? "%T" : "%F %T");
+  const bool today = text(saved_at, "%F") == text(std::time(nullptr), "%F");
+  return text(saved_at, today ? "%T" : "%F %T");
 }
 
-std::string LostValues::offer() const {
-  const std::size_t count = values->shape->row_count();
-  return fmt::format("the last run of this scene did not end well; {} value{} of {} can be brought back: --recover",
-                     count, count == 1 ? "" : "s", when());
+std::string RecoverableValues::message() const {
+  const std::size_t count = values->schema->property_count();
+  return fmt::format("the last run of this scene did not exit cleanly; {} value{} of {} can be restored with --recover",
+                     count, count == 1 ? "" : "s", time_text());
 }
 
 std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& script) {
-  std::unordered_map<std::string, std::uint32_t> said;
-  for (std::uint32_t i = 0; i < script.shape->things().size(); i++) {
-    if (script.shape->rows(script.shape->things()[i]) != nullptr) said.emplace(script.shape->path(i), i);
+  std::unordered_map<std::string, std::uint32_t> script_nodes;
+  for (std::uint32_t i = 0; i < script.schema->nodes().size(); i++) {
+    if (script.schema->layout(script.schema->nodes()[i]) != nullptr) script_nodes.emplace(script.schema->path(i), i);
   }
   PresetBuilder builder;
   bool any = false;
-  for (std::uint32_t i = 0; i < now.shape->things().size(); i++) {
-    const PresetShape::Thing& thing = now.shape->things()[i];
-    const PresetClass* const rows = now.shape->rows(thing);
-    if (rows == nullptr) continue;
-    const std::string path = now.shape->path(i);
-    const auto known = said.find(path);
-    const PresetShape::Thing* const other = known == said.end() ? nullptr : &script.shape->things()[known->second];
-    const PresetClass* const others = other == nullptr ? nullptr : script.shape->rows(*other);
-    PresetClass changed;
+  for (std::uint32_t i = 0; i < now.schema->nodes().size(); i++) {
+    const PresetSchema::Node& node = now.schema->nodes()[i];
+    const PresetLayout* const layout = now.schema->layout(node);
+    if (layout == nullptr) continue;
+    const std::string path = now.schema->path(i);
+    const auto match = script_nodes.find(path);
+    const PresetSchema::Node* const script_node =
+        match == script_nodes.end() ? nullptr : &script.schema->nodes()[match->second];
+    const PresetLayout* const script_layout = script_node == nullptr ? nullptr : script.schema->layout(*script_node);
+    PresetLayout changed;
     std::vector<double> values;
-    for (std::size_t k = 0; k < rows->rows.size(); k++) {
-      const PresetRow& row = rows->rows[k];
-      const double* const in_now = now.values.data() + thing.at + rows->offsets[k];
-      const int at = others == nullptr ? -1 : others->find(row.name);
+    for (std::size_t k = 0; k < layout->properties.size(); k++) {
+      const PresetProperty& property = layout->properties[k];
+      const double* const in_now = now.values.data() + node.offset + layout->offsets[k];
+      const int at = script_layout == nullptr ? -1 : script_layout->find(property.name);
       if (at >= 0) {
-        const auto there = static_cast<std::size_t>(at);
-        const double* const in_script = script.values.data() + other->at + others->offsets[there];
-        if (same_row(row, in_now, others->rows[there], in_script)) continue;
+        const auto other_index = static_cast<std::size_t>(at);
+        const double* const in_script =
+            script.values.data() + script_node->offset + script_layout->offsets[other_index];
+        if (same_value(property, in_now, script_layout->properties[other_index], in_script)) continue;
       }
-      changed.add(row);
-      values.insert(values.end(), in_now, in_now + row.width);
+      changed.add(property);
+      values.insert(values.end(), in_now, in_now + property.width);
     }
-    if (changed.rows.empty()) continue;
+    if (changed.properties.empty()) continue;
     any = true;
-    builder.give(builder.thing(path), std::move(changed), values);
+    builder.set_values(builder.node(path), std::move(changed), values);
   }
   if (!any) return nullptr;
-  PresetChoice choice;
-  choice.rows = {"//*"};  // these alone
-  return builder.finish("recovered", std::move(choice));
+  PresetSelection selection;
+  selection.include = {"//*"};  // only these values
+  return builder.finish("recovered", std::move(selection));
 }
 
 Result<std::unique_ptr<RecoveryFile>> RecoveryFile::open(const std::string& folder, const std::string& scene) {
   std::unique_ptr<RecoveryFile> file(
       new RecoveryFile(SceneLock::path_of(scene), fmt::format("{}/{}", folder, SceneLock::name_of(scene))));
-  if (!file->lock_.take()) return std::unique_ptr<RecoveryFile>();
+  if (!file->lock_.acquire()) return std::unique_ptr<RecoveryFile>();
   std::error_code fault;
-  fs::create_directories(folder, fault);  // the lock has made it, where that is possible
+  fs::create_directories(folder, fault);  // acquiring the lock has created it already, if possible
   if (fault) return Error{fmt::format("{}: {}", printable(folder), fault.message())};
-  // the newest that was lost is the one that counts
+  // a saved file that was not removed is of a crashed run; it replaces older ones
   if (fs::exists(file->saved_file(), fault)) (void)std::rename(file->saved_file().c_str(), file->lost_file().c_str());
   return file;
 }
 
-Result<std::optional<LostValues>> RecoveryFile::lost() const {
+Result<std::optional<RecoverableValues>> RecoveryFile::recoverable() const {
   std::error_code fault;
-  if (!fs::exists(lost_file(), fault)) return std::optional<LostValues>();
-  const auto bad = [&](std::string_view why) {
-    return Error{fmt::format("{}: {}; the values of a run that did not end well can't be brought back",
+  if (!fs::exists(lost_file(), fault)) return std::optional<RecoverableValues>();
+  const auto failure = [&](std::string_view why) {
+    return Error{fmt::format("{}: {}; the values of the run that did not exit cleanly can't be restored",
                              printable(lost_file()), why)};
   };
-  const Result<std::string> bytes = system::read_file(lost_file(), kMostBytes);
-  if (!bytes) return bad(bytes.error());
+  const Result<std::string> bytes = system::read_file(lost_file(), kMaxBytes);
+  if (!bytes) return failure(bytes.error());
   const std::string& text = *bytes;
   const std::size_t line = text.find('\n');
-  const auto head = nlohmann::json::parse(text.substr(0, line), nullptr, false);
-  if (line == std::string::npos || !head.is_object() || !head.contains(kHead) || !head[kHead].is_number_integer())
-    return bad("it is damaged");
-  if (head[kHead] != kVersion) return bad("it is of another version of Limber");
-  if (!head.contains("saved") || !head["saved"].is_number_integer()) return bad("it is damaged");
-  Result<PresetsRead> read = presets_of(std::string_view(text).substr(line + 1));
-  if (!read) return bad(read.error());
-  if (read->presets.size() != 1 || !read->problems.empty()) return bad("it is damaged");
-  return std::optional(LostValues{read->presets.front(), head["saved"].get<std::time_t>()});
+  const auto header = nlohmann::json::parse(text.substr(0, line), nullptr, false);
+  if (line == std::string::npos || !header.is_object() || !header.contains(kFormatKey) ||
+      !header[kFormatKey].is_number_integer())
+    return failure("it is damaged");
+  if (header[kFormatKey] != kVersion) return failure("it is of another version of Limber");
+  if (!header.contains("saved") || !header["saved"].is_number_integer()) return failure("it is damaged");
+  Result<ParsedPresets> read = parse_presets(std::string_view(text).substr(line + 1));
+  if (!read) return failure(read.error());
+  if (read->presets.size() != 1 || !read->problems.empty()) return failure("it is damaged");
+  return std::optional(RecoverableValues{read->presets.front(), header["saved"].get<std::time_t>()});
 }
 
 Result<void> RecoveryFile::save(const std::shared_ptr<const Preset>& values, std::time_t now) {
@@ -137,24 +141,24 @@ Result<void> RecoveryFile::save(const std::shared_ptr<const Preset>& values, std
     system::remove_file(saved_file());
     return {};
   }
-  const nlohmann::ordered_json head = {{kHead, kVersion}, {"scene", scene_}, {"saved", now}};
+  const nlohmann::ordered_json header = {{kFormatKey, kVersion}, {"scene", scene_}, {"saved", now}};
   using Json = nlohmann::ordered_json;
   const std::string text =
-      head.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + text_of(PresetList{values});
-  Result<void> written = system::write_whole(fresh_file(), text, 0600);
-  if (written && std::rename(fresh_file().c_str(), saved_file().c_str()) != 0) written = Error{reason()};
+      header.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + text_of(PresetList{values});
+  Result<void> written = system::replace_file(temporary_file(), text, 0600);
+  if (written && std::rename(temporary_file().c_str(), saved_file().c_str()) != 0) written = Error{reason()};
   if (!written) {
-    system::remove_file(fresh_file());
+    system::remove_file(temporary_file());
     return Error{fmt::format("{}: {}", printable(saved_file()), written.error())};
   }
   system::sync_folder(saved_file());
   return {};
 }
 
-void RecoveryFile::end(bool lost_too) {
+void RecoveryFile::end(bool remove_recoverable) {
   system::remove_file(saved_file());
-  system::remove_file(fresh_file());
-  if (lost_too) system::remove_file(lost_file());
+  system::remove_file(temporary_file());
+  if (remove_recoverable) system::remove_file(lost_file());
   lock_.release();
 }
 

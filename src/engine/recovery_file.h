@@ -1,5 +1,5 @@
-// RecoveryFile: what a show's values are, on the disk as long as it plays, so that a start after a crash can bring them
-// back. One a scene, in a folder of the user's, of the first program that plays it. [one thread]
+// RecoveryFile: stores the property values of a running session on the disk, so that they can be restored after a
+// crash. One file per scene, in a folder of the user; only the first program that plays a scene writes it. [one thread]
 #pragma once
 
 #include <ctime>
@@ -14,47 +14,48 @@
 
 namespace limber {
 
-/// Values that a run has left which did not end well.
-struct LostValues {
+/// Values left by a run that crashed.
+struct RecoverableValues {
   std::shared_ptr<const Preset> values;
-  std::time_t saved = 0;  ///< When they were these.
-  /// "21:03:12", of another day with the date.
-  std::string when() const;
-  /// That they are there, and how they come back.
-  std::string offer() const;
+  std::time_t saved_at = 0;  ///< Time at which they were saved.
+  /// Returns the time, such as "21:03:12"; with the date if it isn't today.
+  std::string time_text() const;
+  /// Returns a message that offers to restore them.
+  std::string message() const;
 };
 
-/// Of `now`, the rows that `script` does not have or has otherwise: what there is to bring back. Null: nothing.
+/// Returns the values of `now` that differ from those in `script` or are missing there; null if there are none.
 std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& script);
 
 class RecoveryFile {
  public:
-  /// Null: another program plays that scene, and owns its file. What another run has left there is kept for lost().
-  /// `folder` is made when it is not there. The error says why there can be none.
+  /// Opens the file of a scene, keeping values left by a crashed run for recoverable(). Null if another program plays
+  /// the scene and owns its file. `folder` is created if necessary. Error: the file can't be used.
   static Result<std::unique_ptr<RecoveryFile>> open(const std::string& folder, const std::string& scene);
   RecoveryFile(const RecoveryFile&) = delete;
   RecoveryFile& operator=(const RecoveryFile&) = delete;
 
-  /// What the newest run here that did not end well has left. The error names the file; it stays as it is.
-  Result<std::optional<LostValues>> lost() const;
-  /// Replaces what this run has saved. Null: there is nothing to bring back.
+  /// Returns the values of the latest run that crashed, if there are any. Errors name the file, which stays unchanged.
+  Result<std::optional<RecoverableValues>> recoverable() const;
+  /// Replaces the values saved by this run. Null: there is nothing to restore, removes the file.
   Result<void> save(const std::shared_ptr<const Preset>& values, std::time_t now);
-  /// The run has ended well: what it has saved goes. `lost_too`: what lost() gave is in it.
-  void end(bool lost_too);
+  /// Ends a run cleanly: removes its saved values. `remove_recoverable`: removes also those of recoverable(), because
+  /// they were restored.
+  void end(bool remove_recoverable);
 
-  /// The scene's file, with its whole path.
+  /// The absolute path of the scene's file.
   const std::string& scene() const { return scene_; }
 
  private:
   RecoveryFile(std::string scene, std::string base)
-      : scene_(std::move(scene)), base_(std::move(base)), lock_(base_ + ".lock") {}
+      : scene_(std::move(scene)), path_prefix_(std::move(base)), lock_(path_prefix_ + ".lock") {}
 
-  std::string saved_file() const { return base_ + ".json"; }
-  std::string lost_file() const { return base_ + ".lost.json"; }
-  std::string fresh_file() const { return base_ + ".new"; }
+  std::string saved_file() const { return path_prefix_ + ".json"; }
+  std::string lost_file() const { return path_prefix_ + ".lost.json"; }
+  std::string temporary_file() const { return path_prefix_ + ".new"; }
 
   std::string scene_;
-  std::string base_;  // what all its names begin with
+  std::string path_prefix_;  // common prefix of the file names
   SceneLock lock_;
 };
 

@@ -1,4 +1,4 @@
-// The lock is held to take what was given, never while it is written.
+// The mutex is locked only to swap the values out, never while writing.
 #include "engine/recovery_keeper.h"
 
 #include <algorithm>
@@ -14,127 +14,127 @@ namespace limber {
 
 namespace {
 
-constexpr int kPatience = 6;  // times that it asks before it urges
+constexpr int kOverdueIntervals = 6;  // intervals after which values are overdue
 
 bool same(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b) {
   if (a == nullptr || b == nullptr) return a == b;
-  return a->values == b->values && *a->shape == *b->shape;
+  return a->values == b->values && *a->schema == *b->schema;
 }
 
 }  // namespace
 
-RecoveryKeeper::RecoveryKeeper(std::string folder, std::chrono::milliseconds every)
-    : folder_(std::move(folder)), every_(every) {}
+RecoverySaver::RecoverySaver(std::string folder, std::chrono::milliseconds interval)
+    : folder_(std::move(folder)), interval_(interval) {}
 
-RecoveryKeeper::~RecoveryKeeper() { stop(); }
+RecoverySaver::~RecoverySaver() { stop(); }
 
-Result<std::optional<LostValues>> RecoveryKeeper::open(const std::string& scene) {
+Result<std::optional<RecoverableValues>> RecoverySaver::open(const std::string& scene) {
   scene_ = scene;
   Result<std::unique_ptr<RecoveryFile>> file = RecoveryFile::open(folder_, scene);
-  if (!file) return Error{"the show's values can't be kept for a start after a crash: " + file.error()};
+  if (!file) return Error{"values can't be saved for recovery: " + file.error()};
   file_ = std::move(*file);
-  elsewhere_ = file_ == nullptr;
-  if (elsewhere_) return std::optional<LostValues>();
-  return file_->lost();
+  owned_elsewhere_ = file_ == nullptr;
+  if (owned_elsewhere_) return std::optional<RecoverableValues>();
+  return file_->recoverable();
 }
 
-void RecoveryKeeper::begin() {
+void RecoverySaver::begin() {
   if (!thread_.joinable() && !system::start_thread(thread_, [this] { run(); }))
-    log_warning("the show's values can't be kept for a start after a crash: the system has no thread left");
+    log_warning("values can't be saved for recovery: could not create a thread");
 }
 
-void RecoveryKeeper::give(const std::string& scene, std::shared_ptr<const Preset> now,
-                          std::shared_ptr<const Preset> script) {
-  asks_.store(false, std::memory_order_relaxed);
-  urges_.store(false, std::memory_order_relaxed);
+void RecoverySaver::submit(const std::string& scene, std::shared_ptr<const Preset> now,
+                           std::shared_ptr<const Preset> script) {
+  wants_values_.store(false, std::memory_order_relaxed);
+  overdue_.store(false, std::memory_order_relaxed);
   if (now == nullptr) return;
-  Given given{scene, std::move(now), std::move(script)};
-  std::optional<Given> before(std::move(given));
+  Values values{scene, std::move(now), std::move(script)};
+  std::optional<Values> replaced(std::move(values));
   {
     const std::scoped_lock lock(mutex_);
-    given_.swap(before);
+    submitted_.swap(replaced);
   }
   changed_.notify_all();
 }
 
-void RecoveryKeeper::stop() {
+void RecoverySaver::stop() {
   {
     const std::scoped_lock lock(mutex_);
-    end_ = true;
+    stopping_ = true;
   }
   changed_.notify_all();
   if (thread_.joinable()) thread_.join();
 }
 
-void RecoveryKeeper::end() {
+void RecoverySaver::end() {
   stop();
-  if (file_ != nullptr) file_->end(brought_back_);
+  if (file_ != nullptr) file_->end(recovered_);
   file_ = nullptr;
 }
 
-void RecoveryKeeper::run() {
+void RecoverySaver::run() {
   system::name_this_thread("limber-recover");
   using Clock = std::chrono::steady_clock;
-  Clock::time_point next = Clock::now() + every_;
-  int asked = 0;
+  Clock::time_point next = Clock::now() + interval_;
+  int intervals = 0;
   std::unique_lock lock(mutex_);
   while (true) {
-    const bool called = changed_.wait_until(lock, next, [this] { return end_ || given_.has_value(); });
-    if (end_) return;
-    if (!called) {
-      next = std::max(next + every_, Clock::now());
-      asked = asks_.exchange(true) ? asked + 1 : 0;
-      urges_.store(asked >= kPatience);
+    const bool submitted = changed_.wait_until(lock, next, [this] { return stopping_ || submitted_.has_value(); });
+    if (stopping_) return;
+    if (!submitted) {
+      next = std::max(next + interval_, Clock::now());
+      intervals = wants_values_.exchange(true) ? intervals + 1 : 0;
+      overdue_.store(intervals >= kOverdueIntervals);
       if (!unsaved_) continue;
     }
-    const Given given = called ? *std::exchange(given_, std::nullopt) : *unsaved_;
+    const Values values = submitted ? *std::exchange(submitted_, std::nullopt) : *unsaved_;
     lock.unlock();
-    write(given);
+    write(values);
     lock.lock();
   }
 }
 
-void RecoveryKeeper::write(const Given& given) {
-  if (given.scene != scene_) follow(given.scene);
-  if (elsewhere_) take_over();
-  unsaved_ = elsewhere_ ? std::optional(given) : std::nullopt;
+void RecoverySaver::write(const Values& submitted) {
+  if (submitted.scene != scene_) switch_scene(submitted.scene);
+  if (owned_elsewhere_) try_take_over();
+  unsaved_ = owned_elsewhere_ ? std::optional(submitted) : std::nullopt;
   if (file_ == nullptr) return;
-  std::shared_ptr<const Preset> values = changed_values(*given.now, *given.script);
+  std::shared_ptr<const Preset> values = changed_values(*submitted.now, *submitted.script);
   if (same(values, saved_)) return;
   const Result<void> saved = file_->save(values, std::time(nullptr));
   if (saved) {
     saved_ = std::move(values);
   } else {
-    note_failed_write();
-    if (!std::exchange(told_, true))
-      log_warning("the show's values can't be kept for a start after a crash: {}", saved.error());
+    count_failed_write();
+    if (!std::exchange(failure_reported_, true)) log_warning("values can't be saved for recovery: {}", saved.error());
   }
 }
 
-void RecoveryKeeper::take_over() {
-  const Result<std::optional<LostValues>> lost = open(scene_);
-  if (elsewhere_) return;
-  log_info("the other program that played this scene has ended: from here on this one saves presets and values");
-  if (!lost) {
-    log_warning("{}", lost.error());
-  } else if (*lost) {
-    log_warning("{}", (*lost)->offer());
+void RecoverySaver::try_take_over() {
+  const Result<std::optional<RecoverableValues>> recoverable = open(scene_);
+  if (owned_elsewhere_) return;
+  log_info(
+      "the other program that played this scene has ended: this one saves presets and recovery values from now on");
+  if (!recoverable) {
+    log_warning("{}", recoverable.error());
+  } else if (*recoverable) {
+    log_warning("{}", (*recoverable)->message());
   }
 }
 
-// another scene plays: the one before has ended well
-void RecoveryKeeper::follow(const std::string& scene) {
-  if (file_ != nullptr) file_->end(brought_back_);
+// Switches to another scene; the run of the previous one has ended cleanly.
+void RecoverySaver::switch_scene(const std::string& scene) {
+  if (file_ != nullptr) file_->end(recovered_);
   file_ = nullptr;
   saved_ = nullptr;
-  brought_back_ = false;
-  const Result<std::optional<LostValues>> lost = open(scene);
-  if (elsewhere_) {
-    log_warning("{}: {}", printable(scene), kElsewhere);
-  } else if (!lost) {
-    log_warning("{}", lost.error());
-  } else if (*lost) {
-    log_warning("{}: {}", printable(scene), (*lost)->offer());
+  recovered_ = false;
+  const Result<std::optional<RecoverableValues>> recoverable = open(scene);
+  if (owned_elsewhere_) {
+    log_warning("{}: {}", printable(scene), kOwnedElsewhere);
+  } else if (!recoverable) {
+    log_warning("{}", recoverable.error());
+  } else if (*recoverable) {
+    log_warning("{}: {}", printable(scene), (*recoverable)->message());
   }
 }
 

@@ -1,4 +1,5 @@
-// RecoveryKeeper: has the show's values on the disk every few seconds, on a thread of its own; a tick only copies them.
+// RecoverySaver: saves the property values every few seconds for recovery after a crash, on its own thread; a tick
+// only copies the values.
 #pragma once
 
 #include <atomic>
@@ -14,66 +15,67 @@
 
 namespace limber {
 
-class RecoveryKeeper {
+class RecoverySaver {
  public:
-  static constexpr auto kEvery = std::chrono::seconds(5);
-  static constexpr const char* kElsewhere =
-      "another program plays this scene and owns its presets and recovery file; this one writes neither until that has "
-      "ended; takes can be recorded with --record FILE";
+  static constexpr auto kInterval = std::chrono::seconds(5);
+  static constexpr const char* kOwnedElsewhere =
+      "another program plays this scene and owns its presets and recovery file; this one saves neither until the "
+      "other has ended; takes can be recorded with --record FILE";
 
-  explicit RecoveryKeeper(std::string folder, std::chrono::milliseconds every = kEvery);
-  /// As a crash would: what is saved stays.
-  ~RecoveryKeeper();
-  RecoveryKeeper(const RecoveryKeeper&) = delete;
-  RecoveryKeeper& operator=(const RecoveryKeeper&) = delete;
+  explicit RecoverySaver(std::string folder, std::chrono::milliseconds interval = kInterval);
+  /// Keeps the saved file, as after a crash.
+  ~RecoverySaver();
+  RecoverySaver(const RecoverySaver&) = delete;
+  RecoverySaver& operator=(const RecoverySaver&) = delete;
 
-  /// Takes the scene's file: what a run of it has left that did not end well. An error: what is damaged, or why
-  /// nothing can be kept. Before begin().
-  Result<std::optional<LostValues>> open(const std::string& scene);
-  /// False: another program plays the scene and owns the file; this one takes it over when that has ended. [any, after
-  /// open()]
-  bool owned() const { return !elsewhere_; }
-  /// What was lost is in the show's values from here on. Before begin().
-  void brought_back() { brought_back_ = true; }
-  /// From here on values are asked for.
+  /// Opens the recovery file of a scene and returns the values left by a crashed run, if there are any. Error: the file
+  /// is damaged, or nothing can be saved. Before begin().
+  Result<std::optional<RecoverableValues>> open(const std::string& scene);
+  /// False if another program plays the scene and owns the file; this one takes over when the other has ended. [any,
+  /// after open()]
+  bool owned() const { return !owned_elsewhere_; }
+  /// Notes that the values from open() were restored, so that end() removes them. Before begin().
+  void set_recovered() { recovered_ = true; }
+  /// Starts the thread, which requests values periodically.
   void begin();
 
-  /// Whether it is time to give it values. Costs nothing. [sim]
-  bool asks() const { return asks_.load(std::memory_order_relaxed); }
-  /// It has asked for long: values that are dear are wanted, too. [sim]
-  bool urges() const { return urges_.load(std::memory_order_relaxed); }
-  /// Every property as it is, and as the scene's run described it; null: as it was given last. [sim]
-  void give(const std::string& scene, std::shared_ptr<const Preset> now, std::shared_ptr<const Preset> script);
+  /// True if values are due. A relaxed atomic load. [sim]
+  bool wants_values() const { return wants_values_.load(std::memory_order_relaxed); }
+  /// True if values are overdue: submit() should be called even if copying them is expensive. [sim]
+  bool overdue() const { return overdue_.load(std::memory_order_relaxed); }
+  /// Passes the values to be saved: `now`, all current properties; `script`, all properties as the last run of the
+  /// scene left them. Null: unchanged since the last call. [sim]
+  void submit(const std::string& scene, std::shared_ptr<const Preset> now, std::shared_ptr<const Preset> script);
 
-  /// The show has ended well: nothing needs to be brought back. [any but sim]
+  /// Ends the session cleanly: removes the saved values. [any but sim]
   void end();
 
  private:
-  struct Given {
+  struct Values {
     std::string scene;
     std::shared_ptr<const Preset> now, script;
   };
   void run();
-  void write(const Given& given);
-  void follow(const std::string& scene);
-  void take_over();
+  void write(const Values& submitted);
+  void switch_scene(const std::string& scene);
+  void try_take_over();
   void stop();
 
   std::string folder_;
-  std::chrono::milliseconds every_;
-  std::unique_ptr<RecoveryFile> file_;  // of the thread, once it runs; null: none can be had
-  std::string scene_;                   // as it was given
+  std::chrono::milliseconds interval_;
+  std::unique_ptr<RecoveryFile> file_;  // used only by the thread, once it runs; null: not available
+  std::string scene_;                   // as passed to open()
   std::shared_ptr<const Preset> saved_;
-  bool brought_back_ = false;
-  std::atomic<bool> elsewhere_{false};  // another program has the file
-  std::optional<Given> unsaved_;        // given last, while it had
-  bool told_ = false;                   // that saving fails
-  std::atomic<bool> asks_{false};
-  std::atomic<bool> urges_{false};
+  bool recovered_ = false;
+  std::atomic<bool> owned_elsewhere_{false};  // another program owns the file
+  std::optional<Values> unsaved_;             // latest values while another program owns the file
+  bool failure_reported_ = false;             // a failure to save was reported
+  std::atomic<bool> wants_values_{false};
+  std::atomic<bool> overdue_{false};
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<Given> given_;
-  bool end_ = false;
+  std::optional<Values> submitted_;
+  bool stopping_ = false;
   std::thread thread_;
 };
 

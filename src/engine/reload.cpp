@@ -1,4 +1,4 @@
-// From an order to a draft to the show.
+// SceneReloader: requests, and applying candidates.
 #include "engine/reload.h"
 
 #include <bit>
@@ -14,116 +14,119 @@ namespace limber {
 
 namespace {
 
-std::string counted(std::uint64_t count, std::string_view what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+std::string counted(std::uint64_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 }  // namespace
 
-Reload::Reload(std::string file, ScriptHost& host, PerformerHand& hand)
-    : file_(std::move(file)), host_(host), hand_(hand) {}
+SceneReloader::SceneReloader(std::string file, ScriptHost& host, Overrides& overrides)
+    : file_(std::move(file)), host_(host), overrides_(overrides) {}
 
-void Reload::begin(const Stage& stage, const SceneOptions& options, const std::string& file,
-                   std::vector<SourceFile> tried) {
+void SceneReloader::capture(const Session& session, const SceneOptions& options, const std::string& file,
+                            std::vector<SourceFile> failed_files) {
   file_ = file;
   options_ = options;
-  description_ = std::make_shared<const Description>(describe(stage.world));
-  things_ = things_of(stage.world);
-  script_ = PresetTaker::take_script(stage.store);
-  sources_ = stage.scene == nullptr ? nullptr : stage.scene->sources();
-  ran_with_.clear();
-  if (stage.scene != nullptr) stage.scene->rerun_values(ran_with_);
-  keep_files(std::move(tried));
-  if (stage.scene != nullptr) say_mended();
+  spec_ = std::make_shared<const SceneSpec>(describe(session.world));
+  objects_ = live_objects_of(session.world);
+  script_preset_ = PresetCapturer::capture_script(session.store);
+  sources_ = session.scene == nullptr ? nullptr : session.scene->sources();
+  rerun_values_.clear();
+  if (session.scene != nullptr) session.scene->rerun_values(rerun_values_);
+  set_files(std::move(failed_files));
+  if (session.scene != nullptr) report_fixed();
 }
 
-DraftOrder Reload::order(const Stage& stage, bool again) {
-  DraftOrder order{file_, options_, {}, description_};
-  if (stage.scene == nullptr) return order;
-  order.inputs = stage.scene->inputs();
-  if (again) order.inputs.sources = sources_;
-  stage.scene->rerun_values(ran_with_);
-  return order;
+ReloadRequest SceneReloader::make_request(const Session& session, bool reuse_files) {
+  ReloadRequest request{file_, options_, {}, spec_};
+  if (session.scene == nullptr) return request;
+  request.inputs = session.scene->inputs();
+  if (reuse_files) request.inputs.sources = sources_;
+  session.scene->rerun_values(rerun_values_);
+  return request;
 }
 
-bool Reload::take_rerun(const Stage& stage) {
-  if (stage.scene == nullptr) return false;
-  stage.scene->rerun_values(values_);
-  if (values_ == ran_with_) return false;
-  ran_with_ = values_;
+bool SceneReloader::consume_rerun(const Session& session) {
+  if (session.scene == nullptr) return false;
+  session.scene->rerun_values(scratch_);
+  if (scratch_ == rerun_values_) return false;
+  rerun_values_ = scratch_;
   return true;
 }
 
-Reload::End Reload::take(Draft& draft, Stage& stage) {
-  if (draft.order().before != description_) return End::outdated;
-  const bool from_disk = draft.order().inputs.sources == nullptr;
+SceneReloader::ApplyResult SceneReloader::apply_candidate(ReloadCandidate& candidate, Session& session) {
+  if (candidate.request().base_spec != spec_) return ApplyResult::outdated;
+  const bool from_disk = candidate.request().inputs.sources == nullptr;
   if (from_disk) log_forget_sources();
-  if (!draft.ran()) {
-    keep_files(draft.files());
-    host_.script_error(draft.fault().file, draft.fault().line, draft.ran().error());
-    return End::failed;
+  if (!candidate.result()) {
+    set_files(candidate.files());
+    host_.script_error(candidate.fault().file, candidate.fault().line, candidate.result().error());
+    return ApplyResult::failed;
   }
-  Store& store = stage.store;
-  const auto set_by_scene = [&](NodeId id, const Row& row) {
-    if (hand_.size() > 0) hand_.give_back(fmt::format("{}/{}", store.path(id), row.name));
+  Store& store = session.store;
+  const auto set_by_scene = [&](NodeId id, const Property& property) {
+    if (overrides_.size() > 0) overrides_.release(fmt::format("{}/{}", store.path(id), property.name));
   };
-  if (stage.scene != nullptr) stage.scene->note_things();
-  apply({stage.world, draft.world(), *description_, *draft.description(), draft.difference(), set_by_scene}, things_);
-  const auto live_id = [&](NodeId id) { return draft.live_id(id, stage.world, things_.shapes, things_.bodies); };
-  std::unique_ptr<Scene>& scene = draft.scene();
-  scene->rerun_values(ran_with_);
-  std::uint64_t defaults = scene->become_live(stage.world, live_id, stage.scene.get());
-  for (const NodeId params = scene->params(); defaults != 0; defaults &= defaults - 1)
-    set_by_scene(params, store.table(params).row(static_cast<std::uint32_t>(std::countr_zero(defaults))));
-  std::swap(stage.scene, scene);
-  description_ = draft.description();
-  script_ = draft.script();
-  sources_ = stage.scene->sources();
+  if (session.scene != nullptr) session.scene->capture_handles();
+  apply({session.world, candidate.world(), *spec_, *candidate.spec(), candidate.diff(), set_by_scene}, objects_);
+  const auto live_id = [&](NodeId id) {
+    return candidate.live_id(id, session.world, objects_.shapes, objects_.bodies);
+  };
+  std::unique_ptr<Scene>& scene = candidate.scene();
+  scene->rerun_values(rerun_values_);
+  std::uint64_t default_mask = scene->become_live(session.world, live_id, session.scene.get());
+  for (const NodeId params = scene->params(); default_mask != 0; default_mask &= default_mask - 1)
+    set_by_scene(params, store.table(params).property(static_cast<std::uint32_t>(std::countr_zero(default_mask))));
+  std::swap(session.scene, scene);
+  spec_ = candidate.spec();
+  script_preset_ = candidate.script_preset();
+  sources_ = session.scene->sources();
   if (from_disk) {
-    keep_files({});
-    stage.world.panic().end();  // the mended scene plays
-    say_mended();
-    log_info("{} was read again", stage.scene->fault().file);
+    set_files({});
+    session.world.panic().end();  // a saved file ends a panic
+    report_fixed();
+    log_info("{}: reloaded", session.scene->fault().file);
   }
-  say_kept(stage.scene->kept(), from_disk);
-  return End::applied;
+  report_timers(session.scene->carried_timers(), from_disk);
+  return ApplyResult::applied;
 }
 
-// another value of a parameter with `rerun` may come many times a second, so that alone tells of a loss only
-void Reload::say_kept(const KeptTimers& kept, bool from_disk) {
-  if (kept.ended > 0) {
+// A parameter with `rerun` may change many times a second, so such runs log losses only.
+void SceneReloader::report_timers(const CarriedTimers& timers, bool from_disk) {
+  if (timers.ended > 0) {
     log_warning("{} scheduled by the oldest run ended: a scene keeps the timers of {} runs before the last save",
-                counted(kept.ended, "timer"), EarlierRuns::kMax);
+                counted(timers.ended, "timer"), EarlierRuns::kMaxRuns);
   }
   if (!from_disk) return;
-  if (kept.timers > 0) {
-    log_info("{} set by callbacks before the save {} on{}; a reset ends {}", counted(kept.timers, "timer"),
-             kept.timers == 1 ? "goes" : "go", kept.repeating > 0 ? fmt::format(" ({} repeating)", kept.repeating) : "",
-             kept.timers == 1 ? "it" : "them");
+  if (timers.timers > 0) {
+    log_info("{} set by callbacks before the save {}{}; a reset ends {}", counted(timers.timers, "timer"),
+             timers.timers == 1 ? "continues" : "continue",
+             timers.repeating > 0 ? fmt::format(" ({} repeating)", timers.repeating) : "",
+             timers.timers == 1 ? "it" : "them");
   }
-  if (kept.handlers > 0) {
+  if (timers.handlers > 0) {
     log_warning(
         "{} registered in callbacks ended with the save (osc:on, sim:on_step, sim:on_contact); register them at "
         "the top level",
-        counted(kept.handlers, "handler"));
+        counted(timers.handlers, "handler"));
   }
 }
 
-void Reload::say_mended() {
-  for (const std::string& file : std::exchange(faulty_, {})) host_.script_error(file, 0, "");
+void SceneReloader::report_fixed() {
+  for (const std::string& file : std::exchange(files_with_errors_, {})) host_.script_error(file, 0, "");
 }
 
-void Reload::keep_files(std::vector<SourceFile> files) {
+void SceneReloader::set_files(std::vector<SourceFile> files) {
   if (sources_ != nullptr) {
-    const std::vector<SourceFile> good = sources_->files();
-    files.insert(files.end(), good.begin(), good.end());
+    const std::vector<SourceFile> files_of_last_run = sources_->files();
+    files.insert(files.end(), files_of_last_run.begin(), files_of_last_run.end());
   }
   if (files.empty() && !file_.empty()) files.push_back({file_, {}});
   const std::scoped_lock lock(files_mutex_);
   files_ = std::move(files);
 }
 
-std::vector<SourceFile> Reload::files() const {
+std::vector<SourceFile> SceneReloader::files() const {
   const std::scoped_lock lock(files_mutex_);
   return files_;
 }

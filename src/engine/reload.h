@@ -1,4 +1,5 @@
-// Reload: what the scene's last good run said, what the next one is made from, and how that one becomes the show.
+// SceneReloader: keeps the result of the scene's last successful run, makes requests for the next run, and applies that
+// run to the show.
 #pragma once
 
 #include <memory>
@@ -15,55 +16,56 @@
 
 namespace limber {
 
-class Reload {
+class SceneReloader {
  public:
-  enum class End : std::uint8_t {
+  enum class ApplyResult : std::uint8_t {
     applied,
-    failed,    ///< The run was bad: nothing was applied, the fault was told.
-    outdated,  ///< A reset came between: the draft has to be made again.
+    failed,    ///< The run failed: nothing was applied, and the error was reported.
+    outdated,  ///< There was a reset or reload since the request: a new candidate is needed.
   };
 
-  Reload(std::string file, ScriptHost& host, PerformerHand& hand);
+  SceneReloader(std::string file, ScriptHost& host, Overrides& overrides);
 
-  /// A stage whose scene, of that file, has just run well from its start, or has none: nothing else was done to it.
-  /// `tried`: what a run that failed has read. [sim]
-  void begin(const Stage& stage, const SceneOptions& options, const std::string& file,
-             std::vector<SourceFile> tried = {});
-  /// What a draft is made from now. `again`: of what the last good run has read, not of the disk. [sim]
-  DraftOrder order(const Stage& stage, bool again);
-  /// A take has ended: what scripts of later drafts may take. [sim]
-  void limit(const ScriptLimits& limits) {
+  /// Captures a session right after a successful run of the scene in `file`, or an empty session after a failed run.
+  /// `failed_files`: the files that the failed run has read. [sim]
+  void capture(const Session& session, const SceneOptions& options, const std::string& file,
+               std::vector<SourceFile> failed_files = {});
+  /// Makes a request for a candidate. `reuse_files`: run the sources of the last successful run, not the files on disk.
+  /// [sim]
+  ReloadRequest make_request(const Session& session, bool reuse_files);
+  /// Sets the script limits of later candidates, when a take has ended. [sim]
+  void set_limits(const ScriptLimits& limits) {
     options_.limits = limits;
     options_.keep_timers = true;
   }
-  /// Applies a draft that was made from such an order. [sim]
-  End take(Draft& draft, Stage& stage);
-  /// Whether a parameter with `rerun` has another value than at the last call and the last order. [sim]
-  bool take_rerun(const Stage& stage);
-  /// A fault of a script was told; it counts until its file is mended. [sim]
-  void faulty(std::string_view file) { faulty_.emplace(file); }
+  /// Applies a candidate made from a request of make_request() to the session. [sim]
+  ApplyResult apply_candidate(ReloadCandidate& candidate, Session& session);
+  /// True if a parameter with `rerun` has changed since the last call and the last request. [sim]
+  bool consume_rerun(const Session& session);
+  /// Notes that an error of this script was reported; cleared by the next successful run of the files on disk. [sim]
+  void note_error(std::string_view file) { files_with_errors_.emplace(file); }
 
-  /// Every property as the last good run describes it. [sim]
-  const std::shared_ptr<const Preset>& script() const { return script_; }
-  /// Files that the last good run depends on, and those of the last run when that failed. [any]
+  /// The values of all properties after the last successful run. [sim]
+  const std::shared_ptr<const Preset>& script_preset() const { return script_preset_; }
+  /// The files that the last successful run depends on, and those of a failed run since. [any]
   std::vector<SourceFile> files() const;
 
  private:
-  void keep_files(std::vector<SourceFile> files);
-  void say_mended();
-  static void say_kept(const KeptTimers& kept, bool from_disk);
+  void set_files(std::vector<SourceFile> files);
+  void report_fixed();
+  static void report_timers(const CarriedTimers& timers, bool from_disk);
 
   std::string file_;
   SceneOptions options_;
   ScriptHost& host_;
-  PerformerHand& hand_;
-  std::shared_ptr<const Description> description_;
-  std::shared_ptr<const Preset> script_;
+  Overrides& overrides_;
+  std::shared_ptr<const SceneSpec> spec_;
+  std::shared_ptr<const Preset> script_preset_;
   std::shared_ptr<const Sources> sources_;
-  LiveThings things_;
-  std::vector<double> ran_with_;  // values of parameters with `rerun`
-  std::vector<double> values_;    // scratch
-  std::set<std::string> faulty_;
+  LiveObjects objects_;
+  std::vector<double> rerun_values_;  // values of parameters with `rerun`
+  std::vector<double> scratch_;       // scratch
+  std::set<std::string> files_with_errors_;
 
   mutable std::mutex files_mutex_;
   std::vector<SourceFile> files_;

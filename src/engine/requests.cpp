@@ -1,9 +1,9 @@
-// One piece of work at a time; the lock is never held while it is done.
+// SimThreadExecutor: one piece of work at a time. The mutex is not held while it runs.
 #include "engine/requests.h"
 
 namespace limber {
 
-bool Requests::ask(const std::function<void()>& work, const std::function<void()>& wake) {
+bool SimThreadExecutor::run_and_wait(const std::function<void()>& work, const std::function<void()>& wake) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return work_ == nullptr || closed_; });
   if (closed_) return false;
@@ -19,7 +19,7 @@ bool Requests::ask(const std::function<void()>& work, const std::function<void()
   return false;
 }
 
-void Requests::serve() {
+void SimThreadExecutor::serve() {
   if (!waiting()) return;
   const std::function<void()>* work = nullptr;
   {
@@ -36,12 +36,12 @@ void Requests::serve() {
   changed_.notify_all();
 }
 
-void Requests::open() {
+void SimThreadExecutor::open() {
   const std::scoped_lock lock(mutex_);
   closed_ = false;
 }
 
-void Requests::close() {
+void SimThreadExecutor::close() {
   {
     const std::scoped_lock lock(mutex_);
     closed_ = true;

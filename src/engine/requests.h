@@ -1,5 +1,5 @@
-// Requests: work that another thread has the simulation do between two ticks, and whose end it waits for. The
-// simulation waits for nobody.
+// SimThreadExecutor: lets other threads run work on the simulation thread between two ticks and wait for its end. The
+// simulation thread never waits.
 #pragma once
 
 #include <atomic>
@@ -9,18 +9,18 @@
 
 namespace limber {
 
-class Requests {
+class SimThreadExecutor {
  public:
-  /// Has `work` done on the simulation's thread and waits for its end; false: the simulation has ended, nothing was
-  /// done. `wake` is called once the work can be seen. [any but sim]
-  bool ask(const std::function<void()>& work, const std::function<void()>& wake);
-  /// Whether somebody waits.
+  /// Runs `work` on the simulation thread and blocks until it is done. Calls `wake` once the work is visible to that
+  /// thread. Returns false if the simulation has ended; the work is then not done. [any but sim]
+  bool run_and_wait(const std::function<void()>& work, const std::function<void()>& wake);
+  /// True if a thread is waiting.
   bool waiting() const { return waiting_.load(std::memory_order_acquire); }
-  /// Does what is asked for. [sim]
+  /// Runs the waiting work, if any. [sim]
   void serve();
-  /// From here on somebody is served: who asks before waits for it. [sim]
+  /// Accepts requests again after close(). [sim]
   void open();
-  /// Nobody is served any more: who waits is let go. [sim]
+  /// Rejects requests from now on and releases the waiting threads. [sim]
   void close();
 
  private:

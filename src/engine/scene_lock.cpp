@@ -1,4 +1,4 @@
-// A lock on a file that has no other purpose.
+// A lock on a dedicated, empty file.
 #include "engine/scene_lock.h"
 
 #include <filesystem>
@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 std::string SceneLock::path_of(const std::string& scene) {
   std::error_code fault;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(scene, fault), fault);
-  return fault ? scene : whole.string();
+  const fs::path canonical = fs::weakly_canonical(fs::absolute(scene, fault), fault);
+  return fault ? scene : canonical.string();
 }
 
 std::string SceneLock::name_of(const std::string& scene) {
@@ -25,8 +25,8 @@ std::string SceneLock::name_of(const std::string& scene) {
   return fmt::format("{}-{:016x}", fs::path(path).stem().string(), hash_bytes(path));
 }
 
-bool SceneLock::take() {
-  if (file_.empty() || lock_.open()) return true;
+bool SceneLock::acquire() {
+  if (file_.empty() || lock_.is_open()) return true;
   std::error_code fault;
   const fs::path folder = fs::path(file_).parent_path();
   if (!fs::is_directory(folder, fault)) {
@@ -36,11 +36,11 @@ bool SceneLock::take() {
   Result<system::Descriptor> lock = system::lock_file(file_);
   if (!lock) return true;
   lock_ = std::move(*lock);
-  return lock_.open();
+  return lock_.is_open();
 }
 
 void SceneLock::release() {
-  if (!lock_.open()) return;
+  if (!lock_.is_open()) return;
   system::remove_file(file_);
   lock_ = {};
 }

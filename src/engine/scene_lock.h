@@ -1,5 +1,5 @@
-// SceneLock: of the programs that play one scene, the first owns what is kept of it from run to run. The system
-// releases the lock, however the program ends. [one thread]
+// SceneLock: ensures that of several programs that play the same scene only the first one writes the scene's persistent
+// files (presets, recovery). The operating system releases the lock even after a crash. [one thread]
 #pragma once
 
 #include <string>
@@ -11,22 +11,22 @@ namespace limber {
 
 class SceneLock {
  public:
-  /// The scene's file with its full path, links resolved.
+  /// Returns the absolute path of the scene's file, with links resolved.
   static std::string path_of(const std::string& scene);
-  /// A file name for what is kept of a scene, such as "arms-0123456789abcdef": the same for every path of its file.
+  /// Returns a base name for persistent files of a scene, such as "arms-0123456789abcdef": the same for all paths that
+  /// lead to the scene's file.
   static std::string name_of(const std::string& scene);
 
-  /// Without a file nothing is locked, and everybody owns it.
+  /// Locks nothing: acquire() always succeeds.
   SceneLock() = default;
-  /// `file`: of this user's locks; its folder is made when it is not there.
+  /// `file`: lock file, of this user; its folder is created if necessary.
   explicit SceneLock(std::string file) : file_(std::move(file)) {}
   SceneLock(SceneLock&&) = default;
   SceneLock& operator=(SceneLock&&) = delete;
   ~SceneLock() { release(); }
 
-  /// Whether this program owns it: false as long as another one does. Where the system gives no locks, everybody owns
-  /// it.
-  bool take();
+  /// Tries to acquire the lock. False while another program has it. Also true if the system can't lock files.
+  bool acquire();
   void release();
 
  private:

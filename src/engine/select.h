@@ -1,4 +1,4 @@
-// Selector: which things a message means by the names it carries: all, a body's or an element's, body and element.
+// Selector: resolves the names in the arguments of a message to objects: none, a body or an element, body and element.
 // [sim]
 #pragma once
 
@@ -12,49 +12,52 @@
 
 namespace limber {
 
-/// How many texts with near names may be made before the next tick: looking for near ones among a thousand bodies
-/// costs far more than the message, and a flood of wrong names must not hold up the tick.
+/// Limits the number of "did you mean" hints per tick: searching similar names among a thousand bodies costs far more
+/// than the message itself, and a flood of wrong names must not delay the tick.
 struct HintBudget {
   static constexpr int kPerTick = 32;
-  int left = kPerTick;
-  bool take() { return left > 0 && left-- > 0; }
+  int remaining = kPerTick;
+  bool consume() { return remaining > 0 && remaining-- > 0; }
 };
 
 class Selector {
  public:
-  /// `work` is what patterns of a message may cost; one that costs more is an error, and `out` then counts for nothing.
-  Selector(World& world, HintBudget& hints, PatternBudget& work) : world_(world), hints_(hints), work_(work) {}
+  /// `budget`: the budget of the patterns of a message. Exceeding it is an error, and the contents of `out` are
+  /// invalid.
+  Selector(World& world, HintBudget& hints, PatternBudget& budget) : world_(world), hints_(hints), budget_(budget) {}
 
-  /// `row` of all elements that `names` mean, in stream order, appended to `out`: none: every element of every body;
-  /// one: a body's, else an element's in every body; two: body and element. Patterns may stand for names.
-  Result<void> select(const Table& table, const Row& row, std::span<const Arg> names, std::vector<Place>& out) const;
+  /// Appends the property of all elements selected by `names` to `out`, in stream order. No name: every element of
+  /// every body; one: all elements of that body, or if there is no such body, the elements of that name in every body;
+  /// two: body and element. Names may be patterns.
+  Result<void> select(const PropertyTable& table, const Property& property, std::span<const Arg> names,
+                      std::vector<PropertyRef>& out) const;
 
-  /// `row` of the shapes that a name or none means.
-  Result<void> select_shapes(const Row& row, std::span<const Arg> names, std::vector<Place>& out) const;
+  /// Appends the property of the shape of that name, or of all shapes without a name.
+  Result<void> select_shapes(const Property& property, std::span<const Arg> names, std::vector<PropertyRef>& out) const;
 
-  /// A parameter's row of behaviours: of one name in every body, or `names`: body and behaviour. Those that have no
-  /// such parameter are left out, unless none has it.
-  Result<void> select_behaviors(std::span<const Arg> names, const Arg& parameter, std::vector<Place>& out) const;
+  /// Appends a parameter of behaviors. `names`: a behavior, in every body, or a body and a behavior. Behaviors without
+  /// this parameter are skipped; it is an error if none has it.
+  Result<void> select_behaviors(std::span<const Arg> names, const Arg& parameter, std::vector<PropertyRef>& out) const;
 
-  /// A name as it was sent: text, or the number that a body is called.
-  static std::string text(const Arg& name);
-  /// Whether the names mean one thing only: all `count` that it has, without a pattern.
-  static bool single(std::span<const Arg> names, std::size_t count);
+  /// Returns a name as text; bodies may be named by numbers.
+  static std::string name_text(const Arg& name);
+  /// True if the names can select one object only: all `count` names are given, and none is a pattern.
+  static bool is_single(std::span<const Arg> names, std::size_t count);
 
  private:
-  void add(const Body& body, const Table& table, const Row& row, std::string_view element,
-           std::vector<Place>& out) const;
-  Error nothing_called(std::string_view kind, std::string_view name) const;
-  Error nothing_in(std::string_view kind, std::string_view body, std::string_view element) const;
+  void add_elements(const Body& body, const PropertyTable& table, const Property& property, std::string_view element,
+                    std::vector<PropertyRef>& out) const;
+  Error no_such_name(std::string_view kind, std::string_view name) const;
+  Error no_such_element(std::string_view kind, std::string_view body, std::string_view element) const;
   Error no_parameter(const Behavior& behavior, std::string_view parameter) const;
   void add_names(const Body& body, std::string_view kind, std::vector<std::string_view>& out) const;
-  std::string hint(std::string_view written, const std::vector<std::string_view>& names) const;
+  std::string hint(std::string_view name, const std::vector<std::string_view>& names) const;
 
-  static Error too_much();
+  static Error budget_exceeded();
 
   World& world_;
   HintBudget& hints_;
-  PatternBudget& work_;
+  PatternBudget& budget_;
 };
 
 }  // namespace limber

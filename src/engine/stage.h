@@ -1,4 +1,5 @@
-// Stage: everything that one run of a scene lives in. A reset builds a new one and takes it only when it is good. [sim]
+// Session: the world, its tree nodes and the scene of one run. A reset builds a new session and installs it only if the
+// scene has run without an error. [sim]
 #pragma once
 
 #include <memory>
@@ -15,42 +16,44 @@
 
 namespace limber {
 
-struct Stage {
-  Stage(EngineLink& link, Presets& presets, Edits& edits, const WorldSetup& setup)
+struct Session {
+  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const WorldSetup& setup)
       : world(store, setup),
         transport(world, link.health),
         counters(store, link.counters),
         preset_node(world, presets),
-        edit_node(world, edits),
+        edit_node(world, undo_stack),
         take_node(world),
-        dispatch(world, &presets),
+        dispatcher(world, &presets),
         publisher(world, link.snapshots) {
-    dispatch.use(link.health);
+    dispatcher.set_health(link.health);
   }
 
-  /// Runs the scene's file; without one the world stays empty.
+  /// Runs the scene file. If `file` is empty, the world stays empty.
   Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
-    hear_faults(host);
+    report_faults_to(host);
     if (file.empty()) return {};
     scene = std::make_unique<Scene>(world, host, options);
     return scene->run(file);
   }
 
-  /// The same beside another stage that plays; begin() has it heard and compiled once that one rests. [any]
-  Result<void> run_beside(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+  /// Runs the scene file detached, while another session is live. Call make_live() to make it live. [any]
+  Result<void> run_detached(const std::string& file, ScriptHost& host, const SceneOptions& options) {
     scene = std::make_unique<Scene>(world, host, options);
-    const RunInputs none;
-    Result<void> ran = scene->run(file, &none);
+    const RunInputs no_inputs;
+    Result<void> ran = scene->run(file, &no_inputs);
     if (ran) scene->prepare();
     return ran;
   }
-  void begin(ScriptHost& host) {
-    hear_faults(host);
+  /// Makes a scene that has run detached the live one. [sim]
+  void make_live(ScriptHost& host) {
+    report_faults_to(host);
     scene->become_live(
         world, [](NodeId id) { return id; }, nullptr);
   }
 
-  void hear_faults(ScriptHost& host) {
+  /// Reports faults of behaviors to `host` as script errors.
+  void report_faults_to(ScriptHost& host) {
     world.behaviors().on_fault([&host](const Behavior& behavior) {
       const BehaviorFault& fault = behavior.fault();
       const std::string path = behavior.store().path(behavior.id());
@@ -59,8 +62,10 @@ struct Stage {
     });
   }
 
-  /// The number of one of the world's rows.
-  double world_value(std::string_view row) const { return store.values(world.id(), World::table().at(row))[0]; }
+  /// Returns the first number of a property of the world.
+  double world_value(std::string_view property) const {
+    return store.values(world.id(), World::table().at(property))[0];
+  }
 
   Store store;
   World world;
@@ -69,9 +74,9 @@ struct Stage {
   PresetNode preset_node;
   EditNode edit_node;
   TakeNode take_node;
-  Dispatch dispatch;
+  MessageDispatcher dispatcher;
   Publisher publisher;
-  std::unique_ptr<Scene> scene;  // last: it goes first
+  std::unique_ptr<Scene> scene;  // last member, because it must be destroyed first
 };
 
 }  // namespace limber

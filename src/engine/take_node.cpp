@@ -1,32 +1,33 @@
-// The rows of /take.
+// The properties of /take.
 #include "engine/take_node.h"
 
 namespace limber {
 
-const Table& TakeNode::table() {
-  using namespace rows;
-  static const Table table(
+const PropertyTable& TakeNode::table() {
+  using namespace properties;
+  static const PropertyTable table(
       "take", "/take", "",
       {
-          say<&TakeNode::say_name>(text("name", "Of the take that is recorded, or replayed; empty: there is none.")),
-          live(readout(boolean("replays", false, "It is replayed; hands have no effect then."))),
-          live(readout(integer("ticks", 0, 0, kUnbounded, "How many it has so far; of a replay: how far that is."))),
-          live(readout(integer("whole", 0, 0, kUnbounded, "How many ticks the take has that is replayed."))),
-          live(readout(boolean("plays", false, "It plays in the place of a show; /take/stop brings the hands back."))),
+          text_from<&TakeNode::read_name>(
+              text("name", "Name of the take that is being recorded or replayed; empty: none.")),
+          transient(readout(boolean("replays", false, "A take is being replayed; messages are rejected."))),
+          transient(readout(integer("ticks", 0, 0, kUnbounded, "Ticks recorded or replayed so far."))),
+          transient(readout(integer("whole", 0, 0, kUnbounded, "Number of ticks of the take that is being replayed."))),
+          transient(readout(boolean("plays", false, "A take plays in the running session; /take/stop ends it."))),
       });
   return table;
 }
 
 TakeNode::TakeNode(World& world) : world_(world), id_(world.store().add(table(), world.store().root(), "take", this)) {}
 
-void TakeNode::tell(const Told& told) {
-  if (name_ != told.name) name_ = told.name;
-  static const Row& first = table().at("replays");
-  double* const out = world_.store().tell(id_, first);  // the readouts stand in a row
-  out[0] = told.replays ? 1 : 0;
-  out[1] = static_cast<double>(told.ticks);
-  out[2] = static_cast<double>(told.whole);
-  out[3] = told.plays ? 1 : 0;
+void TakeNode::publish(const Status& status) {
+  if (name_ != status.name) name_ = status.name;
+  static const Property& first = table().at("replays");
+  double* const out = world_.store().mutable_values(id_, first);  // the readouts are contiguous
+  out[0] = status.replaying ? 1 : 0;
+  out[1] = static_cast<double>(status.ticks);
+  out[2] = static_cast<double>(status.total_ticks);
+  out[3] = status.in_session ? 1 : 0;
 }
 
 }  // namespace limber

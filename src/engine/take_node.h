@@ -1,4 +1,4 @@
-// TakeNode: what the tree tells of takes, at /take: the one that is recorded, or replayed. [sim]
+// TakeNode: publishes the state of recording and replay in the property tree, at /take. [sim]
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,23 @@ namespace limber {
 
 class TakeNode {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   explicit TakeNode(World& world);
 
-  struct Told {
-    std::string_view name;    ///< Empty: no take.
-    bool replays = false;     ///< It is replayed, not recorded.
-    std::uint64_t ticks = 0;  ///< So far.
-    std::uint64_t whole = 0;  ///< Of a replay: how many there are.
-    bool plays = false;       ///< It is replayed in the place of a show.
+  /// The take that is being recorded or replayed.
+  struct Status {
+    std::string_view name;          ///< Empty: none.
+    bool replaying = false;         ///< It is being replayed, not recorded.
+    std::uint64_t ticks = 0;        ///< Recorded or replayed so far.
+    std::uint64_t total_ticks = 0;  ///< Replay: number of ticks of the take; else 0.
+    bool in_session = false;        ///< It is being played inside a running session.
   };
-  /// Allocates nothing while the take is the same.
-  void tell(const Told& told);
+  /// Updates the properties. Doesn't allocate while the name stays the same.
+  void publish(const Status& status);
 
  private:
-  std::string_view say_name() const { return name_; }
+  std::string_view read_name() const { return name_; }
 
   World& world_;
   NodeId id_;

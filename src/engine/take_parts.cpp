@@ -1,4 +1,4 @@
-// The larger parts of a take in bytes: how it begins, ticks, lists of files, its end.
+// Encoding of the larger parts of a take: header, initial state, ticks, file lists, end.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -10,83 +10,83 @@ namespace limber {
 
 namespace {
 
-void write_map(TakeBytes& out, const std::map<std::string, std::string>& map) {
-  out.number(map.size());
+void write_map(TakeEncoder& out, const std::map<std::string, std::string>& map) {
+  out.varint(map.size());
   for (const auto& [key, value] : map) {
-    out.text(key);
-    out.text(value);
+    out.string(key);
+    out.string(value);
   }
 }
 
-void read_map(TakeScan& in, std::map<std::string, std::string>& map) {
-  for (std::size_t left = in.count(); left > 0 && !in.bad(); left--) {
-    const std::string key(in.text());
-    map[key] = in.text();
+void read_map(TakeDecoder& in, std::map<std::string, std::string>& map) {
+  for (std::size_t left = in.count(); left > 0 && !in.failed(); left--) {
+    const std::string key(in.string());
+    map[key] = in.string();
   }
 }
 
-bool read_presets(TakeScan& in, PresetList& list) {
-  Result<PresetsRead> read = presets_of(in.text());
+bool read_presets(TakeDecoder& in, PresetList& list) {
+  Result<ParsedPresets> read = parse_presets(in.string());
   if (!read || !read->problems.empty()) return false;
   list = std::move(read->presets);
   return true;
 }
 
-void write_hand(TakeBytes& out, TakeForms& forms, const TakeHand& step) {
-  out.byte(static_cast<std::uint8_t>(step.kind));
-  if (step.kind == TakeHand::Kind::blend) {
-    // one preset a text: two of a name would not stand in one
-    out.number(step.presets.size());
-    for (const auto& preset : step.presets) out.text(text_of(PresetList{preset}));
-    out.real(step.amount);
+void write_override(TakeEncoder& out, TakeMessageCodec& codec, const TakeOverride& entry) {
+  out.byte(static_cast<std::uint8_t>(entry.kind));
+  if (entry.kind == TakeOverride::Kind::blend) {
+    // each preset is a text of its own: one text can't hold two presets of the same name
+    out.varint(entry.presets.size());
+    for (const auto& preset : entry.presets) out.string(text_of(PresetList{preset}));
+    out.real(entry.amount);
   } else {
-    forms.write(out, step.message, {});
+    codec.encode(out, entry.message, {});
   }
 }
 
-bool read_hand(TakeScan& in, TakeForms& forms, TakeHand& step) {
+bool read_override(TakeDecoder& in, TakeMessageCodec& codec, TakeOverride& entry) {
   const std::uint8_t kind = in.byte();
-  if (kind > static_cast<std::uint8_t>(TakeHand::Kind::blend)) return false;
-  step.kind = static_cast<TakeHand::Kind>(kind);
-  if (step.kind != TakeHand::Kind::blend) {
+  if (kind > static_cast<std::uint8_t>(TakeOverride::Kind::blend)) return false;
+  entry.kind = static_cast<TakeOverride::Kind>(kind);
+  if (entry.kind != TakeOverride::Kind::blend) {
     TakeMessage message;
-    if (!forms.read(in, message)) return false;
-    step.message = std::move(message.message);
+    if (!codec.decode(in, message)) return false;
+    entry.message = std::move(message.message);
     return true;
   }
   for (std::size_t left = in.count(); left > 0; left--) {
-    PresetList one;
-    if (in.bad() || !read_presets(in, one) || one.size() != 1) return false;
-    step.presets.push_back(one.front());
+    PresetList single;
+    if (in.failed() || !read_presets(in, single) || single.size() != 1) return false;
+    entry.presets.push_back(single.front());
   }
-  step.amount = in.real();
-  return step.presets.size() == 1 || step.presets.size() == 2;
+  entry.amount = in.real();
+  return entry.presets.size() == 1 || entry.presets.size() == 2;
 }
 
-bool read_runs(TakeScan& in, std::vector<TakeRun>& runs) {
-  for (std::size_t left = in.count(); left > 0 && !in.bad(); left--) {
-    TakeRun run;
+bool read_runs(TakeDecoder& in, std::vector<TakeSceneRun>& runs) {
+  for (std::size_t left = in.count(); left > 0 && !in.failed(); left--) {
+    TakeSceneRun run;
     const std::uint8_t kind = in.byte();
-    if (kind > static_cast<std::uint8_t>(TakeRun::Kind::scene)) return false;
-    run.kind = static_cast<TakeRun::Kind>(kind);
+    if (kind > static_cast<std::uint8_t>(TakeSceneRun::Kind::scene)) return false;
+    run.kind = static_cast<TakeSceneRun::Kind>(kind);
     const std::uint8_t flags = in.byte();
-    run.good = (flags & 1u) != 0;
-    run.again = (flags & 2u) != 0;
-    run.files = static_cast<std::uint32_t>(in.number());
-    run.scene = in.text();
+    run.succeeded = (flags & 1u) != 0;
+    run.reuses_files = (flags & 2u) != 0;
+    run.files = static_cast<std::uint32_t>(in.varint());
+    run.scene = in.string();
     runs.push_back(std::move(run));
   }
   return true;
 }
 
-// over those that are in the list, and their memory
-bool read_messages(TakeScan& in, TakeForms& forms, bool there, std::vector<TakeMessage>& messages) {
-  const std::size_t count = there ? in.count() : 0;
+// Overwrites the elements of `messages` in place, to reuse their memory.
+bool read_messages(TakeDecoder& in, TakeMessageCodec& codec, bool present, std::vector<TakeMessage>& messages) {
+  const std::size_t count = present ? in.count() : 0;
   for (std::size_t i = 0; i < count; i++) {
     if (i == messages.size()) messages.emplace_back();
     TakeMessage& message = messages[i];
-    if (!forms.read(in, message)) return false;
-    // no message has an empty address: a text of a console comes as its one argument
+    if (!codec.decode(in, message)) return false;
+    // an empty address marks console input, with the Lua code as its only argument
     message.evaluate = message.message.address.empty() && message.message.args.size() == 1;
     if (!message.evaluate) continue;
     message.message.address = std::move(message.message.args[0].text);
@@ -96,7 +96,7 @@ bool read_messages(TakeScan& in, TakeForms& forms, bool there, std::vector<TakeM
   return true;
 }
 
-// which parts of a tick follow: most have none
+// flags of a tick: the parts that follow; most ticks have none
 constexpr std::uint8_t kRunning = 1, kRuns = 2, kMessages = 4, kStopped = 8, kState = 16, kBodies = 32;
 
 }  // namespace
@@ -110,28 +110,28 @@ std::optional<TakeEvent> event_of(const Message& message) {
   if (!message.args[0].is_numeric() || !message.args[1].is_numeric()) return std::nullopt;
   const double value = message.args[1].number;
   if (!(value >= 0 && value <= 1e9)) return std::nullopt;
-  for (const auto kind : {TakeEvent::Kind::panic_settled, TakeEvent::Kind::heard}) {
+  for (const auto kind : {TakeEvent::Kind::panic_settled, TakeEvent::Kind::messages_handled}) {
     if (message.args[0].number == static_cast<double>(kind)) return TakeEvent{kind, static_cast<std::uint64_t>(value)};
   }
   return std::nullopt;
 }
 
-std::string head_text(const TakeHeader& header) {
+std::string header_text(const TakeHeader& header) {
   const nlohmann::ordered_json json = {{"version", header.version},
                                        {"limber", header.limber},
                                        {"scene", header.scene},
                                        {"recorded", header.recorded},
                                        {"rules", header.rules}};
   using Json = nlohmann::ordered_json;
-  return fmt::format("{}{}\n{}\n", kTakeHead, header.version,
+  return fmt::format("{}{}\n{}\n", kTakeMagic, header.version,
                      json.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 Result<TakeHeader> header_of(std::string_view first_line, std::string_view second_line) {
-  const std::string_view head = kTakeHead;
-  if (!first_line.starts_with(head)) return Error{"this is no take of Limber"};
+  const std::string_view head = kTakeMagic;
+  if (!first_line.starts_with(head)) return Error{"this is not a take of Limber"};
   const auto version = parse_number(first_line.substr(head.size()));
-  if (!version || !(*version >= 1)) return Error{"this is no take of Limber"};
+  if (!version || !(*version >= 1)) return Error{"this is not a take of Limber"};
   if (*version > kTakeVersion) {
     return Error{
         fmt::format("this take has version {}, of a newer Limber; this one reads up to {}", *version, kTakeVersion)};
@@ -152,170 +152,171 @@ Result<TakeHeader> header_of(std::string_view first_line, std::string_view secon
   return header;
 }
 
-std::string text_of(const TakeBegin& begin) {
+std::string text_of(const TakeInitialState& initial_state) {
   std::string text;
-  TakeBytes out(text);
-  TakeForms forms;
-  out.byte(begin.reset ? 1 : 0);
-  out.text(begin.scene);
-  out.byte(begin.seed ? 1 : 0);
-  out.word(begin.seed.value_or(0), 8);
-  out.number(begin.package_paths.size());
-  for (const std::string& path : begin.package_paths) out.text(path);
-  out.text(begin.preset);
-  out.number(begin.sets.size());
-  for (const Message& set : begin.sets) forms.write(out, set, {});
-  out.word(begin.world_seed, 8);
-  out.word(begin.scene_seed, 8);
-  out.byte(begin.paused ? 1 : 0);
-  out.real(begin.speed);
-  out.text(begin.preset_file);
-  out.text(text_of(begin.presets));
-  out.number(begin.hand.size());
-  for (const TakeHand& step : begin.hand) write_hand(out, forms, step);
-  if (!begin.recovered.empty()) out.text(text_of(begin.recovered));
+  TakeEncoder out(text);
+  TakeMessageCodec codec;
+  out.byte(initial_state.reset ? 1 : 0);
+  out.string(initial_state.scene);
+  out.byte(initial_state.seed ? 1 : 0);
+  out.fixed_int(initial_state.seed.value_or(0), 8);
+  out.varint(initial_state.package_paths.size());
+  for (const std::string& path : initial_state.package_paths) out.string(path);
+  out.string(initial_state.preset);
+  out.varint(initial_state.sets.size());
+  for (const Message& set : initial_state.sets) codec.encode(out, set, {});
+  out.fixed_int(initial_state.world_seed, 8);
+  out.fixed_int(initial_state.scene_seed, 8);
+  out.byte(initial_state.paused ? 1 : 0);
+  out.real(initial_state.speed);
+  out.string(initial_state.preset_file);
+  out.string(text_of(initial_state.presets));
+  out.varint(initial_state.overrides.size());
+  for (const TakeOverride& step : initial_state.overrides) write_override(out, codec, step);
+  if (!initial_state.recovered.empty()) out.string(text_of(initial_state.recovered));
   return text;
 }
 
-bool read_begin(std::string_view bytes, TakeBegin& begin) {
-  TakeScan in(bytes);
-  TakeForms forms;
-  begin.reset = in.byte() != 0;
-  begin.scene = in.text();
+bool read_initial_state(std::string_view bytes, TakeInitialState& state) {
+  TakeDecoder in(bytes);
+  TakeMessageCodec codec;
+  state.reset = in.byte() != 0;
+  state.scene = in.string();
   const bool seeded = in.byte() != 0;
-  if (const std::uint64_t seed = in.word(8); seeded) begin.seed = seed;
-  for (std::size_t left = in.count(); left > 0 && !in.bad(); left--) begin.package_paths.emplace_back(in.text());
-  begin.preset = in.text();
+  if (const std::uint64_t seed = in.fixed_int(8); seeded) state.seed = seed;
+  for (std::size_t left = in.count(); left > 0 && !in.failed(); left--) state.package_paths.emplace_back(in.string());
+  state.preset = in.string();
   for (std::size_t left = in.count(); left > 0; left--) {
     TakeMessage set;
-    if (!forms.read(in, set)) return false;
-    begin.sets.push_back(std::move(set.message));
+    if (!codec.decode(in, set)) return false;
+    state.sets.push_back(std::move(set.message));
   }
-  begin.world_seed = in.word(8);
-  begin.scene_seed = in.word(8);
-  begin.paused = in.byte() != 0;
-  begin.speed = in.real();
-  begin.preset_file = in.text();
-  if (in.bad() || !read_presets(in, begin.presets)) return false;
+  state.world_seed = in.fixed_int(8);
+  state.scene_seed = in.fixed_int(8);
+  state.paused = in.byte() != 0;
+  state.speed = in.real();
+  state.preset_file = in.string();
+  if (in.failed() || !read_presets(in, state.presets)) return false;
   for (std::size_t left = in.count(); left > 0; left--) {
-    if (!read_hand(in, forms, begin.hand.emplace_back())) return false;
+    if (!read_override(in, codec, state.overrides.emplace_back())) return false;
   }
-  return in.done() || (!in.bad() && read_presets(in, begin.recovered) && in.done());
+  return in.at_end() || (!in.failed() && read_presets(in, state.recovered) && in.at_end());
 }
 
 void append_tick(std::string& text, const TakeTick& tick, std::size_t message_count, std::string_view messages) {
-  TakeBytes out(text);
-  const auto flag = [](bool there, std::uint8_t bit) { return there ? bit : std::uint8_t{0}; };
+  TakeEncoder out(text);
+  const auto flag = [](bool present, std::uint8_t bit) { return present ? bit : std::uint8_t{0}; };
   out.byte(static_cast<std::uint8_t>(flag(tick.running, kRunning) | flag(!tick.runs.empty(), kRuns) |
-                                     flag(message_count > 0, kMessages) | flag(!tick.stopped.empty(), kStopped) |
-                                     flag(tick.state.has_value(), kState) | flag(!tick.bodies.empty(), kBodies)));
+                                     flag(message_count > 0, kMessages) | flag(!tick.stopped_calls.empty(), kStopped) |
+                                     flag(tick.state_hash.has_value(), kState) |
+                                     flag(!tick.body_hashes.empty(), kBodies)));
   if (!tick.runs.empty()) {
-    out.number(tick.runs.size());
-    for (const TakeRun& run : tick.runs) {
+    out.varint(tick.runs.size());
+    for (const TakeSceneRun& run : tick.runs) {
       out.byte(static_cast<std::uint8_t>(run.kind));
-      out.byte(static_cast<std::uint8_t>((run.good ? 1u : 0u) | (run.again ? 2u : 0u)));
-      out.number(run.files);
-      out.text(run.scene);
+      out.byte(static_cast<std::uint8_t>((run.succeeded ? 1u : 0u) | (run.reuses_files ? 2u : 0u)));
+      out.varint(run.files);
+      out.string(run.scene);
     }
   }
   if (message_count > 0) {
-    out.number(message_count);
+    out.varint(message_count);
     text.append(messages);
   }
-  if (!tick.stopped.empty()) {
-    out.number(tick.stopped.size());
-    for (const StoppedCall& stop : tick.stopped) {
-      out.number(stop.number);
-      out.text(stop.file);
-      out.number(static_cast<std::uint64_t>(stop.line));
-      out.text(stop.text);
+  if (!tick.stopped_calls.empty()) {
+    out.varint(tick.stopped_calls.size());
+    for (const StoppedCall& stop : tick.stopped_calls) {
+      out.varint(stop.number);
+      out.string(stop.file);
+      out.varint(static_cast<std::uint64_t>(stop.line));
+      out.string(stop.text);
     }
   }
-  out.number(tick.tick);
-  out.word(tick.motion, 8);
-  if (tick.state) out.word(*tick.state, 8);
-  if (tick.bodies.empty()) return;
-  out.number(tick.first_body);
-  out.number(tick.bodies.size());
-  for (const std::uint16_t body : tick.bodies) out.word(body, 2);
+  out.varint(tick.tick);
+  out.fixed_int(tick.motion_hash, 8);
+  if (tick.state_hash) out.fixed_int(*tick.state_hash, 8);
+  if (tick.body_hashes.empty()) return;
+  out.varint(tick.first_body);
+  out.varint(tick.body_hashes.size());
+  for (const std::uint16_t body : tick.body_hashes) out.fixed_int(body, 2);
 }
 
-bool tick_runs(std::uint8_t first_byte) { return (first_byte & kRunning) != 0; }
+bool advances_time(std::uint8_t first_byte) { return (first_byte & kRunning) != 0; }
 
-bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick) {
-  TakeScan in(bytes);
+bool read_tick(std::string_view bytes, TakeMessageCodec& codec, TakeTick& tick) {
+  TakeDecoder in(bytes);
   const std::uint8_t parts = in.byte();
   tick.running = (parts & kRunning) != 0;
   tick.runs.clear();
   if ((parts & kRuns) != 0 && !read_runs(in, tick.runs)) return false;
-  if (!read_messages(in, forms, (parts & kMessages) != 0, tick.messages)) return false;
-  tick.stopped.clear();
-  for (std::size_t left = (parts & kStopped) != 0 ? in.count() : 0; left > 0 && !in.bad(); left--) {
+  if (!read_messages(in, codec, (parts & kMessages) != 0, tick.messages)) return false;
+  tick.stopped_calls.clear();
+  for (std::size_t left = (parts & kStopped) != 0 ? in.count() : 0; left > 0 && !in.failed(); left--) {
     StoppedCall stop;
-    stop.number = in.number();
-    stop.file = in.text();
-    stop.line = static_cast<int>(in.number() & 0x7fffffffu);
-    stop.text = in.text();
-    tick.stopped.push_back(std::move(stop));
+    stop.number = in.varint();
+    stop.file = in.string();
+    stop.line = static_cast<int>(in.varint() & 0x7fffffffu);
+    stop.text = in.string();
+    tick.stopped_calls.push_back(std::move(stop));
   }
-  tick.tick = in.number();
-  tick.motion = in.word(8);
-  tick.state.reset();
-  if ((parts & kState) != 0) tick.state = in.word(8);
+  tick.tick = in.varint();
+  tick.motion_hash = in.fixed_int(8);
+  tick.state_hash.reset();
+  if ((parts & kState) != 0) tick.state_hash = in.fixed_int(8);
   tick.first_body = 0;
-  tick.bodies.clear();
+  tick.body_hashes.clear();
   if ((parts & kBodies) != 0) {
-    tick.first_body = static_cast<std::uint32_t>(in.number());
-    for (std::size_t left = in.count(); left > 0 && !in.bad(); left--)
-      tick.bodies.push_back(static_cast<std::uint16_t>(in.word(2)));
+    tick.first_body = static_cast<std::uint32_t>(in.varint());
+    for (std::size_t left = in.count(); left > 0 && !in.failed(); left--)
+      tick.body_hashes.push_back(static_cast<std::uint16_t>(in.fixed_int(2)));
   }
-  return in.done();
+  return in.at_end();
 }
 
 std::string text_of(const TakeEnd& end) {
   std::string text;
-  TakeBytes out(text);
-  out.number(end.tick);
-  out.word(end.state, 8);
+  TakeEncoder out(text);
+  out.varint(end.tick);
+  out.fixed_int(end.state_hash, 8);
   return text;
 }
 
 bool read_end(std::string_view bytes, TakeEnd& end) {
-  TakeScan in(bytes);
-  end.tick = in.number();
-  end.state = in.word(8);
-  return in.done();
+  TakeDecoder in(bytes);
+  end.tick = in.varint();
+  end.state_hash = in.fixed_int(8);
+  return in.at_end();
 }
 
 std::string text_of(const TakeFileList& list) {
   std::string text;
-  TakeBytes out(text);
+  TakeEncoder out(text);
   write_map(out, list.found);
   write_map(out, list.meshes);
-  out.number(list.files.size());
+  out.varint(list.files.size());
   for (const auto& [path, content] : list.files) {
-    out.text(path);
-    out.number(content);
+    out.string(path);
+    out.varint(content);
   }
   out.byte(list.has_presets ? 1 : 0);
-  out.text(list.preset_file);
-  out.text(list.presets);
+  out.string(list.preset_file);
+  out.string(list.presets);
   return text;
 }
 
 bool read_files(std::string_view bytes, TakeFileList& list) {
-  TakeScan in(bytes);
+  TakeDecoder in(bytes);
   read_map(in, list.found);
   read_map(in, list.meshes);
-  for (std::size_t left = in.count(); left > 0 && !in.bad(); left--) {
-    std::string path(in.text());
-    const std::uint64_t content = in.number();
+  for (std::size_t left = in.count(); left > 0 && !in.failed(); left--) {
+    std::string path(in.string());
+    const std::uint64_t content = in.varint();
     list.files.emplace_back(std::move(path), static_cast<std::uint32_t>(content));
   }
   list.has_presets = in.byte() != 0;
-  list.preset_file = in.text();
-  list.presets = in.text();
-  return in.done();
+  list.preset_file = in.string();
+  list.presets = in.string();
+  return in.at_end();
 }
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// TakePlayer: gives an engine what a take holds, tick by tick, and compares what comes of it. [sim]
+// TakePlayer: supplies an engine with the inputs of a take, tick by tick, and compares the resulting hashes with the
+// recorded ones. [sim]
 #pragma once
 
 #include <array>
@@ -15,78 +16,88 @@
 
 namespace limber {
 
-/// What a replay found.
-struct TakeVerdict {
-  std::uint64_t ticks = 0;              ///< Replayed.
-  std::optional<std::uint64_t> parted;  ///< The first tick whose hash is another one.
-  std::string body;                     ///< The first body that moves otherwise, where one was found.
-  std::string damage;                   ///< What is wrong in the file behind the last tick.
-  bool cut_off = false;                 ///< The take has no end.
-  bool compared = true;                 ///< False: it is of a version with other hashes.
-  std::string recorded_by;              ///< Which Limber.
+/// Result of a replay.
+struct ReplayResult {
+  std::uint64_t ticks = 0;                   ///< Number of ticks that were replayed.
+  std::optional<std::uint64_t> diverged_at;  ///< The first tick with a different hash.
+  std::string diverged_body;  ///< Name of the first body that moves differently; empty if none was found.
+  std::string damage;         ///< Corruption of the file after the last tick; empty: none.
+  bool truncated = false;     ///< The file has no end frame: the recording was interrupted.
+  bool compared = true;       ///< False: the format version has different hashes, so nothing was compared.
+  std::string recorded_by;    ///< Version of Limber that recorded the take.
 };
 
 class TakePlayer {
  public:
-  /// `current_scripts`: the scene and its files are read from the disk as they are now.
+  /// Opens a take. `current_scripts`: the scene and its files are read from the disk instead of from the take.
   static Result<std::unique_ptr<TakePlayer>> open(const std::string& path, bool current_scripts);
 
-  const TakeBegin& begin() const { return reader_->begin(); }
-  bool current_scripts() const { return current_; }
-  /// Whether saves kept timers when it was recorded.
-  bool keeps_timers() const { return reader_->header().version >= kTakeKeepsTimers; }
+  const TakeInitialState& initial_state() const { return reader_->initial_state(); }
+  bool current_scripts() const { return current_scripts_; }
+  /// True if reloads kept timers when the take was recorded.
+  bool keeps_timers() const { return reader_->header().version >= kFirstTakeVersionKeepingTimers; }
   /// See kTakeRules.
   int rules() const { return reader_->header().rules; }
-  /// Goes on to the next tick; false: there is none, or the runs have parted and nothing more is to be found out.
+  /// Advances to the next tick. False at the end of the take, and once the replay has diverged and the first differing
+  /// body is known (or can't be found any more).
   bool next();
-  /// Whether time goes on in the tick that next() will bring.
-  bool steps_next() const { return ahead() && ahead_[ahead_at_].running; }
-  bool over() const { return over_; }
+  /// True if simulated time advances in the next tick of the take.
+  bool steps_next() const { return has_more() && ahead_[ahead_at_].running; }
+  /// True once next() has returned false.
+  bool finished() const { return finished_; }
   const TakeTick& tick() const { return tick_; }
-  /// The tick's, for who carries them out and may change them.
+  /// The messages of the tick; the caller may modify them while executing them.
   std::span<TakeMessage> messages() { return tick_.messages; }
-  /// The tick's calls that are stopped again; none where the runs may part.
-  std::vector<StoppedCall> stopped() const { return current_ ? std::vector<StoppedCall>() : tick_.stopped; }
-  /// Ticks replayed so far, and those of the whole take; where time stood still does not count.
-  std::uint64_t ticks() const { return found_.ticks; }
-  std::uint64_t whole() const { return whole_; }
+  /// The calls of the tick that must be stopped as in the recording; none with `current_scripts`, where calls may
+  /// differ.
+  std::vector<StoppedCall> stopped_calls() const {
+    return current_scripts_ ? std::vector<StoppedCall>() : tick_.stopped_calls;
+  }
+  /// Number of ticks replayed so far; passes while paused are not counted.
+  std::uint64_t ticks() const { return result_.ticks; }
+  /// Number of ticks of the whole take.
+  std::uint64_t total_ticks() const { return total_ticks_; }
 
-  /// The tick's next run, when it is one of that kind; null: it is none.
-  const TakeRun* take_run(TakeRun::Kind kind);
-  bool comes(TakeRun::Kind kind) const { return next_run_ < tick_.runs.size() && tick_.runs[next_run_].kind == kind; }
-  /// The tick's next run, when it was asked for from outside.
-  const TakeRun* run_from_outside() const;
-  std::shared_ptr<const Sources> sources(const TakeRun& run) { return reader_->sources(run.files); }
-  std::optional<TakeReader::PresetBook> presets(const TakeRun& run) const { return reader_->presets(run.files); }
+  /// Returns the next run of the scene in this tick and advances to the following one; null if the next run is of
+  /// another kind or there is none.
+  const TakeSceneRun* consume_run(TakeSceneRun::Kind kind);
+  bool next_run_is(TakeSceneRun::Kind kind) const {
+    return next_run_ < tick_.runs.size() && tick_.runs[next_run_].kind == kind;
+  }
+  /// Returns the next run of this tick if it was requested from outside, else null.
+  const TakeSceneRun* next_external_run() const;
+  std::shared_ptr<const Sources> sources(const TakeSceneRun& run) { return reader_->sources(run.files); }
+  std::optional<TakeReader::PresetBank> presets(const TakeSceneRun& run) const { return reader_->presets(run.files); }
 
-  /// After the tick.
-  void compare(World& world, const CallLedger& calls, const std::function<std::uint64_t()>& state_hash);
-  TakeVerdict verdict() const;
+  /// Compares the state after the tick with the recorded hashes.
+  void compare(World& world, const CallLog& calls, const std::function<std::uint64_t()>& state_hash);
+  ReplayResult result() const;
 
  private:
-  TakePlayer(std::unique_ptr<TakeReader> reader, bool current) : reader_(std::move(reader)), current_(current) {}
+  TakePlayer(std::unique_ptr<TakeReader> reader, bool current_scripts)
+      : reader_(std::move(reader)), current_scripts_(current_scripts) {}
   void read_ahead();
-  /// The take has more than the present tick.
-  bool ahead() const { return ahead_at_ < ahead_end_; }
-  /// Its hashes are made as ours.
-  bool comparable() const { return reader_->header().version >= kTakeComparable; }
-  void find_body(World& world);
-  bool ends_well(const std::function<std::uint64_t()>& state_hash) const;
+  /// True if the take has ticks after the current one.
+  bool has_more() const { return ahead_at_ < ahead_end_; }
+  /// True if this version computes hashes in the same way.
+  bool comparable() const { return reader_->header().version >= kFirstComparableTakeVersion; }
+  void find_diverged_body(World& world);
+  bool end_matches(const std::function<std::uint64_t()>& state_hash) const;
 
   std::unique_ptr<TakeReader> reader_;
-  bool current_;
-  bool over_ = false;
+  bool current_scripts_;
+  bool finished_ = false;
   TakeTick tick_;
-  // several are read at once, while what reading them takes is near
+  // a batch of ticks is read at once, for locality of the code and data of the reader
   std::array<TakeTick, 16> ahead_;
   std::size_t ahead_at_ = 0, ahead_end_ = 0;
   std::size_t next_run_ = 0;
-  std::uint64_t whole_ = 0;
-  TakeVerdict found_;
-  std::size_t looking_ = 0;  // ticks in which a body may still be found
+  std::uint64_t total_ticks_ = 0;
+  ReplayResult result_;
+  std::size_t search_ticks_ = 0;  // ticks left to search for the body that diverged
 };
 
-/// "replayed 600 ticks: every hash is the take's", or where it is not.
-std::string text_of(const TakeVerdict& verdict);
+/// Describes a result, such as "replayed 600 ticks: all hashes match the take".
+std::string text_of(const ReplayResult& result);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Frame by frame; the first that is not whole ends the take.
+// Reads frame by frame; the first incomplete or corrupt frame ends the take.
 #include "engine/take_reader.h"
 
 #include <algorithm>
@@ -15,12 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostLine = 65536;  // of the head
+constexpr std::size_t kMaxLine = 65536;  // longest line of the header, in bytes
 
-// up to the line's end, which is left out; false: there is none
+// Reads up to the end of the line, which is not included. False if there is none.
 bool read_line(std::istream& in, std::string& line) {
   line.clear();
-  for (int c = in.get(); c != std::istream::traits_type::eof() && line.size() < kMostLine; c = in.get()) {
+  for (int c = in.get(); c != std::istream::traits_type::eof() && line.size() < kMaxLine; c = in.get()) {
     if (c == '\n') return true;
     line.push_back(static_cast<char>(c));
   }
@@ -32,13 +32,13 @@ bool read_line(std::istream& in, std::string& line) {
 Result<std::unique_ptr<TakeReader>> TakeReader::open(const std::string& path) {
   std::error_code fault;
   if (!std::filesystem::is_regular_file(path, fault))
-    return Error{fmt::format("{}: there is no such take; give the path of the file", printable(path))};
+    return Error{fmt::format("{}: take not found; give the path of the file", printable(path))};
   auto in = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (!*in) return Error{fmt::format("{}: it can't be read; look at its permissions", printable(path))};
-  return of(std::move(in), path);
+  if (!*in) return Error{fmt::format("{}: it can't be read; check its permissions", printable(path))};
+  return from_stream(std::move(in), path);
 }
 
-Result<std::unique_ptr<TakeReader>> TakeReader::of(std::unique_ptr<std::istream> in, const std::string& name) {
+Result<std::unique_ptr<TakeReader>> TakeReader::from_stream(std::unique_ptr<std::istream> in, const std::string& name) {
   std::unique_ptr<TakeReader> reader(new TakeReader(name));
   reader->in_ = std::move(in);
   reader->in_->seekg(0, std::ios::end);
@@ -52,11 +52,11 @@ Result<std::unique_ptr<TakeReader>> TakeReader::of(std::unique_ptr<std::istream>
 Result<void> TakeReader::read_head() {
   std::string first;
   std::string second;
-  const bool whole = read_line(*in_, first) && read_line(*in_, second);
-  // a file of something else may have no lines at all
-  if (!first.starts_with(std::string_view(kTakeHead).substr(0, first.size())) || first.empty())
-    return Error{"this is no take of Limber"};
-  if (!whole) return Error{"the take was cut off before it began; nothing of it can be played"};
+  const bool complete = read_line(*in_, first) && read_line(*in_, second);
+  // a file of another format may have no line ends
+  if (!first.starts_with(std::string_view(kTakeMagic).substr(0, first.size())) || first.empty())
+    return Error{"this is not a take of Limber"};
+  if (!complete) return Error{"the take was cut off before it began; nothing of it can be played"};
   Result<TakeHeader> header = header_of(first, second);
   if (!header) return Error{header.error()};
   header_ = std::move(*header);
@@ -64,16 +64,16 @@ Result<void> TakeReader::read_head() {
   const std::optional<TakeFrame> kind = frame();
   if (!kind && damage_.empty()) return Error{"the take was cut off before it began; nothing of it can be played"};
   if (!kind) return Error{damage_};
-  if (*kind != TakeFrame::begin || !read_begin(payload_, begin_))
+  if (*kind != TakeFrame::begin || !read_initial_state(payload_, initial_state_))
     return Error{"the take's beginning is damaged; nothing of it can be played"};
   return {};
 }
 
-void TakeReader::damaged(const std::string& what) {
-  damage_ = fmt::format("damaged at byte {}: {}; what comes before is good", position_, what);
+void TakeReader::set_damage(const std::string& description) {
+  damage_ = fmt::format("damaged at byte {}: {}; the part before it is valid", position_, description);
 }
 
-bool TakeReader::bytes(std::size_t count, std::string& out) {
+bool TakeReader::read_bytes(std::size_t count, std::string& out) {
   out.resize(count);
   return static_cast<bool>(in_->read(out.data(), static_cast<std::streamsize>(count)));
 }
@@ -88,13 +88,13 @@ std::optional<TakeReader::FrameHead> TakeReader::frame_head() {
     if (c == std::istream::traits_type::eof()) return {};
     length |= static_cast<std::uint64_t>(c & 0x7f) << shift;
     if ((c & 0x80) == 0) break;
-    if (shift >= 56) return damaged("no frame is that long"), std::nullopt;
+    if (shift >= 56) return set_damage("invalid length of a frame"), std::nullopt;
   }
   read += 1;
-  // one that the file's end cuts off is no damage
+  // a frame that is truncated by the end of the file is no corruption
   if (length > size_ || position_ + read + length + 4 > size_) {
     const std::string_view kinds = "cfbte";
-    if (kinds.find(static_cast<char>(first)) == kinds.npos) damaged("no frame begins like this");
+    if (kinds.find(static_cast<char>(first)) == kinds.npos) set_damage("invalid start of a frame");
     return {};
   }
   return FrameHead{first, length, read};
@@ -103,24 +103,25 @@ std::optional<TakeReader::FrameHead> TakeReader::frame_head() {
 std::optional<TakeFrame> TakeReader::frame() {
   const std::optional<FrameHead> head = frame_head();
   if (!head) return {};
-  std::string check;
-  if (!bytes(static_cast<std::size_t>(head->length), payload_) || !bytes(4, check)) return {};
+  std::string checksum;
+  if (!read_bytes(static_cast<std::size_t>(head->length), payload_) || !read_bytes(4, checksum)) return {};
   const auto kind = static_cast<TakeFrame>(head->kind);
-  if (TakeScan(check).word(4) != frame_check(kind, payload_)) return damaged("a checksum is wrong"), std::nullopt;
+  if (TakeDecoder(checksum).fixed_int(4) != frame_checksum(kind, payload_))
+    return set_damage("wrong checksum"), std::nullopt;
   position_ += head->bytes + head->length + 4;
   return kind;
 }
 
 bool TakeReader::next(TakeTick& tick) {
-  while (!over_) {
+  while (!at_end_) {
     const std::uint64_t before = position_;
     const std::optional<TakeFrame> kind = frame();
-    if (kind && !take_frame(*kind, tick)) {
+    if (kind && !decode_frame(*kind, tick)) {
       position_ = before;
-      damaged("a frame has no meaning");
+      set_damage("invalid content of a frame");
     }
-    over_ = !kind || end_ || !damage_.empty();
-    if (!over_ && *kind == TakeFrame::tick) return true;
+    at_end_ = !kind || end_ || !damage_.empty();
+    if (!at_end_ && *kind == TakeFrame::tick) return true;
   }
   return false;
 }
@@ -129,18 +130,18 @@ std::uint64_t TakeReader::count_ticks() {
   std::uint64_t count = 0;
   while (const std::optional<FrameHead> head = frame_head()) {
     const bool tick = static_cast<TakeFrame>(head->kind) == TakeFrame::tick && head->length > 0;
-    if (tick && tick_runs(static_cast<std::uint8_t>(in_->get()))) count++;
+    if (tick && advances_time(static_cast<std::uint8_t>(in_->get()))) count++;
     in_->ignore(static_cast<std::streamsize>(head->length + 4 - (tick ? 1 : 0)));
     position_ += head->bytes + head->length + 4;
   }
   return count;
 }
 
-bool TakeReader::take_frame(TakeFrame kind, TakeTick& tick) {
+bool TakeReader::decode_frame(TakeFrame kind, TakeTick& tick) {
   if (kind == TakeFrame::tick) {
-    if (!read_tick(payload_, forms_, tick)) return false;
-    for (const TakeRun& run : tick.runs) {
-      if (run.files > lists_.size()) return false;
+    if (!read_tick(payload_, codec_, tick)) return false;
+    for (const TakeSceneRun& run : tick.runs) {
+      if (run.files > file_lists_.size()) return false;
     }
     return true;
   }
@@ -154,7 +155,7 @@ bool TakeReader::take_frame(TakeFrame kind, TakeTick& tick) {
     for (const auto& [path, content] : list.files) {
       if (content > contents_.size()) return false;
     }
-    lists_.push_back(std::move(list));
+    file_lists_.push_back(std::move(list));
     return true;
   }
   if (kind != TakeFrame::end) return false;
@@ -169,37 +170,37 @@ std::size_t TakeReader::content_size(std::uint32_t content) const {
 }
 
 std::shared_ptr<const Sources> TakeReader::sources(std::uint32_t files) {
-  if (files == 0 || files > lists_.size()) return nullptr;
-  sources_.resize(lists_.size());
-  std::shared_ptr<const Sources>& made = sources_[files - 1];
-  if (made != nullptr) return made;
-  const TakeFileList& list = lists_[files - 1];
-  // runs of the same files share them, and what was made of them
+  if (files == 0 || files > file_lists_.size()) return nullptr;
+  sources_.resize(file_lists_.size());
+  std::shared_ptr<const Sources>& sources = sources_[files - 1];
+  if (sources != nullptr) return sources;
+  const TakeFileList& list = file_lists_[files - 1];
+  // runs with the same files share the sources and the models that were built from them
   for (std::size_t i = 0; i < sources_.size(); i++) {
-    if (sources_[i] != nullptr && lists_[i] == list) return made = sources_[i];
+    if (sources_[i] != nullptr && file_lists_[i] == list) return sources = sources_[i];
   }
   auto set = std::make_shared<FileSet>();
-  set->found = list.meshes;
+  set->mesh_paths = list.meshes;
   for (const auto& [path, content] : list.files) {
     if (content != 0) set->contents[path] = contents_[content - 1];
   }
-  // a reload tells a model that changed by its being another one
-  TakeFileList of_models{{}, list.meshes, {}, false, "", ""};
+  // a reload detects a changed model by its identity: share the library if no model and no mesh has changed
+  TakeFileList models{{}, list.meshes, {}, false, "", ""};
   for (const auto& file : list.files) {
-    if (!file.first.ends_with(".lua")) of_models.files.push_back(file);
+    if (!file.first.ends_with(".lua")) models.files.push_back(file);
   }
-  std::shared_ptr<ModelLibrary>& library = libraries_[text_of(of_models)];
+  std::shared_ptr<ModelLibrary>& library = libraries_[text_of(models)];
   if (library == nullptr) library = std::make_shared<ModelLibrary>(set);
-  made = std::make_shared<const Sources>(list.found, set, library);
-  return made;
+  sources = std::make_shared<const Sources>(list.found, set, library);
+  return sources;
 }
 
-std::optional<TakeReader::PresetBook> TakeReader::presets(std::uint32_t files) const {
-  if (files == 0 || files > lists_.size() || !lists_[files - 1].has_presets) return {};
-  PresetBook book{{}, lists_[files - 1].preset_file};
-  Result<PresetsRead> read = presets_of(lists_[files - 1].presets);
-  if (read) book.list = std::move(read->presets);
-  return book;
+std::optional<TakeReader::PresetBank> TakeReader::presets(std::uint32_t files) const {
+  if (files == 0 || files > file_lists_.size() || !file_lists_[files - 1].has_presets) return {};
+  PresetBank bank{{}, file_lists_[files - 1].preset_file};
+  Result<ParsedPresets> read = parse_presets(file_lists_[files - 1].presets);
+  if (read) bank.list = std::move(read->presets);
+  return bank;
 }
 
 }  // namespace limber

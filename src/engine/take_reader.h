@@ -1,4 +1,4 @@
-// TakeReader: takes a file of a take apart, from its first byte to its last whole frame. [one thread]
+// TakeReader: reads a take file from its start to its last complete frame. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,36 @@ namespace limber {
 
 class TakeReader {
  public:
-  /// The error names the file. `name`: how it is called.
+  /// Opens a take and reads its header and initial state. Errors begin with the path, or with `name` for a stream.
   static Result<std::unique_ptr<TakeReader>> open(const std::string& path);
-  static Result<std::unique_ptr<TakeReader>> of(std::unique_ptr<std::istream> in, const std::string& name);
+  static Result<std::unique_ptr<TakeReader>> from_stream(std::unique_ptr<std::istream> in, const std::string& name);
 
   const TakeHeader& header() const { return header_; }
-  const TakeBegin& begin() const { return begin_; }
-  /// The next tick takes the place of `tick`, and its memory; false from where the take ends.
+  const TakeInitialState& initial_state() const { return initial_state_; }
+  /// Reads the next tick into `tick`, reusing its memory. False at the end of the take.
   bool next(TakeTick& tick);
-  /// Of the ticks that are left, those in which time goes on; it is at the end then. Reads frames' heads alone.
+  /// Counts the remaining ticks in which simulated time advances, reading only the heads of frames. The reader is at
+  /// the end afterwards.
   std::uint64_t count_ticks();
-  /// Once next() gave nothing: how it was ended; nothing, where it was cut off.
+  /// The final state, after next() has returned false; nothing if the recording was interrupted.
   const std::optional<TakeEnd>& end() const { return end_; }
-  /// What is wrong behind the last whole frame, if something is.
+  /// Describes the corruption after the last complete frame; empty if there is none.
   const std::string& damage() const { return damage_; }
+  /// Bytes up to the end of the last complete frame.
   std::uint64_t position() const { return position_; }
   std::uint64_t size() const { return size_; }
 
-  /// What a run read, for that number; known once a tick that names it was read. Null where there is none.
+  /// Returns the files of a run, by TakeSceneRun::files. Available once the tick with that run was read; null if there
+  /// are none.
   std::shared_ptr<const Sources> sources(std::uint32_t files);
-  struct PresetBook {
+  /// Presets that a run has read, with the path of their file.
+  struct PresetBank {
     PresetList list;
     std::string file;
   };
-  std::optional<PresetBook> presets(std::uint32_t files) const;
-  const std::vector<TakeFileList>& file_lists() const { return lists_; }
-  /// Bytes of a content, by its number.
+  std::optional<PresetBank> presets(std::uint32_t files) const;
+  const std::vector<TakeFileList>& file_lists() const { return file_lists_; }
+  /// Size in bytes of a `content` frame, by its number; 0 if there is none.
   std::size_t content_size(std::uint32_t content) const;
 
  private:
@@ -49,29 +53,30 @@ class TakeReader {
   struct FrameHead {
     int kind = 0;
     std::uint64_t length = 0;  // of the payload
-    std::uint64_t bytes = 0;   // of the head itself
+    std::uint64_t bytes = 0;   // of the head: kind and length
   };
-  /// Nothing at the end, and where no whole frame is left.
+  /// Reads the head of the next frame; nothing at the end, and if no complete frame is left.
   std::optional<FrameHead> frame_head();
-  /// The next frame's kind; nothing at the end, and where no whole frame is left.
+  /// Reads the next frame into payload_ and returns its kind; nothing at the end, and if no complete frame is left.
   std::optional<TakeFrame> frame();
-  bool bytes(std::size_t count, std::string& out);
-  bool take_frame(TakeFrame kind, TakeTick& tick);
-  void damaged(const std::string& what);
+  bool read_bytes(std::size_t count, std::string& out);
+  /// Decodes the payload. False if it is invalid.
+  bool decode_frame(TakeFrame kind, TakeTick& tick);
+  void set_damage(const std::string& description);
 
   std::string name_;
   std::unique_ptr<std::istream> in_;
   std::uint64_t size_ = 0;
-  std::uint64_t position_ = 0;  // behind the last whole frame
+  std::uint64_t position_ = 0;  // end of the last complete frame
   std::string payload_;
   TakeHeader header_;
-  TakeBegin begin_;
-  TakeForms forms_;
+  TakeInitialState initial_state_;
+  TakeMessageCodec codec_;
   std::vector<std::shared_ptr<const std::string>> contents_;
-  std::vector<TakeFileList> lists_;
+  std::vector<TakeFileList> file_lists_;
   std::vector<std::shared_ptr<const Sources>> sources_;
-  std::map<std::string, std::shared_ptr<ModelLibrary>> libraries_;  // by all that is in models and meshes
-  bool over_ = false;                                               // next() has come to the end, whichever
+  std::map<std::string, std::shared_ptr<ModelLibrary>> libraries_;  // by the list of their models and meshes
+  bool at_end_ = false;                                             // next() has reached the end, or a corrupt frame
   std::optional<TakeEnd> end_;
   std::string damage_;
 };

@@ -1,4 +1,4 @@
-// Numbers, texts, messages, frames.
+// Encoding of numbers, strings, messages and frames.
 #include "engine/take_text.h"
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace limber {
 
 namespace {
 
-// how an argument stands in a form
+// Type code of an argument: n nil, s text, T and F boolean, i integer, f float, d double.
 char type_of(const Arg& arg) {
   if (arg.kind == Arg::Kind::nil) return 'n';
   if (arg.kind == Arg::Kind::text) return 's';
@@ -27,160 +27,160 @@ char type_of(const Arg& arg) {
   return fits ? 'f' : 'd';
 }
 
-void write_arg(TakeBytes& out, char type, const Arg& arg) {
-  if (type == 's') out.text(arg.text);
-  if (type == 'f') out.word(std::bit_cast<std::uint32_t>(static_cast<float>(arg.number)), 4);
+void write_arg(TakeEncoder& out, char type, const Arg& arg) {
+  if (type == 's') out.string(arg.text);
+  if (type == 'f') out.fixed_int(std::bit_cast<std::uint32_t>(static_cast<float>(arg.number)), 4);
   if (type == 'd') out.real(arg.number);
   if (type != 'i') return;
   const auto v = static_cast<std::int64_t>(arg.number);
-  out.number((static_cast<std::uint64_t>(v) << 1u) ^ static_cast<std::uint64_t>(v >> 63));
+  out.varint((static_cast<std::uint64_t>(v) << 1u) ^ static_cast<std::uint64_t>(v >> 63));
 }
 
-Arg read_arg(TakeScan& in, char type) {
+Arg read_arg(TakeDecoder& in, char type) {
   if (type == 'T' || type == 'F') return Arg::of(type == 'T');
-  if (type == 's') return Arg::of(in.text());
-  if (type == 'f') return Arg::of(double{std::bit_cast<float>(static_cast<std::uint32_t>(in.word(4)))});
+  if (type == 's') return Arg::of(in.string());
+  if (type == 'f') return Arg::of(double{std::bit_cast<float>(static_cast<std::uint32_t>(in.fixed_int(4)))});
   if (type == 'd') return Arg::of(in.real());
   if (type == 'i') {
-    const std::uint64_t z = in.number();
+    const std::uint64_t z = in.varint();
     return Arg::of(static_cast<double>(static_cast<std::int64_t>(z >> 1u) ^ -static_cast<std::int64_t>(z & 1u)));
   }
   if (type != 'n') in.fail();
   return {};
 }
 
-// hand, ip, port, types, 0, address
-constexpr std::size_t kFormHead = 7;
+// bytes before the types in a header: controller, ip, port, types, 0, address
+constexpr std::size_t kTypesOffset = 7;
 
 }  // namespace
 
-void TakeBytes::number(std::uint64_t value) {
+void TakeEncoder::varint(std::uint64_t value) {
   for (; value >= 0x80; value >>= 7u) byte(static_cast<std::uint8_t>(value | 0x80u));
   byte(static_cast<std::uint8_t>(value));
 }
 
-void TakeBytes::word(std::uint64_t value, int bytes) {
+void TakeEncoder::fixed_int(std::uint64_t value, int bytes) {
   for (int i = 0; i < bytes; i++) byte(static_cast<std::uint8_t>(value >> (8 * i)));
 }
 
-void TakeBytes::real(double value) { word(std::bit_cast<std::uint64_t>(value), 8); }
+void TakeEncoder::real(double value) { fixed_int(std::bit_cast<std::uint64_t>(value), 8); }
 
-void TakeBytes::text(std::string_view value) {
-  number(value.size());
+void TakeEncoder::string(std::string_view value) {
+  varint(value.size());
   out_.append(value);
 }
 
-std::string_view TakeScan::take(std::size_t bytes) {
+std::string_view TakeDecoder::read_bytes(std::size_t bytes) {
   if (bytes > bytes_.size()) {
-    bad_ = true;
+    failed_ = true;
     bytes_ = {};
     return {};
   }
-  const std::string_view taken = bytes_.substr(0, bytes);
+  const std::string_view data = bytes_.substr(0, bytes);
   bytes_.remove_prefix(bytes);
-  return taken;
+  return data;
 }
 
-std::uint8_t TakeScan::byte() {
-  const std::string_view taken = take(1);
-  return taken.empty() ? 0 : static_cast<std::uint8_t>(taken[0]);
+std::uint8_t TakeDecoder::byte() {
+  const std::string_view data = read_bytes(1);
+  return data.empty() ? 0 : static_cast<std::uint8_t>(data[0]);
 }
 
-std::uint64_t TakeScan::number() {
+std::uint64_t TakeDecoder::varint() {
   std::uint64_t value = 0;
   for (unsigned shift = 0; shift < 64; shift += 7) {
     const std::uint8_t next = byte();
     value |= std::uint64_t{next & 0x7fu} << shift;
     if ((next & 0x80u) == 0) return value;
   }
-  bad_ = true;
+  failed_ = true;
   return 0;
 }
 
-std::uint64_t TakeScan::word(int bytes) {
+std::uint64_t TakeDecoder::fixed_int(int bytes) {
   std::uint64_t value = 0;
   for (int i = 0; i < bytes; i++) value |= std::uint64_t{byte()} << (8 * i);
   return value;
 }
 
-double TakeScan::real() { return std::bit_cast<double>(word(8)); }
+double TakeDecoder::real() { return std::bit_cast<double>(fixed_int(8)); }
 
-std::string_view TakeScan::text() { return take(count()); }
+std::string_view TakeDecoder::string() { return read_bytes(count()); }
 
-std::size_t TakeScan::count() {
-  const std::uint64_t value = number();
+std::size_t TakeDecoder::count() {
+  const std::uint64_t value = varint();
   if (value <= bytes_.size()) return static_cast<std::size_t>(value);
-  bad_ = true;
+  failed_ = true;
   bytes_ = {};
   return 0;
 }
 
-void TakeForms::write(TakeBytes& out, const Message& message, const Origin& origin) {
+void TakeMessageCodec::encode(TakeEncoder& out, const Message& message, const CommandOrigin& origin) {
   key_.clear();
-  TakeBytes key(key_);
-  key.byte(static_cast<std::uint8_t>(origin.hand));
-  key.word(origin.ip, 4);
-  key.word(origin.port, 2);
+  TakeEncoder key(key_);
+  key.byte(static_cast<std::uint8_t>(origin.source));
+  key.fixed_int(origin.ip, 4);
+  key.fixed_int(origin.port, 2);
   for (const Arg& arg : message.args) key_.push_back(type_of(arg));
   key_.push_back('\0');
   key_.append(message.address);
-  const auto known = known_.find(key_);
-  if (known != known_.end()) {
-    out.number(known->second);
+  const auto entry = header_numbers_.find(key_);
+  if (entry != header_numbers_.end()) {
+    out.varint(entry->second);
   } else {
-    // 1: a form that is remembered from here on; 0: one that is not
-    const bool remember = known_.size() < kMost;
-    if (remember) known_.emplace(key_, static_cast<std::uint32_t>(known_.size() + 2));
-    out.number(remember ? 1 : 0);
-    out.text(key_);
+    // 1: a new header, added to the table; 0: a new header that is not added because the table is full
+    const bool add_to_table = header_numbers_.size() < kMaxHeaders;
+    if (add_to_table) header_numbers_.emplace(key_, static_cast<std::uint32_t>(header_numbers_.size() + 2));
+    out.varint(add_to_table ? 1 : 0);
+    out.string(key_);
   }
-  for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[kFormHead + i], message.args[i]);
+  for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[kTypesOffset + i], message.args[i]);
 }
 
-std::optional<TakeForms::Form> TakeForms::form_of(std::string_view key) {
-  const std::size_t end = key.size() > kFormHead ? key.find('\0', kFormHead) : key.npos;
+std::optional<TakeMessageCodec::Header> TakeMessageCodec::parse_header(std::string_view key) {
+  const std::size_t end = key.size() > kTypesOffset ? key.find('\0', kTypesOffset) : key.npos;
   if (end == key.npos) return {};
-  TakeScan head(key);
-  const std::uint8_t hand = head.byte();
-  if (hand > static_cast<std::uint8_t>(Hand::script)) return {};
-  Form form;
-  form.origin.hand = static_cast<Hand>(hand);
-  form.origin.ip = static_cast<std::uint32_t>(head.word(4));
-  form.origin.port = static_cast<std::uint16_t>(head.word(2));
-  form.types = key.substr(kFormHead, end - kFormHead);
-  form.address = key.substr(end + 1);
-  return form;
+  TakeDecoder in(key);
+  const std::uint8_t source = in.byte();
+  if (source > static_cast<std::uint8_t>(CommandSource::script)) return {};
+  Header header;
+  header.origin.source = static_cast<CommandSource>(source);
+  header.origin.ip = static_cast<std::uint32_t>(in.fixed_int(4));
+  header.origin.port = static_cast<std::uint16_t>(in.fixed_int(2));
+  header.types = key.substr(kTypesOffset, end - kTypesOffset);
+  header.address = key.substr(end + 1);
+  return header;
 }
 
-bool TakeForms::read(TakeScan& in, TakeMessage& message) {
-  const std::uint64_t which = in.number();
-  std::optional<Form> fresh;
-  if (which < 2) {
-    fresh = form_of(in.text());
-    if (!fresh) return false;
-  } else if (which - 2 >= forms_.size()) {
+bool TakeMessageCodec::decode(TakeDecoder& in, TakeMessage& message) {
+  const std::uint64_t number = in.varint();
+  std::optional<Header> new_header;
+  if (number < 2) {
+    new_header = parse_header(in.string());
+    if (!new_header) return false;
+  } else if (number - 2 >= headers_.size()) {
     return false;
   }
-  const Form& form = fresh ? *fresh : forms_[which - 2];
-  message.origin = form.origin;
-  message.message.address = form.address;
+  const Header& header = new_header ? *new_header : headers_[number - 2];
+  message.origin = header.origin;
+  message.message.address = header.address;
   std::vector<Arg>& args = message.message.args;
-  args.resize(form.types.size());
-  for (std::size_t i = 0; i < args.size() && !in.bad(); i++) args[i] = read_arg(in, form.types[i]);
-  if (which == 1) forms_.push_back(std::move(*fresh));
-  return !in.bad();
+  args.resize(header.types.size());
+  for (std::size_t i = 0; i < args.size() && !in.failed(); i++) args[i] = read_arg(in, header.types[i]);
+  if (number == 1) headers_.push_back(std::move(*new_header));
+  return !in.failed();
 }
 
-std::uint32_t frame_check(TakeFrame kind, std::string_view payload) {
+std::uint32_t frame_checksum(TakeFrame kind, std::string_view payload) {
   const std::uint64_t hash = hash_bytes(payload, hash_bytes({reinterpret_cast<const char*>(&kind), 1}));
   return static_cast<std::uint32_t>(hash ^ (hash >> 32u));
 }
 
 void append_frame(std::string& out, TakeFrame kind, std::string_view payload) {
-  TakeBytes bytes(out);
+  TakeEncoder bytes(out);
   bytes.byte(static_cast<std::uint8_t>(kind));
-  bytes.text(payload);
-  bytes.word(frame_check(kind, payload), 4);
+  bytes.string(payload);
+  bytes.fixed_int(frame_checksum(kind, payload), 4);
 }
 
 }  // namespace limber

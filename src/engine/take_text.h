@@ -1,5 +1,5 @@
-// The bytes of a take: numbers as short as they can be, messages by the form that they share with earlier ones. What
-// has been written or read so far is part of the meaning of what follows. [one thread]
+// Binary encoding of takes: variable-length integers; messages refer to the headers of earlier messages. The codec is
+// stateful: a stream must be decoded from its start, in the order in which it was encoded. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -14,83 +14,84 @@
 
 namespace limber {
 
-/// Appends to a text. Nothing is allocated where the text has room.
-class TakeBytes {
+/// Encodes values at the end of a string. Doesn't allocate while the capacity of the string suffices.
+class TakeEncoder {
  public:
-  explicit TakeBytes(std::string& out) : out_(out) {}
+  explicit TakeEncoder(std::string& out) : out_(out) {}
   void byte(std::uint8_t value) { out_.push_back(static_cast<char>(value)); }
-  void number(std::uint64_t value);  ///< 7 bits a byte.
-  void word(std::uint64_t value, int bytes);
+  void varint(std::uint64_t value);                ///< Variable length, 7 bits per byte.
+  void fixed_int(std::uint64_t value, int bytes);  ///< Fixed length, little-endian.
   void real(double value);
-  void text(std::string_view value);
+  void string(std::string_view value);  ///< Length, then the bytes.
 
  private:
   std::string& out_;
 };
 
-/// Takes apart what TakeBytes has put together; what is not there is 0, and `bad` from then on.
-class TakeScan {
+/// Decodes the output of TakeEncoder. After the end of the data all values are 0 or empty, and failed() is true.
+class TakeDecoder {
  public:
-  explicit TakeScan(std::string_view bytes) : bytes_(bytes) {}
+  explicit TakeDecoder(std::string_view bytes) : bytes_(bytes) {}
   std::uint8_t byte();
-  std::uint64_t number();
-  std::uint64_t word(int bytes);
+  std::uint64_t varint();
+  std::uint64_t fixed_int(int bytes);
   double real();
-  std::string_view text();
-  /// Of things that take a byte at least; bad where so many can't follow.
+  std::string_view string();
+  /// Reads the number of elements of a list, each of at least one byte; fails if the rest of the data is too short.
   std::size_t count();
-  bool bad() const { return bad_; }
-  void fail() { bad_ = true; }
-  bool done() const { return bytes_.empty() && !bad_; }
+  bool failed() const { return failed_; }
+  void fail() { failed_ = true; }
+  bool at_end() const { return bytes_.empty() && !failed_; }
 
  private:
-  std::string_view take(std::size_t bytes);
+  std::string_view read_bytes(std::size_t bytes);
   std::string_view bytes_;
-  bool bad_ = false;
+  bool failed_ = false;
 };
 
-/// Messages: address, sender and types of arguments stand once, where they come first.
-class TakeForms {
+/// Encodes messages. The header (address, sender, types of arguments) is written once; later messages refer to it.
+class TakeMessageCodec {
  public:
-  void write(TakeBytes& out, const Message& message, const Origin& origin);
-  bool read(TakeScan& in, TakeMessage& message);
+  void encode(TakeEncoder& out, const Message& message, const CommandOrigin& origin);
+  bool decode(TakeDecoder& in, TakeMessage& message);
 
  private:
-  static constexpr std::size_t kMost = 65536;             // a flood of ever new ones ends here
-  std::unordered_map<std::string, std::uint32_t> known_;  // when it is written
-  struct Form {
-    Origin origin;
+  static constexpr std::size_t kMaxHeaders = 65536;  // bounds the memory when each message has another header
+  std::unordered_map<std::string, std::uint32_t> header_numbers_;  // encoder
+  struct Header {
+    CommandOrigin origin;
     std::string types, address;
   };
-  static std::optional<Form> form_of(std::string_view key);
-  std::vector<Form> forms_;  // when it is read
-  std::string key_;          // scratch
+  static std::optional<Header> parse_header(std::string_view key);
+  std::vector<Header> headers_;  // decoder
+  std::string key_;              // scratch
 };
 
-/// A frame: kind, length, payload, checksum.
+/// Appends a frame: kind, length, payload, checksum.
 void append_frame(std::string& out, TakeFrame kind, std::string_view payload);
-std::uint32_t frame_check(TakeFrame kind, std::string_view payload);
+std::uint32_t frame_checksum(TakeFrame kind, std::string_view payload);
 
-std::string head_text(const TakeHeader& header);
+/// Returns the two lines of the header.
+std::string header_text(const TakeHeader& header);
 Result<TakeHeader> header_of(std::string_view first_line, std::string_view second_line);
 
-std::string text_of(const TakeBegin& begin);
-bool read_begin(std::string_view bytes, TakeBegin& begin);
+std::string text_of(const TakeInitialState& initial_state);
+bool read_initial_state(std::string_view bytes, TakeInitialState& state);
 
-/// Everything of a tick but its messages, which are written as they come: `messages` are their bytes.
+/// Appends a tick. `messages` are the encoded messages: the recorder encodes them as they arrive.
 void append_tick(std::string& out, const TakeTick& tick, std::size_t message_count, std::string_view messages);
-/// Whether time goes on in the tick that begins with this byte.
-bool tick_runs(std::uint8_t first_byte);
-bool read_tick(std::string_view bytes, TakeForms& forms, TakeTick& tick);
+/// True if simulated time advances in the tick that begins with this byte.
+bool advances_time(std::uint8_t first_byte);
+bool read_tick(std::string_view bytes, TakeMessageCodec& codec, TakeTick& tick);
 
 std::string text_of(const TakeEnd& end);
 bool read_end(std::string_view bytes, TakeEnd& end);
 
-/// As a `files` frame has it: contents by their numbers.
+/// Content of a `files` frame. Files refer to `content` frames by number.
 struct TakeFileList {
   std::map<std::string, std::string> found;
   std::map<std::string, std::string> meshes;
-  std::vector<std::pair<std::string, std::uint32_t>> files;  ///< Path and content; 0: it could not be read.
+  std::vector<std::pair<std::string, std::uint32_t>> files;  ///< Path and number of the content; 0: unreadable.
   bool has_presets = false;
   std::string preset_file;
   std::string presets;

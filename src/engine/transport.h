@@ -1,5 +1,5 @@
-// Transport and telemetry: the nodes /transport (play, pause, step, rewind, reset, panic) and /osc (what came in and
-// was lost). [sim]
+// Transport: the node /transport (play, pause, step, rewind, reset, panic). CounterNode: the node /osc, counters of
+// messages received, sent and lost. [sim]
 #pragma once
 
 #include <cstdint>
@@ -16,28 +16,28 @@ namespace limber {
 
 class Transport {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Transport(World& world, const Health& health);
 
   bool paused() const;
-  /// Ticks that `step` asked for and that were not taken yet; taking one counts it.
-  bool take_step();
-  /// How many they are; a rewind, which repeats messages, leaves them as they are.
+  /// Consumes one of the ticks requested by `step`. False if none is left.
+  bool consume_step();
+  /// Number of requested ticks left. A rewind replays messages, and restores the number afterwards.
   int steps() const { return steps_; }
-  void keep_steps(int steps) { steps_ = steps; }
-  /// How far back a message asked to go since the last call, if one did.
-  struct Back {
+  void set_steps(int steps) { steps_ = steps; }
+  /// A request to rewind.
+  struct RewindRequest {
     double seconds = 0;
-    std::uint64_t ticks = 0;  ///< Where that is not 0, so many ticks instead.
-    bool stands = false;      ///< Time stands still there.
+    std::uint64_t ticks = 0;  ///< If not 0: number of ticks, instead of `seconds`.
+    bool pause = false;       ///< Pause after the rewind.
   };
-  std::optional<Back> take_back() { return std::exchange(back_, std::nullopt); }
-  /// Time stands still from now on.
-  void stand_still();
-  /// Tells `speed_reached`, the seconds that can be rewound, the megabytes that they take, and the seconds that stalls
-  /// have cost.
-  void tell(double speed_reached, double rewindable, double history_memory, double lost_time);
+  /// Returns the latest request to rewind since the last call, if there was one.
+  std::optional<RewindRequest> consume_rewind() { return std::exchange(rewind_, std::nullopt); }
+  /// Pauses and cancels requested ticks.
+  void pause();
+  /// Publishes the readouts: speed factor, rewindable seconds, megabytes of history, seconds lost in stalls.
+  void publish(double speed_reached, double rewindable, double history_memory, double lost_time);
 
  private:
   Result<void> act_play(std::span<const double> args);
@@ -49,23 +49,23 @@ class Transport {
   Result<void> act_rewind(std::span<const double> args);
   Result<void> act_rewind_ticks(std::span<const double> args);
   void set_paused(bool paused);
-  std::string_view say_health() const;
+  std::string_view read_health() const;
 
   World& world_;
   const Health& health_;
   NodeId id_;
   int steps_ = 0;
-  std::optional<Back> back_;
+  std::optional<RewindRequest> rewind_;
   mutable std::string health_text_;
 };
 
-/// The counters as readouts.
+/// Publishes the message counters as readouts.
 class CounterNode {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   CounterNode(Store& store, const Counters& counters);
-  void tell();
+  void publish();
 
  private:
   Store& store_;

@@ -1,4 +1,4 @@
-// Addresses of urgent requests and of those that they discard.
+// Addresses of urgent requests and of the requests that they discard.
 #include "engine/urgent.h"
 
 #include <algorithm>
@@ -25,22 +25,26 @@ constexpr unsigned kPanic = bit(UrgentKind::panic);
 constexpr unsigned kPause = bit(UrgentKind::pause);
 constexpr unsigned kTakeStop = bit(UrgentKind::take_stop);
 
-struct Starter {
+struct DiscardableRequest {
   std::string_view address;
   unsigned discarded_by;
 };
 
-constexpr std::array kStarters = {
-    Starter{"/transport/play", kPanic | kPause},     Starter{"/transport/step", kPanic | kPause},
-    Starter{"/physics/sim/paused", kPanic | kPause}, Starter{"/take/play", kPanic | kPause | kTakeStop},
-    Starter{"/take/record", kPanic | kTakeStop},     Starter{"/transport/rewind", kPanic},
-    Starter{"/transport/rewindticks", kPanic},       Starter{"/transport/reset", kPanic},
-    Starter{"/physics/sim/reset", kPanic},           Starter{"/transport/scene", kPanic}};
+constexpr std::array kDiscardable = {DiscardableRequest{"/transport/play", kPanic | kPause},
+                                     DiscardableRequest{"/transport/step", kPanic | kPause},
+                                     DiscardableRequest{"/physics/sim/paused", kPanic | kPause},
+                                     DiscardableRequest{"/take/play", kPanic | kPause | kTakeStop},
+                                     DiscardableRequest{"/take/record", kPanic | kTakeStop},
+                                     DiscardableRequest{"/transport/rewind", kPanic},
+                                     DiscardableRequest{"/transport/rewindticks", kPanic},
+                                     DiscardableRequest{"/transport/reset", kPanic},
+                                     DiscardableRequest{"/physics/sim/reset", kPanic},
+                                     DiscardableRequest{"/transport/scene", kPanic}};
 
 unsigned discarded_by(const Message& message) {
   const auto* const found = std::ranges::find_if(
-      kStarters, [&](const Starter& starter) { return same_address(message.address, starter.address); });
-  return found == kStarters.end() ? 0 : found->discarded_by;
+      kDiscardable, [&](const DiscardableRequest& request) { return same_address(message.address, request.address); });
+  return found == kDiscardable.end() ? 0 : found->discarded_by;
 }
 
 }  // namespace
@@ -50,7 +54,7 @@ bool same_address(std::string_view address, std::string_view plain) {
   return same_name(address, plain);
 }
 
-std::optional<UrgentKind> urgent_address(std::string_view address) {
+std::optional<UrgentKind> urgent_kind_of(std::string_view address) {
   for (const UrgentAddress& urgent : kUrgent) {
     if (same_address(address, urgent.address)) return urgent.kind;
   }
@@ -58,7 +62,7 @@ std::optional<UrgentKind> urgent_address(std::string_view address) {
 }
 
 std::optional<UrgentKind> urgent_kind(const Message& message) {
-  const std::optional<UrgentKind> kind = urgent_address(message.address);
+  const std::optional<UrgentKind> kind = urgent_kind_of(message.address);
   if (!kind || message.args.size() > 1) return std::nullopt;
   if (message.args.empty() || message.args[0].kind == Arg::Kind::nil) return kind;
   const Arg& arg = message.args[0];
@@ -66,8 +70,8 @@ std::optional<UrgentKind> urgent_kind(const Message& message) {
   return value != 0 && std::isfinite(value) ? kind : std::nullopt;
 }
 
-bool Overtaken::discards(const Message& message, std::uint64_t arrival) const {
-  if (arrival >= std::ranges::max(newest_)) return false;  // nearly always
+bool UrgentPrecedence::discards(const Message& message, std::uint64_t arrival) const {
+  if (arrival >= std::ranges::max(newest_)) return false;  // the common case
   const unsigned by = discarded_by(message);
   for (std::size_t kind = 0; by >> kind != 0; kind++) {
     if ((by >> kind & 1u) != 0 && arrival < newest_[kind]) return true;
@@ -75,6 +79,8 @@ bool Overtaken::discards(const Message& message, std::uint64_t arrival) const {
   return false;
 }
 
-bool Overtaken::discards(const Message& message, UrgentKind kind) { return (discarded_by(message) & bit(kind)) != 0; }
+bool UrgentPrecedence::discards(const Message& message, UrgentKind kind) {
+  return (discarded_by(message) & bit(kind)) != 0;
+}
 
 }  // namespace limber

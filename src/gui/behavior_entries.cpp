@@ -1,4 +1,4 @@
-// Gathered from /physics/group and /physics/body/*/behavior.
+// Collects the behaviors of /physics/group and /physics/body/*/behavior.
 #include "gui/behavior_entries.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-std::uint32_t child_called(const Tree& tree, std::uint32_t node, std::string_view name) {
+std::uint32_t find_child(const TreeSnapshot& tree, std::uint32_t node, std::string_view name) {
   std::uint32_t found = 0;
   tree.each_child(node, [&](std::uint32_t child) {
     if (tree.name(child) == name) found = child;
@@ -22,19 +22,19 @@ std::uint32_t child_called(const Tree& tree, std::uint32_t node, std::string_vie
   return found;
 }
 
-const double* numbers_of(const Image& image, std::uint32_t node, std::string_view row_name) {
-  const Row* const row = image.tree->nodes()[node].table->find(row_name);
-  return row == nullptr ? nullptr : image.value(image.tree->numbers({node, row})).numbers;
+const double* numbers_of(const ValueSnapshot& snapshot, std::uint32_t node, std::string_view property_name) {
+  const Property* const property = snapshot.tree->nodes()[node].table->find(property_name);
+  return property == nullptr ? nullptr : snapshot.value(snapshot.tree->location({node, property})).numbers;
 }
 
 }  // namespace
 
-std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body) {
+std::vector<BehaviorEntry> behavior_entries(const TreeSnapshot& tree, std::uint32_t body) {
   std::vector<BehaviorEntry> entries;
   std::unordered_map<std::string_view, std::size_t> known;
-  const std::uint32_t physics = child_called(tree, 0, "physics");
+  const std::uint32_t physics = find_child(tree, 0, "physics");
   const auto type_of = [&](std::uint32_t node) { return tree.nodes()[node].table->name(); };
-  const std::uint32_t groups = child_called(tree, physics, "group");
+  const std::uint32_t groups = find_child(tree, physics, "group");
   if (groups != 0) {
     tree.each_child(groups, [&](std::uint32_t node) {
       known[tree.name(node)] = entries.size();
@@ -44,8 +44,8 @@ std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body
     });
   }
   const std::size_t group_count = known.size();
-  const auto gather = [&](std::uint32_t of) {
-    const std::uint32_t list = child_called(tree, of, "behavior");
+  const auto collect = [&](std::uint32_t of) {
+    const std::uint32_t list = find_child(tree, of, "behavior");
     if (list == 0) return true;
     tree.each_child(list, [&](std::uint32_t node) {
       const auto [at, fresh] = known.try_emplace(tree.name(node), entries.size());
@@ -63,58 +63,61 @@ std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body
     return true;
   };
   if (body != 0) {
-    gather(body);
-  } else if (const std::uint32_t bodies = child_called(tree, physics, "body"); bodies != 0) {
-    tree.each_child(bodies, gather);
+    collect(body);
+  } else if (const std::uint32_t bodies = find_child(tree, physics, "body"); bodies != 0) {
+    tree.each_child(bodies, collect);
   }
   return entries;
 }
 
 namespace {
 
-int place_of(const Image& image, std::uint32_t node) {
-  const double* const place = numbers_of(image, node, "place");
-  return place == nullptr ? 0 : static_cast<int>(place[0]);
+int position_of(const ValueSnapshot& snapshot, std::uint32_t node) {
+  const double* const position = numbers_of(snapshot, node, "place");
+  return position == nullptr ? 0 : static_cast<int>(position[0]);
 }
 
 }  // namespace
 
-void order_entries(std::vector<BehaviorEntry>& entries) {
-  std::ranges::stable_sort(entries, {}, &BehaviorEntry::place);
+void sort_entries(std::vector<BehaviorEntry>& entries) {
+  std::ranges::stable_sort(entries, {}, &BehaviorEntry::position);
 }
 
-std::vector<Message> put_past(const Image& image, const BehaviorEntry& entry, const BehaviorEntry& neighbor) {
-  const auto message = [](const std::string& path, int place) {
-    return Message{path + "/place", {Arg::of(static_cast<double>(place))}};
+std::vector<Message> move_past(const ValueSnapshot& snapshot, const BehaviorEntry& entry,
+                               const BehaviorEntry& neighbor) {
+  const auto message = [](const std::string& path, int position) {
+    return Message{path + "/place", {Arg::of(static_cast<double>(position))}};
   };
-  if (entry.group) return {message(entry.pattern, neighbor.place)};
-  const Tree& tree = *image.tree;
+  if (entry.group) return {message(entry.pattern, neighbor.position)};
+  const TreeSnapshot& tree = *snapshot.tree;
   std::vector<Message> messages;
-  bool alike = true;
+  bool same_position = true;
   for (const std::uint32_t node : entry.nodes) {
-    // a group's instance on that body is called as the group is
-    const std::uint32_t other = child_called(tree, tree.nodes()[node].parent, neighbor.name);
-    const int place = other == 0 ? 0 : place_of(image, other);
-    alike =
-        alike && place != 0 && place == place_of(image, entry.nodes.front()) + (neighbor.place < entry.place ? -1 : 1);
-    if (place != 0) messages.push_back(message(tree.path(node), place));
+    // a group's instance on a body has the name of the group
+    const std::uint32_t other = find_child(tree, tree.nodes()[node].parent, neighbor.name);
+    const int position = other == 0 ? 0 : position_of(snapshot, other);
+    same_position =
+        same_position && position != 0 &&
+        position == position_of(snapshot, entry.nodes.front()) + (neighbor.position < entry.position ? -1 : 1);
+    if (position != 0) messages.push_back(message(tree.path(node), position));
   }
-  if (alike && messages.size() > 1)
-    return {message(entry.pattern, place_of(image, entry.nodes.front()) + (neighbor.place < entry.place ? -1 : 1))};
+  if (same_position && messages.size() > 1)
+    return {message(entry.pattern,
+                    position_of(snapshot, entry.nodes.front()) + (neighbor.position < entry.position ? -1 : 1))};
   return messages;
 }
 
-void renew_entry(const Image& image, BehaviorEntry& entry) {
+void update_entry(const ValueSnapshot& snapshot, BehaviorEntry& entry) {
   entry.active = 0;
-  entry.place = entry.nodes.empty() ? 0 : place_of(image, entry.nodes.front());
+  entry.position = entry.nodes.empty() ? 0 : position_of(snapshot, entry.nodes.front());
   entry.time = 0;
   entry.error.clear();
   for (const std::uint32_t node : entry.nodes) {
-    if (const double* const active = numbers_of(image, node, "active")) entry.active += active[0] != 0 ? 1 : 0;
-    if (const double* const time = numbers_of(image, node, "time")) entry.time += time[0];
-    const Row* const error = image.tree->nodes()[node].table->find("error");
-    if (error == nullptr || error->type != RowType::text || !entry.error.empty()) continue;
-    entry.error = image.value(image.tree->numbers({node, error})).text;
+    if (const double* const active = numbers_of(snapshot, node, "active")) entry.active += active[0] != 0 ? 1 : 0;
+    if (const double* const time = numbers_of(snapshot, node, "time")) entry.time += time[0];
+    const Property* const error = snapshot.tree->nodes()[node].table->find("error");
+    if (error == nullptr || error->type != PropertyType::text || !entry.error.empty()) continue;
+    entry.error = snapshot.value(snapshot.tree->location({node, error})).text;
   }
 }
 

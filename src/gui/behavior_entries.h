@@ -1,4 +1,5 @@
-// The behaviours of a scene as people know them: one entry a name, whichever bodies have it; groups first.
+// The rows of the behavior list: one entry per behavior name, even if several bodies have that behavior; group
+// behaviors first.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +10,31 @@
 
 namespace limber {
 
+/// One line of the list.
 struct BehaviorEntry {
   std::string name;
-  std::string pattern;  ///< Address that reaches all of them: "/physics/body/*/behavior/bend".
-  std::string type;     ///< As its class is called.
+  std::string pattern;  ///< Address pattern that matches all of them: "/physics/body/*/behavior/bend".
+  std::string type;     ///< Name of its class.
   bool group = false;
   std::vector<std::uint32_t> nodes;
 
-  // of an image
-  int active = 0;     ///< How many act.
-  double time = 0;    ///< µs of the last tick, of all.
-  int place = 0;      ///< The first one's among those that act on its body; a group's among names.
-  std::string error;  ///< Why one rests; empty: none does.
+  // Updated from each value snapshot.
+  int active = 0;     ///< Number of active ones.
+  double time = 0;    ///< Total time of the last tick, µs.
+  int position = 0;   ///< Position of the first one in its body's order; for a group, in the order of groups.
+  std::string error;  ///< Reason why one is disabled; empty if none is.
 };
 
-/// Of all bodies, or of the one of that node alone (0: all). What groups made is theirs, not the bodies'.
-std::vector<BehaviorEntry> behavior_entries(const Tree& tree, std::uint32_t body);
-/// Fills in what the image says of it.
-void renew_entry(const Image& image, BehaviorEntry& entry);
-/// In the order in which they act, as far as they were filled in.
-void order_entries(std::vector<BehaviorEntry>& entries);
-/// What lets an entry act right before or behind its neighbour in such a list, whichever of the two comes first: one
-/// message for all bodies where all have it at the same place, else one for each.
-std::vector<Message> put_past(const Image& image, const BehaviorEntry& entry, const BehaviorEntry& neighbor);
+/// Returns the entries of all bodies, or of the one with this node (0: all). In the list of all bodies, behaviors that
+/// a group created are represented by the group.
+std::vector<BehaviorEntry> behavior_entries(const TreeSnapshot& tree, std::uint32_t body);
+/// Updates the state of an entry from a value snapshot.
+void update_entry(const ValueSnapshot& snapshot, BehaviorEntry& entry);
+/// Sorts the entries by their execution order.
+void sort_entries(std::vector<BehaviorEntry>& entries);
+/// Returns the messages that move an entry just past its neighbor in the execution order, upwards or downwards. A
+/// single message for all bodies if the position is the same on all of them, otherwise one for each.
+std::vector<Message> move_past(const ValueSnapshot& snapshot, const BehaviorEntry& entry,
+                               const BehaviorEntry& neighbor);
 
 }  // namespace limber

@@ -1,11 +1,11 @@
-// Seconds as a clock shows them: "01:23.45".
+// Formats seconds as a clock: "01:23.45".
 #pragma once
 
 #include <string>
 
 namespace limber {
 
-/// Hundredths are cut off, not rounded: a second begins when it has come.
+/// Returns minutes and seconds; hundredths are truncated, not rounded.
 std::string clock_text(double seconds);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Images in, messages out.
+// Reads snapshots and sends messages.
 #include "gui/desk.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kAskEvery = 1.0 / 20;  // s; the simulation gives a hundredth of its time to images at most
-constexpr double kNoticeLasts = 2.5;    // s
-constexpr double kRefusalStays = 8;     // s; a reason is read
+constexpr double kSnapshotInterval = 1.0 / 20;  // s; the simulation spends at most 1 % of its time on value snapshots
+constexpr double kNoticeDuration = 2.5;         // s
+constexpr double kRejectionDuration = 8;        // s; long enough to read the reason
 constexpr const char* kStyle = "/visuals/look/style";
 constexpr const char* kEye = "/visuals/camera/eye";
 constexpr const char* kTarget = "/visuals/camera/target";
@@ -31,178 +31,181 @@ std::vector<std::string> easings() {
   return names;
 }
 
-Message set_message(const std::string& path, const Row& row, const HandValues::Values& values) {
+Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values) {
   Message message{path, {}};
-  const bool truth = row.type == RowType::boolean || row.type == RowType::flags3;
-  for (std::uint32_t i = 0; i < row.width; i++)
-    message.args.push_back(truth ? Arg::of(values[i] != 0) : Arg::of(values[i]));
+  const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
+  for (std::uint32_t i = 0; i < property.width; i++)
+    message.args.push_back(is_boolean ? Arg::of(values[i] != 0) : Arg::of(values[i]));
   return message;
 }
 
-std::uint64_t Desk::send(Message message) {
+std::uint64_t PanelContext::send(Message message) {
   Command command;
   command.messages.push_back(std::move(message));
-  command.origin = Origin{Hand::panel, 0, gesture_, false};
-  link.inbox.push(std::move(command));
-  asked_ = link.ask_image();
-  asked_at_ = clock;
-  return asked_;
+  command.origin = CommandOrigin{CommandSource::panel, 0, edit_number_, false};
+  link.command_queue.push(std::move(command));
+  last_request_ = link.request_value_snapshot();
+  last_request_time_ = clock;
+  return last_request_;
 }
 
-std::uint64_t Desk::send(std::string address, std::vector<Arg> args) {
+std::uint64_t PanelContext::send(std::string address, std::vector<Arg> args) {
   return send(Message{std::move(address), std::move(args)});
 }
 
-void Desk::set(const PlacedRow& at, const HandValues::Values& values, bool held) {
-  if (!std::exchange(holding_, held)) gesture_++;
-  if (at.path == kStyle) settings.style = at.place.row->choices[static_cast<std::size_t>(values[0])];
-  hand_.set(at.path, values, send(set_message(at.path, *at.place.row, values)));
+void PanelContext::set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging) {
+  if (!std::exchange(dragging_, dragging)) edit_number_++;
+  if (handle.path == kStyle) settings.style = handle.ref.property->choices[static_cast<std::size_t>(values[0])];
+  pending_.set(handle.path, values, send(set_message(handle.path, *handle.ref.property, values)));
 }
 
-void Desk::set_all(const std::string& pattern, double value) {
-  gesture_++;
-  hand_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
+void PanelContext::set_all(const std::string& pattern, double value) {
+  edit_number_++;
+  pending_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
 }
 
-std::optional<double> Desk::shown(const std::string& pattern) const {
-  const HandValues::Values* const values = hand_.find(pattern);
+std::optional<double> PanelContext::pending_value(const std::string& pattern) const {
+  const PendingValues::Values* const values = pending_.find(pattern);
   return values == nullptr ? std::nullopt : std::optional((*values)[0]);
 }
 
-void Desk::step_back(const char* action, const char* what, const char* none) {
-  holding_ = false;
-  const std::optional<PlacedRow> at = find(what);
-  const std::string_view of = at ? text(at->place) : std::string_view();
-  say(of.empty() ? std::string(none) : std::string(of));
-  send(action);  // whatever the image says: it may be older than what a hand has just done
+void PanelContext::undo_or_redo(const char* action, const char* description_path, const char* nothing_text) {
+  dragging_ = false;
+  const std::optional<PropertyHandle> handle = find(description_path);
+  const std::string_view description = handle ? text(handle->ref) : std::string_view();
+  show_notice(description.empty() ? std::string(nothing_text) : std::string(description));
+  send(action);  // even if the snapshot has nothing to undo: it may be older than the last edit
 }
 
-void Desk::toggle_overlay() {
-  constexpr const char* kRow = "/visuals/look/overlay";
-  send(kRow, {Arg::of(number(kRow) == 0 ? 1.0 : 0.0)});
+void PanelContext::toggle_overlay() {
+  constexpr const char* kAddress = "/visuals/look/overlay";
+  send(kAddress, {Arg::of(number(kAddress) == 0 ? 1.0 : 0.0)});
 }
 
-void Desk::undo() { step_back("/edit/undo", "/edit/undo_of", "there is nothing to undo"); }
-void Desk::redo() { step_back("/edit/redo", "/edit/redo_of", "there is nothing to redo"); }
+void PanelContext::undo() { undo_or_redo("/edit/undo", "/edit/undo_of", "Nothing to undo"); }
+void PanelContext::redo() { undo_or_redo("/edit/redo", "/edit/redo_of", "Nothing to redo"); }
 
-bool Desk::values(const PlacedRow& at, HandValues::Values& values) const {
-  if (const HandValues::Values* const hand = hand_.find(at.path)) {
-    values = *hand;
+bool PanelContext::values(const PropertyHandle& handle, PendingValues::Values& values) const {
+  if (const PendingValues::Values* const pending = pending_.find(handle.path)) {
+    values = *pending;
     return true;
   }
-  const double* const numbers = image->value(image->tree->numbers(at.place)).numbers;
+  const double* const numbers = value_snapshot->value(value_snapshot->tree->location(handle.ref)).numbers;
   if (numbers == nullptr) return false;
-  std::copy_n(numbers, at.place.row->width, values.begin());
+  std::copy_n(numbers, handle.ref.property->width, values.begin());
   return true;
 }
 
-std::string_view Desk::text(const TreePlace& place) const { return image->value(image->tree->numbers(place)).text; }
+std::string_view PanelContext::text(const TreePropertyRef& ref) const {
+  return value_snapshot->value(value_snapshot->tree->location(ref)).text;
+}
 
-std::optional<PlacedRow> Desk::find(std::string_view path) const {
-  if (image == nullptr) return std::nullopt;
+std::optional<PropertyHandle> PanelContext::find(std::string_view path) const {
+  if (value_snapshot == nullptr) return std::nullopt;
   PatternBudget budget;
-  const Result<std::vector<TreePlace>> places = image->tree->match(path, budget, 1);
-  if (!places || places->empty() || places->front().row == nullptr) return std::nullopt;
-  return PlacedRow{places->front(), std::string(path)};
+  const Result<std::vector<TreePropertyRef>> matches = value_snapshot->tree->match(path, budget, 1);
+  if (!matches || matches->empty() || matches->front().property == nullptr) return std::nullopt;
+  return PropertyHandle{matches->front(), std::string(path)};
 }
 
-double Desk::number(std::string_view path, double otherwise) const {
-  const std::optional<PlacedRow> at = find(path);
-  HandValues::Values values{};
-  return at && this->values(*at, values) ? values[0] : otherwise;
+double PanelContext::number(std::string_view path, double fallback) const {
+  const std::optional<PropertyHandle> handle = find(path);
+  PendingValues::Values values{};
+  return handle && this->values(*handle, values) ? values[0] : fallback;
 }
 
-TakeState Desk::take() const {
-  TakeState take;
-  if (const auto name = find("/take/name")) take.name = text(name->place);
-  if (take.name.empty()) return take;
+TakeState PanelContext::take_state() const {
+  TakeState state;
+  if (const auto name = find("/take/name")) state.name = text(name->ref);
+  if (state.name.empty()) return state;
   const double timestep = number("/physics/sim/timestep");
-  take.replays = number("/take/replays") != 0;
-  take.plays = number("/take/plays") != 0;
-  take.seconds = timestep * number("/take/ticks");
-  take.whole = timestep * number("/take/whole");
-  return take;
+  state.replaying = number("/take/replays") != 0;
+  state.playing = number("/take/plays") != 0;
+  state.seconds = timestep * number("/take/ticks");
+  state.duration = timestep * number("/take/whole");
+  return state;
 }
 
-void Desk::choose(std::string path) {
+void PanelContext::select(std::string path) {
   selected = std::move(path);
-  reveal = selected;
+  reveal_path = selected;
 }
 
-void Desk::keep_view(std::size_t number) {
+void PanelContext::store_view(std::size_t number) {
   const auto eye = find(kEye);
   const auto target = find(kTarget);
   View view;
   if (!eye || !target || !values(*eye, view.eye) || !values(*target, view.target)) return;
   views_.at(number - 1) = view;
-  say(fmt::format("view {} is kept", number));
+  show_notice(fmt::format("View {} stored", number));
 }
 
-void Desk::go_to_view(std::size_t number) {
+void PanelContext::restore_view(std::size_t number) {
   const std::optional<View>& view = views_.at(number - 1);
-  if (!view) return say(fmt::format("there is no view {0}: Ctrl+Shift+{0} keeps one", number));
-  const auto point = [](const HandValues::Values& v) {
+  if (!view) return show_notice(fmt::format("View {0} is empty; Ctrl+Shift+{0} stores one", number));
+  const auto point = [](const PendingValues::Values& v) {
     return std::vector{Arg::of(v[0]), Arg::of(v[1]), Arg::of(v[2])};
   };
-  for (const char* row : {kEye, kTarget, kEye}) send(row, point(row == kEye ? view->eye : view->target));
+  for (const char* address : {kEye, kTarget, kEye}) send(address, point(address == kEye ? view->eye : view->target));
 }
 
-void Desk::recall(double number) {
-  if (number > this->number("/preset/count")) return say(fmt::format("there is no preset {}", number));
+void PanelContext::recall(double number) {
+  if (number > this->number("/preset/count")) return show_notice(fmt::format("Preset {} not found", number));
   const std::vector<std::string> names = easings();
   const auto easing = std::min(static_cast<std::size_t>(std::max(settings.easing, 0)), names.size() - 1);
   send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
 }
 
-void Desk::say(std::string text) {
+void PanelContext::show_notice(std::string text) {
   notice = std::move(text);
-  notice_until = clock + kNoticeLasts;
+  notice_until = clock + kNoticeDuration;
 }
 
-void Desk::copied(const std::string& text) {
+void PanelContext::copy_with_notice(const std::string& text) {
   copy(text);
-  say(fmt::format("copied: {}", text));
+  show_notice(fmt::format("Copied: {}", text));
 }
 
-// what was refused; and a rewind that went less far than it was asked to
-void Desk::hear_answers() {
-  link.panel_outbox.drain(answers_);
-  for (const Outgoing& answer : answers_) {
-    const std::vector<Arg>& args = answer.message.args;
-    if (answer.to == Outgoing::To::error && args.size() == 2) {
-      refusal = fmt::format("{}: {}", args[0].text, args[1].text);
-      refusal_until = clock + kRefusalStays;
-    } else if (answer.message.address == "/transport/rewound" && args.size() > 2) {
-      say(fmt::format("{:.2f} s back, no further: {}", args[0].number, args[2].text));
+// Handles replies: rejected messages, and rewinds that went back less than requested.
+void PanelContext::handle_replies() {
+  link.panel_output_queue.drain(replies_);
+  for (const Outgoing& reply : replies_) {
+    const std::vector<Arg>& args = reply.message.args;
+    if (reply.destination == Outgoing::Destination::error && args.size() == 2) {
+      rejection = fmt::format("{}: {}", args[0].text, args[1].text);
+      rejection_until = clock + kRejectionDuration;
+    } else if (reply.message.address == "/transport/rewound" && args.size() > 2) {
+      show_notice(fmt::format("Rewound only {:.2f} s: {}", args[0].number, args[2].text));
     }
   }
 }
 
-// the look that was chosen in the show before; a replay is as it was
-void Desk::prefer_style() {
+// Restores the style selected in the last session, except in a replay.
+void PanelContext::restore_style() {
   if (settings.style.empty()) return;
-  const std::optional<PlacedRow> row = find(kStyle);
-  if (!row || take().replays) return;
-  const std::vector<std::string>& styles = row->place.row->choices;
+  const std::optional<PropertyHandle> style = find(kStyle);
+  if (!style || take_state().replaying) return;
+  const std::vector<std::string>& styles = style->ref.property->choices;
   const auto found = std::ranges::find(styles, settings.style);
   if (found == styles.end()) return;
   send("/visuals/look/prefer", {Arg::of(static_cast<double>(found - styles.begin()))});
 }
 
-void Desk::look(double clock_now) {
+void PanelContext::begin_frame(double clock_now) {
   clock = clock_now;
-  hear_answers();
-  now = link.snapshots.read();
-  if (std::shared_ptr<const Image> newest = link.images.read(); newest != nullptr && newest != image) {
-    const bool first = image == nullptr;
-    image = std::move(newest);
-    hand_.heard(image->asks);
-    if (first) prefer_style();
+  handle_replies();
+  snapshot = link.snapshots.read();
+  if (std::shared_ptr<const ValueSnapshot> newest = link.value_snapshots.read();
+      newest != nullptr && newest != value_snapshot) {
+    const bool first = value_snapshot == nullptr;
+    value_snapshot = std::move(newest);
+    pending_.remove_confirmed(value_snapshot->request);
+    if (first) restore_style();
   }
-  const bool waiting = image == nullptr || image->asks < asked_;
-  if (asked_ == 0 || (!waiting && clock - asked_at_ >= kAskEvery)) {
-    asked_ = link.ask_image();
-    asked_at_ = clock;
+  const bool waiting = value_snapshot == nullptr || value_snapshot->request < last_request_;
+  if (last_request_ == 0 || (!waiting && clock - last_request_time_ >= kSnapshotInterval)) {
+    last_request_ = link.request_value_snapshot();
+    last_request_time_ = clock;
   }
 }
 

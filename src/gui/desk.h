@@ -1,5 +1,5 @@
-// Desk: what lies before a panel: what is (an image, the newest snapshot), what hands may do (messages), and what the
-// panels share among themselves. Nothing of the world is kept here.
+// PanelContext: the data and functions shared by all panels: the latest value snapshot and physics snapshot, sending
+// messages, and the state of the user interface. It holds no simulation state.
 #pragma once
 
 #include <array>
@@ -20,134 +20,138 @@
 
 namespace limber {
 
-/// A row's place in the image's tree, with its address.
-struct PlacedRow {
-  TreePlace place;
+/// A property in the snapshot's tree and its address.
+struct PropertyHandle {
+  TreePropertyRef ref;
   std::string path;
 };
 
 struct GuiOptions;
 
-/// The take that is recorded or replayed, as the image has it.
+/// The take that is being recorded or replayed, from the value snapshot.
 struct TakeState {
-  std::string name;  ///< Empty: there is none.
-  bool replays = false;
-  bool plays = false;  ///< In the place of a show: /take/stop brings the hands back.
-  double seconds = 0;  ///< So far; of a replay: where it is.
-  double whole = 0;    ///< Of a replay: how long the take is.
-  bool recorded() const { return !name.empty() && !replays; }
+  std::string name;  ///< Empty: no take is active.
+  bool replaying = false;
+  bool playing = false;  ///< Plays instead of the live scene, until /take/stop.
+  double seconds = 0;    ///< Recorded duration, or position of a replay.
+  double duration = 0;   ///< Total duration of a replayed take.
+  bool recording() const { return !name.empty() && !replaying; }
 };
 
-/// How far back one press goes, s.
+/// Duration of one rewind, s.
 inline constexpr double kRewindSeconds = 2;
 
-class Desk {
+/// [main]
+class PanelContext {
  public:
-  explicit Desk(EngineLink& engine_link) : link(engine_link) {}
+  explicit PanelContext(EngineLink& engine_link) : link(engine_link) {}
 
   EngineLink& link;
-  std::shared_ptr<const Image> image;   ///< Null until the first has come.
-  std::shared_ptr<const Snapshot> now;  ///< Newer than the image; null until the first.
+  std::shared_ptr<const ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
+  std::shared_ptr<const Snapshot> snapshot;  ///< Newer than the value snapshot; null until the first one arrives.
   Fonts fonts;
-  double scale = 1;  ///< Pixels for what is a pixel at text of 16.
-  double clock = 0;  ///< s, of the frame; for what blinks or fades.
+  double scale = 1;  ///< Pixels per unit, where a unit is a pixel at text size 16.
+  double clock = 0;  ///< Time of the frame in s, for animations.
   WidgetNames names;
   PanelSettings settings;
-  const GuiOptions* options = nullptr;  ///< What the app has handed over.
+  const GuiOptions* options = nullptr;  ///< The application's options.
 
-  // what panels tell each other
-  std::string selected;            ///< Address of the chosen thing; empty: none.
-  std::string reveal;              ///< The tree shows this thing once.
-  std::vector<std::string> plots;  ///< Addresses of rows that are plotted.
-  bool focus_search = false;       ///< The next frame's search field takes the keyboard.
-  bool help = false;               ///< F2.
-  int move_behavior = 0;           ///< The chosen behaviour is to act earlier (-1) or later (1).
-  std::string notice;              ///< A line that is shown for a while, such as what was copied.
+  // State shared by panels
+  std::string selected;            ///< Address of the selected object; empty: none.
+  std::string reveal_path;         ///< Address of an object that the tree scrolls to in the next frame; empty: none.
+  std::vector<std::string> plots;  ///< Addresses of plotted properties.
+  bool focus_search = false;       ///< Moves the keyboard focus to the search field in the next frame.
+  bool show_help = false;          ///< Shows the help (F2).
+  int move_behavior = 0;           ///< Requested move of the selected behavior: -1 earlier, 1 later.
+  std::string notice;              ///< A temporary notice, for example about copied text.
   double notice_until = 0;         ///< s
-  std::string refusal;             ///< The newest message of the panel's that was refused, and why.
-  double refusal_until = 0;        ///< s
-  /// What a hand drags in the picture, and where to, pixels.
-  struct Mark {
+  std::string rejection;           ///< The panel's last rejected message, with the reason.
+  double rejection_until = 0;      ///< s
+  /// The mouse spring in the view: the dragged point and its target, in pixels.
+  struct SpringMarker {
     double x = 0, y = 0, to_x = 0, to_y = 0;
     std::string name;
   };
-  std::optional<Mark> mark;
-  std::uint64_t errors = 0;  ///< Faults that stand, for lamps.
+  std::optional<SpringMarker> spring_marker;
+  std::uint64_t errors = 0;  ///< Number of current errors, for the status lamp.
 
-  /// The clipboard; the window's, in tests one of their own.
+  /// Copies text to the clipboard: the window's, or a test's own.
   std::function<void(const std::string&)> copy = [](const std::string&) {};
 
-  /// To the simulation, in its next tick. Returns the number of the ask for an image behind it.
+  /// Sends a message to the simulation for its next tick. Returns the number of the request for a value snapshot that
+  /// follows it.
   std::uint64_t send(Message message);
   std::uint64_t send(std::string address, std::vector<Arg> args = {});
-  /// Sets a row as the hand wishes; `held`: the hand goes on, so that undo takes all of it back at once.
-  void set(const PlacedRow& at, const HandValues::Values& values, bool held);
-  /// What the panel shows of a row: the hand's, else the image's. False: it is an action or a text.
-  bool values(const PlacedRow& at, HandValues::Values& values) const;
-  std::string_view text(const TreePlace& place) const;
-  /// The row of that address in the image, of a pattern the first; or nothing.
-  std::optional<PlacedRow> find(std::string_view path) const;
-  /// One number of a row, by address; what `otherwise` says where there is none.
-  double number(std::string_view path, double otherwise = 0) const;
+  /// Sets a property. `dragging`: the user is still dragging, so that a single undo reverts the whole drag.
+  void set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging);
+  /// Reads the displayed value of a property: the pending value if there is one, otherwise the snapshot's. Returns
+  /// false for actions and texts.
+  bool values(const PropertyHandle& handle, PendingValues::Values& values) const;
+  /// Returns the text of a property of type text.
+  std::string_view text(const TreePropertyRef& ref) const;
+  /// Returns the property with this address, or the first match of a pattern.
+  std::optional<PropertyHandle> find(std::string_view path) const;
+  /// Returns one number of a property by address, or `fallback` if there is none.
+  double number(std::string_view path, double fallback = 0) const;
 
-  /// The same for what a pattern reaches at once; `shown` then says what the hand said, until it is heard.
+  /// Sets all properties that match the pattern. pending_value() returns the value until a snapshot contains it.
   void set_all(const std::string& pattern, double value);
-  std::optional<double> shown(const std::string& pattern) const;
-  /// No hand holds anything: the next value that is set is an edit of its own.
-  void let_go() { holding_ = false; }
+  std::optional<double> pending_value(const std::string& pattern) const;
+  /// Ends the current drag: the next set value is a separate undo step.
+  void end_drag() { dragging_ = false; }
 
-  /// The thing of that address is chosen, and shown in the tree.
-  void choose(std::string path);
-  /// The debug picture, on and off.
+  /// Selects the object with this address and reveals it in the tree.
+  void select(std::string path);
+  /// Toggles the debug overlay.
   void toggle_overlay();
-  /// The camera's view, kept by a number from 1 to 9 as long as the window is open, and taken again.
-  void keep_view(std::size_t number);
-  void go_to_view(std::size_t number);
-  /// A preset by its number from 1, in the time that is set.
+  /// Stores the camera's view under a number from 1 to 9 until the window is closed, and restores it.
+  void store_view(std::size_t number);
+  void restore_view(std::size_t number);
+  /// Recalls a preset by its number from 1, with the configured morph time.
   void recall(double number);
 
-  // what the transport does
+  // Transport
   bool panicked() const { return number("/physics/sim/panicked") != 0; }
   void panic() { send("/transport/panic"); }
   void step_time(int ticks) { send("/transport/step", {Arg::of(static_cast<double>(ticks))}); }
   void rewind(double seconds) { send("/transport/rewind", {Arg::of(seconds)}); }
-  TakeState take() const;
-  /// A take begins, or ends.
-  void record() { send(take().recorded() ? "/take/stop" : "/take/record"); }
-  /// The newest take plays in the place of the show, or ends.
-  void play_take() { send(take().plays ? "/take/stop" : "/take/play"); }
+  TakeState take_state() const;
+  /// Starts or stops recording a take.
+  void record() { send(take_state().recording() ? "/take/stop" : "/take/record"); }
+  /// Plays the latest take instead of the live scene, or stops it.
+  void play_take() { send(take_state().playing ? "/take/stop" : "/take/play"); }
 
-  /// Takes back what a hand has set last, whichever it was, and does it again.
+  /// Undo the latest edit, from any source, and redo it.
   void undo();
   void redo();
-  void say(std::string text);
-  void copied(const std::string& text);
+  void show_notice(std::string text);
+  void copy_with_notice(const std::string& text);
 
-  /// A frame begins: the newest of everything, and an image is asked for when its time has come.
-  void look(double clock_now);
+  /// Begins a frame: reads the latest snapshots and replies, and requests a value snapshot if it is time.
+  void begin_frame(double clock_now);
 
  private:
-  void hear_answers();
-  void prefer_style();
-  void step_back(const char* action, const char* what, const char* none);
+  void handle_replies();
+  void restore_style();
+  void undo_or_redo(const char* action, const char* description_path, const char* nothing_text);
 
-  /// Rows of the camera; each of the two keeps the other where it is.
+  // a stored view: the camera's properties eye and target
   struct View {
-    HandValues::Values eye{}, target{};
+    PendingValues::Values eye{}, target{};
   };
   std::array<std::optional<View>, 9> views_;
-  HandValues hand_;
-  bool holding_ = false;
-  std::uint16_t gesture_ = 0;
-  std::uint64_t asked_ = 0;
-  double asked_at_ = 0;
-  std::vector<Outgoing> answers_;  // scratch
+  PendingValues pending_;
+  bool dragging_ = false;
+  std::uint16_t edit_number_ = 0;
+  std::uint64_t last_request_ = 0;
+  double last_request_time_ = 0;
+  std::vector<Outgoing> replies_;  // scratch memory
 };
 
-/// Names of the ways in which morphs go.
+/// Names of the easing functions for morphs.
 std::vector<std::string> easings();
 
-/// The message that sets a row to these values.
-Message set_message(const std::string& path, const Row& row, const HandValues::Values& values);
+/// Returns the message that sets a property to these values.
+Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Evaluator: texts for the running scene, the way of `limber console`: asked here, answered by the simulation between
-// two ticks, heard a frame later.
+// Evaluator: evaluates Lua in the running scene like `limber console`. The simulation evaluates the text between two
+// ticks and the result is available a frame later.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,26 @@
 
 namespace limber {
 
+/// [main]
 class Evaluator {
  public:
-  struct Answer {
+  struct Response {
     std::uint64_t id = 0;
-    Evaluation said;
+    Evaluation result;
   };
 
-  /// Its number; 0: the simulation takes no more just now.
-  std::uint64_t ask(EngineLink& link, std::string text, Evaluate::Wish wish = Evaluate::Wish::run);
-  /// What has been answered since the last call.
-  const std::vector<Answer>& answers();
+  /// Requests an evaluation. Returns its id, or 0 if the simulation's queue is full.
+  std::uint64_t request(EngineLink& link, std::string text,
+                        EvaluationRequest::Action mode = EvaluationRequest::Action::run);
+  /// Returns the results since the last call.
+  const std::vector<Response>& consume_responses();
 
  private:
-  static constexpr std::size_t kMostWaiting = 256;
-  // shared with what the simulation holds, which may answer after this has gone
-  std::shared_ptr<Inbox<Answer>> inbox_ = std::make_shared<Inbox<Answer>>(kMostWaiting);
-  std::vector<Answer> heard_;
-  std::uint64_t asked_ = 0;
+  static constexpr std::size_t kMaxPending = 256;
+  // shared with queued evaluations, which may complete after this object is destroyed
+  std::shared_ptr<BoundedQueue<Response>> inbox_ = std::make_shared<BoundedQueue<Response>>(kMaxPending);
+  std::vector<Response> responses_;
+  std::uint64_t last_id_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Lines of the log, read for files.
+// Parses log lines for script files.
 #include "gui/fault_list.h"
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace limber {
 
-Fault fault_of(const LogLine& line) {
+Fault parse_fault(const LogLine& line) {
   Fault fault{line, {}, {}};
-  // "file.lua:12: what"
+  // "file.lua:12: message"
   const std::size_t colon = line.text.find(".lua:");
   if (colon == std::string::npos || line.text.find('\n') < colon) return fault;
   const std::size_t end = colon + 4;
@@ -20,28 +20,28 @@ Fault fault_of(const LogLine& line) {
   std::size_t begin = line.text.rfind(' ', colon);
   begin = begin == std::string::npos ? 0 : begin + 1;
   fault.file = line.text.substr(begin, end - begin);
-  fault.place = line.text.substr(begin, digits - begin);
+  fault.location = line.text.substr(begin, digits - begin);
   return fault;
 }
 
-void FaultList::hear(const LogLine& line) {
-  if (line.level == LogLevel::info && line.text.ends_with(kMended)) {
-    const std::string file = line.text.substr(0, line.text.size() - kMended.size());
+void FaultList::add(const LogLine& line) {
+  if (line.level == LogLevel::info && line.text.ends_with(kResolvedSuffix)) {
+    const std::string file = line.text.substr(0, line.text.size() - kResolvedSuffix.size());
     std::erase_if(faults_, [&](const Fault& f) { return f.line.level == LogLevel::error && f.file == file; });
   }
   if (line.level != LogLevel::warning && line.level != LogLevel::error) return;
-  if (faults_.size() >= kMost) faults_.pop_front();
-  faults_.push_back(fault_of(line));
+  if (faults_.size() >= kMaxFaults) faults_.pop_front();
+  faults_.push_back(parse_fault(line));
 }
 
 std::string FaultList::count_text() const {
-  const std::size_t warnings = faults_.size() - errors();
-  std::string text = errors() == 0 ? "" : fmt::format("{}", errors());
+  const std::size_t warnings = faults_.size() - error_count();
+  std::string text = error_count() == 0 ? "" : fmt::format("{}", error_count());
   if (warnings == 0) return text;
   return text + fmt::format("{}{} warning{}", text.empty() ? "" : " + ", warnings, warnings == 1 ? "" : "s");
 }
 
-std::size_t FaultList::errors() const {
+std::size_t FaultList::error_count() const {
   return static_cast<std::size_t>(
       std::count_if(faults_.begin(), faults_.end(), [](const Fault& f) { return f.line.level == LogLevel::error; }));
 }

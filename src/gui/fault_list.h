@@ -1,4 +1,4 @@
-// FaultList: warnings and errors that stand. Those of a file vanish when it is mended.
+// FaultList: current warnings and errors. The errors of a script file are removed when it runs again without errors.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,26 @@
 
 namespace limber {
 
+/// One warning or error.
 struct Fault {
   LogLine line;
-  std::string file;   ///< Of an error that begins with one; else empty.
-  std::string place;  ///< "scripts/a.lua:12", or empty.
+  std::string file;      ///< File named at the beginning of an error; otherwise empty.
+  std::string location;  ///< "scripts/a.lua:12", or empty.
 };
-/// Reads the place off the text's beginning.
-Fault fault_of(const LogLine& line);
+/// Parses the file and line at the beginning of the text.
+Fault parse_fault(const LogLine& line);
 
 class FaultList {
  public:
-  static constexpr std::size_t kMost = 500;  ///< The oldest go.
+  static constexpr std::size_t kMaxFaults = 500;  ///< If there are more, the oldest is removed.
 
-  /// A line of the log; one that says that a file is mended (kMended) takes that file's errors away.
-  void hear(const LogLine& line);
+  /// Adds a log line; a line that reports a file as fixed (kResolvedSuffix) removes that file's errors.
+  void add(const LogLine& line);
   void clear() { faults_.clear(); }
   const std::deque<Fault>& faults() const { return faults_; }
-  /// Without warnings.
-  std::size_t errors() const;
-  /// "2", "2 + 1 warning", "3 warnings", or nothing.
+  /// Number of errors without warnings.
+  std::size_t error_count() const;
+  /// Returns "2", "2 + 1 warning", "3 warnings" or "".
   std::string count_text() const;
 
  private:

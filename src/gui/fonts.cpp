@@ -1,4 +1,4 @@
-// Files of fonts-inter and fonts-jetbrains-mono, else of DejaVu.
+// Loads the fonts of fonts-inter and fonts-jetbrains-mono, or DejaVu.
 #include "gui/fonts.h"
 
 #include <cmath>
@@ -15,48 +15,49 @@ namespace limber {
 
 namespace {
 
-struct Wanted {
+struct FontChoice {
   const char* name;
   const char* package;
   const char* file;
-  const char* instead;
+  const char* replacement;
 };
-constexpr Wanted kWords{"Inter", "fonts-inter", "usr/share/fonts/opentype/inter/Inter-Medium.otf",
-                        "usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
-constexpr Wanted kCode{"JetBrains Mono", "fonts-jetbrains-mono",
-                       "usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf",
-                       "usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf"};
+constexpr FontChoice kTextFont{"Inter", "fonts-inter", "usr/share/fonts/opentype/inter/Inter-Medium.otf",
+                               "usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
+constexpr FontChoice kCodeFont{"JetBrains Mono", "fonts-jetbrains-mono",
+                               "usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf",
+                               "usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf"};
 
-// Latin, Greek, Cyrillic, punctuation, letters and arrows of formulas, signs of mathematics
-constexpr ImWchar kLetters[] = {0x20,   0x17f,  0x370,  0x3ff,  0x400,  0x52f,  0x1e00, 0x1eff, 0x2010, 0x2044, 0x2070,
-                                0x209f, 0x20a0, 0x20bf, 0x2100, 0x214f, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
+// Latin, Greek, Cyrillic, punctuation, superscripts, currency signs, arrows and mathematical symbols.
+constexpr ImWchar kCharacters[] = {0x20,   0x17f,  0x370,  0x3ff,  0x400,  0x52f,  0x1e00,
+                                   0x1eff, 0x2010, 0x2044, 0x2070, 0x209f, 0x20a0, 0x20bf,
+                                   0x2100, 0x214f, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
 
-// of Debian's fonts-droid-fallback, fonts-noto-cjk, fonts-wqy-microhei, fonts-ipafont-gothic, fonts-nanum
-constexpr const char* kOthers[] = {
+// From Debian's fonts-droid-fallback, fonts-noto-cjk, fonts-wqy-microhei, fonts-ipafont-gothic, fonts-nanum.
+constexpr const char* kFallbackFonts[] = {
     "usr/share/fonts/truetype/droid/DroidSansFallbackFull.ttf", "usr/share/fonts/opentype/noto/NotoSansCJK-Regular.ttc",
     "usr/share/fonts/truetype/wqy/wqy-microhei.ttc", "usr/share/fonts/opentype/ipafont-gothic/ipag.ttf",
     "usr/share/fonts/truetype/nanum/NanumGothic.ttf"};
 
-bool is_known(unsigned letter) {
-  for (const ImWchar* range = kLetters; range[0] != 0; range += 2)
-    if (letter >= range[0] && letter <= range[1]) return true;
-  return letter < kLetters[0];
+bool is_known(unsigned character) {
+  for (const ImWchar* range = kCharacters; range[0] != 0; range += 2)
+    if (character >= range[0] && character <= range[1]) return true;
+  return character < kCharacters[0];
 }
 
-std::string look_for(const Wanted& wanted, const std::string& root, std::vector<std::string>& said) {
+std::string find_font(const FontChoice& choice, const std::string& root, std::vector<std::string>& warnings) {
   namespace fs = std::filesystem;
   std::error_code fault;
-  const fs::path best = fs::path(root) / wanted.file;
+  const fs::path best = fs::path(root) / choice.file;
   if (fs::is_regular_file(best, fault)) return best.string();
-  const fs::path other = fs::path(root) / wanted.instead;
+  const fs::path other = fs::path(root) / choice.replacement;
   const bool dejavu = fs::is_regular_file(other, fault);
-  said.push_back(fmt::format("the font {} is not there, {} stands in; apt-get install {}", wanted.name,
-                             dejavu ? "DejaVu" : "a coarse one of fixed size", wanted.package));
+  warnings.push_back(fmt::format("font {} not found, using {} instead. Install it with apt-get install {}", choice.name,
+                                 dejavu ? "DejaVu" : "a bitmap font of fixed size", choice.package));
   return dejavu ? other.string() : "";
 }
 
-ImFont* load(const std::string& file, double pixels, const char* name, const std::string& others,
-             const ImVector<ImWchar>& letters) {
+ImFont* load(const std::string& file, double pixels, const char* name, const std::string& fallback,
+             const ImVector<ImWchar>& characters) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   ImFontConfig config;
   config.OversampleH = 2;
@@ -65,15 +66,15 @@ ImFont* load(const std::string& file, double pixels, const char* name, const std
   std::snprintf(config.Name, sizeof config.Name, "%s", name);
   const auto size = static_cast<float>(std::floor(pixels));
   ImFont* font = nullptr;
-  if (!file.empty()) font = atlas.AddFontFromFileTTF(file.c_str(), size, &config, kLetters);
+  if (!file.empty()) font = atlas.AddFontFromFileTTF(file.c_str(), size, &config, kCharacters);
   if (font == nullptr) {
     config.SizePixels = size;
     font = atlas.AddFontDefault(&config);
   }
-  if (others.empty() || letters.empty()) return font;
+  if (fallback.empty() || characters.empty()) return font;
   config.MergeMode = true;
-  // where glyphs are drawn on demand, the font needs no ranges, which would have to outlive it
-  atlas.AddFontFromFileTTF(others.c_str(), size, &config, imgui::builds_fonts() ? letters.Data : nullptr);
+  // if glyphs are rasterized on demand, the font needs no ranges, which would have to outlive it
+  atlas.AddFontFromFileTTF(fallback.c_str(), size, &config, imgui::builds_fonts() ? characters.Data : nullptr);
   return font;
 }
 
@@ -81,42 +82,43 @@ ImFont* load(const std::string& file, double pixels, const char* name, const std
 
 FontFiles find_fonts(const std::string& root) {
   FontFiles files;
-  files.words = look_for(kWords, root, files.said);
-  files.code = look_for(kCode, root, files.said);
+  files.text = find_font(kTextFont, root, files.warnings);
+  files.code = find_font(kCodeFont, root, files.warnings);
   std::error_code fault;
-  for (const char* const other : kOthers) {
+  for (const char* const other : kFallbackFonts) {
     const std::filesystem::path file = std::filesystem::path(root) / other;
-    if (files.others.empty() && std::filesystem::is_regular_file(file, fault)) files.others = file.string();
+    if (files.fallback.empty() && std::filesystem::is_regular_file(file, fault)) files.fallback = file.string();
   }
   return files;
 }
 
-bool gather_letters(std::string_view text, std::set<unsigned>& letters) {
-  bool fresh = false;
+bool collect_characters(std::string_view text, std::set<unsigned>& characters) {
+  bool added = false;
   const char* at = text.data();
   const char* const end = at + text.size();
   while (at < end) {
-    unsigned letter = static_cast<unsigned char>(*at);
-    at += letter < 0x80 ? 1 : ImTextCharFromUtf8(&letter, at, end);
-    if (letter <= IM_UNICODE_CODEPOINT_MAX && letter != IM_UNICODE_CODEPOINT_INVALID && !is_known(letter))
-      fresh = letters.insert(letter).second || fresh;
+    unsigned character = static_cast<unsigned char>(*at);
+    at += character < 0x80 ? 1 : ImTextCharFromUtf8(&character, at, end);
+    if (character <= IM_UNICODE_CODEPOINT_MAX && character != IM_UNICODE_CODEPOINT_INVALID && !is_known(character))
+      added = characters.insert(character).second || added;
   }
-  return fresh;
+  return added;
 }
 
-Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& letters) {
+Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& characters) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
-  ImVector<ImWchar> ranges;  // each a range of its own
-  for (const unsigned letter : letters) {
-    ranges.push_back(static_cast<ImWchar>(letter));
-    ranges.push_back(static_cast<ImWchar>(letter));
+  ImVector<ImWchar> ranges;  // one range per character
+  for (const unsigned character : characters) {
+    ranges.push_back(static_cast<ImWchar>(character));
+    ranges.push_back(static_cast<ImWchar>(character));
   }
   if (!ranges.empty()) ranges.push_back(0);
   Fonts fonts;
-  fonts.words = load(files.words, pixels, "words", files.others, ranges);
-  fonts.code = load(files.code, pixels * 17 / 16, "code", files.others, ranges);  // its letters are lower
+  fonts.text = load(files.text, pixels, "words", files.fallback, ranges);
+  // larger, because its letters are lower
+  fonts.code = load(files.code, pixels * 17 / 16, "code", files.fallback, ranges);
   if (imgui::builds_fonts()) atlas.Build();
   return fonts;
 }

@@ -1,5 +1,5 @@
-// The panel's two fonts: Inter for words, JetBrains Mono for numbers and code; what stands in for one that is missing;
-// and a third for letters of names that those two lack, such as Chinese ones.
+// The panel's fonts: Inter for text, JetBrains Mono for numbers and code, replacements if they are missing, and a
+// fallback for characters in names that both lack, such as Chinese ones.
 #pragma once
 
 #include <set>
@@ -12,22 +12,23 @@ struct ImFont;
 namespace limber {
 
 struct FontFiles {
-  std::string words;  ///< Empty: the one inside Dear ImGui.
+  std::string text;  ///< Empty: Dear ImGui's built-in font.
   std::string code;
-  std::string others;             ///< For letters that these lack; empty: no font that is known here has them.
-  std::vector<std::string> said;  ///< What is missing, what stands in, and the cure; a line each.
+  std::string fallback;  ///< Fallback for missing characters; empty: none was found.
+  /// Log lines about missing fonts, with their replacement and the package to install.
+  std::vector<std::string> warnings;
 };
-/// Below `root` ("/" but in tests), where Debian's packages put them. [any]
+/// Searches the paths of Debian's packages below `root` ("/" except in tests). [any]
 FontFiles find_fonts(const std::string& root = "/");
 
 struct Fonts {
-  ImFont* words = nullptr;
+  ImFont* text = nullptr;
   ImFont* code = nullptr;
 };
-/// Adds the letters of a text, in UTF-8, that words and code lack; true: one of them is new. [any]
-bool gather_letters(std::string_view text, std::set<unsigned>& letters);
-/// Makes the current context's atlas anew, words of that height in pixels. [main]
-/// `letters`: what is taken of `files.others`.
-Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& letters = {});
+/// Collects the characters of a UTF-8 text that both fonts lack. Returns true if any of them is new. [any]
+bool collect_characters(std::string_view text, std::set<unsigned>& characters);
+/// Rebuilds the current context's font atlas for this text height in pixels. `characters` are added from
+/// `files.fallback`. [main]
+Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& characters = {});
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// HandValues: what a hand has set and the simulation has not told back yet. While a hand holds a slider, the panel
-// shows the hand; after that, until an image comes that was made behind the hand's last word.
+// PendingValues: values set in the panel that are not yet contained in a value snapshot. The panel displays them until
+// a snapshot arrives that was made after the last set value.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace limber {
 
-class HandValues {
+class PendingValues {
  public:
   using Values = std::array<double, 4>;
 
-  /// `ask`: what EngineLink::ask_image gave after the value was sent.
-  void set(const std::string& path, const Values& values, std::uint64_t ask) { values_[path] = {values, ask}; }
-  /// An image that answers asks up to this one has come.
-  void heard(std::uint64_t asks) {
-    std::erase_if(values_, [&](const auto& entry) { return entry.second.ask <= asks; });
+  /// `request`: the request number that EngineLink::request_value_snapshot returned after the value was sent.
+  void set(const std::string& path, const Values& values, std::uint64_t request) { values_[path] = {values, request}; }
+  /// Removes the values contained in a snapshot that answers requests up to this number.
+  void remove_confirmed(std::uint64_t request) {
+    std::erase_if(values_, [&](const auto& entry) { return entry.second.request <= request; });
   }
   const Values* find(const std::string& path) const {
     const auto found = values_.find(path);
@@ -26,11 +26,11 @@ class HandValues {
   }
 
  private:
-  struct Set {
+  struct PendingValue {
     Values values{};
-    std::uint64_t ask = 0;
+    std::uint64_t request = 0;
   };
-  std::unordered_map<std::string, Set> values_;
+  std::unordered_map<std::string, PendingValue> values_;
 };
 
 }  // namespace limber

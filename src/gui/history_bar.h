@@ -1,15 +1,16 @@
-// The past as a bar: its right end is now, its length what is kept of the past, filled as far as time can go back.
+// The history as a bar: its right end is the present, its length the configured history, its filled part the time that
+// can be rewound.
 #pragma once
 
 namespace limber {
 
-struct PastRange {
-  double kept = 0;        ///< s that the whole bar stands for; 0: history is off.
-  double rewindable = 0;  ///< s that there are.
+struct HistoryRange {
+  double length = 0;      ///< Length of the bar, s; 0: history is off.
+  double rewindable = 0;  ///< Time that can be rewound, s.
 };
 
-/// A hand presses or drags to a moment and lets go: the seconds to go back, once; else 0. `held` is what the hand
-/// holds meanwhile, s; the caller keeps it from frame to frame.
-double history_bar(const char* id, const PastRange& past, float width, double& held);
+/// The user presses or drags to a time and releases. Returns the seconds to rewind once on release, otherwise 0.
+/// `dragged_back` is the dragged time in s; the caller stores it between frames.
+double history_bar(const char* id, const HistoryRange& range, float width, double& dragged_back);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The table, and keys as text.
+// The table of hotkeys, and conversion of keys to and from text.
 #include "gui/hotkeys.h"
 
 #include <algorithm>
@@ -18,39 +18,39 @@ constexpr KeyMods kShift{false, true, false};
 constexpr KeyMods kCtrlShift{true, true, false};
 
 constexpr std::array kHotkeys = {
-    Hotkey{{GuiKey::f12, {}}, A::panic, "panic", "panic: all comes to rest; again: the show goes on", true},
-    Hotkey{{GuiKey::period, kCtrl}, A::panic, "panic_2", "panic", true},
-    Hotkey{{GuiKey::space, {}}, A::play_pause, "play", "play, pause"},
-    Hotkey{{GuiKey::period, {}}, A::step, "step", "one tick"},
-    Hotkey{{GuiKey::comma, {}}, A::step_back, "step_back", "one tick back"},
-    Hotkey{{GuiKey::comma, kShift}, A::rewind, "rewind", "two seconds back"},
-    Hotkey{{GuiKey::r, kCtrl}, A::record, "record", "record a take, from the scene's start; end it"},
-    Hotkey{{GuiKey::r, kCtrlShift}, A::play_take, "play_take", "play the newest take; end it"},
-    Hotkey{{GuiKey::backspace, kCtrl}, A::reset, "reset", "the scene from its start", true},
-    Hotkey{{GuiKey::digit_1, {}}, A::recall, "recall", "recall a preset", false, 8},
-    Hotkey{{GuiKey::z, kCtrl}, A::undo, "undo", "undo an edit"},
-    Hotkey{{GuiKey::z, kCtrlShift}, A::redo, "redo", "redo it"},
-    Hotkey{{GuiKey::y, kCtrl}, A::redo, "redo_2", "redo it"},
-    Hotkey{{GuiKey::f, kCtrl}, A::search, "search", "search parameters", true},
-    Hotkey{{GuiKey::up, kCtrl}, A::earlier, "earlier", "the chosen behaviour acts earlier"},
-    Hotkey{{GuiKey::down, kCtrl}, A::later, "later", "later"},
-    Hotkey{{GuiKey::equal, kCtrl}, A::larger, "larger", "larger text", true},
-    Hotkey{{GuiKey::minus, kCtrl}, A::smaller, "smaller", "smaller text", true},
-    Hotkey{{GuiKey::home, {}}, A::home_view, "home_view", "the view as it was at first"},
-    Hotkey{{GuiKey::digit_1, kCtrl}, A::go_to_view, "go_to_view", "a view that was kept", false, 9},
-    Hotkey{{GuiKey::digit_1, kCtrlShift}, A::keep_view, "keep_view", "keep this view", false, 9},
-    Hotkey{{GuiKey::f1, {}}, A::hide, "hide", "hide the panel", true},
-    Hotkey{{GuiKey::f2, {}}, A::help, "help", "this help", true},
-    Hotkey{{GuiKey::f3, {}}, A::overlay, "overlay", "joints, contacts, forces, targets over the picture", true},
-    Hotkey{{GuiKey::f10, {}}, A::output, "output", "a window of the picture alone, and away with it", true},
+    Hotkey{{GuiKey::f12, {}}, A::panic, "panic", "Panic: stop all motion; press again to resume", true},
+    Hotkey{{GuiKey::period, kCtrl}, A::panic, "panic_2", "Panic", true},
+    Hotkey{{GuiKey::space, {}}, A::play_pause, "play", "Play or pause"},
+    Hotkey{{GuiKey::period, {}}, A::step, "step", "Step one tick"},
+    Hotkey{{GuiKey::comma, {}}, A::step_back, "step_back", "Step back one tick"},
+    Hotkey{{GuiKey::comma, kShift}, A::rewind, "rewind", "Rewind two seconds"},
+    Hotkey{{GuiKey::r, kCtrl}, A::record, "record", "Record a take from the start of the scene, or stop it"},
+    Hotkey{{GuiKey::r, kCtrlShift}, A::play_take, "play_take", "Play the latest take, or stop it"},
+    Hotkey{{GuiKey::backspace, kCtrl}, A::reset, "reset", "Reset the scene", true},
+    Hotkey{{GuiKey::digit_1, {}}, A::recall, "recall", "Recall a preset", false, 8},
+    Hotkey{{GuiKey::z, kCtrl}, A::undo, "undo", "Undo an edit"},
+    Hotkey{{GuiKey::z, kCtrlShift}, A::redo, "redo", "Redo an edit"},
+    Hotkey{{GuiKey::y, kCtrl}, A::redo, "redo_2", "Redo an edit"},
+    Hotkey{{GuiKey::f, kCtrl}, A::search, "search", "Search parameters", true},
+    Hotkey{{GuiKey::up, kCtrl}, A::earlier, "earlier", "Run the selected behavior earlier"},
+    Hotkey{{GuiKey::down, kCtrl}, A::later, "later", "Run the selected behavior later"},
+    Hotkey{{GuiKey::equal, kCtrl}, A::larger, "larger", "Larger text", true},
+    Hotkey{{GuiKey::minus, kCtrl}, A::smaller, "smaller", "Smaller text", true},
+    Hotkey{{GuiKey::home, {}}, A::default_view, "home_view", "Default view"},
+    Hotkey{{GuiKey::digit_1, kCtrl}, A::restore_view, "go_to_view", "Restore a stored view", false, 9},
+    Hotkey{{GuiKey::digit_1, kCtrlShift}, A::store_view, "keep_view", "Store this view", false, 9},
+    Hotkey{{GuiKey::f1, {}}, A::hide, "hide", "Hide the panel", true},
+    Hotkey{{GuiKey::f2, {}}, A::help, "help", "Show this help", true},
+    Hotkey{{GuiKey::f3, {}}, A::overlay, "overlay", "Show joints, contacts, forces and targets", true},
+    Hotkey{{GuiKey::f10, {}}, A::output, "output", "Open or close the output window", true},
     Hotkey{{GuiKey::f11, {}},
            A::full_screen,
            "full_screen",
-           "the whole screen, and back: that window, else this one",
+           "Full screen on or off: the output window, else this one",
            true},
 };
 
-// from GuiKey::tab to slash
+// Names of the keys from GuiKey::tab to GuiKey::slash.
 constexpr std::array<std::string_view, 20> kNames = {
     "Tab",    "Left",      "Right", "Up",    "Down",   "PageUp", "PageDown", "Home", "End", "Insert",
     "Delete", "Backspace", "Space", "Enter", "Escape", ".",      ",",        "-",    "=",   "/"};
@@ -69,17 +69,17 @@ std::string mods_text(const KeyMods& mods) {
   return fmt::format("{}{}{}", mods.ctrl ? "Ctrl+" : "", mods.alt ? "Alt+" : "", mods.shift ? "Shift+" : "");
 }
 
-// whether it types a letter or edits a text
-bool types(const KeyPress& press) {
+// True if the key types a character or edits text.
+bool types_text(const KeyPress& press) {
   const bool function = press.key >= GuiKey::f1 && press.key <= GuiKey::f12;
   return !press.mods.ctrl && !press.mods.alt && !function;
 }
 
 std::string_view name_of(const Hotkey& hotkey) { return hotkey.name; }
 
-bool means(const Hotkey& hotkey, const KeyPress& press) {
-  const int further = static_cast<int>(press.key) - static_cast<int>(hotkey.press.key);
-  return press.mods == hotkey.press.mods && further >= 0 && further < hotkey.keys;
+bool matches(const Hotkey& hotkey, const KeyPress& press) {
+  const int offset = static_cast<int>(press.key) - static_cast<int>(hotkey.press.key);
+  return press.mods == hotkey.press.mods && offset >= 0 && offset < hotkey.key_count;
 }
 
 }  // namespace
@@ -108,52 +108,52 @@ std::optional<KeyPress> parse_key(std::string_view text) {
   return std::nullopt;
 }
 
-Hotkeys::Hotkeys(const KeyChoices& chosen) : list_(kHotkeys.begin(), kHotkeys.end()) {
-  for (const auto& [name, text] : chosen) {
+Hotkeys::Hotkeys(const KeyBindings& bindings) : list_(kHotkeys.begin(), kHotkeys.end()) {
+  for (const auto& [name, text] : bindings) {
     const std::optional<KeyPress> press = parse_key(text);
     const auto hotkey = std::ranges::find(list_, std::string_view(name), name_of);
-    std::string why;
-    if (hotkey == list_.end() || hotkey->keys > 1) {
-      why = "there is no such key to choose";
+    std::string reason;
+    if (hotkey == list_.end() || hotkey->key_count > 1) {
+      reason = "hotkey not found or not configurable";
     } else if (!press) {
-      why = "this is no key; such as Ctrl+Shift+R";
+      reason = "not a key; expected for example Ctrl+Shift+R";
     } else {
-      why = against(name, *press);
+      reason = conflict(name, *press);
     }
-    if (why.empty()) {
+    if (reason.empty()) {
       hotkey->press = *press;
     } else {
-      faults_.push_back(fmt::format("key '{}' for '{}': {}", printable(text), printable(name), why));
+      faults_.push_back(fmt::format("key '{}' for '{}': {}", printable(text), printable(name), reason));
     }
   }
 }
 
-const Hotkey* Hotkeys::named(std::string_view name) const {
+const Hotkey* Hotkeys::find(std::string_view name) const {
   const auto hotkey = std::ranges::find(list_, name, name_of);
   return hotkey == list_.end() ? nullptr : &*hotkey;
 }
 
-const Hotkey* Hotkeys::of(const KeyPress& press, bool typing) const {
+const Hotkey* Hotkeys::match(const KeyPress& press, bool typing) const {
   for (const Hotkey& hotkey : list_) {
-    if (means(hotkey, press) && (!typing || (hotkey.while_typing && !types(press)))) return &hotkey;
+    if (matches(hotkey, press) && (!typing || (hotkey.while_typing && !types_text(press)))) return &hotkey;
   }
   return nullptr;
 }
 
-std::string Hotkeys::against(std::string_view name, const KeyPress& press) const {
-  if (types(press) && press.key <= GuiKey::escape && press.key != GuiKey::space && press.key != GuiKey::home)
-    return "this key goes about the panel and its texts";
+std::string Hotkeys::conflict(std::string_view name, const KeyPress& press) const {
+  if (types_text(press) && press.key <= GuiKey::escape && press.key != GuiKey::space && press.key != GuiKey::home)
+    return "reserved for navigation and text fields";
   for (const Hotkey& other : list_) {
-    if (other.name != name && means(other, press)) return fmt::format("this is the key of '{}'", other.name);
+    if (other.name != name && matches(other, press)) return fmt::format("already used by '{}'", other.name);
   }
   return {};
 }
 
-std::string shown_keys(const Hotkey& hotkey, const KeyLabels& labels) {
+std::string keys_text(const Hotkey& hotkey, const KeyLabels& labels) {
   std::string text = key_text(hotkey.press, labels);
-  if (hotkey.keys == 1) return text;
+  if (hotkey.key_count == 1) return text;
   return fmt::format("{} .. {}", text,
-                     key_name(static_cast<GuiKey>(static_cast<int>(hotkey.press.key) + hotkey.keys - 1)));
+                     key_name(static_cast<GuiKey>(static_cast<int>(hotkey.press.key) + hotkey.key_count - 1)));
 }
 
 }  // namespace limber

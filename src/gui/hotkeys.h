@@ -1,5 +1,4 @@
-// The keys that act wherever the mouse is: one table, which the help overlay shows and the window's keys go by. A
-// performer may choose others for each action.
+// Global hotkeys: one table for dispatch and for the help overlay. Users can rebind each action.
 #pragma once
 
 #include <cstdint>
@@ -35,49 +34,52 @@ enum class HotkeyAction : std::uint8_t {
   later,
   output,
   full_screen,
-  home_view,
-  keep_view,
-  go_to_view,
+  default_view,
+  store_view,
+  restore_view,
   recall,
 };
 
+/// One or several consecutive keys for an action.
 struct Hotkey {
   KeyPress press;
   HotkeyAction action = HotkeyAction::help;
-  const char* name = "";  ///< In the panel's settings, unique.
-  const char* does = "";
-  bool while_typing = false;  ///< It acts where letters would be typed, too.
-  int keys = 1;               ///< So many in a row mean it, from that of `press` on: 1 to 9. More than one: not chosen.
+  const char* name = "";  ///< Unique; used in the panel's settings.
+  const char* description = "";
+  bool while_typing = false;  ///< Also active while a text field has the focus.
+  /// Number of consecutive keys, starting at `press` (1 to 9). If there is more than one, the hotkey can't be rebound.
+  int key_count = 1;
 };
 
-/// By the name of a hotkey, its key as key_text() writes it.
-using KeyChoices = std::map<std::string, std::string>;
-/// What the keyboard prints on keys that act by their place, since its layout prints their letter nowhere.
+/// Rebound keys by the name of the hotkey, in the format of key_text().
+using KeyBindings = std::map<std::string, std::string>;
+/// Labels of keys that are identified by their position, because the keyboard layout has no key with their letter.
 using KeyLabels = std::map<GuiKey, std::string>;
 
-/// "Ctrl+Shift+R". `labels`: instead of the key's own name.
+/// Returns text like "Ctrl+Shift+R". `labels` override the names of keys.
 std::string key_text(const KeyPress& press, const KeyLabels& labels = {});
-/// The other way round; nothing: this is no key.
+/// Parses the format of key_text(); empty if the text is not a key.
 std::optional<KeyPress> parse_key(std::string_view text);
 
+/// The hotkeys with the user's bindings.
 class Hotkeys {
  public:
-  explicit Hotkeys(const KeyChoices& chosen = {});
+  explicit Hotkeys(const KeyBindings& bindings = {});
   std::span<const Hotkey> all() const { return list_; }
-  /// Choices that were left out, and why.
+  /// Error texts of rejected bindings.
   const std::vector<std::string>& faults() const { return faults_; }
-  const Hotkey* named(std::string_view name) const;
-  /// What a press means; null: nothing. `typing`: a field takes letters.
-  const Hotkey* of(const KeyPress& press, bool typing) const;
-  /// What speaks against that key for a hotkey; empty: nothing.
-  std::string against(std::string_view name, const KeyPress& press) const;
+  const Hotkey* find(std::string_view name) const;
+  /// Returns the hotkey of a key press or null. `typing`: a text field has the focus.
+  const Hotkey* match(const KeyPress& press, bool typing) const;
+  /// Returns the reason why this key can't be bound to the hotkey; empty if it can.
+  std::string conflict(std::string_view name, const KeyPress& press) const;
 
  private:
   std::vector<Hotkey> list_;
   std::vector<std::string> faults_;
 };
 
-/// "Ctrl+R", of several keys in a row "1 .. 8".
-std::string shown_keys(const Hotkey& hotkey, const KeyLabels& labels);
+/// Returns "Ctrl+R", or "1 .. 8" for consecutive keys.
+std::string keys_text(const Hotkey& hotkey, const KeyLabels& labels);
 
 }  // namespace limber

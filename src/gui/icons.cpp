@@ -1,4 +1,4 @@
-// Lines and triangles.
+// Icons as lines and triangles.
 #include "gui/icons.h"
 
 #include <array>
@@ -17,11 +17,11 @@ constexpr float kPi = 3.14159265F;
 
 struct Pen {
   ImDrawList& list;
-  ImVec2 middle;
+  ImVec2 center;
   float half;
   std::uint32_t color;
 
-  ImVec2 at(float x, float y) const { return {middle.x + x * half, middle.y + y * half}; }
+  ImVec2 at(float x, float y) const { return {center.x + x * half, center.y + y * half}; }
   float width() const { return half * 0.24F; }
   void line(ImVec2 a, ImVec2 b) const { list.AddLine(a, b, color, width()); }
   void triangle(ImVec2 a, ImVec2 b, ImVec2 c) const { list.AddTriangleFilled(a, b, c, color); }
@@ -106,7 +106,7 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
       double_arrow(pen);
       break;
     case Icon::record:
-      pen.list.AddCircleFilled(pen.middle, half * 0.85F, color, 20);
+      pen.list.AddCircleFilled(pen.center, half * 0.85F, color, 20);
       break;
     case Icon::stop:
       pen.box(-0.75F, -0.75F, 0.75F, 0.75F);
@@ -142,19 +142,19 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
   }
 }
 
-bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tip, bool on, float width) {
+bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tooltip, bool on, float width) {
   const float height = ImGui::GetFrameHeight();
   if (width <= 0) width = height * 1.25F;
-  if (on) ImGui::PushStyleColor(ImGuiCol_Button, packed(Tone::lit));
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, packed_color(Tone::active));
   ImGui::PushID(name);
   const bool pressed = ImGui::Button("##icon", {width, height});
   ImGui::PopID();
-  names.note(name);
+  names.add(name);
   if (on) ImGui::PopStyleColor();
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(icon, low.x + width / 2, low.y + height / 2, height * 0.27F,
-            packed(on && !ImGui::IsItemHovered() ? Tone::ink : Tone::text));
-  if (ImGui::IsItemHovered() && tip != nullptr) ImGui::SetTooltip("%s", tip);
+            packed_color(on && !ImGui::IsItemHovered() ? Tone::on_active : Tone::text));
+  if (ImGui::IsItemHovered() && tooltip != nullptr) ImGui::SetTooltip("%s", tooltip);
   return pressed;
 }
 

@@ -1,4 +1,4 @@
-// The few signs of the panel, drawn as lines, so that no font of signs is needed.
+// The panel's icons, drawn as lines and triangles, so that no icon font is needed.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace limber {
 class WidgetNames;
 
 enum class Icon : std::uint8_t {
-  back,
+  back,  ///< To the start: reset.
   play,
   pause,
   step,
@@ -28,10 +28,12 @@ enum class Icon : std::uint8_t {
   right
 };
 
-/// Into the square of that middle and half side, of the current window.
+/// Draws into the square with this center and half side length, in the current window.
 void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color);
 
-/// A button with a sign, as high as a field; `name` is its id and, in `names`, its name. True: it was pressed.
-bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tip, bool on = false, float width = 0);
+/// A button with an icon, as high as a text field. `name` is its id and its name in `names`. Returns true if it was
+/// pressed.
+bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tooltip, bool on = false,
+                 float width = 0);
 
 }  // namespace limber

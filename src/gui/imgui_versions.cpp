@@ -1,4 +1,4 @@
-// Each function has its versions side by side.
+// The implementations for all supported versions.
 #include "gui/imgui_versions.h"
 
 #include <iterator>
@@ -6,9 +6,9 @@
 #include <imgui_impl_opengl3.h>
 #include <imgui_internal.h>
 
-#define LIMBER_IMGUI_EVENTS (IMGUI_VERSION_NUM >= 18900)  // a queue of events instead of arrays of keys
+#define LIMBER_IMGUI_EVENTS (IMGUI_VERSION_NUM >= 18900)  // event queue instead of key arrays
 #ifdef IMGUI_HAS_TEXTURES
-#define LIMBER_IMGUI_TEXTURES 1  // 1.92: the renderer follows the font texture
+#define LIMBER_IMGUI_TEXTURES 1  // 1.92: the renderer updates the font texture
 #else
 #define LIMBER_IMGUI_TEXTURES 0
 #endif
@@ -17,33 +17,33 @@ namespace limber::imgui {
 
 namespace {
 
-struct NamedKey {
-  GuiKey ours;
-  ImGuiKey theirs;
+struct KeyPair {
+  GuiKey key;
+  ImGuiKey imgui_key;
 };
-constexpr NamedKey kNamedKeys[] = {{GuiKey::tab, ImGuiKey_Tab},
-                                   {GuiKey::left, ImGuiKey_LeftArrow},
-                                   {GuiKey::right, ImGuiKey_RightArrow},
-                                   {GuiKey::up, ImGuiKey_UpArrow},
-                                   {GuiKey::down, ImGuiKey_DownArrow},
-                                   {GuiKey::page_up, ImGuiKey_PageUp},
-                                   {GuiKey::page_down, ImGuiKey_PageDown},
-                                   {GuiKey::home, ImGuiKey_Home},
-                                   {GuiKey::end, ImGuiKey_End},
-                                   {GuiKey::insert, ImGuiKey_Insert},
-                                   {GuiKey::erase, ImGuiKey_Delete},
-                                   {GuiKey::backspace, ImGuiKey_Backspace},
-                                   {GuiKey::space, ImGuiKey_Space},
-                                   {GuiKey::enter, ImGuiKey_Enter},
-                                   {GuiKey::escape, ImGuiKey_Escape},
-                                   {GuiKey::a, ImGuiKey_A},
-                                   {GuiKey::c, ImGuiKey_C},
-                                   {GuiKey::v, ImGuiKey_V},
-                                   {GuiKey::x, ImGuiKey_X},
-                                   {GuiKey::y, ImGuiKey_Y},
-                                   {GuiKey::z, ImGuiKey_Z}};
+constexpr KeyPair kKeys[] = {{GuiKey::tab, ImGuiKey_Tab},
+                             {GuiKey::left, ImGuiKey_LeftArrow},
+                             {GuiKey::right, ImGuiKey_RightArrow},
+                             {GuiKey::up, ImGuiKey_UpArrow},
+                             {GuiKey::down, ImGuiKey_DownArrow},
+                             {GuiKey::page_up, ImGuiKey_PageUp},
+                             {GuiKey::page_down, ImGuiKey_PageDown},
+                             {GuiKey::home, ImGuiKey_Home},
+                             {GuiKey::end, ImGuiKey_End},
+                             {GuiKey::insert, ImGuiKey_Insert},
+                             {GuiKey::erase, ImGuiKey_Delete},
+                             {GuiKey::backspace, ImGuiKey_Backspace},
+                             {GuiKey::space, ImGuiKey_Space},
+                             {GuiKey::enter, ImGuiKey_Enter},
+                             {GuiKey::escape, ImGuiKey_Escape},
+                             {GuiKey::a, ImGuiKey_A},
+                             {GuiKey::c, ImGuiKey_C},
+                             {GuiKey::v, ImGuiKey_V},
+                             {GuiKey::x, ImGuiKey_X},
+                             {GuiKey::y, ImGuiKey_Y},
+                             {GuiKey::z, ImGuiKey_Z}};
 
-// the font's height has another name since 1.92
+// The field with the font's height has another name since 1.92.
 template <class Font>
 float height_of(const Font& font) {
   if constexpr (requires { font.LegacySize; }) {
@@ -53,7 +53,7 @@ float height_of(const Font& font) {
   }
 }
 
-// an argument was removed in 1.91
+// An argument was removed in 1.91.
 template <class List>
 void ellipsis(List* list, const ImVec2& low, const ImVec2& high, const char* begin, const char* end) {
   if constexpr (requires { ImGui::RenderTextEllipsis(list, low, high, high.x, high.x, begin, end, nullptr); }) {
@@ -63,7 +63,7 @@ void ellipsis(List* list, const ImVec2& low, const ImVec2& high, const char* beg
   }
 }
 
-// a parameter was added in 1.89, and the field that it is read from has another name since 1.91
+// A parameter was added in 1.89; the field with its value has another name since 1.91.
 template <class Rect, class Item>
 bool hoverable(const Rect& box, ImGuiID id, const Item& item) {
   if constexpr (requires { item.ItemFlags; }) {
@@ -88,8 +88,8 @@ void set_mods(ImGuiIO& io, const KeyMods& mods) {
 }
 
 void set_key(ImGuiIO& io, GuiKey key, bool down) {
-  for (const NamedKey& named : kNamedKeys) {
-    if (named.ours == key) io.AddKeyEvent(named.theirs, down);
+  for (const KeyPair& named : kKeys) {
+    if (named.key == key) io.AddKeyEvent(named.imgui_key, down);
   }
 }
 
@@ -100,7 +100,7 @@ void add_wheel(ImGuiIO& io, float x, float y) { io.AddMouseWheelEvent(x, y); }
 void release_all(ImGuiIO& io) {
   for (int button = 0; button < static_cast<int>(std::size(io.MouseDown)); button++)
     io.AddMouseButtonEvent(button, false);
-  for (const NamedKey& named : kNamedKeys) io.AddKeyEvent(named.theirs, false);
+  for (const KeyPair& named : kKeys) io.AddKeyEvent(named.imgui_key, false);
   set_mods(io, {});
   io.AddFocusEvent(false);
 }
@@ -117,7 +117,7 @@ Activation activation(ImGuiID id, bool hovered) {
 #else
 
 void start_input(ImGuiIO& io) {
-  for (const NamedKey& named : kNamedKeys) io.KeyMap[named.theirs] = static_cast<int>(named.ours);
+  for (const KeyPair& named : kKeys) io.KeyMap[named.imgui_key] = static_cast<int>(named.key);
 }
 
 void set_mods(ImGuiIO& io, const KeyMods& mods) {
@@ -160,15 +160,15 @@ bool builds_fonts() {
 #endif
 }
 
-void publish_fonts(bool paints, bool replaces) {
-  if (!paints) ImGui::GetIO().Fonts->SetTexID(ImTextureID{});
+void publish_fonts(bool draws, bool has_texture) {
+  if (!draws) ImGui::GetIO().Fonts->SetTexID(ImTextureID{});
 #if !LIMBER_IMGUI_TEXTURES
-  if (paints && replaces) {
+  if (draws && has_texture) {
     ImGui_ImplOpenGL3_DestroyFontsTexture();
     ImGui_ImplOpenGL3_CreateFontsTexture();
   }
 #else
-  static_cast<void>(replaces);
+  static_cast<void>(has_texture);
 #endif
 }
 

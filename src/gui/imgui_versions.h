@@ -1,4 +1,4 @@
-// The differences between Dear ImGui 1.86 (Debian 12), 1.90 (Debian 13) and 1.92. No other file asks for the version.
+// The differences between Dear ImGui 1.86 (Debian 12), 1.90 (Debian 13) and 1.92. No other file checks the version.
 #pragma once
 
 #include <string>
@@ -11,35 +11,35 @@ struct ImRect;
 
 namespace limber::imgui {
 
-/// Prepares a new context for the functions below: keys, and no distribution of events over frames besides
-/// InputQueue's.
+/// Prepares a new context for the functions below: key mapping, and disables Dear ImGui's own distribution of events
+/// over frames, because InputQueue does that.
 void start_input(ImGuiIO& io);
+/// Pass one input event to Dear ImGui.
 void set_mods(ImGuiIO& io, const KeyMods& mods);
 void set_key(ImGuiIO& io, GuiKey key, bool down);
 void set_button(ImGuiIO& io, int button, bool down);
 void set_position(ImGuiIO& io, float x, float y);
 void add_wheel(ImGuiIO& io, float x, float y);
-/// Releases every key and button, as the window has lost the focus.
+/// Releases all keys and buttons because the window has lost the focus.
 void release_all(ImGuiIO& io);
 
 /// Height of a font in pixels.
 float font_height(const ImFont& font);
-/// False if glyphs are drawn into the font texture when they are first used; else all of them are when fonts are
-/// loaded.
+/// True if all glyphs are rasterized when fonts are loaded; false if each is rasterized on first use.
 bool builds_fonts();
-/// Publishes fonts that were loaded; without `paints` there is no texture. `replaces`: the renderer has a texture of
-/// earlier ones.
-void publish_fonts(bool paints, bool replaces);
+/// Publishes loaded fonts; without `draws` there is no texture. `has_texture`: the renderer already has a texture of
+/// earlier fonts.
+void publish_fonts(bool draws, bool has_texture);
 
-/// One line of text in a rectangle, with "…" at its end where it is too long.
+/// Draws one line of text in a rectangle, truncated with "…" if it is too long.
 void text_ellipsis(const ImVec2& low, const ImVec2& high, const std::string& text);
 
-/// What makes a slider or drag widget active in this frame.
+/// Describes how a slider or drag widget is activated in this frame.
 struct Activation {
   bool active = false;
-  bool by_text = false;  ///< With a text field in its place.
+  bool by_text = false;  ///< As a text field, for typing the value.
 };
-/// `box`, `id`: the last item's.
+/// `box` and `id` of the last item.
 bool is_hovered(const ImRect& box, ImGuiID id);
 Activation activation(ImGuiID id, bool hovered);
 

@@ -1,5 +1,5 @@
-// InputQueue: events of mouse and keyboard in their order, distributed over frames of Dear ImGui: a press and a release
-// within one frame become two frames, so that none is lost.
+// InputQueue: mouse and keyboard events in order, distributed over frames of Dear ImGui: a press and a release within
+// one frame are delivered in two frames, so that none is lost.
 #pragma once
 
 #include <array>
@@ -11,6 +11,7 @@
 
 namespace limber {
 
+/// Keys by their meaning; independent of the window system.
 enum class GuiKey : std::uint8_t {
   none,
   tab,
@@ -89,18 +90,19 @@ struct KeyMods {
   bool operator==(const KeyMods&) const = default;
 };
 
+/// One event of the mouse, the keyboard or the window's focus.
 struct InputEvent {
   enum class Kind : std::uint8_t { move, button, wheel, key, text, focus };
   Kind kind = Kind::move;
-  double x = 0, y = 0;  ///< Pixels of the picture; of a wheel: steps.
+  double x = 0, y = 0;  ///< Pixels of the view; for a wheel: steps.
   int button = 0;       ///< 0 left, 1 right, 2 middle.
   GuiKey key = GuiKey::none;
-  bool down = false;  ///< A button, a key; of focus: the window has it.
+  bool down = false;  ///< Button or key pressed; for focus: gained.
   KeyMods mods = {};
-  std::uint32_t letter = 0;  ///< Unicode.
+  std::uint32_t character = 0;  ///< Unicode.
 };
 
-/// A key that went down, for hotkeys.
+/// A key press, for hotkeys.
 struct KeyPress {
   GuiKey key = GuiKey::none;
   KeyMods mods = {};
@@ -109,32 +111,32 @@ struct KeyPress {
 
 class InputQueue {
  public:
-  static constexpr std::size_t kMost = 4096;  ///< More events than that wait for nobody: the oldest go.
+  static constexpr std::size_t kMaxEvents = 4096;  ///< If there are more events, the oldest is dropped.
 
   void push(const InputEvent& event);
   bool empty() const { return events_.empty(); }
-  /// Tells the current context what of it belongs to the next frame; gives the keys that go down in it.
-  std::vector<KeyPress> frame();
+  /// Passes the next frame's events to the current context. Returns the keys pressed in it.
+  std::vector<KeyPress> next_frame();
   double x() const { return x_; }
   double y() const { return y_; }
 
  private:
-  // what a frame has been told of already
-  struct Taken {
+  // events already delivered in this frame
+  struct Delivered {
     std::vector<KeyPress> pressed;
     std::array<bool, 3> buttons{};
     std::array<bool, static_cast<std::size_t>(GuiKey::count)> keys{};
     bool any_button = false;
-    bool moved = false;  // with a button held
+    bool moved = false;  // with a pressed button
     bool any_key = false;
     bool any_text = false;
   };
-  bool take(const InputEvent& event, Taken& taken);
-  bool take_button(const InputEvent& event, Taken& taken);
-  static bool take_key(const InputEvent& event, Taken& taken);
+  bool deliver(const InputEvent& event, Delivered& delivered);
+  bool deliver_button(const InputEvent& event, Delivered& delivered);
+  static bool deliver_key(const InputEvent& event, Delivered& delivered);
 
   std::deque<InputEvent> events_;
-  std::array<bool, 3> held_{};  // buttons, as reported to Dear ImGui
+  std::array<bool, 3> pressed_buttons_{};  // as reported to Dear ImGui
   double x_ = -1, y_ = -1;
 };
 

@@ -1,4 +1,4 @@
-// Columns left and right, rows above and below.
+// Places columns at the left and right, and rows at the top and bottom.
 #include "gui/layout.h"
 
 #include <algorithm>
@@ -10,12 +10,12 @@ namespace {
 constexpr double kGap = 8;
 constexpr double kTop = 66;         // two rows
 constexpr double kTopCompact = 94;  // three
-constexpr double kLeastForSides = 520;
-constexpr double kLeastForBelow = 420;
-constexpr double kLeastForTop = 300;
+constexpr double kMinWidthForSides = 520;
+constexpr double kMinHeightForBottom = 420;
+constexpr double kMinForTop = 300;
 
 struct Sizes {
-  double left, right, below;
+  double left, right, bottom;
 };
 
 PanelRect scaled(const PanelRect& r, double scale) {
@@ -29,42 +29,42 @@ Layout lay_out(double width, double height, double scale) {
   const double h = height / scale;
   Layout layout;
   layout.compact = w < kCompactBelow;
-  const auto put = [&](Slot slot, const PanelRect& r) {
+  const auto put = [&](PanelSlot slot, const PanelRect& r) {
     layout.slots[static_cast<std::size_t>(slot)] = scaled(r, scale);
   };
-  const double top = w < kLeastForTop || h < 2 * kTop ? 0 : layout.compact ? kTopCompact : kTop;
+  const double top = w < kMinForTop || h < 2 * kTop ? 0 : layout.compact ? kTopCompact : kTop;
   const double begin = top > 0 ? top + 2 * kGap : kGap;
-  if (top > 0) put(Slot::top, {kGap, kGap, w - 2 * kGap, top});
-  const bool sides = w >= kLeastForSides && h >= kLeastForTop;
-  const bool under = w >= kLeastForSides && h >= kLeastForBelow;
+  if (top > 0) put(PanelSlot::top, {kGap, kGap, w - 2 * kGap, top});
+  const bool has_sides = w >= kMinWidthForSides && h >= kMinForTop;
+  const bool has_bottom = w >= kMinWidthForSides && h >= kMinHeightForBottom;
   const Sizes sizes{layout.compact ? 0 : std::clamp(0.17 * w, 216.0, 272.0),
                     std::clamp(0.27 * w, layout.compact ? 300.0 : 340.0, 440.0),
-                    under ? std::clamp(0.25 * h, 150.0, 226.0) : 0};
-  const double end = h - kGap - (under ? sizes.below + kGap : 0);
-  double free_left = 0;
-  double free_right = w;
-  if (sides) {
-    put(Slot::right, {w - kGap - sizes.right, begin, sizes.right, end - begin});
-    free_right = w - kGap - sizes.right;
+                    has_bottom ? std::clamp(0.25 * h, 150.0, 226.0) : 0};
+  const double end = h - kGap - (has_bottom ? sizes.bottom + kGap : 0);
+  double view_left = 0;
+  double view_right = w;
+  if (has_sides) {
+    put(PanelSlot::right, {w - kGap - sizes.right, begin, sizes.right, end - begin});
+    view_right = w - kGap - sizes.right;
   }
-  if (sides && !layout.compact) {
+  if (has_sides && !layout.compact) {
     const double half = (end - begin - kGap) * 0.56;
-    put(Slot::left, {kGap, begin, sizes.left, half});
-    put(Slot::left_below, {kGap, begin + half + kGap, sizes.left, end - begin - half - kGap});
-    free_left = kGap + sizes.left;
+    put(PanelSlot::left, {kGap, begin, sizes.left, half});
+    put(PanelSlot::left_bottom, {kGap, begin + half + kGap, sizes.left, end - begin - half - kGap});
+    view_left = kGap + sizes.left;
   }
-  if (under) {
-    const double y = h - kGap - sizes.below;
+  if (has_bottom) {
+    const double y = h - kGap - sizes.bottom;
     if (layout.compact) {
-      put(Slot::below, {kGap, y, w - 2 * kGap, sizes.below});
+      put(PanelSlot::bottom, {kGap, y, w - 2 * kGap, sizes.bottom});
     } else {
       const double inner = w - sizes.right - 4 * kGap;
-      put(Slot::below, {kGap, y, inner * 0.55, sizes.below});
-      put(Slot::below_middle, {2 * kGap + inner * 0.55, y, inner * 0.45, sizes.below});
-      put(Slot::below_right, {w - kGap - sizes.right, y, sizes.right, sizes.below});
+      put(PanelSlot::bottom, {kGap, y, inner * 0.55, sizes.bottom});
+      put(PanelSlot::bottom_middle, {2 * kGap + inner * 0.55, y, inner * 0.45, sizes.bottom});
+      put(PanelSlot::bottom_right, {w - kGap - sizes.right, y, sizes.right, sizes.bottom});
     }
   }
-  layout.free = scaled({free_left, begin, free_right - free_left, end - begin}, scale);
+  layout.view = scaled({view_left, begin, view_right - view_left, end - begin}, scale);
   return layout;
 }
 

@@ -1,4 +1,4 @@
-// Where panels are: computed from the window's size and nothing else, so that there is nothing to drag about on stage.
+// The panel layout. It depends only on the window's size, so that no panel can be moved by accident during a show.
 #pragma once
 
 #include <array>
@@ -12,21 +12,22 @@ struct PanelRect {
   bool empty() const { return width <= 0 || height <= 0; }
 };
 
-/// The places of a wide window; a compact one has `top`, `right` and `below`, and panels that share one are its tabs.
-enum class Slot : std::uint8_t { top, left, left_below, right, below, below_middle, below_right, count };
+/// The panel slots of a wide window. A compact one has only `top`, `right` and `bottom`; panels that share a slot are
+/// its tabs.
+enum class PanelSlot : std::uint8_t { top, left, left_bottom, right, bottom, bottom_middle, bottom_right, count };
 
 struct Layout {
   bool compact = false;
-  std::array<PanelRect, static_cast<std::size_t>(Slot::count)> slots;
-  const PanelRect& at(Slot slot) const { return slots[static_cast<std::size_t>(slot)]; }
-  /// What is left for the picture.
-  PanelRect free;
+  std::array<PanelRect, static_cast<std::size_t>(PanelSlot::count)> slots;
+  const PanelRect& at(PanelSlot slot) const { return slots[static_cast<std::size_t>(slot)]; }
+  /// The area left for the view.
+  PanelRect view;
 };
 
-/// Below so many pixels (of text of 16) a window is compact.
+/// A window narrower than this many units (pixels at text size 16) is compact.
 inline constexpr double kCompactBelow = 1200;
 
-/// `scale`: pixels for what is a pixel at text of 16. What has no room is empty.
+/// `scale`: pixels per unit, where a unit is a pixel at text size 16. Slots that do not fit are empty.
 Layout lay_out(double width, double height, double scale);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// From the root down, name by name.
+// Builds the expression from the names of the path.
 #include "gui/lua_path.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ std::string lua_text(std::string_view name) {
 
 namespace {
 
-// the thing itself; empty where scripts have no word for it
-std::string thing_text(const std::vector<std::string_view>& names) {
+// Returns the expression of an object; empty if Lua has no equivalent.
+std::string object_text(const std::vector<std::string_view>& names) {
   const auto is = [&](std::size_t i, std::string_view name) { return i < names.size() && names[i] == name; };
   const std::size_t n = names.size();
   if (is(0, "scene") && n == 1) return "params";
@@ -38,14 +38,14 @@ std::string thing_text(const std::vector<std::string_view>& names) {
 
 }  // namespace
 
-std::string lua_path(const Tree& tree, const TreePlace& place) {
+std::string lua_path(const TreeSnapshot& tree, const TreePropertyRef& ref) {
   std::vector<std::string_view> names;
-  for (std::uint32_t at = place.node; at != 0; at = tree.nodes()[at].parent) names.push_back(tree.name(at));
+  for (std::uint32_t at = ref.node; at != 0; at = tree.nodes()[at].parent) names.push_back(tree.name(at));
   std::reverse(names.begin(), names.end());
-  std::string thing = thing_text(names);
-  if (place.row == nullptr || thing.empty()) return thing;
-  if (place.row->kind != RowKind::action) return fmt::format("{}.{}", thing, place.row->name);
-  return place.row->min_args == 0 ? fmt::format("{}:{}()", thing, place.row->name) : std::string();
+  std::string object = object_text(names);
+  if (ref.property == nullptr || object.empty()) return object;
+  if (ref.property->kind != PropertyKind::action) return fmt::format("{}.{}", object, ref.property->name);
+  return ref.property->min_args == 0 ? fmt::format("{}:{}()", object, ref.property->name) : std::string();
 }
 
 }  // namespace limber

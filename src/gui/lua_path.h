@@ -1,4 +1,4 @@
-// How a script says what an address says.
+// Converts OSC addresses to Lua expressions.
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace limber {
 
-/// `sim:body("arm"):part("tip").mass` for /physics/body/arm/part/tip/mass; empty: scripts have no such name. [any]
-std::string lua_path(const Tree& tree, const TreePlace& place);
+/// Returns `sim:body("arm"):part("tip").mass` for /physics/body/arm/part/tip/mass; empty if Lua has no equivalent.
+/// [any]
+std::string lua_path(const TreeSnapshot& tree, const TreePropertyRef& ref);
 
-/// A name as Lua writes it, in quotes. Names have no control characters.
+/// Returns a name as a quoted Lua string. Names contain no control characters.
 std::string lua_text(std::string_view name);
 
 }  // namespace limber

@@ -1,30 +1,32 @@
-// A number's widget: a bar that fills up to its value and can be dragged, or typed into with Ctrl and a click; without
-// ends, a field that is dragged. Wide ranges are stretched, so that usual values are not all at one end.
+// The widget for numbers: a bar that can be dragged, or edited as text after Ctrl and click; a drag field if the range
+// is unbounded. The scale of wide ranges is nonlinear, so that typical values are not all at one end.
 #pragma once
 
 #include <string>
 
 namespace limber {
 
+/// Range and scale of a bar.
 struct BarRange {
   double min = 0;
-  double max = 1;      ///< Infinite ends: no bar, a field.
-  double usual = 0;    ///< The default.
-  double step = 0;     ///< 0: nothing is said.
-  bool whole = false;  ///< Whole numbers alone.
+  double max = 1;        ///< If an end is infinite, there is a drag field instead of a bar.
+  double typical = 0;    ///< The default value.
+  double step = 0;       ///< 0: unspecified.
+  bool integer = false;  ///< Integers only.
   bool bounded() const;
-  /// Where on the bar, 0 .. 1, a value stands; and back. Strictly rising, inverse to each other.
-  double place_of(double value) const;
-  double value_at(double place) const;
+  /// Convert a value to its position on the bar, 0 .. 1, and back. Strictly increasing, and inverse to each other.
+  double position_of(double value) const;
+  double value_at(double position) const;
 
  private:
-  double power() const;  // 1: straight
+  double exponent() const;  // exponent of the scale; 1: linear
 };
 
-/// Five digits: nobody wants 0.30000001.
-std::string shown_number(double value, bool whole);
+/// Formats with five significant digits, which avoids texts like 0.30000001.
+std::string number_label(double value, bool integer);
 
-/// True: a hand has changed it. `axis`: 0, 1, 2 gives it a mark of x, y, z; -1 none.
+/// Draws the widget. Returns true if the user has changed the value. `axis`: 0, 1, 2 for a mark in the color of x, y,
+/// z; -1: none.
 bool number_bar(const char* id, const BarRange& range, float width, double& value, int axis = -1);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The list that panels put themselves into.
+// The registry of panels.
 #include "gui/panel.h"
 
 #include <algorithm>
@@ -8,24 +8,24 @@ namespace limber {
 
 namespace {
 
-std::vector<PanelKind>& registered_panels() {
-  static std::vector<PanelKind> kinds;
-  return kinds;
+std::vector<PanelType>& registered_panels() {
+  static std::vector<PanelType> types;
+  return types;
 }
 
 }  // namespace
 
-bool register_panel(const PanelKind& kind) {
-  registered_panels().push_back(kind);
+bool register_panel(const PanelType& type) {
+  registered_panels().push_back(type);
   return true;
 }
 
-std::vector<PanelKind> panel_kinds() {
-  std::vector<PanelKind> kinds = registered_panels();
-  std::sort(kinds.begin(), kinds.end(), [](const PanelKind& a, const PanelKind& b) {
-    return std::tie(a.wide, a.order, a.name) < std::tie(b.wide, b.order, b.name);
+std::vector<PanelType> panel_types() {
+  std::vector<PanelType> types = registered_panels();
+  std::sort(types.begin(), types.end(), [](const PanelType& a, const PanelType& b) {
+    return std::tie(a.wide_slot, a.order, a.name) < std::tie(b.wide_slot, b.order, b.name);
   });
-  return kinds;
+  return types;
 }
 
 }  // namespace limber

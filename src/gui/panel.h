@@ -1,5 +1,5 @@
-// A panel: one file of this folder, which registers itself. What it shows comes from the desk, what hands do goes
-// there.
+// Panel: the interface of panels. Each panel is one file, panel_*.cpp, which registers it. A panel reads its data from
+// the context and sends user input to it.
 #pragma once
 
 #include <memory>
@@ -12,6 +12,7 @@
 
 namespace limber {
 
+/// Base class of panels. [main]
 class Panel {
  public:
   Panel() = default;
@@ -19,35 +20,36 @@ class Panel {
   Panel(const Panel&) = delete;
   Panel& operator=(const Panel&) = delete;
 
-  /// Into the window that is begun.
-  virtual void draw(Desk& desk) = 0;
-  /// Each frame, seen or not, before anything is drawn: what must not be missed.
-  virtual void hear(Desk& desk) { (void)desk; }
-  /// Behind its title: a count, say.
-  virtual std::string badge(const Desk& desk) const {
-    (void)desk;
+  /// Draws into the current window.
+  virtual void draw(PanelContext& context) = 0;
+  /// Called in each frame before drawing, even if the panel is hidden; handles events that must not be missed.
+  virtual void update(PanelContext& context) { (void)context; }
+  /// Text after the title, for example a count.
+  virtual std::string badge(const PanelContext& context) const {
+    (void)context;
     return {};
   }
 };
 
-struct PanelKind {
-  std::string_view name;   ///< Of its file: panel_<name>.cpp.
-  std::string_view title;  ///< Empty: none is shown.
-  Slot wide = Slot::top;
-  Slot compact = Slot::top;
-  int order = 0;  ///< Within a slot.
+/// A registered kind of panel, with its slot in wide and compact windows.
+struct PanelType {
+  std::string_view name;   ///< From its file name: panel_<name>.cpp.
+  std::string_view title;  ///< Empty: no title.
+  PanelSlot wide_slot = PanelSlot::top;
+  PanelSlot compact_slot = PanelSlot::top;
+  int order = 0;  ///< Position within a slot.
   std::unique_ptr<Panel> (*make)() = nullptr;
 };
 
-/// All that have registered, by slot and order. [main]
-std::vector<PanelKind> panel_kinds();
-bool register_panel(const PanelKind& kind);
+/// All registered panels, by slot and order. [main]
+std::vector<PanelType> panel_types();
+bool register_panel(const PanelType& type);
 
-/// `const bool kRegistered = panel<P>({…})` in a panel's file.
+/// Registers the panel class P. In the panel's file: `const bool kRegistered = register_panel_type<P>({…})`.
 template <class P>
-bool panel(PanelKind kind) {
-  kind.make = [] { return std::unique_ptr<Panel>(std::make_unique<P>()); };
-  return register_panel(kind);
+bool register_panel_type(PanelType type) {
+  type.make = [] { return std::unique_ptr<Panel>(std::make_unique<P>()); };
+  return register_panel(type);
 }
 
 }  // namespace limber

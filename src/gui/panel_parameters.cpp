@@ -1,4 +1,4 @@
-// Parameters: the rows of what is chosen, of the scene, the world and the picture; search over all; favourites.
+// Parameters: the properties of the selected object, the scene, the world and the view; search and favorites.
 #include <array>
 #include <utility>
 
@@ -23,119 +23,126 @@ struct TopSection {
   bool open;
 };
 constexpr std::array kTopSections = {
-    TopSection{"/scene", "scene", true},
-    TopSection{"/physics/sim", "world", true},
-    TopSection{"/visuals/look", "look", true},
-    TopSection{"/visuals", "background", false},
-    TopSection{"/visuals/camera", "camera", false},
+    TopSection{"/scene", "Scene", true},
+    TopSection{"/physics/sim", "World", true},
+    TopSection{"/visuals/look", "Appearance", true},
+    TopSection{"/visuals", "Background", false},
+    TopSection{"/visuals/camera", "Camera", false},
 };
 
 class ParametersPanel : public Panel {
  public:
-  void hear(Desk& desk) override {
-    if (desk.image == nullptr) return;
-    search_.look_for(words_);
-    search_.go_on(desk.image->tree);
+  void update(PanelContext& context) override {
+    if (context.value_snapshot == nullptr) return;
+    search_.start(words_);
+    search_.advance(context.value_snapshot->tree);
   }
 
-  void draw(Desk& desk) override {
+  void draw(PanelContext& context) override {
     const float side = ImGui::GetFrameHeight() * 1.15F;
-    if (std::exchange(desk.focus_search, false)) {
+    if (std::exchange(context.focus_search, false)) {
       ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 focuses items of the focused window only
       ImGui::SetKeyboardFocusHere();
     }
-    search_field(desk, "parameters.search", "search (Ctrl+F)", words_,
+    search_field(context, "parameters.search", "Search (Ctrl+F)", words_,
                  ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
-    if (icon_button(desk.names, "parameters.favourites", Icon::star, "favourites alone", favourites_, side))
-      favourites_ = !favourites_;
-    if (!ImGui::BeginChild("##rows", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
+    if (icon_button(context.names, "parameters.favorites", Icon::star, "Favorites only", favorites_only_, side))
+      favorites_only_ = !favorites_only_;
+    if (!ImGui::BeginChild("##properties", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     if (search_.active()) {
-      show_found(desk);
-    } else if (favourites_) {
-      show_favourites(desk);
+      show_found(context);
+    } else if (favorites_only_) {
+      show_favorites(context);
     } else {
-      if (!desk.selected.empty()) show_chosen(desk);
+      if (!context.selected.empty()) show_selected(context);
       for (const TopSection& section : kTopSections) {
-        if (desk.selected != section.path) show_thing(desk, section.path, section.title, section.open);
+        if (context.selected != section.path) show_object(context, section.path, section.title, section.open);
       }
     }
     ImGui::EndChild();
   }
 
  private:
-  void show_found(Desk& desk) {
-    for (const PlacedRow& at : search_.found()) {
-      if (favourites_ && !desk.settings.favourites.contains(at.path)) continue;
-      property_row(desk, at, {.star = true, .with_path = true, .name_part = 0.36});
+  void show_found(PanelContext& context) {
+    for (const PropertyHandle& handle : search_.found()) {
+      if (favorites_only_ && !context.settings.favorites.contains(handle.path)) continue;
+      property_line(context, handle, {.star = true, .with_path = true, .name_fraction = 0.36});
     }
-    if (search_.done() && search_.found().empty()) ImGui::TextDisabled("nothing is called so");
-    if (search_.more()) ImGui::TextDisabled("there are more; another word narrows it");
-    if (!search_.done()) ImGui::TextDisabled("looking…");
+    if (search_.done() && search_.found().empty()) ImGui::TextDisabled("No results");
+    if (search_.more()) ImGui::TextDisabled("There are more results; add a word");
+    if (!search_.done()) ImGui::TextDisabled("Searching…");
   }
 
-  void show_favourites(Desk& desk) {
-    const std::set<std::string> paths = desk.settings.favourites;  // a star may be taken away meanwhile
+  void show_favorites(PanelContext& context) {
+    // a copy, because a star may be removed during iteration
+    const std::set<std::string> paths = context.settings.favorites;
     for (const std::string& path : paths) {
-      if (const auto at = desk.find(path))
-        property_row(desk, *at, {.star = true, .with_path = true, .name_part = 0.36});
+      if (const auto handle = context.find(path))
+        property_line(context, *handle, {.star = true, .with_path = true, .name_fraction = 0.36});
     }
-    if (paths.empty()) ImGui::TextDisabled("a star in front of a row makes it a favourite");
+    if (paths.empty()) ImGui::TextDisabled("Click the star of a property to add it");
   }
 
-  // one of several (a pattern) stands for all of them: what is set is set in all
-  static void show_chosen(Desk& desk) {
+  // Shows the properties of the selected object. A pattern shows its first match, and setting a value sets all matches.
+  static void show_selected(PanelContext& context) {
     PatternBudget budget;
-    const std::string path = desk.selected;
+    const std::string path = context.selected;
     std::uint32_t node = 0;
     std::size_t count = 1;
     if (path.find('*') == std::string::npos) {
-      const Result<TreePlace> place = desk.image->tree->find(path);
-      if (place && place->row == nullptr) node = place->node;
-    } else if (const auto rows = desk.image->tree->match(path + "/active", budget, 100000); rows && !rows->empty()) {
-      node = rows->front().node;
-      count = rows->size();
+      const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(path);
+      if (ref && ref->property == nullptr) node = ref->node;
+    } else if (const auto matches = context.value_snapshot->tree->match(path + "/active", budget, 100000);
+               matches && !matches->empty()) {
+      node = matches->front().node;
+      count = matches->size();
     }
     if (node == 0) {
-      desk.selected.clear();  // it has gone
+      context.selected.clear();  // the object was removed
       return;
     }
-    const std::string_view name = desk.image->tree->name(node);
+    const std::string_view name = context.value_snapshot->tree->name(node);
     const std::string title = count > 1 ? fmt::format("{}  \u00d7{}", name, count) : std::string(name);
-    if (header(desk, path, title, true)) rows(desk, node, path);
+    if (header(context, path, title, true)) draw_properties(context, node, path);
   }
 
-  static void show_thing(Desk& desk, const char* path, const char* title, bool open) {
-    const Result<TreePlace> place = desk.image->tree->find(path);
-    if (!place || place->row != nullptr || desk.image->tree->nodes()[place->node].table->rows().empty()) return;
-    if (header(desk, path, title, open)) rows(desk, place->node, path);
+  static void show_object(PanelContext& context, const char* path, const char* title, bool open) {
+    const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(path);
+    if (!ref || ref->property != nullptr ||
+        context.value_snapshot->tree->nodes()[ref->node].table->properties().empty())
+      return;
+    if (header(context, path, title, open)) draw_properties(context, ref->node, path);
   }
 
-  static bool header(Desk& desk, const std::string& path, const std::string& title, bool open) {
-    ImGui::PushStyleColor(ImGuiCol_Header, packed(Tone::head));
-    const bool shown = ImGui::CollapsingHeader(fmt::format("{}###{}", title, path).c_str(),
-                                               open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+  static bool header(PanelContext& context, const std::string& path, const std::string& title, bool open) {
+    ImGui::PushStyleColor(ImGuiCol_Header, packed_color(Tone::header));
+    const bool is_open = ImGui::CollapsingHeader(fmt::format("{}###{}", title, path).c_str(),
+                                                 open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
     ImGui::PopStyleColor();
-    desk.names.note("section:" + path);
+    context.names.add("section:" + path);
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", path.c_str());
-    return shown;
+    return is_open;
   }
 
-  static void rows(Desk& desk, std::uint32_t node, const std::string& path) {
-    for (const Row& row : desk.image->tree->nodes()[node].table->rows()) {
-      // what transport and tree have of their own
-      if (path == "/physics/sim" && row.kind == RowKind::action) continue;
-      property_row(desk, {{node, &row}, fmt::format("{}/{}", path, row.name)});
+  static void draw_properties(PanelContext& context, std::uint32_t node, const std::string& path) {
+    for (const Property& property : context.value_snapshot->tree->nodes()[node].table->properties()) {
+      // available in the transport and the tree
+      if (path == "/physics/sim" && property.kind == PropertyKind::action) continue;
+      property_line(context, {{node, &property}, fmt::format("{}/{}", path, property.name)});
     }
   }
 
-  RowSearch search_;
+  PropertySearch search_;
   std::string words_;
-  bool favourites_ = false;
+  bool favorites_only_ = false;
 };
 
-[[maybe_unused]] const bool kParametersPanel = panel<ParametersPanel>(
-    {.name = "parameters", .title = "Parameters", .wide = Slot::right, .compact = Slot::right, .order = 0});
+[[maybe_unused]] const bool kParametersPanel = register_panel_type<ParametersPanel>({.name = "parameters",
+                                                                                     .title = "Parameters",
+                                                                                     .wide_slot = PanelSlot::right,
+                                                                                     .compact_slot = PanelSlot::right,
+                                                                                     .order = 0});
 
 }  // namespace
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Plots: values over time, of rows that were chosen by "plot it" in their menu.
+// Plots: values over time, of properties that were added by their context menu.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -18,41 +18,41 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kPlotSamples = 300;
-constexpr std::size_t kMostPlotted = 3;  // numbers of one row
+constexpr std::size_t kMaxComponents = 3;  // maximum number of components of a property
 constexpr std::array kPlotTones = {Tone::red, Tone::green, Tone::blue};
 
 class PlotsPanel : public Panel {
  public:
-  std::string badge(const Desk& desk) const override {
-    return desk.plots.empty() ? "" : fmt::format("{}", desk.plots.size());
+  std::string badge(const PanelContext& context) const override {
+    return context.plots.empty() ? "" : fmt::format("{}", context.plots.size());
   }
 
-  // a sample with each image that says something new
-  void hear(Desk& desk) override {
-    if (desk.image == nullptr || desk.image->snapshot->tick == tick_) return;
-    tick_ = desk.image->snapshot->tick;
+  // Adds a sample for each value snapshot of a new tick.
+  void update(PanelContext& context) override {
+    if (context.value_snapshot == nullptr || context.value_snapshot->snapshot->tick == last_tick_) return;
+    last_tick_ = context.value_snapshot->snapshot->tick;
     std::erase_if(series_, [&](const auto& s) {
-      return std::find(desk.plots.begin(), desk.plots.end(), s.first) == desk.plots.end();
+      return std::find(context.plots.begin(), context.plots.end(), s.first) == context.plots.end();
     });
-    for (const std::string& path : desk.plots) {
-      const auto at = desk.find(path);
-      HandValues::Values values{};
-      if (!at || !desk.values(*at, values)) continue;
+    for (const std::string& path : context.plots) {
+      const auto handle = context.find(path);
+      PendingValues::Values values{};
+      if (!handle || !context.values(*handle, values)) continue;
       Series& series = series_[path];
-      series.width = std::min<std::size_t>(at->place.row->width, kMostPlotted);
-      series.unit = at->place.row->unit;
-      series.samples.add(tick_, values);
+      series.width = std::min<std::size_t>(handle->ref.property->width, kMaxComponents);
+      series.unit = handle->ref.property->unit;
+      series.samples.add(last_tick_, values);
     }
   }
 
-  void draw(Desk& desk) override {
-    if (desk.plots.empty()) return ImGui::TextDisabled("a right click on a value: plot it");
+  void draw(PanelContext& context) override {
+    if (context.plots.empty()) return ImGui::TextDisabled("Right click a value and select Plot");
     if (!ImGui::BeginChild("##plots", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
-    std::string gone;
-    for (const std::string& path : desk.plots) {
-      if (!plot(desk, path)) gone = path;
+    std::string closed;
+    for (const std::string& path : context.plots) {
+      if (!plot(context, path)) closed = path;
     }
-    std::erase(desk.plots, gone);
+    std::erase(context.plots, closed);
     ImGui::EndChild();
   }
 
@@ -63,22 +63,22 @@ class PlotsPanel : public Panel {
     Samples samples{kPlotSamples};
   };
 
-  // false: it is to go
-  bool plot(Desk& desk, const std::string& path) {
+  // Returns false if the plot was closed.
+  bool plot(PanelContext& context, const std::string& path) {
     const Series& series = series_[path];
     ImGui::PushID(path.c_str());
-    const bool closed = icon_button(desk.names, ("unplot:" + path).c_str(), Icon::close, "no plot any more");
+    const bool closed = icon_button(context.names, ("unplot:" + path).c_str(), Icon::close, "Remove the plot");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    std::string words = path;
+    std::string label = path;
     if (!series.samples.empty()) {
       for (std::size_t i = 0; i < series.width; i++)
-        words += fmt::format("  {}", shown_number(series.samples[series.samples.size() - 1][i], false));
-      words += " " + series.unit;
+        label += fmt::format("  {}", number_label(series.samples[series.samples.size() - 1][i], false));
+      label += " " + series.unit;
     }
-    ImGui::TextUnformatted(words.c_str());
+    ImGui::TextUnformatted(label.c_str());
     graph(series, ImGui::GetFontSize() * 3.4F);
-    desk.names.note("plot:" + path);
+    context.names.add("plot:" + path);
     ImGui::PopID();
     return !closed;
   }
@@ -89,7 +89,7 @@ class PlotsPanel : public Panel {
     ImGui::Dummy({width, height});
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
-    list.AddRectFilled(from, to, packed(Tone::field), ImGui::GetStyle().FrameRounding);
+    list.AddRectFilled(from, to, packed_color(Tone::field), ImGui::GetStyle().FrameRounding);
     if (series.samples.empty()) return;
     double low = series.samples[0][0];
     double high = low;
@@ -108,18 +108,22 @@ class PlotsPanel : public Panel {
                      to.y - 2 - static_cast<float>(y) * (height - 4)};
       }
       list.AddPolyline(points.data(), static_cast<int>(points.size()),
-                       packed(series.width == 1 ? Tone::accent : kPlotTones[i]), 0, 1.4F);
+                       packed_color(series.width == 1 ? Tone::accent : kPlotTones[i]), 0, 1.4F);
     }
-    list.AddText({from.x + 4, from.y + 1}, packed(Tone::dim), shown_number(high, false).c_str());
-    list.AddText({from.x + 4, to.y - ImGui::GetFontSize() - 2}, packed(Tone::dim), shown_number(low, false).c_str());
+    list.AddText({from.x + 4, from.y + 1}, packed_color(Tone::secondary), number_label(high, false).c_str());
+    list.AddText({from.x + 4, to.y - ImGui::GetFontSize() - 2}, packed_color(Tone::secondary),
+                 number_label(low, false).c_str());
   }
 
   std::map<std::string, Series> series_;
-  std::uint64_t tick_ = ~std::uint64_t{0};
+  std::uint64_t last_tick_ = ~std::uint64_t{0};
 };
 
-[[maybe_unused]] const bool kPlotsPanel = panel<PlotsPanel>(
-    {.name = "plots", .title = "Plots", .wide = Slot::below_right, .compact = Slot::below, .order = 4});
+[[maybe_unused]] const bool kPlotsPanel = register_panel_type<PlotsPanel>({.name = "plots",
+                                                                           .title = "Plots",
+                                                                           .wide_slot = PanelSlot::bottom_right,
+                                                                           .compact_slot = PanelSlot::bottom,
+                                                                           .order = 4});
 
 }  // namespace
 }  // namespace limber

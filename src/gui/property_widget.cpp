@@ -1,4 +1,4 @@
-// One function for each kind of row.
+// One function for each type of property.
 #include "gui/property_widget.h"
 
 #include <algorithm>
@@ -22,74 +22,76 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z", "w"};
 
-bool is_color(const Row& row) { return row.type == RowType::vec3 && row.unit == "hsb"; }
+bool is_color(const Property& property) { return property.type == PropertyType::vec3 && property.unit == "hsb"; }
 
-BarRange range_of(const Row& row, std::size_t i) {
-  return {row.low(i), row.high(i), row.initial[i], row.step, row.type == RowType::integer};
+BarRange range_of(const Property& property, std::size_t i) {
+  return {property.low(i), property.high(i), property.initial[i], property.step,
+          property.type == PropertyType::integer};
 }
 
-std::string axis_name(const PlacedRow& at, std::size_t i) {
-  return at.place.row->width > 1 ? fmt::format("{}/{}", at.path, i) : at.path;
+std::string axis_name(const PropertyHandle& handle, std::size_t i) {
+  return handle.ref.property->width > 1 ? fmt::format("{}/{}", handle.path, i) : handle.path;
 }
 
-// numbers of a value that may be set: a bar each, side by side
-void numbers(Desk& desk, const PlacedRow& at, HandValues::Values& values, float width) {
-  const Row& row = *at.place.row;
+// Writable numbers: one bar for each, side by side.
+void numbers(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
+  const Property& property = *handle.ref.property;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x * 0.7F;
-  const auto count = static_cast<float>(row.width);
+  const auto count = static_cast<float>(property.width);
   const float each = (width - gap * (count - 1)) / count;
   bool changed = false;
-  bool held = false;
-  ImGui::PushFont(desk.fonts.code);
-  for (std::size_t i = 0; i < row.width; i++) {
+  bool dragging = false;
+  ImGui::PushFont(context.fonts.code);
+  for (std::size_t i = 0; i < property.width; i++) {
     if (i > 0) ImGui::SameLine(0, gap);
-    changed |= number_bar(fmt::format("##{}", i).c_str(), range_of(row, i), each, values[i],
-                          row.width == 3 && !is_color(row) ? static_cast<int>(i) : -1);
-    held |= ImGui::IsItemActive();
-    desk.names.note(axis_name(at, i));
+    changed |= number_bar(fmt::format("##{}", i).c_str(), range_of(property, i), each, values[i],
+                          property.width == 3 && !is_color(property) ? static_cast<int>(i) : -1);
+    dragging |= ImGui::IsItemActive();
+    context.names.add(axis_name(handle, i));
     ImGui::PopFont();
-    property_hint(desk, at);
-    ImGui::PushFont(desk.fonts.code);
+    property_hint(context, handle);
+    ImGui::PushFont(context.fonts.code);
   }
   ImGui::PopFont();
-  if (changed) desk.set(at, values, held);
+  if (changed) context.set(handle, values, dragging);
 }
 
-void truths(Desk& desk, const PlacedRow& at, HandValues::Values& values) {
-  const Row& row = *at.place.row;
-  for (std::size_t i = 0; i < row.width; i++) {
+void checkboxes(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values) {
+  const Property& property = *handle.ref.property;
+  for (std::size_t i = 0; i < property.width; i++) {
     if (i > 0) ImGui::SameLine();
     bool on = values[i] != 0;
-    if (ImGui::Checkbox(row.width > 1 ? kAxes[i] : "##on", &on)) {
+    if (ImGui::Checkbox(property.width > 1 ? kAxes[i] : "##on", &on)) {
       values[i] = on ? 1 : 0;
-      desk.set(at, values, false);
+      context.set(handle, values, false);
     }
-    desk.names.note(axis_name(at, i));
-    property_hint(desk, at);
+    context.names.add(axis_name(handle, i));
+    property_hint(context, handle);
   }
 }
 
-void choice(Desk& desk, const PlacedRow& at, HandValues::Values& values, float width) {
-  const Row& row = *at.place.row;
-  const auto chosen = static_cast<std::size_t>(std::max(values[0], 0.0));
+void choice(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
+  const Property& property = *handle.ref.property;
+  const auto selected = static_cast<std::size_t>(std::max(values[0], 0.0));
   ImGui::SetNextItemWidth(width);
-  const bool open = ImGui::BeginCombo("##choice", chosen < row.choices.size() ? row.choices[chosen].c_str() : "");
+  const bool open =
+      ImGui::BeginCombo("##choice", selected < property.choices.size() ? property.choices[selected].c_str() : "");
   if (!open) {
-    desk.names.note(at.path);
-    return property_hint(desk, at);
+    context.names.add(handle.path);
+    return property_hint(context, handle);
   }
-  for (std::size_t i = 0; i < row.choices.size(); i++) {
-    if (ImGui::Selectable(row.choices[i].c_str(), i == chosen)) {
+  for (std::size_t i = 0; i < property.choices.size(); i++) {
+    if (ImGui::Selectable(property.choices[i].c_str(), i == selected)) {
       values[0] = static_cast<double>(i);
-      desk.set(at, values, false);
+      context.set(handle, values, false);
     }
-    desk.names.note(fmt::format("{}={}", at.path, row.choices[i]));
+    context.names.add(fmt::format("{}={}", handle.path, property.choices[i]));
   }
   ImGui::EndCombo();
 }
 
-// hue, saturation, brightness: a swatch that opens a picker, and its numbers
-void color(Desk& desk, const PlacedRow& at, HandValues::Values& values, float width) {
+// A color as hue, saturation, brightness: a swatch that opens a picker, and its numbers.
+void color(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   float hsb[3] = {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
   float rgb[3];
   ImGui::ColorConvertHSVtoRGB(hsb[0], hsb[1], hsb[2], rgb[0], rgb[1], rgb[2]);
@@ -97,214 +99,220 @@ void color(Desk& desk, const PlacedRow& at, HandValues::Values& values, float wi
   const float swatch = height * 1.5F;
   constexpr ImGuiColorEditFlags kPlain = ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop;
   if (ImGui::ColorButton("##swatch", {rgb[0], rgb[1], rgb[2], 1}, kPlain, {swatch, height})) ImGui::OpenPopup("picker");
-  desk.names.note("swatch:" + at.path);
-  property_hint(desk, at);
+  context.names.add("swatch:" + handle.path);
+  property_hint(context, handle);
   if (ImGui::BeginPopup("picker")) {
-    ImGui::SetNextItemWidth(static_cast<float>(220 * desk.scale));
+    ImGui::SetNextItemWidth(static_cast<float>(220 * context.scale));
     const bool changed = ImGui::ColorPicker3("##picker", hsb,
                                              kPlain | ImGuiColorEditFlags_InputHSV | ImGuiColorEditFlags_DisplayHSV |
                                                  ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoSidePreview);
-    desk.names.note("picker:" + at.path);
+    context.names.add("picker:" + handle.path);
     if (changed) {
       for (std::size_t i = 0; i < 3; i++) values[i] = std::clamp(static_cast<double>(hsb[i]), 0.0, 1.0);
-      desk.set(at, values, ImGui::IsMouseDown(0));
+      context.set(handle, values, ImGui::IsMouseDown(0));
     }
     ImGui::EndPopup();
   }
   ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-  numbers(desk, at, values, width - swatch - ImGui::GetStyle().ItemInnerSpacing.x);
+  numbers(context, handle, values, width - swatch - ImGui::GetStyle().ItemInnerSpacing.x);
 }
 
-// what is told: words, no frame
-void told(Desk& desk, const PlacedRow& at, const HandValues::Values& values, float width) {
-  const Row& row = *at.place.row;
+// A read-only value as plain text.
+void readout_text(PanelContext& context, const PropertyHandle& handle, const PendingValues::Values& values,
+                  float width) {
+  const Property& property = *handle.ref.property;
   std::string text;
-  const bool truth = row.type == RowType::boolean || row.type == RowType::flags3;
-  if (row.type == RowType::text) text = desk.text(at.place);
-  for (std::size_t i = 0; i < row.width && row.type != RowType::text; i++) {
+  const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
+  if (property.type == PropertyType::text) text = context.text(handle.ref);
+  for (std::size_t i = 0; i < property.width && property.type != PropertyType::text; i++) {
     const auto label = static_cast<std::size_t>(std::max(values[i], 0.0));
     if (i > 0) text += "  ";
-    text += truth ? (values[i] != 0 ? "yes" : "no")
-            : row.type == RowType::choice && label < row.choices.size()
-                ? row.choices[label]
-                : shown_number(values[i], row.type == RowType::integer);
+    text += is_boolean ? (values[i] != 0 ? "yes" : "no")
+            : property.type == PropertyType::choice && label < property.choices.size()
+                ? property.choices[label]
+                : number_label(values[i], property.type == PropertyType::integer);
   }
   std::replace(text.begin(), text.end(), '\n', ' ');
-  const bool fault = row.name == "error" && !text.empty();
-  ImGui::PushFont(desk.fonts.code);
+  const bool fault = property.name == "error" && !text.empty();
+  ImGui::PushFont(context.fonts.code);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, ImGui::GetFrameHeight()});
-  desk.names.note(at.path);
+  context.names.add(handle.path);
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(fault ? Tone::red : Tone::text));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(fault ? Tone::red : Tone::text));
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   ImGui::PopFont();
-  property_hint(desk, at);
+  property_hint(context, handle);
 }
 
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
 
-// what an action takes is kept as long as its row is shown
-void action(Desk& desk, const PlacedRow& at, float width) {
-  const Row& row = *at.place.row;
-  ImGuiStorage& kept = *ImGui::GetStateStorage();
+// The arguments of an action are stored while its line is visible.
+void action(PanelContext& context, const PropertyHandle& handle, float width) {
+  const Property& property = *handle.ref.property;
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  const auto fields = static_cast<float>(row.min_args);
-  const float button = row.min_args == 0 ? width : width * 0.34F;
-  if (ImGui::Button(row_words(row).c_str(), {button, 0})) {
+  const auto fields = static_cast<float>(property.min_args);
+  const float button = property.min_args == 0 ? width : width * 0.34F;
+  if (ImGui::Button(property_label(property).c_str(), {button, 0})) {
     std::vector<Arg> args;
-    for (std::uint32_t i = 0; i < row.min_args; i++)
-      args.push_back(Arg::of(static_cast<double>(kept.GetFloat(ImGui::GetID(field_id(i).c_str()) + 1))));
-    desk.send(at.path, std::move(args));
+    for (std::uint32_t i = 0; i < property.min_args; i++)
+      args.push_back(Arg::of(static_cast<double>(storage.GetFloat(ImGui::GetID(field_id(i).c_str()) + 1))));
+    context.send(handle.path, std::move(args));
   }
-  desk.names.note(at.path);
-  property_hint(desk, at);
+  context.names.add(handle.path);
+  property_hint(context, handle);
   const float each = (width - button - gap * fields) / std::max(fields, 1.0F);
-  ImGui::PushFont(desk.fonts.code);
-  for (std::uint32_t i = 0; i < row.min_args; i++) {
+  ImGui::PushFont(context.fonts.code);
+  for (std::uint32_t i = 0; i < property.min_args; i++) {
     ImGui::SameLine(0, gap);
-    float* const number = kept.GetFloatRef(ImGui::GetID(field_id(i).c_str()) + 1, 0);
+    float* const number = storage.GetFloatRef(ImGui::GetID(field_id(i).c_str()) + 1, 0);
     double value = static_cast<double>(*number);
     const BarRange range{-kUnbounded, kUnbounded, 1, 0, false};
     if (number_bar(field_id(i).c_str(), range, each, value, -1)) *number = static_cast<float>(value);
-    desk.names.note(fmt::format("{}/{}", at.path, i));
+    context.names.add(fmt::format("{}/{}", handle.path, i));
   }
   ImGui::PopFont();
 }
 
-void reset_button(Desk& desk, const PlacedRow& at, float side) {
-  const Row& row = *at.place.row;
+void reset_button(PanelContext& context, const PropertyHandle& handle, float side) {
+  const Property& property = *handle.ref.property;
   if (ImGui::InvisibleButton("##reset", {side, ImGui::GetFrameHeight()})) {
-    HandValues::Values initial{};
-    std::copy_n(row.initial.begin(), row.width, initial.begin());
-    desk.set(at, initial, false);
+    PendingValues::Values initial{};
+    std::copy_n(property.initial.begin(), property.width, initial.begin());
+    context.set(handle, initial, false);
   }
-  desk.names.note("reset:" + at.path);
+  context.names.add("reset:" + handle.path);
   const bool hovered = ImGui::IsItemHovered() || ImGui::IsItemFocused();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("back to the default: %s", initial_text(row).c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default: %s", initial_text(property).c_str());
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(Icon::undo, low.x + side / 2, low.y + ImGui::GetFrameHeight() / 2, ImGui::GetFontSize() * 0.38F,
-            packed(hovered ? Tone::accent : Tone::dim));
+            packed_color(hovered ? Tone::accent : Tone::secondary));
 }
 
-void star_button(Desk& desk, const std::string& path, float side) {
-  const bool is = desk.settings.favourites.contains(path);
+void star_button(PanelContext& context, const std::string& path, float side) {
+  const bool starred = context.settings.favorites.contains(path);
   if (ImGui::InvisibleButton("##star", {side, ImGui::GetFrameHeight()})) {
-    if (is) desk.settings.favourites.erase(path);
-    if (!is) desk.settings.favourites.insert(path);
+    if (starred) context.settings.favorites.erase(path);
+    if (!starred) context.settings.favorites.insert(path);
   }
-  desk.names.note("star:" + path);
+  context.names.add("star:" + path);
   const bool hovered = ImGui::IsItemHovered() || ImGui::IsItemFocused();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", is ? "no favourite any more" : "a favourite");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", starred ? "Remove from favorites" : "Add to favorites");
   const ImVec2 low = ImGui::GetItemRectMin();
-  draw_icon(is ? Icon::star : Icon::star_empty, low.x + side / 2, low.y + ImGui::GetFrameHeight() / 2,
-            ImGui::GetFontSize() * 0.4F, packed(is || hovered ? Tone::accent : Tone::dim));
+  draw_icon(starred ? Icon::star : Icon::star_empty, low.x + side / 2, low.y + ImGui::GetFrameHeight() / 2,
+            ImGui::GetFontSize() * 0.4F, packed_color(starred || hovered ? Tone::accent : Tone::secondary));
 }
 
-void name_text(Desk& desk, const PlacedRow& at, const RowFrame& frame, bool bright, float width) {
-  const std::string text = frame.with_path ? at.path : row_words(*at.place.row);
+void name_text(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options, bool bright,
+               float width) {
+  const std::string text = options.with_path ? handle.path : property_label(*handle.ref.property);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, ImGui::GetFrameHeight()});
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed(bright ? Tone::text : Tone::dim));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(bright ? Tone::text : Tone::secondary));
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
-  desk.names.note("name:" + at.path);
-  property_hint(desk, at);
+  context.names.add("name:" + handle.path);
+  property_hint(context, handle);
 }
 
 }  // namespace
 
-std::string row_words(const Row& row) {
-  std::string words = row.name;
-  std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
+std::string property_label(const Property& property) {
+  std::string label = property.name;
+  std::replace(label.begin(), label.end(), '_', ' ');
+  if (!label.empty() && label[0] >= 'a' && label[0] <= 'z') label[0] = static_cast<char>(label[0] - 'a' + 'A');
+  return label;
 }
 
-bool differs_from_default(const Row& row, const HandValues::Values& values) {
-  for (std::size_t i = 0; i < row.width; i++) {
+bool differs_from_default(const Property& property, const PendingValues::Values& values) {
+  for (std::size_t i = 0; i < property.width; i++) {
     const double a = values[i];
-    const double b = row.initial[i];
+    const double b = property.initial[i];
     if (std::abs(a - b) > 1e-6 * std::max(std::abs(a), std::abs(b))) return true;
   }
   return false;
 }
 
-void property_hint(Desk& desk, const PlacedRow& at) {
-  const Row& row = *at.place.row;
+void property_hint(PanelContext& context, const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
   if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::TextUnformatted(row.doc.c_str());
-    const std::string values = values_text(row);
-    const std::string initial = initial_text(row);
-    if (!values.empty() && row.type != RowType::text)
-      ImGui::TextDisabled("%s%s%s", values.c_str(), row.unit.empty() ? "" : "  ", row.unit.c_str());
-    if (!initial.empty() && row.kind == RowKind::property) ImGui::TextDisabled("default %s", initial.c_str());
-    ImGui::PushStyleColor(ImGuiCol_Text, packed(Tone::accent));
-    ImGui::TextUnformatted(at.path.c_str());
+    ImGui::TextUnformatted(property.doc.c_str());
+    const std::string values = range_or_choices_text(property);
+    const std::string initial = initial_text(property);
+    if (!values.empty() && property.type != PropertyType::text)
+      ImGui::TextDisabled("%s%s%s", values.c_str(), property.unit.empty() ? "" : "  ", property.unit.c_str());
+    if (!initial.empty() && property.kind == PropertyKind::setting) ImGui::TextDisabled("Default %s", initial.c_str());
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
+    ImGui::TextUnformatted(handle.path.c_str());
     ImGui::PopStyleColor();
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
   }
   if (!ImGui::BeginPopupContextItem("##copy")) return;
-  if (ImGui::Selectable("copy the OSC address")) desk.copied(at.path);
-  desk.names.note("copy_address");
-  const std::string lua = lua_path(*desk.image->tree, at.place);
-  if (!lua.empty() && ImGui::Selectable("copy the Lua path")) desk.copied(lua);
-  if (!lua.empty()) desk.names.note("copy_lua");
-  const bool plotted = std::find(desk.plots.begin(), desk.plots.end(), at.path) != desk.plots.end();
-  if (!plotted && row.width > 0 && row.type != RowType::text && ImGui::Selectable("plot it"))
-    desk.plots.push_back(at.path);
-  desk.names.note("plot_it");
+  if (ImGui::Selectable("Copy OSC address")) context.copy_with_notice(handle.path);
+  context.names.add("copy_address");
+  const std::string lua = lua_path(*context.value_snapshot->tree, handle.ref);
+  if (!lua.empty() && ImGui::Selectable("Copy Lua path")) context.copy_with_notice(lua);
+  if (!lua.empty()) context.names.add("copy_lua");
+  const bool plotted = std::find(context.plots.begin(), context.plots.end(), handle.path) != context.plots.end();
+  if (!plotted && property.width > 0 && property.type != PropertyType::text && ImGui::Selectable("Plot"))
+    context.plots.push_back(handle.path);
+  context.names.add("plot_it");
   ImGui::EndPopup();
 }
 
-void property_widget(Desk& desk, const PlacedRow& at, float width) {
-  const Row& row = *at.place.row;
-  if (row.kind == RowKind::action) return action(desk, at, width);
-  HandValues::Values values{};
-  desk.values(at, values);
-  if (!row.writable()) return told(desk, at, values, width);
-  if (row.type == RowType::boolean || row.type == RowType::flags3) return truths(desk, at, values);
-  if (row.type == RowType::choice) return choice(desk, at, values, width);
-  if (is_color(row)) return color(desk, at, values, width);
-  numbers(desk, at, values, width);
+void property_widget(PanelContext& context, const PropertyHandle& handle, float width) {
+  const Property& property = *handle.ref.property;
+  if (property.kind == PropertyKind::action) return action(context, handle, width);
+  PendingValues::Values values{};
+  context.values(handle, values);
+  if (!property.writable()) return readout_text(context, handle, values, width);
+  if (property.type == PropertyType::boolean || property.type == PropertyType::flags3)
+    return checkboxes(context, handle, values);
+  if (property.type == PropertyType::choice) return choice(context, handle, values, width);
+  if (is_color(property)) return color(context, handle, values, width);
+  numbers(context, handle, values, width);
 }
 
-void property_row(Desk& desk, const PlacedRow& at, const RowFrame& frame) {
-  const Row& row = *at.place.row;
+void property_line(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
+  const Property& property = *handle.ref.property;
   const float height = ImGui::GetFrameHeight();
-  const float whole = ImGui::GetContentRegionAvail().x;
-  const bool below = frame.with_path;
+  const float width = ImGui::GetContentRegionAvail().x;
+  const bool below = options.with_path;
   const float lines = below ? 2 * height + ImGui::GetStyle().ItemSpacing.y : height;
-  if (!ImGui::IsRectVisible({whole, lines}) && !ImGui::IsAnyItemActive()) return ImGui::Dummy({whole, lines});
-  ImGui::PushID(at.path.c_str());
+  if (!ImGui::IsRectVisible({width, lines}) && !ImGui::IsAnyItemActive()) return ImGui::Dummy({width, lines});
+  ImGui::PushID(handle.path.c_str());
   const float side = height * 0.86F;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  HandValues::Values values{};
-  const bool set = desk.values(at, values) && row.kind == RowKind::property && differs_from_default(row, values);
-  if (frame.star) {
-    star_button(desk, at.path, side);
+  PendingValues::Values values{};
+  const bool differs = context.values(handle, values) && property.kind == PropertyKind::setting &&
+                       differs_from_default(property, values);
+  if (options.star) {
+    star_button(context, handle.path, side);
     ImGui::SameLine(0, gap * 0.5F);
   }
-  const float left = frame.star ? side + gap * 0.5F : 0;
-  const float name = below ? whole - left : static_cast<float>(frame.name_part) * whole - left;
-  name_text(desk, at, frame, set || !row.writable(), name - gap);
+  const float left = options.star ? side + gap * 0.5F : 0;
+  const float name = below ? width - left : static_cast<float>(options.name_fraction) * width - left;
+  name_text(context, handle, options, differs || !property.writable(), name - gap);
   if (!below) ImGui::SameLine(left + name + ImGui::GetCursorStartPos().x);
   if (below) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
-  const bool unit = !row.unit.empty() && row.unit != "hsb" && row.unit.size() <= 8 && row.kind != RowKind::action;
+  const bool unit = !property.unit.empty() && property.unit != "hsb" && property.unit.size() <= 8 &&
+                    property.kind != PropertyKind::action;
   const float units = unit ? ImGui::GetFontSize() * 2.3F : 0;
-  property_widget(desk, at, whole - left - (below ? 0 : name) - side - gap - units);
+  property_widget(context, handle, width - left - (below ? 0 : name) - side - gap - units);
   if (unit) {
-    ImGui::SameLine(whole - side - gap - units + gap * 0.7F + ImGui::GetCursorStartPos().x);
+    ImGui::SameLine(width - side - gap - units + gap * 0.7F + ImGui::GetCursorStartPos().x);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", row.unit.c_str());
+    ImGui::TextDisabled("%s", property.unit.c_str());
   }
-  if (set) {
-    ImGui::SameLine(whole - side + ImGui::GetCursorStartPos().x);
-    reset_button(desk, at, side);
+  if (differs) {
+    ImGui::SameLine(width - side + ImGui::GetCursorStartPos().x);
+    reset_button(context, handle, side);
   }
   ImGui::PopID();
 }

@@ -1,5 +1,5 @@
-// A row of the catalog as a widget: the one place that turns a row and its value into something to see and to move, and
-// a hand's move into a message. Every panel takes its widgets from here.
+// The widget of a property: the only code that displays a property's value and converts user input to messages. All
+// panels use it.
 #pragma once
 
 #include <string>
@@ -9,27 +9,27 @@
 
 namespace limber {
 
-/// What is around a row's widget.
-struct RowFrame {
-  bool star = true;         ///< A star that makes it a favourite.
-  bool with_path = false;   ///< Its address instead of its name alone.
-  double name_part = 0.36;  ///< Of the width.
+/// Options of a property's line.
+struct PropertyLineOptions {
+  bool star = true;             ///< Button that marks it as a favorite.
+  bool with_path = false;       ///< Show the address instead of the name.
+  double name_fraction = 0.36;  ///< Fraction of the width for the name.
 };
 
-/// A whole line: star, name, widget, back to the default. A row that is scrolled out of sight costs nothing.
-/// Names of its widgets: the address; of vectors with /0, /1, …; with "star:", "reset:" in front.
-void property_row(Desk& desk, const PlacedRow& at, const RowFrame& frame = {});
+/// Draws a line with star, name, widget and reset button. A line outside the visible area is skipped. Its widgets are
+/// named by the address, with /0, /1, … for vectors, and with the prefixes "star:" and "reset:".
+void property_line(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options = {});
 
-/// Only the widget, so many pixels wide.
-void property_widget(Desk& desk, const PlacedRow& at, float width);
+/// Draws only the widget with this width in pixels.
+void property_widget(PanelContext& context, const PropertyHandle& handle, float width);
 
-/// Whether a value differs from its row's default beyond what a float on the wire loses.
-bool differs_from_default(const Row& row, const HandValues::Values& values);
+/// True if a value differs from the default by more than the rounding of 32-bit floats in OSC messages.
+bool differs_from_default(const Property& property, const PendingValues::Values& values);
 
-/// "linear_damping" as words.
-std::string row_words(const Row& row);
+/// Returns the name with spaces: "linear damping".
+std::string property_label(const Property& property);
 
-/// Tooltip of the last item: what the row is, unit, range, default, address; and its menu on a right click.
-void property_hint(Desk& desk, const PlacedRow& at);
+/// Adds a tooltip to the last item (documentation, unit, range, default, address) and a context menu.
+void property_hint(PanelContext& context, const PropertyHandle& handle);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Node by node, from the tree's beginning.
+// Searches node by node in tree order.
 #include "gui/row_search.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-std::string small(std::string_view text) {
+std::string to_lower(std::string_view text) {
   std::string letters(text);
   for (char& c : letters) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return letters;
@@ -18,28 +18,28 @@ std::string small(std::string_view text) {
 
 }  // namespace
 
-void RowSearch::look_for(std::string_view words) {
-  std::vector<std::string> list;
+void PropertySearch::start(std::string_view words) {
+  std::vector<std::string> new_words;
   for (const std::string_view word : split(words, ' ')) {
-    if (!word.empty()) list.push_back(small(word));
+    if (!word.empty()) new_words.push_back(to_lower(word));
   }
-  if (list == words_) return;
-  words_ = std::move(list);
+  if (new_words == words_) return;
+  words_ = std::move(new_words);
   tree_ = nullptr;
 }
 
-bool RowSearch::fits(std::string_view path, const Row& row) const {
-  const std::string row_name = small(row.name);
+bool PropertySearch::matches(std::string_view path, const Property& property) const {
+  const std::string property_name = to_lower(property.name);
   return std::all_of(words_.begin(), words_.end(), [&](const std::string& word) {
-    if (path.find(word) != std::string_view::npos || row_name.find(word) != std::string::npos) return true;
-    // a path that is typed or pasted: its last piece begins the row
+    if (path.find(word) != std::string_view::npos || property_name.find(word) != std::string::npos) return true;
+    // a typed or pasted path: its last component is the beginning of a property name
     const std::size_t slash = word.rfind('/');
     return slash != std::string::npos && path.ends_with(std::string_view(word).substr(0, slash)) &&
-           row_name.find(word.substr(slash + 1)) == 0;
+           property_name.find(word.substr(slash + 1)) == 0;
   });
 }
 
-void RowSearch::go_on(const std::shared_ptr<const Tree>& tree) {
+void PropertySearch::advance(const std::shared_ptr<const TreeSnapshot>& tree) {
   if (words_.empty()) return;
   if (tree != tree_) {
     tree_ = tree;
@@ -47,21 +47,21 @@ void RowSearch::go_on(const std::shared_ptr<const Tree>& tree) {
     more_ = false;
     found_.clear();
   }
-  const std::size_t end = std::min(tree_->nodes().size(), next_ + kNodesAFrame);
+  const std::size_t end = std::min(tree_->nodes().size(), next_ + kNodesPerFrame);
   for (; next_ < end; next_++) {
     const auto node = static_cast<std::uint32_t>(next_);
-    const Table& table = *tree_->nodes()[node].table;
-    if (table.rows().empty()) continue;
+    const PropertyTable& table = *tree_->nodes()[node].table;
+    if (table.properties().empty()) continue;
     const std::string path = tree_->path(node);
-    const std::string low = small(path);
-    for (const Row& row : table.rows()) {
-      if (!fits(low, row)) continue;
-      if (found_.size() >= kMost) {
+    const std::string low = to_lower(path);
+    for (const Property& property : table.properties()) {
+      if (!matches(low, property)) continue;
+      if (found_.size() >= kMaxResults) {
         more_ = true;
         next_ = tree_->nodes().size();
         return;
       }
-      found_.push_back({{node, &row}, tree_->path(TreePlace{node, &row})});
+      found_.push_back({{node, &property}, tree_->path(TreePropertyRef{node, &property})});
     }
   }
 }

@@ -1,4 +1,4 @@
-// RowSearch: rows whose address has all words of a search, found a slice a frame, so that no frame waits for it.
+// PropertySearch: searches properties by words in their address, a slice per frame, so that no frame is delayed.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,29 @@
 
 namespace limber {
 
-class RowSearch {
+class PropertySearch {
  public:
-  static constexpr std::size_t kMost = 200;  ///< Rows found; more are said to be there.
-  static constexpr std::size_t kNodesAFrame = 400;
+  static constexpr std::size_t kMaxResults = 200;  ///< Maximum number of results; more() is true if there are others.
+  static constexpr std::size_t kNodesPerFrame = 400;
 
-  /// Words parted by blanks; each must be somewhere in the address, whatever its case.
-  void look_for(std::string_view words);
-  /// One slice, of that tree; begins anew when the tree is another.
-  void go_on(const std::shared_ptr<const Tree>& tree);
+  /// Starts a search for words separated by spaces; each must occur in the address, ignoring case.
+  void start(std::string_view words);
+  /// Searches one slice of the tree; restarts if the tree has changed.
+  void advance(const std::shared_ptr<const TreeSnapshot>& tree);
 
-  const std::vector<PlacedRow>& found() const { return found_; }
+  const std::vector<PropertyHandle>& found() const { return found_; }
   bool active() const { return !words_.empty(); }
   bool done() const { return tree_ != nullptr && next_ >= tree_->nodes().size(); }
   bool more() const { return more_; }
 
  private:
-  bool fits(std::string_view path, const Row& row) const;
+  bool matches(std::string_view path, const Property& property) const;
 
   std::vector<std::string> words_;
-  std::shared_ptr<const Tree> tree_;
+  std::shared_ptr<const TreeSnapshot> tree_;
   std::size_t next_ = 0;
   bool more_ = false;
-  std::vector<PlacedRow> found_;
+  std::vector<PropertyHandle> found_;
 };
 
 }  // namespace limber

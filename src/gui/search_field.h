@@ -1,4 +1,4 @@
-// A field that one searches with: a glass, a hint, what is typed.
+// A text field for searching, with a magnifier icon and a hint.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace limber {
 
-/// True: the text has become another. `name`: its id, and its name among the widgets.
-bool search_field(Desk& desk, const char* name, const char* hint, std::string& text, float width);
+/// Returns true if the text has changed. `name`: its id and its widget name.
+bool search_field(PanelContext& context, const char* name, const char* hint, std::string& text, float width);
 
 }  // namespace limber

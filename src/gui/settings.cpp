@@ -1,4 +1,4 @@
-// JSON, and a file that is written beside itself first.
+// Settings as JSON; the file is replaced atomically.
 #include "gui/settings.h"
 
 #include <algorithm>
@@ -19,27 +19,26 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int kLargestWindow = 16384;
-constexpr double kLongestMorph = 60;
-constexpr std::uintmax_t kLargestFile = 1u << 20;
+constexpr int kMaxWindowSize = 16384;
+constexpr std::uintmax_t kMaxFileSize = 1u << 20;
 
-double number_of(const Json& json, const char* name, double otherwise, double low, double high) {
+double number_of(const Json& json, const char* name, double fallback, double low, double high) {
   const auto found = json.find(name);
-  return found != json.end() && found->is_number() ? std::clamp(found->get<double>(), low, high) : otherwise;
+  return found != json.end() && found->is_number() ? std::clamp(found->get<double>(), low, high) : fallback;
 }
 
 }  // namespace
 
 Result<PanelSettings> read_settings(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return Error{"it is no JSON object"};
+  if (!json.is_object()) return Error{"not a JSON object"};
   PanelSettings settings;
   settings.text_size =
-      number_of(json, "text_size", settings.text_size, PanelSettings::kSmallestText, PanelSettings::kLargestText);
-  settings.morph_seconds = number_of(json, "morph_seconds", settings.morph_seconds, 0, kLongestMorph);
+      number_of(json, "text_size", settings.text_size, PanelSettings::kMinTextSize, PanelSettings::kMaxTextSize);
+  settings.morph_seconds = number_of(json, "morph_seconds", settings.morph_seconds, 0, PanelSettings::kMaxMorphSeconds);
   settings.easing = static_cast<int>(number_of(json, "easing", settings.easing, 0, 3));
-  settings.window_width = static_cast<int>(number_of(json, "window_width", 0, 0, kLargestWindow));
-  settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kLargestWindow));
+  settings.window_width = static_cast<int>(number_of(json, "window_width", 0, 0, kMaxWindowSize));
+  settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kMaxWindowSize));
   for (const auto& [name, value] : {std::pair("hidden", &settings.hidden),
                                     {"fullscreen", &settings.fullscreen},
                                     {"hide_pointer", &settings.hide_pointer}}) {
@@ -51,7 +50,7 @@ Result<PanelSettings> read_settings(std::string_view text) {
   }
   if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
     for (const Json& path : *list) {
-      if (path.is_string()) settings.favourites.insert(path.get<std::string>());
+      if (path.is_string()) settings.favorites.insert(path.get<std::string>());
     }
   }
   if (const auto keys = json.find("keys"); keys != json.end() && keys->is_object()) {
@@ -67,7 +66,7 @@ std::string settings_text(const PanelSettings& s) {
                      {"hidden", s.hidden},
                      {"morph_seconds", s.morph_seconds},
                      {"easing", s.easing},
-                     {"favourites", s.favourites},
+                     {"favourites", s.favorites},
                      {"style", s.style},
                      {"keys", s.keys},
                      {"window_width", s.window_width},
@@ -89,17 +88,16 @@ PanelSettings load_settings(const std::string& file) {
   std::error_code fault;
   if (file.empty() || !fs::is_regular_file(file, fault)) return {};
   std::string text;
-  if (fs::file_size(file, fault) <= kLargestFile && !fault) {
+  if (fs::file_size(file, fault) <= kMaxFileSize && !fault) {
     std::ifstream in(file, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
   const Result<PanelSettings> read = read_settings(text);
   if (read) return *read;
-  const std::string aside = file + ".damaged";
-  fs::rename(file, aside, fault);
-  log_warning("the panel's settings in {} are damaged ({}); {}, and the panel begins afresh", printable(file),
-              read.error(),
-              fault ? "they stay there until the next ones" : "they are set aside as " + printable(aside));
+  const std::string renamed = file + ".damaged";
+  fs::rename(file, renamed, fault);
+  log_warning("panel settings in {} are damaged ({}); using the defaults. The file {}", printable(file), read.error(),
+              fault ? "will be overwritten" : "was renamed to " + printable(renamed));
   return {};
 }
 
@@ -107,17 +105,17 @@ void save_settings(const std::string& file, const PanelSettings& settings) {
   if (file.empty()) return;
   std::error_code fault;
   fs::create_directories(fs::path(file).parent_path(), fault);
-  const std::string beside = file + ".new";
+  const std::string temporary = file + ".new";
   bool written = false;
   {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+    std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
     out << settings_text(settings);
     out.close();
     written = out.good();
   }
-  if (written) fs::rename(beside, file, fault);
+  if (written) fs::rename(temporary, file, fault);
   if (!written || fault)
-    log_warning("the panel's settings can't be kept in {}: is the folder writable?", printable(file));
+    log_warning("can't save the panel settings to {}. Check that the folder is writable", printable(file));
 }
 
 }  // namespace limber

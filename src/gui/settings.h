@@ -1,4 +1,4 @@
-// PanelSettings: what of the panel is remembered from show to show, as a small JSON text; where it is kept.
+// PanelSettings: the panel's persistent settings, stored as JSON.
 #pragma once
 
 #include <map>
@@ -11,34 +11,37 @@
 namespace limber {
 
 struct PanelSettings {
-  static constexpr double kSmallestText = 12;
-  static constexpr double kLargestText = 28;
+  static constexpr double kMinTextSize = 12;
+  static constexpr double kMaxTextSize = 28;
+  static constexpr double kMaxMorphSeconds = 60;
 
-  double text_size = 16;  ///< Pixels, before the display's own scale.
+  double text_size = 16;  ///< Pixels, before the display's scale.
   bool hidden = false;    ///< F1.
   double morph_seconds = 1.5;
-  int easing = 1;                           ///< Of Easing.
-  std::set<std::string> favourites;         ///< Addresses of rows.
-  std::map<std::string, std::string> keys;  ///< Chosen keys by the name of their hotkey: "Ctrl+R".
-  std::string style;                        ///< Of the look; empty: none was chosen.
+  int easing = 1;                           ///< Index in easings().
+  std::set<std::string> favorites;          ///< Addresses of properties.
+  std::map<std::string, std::string> keys;  ///< Rebound hotkeys by name: "Ctrl+R".
+  std::string style;                        ///< Of the view; empty: none was selected.
   bool fullscreen = false;
   bool hide_pointer = false;
-  std::string monitor;   ///< Number or name; empty: none was chosen.
-  int window_width = 0;  ///< 0: none yet.
+  std::string monitor;   ///< Number or name; empty: none was selected.
+  int window_width = 0;  ///< 0: not known yet.
   int window_height = 0;
   bool operator==(const PanelSettings&) const = default;
 };
 
-/// What is missing in the text has its default; numbers beyond their range are brought into it. An error: it is none of
-/// ours. [any]
+/// Parses settings. Missing values get their default, numbers are clamped to their range. Fails if the text is not a
+/// JSON object. [any]
 Result<PanelSettings> read_settings(std::string_view text);
+/// Returns the settings in the format of read_settings(). [any]
 std::string settings_text(const PanelSettings& settings);
 
-/// $XDG_CONFIG_HOME/limber/panel.json, else below ~/.config; empty when there is no home. [any]
+/// Returns $XDG_CONFIG_HOME/limber/panel.json, or the same below ~/.config; empty if there is no home directory. [any]
 std::string settings_file();
-/// The file's; one that is damaged is set aside as panel.json.damaged, which is said. Without a file: defaults. [main]
+/// Reads the file; without it, returns the defaults. A damaged file is renamed to panel.json.damaged, which is logged.
+/// [main]
 PanelSettings load_settings(const std::string& file);
-/// Whole or not at all; a file that can't be written is said and no more. [main]
+/// Writes the file atomically; a failure is only logged. [main]
 void save_settings(const std::string& file, const PanelSettings& settings);
 
 }  // namespace limber

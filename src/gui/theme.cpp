@@ -1,4 +1,4 @@
-// The table, and what Dear ImGui makes of it.
+// The palette and its mapping to the style of Dear ImGui.
 #include "gui/theme.h"
 
 #include <cmath>
@@ -10,37 +10,41 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<Rgb, static_cast<std::size_t>(Tone::none_count)> kTones = {{
+constexpr std::array<Rgb, static_cast<std::size_t>(Tone::count)> kTones = {{
     {0x09, 0x0b, 0x12},  // back
     {0x12, 0x14, 0x18},  // panel
     {0x2c, 0x30, 0x3b},  // line
     {0x26, 0x2a, 0x33},  // field
     {0x30, 0x35, 0x41},  // hover
-    {0x1d, 0x21, 0x28},  // head
-    {0x41, 0x34, 0x20},  // chosen
+    {0x1d, 0x21, 0x28},  // header
+    {0x41, 0x34, 0x20},  // selected
     {0xe3, 0xe6, 0xeb},  // text
-    {0xa0, 0xa7, 0xb3},  // dim
+    {0xa0, 0xa7, 0xb3},  // secondary
     {0xe9, 0xa5, 0x3f},  // accent
     {0x6b, 0x4e, 0x26},  // fill
-    {0xc8, 0x8e, 0x38},  // lit
-    {0x14, 0x10, 0x0a},  // ink
+    {0xc8, 0x8e, 0x38},  // active
+    {0x14, 0x10, 0x0a},  // on_active
     {0xff, 0x81, 0x78},  // red
     {0x45, 0xc9, 0x8a},  // green
     {0x7c, 0xc1, 0xf8},  // blue
 }};
 
-constexpr std::array kWritten = {
-    Written{Tone::text, Tone::panel},  Written{Tone::text, Tone::field},   Written{Tone::text, Tone::hover},
-    Written{Tone::text, Tone::head},   Written{Tone::text, Tone::chosen},  Written{Tone::text, Tone::fill},
-    Written{Tone::dim, Tone::panel},   Written{Tone::dim, Tone::field},    Written{Tone::dim, Tone::head},
-    Written{Tone::dim, Tone::chosen},  Written{Tone::accent, Tone::panel}, Written{Tone::accent, Tone::field},
-    Written{Tone::accent, Tone::head}, Written{Tone::ink, Tone::lit},      Written{Tone::red, Tone::panel},
-    Written{Tone::red, Tone::field},   Written{Tone::green, Tone::panel},  Written{Tone::blue, Tone::panel},
-    Written{Tone::green, Tone::back},  Written{Tone::blue, Tone::back},    Written{Tone::text, Tone::back},
-    Written{Tone::dim, Tone::back},    Written{Tone::red, Tone::back},
+constexpr std::array kTextCombinations = {
+    TextOnTone{Tone::text, Tone::panel},       TextOnTone{Tone::text, Tone::field},
+    TextOnTone{Tone::text, Tone::hover},       TextOnTone{Tone::text, Tone::header},
+    TextOnTone{Tone::text, Tone::selected},    TextOnTone{Tone::text, Tone::fill},
+    TextOnTone{Tone::secondary, Tone::panel},  TextOnTone{Tone::secondary, Tone::field},
+    TextOnTone{Tone::secondary, Tone::header}, TextOnTone{Tone::secondary, Tone::selected},
+    TextOnTone{Tone::accent, Tone::panel},     TextOnTone{Tone::accent, Tone::field},
+    TextOnTone{Tone::accent, Tone::header},    TextOnTone{Tone::on_active, Tone::active},
+    TextOnTone{Tone::red, Tone::panel},        TextOnTone{Tone::red, Tone::field},
+    TextOnTone{Tone::green, Tone::panel},      TextOnTone{Tone::blue, Tone::panel},
+    TextOnTone{Tone::green, Tone::back},       TextOnTone{Tone::blue, Tone::back},
+    TextOnTone{Tone::text, Tone::back},        TextOnTone{Tone::secondary, Tone::back},
+    TextOnTone{Tone::red, Tone::back},
 };
 
-constexpr double kThrough = 0.94;  // of a panel: the scene shines through a little
+constexpr double kPanelAlpha = 0.94;  // opacity of panels: the view is slightly visible through them
 
 double linear(std::uint8_t channel) {
   const double v = channel / 255.0;
@@ -49,7 +53,7 @@ double linear(std::uint8_t channel) {
 
 double luminance(const Rgb& c) { return 0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]); }
 
-ImVec4 color(Tone t, double alpha = 1) { return ImGui::ColorConvertU32ToFloat4(packed(t, alpha)); }
+ImVec4 color(Tone t, double alpha = 1) { return ImGui::ColorConvertU32ToFloat4(packed_color(t, alpha)); }
 
 void set_colors(ImVec4* colors) {
   const auto set = [&](Tone t, std::initializer_list<ImGuiCol> slots, double alpha = 1) {
@@ -57,20 +61,20 @@ void set_colors(ImVec4* colors) {
   };
   for (int i = 0; i < ImGuiCol_COUNT; i++) colors[i] = color(Tone::line);
   set(Tone::text, {ImGuiCol_Text, ImGuiCol_CheckMark});
-  set(Tone::dim, {ImGuiCol_TextDisabled});
-  set(Tone::panel, {ImGuiCol_WindowBg}, kThrough);
+  set(Tone::secondary, {ImGuiCol_TextDisabled});
+  set(Tone::panel, {ImGuiCol_WindowBg}, kPanelAlpha);
   set(Tone::panel, {ImGuiCol_PopupBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_MenuBarBg}, 0.98);
   set(Tone::panel, {ImGuiCol_ChildBg, ImGuiCol_ScrollbarBg, ImGuiCol_BorderShadow, ImGuiCol_TableRowBg}, 0);
   set(Tone::line, {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong});
   set(Tone::field, {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_TabActive, ImGuiCol_TabUnfocusedActive});
   set(Tone::hover, {ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_ButtonHovered, ImGuiCol_TabHovered,
                     ImGuiCol_HeaderHovered, ImGuiCol_ScrollbarGrab});
-  set(Tone::head, {ImGuiCol_Tab, ImGuiCol_TabUnfocused, ImGuiCol_TableHeaderBg});
-  set(Tone::chosen, {ImGuiCol_Header, ImGuiCol_HeaderActive, ImGuiCol_ButtonActive});
+  set(Tone::header, {ImGuiCol_Tab, ImGuiCol_TabUnfocused, ImGuiCol_TableHeaderBg});
+  set(Tone::selected, {ImGuiCol_Header, ImGuiCol_HeaderActive, ImGuiCol_ButtonActive});
   set(Tone::fill, {ImGuiCol_TextSelectedBg});
   set(Tone::accent, {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive, ImGuiCol_NavHighlight,
                      ImGuiCol_PlotLines, ImGuiCol_PlotHistogram, ImGuiCol_DragDropTarget});
-  set(Tone::dim, {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive});
+  set(Tone::secondary, {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive});
   set(Tone::back, {ImGuiCol_ModalWindowDimBg, ImGuiCol_NavWindowingDimBg}, 0.6);
 }
 
@@ -78,7 +82,7 @@ void set_colors(ImVec4* colors) {
 
 Rgb tone(Tone tone) { return kTones[static_cast<std::size_t>(tone)]; }
 
-std::uint32_t packed(Tone which, double alpha) {
+std::uint32_t packed_color(Tone which, double alpha) {
   const Rgb c = tone(which);
   return IM_COL32(c[0], c[1], c[2], static_cast<std::uint32_t>(std::lround(alpha * 255)));
 }
@@ -89,10 +93,10 @@ double contrast(const Rgb& a, const Rgb& b) {
   return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
 }
 
-std::span<const Written> written() { return kWritten; }
+std::span<const TextOnTone> text_combinations() { return kTextCombinations; }
 
 void apply_theme(double scale) {
-  ImGuiStyle style;  // a fresh one: sizes that were scaled before are not scaled again
+  ImGuiStyle style;  // a new style, because ScaleAllSizes() multiplies the current sizes
   style.WindowPadding = {9, 7};
   style.FramePadding = {8, 3};
   style.ItemSpacing = {7, 5};

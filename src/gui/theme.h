@@ -1,4 +1,4 @@
-// The panel's colours and sizes: one table of tones, one accent, red for errors alone.
+// The panel's colors and sizes: one palette with one accent color; red is used only for errors.
 #pragma once
 
 #include <array>
@@ -7,43 +7,46 @@
 
 namespace limber {
 
+/// The palette, by purpose.
 enum class Tone : std::uint8_t {
-  back,    ///< Behind everything.
-  panel,   ///< A panel.
-  line,    ///< Its edge.
-  field,   ///< What takes a value.
-  hover,   ///< The same, under the mouse.
-  head,    ///< The head of a section.
-  chosen,  ///< What is chosen.
-  text,    ///< Words and numbers.
-  dim,     ///< Words of less weight.
-  accent,  ///< The one accent: marks, what is on.
-  fill,    ///< A bar's part up to its value.
-  lit,     ///< A button that is on.
-  ink,     ///< What is written on `lit`.
-  red,     ///< Errors.
-  green,   ///< What goes out, lamps.
-  blue,    ///< What comes in.
-  none_count
+  back,       ///< Background.
+  panel,      ///< Panel background.
+  line,       ///< Panel border.
+  field,      ///< Input field.
+  hover,      ///< Hovered input field.
+  header,     ///< Section header.
+  selected,   ///< Selected item.
+  text,       ///< Text and numbers.
+  secondary,  ///< Secondary text.
+  accent,     ///< The accent color: marks, active items.
+  fill,       ///< Filled part of a bar.
+  active,     ///< Active button.
+  on_active,  ///< Text on `active`.
+  red,        ///< Errors.
+  green,      ///< Outgoing messages, lamps.
+  blue,       ///< Incoming messages.
+  count
 };
 
 /// Red, green, blue, 0 .. 255.
 using Rgb = std::array<std::uint8_t, 3>;
+/// Returns the color of a tone.
 Rgb tone(Tone tone);
-std::uint32_t packed(Tone tone, double alpha = 1);
+/// Returns the color of a tone as Dear ImGui's ImU32.
+std::uint32_t packed_color(Tone tone, double alpha = 1);
 
-/// WCAG's ratio of two colours' luminances, 1 .. 21.
+/// WCAG contrast ratio of two colors, 1 .. 21.
 double contrast(const Rgb& a, const Rgb& b);
 
-/// Which tones are written on which: each with a contrast of at least kLeastContrast.
-inline constexpr double kLeastContrast = 4.5;
-struct Written {
-  Tone words;
-  Tone on;
+inline constexpr double kMinContrast = 4.5;
+struct TextOnTone {
+  Tone text;
+  Tone background;
 };
-std::span<const Written> written();
+/// Returns the combinations of text and background tones in use. Each has a contrast of at least kMinContrast.
+std::span<const TextOnTone> text_combinations();
 
-/// Dear ImGui's style of the current context, made anew. `scale`: pixels for what is a pixel at text of 16.
+/// Resets the style of Dear ImGui's current context. `scale`: pixels per unit, where a unit is a pixel at text size 16.
 void apply_theme(double scale);
 
 }  // namespace limber

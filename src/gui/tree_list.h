@@ -1,5 +1,5 @@
-// TreeList: the tree of things as lines: who is open, who fits a search. Made anew only when one of these changes, so
-// that a frame costs what is seen.
+// TreeList: the object tree as a list of lines, filtered by the expanded nodes and the search words. It is rebuilt only
+// when one of these changes, so that a frame costs only the visible lines.
 #pragma once
 
 #include <cstdint>
@@ -13,35 +13,36 @@
 
 namespace limber {
 
+/// [main]
 class TreeList {
  public:
   struct Line {
     std::uint32_t node = 0;
     std::uint16_t depth = 0;
-    bool opens = false;  ///< There is something below.
-    bool open = false;
+    bool expandable = false;  ///< The node has children.
+    bool expanded = false;
   };
 
-  /// The lines for that tree; `words`: only what has them in its name, with what it lies in.
-  const std::vector<Line>& lines(const std::shared_ptr<const Tree>& tree, std::string_view words);
+  /// Returns the lines of that tree; with `words`, only nodes that contain them in their name, and their ancestors.
+  const std::vector<Line>& lines(const std::shared_ptr<const TreeSnapshot>& tree, std::string_view words);
   void toggle(std::uint32_t node);
-  /// Opens all that a thing lies in.
+  /// Expands all ancestors of a node.
   void reveal(std::uint32_t node);
 
-  /// What people call it: "world" for /physics/sim.
-  static std::string_view title(const Tree& tree, std::uint32_t node);
+  /// Returns the displayed name: "world" for /physics/sim.
+  static std::string_view title(const TreeSnapshot& tree, std::uint32_t node);
 
  private:
   void add(std::uint32_t node, std::uint16_t depth);
-  void add_found(std::string_view words);
-  static std::uint64_t key(const Tree& tree, std::uint32_t node);
+  void add_matches(std::string_view words);
+  static std::uint64_t key(const TreeSnapshot& tree, std::uint32_t node);
   std::vector<std::uint32_t> top() const;
 
-  std::shared_ptr<const Tree> tree_;
+  std::shared_ptr<const TreeSnapshot> tree_;
   std::string words_;
-  bool stale_ = true;
-  bool begun_ = false;
-  std::unordered_set<std::uint64_t> open_;
+  bool dirty_ = true;
+  bool initialized_ = false;
+  std::unordered_set<std::uint64_t> expanded_;
   std::vector<Line> lines_;
 };
 

@@ -1,4 +1,4 @@
-// The rectangle of the last item, clipped by its window.
+// Stores the last item's rectangle, clipped to its window.
 #include "gui/widget_names.h"
 
 #include <algorithm>
@@ -8,13 +8,13 @@
 
 namespace limber {
 
-void WidgetNames::note(std::string_view name) {
+void WidgetNames::add(std::string_view name) {
   if (count_ == widgets_.size()) widgets_.emplace_back();
   NamedWidget& widget = widgets_[count_++];
   widget.name = name;
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
-  widget.whole = {low.x, low.y, high.x - low.x, high.y - low.y};
+  widget.rect = {low.x, low.y, high.x - low.x, high.y - low.y};
   const ImGuiWindow* const window = ImGui::GetCurrentWindow();
   const ImRect& clip = window->ClipRect;
   const float left = std::max(low.x, clip.Min.x);

@@ -1,5 +1,5 @@
-// WidgetNames: where each widget of the last frame was, by name, so that a test drives a widget by its name and looks
-// whether anything lies over anything.
+// WidgetNames: the positions of the last frame's widgets by name, so that tests can use widgets by name and detect
+// overlaps.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@ namespace limber {
 
 struct NamedWidget {
   std::string name;
-  PanelRect whole;    ///< As it lies in its panel, seen or scrolled out of sight.
-  PanelRect visible;  ///< What of it is seen; empty: nothing.
+  PanelRect rect;     ///< Its rectangle, even if it is scrolled out of view.
+  PanelRect visible;  ///< The visible part; empty: none.
   std::uint32_t window = 0;
 };
 
 class WidgetNames {
  public:
   void clear() { count_ = 0; }
-  /// The item that was made last.
-  void note(std::string_view name);
-  /// Null: there is none in this frame.
+  /// Registers the last item under this name.
+  void add(std::string_view name);
+  /// Returns null if there is no such widget in this frame.
   const NamedWidget* find(std::string_view name) const;
-  /// In the order in which they were made.
+  /// In the order of registration.
   std::vector<NamedWidget> all() const {
     return {widgets_.begin(), widgets_.begin() + static_cast<std::ptrdiff_t>(count_)};
   }
 
  private:
-  std::vector<NamedWidget> widgets_;  // their texts' memory is used again
+  std::vector<NamedWidget> widgets_;  // not cleared, so that the memory of the strings is reused
   std::size_t count_ = 0;
 };
 

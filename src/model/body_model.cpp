@@ -1,4 +1,4 @@
-// Names of joint types.
+// Conversion between joint types and their names.
 #include "model/body_model.h"
 
 #include <array>

@@ -1,4 +1,5 @@
-// FileSet: files that stand in for the disk, so that models can be made again where theirs have changed or gone. [any]
+// FileSet: in-memory copies of files that importers read instead of the disk, so that a model can be rebuilt after its
+// files have changed or been deleted. [any]
 #pragma once
 
 #include <map>
@@ -9,14 +10,15 @@
 namespace limber {
 
 struct FileSet {
-  std::map<std::string, std::shared_ptr<const std::string>> contents;  ///< By path, as it was given when it was read.
-  std::map<std::string, std::string> found;                            ///< Paths of meshes, by mesh_key().
+  std::map<std::string, std::shared_ptr<const std::string>> contents;  ///< By the path that was used to read the file.
+  std::map<std::string, std::string> mesh_paths;                       ///< Paths of meshes, by mesh_key().
 
+  /// The bytes of a file; null if the set does not contain it.
   const std::string* content(const std::string& path) const {
     const auto file = contents.find(path);
     return file == contents.end() ? nullptr : file->second.get();
   }
-  /// How a mesh is known: by the folder of the URDF that names it, and the name there.
+  /// The key of a mesh in `mesh_paths`: the folder of the URDF and the mesh's URI in that URDF.
   static std::string mesh_key(std::string_view folder, std::string_view uri) {
     return std::string(folder) + '\n' + std::string(uri);
   }

@@ -1,4 +1,4 @@
-// Asking the file system first, the content where that does not settle it.
+// Change detection by file status, with a content hash where the status is not conclusive.
 #include "model/file_stamp.h"
 
 #include <array>
@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-// file systems' clocks tick every few milliseconds: two saves between two ticks have one time
-constexpr std::int64_t kYoung = 100'000'000;
+// ns. File system clocks tick every few milliseconds, so two saves within one tick get the same time.
+constexpr std::int64_t kTimeResolution = 100'000'000;
 
 bool hash_file(const std::string& path, std::uint64_t& hash) {
   std::ifstream in(path, std::ios::binary);
@@ -29,7 +29,7 @@ bool hash_file(const std::string& path, std::uint64_t& hash) {
 
 }  // namespace
 
-bool FileStamp::ask(const std::string& path, Outside& out) {
+bool FileStamp::query_status(const std::string& path, FileStatus& out) {
   const std::optional<system::FileStatus> status = system::file_status(path);
   if (!status || !status->file) return false;
   out = {status->size, status->inode, status->modified, status->changed};
@@ -38,19 +38,19 @@ bool FileStamp::ask(const std::string& path, Outside& out) {
 
 FileStamp::FileStamp(const std::string& path) {
   const std::int64_t now = system::file_clock_nanoseconds();
-  // asked before it is read: a change in between is seen the next time
-  readable_ = ask(path, outside_) && hash_file(path, content_);
-  if (!readable_) content_ = 0;
-  settled_ = readable_ && now - outside_.changed > kYoung;
+  // the status is queried before reading, so that a change in between is detected by the next is_current()
+  readable_ = query_status(path, status_) && hash_file(path, content_hash_);
+  if (!readable_) content_hash_ = 0;
+  times_reliable_ = readable_ && now - status_.changed > kTimeResolution;
 }
 
-bool FileStamp::holds(const std::string& path) {
-  Outside now;
-  if (!ask(path, now)) return !readable_;
-  if (readable_ && settled_ && now == outside_) return true;
-  const FileStamp anew(path);
-  if (!(anew == *this)) return false;
-  *this = anew;
+bool FileStamp::is_current(const std::string& path) {
+  FileStatus now;
+  if (!query_status(path, now)) return !readable_;
+  if (readable_ && times_reliable_ && now == status_) return true;
+  const FileStamp fresh(path);
+  if (!(fresh == *this)) return false;
+  *this = fresh;
   return true;
 }
 

@@ -1,4 +1,4 @@
-// FileStamp: what a file was when it was read, so that one can tell whether it still is that. [any]
+// FileStamp: the status and content hash of a file at the time it was read, to detect later changes. [any]
 #pragma once
 
 #include <cstdint>
@@ -8,34 +8,36 @@ namespace limber {
 
 class FileStamp {
  public:
-  /// Of a file that can't be read: like no file's.
+  /// The stamp of a file that can't be read.
   FileStamp() = default;
   explicit FileStamp(const std::string& path);
 
-  /// Whether the file still holds what it held. Only where its size and times leave a doubt it is read; what that finds
-  /// is kept. A new time on the old content changes nothing.
-  bool holds(const std::string& path);
+  /// True if the file's content is unchanged. Compares size, inode and times first, and hashes the content only if they
+  /// differ or are too recent to be reliable; then updates the stamp. A changed time with equal content is no change.
+  bool is_current(const std::string& path);
 
   bool readable() const { return readable_; }
-  /// hash_bytes of all that the file holds; 0 when it can't be read.
-  std::uint64_t content() const { return content_; }
-  /// By content.
-  bool operator==(const FileStamp& other) const { return readable_ == other.readable_ && content_ == other.content_; }
+  /// hash_bytes() of the content; 0 if the file can't be read.
+  std::uint64_t content_hash() const { return content_hash_; }
+  /// Compares content only.
+  bool operator==(const FileStamp& other) const {
+    return readable_ == other.readable_ && content_hash_ == other.content_hash_;
+  }
 
  private:
-  struct Outside {  // what the file system tells
+  struct FileStatus {  // status reported by the file system
     std::uintmax_t size = 0;
     std::uint64_t inode = 0;
-    std::int64_t modified = 0;  // ns
-    std::int64_t changed = 0;
-    bool operator==(const Outside&) const = default;
+    std::int64_t modified = 0;  // mtime, ns
+    std::int64_t changed = 0;   // ctime, ns
+    bool operator==(const FileStatus&) const = default;
   };
-  static bool ask(const std::string& path, Outside& out);
+  static bool query_status(const std::string& path, FileStatus& out);
 
-  Outside outside_;
-  std::uint64_t content_ = 0;
+  FileStatus status_;
+  std::uint64_t content_hash_ = 0;
   bool readable_ = false;
-  bool settled_ = false;  // old enough for its times to tell of the next change
+  bool times_reliable_ = false;  // the file was old enough when it was read that any later change alters its times
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The whole hull by quickhull with outside sets; the reduced one by adding the farthest vertex again and again.
+// Complete hulls by quickhull with outside sets; reduced hulls by repeatedly adding the farthest vertex.
 #include "model/hull.h"
 
 #include <algorithm>
@@ -28,48 +28,50 @@ Extent extent_of(std::span<const Vec3> points) {
   return {std::max({d.x, d.y, d.z}), std::max({m.x, m.y, m.z})};
 }
 
-// meshes come in single precision: what is within its noise of a plane lies in the plane
-double epsilon_of(const Extent& e) { return 1e-6 * e.size + 2e-7 * e.farthest + 1e-12; }
+// mesh files hold single precision: points within its rounding error of a plane are treated as in the plane
+double tolerance_for(const Extent& e) { return 1e-6 * e.size + 2e-7 * e.farthest + 1e-12; }
 
-// thinner than a ten-thousandth of its size, a cloud's rim is all slivers, whose planes mean nothing: it counts as flat
-double thinnest_of(const Extent& e) { return 100 * epsilon_of(e); }
+// a cloud thinner than a ten-thousandth of its size is treated as flat: the faces along its rim would be slivers, with
+// planes dominated by rounding errors
+double min_thickness_for(const Extent& e) { return 100 * tolerance_for(e); }
 
-/// The cloud and a copy of it shifted to each side, along the directions in which it has no thickness.
+/// Two copies of the cloud, shifted to both sides along each direction in which it has no thickness.
 std::vector<Vec3> thickened(std::span<const Vec3> points, const Extent& extent) {
-  const double least = 2 * thinnest_of(extent);
-  const double t = std::max({1e-3 * extent.size, 1e-4, 0.75 * thinnest_of(extent)});
+  const double min_extent = 2 * min_thickness_for(extent);
+  const double offset = std::max({1e-3 * extent.size, 1e-4, 0.75 * min_thickness_for(extent)});
   const Vec3 base = points[0];
   const auto farthest = [&](const auto& measure) {
     return *std::max_element(points.begin(), points.end(),
                              [&](const Vec3& a, const Vec3& b) { return measure(a) < measure(b); });
   };
-  std::vector<Vec3> missing{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<Vec3> flat_directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Vec3 far = farthest([&](const Vec3& p) { return glm::length(p - base); });
-  if (glm::length(far - base) > least) {
+  if (glm::length(far - base) > min_extent) {
     const Vec3 along = normalized(far - base);
     const Vec3 helper = std::abs(along.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     const Vec3 side = farthest([&](const Vec3& p) { return glm::length(glm::cross(p - base, along)); });
     const Vec3 out = glm::cross(along, side - base);
     const Vec3 up = normalized(glm::cross(along, helper));
-    if (glm::length(out) > least) {
-      missing = {normalized(out)};
+    if (glm::length(out) > min_extent) {
+      flat_directions = {normalized(out)};
     } else {
-      missing = {up, glm::cross(along, up)};
+      flat_directions = {up, glm::cross(along, up)};
     }
   }
-  std::vector<Vec3> thick(points.begin(), points.end());
-  for (const Vec3& direction : missing) {
-    const std::size_t count = thick.size();
+  std::vector<Vec3> out_points(points.begin(), points.end());
+  for (const Vec3& direction : flat_directions) {
+    const std::size_t count = out_points.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3 p = thick[i];
-      thick[i] = p + t * direction;
-      thick.push_back(p - t * direction);
+      const Vec3 p = out_points[i];
+      out_points[i] = p + offset * direction;
+      out_points.push_back(p - offset * direction);
     }
   }
-  return thick;
+  return out_points;
 }
 
-/// Hands points to the faces that they see, the farthest of each face last.
+/// Quickhull: assigns each point outside the surface to the face it is farthest above (the face's outside set), and
+/// adds the farthest point of each face until all sets are empty.
 class Quickhull {
  public:
   explicit Quickhull(HullSurface& surface) : surface_(surface) {}
@@ -77,54 +79,54 @@ class Quickhull {
   void run(int points) {
     std::vector<int> all(static_cast<std::size_t>(points));
     for (int i = 0; i < points; ++i) all[static_cast<std::size_t>(i)] = i;
-    hand_out(all, {0, 1, 2, 3});
+    assign_points(all, {0, 1, 2, 3});
     while (!pending_.empty()) {
       const int f = pending_.back();
       HullSurface::Face& face = surface_.faces()[static_cast<std::size_t>(f)];
-      if (!face.alive || face.outside.empty()) {
+      if (!face.alive || face.outside_set.empty()) {
         pending_.pop_back();
         continue;
       }
-      const int point = face.outside.back();
-      face.outside.pop_back();
+      const int point = face.outside_set.back();
+      face.outside_set.pop_back();
       if (surface_.add(point, f)) {
-        std::vector<int> free;
+        std::vector<int> unassigned;
         for (const int dead : surface_.dead_faces()) {
-          std::vector<int>& list = surface_.faces()[static_cast<std::size_t>(dead)].outside;
-          free.insert(free.end(), list.begin(), list.end());
+          std::vector<int>& list = surface_.faces()[static_cast<std::size_t>(dead)].outside_set;
+          unassigned.insert(unassigned.end(), list.begin(), list.end());
           std::vector<int>().swap(list);
         }
-        hand_out(free, surface_.added_faces());
+        assign_points(unassigned, surface_.added_faces());
       } else {
-        bring_farthest_last(face);
+        move_farthest_to_back(face);
       }
     }
   }
 
  private:
-  void hand_out(const std::vector<int>& points, const std::vector<int>& to) {
+  void assign_points(const std::vector<int>& points, const std::vector<int>& faces) {
     for (const int p : points) {
       int best = -1;
-      double most = surface_.epsilon();
-      for (const int f : to) {
-        const double d = surface_.above(surface_.faces()[static_cast<std::size_t>(f)], p);
-        if (d > most) most = d, best = f;
+      double max_height = surface_.epsilon();
+      for (const int f : faces) {
+        const double d = surface_.signed_distance(surface_.faces()[static_cast<std::size_t>(f)], p);
+        if (d > max_height) max_height = d, best = f;
       }
-      if (best >= 0) surface_.faces()[static_cast<std::size_t>(best)].outside.push_back(p);
+      if (best >= 0) surface_.faces()[static_cast<std::size_t>(best)].outside_set.push_back(p);
     }
-    for (const int f : to) {
+    for (const int f : faces) {
       HullSurface::Face& face = surface_.faces()[static_cast<std::size_t>(f)];
-      if (face.outside.empty()) continue;
-      bring_farthest_last(face);
+      if (face.outside_set.empty()) continue;
+      move_farthest_to_back(face);
       pending_.push_back(f);
     }
   }
-  void bring_farthest_last(HullSurface::Face& face) {
-    if (face.outside.empty()) return;
-    const auto farthest = std::max_element(face.outside.begin(), face.outside.end(), [&](int a, int b) {
-      return surface_.above(face, a) < surface_.above(face, b);
+  void move_farthest_to_back(HullSurface::Face& face) {
+    if (face.outside_set.empty()) return;
+    const auto farthest = std::max_element(face.outside_set.begin(), face.outside_set.end(), [&](int a, int b) {
+      return surface_.signed_distance(face, a) < surface_.signed_distance(face, b);
     });
-    std::iter_swap(farthest, face.outside.end() - 1);
+    std::iter_swap(farthest, face.outside_set.end() - 1);
   }
 
   HullSurface& surface_;
@@ -134,7 +136,7 @@ class Quickhull {
 }  // namespace
 
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Ericson, Real-Time Collision Detection, 5.1.5: which corner, edge or inside is nearest
+  // Ericson, Real-Time Collision Detection, 5.1.5: finds the corner, edge or interior region that is nearest
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
   if (d1 <= 0 && d2 <= 0) return glm::length(ap);
@@ -155,14 +157,14 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 Hull convex_hull(std::span<const Vec3> points) {
   if (points.empty()) return {};
   const Extent extent = extent_of(points);
-  HullSurface surface(points, epsilon_of(extent));
-  if (surface.start(thinnest_of(extent))) {
+  HullSurface surface(points, tolerance_for(extent));
+  if (surface.build_tetrahedron(min_thickness_for(extent))) {
     Quickhull(surface).run(static_cast<int>(points.size()));
     return surface.result();
   }
   const std::vector<Vec3> thick = thickened(points, extent);
-  HullSurface solid(thick, epsilon_of(extent_of(thick)));
-  if (!solid.start(thinnest_of(extent_of(thick)))) return {};
+  HullSurface solid(thick, tolerance_for(extent_of(thick)));
+  if (!solid.build_tetrahedron(min_thickness_for(extent_of(thick)))) return {};
   Quickhull(solid).run(static_cast<int>(thick.size()));
   return solid.result();
 }
@@ -171,35 +173,35 @@ Hull reduced_hull(const Hull& whole, const HullLimits& limits) {
   const int count = static_cast<int>(whole.vertices.size());
   if (count <= std::min(limits.min_vertices, limits.max_vertices)) return whole;
   const Extent extent = extent_of(whole.vertices);
-  HullSurface surface(whole.vertices, epsilon_of(extent) * 0.1);
-  if (!surface.start(10 * surface.epsilon())) return whole;
-  // distances only shrink while the surface grows: an old one is an upper bound, so only the top is measured anew
+  HullSurface surface(whole.vertices, tolerance_for(extent) * 0.1);
+  if (!surface.build_tetrahedron(10 * surface.epsilon())) return whole;
+  // distances only shrink while the surface grows: a stored distance is an upper bound, so only the top is recomputed
   std::priority_queue<std::pair<double, int>> farthest;
   for (int i = 0; i < count; ++i) farthest.emplace(surface.distance(i), -i);
   int vertices = 4;
-  double skipped = 0;
+  double max_omitted = 0;
   while (!farthest.empty()) {
-    const auto [old, index] = farthest.top();
+    const auto [upper_bound, index] = farthest.top();
     farthest.pop();
-    const double now = surface.distance(-index);
-    if (!farthest.empty() && now < farthest.top().first) {
-      farthest.emplace(now, index);
+    const double distance = surface.distance(-index);
+    if (!farthest.empty() && distance < farthest.top().first) {
+      farthest.emplace(distance, index);
       continue;
     }
-    const bool fine = now <= limits.tolerance * extent.size && vertices >= limits.min_vertices;
-    if (now <= surface.epsilon() || vertices >= limits.max_vertices || fine) {
-      skipped = std::max(skipped, now);
+    const bool accurate_enough = distance <= limits.tolerance * extent.size && vertices >= limits.min_vertices;
+    if (distance <= surface.epsilon() || vertices >= limits.max_vertices || accurate_enough) {
+      max_omitted = std::max(max_omitted, distance);
       break;
     }
-    const int seen = surface.face_below(-index);
-    if (seen >= 0 && surface.add(-index, seen)) {
+    const int visible_face = surface.highest_visible_face(-index);
+    if (visible_face >= 0 && surface.add(-index, visible_face)) {
       ++vertices;
     } else {
-      skipped = std::max(skipped, now);
+      max_omitted = std::max(max_omitted, distance);
     }
   }
   Hull out = surface.result();
-  out.error = skipped;
+  out.error = max_omitted;
   return out;
 }
 

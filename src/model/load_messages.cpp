@@ -1,4 +1,4 @@
-// Problems grouped by their wording.
+// Groups a model's problems by their wording.
 #include "model/load_messages.h"
 
 #include <cctype>
@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 
-// the text without names in quotes and without numbers
-std::string wording_of(std::string_view text) {
+// the text without quoted names and numbers, as the grouping key
+std::string grouping_key(std::string_view text) {
   std::string out;
   bool quoted = false;
   for (const char c : text) {
@@ -32,10 +32,10 @@ std::vector<std::string> load_messages(const BodyModel& model) {
     std::size_t more;
   };
   std::vector<Kind> kinds;
-  std::map<std::string, std::size_t> places;
+  std::map<std::string, std::size_t> index_by_key;
   for (const Problem& problem : model.problems) {
     if (problem.severity == Severity::note) continue;
-    const auto [at, is_new] = places.try_emplace(wording_of(problem.text), kinds.size());
+    const auto [at, is_new] = index_by_key.try_emplace(grouping_key(problem.text), kinds.size());
     if (is_new) {
       kinds.push_back({&problem, 0});
     } else {
@@ -48,7 +48,7 @@ std::vector<std::string> load_messages(const BodyModel& model) {
     const std::string more =
         kind.more > 0 ? fmt::format(" … and {} more of this kind (limber inspect lists them)", kind.more) : "";
     lines.push_back(
-        fmt::format("{}:{}: {}{}. {}", printable(model.file), problem.line, problem.text, more, problem.cure));
+        fmt::format("{}:{}: {}{}. {}", printable(model.file), problem.line, problem.text, more, problem.fix));
   }
   return lines;
 }

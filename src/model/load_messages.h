@@ -1,4 +1,4 @@
-// Messages for the log about a model that was loaded.
+// Log messages about the problems of a loaded model.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace limber {
 
-/// One line for each kind of warning and error of a model: "file:line: text. cure", with the number of further problems
-/// of that kind (which differ only in names and numbers). Notes are left to `limber inspect`. [any]
+/// Returns one line for each kind of warning and error: "file:line: text. fix", with the number of further problems of
+/// that kind, which differ only in names and numbers. Notes are omitted; `limber inspect` prints them. [any]
 std::vector<std::string> load_messages(const BodyModel& model);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Mass properties. Sources: Tonon 2004 (tetrahedra), Steiner's theorem, and the textbook's table of solids.
+// Mass properties. Sources: Tonon 2004 (tetrahedra), the parallel axis theorem, and standard formulas for solids.
 #include "model/mass_properties.h"
 
 #include <algorithm>
@@ -11,20 +11,20 @@ namespace limber {
 
 namespace {
 
-Mat3 outer(const Vec3& a, const Vec3& b) { return glm::outerProduct(a, b); }
+Mat3 outer_product(const Vec3& a, const Vec3& b) { return glm::outerProduct(a, b); }
 Mat3 diagonal(double x, double y, double z) { return Mat3(x, 0, 0, 0, y, 0, 0, 0, z); }
 double trace(const Mat3& m) { return m[0][0] + m[1][1] + m[2][2]; }
 
-/// The tensor that belongs to the second moments ∫ r rᵀ dm, and back.
+/// The inertia tensor that corresponds to the second moments ∫ r rᵀ dm.
 Mat3 tensor_of_moments(const Mat3& moments) { return Mat3(trace(moments)) - moments; }
 
 }  // namespace
 
-Principal principal_of(const Mat3& tensor) {
+PrincipalAxes principal_axes(const Mat3& tensor) {
   Mat3 a = tensor;
   Mat3 axes(1);
   for (int sweep = 0; sweep < 60; ++sweep) {
-    // turn the largest off-diagonal element away
+    // rotate the largest off-diagonal element to zero
     int p = 0, q = 1;
     for (const auto& [i, j] : {std::array{0, 2}, std::array{1, 2}}) {
       if (std::abs(a[i][j]) > std::abs(a[p][q])) p = i, q = j;
@@ -34,16 +34,16 @@ Principal principal_of(const Mat3& tensor) {
     const double theta = (a[q][q] - a[p][p]) / (2 * off);
     const double t = std::copysign(1.0, theta) / (std::abs(theta) + fixed::hypot(theta, 1.0));
     const double c = 1 / fixed::hypot(t, 1.0);
-    Mat3 turn(1);
-    turn[p][p] = turn[q][q] = c;
-    turn[q][p] = t * c;
-    turn[p][q] = -t * c;
-    a = glm::transpose(turn) * a * turn;
-    axes = axes * turn;
+    Mat3 rotation(1);
+    rotation[p][p] = rotation[q][q] = c;
+    rotation[q][p] = t * c;
+    rotation[p][q] = -t * c;
+    a = glm::transpose(rotation) * a * rotation;
+    axes = axes * rotation;
   }
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int i, int j) { return a[i][i] < a[j][j]; });
-  Principal out;
+  PrincipalAxes out;
   for (int i = 0; i < 3; ++i) {
     const int from = order[static_cast<std::size_t>(i)];
     out.moments[i] = a[from][from];
@@ -53,10 +53,10 @@ Principal principal_of(const Mat3& tensor) {
   return out;
 }
 
-Inertial solid_of(std::span<const Vec3> vertices, std::span<const unsigned> triangles) {
+Inertial unit_inertial_of(std::span<const Vec3> vertices, std::span<const unsigned> triangles) {
   Inertial out;
   if (triangles.size() < 3) return out;
-  // from a point of the mesh, so that far away meshes lose no digits
+  // relative to a vertex of the mesh, so that meshes far from the origin lose no precision
   const Vec3 base = vertices[triangles[0]];
   double volume = 0;
   Vec3 first(0);
@@ -69,13 +69,13 @@ Inertial solid_of(std::span<const Vec3> vertices, std::span<const unsigned> tria
     const Vec3 s = a + b + c;
     volume += v;
     first += v / 4 * s;
-    second += v / 20 * (outer(a, a) + outer(b, b) + outer(c, c) + outer(s, s));
+    second += v / 20 * (outer_product(a, a) + outer_product(b, b) + outer_product(c, c) + outer_product(s, s));
   }
   if (volume == 0) return out;
   const Vec3 center = first / volume;
   out.mass = volume;
   out.center = base + center;
-  out.tensor = tensor_of_moments(second - volume * outer(center, center));
+  out.tensor = tensor_of_moments(second - volume * outer_product(center, center));
   return out;
 }
 
@@ -94,7 +94,7 @@ bool is_closed(std::span<const unsigned> triangles) {
   });
 }
 
-Inertial solid_of(const ShapeModel& shape) {
+Inertial unit_inertial_of(const ShapeModel& shape) {
   const double r = shape.radius;
   const double h = shape.height;
   Inertial out;
@@ -122,7 +122,7 @@ Inertial solid_of(const ShapeModel& shape) {
       break;
     }
     case ShapeKind::cone: {
-      // the base lies at -h/2, so the centre of mass lies at a quarter of the height
+      // the base is at z = -h/2, so the center of mass is at z = -h/4, a quarter of the height above the base
       out.mass = kPi * r * r * h / 3;
       out.center = {0, 0, -h / 4};
       const double across = out.mass * (0.15 * r * r + 0.0375 * h * h);
@@ -130,7 +130,7 @@ Inertial solid_of(const ShapeModel& shape) {
       break;
     }
     case ShapeKind::mesh:
-      if (shape.mesh) out = shape.mesh->solid;
+      if (shape.mesh) out = shape.mesh->unit_inertial;
       break;
     case ShapeKind::plane:
     case ShapeKind::compound:
@@ -139,14 +139,14 @@ Inertial solid_of(const ShapeModel& shape) {
   return out;
 }
 
-Inertial moved(const Inertial& body, const Pose& pose) {
-  const Mat3 turn = glm::mat3_cast(pose.rotation);
-  return {body.mass, pose * body.center, turn * body.tensor * glm::transpose(turn)};
+Inertial transformed(const Inertial& body, const Pose& pose) {
+  const Mat3 rotation = glm::mat3_cast(pose.rotation);
+  return {body.mass, pose * body.center, rotation * body.tensor * glm::transpose(rotation)};
 }
 
 Inertial scaled(const Inertial& body, double factor) { return {body.mass * factor, body.center, body.tensor * factor}; }
 
-Inertial sum_of(std::span<const Inertial> bodies) {
+Inertial combined(std::span<const Inertial> bodies) {
   Inertial out;
   for (const Inertial& b : bodies) {
     out.mass += b.mass;
@@ -156,30 +156,30 @@ Inertial sum_of(std::span<const Inertial> bodies) {
   out.center /= out.mass;
   for (const Inertial& b : bodies) {
     const Vec3 d = b.center - out.center;
-    out.tensor += b.tensor + b.mass * tensor_of_moments(outer(d, d));
+    out.tensor += b.tensor + b.mass * tensor_of_moments(outer_product(d, d));
   }
   return out;
 }
 
-std::string tensor_fault(const Mat3& tensor) {
-  const Vec3 m = principal_of(tensor).moments;
+std::string tensor_error(const Mat3& tensor) {
+  const Vec3 m = principal_axes(tensor).moments;
   if (!is_finite(m)) return "it is not finite";
   if (m.z <= 0) return "all of it is zero or less";
-  // files round to a few digits: thin plates, where the two small ones just add up to the large one, must pass
+  // files round to a few digits: thin plates, where the two small moments add up to the large one, must be accepted
   constexpr double kRounding = 0.01;
   if (m.x < -kRounding * m.z) return "it has a negative principal moment";
   if (m.x + m.y < (1 - kRounding) * m.z) return "one principal moment is larger than the other two together";
   return {};
 }
 
-Mat3 solvable_tensor(const Mat3& tensor, bool& raised) {
-  constexpr double kLeast = 1e-6;
-  constexpr double kLeastPart = 1e-3;
-  const Principal p = principal_of(tensor);
-  const double floor = std::max(kLeast, kLeastPart * p.moments.z);
-  raised = p.moments.x < floor;
+Mat3 regularized_tensor(const Mat3& tensor, bool& raised) {
+  constexpr double kMinMoment = 1e-6;
+  constexpr double kMinRelativeMoment = 1e-3;
+  const PrincipalAxes p = principal_axes(tensor);
+  const double min_moment = std::max(kMinMoment, kMinRelativeMoment * p.moments.z);
+  raised = p.moments.x < min_moment;
   if (!raised) return tensor;
-  const Vec3 m = glm::max(p.moments, Vec3(floor));
+  const Vec3 m = glm::max(p.moments, Vec3(min_moment));
   return p.axes * diagonal(m.x, m.y, m.z) * glm::transpose(p.axes);
 }
 

@@ -1,4 +1,4 @@
-// Reads Collada: the document, its words and ids, and the walk through its scene.
+// Collada reader: the document, words and ids, and collecting the triangles of the scene graph.
 #include "model/mesh_collada.h"
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace limber::collada {
 
-const Element* next_in(const Element* element, const Element* top) {
-  const bool closed = is_named(element, "extra") || is_named(element, "technique");
-  const Element* child = closed ? nullptr : element->FirstChildElement();
+const Element* next_element(const Element* element, const Element* top) {
+  const bool skip_children = is_named(element, "extra") || is_named(element, "technique");
+  const Element* child = skip_children ? nullptr : element->FirstChildElement();
   if (child) return child;
   while (element != top) {
     if (const Element* sibling = element->NextSiblingElement()) return sibling;
@@ -25,35 +25,36 @@ const Element* next_in(const Element* element, const Element* top) {
 
 bool is_named(const Element* element, std::string_view name) { return element->Name() == name; }
 
-Error fault_at(const Element* element, std::string_view text) { return mesh_fault(element->GetLineNum(), text); }
+Error error_at(const Element* element, std::string_view text) { return mesh_error(element->GetLineNum(), text); }
 
-Result<std::size_t> whole_attribute(const Element* element, const char* name, std::size_t missing, std::size_t most) {
+Result<std::size_t> integer_attribute(const Element* element, const char* name, std::size_t fallback,
+                                      std::size_t max_value) {
   const char* text = element->Attribute(name);
-  if (!text) return missing;
-  const std::optional<std::int64_t> value = parse_whole(text);
-  if (value && *value >= 0 && static_cast<std::size_t>(*value) <= most) return static_cast<std::size_t>(*value);
-  return fault_at(element, fmt::format("{}={} can't be", name, quoted_word(text)));
+  if (!text) return fallback;
+  const std::optional<std::int64_t> value = parse_integer(text);
+  if (value && *value >= 0 && static_cast<std::size_t>(*value) <= max_value) return static_cast<std::size_t>(*value);
+  return error_at(element, fmt::format("{}={} is invalid", name, quoted_word(text)));
 }
 
-std::string_view ElementWords::next() {
+std::string_view ElementTokenizer::next() {
   while (true) {
-    const std::string_view word = words_.next();
+    const std::string_view word = tokenizer_.next();
     if (!word.empty()) {
-      line_ = words_.line();
+      line_ = tokenizer_.line();
       return word;
     }
     if (!node_) return {};
     const tinyxml2::XMLText* text = node_->ToText();
     if (text ? text->CData() : !node_->ToComment()) {
       line_ = node_->GetLineNum();
-      foreign_ = true;
+      found_non_text_ = true;
       return {};
     }
     if (text) {
-      // a text's line is that of its first character which is no blank
+      // tinyxml2 reports the line of the first non-blank character
       std::string_view value = text->Value();
       value.remove_prefix(std::min(value.find_first_not_of(" \t\r\n"), value.size()));
-      words_ = MeshWords(value, text->GetLineNum());
+      tokenizer_ = MeshTokenizer(value, text->GetLineNum());
     }
     node_ = node_->NextSibling();
   }
@@ -61,37 +62,40 @@ std::string_view ElementWords::next() {
 
 namespace {
 
-/// A finite number. Some exporters write all of a file as their country does, 0,01: one comma is a point.
-std::optional<double> number_in(std::string_view word) {
+/// Parses a finite number. Some exporters write numbers in the user's locale (0,01): a single comma is accepted as the
+/// decimal point.
+std::optional<double> parse_decimal(std::string_view word) {
   const std::optional<double> number = parse_number(word);
   const std::size_t comma = word.find(',');
   if (number || comma == std::string_view::npos || word.find('.') != std::string_view::npos) return number;
-  std::string pointed(word);
-  pointed[comma] = '.';
-  return parse_number(pointed);
+  std::string with_point(word);
+  with_point[comma] = '.';
+  return parse_number(with_point);
 }
 
 }  // namespace
 
-Result<std::vector<double>> numbers_of(const Element* element, std::size_t least) {
+Result<std::vector<double>> numbers_of(const Element* element, std::size_t min_count) {
   std::vector<double> numbers;
-  ElementWords words(element);
+  ElementTokenizer words(element);
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    const std::optional<double> number = number_in(word);
-    if (!number) return mesh_fault(words.line(), fmt::format("{} is no finite number", quoted_word(word)));
+    const std::optional<double> number = parse_decimal(word);
+    if (!number) return mesh_error(words.line(), fmt::format("{} is not a finite number", quoted_word(word)));
     numbers.push_back(*number);
   }
-  if (words.is_foreign()) return mesh_fault(words.line(), fmt::format("<{}> holds more than numbers", element->Name()));
-  if (numbers.size() >= least) return numbers;
-  return fault_at(element, fmt::format("<{}> holds {} numbers, not {}", element->Name(), numbers.size(), least));
+  if (words.found_non_text())
+    return mesh_error(words.line(), fmt::format("<{}> must contain numbers only", element->Name()));
+  if (numbers.size() >= min_count) return numbers;
+  return error_at(element,
+                  fmt::format("<{}> contains {} numbers, expected {}", element->Name(), numbers.size(), min_count));
 }
 
-Ids::Ids(const Element* top) {
+IdIndex::IdIndex(const Element* top) {
   constexpr std::array<std::string_view, 7> kKinds{"geometry", "controller", "source",      "float_array",
                                                    "vertices", "node",       "visual_scene"};
-  // the first of a name counts, and an id more than other names
+  // the first element with a key wins; ids take precedence over sids and names
   for (const char* key : {"id", "sid", "name"}) {
-    for (const Element* e = top; e; e = next_in(e, top)) {
+    for (const Element* e = top; e; e = next_element(e, top)) {
       const std::string_view kind = e->Name();
       if (key == std::string_view("id") ? std::find(kKinds.begin(), kKinds.end(), kind) == kKinds.end()
                                         : kind != "node")
@@ -101,7 +105,7 @@ Ids::Ids(const Element* top) {
   }
 }
 
-const Element* Ids::find(std::string_view kind, const char* url) const {
+const Element* IdIndex::find(std::string_view kind, const char* url) const {
   if (!url) return nullptr;
   const auto found = elements_.find(fmt::format("{}#{}", kind, *url == '#' ? url + 1 : url));
   return found == elements_.end() ? nullptr : found->second;
@@ -109,39 +113,40 @@ const Element* Ids::find(std::string_view kind, const char* url) const {
 
 namespace {
 
-Result<Placement> unit_of(const Element* root) {
+Result<AffineTransform> unit_scale(const Element* root) {
   const Element* asset = root->FirstChildElement("asset");
   const Element* unit = asset ? asset->FirstChildElement("unit") : nullptr;
   const char* text = unit ? unit->Attribute("meter") : nullptr;
-  if (!text) return Placement{};
-  const std::optional<double> meter = number_in(text);
-  if (meter && *meter > 0) return Placement{Mat3(*meter), Vec3(0)};
-  return fault_at(unit, fmt::format("meter={} can't be", quoted_word(text)));
+  if (!text) return AffineTransform{};
+  const std::optional<double> meter = parse_decimal(text);
+  if (meter && *meter > 0) return AffineTransform{Mat3(*meter), Vec3(0)};
+  return error_at(unit, fmt::format("meter={} is invalid", quoted_word(text)));
 }
 
-void append(const MeshSoup& from, const Placement& place, MeshSoup& to) {
-  const bool flipped = glm::determinant(place.turn) < 0;
+void append(const MeshSoup& from, const AffineTransform& transform, MeshSoup& to) {
+  const bool flipped = glm::determinant(transform.linear) < 0;
   for (std::size_t i = 0; i + 2 < from.size(); i += 3) {
-    const Vec3 b = place * from[i + 1], c = place * from[i + 2];
-    to.insert(to.end(), {place * from[i], flipped ? c : b, flipped ? b : c});
+    const Vec3 b = transform * from[i + 1], c = transform * from[i + 2];
+    to.insert(to.end(), {transform * from[i], flipped ? c : b, flipped ? b : c});
   }
 }
 
-Result<MeshSoup> walk(const Scene& scene, const Placement& unit, Geometries& geometries) {
+Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& unit, GeometryReader& geometries) {
   MeshSoup soup;
-  std::vector<std::pair<int, Placement>> open{{scene.start, unit}};
-  while (!open.empty()) {
-    const auto [index, above] = open.back();
-    open.pop_back();
+  std::vector<std::pair<int, AffineTransform>> stack{{scene.root, unit}};
+  while (!stack.empty()) {
+    const auto [index, parent_transform] = stack.back();
+    stack.pop_back();
     const Node& node = scene.nodes[static_cast<std::size_t>(index)];
-    const Placement place = above * node.place;
-    for (const Element* shape : node.shapes) {
-      const Result<const MeshSoup*> triangles = geometries.read(shape);
+    const AffineTransform transform = parent_transform * node.transform;
+    for (const Element* geometry : node.geometries) {
+      const Result<const MeshSoup*> triangles = geometries.read(geometry);
       if (!triangles) return Error{triangles.error()};
-      if (soup.size() + (*triangles)->size() > 3 * kMostMeshTriangles) return too_many_triangles();
-      append(**triangles, place, soup);
+      if (soup.size() + (*triangles)->size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+      append(**triangles, transform, soup);
     }
-    for (auto below = node.below.rbegin(); below != node.below.rend(); ++below) open.emplace_back(*below, place);
+    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+      stack.emplace_back(*child, transform);
   }
   return soup;
 }
@@ -153,29 +158,29 @@ Result<MeshSoup> walk(const Scene& scene, const Placement& unit, Geometries& geo
 namespace limber {
 
 Result<MeshSoup> soup_from_collada(std::string_view bytes) {
-  if (bytes.size() > kMostUrdfBytes) {
-    return Error{fmt::format("has {} bytes; of Collada, at most {} are read. Export it as binary STL.", bytes.size(),
-                             kMostUrdfBytes)};
+  if (bytes.size() > kMaxUrdfBytes) {
+    return Error{fmt::format("has {} bytes; Collada files must have at most {}. Export it as binary STL.", bytes.size(),
+                             kMaxUrdfBytes)};
   }
   Problems problems;
   const Result<std::string> text = clean_urdf_text(bytes, problems);
-  if (!text) return Error{"is no Collada text. Export it again, or as binary STL."};
+  if (!text) return Error{"is not a Collada file. Export it again, or as binary STL."};
   for (const Problem& p : problems.list()) {
-    if (p.severity == Severity::error) return mesh_fault(p.line, p.text);
+    if (p.severity == Severity::error) return mesh_error(p.line, p.text);
   }
   tinyxml2::XMLDocument document;
   document.Parse(text->data(), text->size());
   const tinyxml2::XMLElement* root = document.RootElement();
   if (document.Error() || !root || !collada::is_named(root, "COLLADA")) {
-    return mesh_fault(document.Error() ? document.ErrorLineNum() : 1, "the XML is no Collada document");
+    return mesh_error(document.Error() ? document.ErrorLineNum() : 1, "the XML is not a Collada document");
   }
-  const Result<collada::Placement> unit = collada::unit_of(root);
+  const Result<collada::AffineTransform> unit = collada::unit_scale(root);
   if (!unit) return Error{unit.error()};
-  const collada::Ids ids(root);
+  const collada::IdIndex ids(root);
   const Result<collada::Scene> scene = collada::read_scene(root, ids);
   if (!scene) return Error{scene.error()};
-  collada::Geometries geometries(ids);
-  return collada::walk(*scene, *unit, geometries);
+  collada::GeometryReader geometries(ids);
+  return collada::collect_triangles(*scene, *unit, geometries);
 }
 
 }  // namespace limber

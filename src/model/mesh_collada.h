@@ -1,4 +1,5 @@
-// What the parts of the Collada reader share. Part of the room's inside: only mesh_collada*.cpp includes it.
+// Collada reader: helpers for elements and ids, the scene graph, and the geometry reader. Internal to the module: only
+// mesh_collada*.cpp includes it.
 #pragma once
 
 #include <array>
@@ -21,107 +22,111 @@ namespace limber::collada {
 
 using Element = tinyxml2::XMLElement;
 
-/// The element that follows in document order below `top`; null at the end. What is inside <extra> and <technique>,
-/// where programs write what they like, is left out. [any]
-const Element* next_in(const Element* element, const Element* top);
+/// The next element in document order within `top`; null at the end. Skips the contents of <extra> and <technique>,
+/// which hold program-specific data. [any]
+const Element* next_element(const Element* element, const Element* top);
 bool is_named(const Element* element, std::string_view name);
 
-/// "line 3: …" of this element. [any]
-Error fault_at(const Element* element, std::string_view text);
-/// A whole number from 0 to `most`; `missing` without the attribute. [any]
-Result<std::size_t> whole_attribute(const Element* element, const char* name, std::size_t missing, std::size_t most);
+/// An error that starts with the element's line: "line 3: …". [any]
+Error error_at(const Element* element, std::string_view text);
+/// An integer attribute from 0 to `max_value`; `fallback` if the attribute is absent. [any]
+Result<std::size_t> integer_attribute(const Element* element, const char* name, std::size_t fallback,
+                                      std::size_t max_value);
 
-/// The words of an element's text, comments between them left out.
-class ElementWords {
+/// Splits an element's text into words; skips comments between them.
+class ElementTokenizer {
  public:
-  explicit ElementWords(const Element* element) : node_(element->FirstChild()), line_(element->GetLineNum()) {}
+  explicit ElementTokenizer(const Element* element) : node_(element->FirstChild()), line_(element->GetLineNum()) {}
 
-  /// The next word; empty at the end, and before what is no text: then is_foreign().
+  /// The next word; empty at the end, and at a child that is neither text nor comment: then found_non_text() is true.
   std::string_view next();
   int line() const { return line_; }
-  bool is_foreign() const { return foreign_; }
+  bool found_non_text() const { return found_non_text_; }
 
  private:
-  const tinyxml2::XMLNode* node_;  // what comes after words_
-  MeshWords words_{{}};
+  const tinyxml2::XMLNode* node_;  // the child after the text in words_
+  MeshTokenizer tokenizer_{{}};
   int line_;
-  bool foreign_ = false;
+  bool found_non_text_ = false;
 };
 
-/// The finite numbers of an element, no fewer than `least`. [any]
-Result<std::vector<double>> numbers_of(const Element* element, std::size_t least);
+/// The numbers in an element's text. Errors if any is not finite, or if there are fewer than `min_count`. [any]
+Result<std::vector<double>> numbers_of(const Element* element, std::size_t min_count);
 
-/// Elements by kind and id, below one of them.
-class Ids {
+/// Index of the elements below `top` by element name and id.
+class IdIndex {
  public:
-  explicit Ids(const Element* top);
-  /// By "#id" or "id"; nodes that have no id of this name by sid and name, too. Null when there is none.
+  explicit IdIndex(const Element* top);
+  /// Finds an element by "#id" or "id"; nodes also by sid and name, if no node has that id. Null if not found.
   const Element* find(std::string_view kind, const char* url) const;
 
  private:
   std::unordered_map<std::string, const Element*> elements_;
 };
 
-/// An affine map.
-struct Placement {
-  Mat3 turn{1};
-  Vec3 shift{0, 0, 0};
+/// An affine transform: v -> linear * v + translation.
+struct AffineTransform {
+  Mat3 linear{1};
+  Vec3 translation{0, 0, 0};
 
-  Placement operator*(const Placement& b) const { return {turn * b.turn, turn * b.shift + shift}; }
-  Vec3 operator*(const Vec3& v) const { return turn * v + shift; }
+  AffineTransform operator*(const AffineTransform& b) const {
+    return {linear * b.linear, linear * b.translation + translation};
+  }
+  Vec3 operator*(const Vec3& v) const { return linear * v + translation; }
 };
 
-/// A node or a visual scene: where it is in the one above, and what is in it.
+/// A <node> or <visual_scene> of the scene graph.
 struct Node {
-  Placement place;
-  std::vector<int> below;              ///< Its nodes and instanced nodes.
-  std::vector<const Element*> shapes;  ///< Its instanced geometries, those of skins included.
+  AffineTransform transform;               ///< Transform into the parent's frame.
+  std::vector<int> children;               ///< Child nodes and instanced nodes.
+  std::vector<const Element*> geometries;  ///< Instanced geometries, including those of skins.
 };
 
-/// The nodes of a document: without circles, unfolded no more than a bounded number.
+/// The scene graph of a document: acyclic, with a bounded number of node instances.
 struct Scene {
   std::vector<Node> nodes;
-  int start = 0;  ///< The visual scene that is shown.
+  int root = 0;  ///< Index of the document's active visual scene.
 };
-Result<Scene> read_scene(const Element* root, const Ids& ids);
+/// Reads the scene graph of a document. [any]
+Result<Scene> read_scene(const Element* root, const IdIndex& ids);
 
-/// Reads geometries, each one once.
-class Geometries {
+/// Reads the triangles of <geometry> elements, each element only once.
+class GeometryReader {
  public:
-  explicit Geometries(const Ids& ids) : ids_(ids) {}
+  explicit GeometryReader(const IdIndex& ids) : ids_(ids) {}
 
-  /// The triangles of a <geometry> in its own frame; they live as long as this reader.
+  /// The triangles of a <geometry> in its own frame; valid as long as this reader.
   Result<const MeshSoup*> read(const Element* geometry);
 
  private:
-  struct Points {
+  struct Points {  // view of the points in an array, as an <accessor> describes it
     const std::vector<double>* numbers = nullptr;
     std::size_t offset = 0, stride = 1, count = 0;
-    std::array<std::size_t, 3> axis{0, 1, 2};  // where x, y and z are in a stride
+    std::array<std::size_t, 3> axis{0, 1, 2};  // positions of x, y and z in a stride
   };
-  /// How the index lists of one <triangles>, <polylist> … are to be read.
+  /// Layout of the index lists of one <triangles>, <polylist> etc.
   struct Layout {
     Points points;
     std::size_t stride = 1;
-    std::size_t offset = 0;  // of the corner's point in a stride
+    std::size_t offset = 0;  // position of the point's index in a stride
   };
 
-  Result<Layout> layout_of(const Element* primitive, const Ids& own);
-  static Result<void> read_list(const Element* list, const Layout& layout, std::vector<Vec3>& corners);
-  Result<void> read_joined(const Element* primitive, const Layout& layout, MeshSoup& soup);
-  Result<void> read_each(const Element* primitive, const Layout& layout, MeshSoup& soup);
-  Result<const std::vector<double>*> array_of(const Element* source, const Element* accessor, const Ids& own);
-  Result<Points> points_of(const Element* source, const Ids& own);
-  const Element* source_of(const Element* vertices, const Ids& own);
+  Result<Layout> layout_of(const Element* primitive, const IdIndex& local_ids);
+  static Result<void> read_indices(const Element* list, const Layout& layout, std::vector<Vec3>& corners);
+  Result<void> read_concatenated_lists(const Element* primitive, const Layout& layout, MeshSoup& soup);
+  Result<void> read_separate_lists(const Element* primitive, const Layout& layout, MeshSoup& soup);
+  Result<const std::vector<double>*> array_of(const Element* source, const Element* accessor, const IdIndex& local_ids);
+  Result<Points> points_of(const Element* source, const IdIndex& local_ids);
+  const Element* source_of(const Element* vertices, const IdIndex& local_ids);
 
-  const Ids& ids_;
-  // what many may name is read once, so that the time grows with the file's size only
+  const IdIndex& ids_;
+  // shared elements are parsed once, so that the time is linear in the file's size
   std::map<const Element*, MeshSoup> soups_;
   std::map<const Element*, std::vector<double>> arrays_;
   std::map<const Element*, Points> points_;
-  std::map<const Element*, const Element*> sources_;  // by vertices
-  std::size_t corners_ = 0;                           // of all of them
-  PolygonCutter cutter_;
+  std::map<const Element*, const Element*> sources_;  // by <vertices> element
+  std::size_t corners_ = 0;                           // total over all geometries
+  PolygonTriangulator triangulator_;
 };
 
 }  // namespace limber::collada

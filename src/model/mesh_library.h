@@ -1,4 +1,4 @@
-// Finds mesh files by the URIs that URDF files use, and keeps what was loaded: one file and scale, one shared mesh.
+// Resolves the mesh URIs of URDF files and caches loaded meshes: one shared mesh for each file and scale.
 #pragma once
 
 #include <map>
@@ -15,21 +15,24 @@
 
 namespace limber {
 
-/// Where `uri` (package://, model://, file://, relative or absolute path) leads from the folder of the URDF: first as
-/// it stands, then below each of `package_paths`, then from the folder upwards, with and without its leading parts.
-/// The error says where it looked. Nothing is fetched from a network. [any]
+/// Resolves `uri` (package://, model://, file://, relative or absolute path) to a file. Searches for the path as
+/// written (relative to the URDF's folder), then below each of `package_paths`, then in the folder and its parents,
+/// with and without the path's leading components. The error lists the searched folders. Never accesses a network.
+/// [any]
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                               const std::vector<std::string>& package_paths);
 
-/// Loaded meshes by file and scale. Never more than one of each is kept; a changed file is loaded anew. [any]
+/// Cache of loaded meshes by file and scale. A file that has changed on disk is loaded again. [any]
 class MeshLibrary {
  public:
-  /// `instead`: what is looked into in place of the disk.
-  explicit MeshLibrary(std::shared_ptr<const FileSet> instead = nullptr) : instead_(std::move(instead)) {}
+  /// `memory_files`: files to read instead of the disk; null: use the disk.
+  explicit MeshLibrary(std::shared_ptr<const FileSet> memory_files = nullptr)
+      : memory_files_(std::move(memory_files)) {}
 
-  /// As find_mesh().
+  /// Resolves a URI like find_mesh(), or among the in-memory files.
   Result<std::string> find(const std::string& uri, const std::string& folder,
                            const std::vector<std::string>& package_paths) const;
+  /// Returns the mesh of a file, scaled, from the cache if the file is unchanged.
   Result<std::shared_ptr<const MeshModel>> load(const std::string& path, const Vec3& scale);
 
  private:
@@ -38,9 +41,9 @@ class MeshLibrary {
     std::shared_ptr<const MeshModel> mesh;
   };
 
-  Result<std::shared_ptr<const MeshModel>> load_kept(const std::string& path, const Vec3& scale) const;
+  Result<std::shared_ptr<const MeshModel>> load_from_memory(const std::string& path, const Vec3& scale) const;
 
-  std::shared_ptr<const FileSet> instead_;
+  std::shared_ptr<const FileSet> memory_files_;
   std::mutex mutex_;
   std::map<std::string, Entry> meshes_;
 };

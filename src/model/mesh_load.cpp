@@ -1,4 +1,4 @@
-// The one door for meshes: finds the reader of the format, scales, welds and measures what it gives.
+// Mesh loading: calls the format's reader, then scales and welds the triangles and computes hull and mass properties.
 #include "model/mesh_load.h"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kEndings{"stl", "obj", "dae"};
-constexpr double kMostCoordinate = 1e6;
+constexpr std::array<std::string_view, 3> kExtensions{"stl", "obj", "dae"};
+constexpr double kMaxCoordinate = 1e6;
 
 Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format) {
   switch (format) {
@@ -36,19 +36,19 @@ Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format) {
     case MeshFormat::dae:
       return soup_from_collada(bytes);
   }
-  return Error{"is of no format that is read here. Give an STL, OBJ or DAE file."};
+  return Error{"is not a supported mesh format. Use an STL, OBJ or DAE file."};
 }
 
 struct VertexHash {
   std::size_t operator()(const Vec3& v) const {
     std::size_t h = 0;
-    // adding 0 makes -0 and 0 one key
+    // adding 0 turns -0 into 0, so that both have the same hash
     for (int i = 0; i < 3; ++i) h = h * 1000003u ^ std::hash<double>()(v[i] + 0.0);
     return h;
   }
 };
 
-/// Equal vertices become one, triangles without area by index go, unused vertices go.
+/// Merges equal vertices and drops triangles that then use a vertex twice.
 void weld(const MeshSoup& soup, MeshModel& out) {
   std::unordered_map<Vec3, unsigned, VertexHash> number;
   number.reserve(soup.size() / 4);
@@ -65,40 +65,42 @@ void weld(const MeshSoup& soup, MeshModel& out) {
   }
 }
 
-void flip(std::vector<unsigned>& triangles) {
+void flip_winding(std::vector<unsigned>& triangles) {
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) std::swap(triangles[i + 1], triangles[i + 2]);
 }
 
-/// Hull, closedness, volume: a closed mesh has its own mass properties, unless they can't be; else its hull's.
-void measure(MeshModel& mesh) {
-  const Hull whole = convex_hull(mesh.vertices);
-  const Hull contact = reduced_hull(whole);
+/// Computes hulls, the matching primitive, closedness and mass properties. A closed mesh uses its own volume if that is
+/// plausible; other meshes use that of their hull.
+void compute_properties(MeshModel& mesh) {
+  const Hull complete = convex_hull(mesh.vertices);
+  const Hull contact = reduced_hull(complete);
   mesh.hull = contact.vertices;
   mesh.hull_error = contact.error;
-  mesh.primitive = recognise(whole);
-  const Inertial hull = solid_of(whole.vertices, whole.triangles);
+  mesh.primitive = recognize_primitive(complete);
+  const Inertial hull = unit_inertial_of(complete.vertices, complete.triangles);
   mesh.hull_volume = hull.mass;
   mesh.closed = is_closed(mesh.triangles);
-  Inertial own = mesh.closed ? solid_of(mesh.vertices, mesh.triangles) : Inertial{};
+  Inertial own = mesh.closed ? unit_inertial_of(mesh.vertices, mesh.triangles) : Inertial{};
   if (own.mass < 0) {
-    flip(mesh.triangles);
+    flip_winding(mesh.triangles);
     own.mass = -own.mass;
     own.tensor = -own.tensor;
   }
-  const bool sound = own.mass > 1e-6 * hull.mass && own.mass <= hull.mass * 1.0001 && tensor_fault(own.tensor).empty();
-  mesh.solid = sound ? own : hull;
+  const bool plausible =
+      own.mass > 1e-6 * hull.mass && own.mass <= hull.mass * 1.0001 && tensor_error(own.tensor).empty();
+  mesh.unit_inertial = plausible ? own : hull;
 }
 
 }  // namespace
 
 Result<MeshFormat> mesh_format_of(std::string_view path) {
-  std::string ending(path.substr(std::min(path.rfind('.'), path.size())));
-  std::transform(ending.begin(), ending.end(), ending.begin(),
+  std::string extension(path.substr(std::min(path.rfind('.'), path.size())));
+  std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  for (std::size_t i = 0; i < kEndings.size(); ++i) {
-    if (ending.size() == 4 && ending.substr(1) == kEndings[i]) return static_cast<MeshFormat>(i);
+  for (std::size_t i = 0; i < kExtensions.size(); ++i) {
+    if (extension.size() == 4 && extension.substr(1) == kExtensions[i]) return static_cast<MeshFormat>(i);
   }
-  return Error{"is no mesh that is read here. Give an STL, OBJ or DAE file."};
+  return Error{"is not a supported mesh format. Use an STL, OBJ or DAE file."};
 }
 
 Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes, MeshFormat format, const Vec3& scale,
@@ -109,18 +111,18 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
     if (!soup) return Error{soup.error()};
     for (Vec3& v : *soup) {
       v *= scale;
-      if (is_finite(v) && glm::length(v) <= kMostCoordinate) continue;
+      if (is_finite(v) && glm::length(v) <= kMaxCoordinate) continue;
       return Error{fmt::format("has a vertex that is not finite or beyond {:g} m. Export it again, or check its scale.",
-                               kMostCoordinate)};
+                               kMaxCoordinate)};
     }
     auto mesh = std::make_shared<MeshModel>();
     mesh->name = name;
-    mesh->content = hash_bytes(bytes);
+    mesh->content_hash = hash_bytes(bytes);
     weld(*soup, *mesh);
-    if (mesh->triangles.empty()) return Error{"holds no triangles. Export it again, as a surface."};
-    if (scale.x * scale.y * scale.z < 0) flip(mesh->triangles);
-    measure(*mesh);
-    if (mesh->hull.size() < 4) return Error{"is too small to have a hull. Check its scale: URDF wants metres."};
+    if (mesh->triangles.empty()) return Error{"contains no triangles. Export it again, as a surface."};
+    if (scale.x * scale.y * scale.z < 0) flip_winding(mesh->triangles);
+    compute_properties(*mesh);
+    if (mesh->hull.size() < 4) return Error{"is too small to have a hull. Check its scale: URDF uses meters."};
     return std::shared_ptr<const MeshModel>(std::move(mesh));
   } catch (const std::exception& e) {
     return Error{fmt::format("can't be read: {}. Export it again as binary STL.", printable(e.what()))};
@@ -130,7 +132,7 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
 Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, const Vec3& scale) {
   const Result<MeshFormat> format = mesh_format_of(path);
   if (!format) return Error{fmt::format("{}: {}", printable(path), format.error())};
-  const Result<std::string> bytes = read_whole_file(path, kMostMeshBytes);
+  const Result<std::string> bytes = read_whole_file(path, kMaxMeshBytes);
   if (!bytes) return Error{bytes.error()};
   auto mesh = mesh_from_bytes(*bytes, *format, scale, std::filesystem::path(path).stem().string());
   if (!mesh) return Error{fmt::format("{}: {}", printable(path), mesh.error())};

@@ -1,4 +1,4 @@
-// Meshes from STL (binary and ASCII), OBJ and DAE files, through one loader.
+// Loads meshes from STL (binary and ASCII), OBJ and Collada (DAE) files.
 #pragma once
 
 #include <memory>
@@ -10,20 +10,20 @@
 
 namespace limber {
 
-inline constexpr std::size_t kMostMeshBytes = 128u << 20;
-inline constexpr std::size_t kMostMeshTriangles = 2'000'000;
+inline constexpr std::size_t kMaxMeshBytes = 128u << 20;
+inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
 enum class MeshFormat { stl, obj, dae };
-/// By the file name's ending, whatever its case; the error names the three that are read. [any]
+/// The format by the file name's extension, in any case; the error lists the supported formats. [any]
 Result<MeshFormat> mesh_format_of(std::string_view path);
 
-/// Vertices in the file's raw coordinates (no axis is turned, DAE's unit and node transforms count) times `scale`,
-/// merged, finite, with hull and mass properties. Mirrored when the scale is. The error names the fault and the cure,
-/// not the file. [any]
+/// Parses a mesh, scales it, merges equal vertices, and computes its hull and mass properties. Coordinates are those of
+/// the file (axes are not converted; DAE's unit and node transforms are applied) times `scale`. A scale that mirrors
+/// also flips the winding. The error describes the fault and its fix, without the file's name. [any]
 Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes, MeshFormat format, const Vec3& scale,
                                                          const std::string& name);
 
-/// The same from a file; the error names it. [any]
+/// Loads a mesh from a file; the error starts with the file's path. [any]
 Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, const Vec3& scale);
 
 }  // namespace limber

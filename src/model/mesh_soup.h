@@ -1,5 +1,5 @@
-// What the readers of mesh files share: the triangles they give, the words of a text with their lines, and polygons
-// cut into triangles. Part of the room's inside: only mesh_*.cpp includes it.
+// Shared by the readers of mesh files: triangle soups, a tokenizer with line numbers, error texts, and polygon
+// triangulation. Internal to the module: only mesh_*.cpp includes it.
 #pragma once
 
 #include <cstdint>
@@ -14,56 +14,57 @@
 
 namespace limber {
 
-/// Loose triangles as a file has them: three corners each, counter-clockwise seen from outside.
+/// Triangles without shared vertices: three corners each, counter-clockwise seen from outside.
 using MeshSoup = std::vector<Vec3>;
 
-/// Each reads the whole of one file's bytes in time and memory that grow with their number. Coordinates are finite,
-/// triangles at most kMostMeshTriangles. The error names the line of a text, and the cure. [any]
+/// Each reads the bytes of one file, in linear time and memory. The result has finite coordinates and at most
+/// kMaxMeshTriangles triangles. Errors give the line (of text formats) and the fix. [any]
 Result<MeshSoup> soup_from_stl(std::string_view bytes);
 Result<MeshSoup> soup_from_obj(std::string_view bytes);
-/// The scene that is shown, in metres by its unit, no axis turned. Skins and morphs are taken as they were modelled, of
-/// polygons with holes the outline; a skew, an instance of nothing, and more than 32 MB are refused.
+/// Reads the active scene, converted to meters by the file's unit; axes are not converted. Skins and morphs use their
+/// undeformed geometry; holes of polygons are ignored. Errors for <skew>, instances of missing elements, and files
+/// larger than 32 MB. [any]
 Result<MeshSoup> soup_from_collada(std::string_view bytes);
 
-/// "line 3: 'x' is no finite number. Export …": what stands at fault, with the cure that fits every text. [any]
-Error mesh_fault(int line, std::string_view text);
-/// What is said of too many triangles. [any]
+/// An error with its line and a general fix: "line 3: <text>. Export it again, or as binary STL." [any]
+Error mesh_error(int line, std::string_view text);
+/// The error for more than kMaxMeshTriangles triangles. [any]
 Error too_many_triangles();
-/// A word of a file as an error shows it: printable, in quotes, cut when it is long. [any]
+/// A word of a file for an error text: printable, in quotes, shortened if it is long. [any]
 std::string quoted_word(std::string_view word);
 
-/// A whole number that fills the word, with or without a sign; else nothing. [any]
-std::optional<std::int64_t> parse_whole(std::string_view word);
+/// Parses a word that is an integer, with or without a sign; empty if it is not one. [any]
+std::optional<std::int64_t> parse_integer(std::string_view word);
 
-/// The words of a text between blanks. Lines end with LF, CR or both.
-class MeshWords {
+/// Splits a text into words at white space and counts lines, which may end with LF, CR or CR LF.
+class MeshTokenizer {
  public:
-  explicit MeshWords(std::string_view text, int first_line = 1) : text_(text), here_(first_line) {}
+  explicit MeshTokenizer(std::string_view text, int first_line = 1) : text_(text), current_line_(first_line) {}
 
   /// The next word; empty at the end.
   std::string_view next();
-  /// The line of the word given last.
+  /// The line of the last word.
   int line() const { return line_; }
-  /// Whether nothing follows the word given last.
-  bool at_end() const { return at_ == text_.size(); }
-  /// Goes on behind the end of this line.
+  /// True if nothing follows the last word.
+  bool at_end() const { return position_ == text_.size(); }
+  /// Skips the rest of the last word's line.
   void skip_line();
 
  private:
-  void step();
+  void advance();
 
   std::string_view text_;
-  std::size_t at_ = 0;
-  int here_;      // the line at at_
-  int line_ = 1;  // that of the last word
+  std::size_t position_ = 0;
+  int current_line_;  // line of the character at position_
+  int line_ = 1;      // line of the last word
 };
 
-/// Cuts polygons into triangles. Convex ones become fans; of others the ears are clipped, as long as the steps for one
-/// file last, so that hostile outlines cost no more than a second.
-class PolygonCutter {
+/// Triangulates polygons: convex ones as fans, others by ear clipping. The steps are limited per instance (one file),
+/// so that a hostile file takes at most about a second; after that, the rest of a polygon becomes a fan.
+class PolygonTriangulator {
  public:
-  /// Appends the triangles of an outline to `out`; fewer than three corners give none.
-  void cut(std::span<const Vec3> corners, MeshSoup& out);
+  /// Appends the triangles of a polygon to `out`; none for fewer than three corners.
+  void triangulate(std::span<const Vec3> corners, MeshSoup& out);
 
  private:
   void clip_ears(std::span<const Vec3> corners, const Vec3& normal, MeshSoup& out);

@@ -1,4 +1,4 @@
-// The store of imported bodies.
+// The cache of imported bodies.
 #include "model/model_library.h"
 
 #include <filesystem>
@@ -16,18 +16,18 @@ std::string model_key(const std::string& path, const ImportOptions& options) {
   return (fault ? path : whole.string()) + options_key(options);
 }
 
-bool ModelLibrary::is_fresh(Entry& entry) const {
-  if (instead_ != nullptr) return true;
+bool ModelLibrary::is_current(Entry& entry) const {
+  if (memory_files_ != nullptr) return true;
   for (std::size_t i = 0; i < entry.stamps.size(); ++i) {
-    if (!entry.stamps[i].holds(entry.model->files[i])) return false;
+    if (!entry.stamps[i].is_current(entry.model->files[i])) return false;
   }
   return true;
 }
 
-Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_kept(const std::string& path,
-                                                                 const ImportOptions& options) {
-  const std::string* const bytes = instead_->content(path);
-  if (bytes == nullptr) return Error{fmt::format("{}: is not among the files that were kept.", printable(path))};
+Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_from_memory(const std::string& path,
+                                                                        const ImportOptions& options) {
+  const std::string* const bytes = memory_files_->content(path);
+  if (bytes == nullptr) return Error{fmt::format("{}: is not among the saved files.", printable(path))};
   return import_urdf_text(*bytes, path, options, meshes_);
 }
 
@@ -37,25 +37,25 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::stri
   {
     const std::lock_guard lock(mutex_);
     const auto found = models_.find(key);
-    if (found != models_.end() && is_fresh(found->second)) return found->second.model;
+    if (found != models_.end() && is_current(found->second)) return found->second.model;
   }
-  // imported without the lock, which other threads may need meanwhile; the URDF's stamp is taken first, so that a
-  // change during the import is seen the next time
-  const bool disk = instead_ == nullptr;
-  const FileStamp before = disk ? FileStamp(path) : FileStamp();
+  // imported without holding the lock, so that other threads are not blocked; the URDF's stamp is created first, so
+  // that a change during the import is detected by the next call
+  const bool disk = memory_files_ == nullptr;
+  const FileStamp urdf_stamp = disk ? FileStamp(path) : FileStamp();
   Result<std::shared_ptr<const BodyModel>> model =
-      disk ? import_urdf(path, options, meshes_) : load_kept(path, options);
+      disk ? import_urdf(path, options, meshes_) : load_from_memory(path, options);
   if (!model) return model;
   Entry entry{*model, {}};
   if (disk) {
     for (const std::string& file : (*model)->files) entry.stamps.emplace_back(file);
-    entry.stamps.front() = before;
+    entry.stamps.front() = urdf_stamp;
   }
   const std::lock_guard lock(mutex_);
-  Entry& kept = models_[key];
-  // two threads may have imported the same file: the first one's model stays
-  if (!kept.model || kept.stamps != entry.stamps) kept = std::move(entry);
-  return kept.model;
+  Entry& cached = models_[key];
+  // two threads may have imported the same file: keep the first one's model
+  if (!cached.model || cached.stamps != entry.stamps) cached = std::move(entry);
+  return cached.model;
 }
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Keeps imported bodies: the same file with the same options twice is one shared, immutable model.
+// ModelLibrary: cache of imported bodies. Loading the same file with the same options returns the same shared,
+// immutable model.
 #pragma once
 
 #include <map>
@@ -15,31 +16,32 @@
 
 namespace limber {
 
-/// Everything that makes two imports the same, as one text. [any]
+/// The cache key of an import: canonical path and options. [any]
 std::string model_key(const std::string& path, const ImportOptions& options);
 
-/// Models by file and options. A model is imported anew when the content of its URDF or of one of its meshes has
-/// changed on disk; who holds the old one keeps it. [any]
+/// Models by file and options. A model is imported again if its URDF or one of its meshes has changed on disk; holders
+/// of the old model are not affected. [any]
 class ModelLibrary {
  public:
-  /// `instead`: what is read in place of the disk.
-  explicit ModelLibrary(std::shared_ptr<const FileSet> instead = nullptr)
-      : instead_(instead), meshes_(std::move(instead)) {}
+  /// `memory_files`: files to read instead of the disk; null: use the disk.
+  explicit ModelLibrary(std::shared_ptr<const FileSet> memory_files = nullptr)
+      : memory_files_(memory_files), meshes_(std::move(memory_files)) {}
 
+  /// Returns the model of a URDF file, from the cache if its files are unchanged.
   Result<std::shared_ptr<const BodyModel>> load_urdf(const std::string& path, const ImportOptions& options = {});
-  /// The meshes that the models share.
+  /// The cache of meshes shared by the models.
   MeshLibrary& meshes() { return meshes_; }
 
  private:
   struct Entry {
     std::shared_ptr<const BodyModel> model;
-    std::vector<FileStamp> stamps;  ///< Of BodyModel::files, in order.
+    std::vector<FileStamp> stamps;  ///< One for each of BodyModel::files, in order.
   };
 
-  bool is_fresh(Entry& entry) const;
-  Result<std::shared_ptr<const BodyModel>> load_kept(const std::string& path, const ImportOptions& options);
+  bool is_current(Entry& entry) const;
+  Result<std::shared_ptr<const BodyModel>> load_from_memory(const std::string& path, const ImportOptions& options);
 
-  std::shared_ptr<const FileSet> instead_;
+  std::shared_ptr<const FileSet> memory_files_;
   std::mutex mutex_;
   MeshLibrary meshes_;
   std::map<std::string, Entry> models_;

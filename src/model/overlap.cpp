@@ -1,5 +1,5 @@
-// Penetration depth by expanding a polytope inside the Minkowski difference (Gino van den Bergen's EPA), in double
-// precision on the exact shapes; a sweep over bounding boxes finds the candidates.
+// Penetration depth by the expanding polytope algorithm (EPA, Gino van den Bergen) on the Minkowski difference, in
+// double precision on the exact shapes; sweep and prune over bounding boxes finds the candidate pairs.
 #include "model/overlap.h"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 constexpr int kMaxExpansions = 160;
 constexpr double kDepthPrecision = 1e-7;  // m
 constexpr double kRelativeDepthPrecision = 0.02;
-// Work bound of find_overlaps(), in comparisons of boxes; a comparison of shapes costs about 200 of them.
+// Work limit of find_overlaps(), in box comparisons; a comparison of two shapes costs about 200 of them.
 constexpr std::size_t kMaxOverlapWork = 10'000'000;
-constexpr std::size_t kNarrowWork = 200;
+constexpr std::size_t kShapePairWork = 200;
 
 struct OverlapBox {
   Vec3 low{std::numeric_limits<double>::infinity()};
@@ -28,13 +28,13 @@ struct OverlapBox {
   }
 };
 
-// The smallest overlap of two boxes along an axis: no shape inside penetrates deeper.
+// The smallest overlap of two boxes along an axis: an upper bound of the penetration depth of shapes inside them.
 double box_overlap(const OverlapBox& a, const OverlapBox& b) {
   const Vec3 along = glm::min(a.high, b.high) - glm::max(a.low, b.low);
   return std::min({along.x, along.y, along.z});
 }
 
-/// A convex shape in the common frame, by its support function.
+/// A convex shape in the common frame, represented by its support function.
 class ConvexSolid {
  public:
   ConvexSolid(const PlacedShape& placed, const Pose& frame) : kind_(placed.shape.kind) {
@@ -57,7 +57,7 @@ class ConvexSolid {
       }
       center_ = sum / static_cast<double>(vertices_.size());
     } else if (kind_ == ShapeKind::mesh || kind_ == ShapeKind::plane || kind_ == ShapeKind::compound) {
-      solid_ = false;
+      has_volume_ = false;
       return;
     }
     for (int i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ class ConvexSolid {
     }
   }
 
-  bool solid() const { return solid_; }
+  bool has_volume() const { return has_volume_; }
   const OverlapBox& box() const { return box_; }
   const Vec3& center() const { return center_; }
 
@@ -78,21 +78,21 @@ class ConvexSolid {
       case ShapeKind::sphere:
         return center_ + radius_ * direction;
       case ShapeKind::capsule:
-        return center_ + end(direction) + radius_ * direction;
+        return center_ + end_offset(direction) + radius_ * direction;
       case ShapeKind::cylinder:
-        return center_ + end(direction) + rim(direction);
+        return center_ + end_offset(direction) + rim_offset(direction);
       case ShapeKind::cone: {
         const Vec3 apex = center_ + half_ * axis_;
-        const Vec3 base = center_ - half_ * axis_ + rim(direction);
+        const Vec3 base = center_ - half_ * axis_ + rim_offset(direction);
         return glm::dot(apex, direction) > glm::dot(base, direction) ? apex : base;
       }
       default: {
         const Vec3* best = vertices_.data();
-        double most = glm::dot(*best, direction);
+        double max_projection = glm::dot(*best, direction);
         for (const Vec3& v : vertices_) {
           const double along = glm::dot(v, direction);
-          if (along <= most) continue;
-          most = along;
+          if (along <= max_projection) continue;
+          max_projection = along;
           best = &v;
         }
         return *best;
@@ -101,16 +101,19 @@ class ConvexSolid {
   }
 
  private:
-  Vec3 end(const Vec3& direction) const { return glm::dot(axis_, direction) < 0 ? -half_ * axis_ : half_ * axis_; }
-  Vec3 rim(const Vec3& direction) const {
+  Vec3 end_offset(const Vec3& direction) const {
+    return glm::dot(axis_, direction) < 0 ? -half_ * axis_ : half_ * axis_;
+  }
+  Vec3 rim_offset(const Vec3& direction) const {
     const Vec3 across = direction - glm::dot(direction, axis_) * axis_;
     const double length = glm::length(across);
-    // along the axis only rounding is left across, in any direction: the middle of the rim is as far
+    // for a direction along the axis `across` is only rounding error: any point of the disk is equally far, use its
+    // center
     return length > 1e-8 ? radius_ / length * across : Vec3(0);
   }
 
   ShapeKind kind_;
-  bool solid_ = true;
+  bool has_volume_ = true;
   Vec3 center_, axis_;
   double radius_ = 0;
   double half_ = 0;
@@ -118,30 +121,30 @@ class ConvexSolid {
   OverlapBox box_;
 };
 
-/// A polytope inside the Minkowski difference of two solids, which grows where it is nearest to the origin. The depth
-/// is the least support distance over all directions: each sampled direction bounds it from above, the nearest face
-/// from below.
+/// EPA: a polytope inside the Minkowski difference of two solids is expanded where it is nearest to the origin. The
+/// depth is the minimum support distance over all directions: each sampled direction gives an upper bound, the nearest
+/// face a lower bound.
 class PolytopeExpansion {
  public:
   PolytopeExpansion(const ConvexSolid& a, const ConvexSolid& b, double tolerance)
       : a_(a), b_(b), tolerance_(tolerance) {}
 
-  /// 0 where it is at most the tolerance.
+  /// The penetration depth; 0 if it is at most the tolerance.
   double depth() {
-    if (!start()) return 0;
+    if (!build_tetrahedron()) return 0;
     for (int i = 0; i < kMaxExpansions; ++i) {
       const Face* const nearest = nearest_face();
       if (nearest == nullptr) break;
       const Vec3 normal = nearest->normal;
       const double lower = nearest->distance;
-      const double precision = std::max(kDepthPrecision, kRelativeDepthPrecision * least_);
-      if (lower > tolerance_ && (least_ - lower < precision || i > kMaxExpansions / 4)) break;
+      const double precision = std::max(kDepthPrecision, kRelativeDepthPrecision * upper_bound_);
+      if (lower > tolerance_ && (upper_bound_ - lower < precision || i > kMaxExpansions / 4)) break;
       const Vec3 point = sample(normal);
       if (separated()) return 0;
       if (glm::dot(point, normal) - lower < kDepthPrecision) break;
       if (!expand(point)) break;
     }
-    return least_;
+    return upper_bound_;
   }
 
  private:
@@ -149,19 +152,19 @@ class PolytopeExpansion {
     std::array<int, 3> corner;
     Vec3 normal;
     double distance;  // of its plane from the origin, along the normal
-    bool flat;        // without area: never chosen, never visible
+    bool flat;        // zero area: never selected, never visible
   };
 
-  bool separated() const { return least_ <= tolerance_; }
+  bool separated() const { return upper_bound_ <= tolerance_; }
 
   Vec3 sample(const Vec3& direction) {
     const Vec3 point = a_.support(direction) - b_.support(-direction);
-    least_ = std::min(least_, glm::dot(point, direction));
+    upper_bound_ = std::min(upper_bound_, glm::dot(point, direction));
     return point;
   }
 
-  // the first tetrahedron; false where a direction already separates the two, or the difference has no volume
-  bool start() {
+  // builds the first tetrahedron; false if a sampled direction separates the two, or the difference has no volume
+  bool build_tetrahedron() {
     const Vec3 between = normalized(b_.center() - a_.center());
     if (glm::length(between) > 0) {
       sample(between);
@@ -202,11 +205,11 @@ class PolytopeExpansion {
   template <class Measure>
   Vec3 farthest(const std::array<Vec3, 4>& directions, const Measure& measure) {
     Vec3 best(0);
-    double most = -1;
+    double max_measure = -1;
     for (const Vec3& direction : directions) {
       const Vec3 point = sample(direction);
-      if (measure(point) <= most) continue;
-      most = measure(point);
+      if (measure(point) <= max_measure) continue;
+      max_measure = measure(point);
       best = point;
     }
     return best;
@@ -228,7 +231,7 @@ class PolytopeExpansion {
     return nearest;
   }
 
-  // replaces the faces that see the point by those that connect their outline with it
+  // replaces the faces visible from the point by faces that connect their outline with the point
   bool expand(const Vec3& point) {
     edges_.clear();
     std::erase_if(faces_, [&](const Face& face) {
@@ -243,7 +246,7 @@ class PolytopeExpansion {
     return true;
   }
 
-  // an edge that two removed faces share, in opposite directions, is inside
+  // an edge shared by two removed faces (in opposite directions) is not part of the outline
   void add_edge(int from, int to) {
     const auto twin = std::find(edges_.begin(), edges_.end(), std::pair(to, from));
     if (twin == edges_.end()) {
@@ -257,7 +260,7 @@ class PolytopeExpansion {
   const ConvexSolid& b_;
   double tolerance_;
   double size_ = 0;
-  double least_ = std::numeric_limits<double>::infinity();
+  double upper_bound_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3> points_;
   std::vector<Face> faces_;
   std::vector<std::pair<int, int>> edges_;
@@ -272,20 +275,20 @@ OverlapSolids solids_of(const OverlapPart& part) {
   OverlapSolids out;
   for (const PlacedShape& placed : part.shapes) {
     ConvexSolid solid(placed, part.pose);
-    if (!solid.solid()) continue;
+    if (!solid.has_volume()) continue;
     out.box.add(solid.box());
     out.solids.push_back(std::move(solid));
   }
   return out;
 }
 
-// the first pair of shapes that overlaps decides
+// returns the depth of the first overlapping pair of shapes
 double parts_overlap(const OverlapSolids& a, const OverlapSolids& b, std::size_t& work) {
   for (const ConvexSolid& x : a.solids) {
     for (const ConvexSolid& y : b.solids) {
       ++work;
       if (box_overlap(x.box(), y.box()) <= kOverlapTolerance) continue;
-      work += kNarrowWork;
+      work += kShapePairWork;
       if (const double depth = PolytopeExpansion(x, y, kOverlapTolerance).depth(); depth > 0) return depth;
       if (work > kMaxOverlapWork) return 0;
     }
@@ -298,12 +301,12 @@ double parts_overlap(const OverlapSolids& a, const OverlapSolids& b, std::size_t
 double overlap_depth(const PlacedShape& a, const PlacedShape& b, double tolerance) {
   const ConvexSolid x(a, Pose{});
   const ConvexSolid y(b, Pose{});
-  if (!x.solid() || !y.solid() || box_overlap(x.box(), y.box()) <= tolerance) return 0;
+  if (!x.has_volume() || !y.has_volume() || box_overlap(x.box(), y.box()) <= tolerance) return 0;
   return PolytopeExpansion(x, y, tolerance).depth();
 }
 
 OverlapResult find_overlaps(std::span<const OverlapPart> parts,
-                            const std::function<bool(std::size_t a, std::size_t b)>& wanted) {
+                            const std::function<bool(std::size_t a, std::size_t b)>& filter) {
   OverlapResult out;
   std::vector<OverlapSolids> solids;
   std::vector<std::size_t> order;
@@ -322,7 +325,7 @@ OverlapResult find_overlaps(std::span<const OverlapPart> parts,
       const auto [a, b] = std::minmax(order[i], order[j]);
       ++work;
       if (solids[order[j]].box.low.x >= solids[order[i]].box.high.x) break;
-      if (box_overlap(solids[a].box, solids[b].box) <= kOverlapTolerance || !wanted(a, b)) continue;
+      if (box_overlap(solids[a].box, solids[b].box) <= kOverlapTolerance || !filter(a, b)) continue;
       if (work > kMaxOverlapWork) {
         ++out.unchecked;
         continue;

@@ -1,4 +1,4 @@
-// Overlap: how deep two convex shapes penetrate each other, and which parts of a body overlap.
+// Penetration depth of two convex shapes, and the overlapping parts of a body.
 #pragma once
 
 #include <cstddef>
@@ -10,28 +10,28 @@
 
 namespace limber {
 
-/// Parts of one body that overlap by more than this (m) don't collide with each other by default.
+/// Parts of one body that overlap by more than this (m) are excluded from colliding with each other by default.
 inline constexpr double kOverlapTolerance = 1e-4;
 
-/// Penetration depth of two shapes placed in one frame, m: the shortest shift that separates them. 0 where it is at
-/// most `tolerance`. Depths are exact within 2 %, or a tenth of a micrometer; a deep one may be reported up to its
-/// extent too large, since only the comparison with `tolerance` is decided exactly. Mesh shapes count as their contact
-/// hull, without the collision margin. Planes are unbounded scenery and overlap nothing. [any]
+/// Returns the penetration depth of two shapes in a common frame, m: the length of the shortest translation that
+/// separates them; 0 if it is at most `tolerance`. Accurate to 2 % or 0.1 µm; only the comparison with `tolerance` is
+/// exact, so the depth of deep overlaps may be overestimated by up to their extent. Meshes are represented by their
+/// contact hull, without the collision margin. Planes never overlap, because they are unbounded scenery. [any]
 double overlap_depth(const PlacedShape& a, const PlacedShape& b, double tolerance = kOverlapTolerance);
 
-/// One part for find_overlaps().
+/// A part of a body, for find_overlaps().
 struct OverlapPart {
   std::span<const PlacedShape> shapes;  ///< In the part's frame.
-  Pose pose;                            ///< Of that frame; all parts in one frame.
+  Pose pose;                            ///< Pose of the part's frame in the common frame.
 };
 
 struct OverlapResult {
   std::vector<Overlap> found;  ///< a < b, in ascending order.
-  std::size_t unchecked = 0;   ///< Pairs of parts that were not compared, because the work is bounded.
+  std::size_t unchecked = 0;   ///< Number of pairs that were not compared because the work limit was reached.
 };
 
-/// All pairs (a < b) that `wanted` accepts and whose shapes overlap by more than kOverlapTolerance. [any]
+/// Finds all pairs (a < b) that `filter` accepts and that overlap by more than kOverlapTolerance. [any]
 OverlapResult find_overlaps(std::span<const OverlapPart> parts,
-                            const std::function<bool(std::size_t a, std::size_t b)>& wanted);
+                            const std::function<bool(std::size_t a, std::size_t b)>& filter);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Collects the complaints about one file, bounded, so that a hostile file can't fill the memory with them.
+// Problems: collects the problems found in one file. The list is bounded, so that a hostile file can't exhaust memory.
 #pragma once
 
 #include <string>
@@ -11,24 +11,22 @@ namespace limber {
 
 class Problems {
  public:
-  static constexpr std::size_t kMost = 300;
-  static constexpr std::size_t kMostBytes = 600;  ///< Of one text; the rest of it is cut off.
+  static constexpr std::size_t kMaxProblems = 300;
+  static constexpr std::size_t kMaxTextBytes = 600;  ///< Longest text; longer ones are cut off.
 
-  void note(int line, std::string text, std::string cure) {
-    add(line, Severity::note, std::move(text), std::move(cure));
+  void note(int line, std::string text, std::string fix) { add(line, Severity::note, std::move(text), std::move(fix)); }
+  void warning(int line, std::string text, std::string fix) {
+    add(line, Severity::warning, std::move(text), std::move(fix));
   }
-  void warning(int line, std::string text, std::string cure) {
-    add(line, Severity::warning, std::move(text), std::move(cure));
-  }
-  void error(int line, std::string text, std::string cure) {
-    add(line, Severity::error, std::move(text), std::move(cure));
+  void error(int line, std::string text, std::string fix) {
+    add(line, Severity::error, std::move(text), std::move(fix));
   }
 
-  /// Everything that was added, in order; past the first 300, one line says how many more there were.
-  std::vector<Problem> take() {
+  /// Moves the collected problems out, in order. If there were more than kMaxProblems, a last entry gives their number.
+  std::vector<Problem> release() {
     if (dropped_ > 0) {
-      list_.push_back({last_line_, Severity::warning, std::to_string(dropped_) + " more complaints are not listed",
-                       "Mend the ones above and import again."});
+      list_.push_back({last_line_, Severity::warning, std::to_string(dropped_) + " more problems are not listed",
+                       "Fix the ones above and import again."});
     }
     dropped_ = 0;
     return std::move(list_);
@@ -37,14 +35,14 @@ class Problems {
 
  private:
   static std::string shortened(std::string text) {
-    if (text.size() <= kMostBytes) return text;
-    std::size_t end = kMostBytes;
+    if (text.size() <= kMaxTextBytes) return text;
+    std::size_t end = kMaxTextBytes;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
     return text.substr(0, end) + "…";
   }
-  void add(int line, Severity severity, std::string text, std::string cure) {
-    if (list_.size() < kMost) {
-      list_.push_back({line, severity, shortened(std::move(text)), shortened(std::move(cure))});
+  void add(int line, Severity severity, std::string text, std::string fix) {
+    if (list_.size() < kMaxProblems) {
+      list_.push_back({line, severity, shortened(std::move(text)), shortened(std::move(fix))});
     } else {
       ++dropped_;
       last_line_ = line;

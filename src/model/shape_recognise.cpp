@@ -1,4 +1,4 @@
-// Boxes by their faces' directions, spheres and capsules by their vertices' distance from the axis.
+// Boxes are recognized by their face normals, spheres and capsules by the distance of their vertices from the axis.
 #include "model/shape_recognise.h"
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace limber {
 
 namespace {
 
-struct Span {
+struct Interval {
   double low, high;
 };
 
-Span span_along(const std::vector<Vec3>& points, const Vec3& axis) {
-  Span s{glm::dot(points[0], axis), glm::dot(points[0], axis)};
+Interval interval_along(const std::vector<Vec3>& points, const Vec3& axis) {
+  Interval s{glm::dot(points[0], axis), glm::dot(points[0], axis)};
   for (const Vec3& p : points) {
     const double d = glm::dot(p, axis);
     s.low = std::min(s.low, d);
@@ -26,10 +26,10 @@ Span span_along(const std::vector<Vec3>& points, const Vec3& axis) {
   return s;
 }
 
-/// The frame's place whose axes are x, y, z and whose coordinates along them are given.
+/// The pose of a frame with these axes; `along` is its origin in coordinates along them.
 Pose pose_of(const Mat3& axes, const Vec3& along) { return {axes * along, glm::normalize(glm::quat_cast(axes))}; }
 
-/// Face normals weighted by area, largest first.
+/// Face normals with the faces' areas as their lengths, largest first.
 std::vector<Vec3> face_normals(const Hull& hull) {
   std::vector<Vec3> normals;
   for (std::size_t i = 0; i + 2 < hull.triangles.size(); i += 3) {
@@ -42,23 +42,23 @@ std::vector<Vec3> face_normals(const Hull& hull) {
   return normals;
 }
 
-std::optional<PlacedShape> as_box(const Hull& hull, double volume) {
+std::optional<PlacedShape> fit_box(const Hull& hull, double volume) {
   if (hull.vertices.size() < 8) return std::nullopt;
   const std::vector<Vec3> normals = face_normals(hull);
-  constexpr double kSquare = 1e-3;
+  constexpr double kMaxCosine = 1e-3;
   Mat3 axes(0);
   axes[0] = normalized(normals[0]);
   int found = 1;
   for (const Vec3& n : normals) {
     const Vec3 d = normalized(n);
-    if (std::abs(glm::dot(d, axes[0])) > kSquare) continue;
+    if (std::abs(glm::dot(d, axes[0])) > kMaxCosine) continue;
     axes[1] = normalized(d - glm::dot(d, axes[0]) * axes[0]);
     found = 2;
     break;
   }
   if (found < 2) return std::nullopt;
   axes[2] = glm::cross(axes[0], axes[1]);
-  // name the axes so that the box keeps the mesh's own when they agree
+  // order the axes so that they match the mesh's own as closely as possible
   for (int i = 0; i < 3; ++i) {
     for (int k = i + 1; k < 3; ++k) {
       if (std::abs(axes[k][i]) > std::abs(axes[i][i]) + 1e-9) std::swap(axes[i], axes[k]);
@@ -70,12 +70,12 @@ std::optional<PlacedShape> as_box(const Hull& hull, double volume) {
   out.shape.kind = ShapeKind::box;
   Vec3 middle(0);
   for (int i = 0; i < 3; ++i) {
-    const Span s = span_along(hull.vertices, axes[i]);
+    const Interval s = interval_along(hull.vertices, axes[i]);
     out.shape.size[i] = s.high - s.low;
     middle[i] = (s.low + s.high) / 2;
   }
-  const double full = out.shape.size.x * out.shape.size.y * out.shape.size.z;
-  if (std::abs(volume - full) > 1e-3 * full) return std::nullopt;
+  const double box_volume = out.shape.size.x * out.shape.size.y * out.shape.size.z;
+  if (std::abs(volume - box_volume) > 1e-3 * box_volume) return std::nullopt;
   out.origin = pose_of(axes, middle);
   return out;
 }
@@ -85,12 +85,12 @@ double distance_from_segment(const Vec3& p, const Vec3& center, const Vec3& axis
   return glm::length(p - center - along * axis);
 }
 
-std::optional<PlacedShape> as_capsule(const Hull& hull, const Inertial& solid) {
-  // fewer corners lie on a sphere by chance: cubes, icosahedra
+std::optional<PlacedShape> fit_capsule(const Hull& hull, const Inertial& solid) {
+  // the vertices of cubes and icosahedra lie on a sphere, too
   if (hull.vertices.size() < 24) return std::nullopt;
-  const Mat3 principal = principal_of(solid.tensor).axes;
+  const Mat3 principal = principal_axes(solid.tensor).axes;
   const Vec3 axis = principal[0];
-  const Span length = span_along(hull.vertices, axis);
+  const Interval length = interval_along(hull.vertices, axis);
   const Vec3 center = solid.center + ((length.low + length.high) / 2 - glm::dot(solid.center, axis)) * axis;
   double radius = 0;
   for (const Vec3& p : hull.vertices)
@@ -106,7 +106,7 @@ std::optional<PlacedShape> as_capsule(const Hull& hull, const Inertial& solid) {
   out.shape.kind = sphere ? ShapeKind::sphere : ShapeKind::capsule;
   out.shape.radius = radius;
   out.shape.height = sphere ? 0 : 2 * half;
-  if (solid.mass < 0.9 * solid_of(out.shape).mass) return std::nullopt;
+  if (solid.mass < 0.9 * unit_inertial_of(out.shape).mass) return std::nullopt;
   const Vec3 z = axis.z < 0 ? -axis : axis;
   const Vec3 helper = std::abs(z.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   const Vec3 y = normalized(glm::cross(z, helper));
@@ -116,11 +116,11 @@ std::optional<PlacedShape> as_capsule(const Hull& hull, const Inertial& solid) {
 
 }  // namespace
 
-std::optional<PlacedShape> recognise(const Hull& whole) {
-  const Inertial solid = solid_of(whole.vertices, whole.triangles);
+std::optional<PlacedShape> recognize_primitive(const Hull& whole) {
+  const Inertial solid = unit_inertial_of(whole.vertices, whole.triangles);
   if (!(solid.mass > 0)) return std::nullopt;
-  std::optional<PlacedShape> box = as_box(whole, solid.mass);
-  return box ? box : as_capsule(whole, solid);
+  std::optional<PlacedShape> box = fit_box(whole, solid.mass);
+  return box ? box : fit_capsule(whole, solid);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Recognises boxes, spheres and capsules in meshes: as primitives they collide better and cost less than as hulls.
+// Recognizes meshes that are boxes, spheres or capsules: primitives collide more accurately and faster than hulls.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,9 @@
 
 namespace limber {
 
-/// The primitive that the mesh's hull is, with `origin` in the mesh's frame: box (faces square to 0.1 %), sphere or
-/// capsule (every vertex within 1 % of the radius from the surface). Nothing when it is none. [any]
-std::optional<PlacedShape> recognise(const Hull& whole);
+/// Returns the primitive that matches a mesh's convex hull, with `origin` in the mesh's frame: a box (faces orthogonal
+/// within 0.1 %), or a sphere or capsule (each vertex within 1 % of the radius of the surface). Empty if none does.
+/// [any]
+std::optional<PlacedShape> recognize_primitive(const Hull& whole);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The structure of the body: which links move, which are merged into which, joint frames, limits.
+// Structure of the body: links, merging of fixed links, joint frames and limits.
 #include "model/urdf_build.h"
 
 #include <cmath>
@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-/// Turns +z to the axis: nothing for +z, half a turn about x for -z, else any right-handed frame around it.
-Quat turn_to_axis(const Vec3& axis) {
+/// A rotation that maps +z to the axis: identity for +z, half a turn about x for -z.
+Quat rotation_to_axis(const Vec3& axis) {
   if (axis.z >= 1 - 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
   if (axis.z <= -1 + 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
   const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
@@ -27,7 +27,7 @@ PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
   out.color = from.color;
   out.alpha = from.alpha;
   if (!collides || !from.shape.mesh || !from.shape.mesh->primitive) return out;
-  // a mesh that is a box, sphere or capsule collides as one, at its own place
+  // a mesh recognized as a box, sphere or capsule collides as that primitive, at the primitive's pose
   const PlacedShape& primitive = *from.shape.mesh->primitive;
   out.shape = primitive.shape;
   out.shape.mesh = from.shape.mesh;
@@ -36,25 +36,25 @@ PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
   return out;
 }
 
-void add_shapes(UrdfBuild& build, std::size_t node) {
+void add_shapes(UrdfBuildContext& build, std::size_t node) {
   LinkModel& to = build.model.links[static_cast<std::size_t>(build.body_link[node])];
   const UrdfLink& from = build.link(node);
   for (const UrdfShape& s : from.collisions) to.collisions.push_back(placed(s, build.offset[node], true));
   for (const UrdfShape& s : from.visuals) to.visuals.push_back(placed(s, build.offset[node], false));
 }
 
-JointModel make_joint(UrdfBuild& build, std::size_t node) {
+JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
   const UrdfJoint& from = build.joint(node);
   const auto parent = static_cast<std::size_t>(build.tree[node].parent);
   const bool has_axis = from.type != JointType::fixed && from.type != JointType::floating;
-  const Quat turn = has_axis ? turn_to_axis(from.axis) : quat_identity();
+  const Quat rotation = has_axis ? rotation_to_axis(from.axis) : quat_identity();
   JointModel out;
   out.name = from.name;
   out.type = from.type;
   out.parent = build.body_link[parent];
   out.child = build.body_link[node];
-  out.frame_in_parent = build.offset[parent] * from.origin.pose() * Pose{Vec3(0), turn};
-  out.frame_in_child = {Vec3(0), turn};
+  out.frame_in_parent = build.offset[parent] * from.origin.pose() * Pose{Vec3(0), rotation};
+  out.frame_in_child = {Vec3(0), rotation};
   out.limited = from.limited;
   out.lower = from.lower;
   out.upper = from.upper;
@@ -67,28 +67,28 @@ JointModel make_joint(UrdfBuild& build, std::size_t node) {
     out.effort = from.effort;
   } else if (driven) {
     build.problems.note(from.line,
-                        fmt::format("joint '{}': effort is 0 or absent; {:g} {} is taken", printable(from.name),
+                        fmt::format("joint '{}': effort is 0 or absent; using {:g} {}", printable(from.name),
                                     out.effort, from.type == JointType::prismatic ? "N" : "N·m"),
                         "Write <limit effort=\"…\"/> with the motor's largest torque or force.");
   }
   return out;
 }
 
-bool is_merged(UrdfBuild& build, std::size_t node) {
+bool is_merged(UrdfBuildContext& build, std::size_t node) {
   if (build.tree[node].joint < 0 || build.joint(node).type != JointType::fixed) return false;
   if (!build.options.keep_fixed) return true;
   const UrdfLink& link = build.link(node);
   if (link.inertial && link.inertial->mass > 0) return false;
   build.problems.note(
       link.line,
-      fmt::format("link '{}' has no mass; merged into its parent although fixed joints are kept", printable(link.name)),
+      fmt::format("link '{}' has no mass; merged into its parent in spite of keep_fixed", printable(link.name)),
       "Give it an <inertial> with a mass to keep it apart.");
   return true;
 }
 
 }  // namespace
 
-void build_structure(UrdfBuild& build) {
+void build_structure(UrdfBuildContext& build) {
   const std::size_t count = build.tree.size();
   build.body_link.assign(count, -1);
   build.body_joint.assign(count, -1);

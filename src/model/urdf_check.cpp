@@ -1,4 +1,4 @@
-// The pass over the whole document: root, links, joints, materials, and what is there but not used.
+// Validates the whole document: root, links, joints, materials, <gazebo> settings, and elements that are not used.
 #include "model/urdf_check.h"
 
 #include <array>
@@ -18,26 +18,26 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 
-constexpr std::size_t kShownName = 40;
+constexpr std::size_t kMaxShownName = 40;
 
 constexpr std::array<std::string_view, 16> kElements{
     "link",  "joint", "material", "inertial", "visual", "collision", "origin",  "parent",
     "child", "axis",  "limit",    "dynamics", "mimic",  "geometry",  "inertia", "mass"};
 
-const char* cure_of(tinyxml2::XMLError error) {
+const char* xml_error_fix(tinyxml2::XMLError error) {
   switch (error) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
       return "Close every element with its own end tag, in order.";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
       return "Write each attribute once, as name=\"value\" with quotes.";
     case tinyxml2::XML_ERROR_PARSING_ELEMENT:
-      return "Write <name …> and take single '<' out of texts.";
+      return "Write <name …> and remove single '<' from texts.";
     default:
-      return "Mend the XML; the file may be cut off.";
+      return "Fix the XML; the file may be truncated.";
   }
 }
 
-const char* fault_of(tinyxml2::XMLError error) {
+const char* xml_error_text(tinyxml2::XMLError error) {
   switch (error) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
       return "an element is not closed, or closed by another's end tag";
@@ -50,30 +50,30 @@ const char* fault_of(tinyxml2::XMLError error) {
   }
 }
 
-class Check {
+class UrdfChecker {
  public:
-  Check(UrdfReader& reader, Problems& problems) : reader_(reader), problems_(problems) {}
+  UrdfChecker(UrdfReader& reader, Problems& problems) : reader_(reader), problems_(problems) {}
 
   UrdfFile run(const Element& robot, const std::string& fallback_name) {
-    root(robot, fallback_name);
+    read_root(robot, fallback_name);
     for (const Element* e = robot.FirstChildElement(); e; e = e->NextSiblingElement()) {
       const std::string_view kind = reader_.name_of(*e);
       if (kind == "link") {
-        link(*e);
+        read_link(*e);
       } else if (kind == "joint") {
-        joint(*e);
+        read_joint(*e);
       } else if (kind == "material") {
-        material(*e);
+        read_material(*e);
       } else {
-        if (kind == "gazebo") gazebo(*e);
+        if (kind == "gazebo") read_gazebo(*e);
         ++unused_.try_emplace(std::string(kind), 0, e->GetLineNum()).first->second.first;
       }
     }
-    stray_text(robot);
-    colors();
-    self_collisions();
-    say_unused();
-    reader_.finish();
+    report_stray_text(robot);
+    resolve_colors();
+    apply_self_collisions();
+    report_unused();
+    reader_.report_deferred();
     return std::move(file_);
   }
 
@@ -81,14 +81,14 @@ class Check {
   struct SelfCollision {
     std::string link;
     bool all;
-    bool on;
+    bool enabled;
     int line;
   };
 
-  void root(const Element& robot, const std::string& fallback_name) {
+  void read_root(const Element& robot, const std::string& fallback_name) {
     const char* name = robot.Attribute("name");
-    const bool usable = name && !name_fault(name);
-    file_.name = usable ? name : (name_fault(fallback_name) ? "robot" : fallback_name);
+    const bool usable = name && !name_error(name);
+    file_.name = usable ? name : (name_error(fallback_name) ? "robot" : fallback_name);
     if (!usable) {
       problems_.warning(robot.GetLineNum(), fmt::format("<robot> has no usable name; called '{}'", file_.name),
                         "Write <robot name=\"…\">.");
@@ -97,7 +97,7 @@ class Check {
     const std::string_view version = robot.Attribute("version") ? robot.Attribute("version") : "1.0";
     if (version != "1.0" && version != "1.1" && version != "1.2") {
       problems_.warning(robot.GetLineNum(), fmt::format("<robot version='{}'> is read as 1.0", printable(version)),
-                        "Write version=\"1.0\", or take it out.");
+                        "Write version=\"1.0\", or remove it.");
     }
     if (robot.Name() != reader_.name_of(robot)) {
       problems_.warning(robot.GetLineNum(), "the root element has a namespace prefix, which URDF does not have",
@@ -105,33 +105,34 @@ class Check {
     }
   }
 
-  void odd_name(const Element& element, std::string_view kind, const std::string& name) {
-    const bool hard = escape_name(name) != name || name.find_first_of("&<>\"'") != std::string::npos;
-    if (!hard) return;
+  void check_osc_name(const Element& element, std::string_view kind, const std::string& name) {
+    const bool needs_escaping = escape_name(name) != name || name.find_first_of("&<>\"'") != std::string::npos;
+    if (!needs_escaping) return;
     problems_.note(element.GetLineNum(),
                    fmt::format("{} '{}': its name is hard to write in an OSC address", kind, printable(name)),
                    "Use letters, digits, '_', '-' and '.'.");
   }
 
-  void link(const Element& element) {
+  void read_link(const Element& element) {
     const char* name = element.Attribute("name");
     if (!name || !*name) {
-      problems_.error(element.GetLineNum(), "a <link> has no name; left out", "Write <link name=\"…\">.");
+      problems_.error(element.GetLineNum(), "a <link> has no name; ignored", "Write <link name=\"…\">.");
       return;
     }
-    if (const std::optional<std::string> fault = name_fault(name)) {
+    if (const std::optional<std::string> fault = name_error(name)) {
       problems_.error(element.GetLineNum(),
-                      fmt::format("link '{}': its name can't be used: {}; left out",
-                                  printable(std::string_view(name).substr(0, kShownName)), *fault),
+                      fmt::format("link '{}': its name can't be used: {}; ignored",
+                                  printable(std::string_view(name).substr(0, kMaxShownName)), *fault),
                       "Give it a short, printable name.");
       return;
     }
     if (!link_names_.insert(name).second) {
-      problems_.error(element.GetLineNum(), fmt::format("link '{}' is there twice; the first counts", printable(name)),
+      problems_.error(element.GetLineNum(),
+                      fmt::format("link '{}' is declared twice; using the first", printable(name)),
                       "Give every link a name of its own.");
       return;
     }
-    odd_name(element, "link", name);
+    check_osc_name(element, "link", name);
     file_.links.push_back(reader_.link(element, name));
     count_unused(element, {"inertial", "visual", "collision"});
     for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
@@ -141,14 +142,14 @@ class Check {
     }
   }
 
-  void joint(const Element& element) {
+  void read_joint(const Element& element) {
     const char* written = element.Attribute("name");
     std::string name = written ? written : "";
-    const std::optional<std::string> fault = name_fault(name);
+    const std::optional<std::string> fault = name_error(name);
     if (fault) {
       const Element* child = reader_.child(element, "child");
       const char* link = child ? child->Attribute("link") : nullptr;
-      name = fmt::format("{}_joint", link && !name_fault(link) ? link : "unnamed");
+      name = fmt::format("{}_joint", link && !name_error(link) ? link : "unnamed");
       problems_.warning(element.GetLineNum(),
                         written
                             ? fmt::format("a <joint>'s name can't be used: {}; called '{}'", *fault, printable(name))
@@ -158,13 +159,13 @@ class Check {
     std::optional<UrdfJoint> read = reader_.joint(element, name);
     count_unused(element, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"});
     if (!read) return;
-    odd_name(element, "joint", name);
-    if (!joint_names_.insert(name).second) rename(*read);
+    check_osc_name(element, "joint", name);
+    if (!joint_names_.insert(name).second) make_unique(*read);
     file_.joints.push_back(std::move(*read));
   }
 
-  // a second joint of the same name still carries its part of the body
-  void rename(UrdfJoint& joint) {
+  // a second joint of the same name is renamed, not dropped, because its child links would be lost
+  void make_unique(UrdfJoint& joint) {
     const std::string base = joint.name;
     int& next = next_suffix_.try_emplace(base, 2).first->second;
     do {
@@ -172,14 +173,14 @@ class Check {
     } while (!joint_names_.insert(joint.name).second);
     problems_.error(
         joint.line,
-        fmt::format("joint '{}' is there twice; the second is called '{}'", printable(base), printable(joint.name)),
+        fmt::format("joint '{}' is declared twice; the second is called '{}'", printable(base), printable(joint.name)),
         "Give every joint a name of its own.");
   }
 
-  void material(const Element& element) {
+  void read_material(const Element& element) {
     const char* name = element.Attribute("name");
     if (!name || !*name) {
-      problems_.warning(element.GetLineNum(), "a <material> has no name; not used", "Write <material name=\"…\">.");
+      problems_.warning(element.GetLineNum(), "a <material> has no name; ignored", "Write <material name=\"…\">.");
       return;
     }
     reader_.check_attributes(element, {"name"});
@@ -188,17 +189,17 @@ class Check {
     double alpha = 1;
     declared_materials_.insert(name);
     if (!reader_.color(element, owner, color, alpha)) {
-      problems_.warning(element.GetLineNum(), owner + " has no colour; not used",
-                        "Write <color rgba=\"r g b a\"/> inside; textures are not used.");
+      problems_.warning(element.GetLineNum(), owner + " has no color; ignored",
+                        "Write <color rgba=\"r g b a\"/> inside; textures are not supported.");
     } else if (!materials_.try_emplace(name, *color, alpha).second) {
-      problems_.warning(element.GetLineNum(), owner + " is there twice; the first counts",
+      problems_.warning(element.GetLineNum(), owner + " is declared twice; using the first",
                         "Give every material a name of its own.");
     }
   }
 
-  // materials that links define in place may be named by others, too
-  void colors() {
-    std::map<std::string, std::pair<int, int>> undefined;  // how many visuals, the first's line
+  // materials defined inside a link can be referenced by other links, too
+  void resolve_colors() {
+    std::map<std::string, std::pair<int, int>> undefined;  // number of visuals, line of the first
     for (const UrdfLink& link : file_.links) {
       for (const UrdfShape& shape : link.visuals) {
         if (shape.color && !shape.material.empty()) materials_.try_emplace(shape.material, *shape.color, shape.alpha);
@@ -215,59 +216,59 @@ class Check {
         }
       }
     }
-    for (const auto& [name, seen] : undefined) {
-      const std::string places = seen.first == 1 ? "a visual" : fmt::format("{} visuals", seen.first);
-      problems_.warning(seen.second,
+    for (const auto& [name, usage] : undefined) {
+      const std::string users = usage.first == 1 ? "a visual" : fmt::format("{} visuals", usage.first);
+      problems_.warning(usage.second,
                         fmt::format("material '{}' of {} is not defined; the default color is used",
-                                    printable(std::string_view(name).substr(0, kShownName)), places),
+                                    printable(std::string_view(name).substr(0, kMaxShownName)), users),
                         "Write <material name=\"…\"><color rgba=\"r g b a\"/></material> inside <robot>.");
     }
   }
 
-  // <gazebo reference="link"><selfCollide>; without a reference it is for all links
-  void gazebo(const Element& element) {
+  // <gazebo reference="link"><selfCollide>; without a reference it applies to all links
+  void read_gazebo(const Element& element) {
     for (const char* const name : {"selfCollide", "self_collide"}) {
       const Element* const found = reader_.child(element, name);
       if (!found) continue;
       const std::string_view text = found->GetText() ? found->GetText() : "";
-      const bool on = same_name(text, "true") || same_name(text, "1");
-      if (!on && !same_name(text, "false") && !same_name(text, "0")) {
+      const bool enabled = same_name(text, "true") || same_name(text, "1");
+      if (!enabled && !same_name(text, "false") && !same_name(text, "0")) {
         problems_.warning(found->GetLineNum(),
-                          fmt::format("<{}> is '{}'; ignored", name, printable(text.substr(0, kShownName))),
+                          fmt::format("<{}> is '{}'; ignored", name, printable(text.substr(0, kMaxShownName))),
                           "Write true or false.");
         continue;
       }
       const char* const link = element.Attribute("reference");
-      self_collisions_.push_back({link ? link : "", link == nullptr, on, found->GetLineNum()});
+      self_collisions_.push_back({link ? link : "", link == nullptr, enabled, found->GetLineNum()});
     }
   }
 
-  // that of a single link wins
-  void self_collisions() {
+  // settings for a single link override those for all links
+  void apply_self_collisions() {
     for (const bool all : {true, false}) {
-      for (const SelfCollision& said : self_collisions_) {
-        if (said.all != all) continue;
+      for (const SelfCollision& setting : self_collisions_) {
+        if (setting.all != all) continue;
         bool found = all;
         for (UrdfLink& link : file_.links) {
-          if (!all && link.name != said.link) continue;
-          link.self_collision = said.on;
+          if (!all && link.name != setting.link) continue;
+          link.self_collision = setting.enabled;
           found = true;
         }
         if (found) continue;
         const std::vector<std::string> names(link_names_.begin(), link_names_.end());
-        problems_.warning(
-            said.line,
-            fmt::format("<gazebo reference='{}'> with <selfCollide> names no link{}; ignored",
-                        printable(std::string_view(said.link).substr(0, kShownName)), name_hint(said.link, names)),
-            "Name a link of this file.");
+        problems_.warning(setting.line,
+                          fmt::format("<gazebo reference='{}'> with <selfCollide> names no link{}; ignored",
+                                      printable(std::string_view(setting.link).substr(0, kMaxShownName)),
+                                      name_hint(setting.link, names)),
+                          "Name a link of this file.");
       }
     }
   }
 
-  void stray_text(const Element& robot) {
+  void report_stray_text(const Element& robot) {
     for (const tinyxml2::XMLNode* node = robot.FirstChild(); node; node = node->NextSibling()) {
       if (!node->ToText()) continue;
-      problems_.warning(node->GetLineNum(), "there is bare text inside <robot>; not used", "Take it out.");
+      problems_.warning(node->GetLineNum(), "text inside <robot> ignored", "Remove it.");
       return;
     }
   }
@@ -281,21 +282,21 @@ class Check {
     }
   }
 
-  void say_unused() {
-    constexpr std::size_t kMostKinds = 40;
+  void report_unused() {
+    constexpr std::size_t kMaxKinds = 40;
     std::size_t kinds = 0;
-    for (const auto& [kind, seen] : unused_) {
-      if (++kinds > kMostKinds) break;
+    for (const auto& [kind, usage] : unused_) {
+      if (++kinds > kMaxKinds) break;
       const bool xacro = kind.starts_with("xacro:");
       const std::string text =
-          fmt::format("{} <{}> element{} not used", seen.first, printable(kind), seen.first == 1 ? " is" : "s are");
-      const std::string_view meant = nearest_name(kind, kElements);
-      if (!meant.empty() && meant != kind) {
-        problems_.warning(seen.second, text, fmt::format("Did you mean <{}>?", meant));
+          fmt::format("{} <{}> element{} ignored", usage.first, printable(kind), usage.first == 1 ? "" : "s");
+      const std::string_view suggestion = nearest_name(kind, kElements);
+      if (!suggestion.empty() && suggestion != kind) {
+        problems_.warning(usage.second, text, fmt::format("Did you mean <{}>?", suggestion));
       } else if (xacro) {
-        problems_.error(seen.second, text, "This is a xacro file: run xacro on it first.");
+        problems_.error(usage.second, text, "This is a xacro file: run xacro on it first.");
       } else {
-        problems_.note(seen.second, text, "Nothing to do, unless you counted on it.");
+        problems_.note(usage.second, text, "Nothing to do, unless you need it.");
       }
     }
   }
@@ -307,18 +308,18 @@ class Check {
   std::set<std::string, std::less<>> joint_names_;
   std::map<std::string, int> next_suffix_;
   std::map<std::string, std::pair<Vec3, double>> materials_;
-  std::set<std::string, std::less<>> declared_materials_;  // also those without a color, which is reported
+  std::set<std::string, std::less<>> declared_materials_;  // including those reported for having no color
   std::vector<SelfCollision> self_collisions_;
-  std::map<std::string, std::pair<int, int>> unused_;  // kind -> how many, first line
+  std::map<std::string, std::pair<int, int>> unused_;  // element name -> count, first line
 };
 
 std::string text_of(const Problems& problems) {
-  // what else was found helps to see why nothing is left
+  // earlier errors explain why no link is left
   std::string text;
   int count = 0;
   for (const Problem& p : problems.list()) {
     if (p.severity != Severity::error || ++count > 5) continue;
-    text += fmt::format("\n  line {}: {}. {}", p.line, p.text, p.cure);
+    text += fmt::format("\n  line {}: {}. {}", p.line, p.text, p.fix);
   }
   return text;
 }
@@ -330,29 +331,29 @@ Result<UrdfFile> check_urdf(const std::string& text, const std::string& fallback
   document.Parse(text.data(), text.size());
   if (document.Error()) {
     const tinyxml2::XMLError error = document.ErrorID();
-    return Error{
-        fmt::format("{}: {}. {}{}", document.ErrorLineNum(), fault_of(error), cure_of(error), text_of(problems))};
+    return Error{fmt::format("{}: {}. {}{}", document.ErrorLineNum(), xml_error_text(error), xml_error_fix(error),
+                             text_of(problems))};
   }
   const Element* robot = document.RootElement();
-  if (!robot) return Error{"1: there is no <robot> element. Give a URDF file."};
+  if (!robot) return Error{"1: <robot> element not found. Give a URDF file."};
   const std::string_view name = robot->Name();
   const std::size_t colon = name.find(':');
   const std::string prefix(colon == std::string_view::npos ? "" : name.substr(0, colon + 1));
   UrdfReader reader(problems, prefix);
   if (reader.name_of(*robot) != "robot") {
-    const char* cure =
+    const char* fix =
         name == "sdf" ? "SDF is another format: export the robot as URDF." : "A URDF starts with <robot name=\"…\">.";
     return Error{
-        fmt::format("{}: the root element is <{}>, not <robot>. {}", robot->GetLineNum(), printable(name), cure)};
+        fmt::format("{}: the root element is <{}>, not <robot>. {}", robot->GetLineNum(), printable(name), fix)};
   }
-  UrdfFile file = Check(reader, problems).run(*robot, fallback_name);
+  UrdfFile file = UrdfChecker(reader, problems).run(*robot, fallback_name);
   if (file.links.empty()) {
-    return Error{fmt::format("{}: no link is left to make a body of. Write at least one <link name=\"…\">.{}",
-                             robot->GetLineNum(), text_of(problems))};
+    return Error{fmt::format("{}: no valid link found. Write at least one <link name=\"…\">.{}", robot->GetLineNum(),
+                             text_of(problems))};
   }
-  if (static_cast<int>(file.links.size()) > kMostUrdfLinks) {
-    return Error{fmt::format("{}: there are {} links; at most {} are read. Split the robot.", robot->GetLineNum(),
-                             file.links.size(), kMostUrdfLinks)};
+  if (static_cast<int>(file.links.size()) > kMaxUrdfLinks) {
+    return Error{fmt::format("{}: there are {} links; the limit is {}. Split the robot.", robot->GetLineNum(),
+                             file.links.size(), kMaxUrdfLinks)};
   }
   return file;
 }

@@ -1,4 +1,4 @@
-// Our own pass over a URDF's XML, with line numbers: what is good goes on, what is not is left out and said.
+// Reads and validates a URDF's XML. Invalid elements are skipped and reported with their line numbers.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace limber {
 
-inline constexpr int kMostUrdfLinks = 10000;
+inline constexpr int kMaxUrdfLinks = 10000;
 
-/// Reads cleaned text (clean_urdf_text). `fallback_name` is the robot's name when the file gives none. The error, for
-/// text with no robot in it, starts with its line number and a colon. [any]
+/// Parses text from clean_urdf_text(). `fallback_name` is the robot's name if the file has none. Errors only if the
+/// text contains no usable robot; the error starts with a line number and a colon. [any]
 Result<UrdfFile> check_urdf(const std::string& text, const std::string& fallback_name, Problems& problems);
 
 }  // namespace limber

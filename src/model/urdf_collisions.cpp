@@ -1,5 +1,5 @@
-// Collision shapes of the whole body: links that overlap at the home pose, links without collision geometry, meshes
-// whose convex hull fills a hollow.
+// Checks the collision shapes of a body: finds links that overlap at the home pose, and reports links without collision
+// geometry and meshes with a hollow that their convex hull fills.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,16 +20,16 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kShownLinks = 8;
-// A hull this many times as large as its mesh fills a hollow.
+constexpr std::size_t kMaxListedLinks = 8;
+// Ratio of hull volume to mesh volume above which the hull is reported to fill a hollow.
 constexpr double kHollowRatio = 1.2;
 
-constexpr std::size_t kMaxHollowIndices = 60'000;  // of a mesh whose edges are compared
+constexpr std::size_t kMaxHollowIndices = 60'000;  // larger meshes are not checked, to bound the time
 
-// What the triangles enclose, m³, for a mesh of several joined solids too: each edge must run as often one way as the
-// other. 0 where they enclose nothing, or are too many to compare.
+// The volume that the triangles enclose, m³; also for a mesh of several touching solids. Each edge must be used equally
+// often in both directions. 0 if the mesh is open or too large to check.
 double enclosed_volume(const MeshModel& mesh) {
-  if (mesh.closed) return mesh.solid.mass;
+  if (mesh.closed) return mesh.unit_inertial.mass;
   const std::vector<unsigned>& corners = mesh.triangles;
   if (corners.size() > kMaxHollowIndices) return 0;
   std::map<std::pair<unsigned, unsigned>, int> balance;
@@ -41,24 +41,24 @@ double enclosed_volume(const MeshModel& mesh) {
     }
   }
   const bool open = std::any_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; });
-  return open ? 0 : std::abs(solid_of(mesh.vertices, corners).mass);
+  return open ? 0 : std::abs(unit_inertial_of(mesh.vertices, corners).mass);
 }
 
-int line_of_link(const UrdfBuild& build, int link) {
+int line_of_link(const UrdfBuildContext& build, int link) {
   for (std::size_t node = 0; node < build.tree.size(); ++node) {
     if (build.body_link[node] == link) return build.link(node).line;
   }
   return 1;
 }
 
-void check_overlaps(UrdfBuild& build) {
+void check_overlaps(UrdfBuildContext& build) {
   BodyModel& model = build.model;
-  std::set<std::pair<int, int>> joined;
-  for (const JointModel& joint : model.joints) joined.insert(std::minmax(joint.parent, joint.child));
+  std::set<std::pair<int, int>> connected;
+  for (const JointModel& joint : model.joints) connected.insert(std::minmax(joint.parent, joint.child));
   std::vector<OverlapPart> parts;
   for (const LinkModel& link : model.links) parts.push_back({link.collisions, link.home});
   OverlapResult result = find_overlaps(parts, [&](std::size_t a, std::size_t b) {
-    return !joined.contains({static_cast<int>(a), static_cast<int>(b)});
+    return !connected.contains({static_cast<int>(a), static_cast<int>(b)});
   });
   model.overlaps = std::move(result.found);
   if (!model.overlaps.empty()) {
@@ -77,31 +77,31 @@ void check_overlaps(UrdfBuild& build) {
   }
 }
 
-void check_missing_collisions(UrdfBuild& build) {
+void check_missing_collisions(UrdfBuildContext& build) {
   std::vector<std::string> names;
   std::size_t count = 0;
   bool visible = false;
   int line = 0;
   for (std::size_t i = 0; i < build.model.links.size(); ++i) {
     const LinkModel& link = build.model.links[i];
-    const bool frame = link.inertial.mass <= 0 && link.visuals.empty();  // a fixed root that only places others
+    const bool frame = link.inertial.mass <= 0 && link.visuals.empty();  // a fixed root that is only a frame for others
     if (!link.collisions.empty() || frame) continue;
     visible = visible || !link.visuals.empty();
     if (count++ == 0) line = line_of_link(build, static_cast<int>(i));
-    if (names.size() < kShownLinks) names.push_back(printable(link.name));
+    if (names.size() < kMaxListedLinks) names.push_back(printable(link.name));
   }
   if (count == 0) return;
   std::string text = fmt::format("{} {} no collision geometry: {}{}", count, count == 1 ? "link has" : "links have",
                                  fmt::join(names, ", "), count > names.size() ? " …" : "");
-  const char* const cure = "Add <collision> elements, unless nothing should touch these links.";
+  const char* const fix = "Add <collision> elements, unless nothing should touch these links.";
   if (visible) {
-    build.problems.warning(line, std::move(text), cure);
+    build.problems.warning(line, std::move(text), fix);
   } else {
-    build.problems.note(line, std::move(text), cure);
+    build.problems.note(line, std::move(text), fix);
   }
 }
 
-void check_hollow_meshes(UrdfBuild& build) {
+void check_hollow_meshes(UrdfBuildContext& build) {
   std::size_t count = 0;
   std::string text;
   int line = 0;
@@ -124,7 +124,7 @@ void check_hollow_meshes(UrdfBuild& build) {
 
 }  // namespace
 
-void build_collisions(UrdfBuild& build) {
+void build_collisions(UrdfBuildContext& build) {
   check_overlaps(build);
   check_missing_collisions(build);
   check_hollow_meshes(build);

@@ -1,5 +1,5 @@
-// Writes the checked URDF as plain text with names of our own (urdfdom formats names into its messages and looks
-// shapes up by them), lets urdfdom read it, and compares counts and numbers.
+// Writes the checked URDF with generated names (because urdfdom formats names into its messages and looks shapes up by
+// them), parses it with urdfdom, and compares counts and numbers.
 #include "model/urdf_confirm.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ std::string origin_text(const UrdfOrigin& o) {
   return fmt::format("<origin xyz=\"{}\" rpy=\"{}\"/>", vec(o.xyz), vec(o.quat ? euler_of(*o.quat) : o.rpy));
 }
 
-// urdfdom knows neither capsules nor planes: they travel as what comes nearest, so that the counts stay comparable
+// urdfdom supports neither capsules nor planes: they are written as similar shapes, so that the counts are comparable
 std::string geometry_text(const ShapeModel& s) {
   switch (s.kind) {
     case ShapeKind::sphere:
@@ -74,31 +74,37 @@ void write_joint(const UrdfJoint& j, std::size_t at, int parent, std::string& ou
   out += "</joint>\n";
 }
 
-bool near(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(1.0, std::max(std::abs(a), std::abs(b))); }
-bool near(const Vec3& a, const urdf::Vector3& b) { return near(a.x, b.x) && near(a.y, b.y) && near(a.z, b.z); }
+bool nearly_equal(double a, double b) {
+  return std::abs(a - b) <= 1e-12 * std::max(1.0, std::max(std::abs(a), std::abs(b)));
+}
+bool nearly_equal(const Vec3& a, const urdf::Vector3& b) {
+  return nearly_equal(a.x, b.x) && nearly_equal(a.y, b.y) && nearly_equal(a.z, b.z);
+}
 
-bool agrees(const UrdfLink& ours, const urdf::Link& theirs) {
+bool matches(const UrdfLink& ours, const urdf::Link& theirs) {
   const bool inertial = ours.inertial.has_value() == (theirs.inertial != nullptr) &&
-                        (!ours.inertial || (near(ours.inertial->mass, theirs.inertial->mass) &&
-                                            near(ours.inertial->origin.xyz, theirs.inertial->origin.position)));
+                        (!ours.inertial || (nearly_equal(ours.inertial->mass, theirs.inertial->mass) &&
+                                            nearly_equal(ours.inertial->origin.xyz, theirs.inertial->origin.position)));
   return inertial && ours.visuals.size() == theirs.visual_array.size() &&
          ours.collisions.size() == theirs.collision_array.size();
 }
 
-bool agrees(const UrdfJoint& ours, const urdf::Joint& theirs) {
+bool matches(const UrdfJoint& ours, const urdf::Joint& theirs) {
   const urdf::Pose& pose = theirs.parent_to_joint_origin_transform;
   const Quat q = ours.origin.pose().rotation;
   double x = 0, y = 0, z = 0, w = 1;
   pose.rotation.getQuaternion(x, y, z, w);
   const bool turned = std::abs(std::abs(q.x * x + q.y * y + q.z * z + q.w * w) - 1) < 1e-9;
-  const bool axis = ours.type == JointType::fixed || ours.type == JointType::floating || near(ours.axis, theirs.axis);
-  const bool limits = !ours.limited || (theirs.limits && near(ours.lower, theirs.limits->lower) &&
-                                        near(ours.upper, theirs.limits->upper));
-  return near(ours.origin.xyz, pose.position) && turned && axis && limits;
+  const bool axis =
+      ours.type == JointType::fixed || ours.type == JointType::floating || nearly_equal(ours.axis, theirs.axis);
+  const bool limits = !ours.limited || (theirs.limits && nearly_equal(ours.lower, theirs.limits->lower) &&
+                                        nearly_equal(ours.upper, theirs.limits->upper));
+  return nearly_equal(ours.origin.xyz, pose.position) && turned && axis && limits;
 }
 
 urdf::ModelInterfaceSharedPtr parse(std::string text) {
-  // its messages use input as a format string, so they are never made; the padding keeps its reader inside the buffer
+  // urdfdom uses input as a format string in its messages, so logging is disabled; the padding prevents reads past the
+  // end of the buffer
   static std::once_flag silenced;
   std::call_once(silenced, [] { console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE); });
   text.append(8, '\0');
@@ -111,35 +117,35 @@ urdf::ModelInterfaceSharedPtr parse(std::string text) {
 
 }  // namespace
 
-void confirm_with_urdfdom(const UrdfFile& file, const std::vector<UrdfNode>& tree, Problems& problems) {
+void cross_check_with_urdfdom(const UrdfFile& file, const std::vector<UrdfNode>& tree, Problems& problems) {
   std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n";
   for (std::size_t i = 0; i < tree.size(); ++i) {
     write_link(file.links[static_cast<std::size_t>(tree[i].link)], i, text);
     if (tree[i].joint >= 0) write_joint(file.joints[static_cast<std::size_t>(tree[i].joint)], i, tree[i].parent, text);
   }
   const urdf::ModelInterfaceSharedPtr model = parse(text + "</robot>\n");
-  const std::string cure = "Please report this file: our reading was used.";
+  const std::string fix = "Please report this file. Limber's own result is used.";
   if (!model) {
-    problems.error(1, "urdfdom does not read what was understood of this file", cure);
+    problems.error(1, "urdfdom rejects the checked file", fix);
     return;
   }
   if (model->links_.size() != tree.size() || model->joints_.size() + 1 != tree.size()) {
     problems.error(1,
-                   fmt::format("urdfdom finds {} links and {} joints, not {} and {}", model->links_.size(),
+                   fmt::format("urdfdom finds {} links and {} joints, expected {} and {}", model->links_.size(),
                                model->joints_.size(), tree.size(), tree.size() - 1),
-                   cure);
+                   fix);
   }
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const UrdfLink& link = file.links[static_cast<std::size_t>(tree[i].link)];
     const urdf::LinkConstSharedPtr theirs = model->getLink(fmt::format("l{}", i));
-    if (!theirs || !agrees(link, *theirs)) {
-      problems.error(link.line, fmt::format("urdfdom reads link '{}' differently", printable(link.name)), cure);
+    if (!theirs || !matches(link, *theirs)) {
+      problems.error(link.line, fmt::format("urdfdom reads link '{}' differently", printable(link.name)), fix);
     }
     if (tree[i].joint < 0) continue;
     const UrdfJoint& joint = file.joints[static_cast<std::size_t>(tree[i].joint)];
     const urdf::JointConstSharedPtr other = model->getJoint(fmt::format("j{}", i));
-    if (!other || !agrees(joint, *other)) {
-      problems.error(joint.line, fmt::format("urdfdom reads joint '{}' differently", printable(joint.name)), cure);
+    if (!other || !matches(joint, *other)) {
+      problems.error(joint.line, fmt::format("urdfdom reads joint '{}' differently", printable(joint.name)), fix);
     }
   }
 }

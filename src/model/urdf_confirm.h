@@ -1,5 +1,5 @@
-// The second opinion: urdfdom reads what our own pass understood, written anew in a form that it can't stumble over,
-// and both must agree.
+// Cross-check of the URDF reader against urdfdom: the checked file is written as canonical URDF text, parsed by
+// urdfdom, and compared.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-/// Says every difference between our reading and urdfdom's as an error. Never throws. [any]
-void confirm_with_urdfdom(const UrdfFile& file, const std::vector<UrdfNode>& tree, Problems& problems);
+/// Reports each difference between the checked file and urdfdom's reading as an error. Never throws. [any]
+void cross_check_with_urdfdom(const UrdfFile& file, const std::vector<UrdfNode>& tree, Problems& problems);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A URDF as the file has it, checked and with numbers read: what stands between the XML and a BodyModel.
+// UrdfFile: the parsed and validated contents of a URDF file, from which a BodyModel is built.
 #pragma once
 
 #include <optional>
@@ -25,14 +25,14 @@ struct UrdfInertial {
   Mat3 tensor{0};  ///< As written: along the inertial origin's axes.
 };
 
-/// A visual or collision element. `shape.kind` mesh has its file in `mesh_uri`, not loaded yet.
+/// A <visual> or <collision> element. For `shape.kind` mesh, `mesh_uri` names the file, which is loaded later.
 struct UrdfShape {
   int line = 0;
   UrdfOrigin origin;
   ShapeModel shape;
   std::string mesh_uri;
   Vec3 mesh_scale{1, 1, 1};
-  std::string material;  ///< Name, to be looked up when there is no colour of its own.
+  std::string material;  ///< Name of the material that provides the color if `color` is empty.
   std::optional<Vec3> color;
   double alpha = 1;
 };
@@ -43,7 +43,7 @@ struct UrdfLink {
   std::optional<UrdfInertial> inertial;
   std::vector<UrdfShape> collisions;
   std::vector<UrdfShape> visuals;
-  std::optional<bool> self_collision;  ///< Of a <gazebo> element that refers to it.
+  std::optional<bool> self_collision;  ///< From a <gazebo> element that refers to this link.
 };
 
 struct UrdfMimic {

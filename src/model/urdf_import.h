@@ -1,4 +1,4 @@
-// URDF files into body models: the front door of this room. Parsing, checking, merging, repairs; no simulation.
+// Imports URDF files as body models: parses, validates, repairs and merges. The entry point of this module.
 #pragma once
 
 #include <map>
@@ -16,23 +16,23 @@ namespace limber {
 
 struct ImportOptions {
   std::optional<bool> fixed_base;          ///< Unset: a root without mass is fixed to the world.
-  bool keep_fixed = false;                 ///< Fixed joints stay joints, where the child has mass.
+  bool keep_fixed = false;                 ///< Keep fixed joints as joints if their child has mass.
   std::map<std::string, double> pose;      ///< Start values of joints, rad or m; clamped to the limits.
-  std::vector<std::string> package_paths;  ///< Where package:// is looked for, besides the URDF's folder and above.
+  std::vector<std::string> package_paths;  ///< Folders for package://, besides the URDF's folder and its parents.
 
   bool operator==(const ImportOptions&) const = default;
 };
-/// Everything by which two imports of a file differ, in one text. [any]
+/// A string that is equal for equal options, as part of a cache key. [any]
 std::string options_key(const ImportOptions& options);
 
-/// The body that a URDF file describes. What is wrong in the file is left out or repaired and listed in
-/// `BodyModel::problems`; the error ("file:line: what. Cure.") comes only when there is no body in it. Bounded in time
-/// and memory for any input; never throws. [any]
+/// Imports the body that a URDF file describes. Invalid content is skipped or repaired and listed in
+/// `BodyModel::problems`; returns an error ("file:line: problem. Fix.") only if the file contains no body or the
+/// options are invalid. Bounded in time and memory for any input; never throws. [any]
 Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, const ImportOptions& options = {});
-/// The same with a library of meshes that is kept. [any]
+/// Imports with a cache of meshes that outlives the call. [any]
 Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, const ImportOptions& options,
                                                      MeshLibrary& meshes);
-/// The same from text; `path` says where it would lie, for messages and mesh paths. [any]
+/// Imports from text; `path` is used for messages and to resolve mesh paths. [any]
 Result<std::shared_ptr<const BodyModel>> import_urdf_text(std::string_view text, const std::string& path,
                                                           const ImportOptions& options, MeshLibrary& meshes);
 

@@ -1,5 +1,5 @@
-// Walks over XML mark-up before any parser does, and blanks what must not reach one.
-// Part of the room's inside: only urdf_text.cpp includes it.
+// Sanitizes XML markup before it is parsed: blanks constructs that are unsafe or expensive for a parser.
+// Internal to the module: only urdf_text.cpp includes it.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,11 @@
 
 namespace limber {
 
-/// The line, from 1, of the character at `at`. [any]
+/// The line (1-based) of the character at `at`. [any]
 int line_of(std::string_view text, std::size_t at);
 
-/// Blanks declarations and too deep elements, puts bare attribute values in quotes, cuts what follows the first
-/// element. Lines stay where they are. False when there is no element at all. Linear in time. [any]
+/// Blanks declarations, elements nested too deeply and surplus attributes, quotes unquoted attribute values, and
+/// removes everything after the first element. Preserves line numbers. False if there is no element. Linear time. [any]
 bool clean_markup(std::string& text, Problems& problems);
 
 }  // namespace limber

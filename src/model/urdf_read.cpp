@@ -1,4 +1,4 @@
-// Attributes of URDF elements: numbers, vectors, origins, colours.
+// Attributes of URDF elements: numbers, vectors, origins, colors.
 #include "model/urdf_read.h"
 
 #include <algorithm>
@@ -24,16 +24,16 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 60;
-  return printable(text.substr(0, kMost)) + (text.size() > kMost ? "…" : "");
+std::string printable_excerpt(std::string_view text) {
+  constexpr std::size_t kMaxBytes = 60;
+  return printable(text.substr(0, kMaxBytes)) + (text.size() > kMaxBytes ? "…" : "");
 }
 
-/// Why a text is no number, and what to do; an empty fault when it is one.
+/// A parsed number, or the reason why the text is not a number, and its fix. `reason` is empty on success.
 struct NumberText {
   double value = 0;
-  const char* fault = "";
-  const char* cure = "";
+  const char* reason = "";
+  const char* fix = "";
 };
 
 NumberText read_number(std::string_view text) {
@@ -47,7 +47,7 @@ NumberText read_number(std::string_view text) {
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = end == digits.data() + digits.size();
   if (fault == std::errc::result_out_of_range && whole) {
-    // an exponent too small to be told from 0 is 0, one too large is no number
+    // an underflow is 0, an overflow is an error
     const std::size_t e = digits.find_first_of("eE");
     if (e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-') return {0, "", ""};
     return {0, "is too large for a number", "Write a number of a sensible size."};
@@ -60,8 +60,8 @@ NumberText read_number(std::string_view text) {
   return {value, "", ""};
 }
 
-/// Spellings that urdfdom or its like refuse: "+1", ".5", "5.", blanks at the ends, tabs between.
-bool is_odd(std::string_view text) {
+/// True for notations that urdfdom or similar readers reject: "+1", ".5", "5.", leading or trailing blanks.
+bool is_nonstandard(std::string_view text) {
   if (kBlanks.find(text.front()) != std::string_view::npos || kBlanks.find(text.back()) != std::string_view::npos) {
     return true;
   }
@@ -84,35 +84,35 @@ const UrdfReader::Element* UrdfReader::child(const Element& parent, std::string_
   return element;
 }
 
-const UrdfReader::Element* UrdfReader::only_child(const Element& parent, std::string_view name,
-                                                  const std::string& owner) {
+const UrdfReader::Element* UrdfReader::unique_child(const Element& parent, std::string_view name,
+                                                    const std::string& owner) {
   const Element* found = child(parent, name);
   if (!found) return nullptr;
   for (const Element* next = found->NextSiblingElement(); next; next = next->NextSiblingElement()) {
     if (name_of(*next) != name) continue;
-    problems.warning(next->GetLineNum(), fmt::format("{} has more than one <{}>; the first counts", owner, name),
-                     "Take the others out.");
+    problems.warning(next->GetLineNum(), fmt::format("{} has more than one <{}>; using the first", owner, name),
+                     "Remove the others.");
     break;
   }
   return found;
 }
 
-std::optional<double> UrdfReader::one_number(std::string_view text, int line, const std::string& where,
-                                             const NumberRange& range) {
+std::optional<double> UrdfReader::parse_in_range(std::string_view text, int line, const std::string& where,
+                                                 const NumberRange& range) {
   const std::string_view digits = trimmed(text);
   const NumberText read = read_number(digits);
-  if (*read.fault) {
-    problems.error(line, fmt::format("{}: '{}' {}; left out", where, shown(text), read.fault), read.cure);
+  if (*read.reason) {
+    problems.error(line, fmt::format("{}: '{}' {}; ignored", where, printable_excerpt(text), read.reason), read.fix);
     return std::nullopt;
   }
-  if (read.value < range.lowest || read.value > range.highest) {
-    problems.error(line, fmt::format("{}: '{}' is out of range; left out", where, shown(text)),
-                   fmt::format("Write a number {}.", range.text));
+  if (read.value < range.min || read.value > range.max) {
+    problems.error(line, fmt::format("{}: '{}' is out of range; ignored", where, printable_excerpt(text)),
+                   fmt::format("Write a number {}.", range.description));
     return std::nullopt;
   }
-  if (is_odd(text) && odd_numbers_++ == 0) {
-    odd_line_ = line;
-    odd_text_ = shown(text);
+  if (is_nonstandard(text) && nonstandard_numbers_++ == 0) {
+    nonstandard_line_ = line;
+    nonstandard_text_ = printable_excerpt(text);
   }
   return read.value;
 }
@@ -122,7 +122,7 @@ std::optional<double> UrdfReader::number(const Element& element, const char* att
   const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
   if (!found) return std::nullopt;
   const std::string where = fmt::format("{}: <{} {}>", owner, name_of(element), attribute);
-  return one_number(found->Value(), found->GetLineNum(), where, range);
+  return parse_in_range(found->Value(), found->GetLineNum(), where, range);
 }
 
 std::optional<Vec3> UrdfReader::vector(const Element& element, const char* attribute, const std::string& owner,
@@ -132,7 +132,7 @@ std::optional<Vec3> UrdfReader::vector(const Element& element, const char* attri
   return Vec3(out[0], out[1], out[2]);
 }
 
-// false where the attribute is absent, or wrong, which is reported
+// false if the attribute is absent, or invalid (which is reported)
 bool UrdfReader::numbers(const Element& element, const char* attribute, const std::string& owner,
                          const NumberRange& range, std::span<double> out) {
   const tinyxml2::XMLAttribute* found = element.FindAttribute(attribute);
@@ -144,28 +144,29 @@ bool UrdfReader::numbers(const Element& element, const char* attribute, const st
   for (; at != std::string_view::npos; ++count) {
     const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
     if (count < out.size()) {
-      const std::optional<double> value = one_number(text.substr(at, end - at), found->GetLineNum(), where, range);
+      const std::optional<double> value = parse_in_range(text.substr(at, end - at), found->GetLineNum(), where, range);
       if (!value) return false;
       out[count] = *value;
     }
     at = text.find_first_not_of(kBlanks, end);
   }
-  if (count == out.size() && text.find_first_of("\t\r\n") != std::string_view::npos && odd_numbers_++ == 0) {
-    odd_line_ = found->GetLineNum();
-    odd_text_ = shown(text);
+  if (count == out.size() && text.find_first_of("\t\r\n") != std::string_view::npos && nonstandard_numbers_++ == 0) {
+    nonstandard_line_ = found->GetLineNum();
+    nonstandard_text_ = printable_excerpt(text);
   }
   if (count == out.size()) return true;
-  problems.error(found->GetLineNum(),
-                 fmt::format("{}: '{}' has {} numbers, not {}; left out", where, shown(text), count, out.size()),
-                 fmt::format("Write {} numbers with blanks between them.", out.size() == 3 ? "three" : "four"));
+  problems.error(
+      found->GetLineNum(),
+      fmt::format("{}: '{}' has {} numbers, expected {}; ignored", where, printable_excerpt(text), count, out.size()),
+      fmt::format("Write {} numbers with blanks between them.", out.size() == 3 ? "three" : "four"));
   return false;
 }
 
 UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
   UrdfOrigin out;
-  const Element* element = only_child(parent, "origin", owner);
+  const Element* element = unique_child(parent, "origin", owner);
   if (!element) return out;
-  out.xyz = vector(*element, "xyz", owner, kPlaceRange).value_or(Vec3(0));
+  out.xyz = vector(*element, "xyz", owner, kPositionRange).value_or(Vec3(0));
   out.rpy = vector(*element, "rpy", owner, kAngleRange).value_or(Vec3(0));
   check_attributes(*element, {"xyz", "rpy", "quat_xyzw"});
   std::array<double, 4> quat{};
@@ -174,7 +175,7 @@ UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
   const double length = glm::length(read);
   if (length < 1e-9) {
     problems.error(element->GetLineNum(),
-                   fmt::format("{}: <origin quat_xyzw> is 0 0 0 0, which is no rotation; left out", owner),
+                   fmt::format("{}: <origin quat_xyzw> is 0 0 0 0, which is not a rotation; ignored", owner),
                    "Write the unit quaternion as x y z w; no rotation is 0 0 0 1.");
     return out;
   }
@@ -202,14 +203,15 @@ bool UrdfReader::color(const Element& material, const std::string& owner, std::o
     rest = trimmed(rest);
     const std::size_t end = std::min(rest.find_first_of(kBlanks), rest.size());
     const NumberText read = read_number(rest.substr(0, end));
-    good = *read.fault == '\0' && parts.size() < 4;
+    good = *read.reason == '\0' && parts.size() < 4;
     parts.push_back(std::clamp(read.value, 0.0, 1.0));
     rest.remove_prefix(end);
   }
   if (!good || (parts.size() != 3 && parts.size() != 4)) {
-    problems.warning(element->GetLineNum(),
-                     fmt::format("{}: <color rgba='{}'> is no colour; left out", owner, shown(text ? text : "")),
-                     "Write four numbers from 0 to 1: red green blue alpha.");
+    problems.warning(
+        element->GetLineNum(),
+        fmt::format("{}: <color rgba='{}'> is not a color; ignored", owner, printable_excerpt(text ? text : "")),
+        "Write four numbers from 0 to 1: red green blue alpha.");
     return false;
   }
   color = Vec3(parts[0], parts[1], parts[2]);
@@ -218,17 +220,17 @@ bool UrdfReader::color(const Element& material, const std::string& owner, std::o
 }
 
 void UrdfReader::check_attributes(const Element& element, std::initializer_list<std::string_view> known) {
-  constexpr std::size_t kMostKinds = 200;
+  constexpr std::size_t kMaxKinds = 200;
   for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a; a = a->Next()) {
     const std::string_view name = a->Name();
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     if (name == "concave" || name == "xmlns" || name.starts_with("xmlns:")) continue;
     const std::pair key(std::string(name_of(element)), std::string(name));
-    if (unused_attributes_.size() >= kMostKinds && !unused_attributes_.contains(key)) continue;
-    UnusedAttribute& seen = unused_attributes_[key];
-    if (seen.count++ > 0) continue;
-    seen.line = a->GetLineNum();
-    seen.known = known;
+    if (unused_attributes_.size() >= kMaxKinds && !unused_attributes_.contains(key)) continue;
+    UnusedAttribute& entry = unused_attributes_[key];
+    if (entry.count++ > 0) continue;
+    entry.line = a->GetLineNum();
+    entry.known = known;
   }
 }
 
@@ -241,15 +243,16 @@ void UrdfReader::check_concave(const Element& element, const std::string& owner)
 }
 
 void UrdfReader::report_attributes() {
-  for (const auto& [key, seen] : unused_attributes_) {
+  for (const auto& [key, entry] : unused_attributes_) {
     const auto& [element, attribute] = key;
-    std::string text = fmt::format("<{}> has no attribute '{}'; ignored", printable(element), shown(attribute));
-    if (seen.count > 1) text += fmt::format(" in {} places", seen.count);
-    const std::string_view meant = nearest_name(attribute, seen.known);
-    if (!meant.empty()) {
-      problems.warning(seen.line, std::move(text), fmt::format("Did you mean '{}'?", meant));
+    std::string text =
+        fmt::format("<{}> has no attribute '{}'; ignored", printable(element), printable_excerpt(attribute));
+    if (entry.count > 1) text += fmt::format(" in {} places", entry.count);
+    const std::string_view suggestion = nearest_name(attribute, entry.known);
+    if (!suggestion.empty()) {
+      problems.warning(entry.line, std::move(text), fmt::format("Did you mean '{}'?", suggestion));
     } else {
-      problems.note(seen.line, std::move(text), "Nothing to do, unless you expected an effect.");
+      problems.note(entry.line, std::move(text), "Nothing to do, unless you expected an effect.");
     }
   }
   if (concave_meshes_ == 0) return;
@@ -260,13 +263,13 @@ void UrdfReader::report_attributes() {
       "Split the mesh into convex pieces, one <collision> for each.");
 }
 
-void UrdfReader::finish() {
+void UrdfReader::report_deferred() {
   report_attributes();
-  if (odd_numbers_ == 0) return;
+  if (nonstandard_numbers_ == 0) return;
   problems.note(
-      odd_line_,
-      fmt::format("{} number(s) are spelled in a way that some readers refuse, the first is '{}'; they were read",
-                  odd_numbers_, odd_text_),
+      nonstandard_line_,
+      fmt::format("{} number(s) use a notation that some readers reject, first '{}'; accepted", nonstandard_numbers_,
+                  nonstandard_text_),
       "Write digits on both sides of the point, no '+', and single blanks between numbers only: 0.5, 5.0, 1.");
 }
 

@@ -27,17 +27,19 @@ constexpr std::array<TypeName, 6> kTypeNames{{{JointType::fixed, "fixed"},
 constexpr NumberRange kForceRange{0, 1e9, "from 0 to 1e9 (N·m or N)"};
 constexpr NumberRange kSpeedRange{0, 1e9, "from 0 to 1e9 (rad/s or m/s)"};
 constexpr NumberRange kDampingRange{0, 1e9, "from 0 to 1e9"};
-constexpr NumberRange kBoundRange{-1e300, 1e300, "in radians or metres"};
+constexpr NumberRange kBoundRange{-1e300, 1e300, "in radians or meters"};
 constexpr NumberRange kFactorRange{-1e6, 1e6, "within 1e6"};
-constexpr NumberRange kAxisRange{-1e300, 1e300, "as three parts of a direction"};
-// a bound farther out than this is how some tools write "none"
+constexpr NumberRange kAxisRange{-1e300, 1e300, "as the components of a direction"};
+// some tools write limits beyond this to mean "none"
 constexpr double kNoBound = 1e4;
 
 bool is_hinge_or_slide(JointType type) {
   return type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic;
 }
 
-const char* or_continuous(JointType type) { return type == JointType::revolute ? ", or use type continuous." : "."; }
+const char* or_continuous_hint(JointType type) {
+  return type == JointType::revolute ? ", or use type continuous." : ".";
+}
 
 }  // namespace
 
@@ -47,11 +49,11 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
   out.line = element.GetLineNum();
   const std::string owner = fmt::format("joint '{}'", printable(name));
   for (const char* side : {"parent", "child"}) {
-    const Element* found = only_child(element, side, owner);
+    const Element* found = unique_child(element, side, owner);
     const char* link = found ? found->Attribute("link") : nullptr;
     if (found) check_attributes(*found, {"link"});
     if (!link || !*link) {
-      problems.error(out.line, fmt::format("{} names no {} link; left out", owner, side),
+      problems.error(out.line, fmt::format("{} names no {} link; ignored", owner, side),
                      fmt::format("Write <{} link=\"…\"/> inside the joint.", side));
       return std::nullopt;
     }
@@ -66,15 +68,16 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
     out.mimic = mimic(element, owner);
   } else if (const std::optional<UrdfMimic> ignored = mimic(element, owner)) {
     problems.error(ignored->line,
-                   fmt::format("{}: is {} and can't follow '{}'; its <mimic> is left out", owner,
+                   fmt::format("{}: is {} and can't follow '{}'; its <mimic> is ignored", owner,
                                joint_type_name(out.type), printable(ignored->joint)),
                    "Make it revolute, continuous or prismatic, or remove the <mimic>.");
   }
-  const Element* dynamics = only_child(element, "dynamics", owner);
+  const Element* dynamics = unique_child(element, "dynamics", owner);
   if (dynamics) check_attributes(*dynamics, {"damping", "friction"});
   if (dynamics && !dynamics->Attribute("damping") && !dynamics->Attribute("friction")) {
-    problems.warning(dynamics->GetLineNum(), fmt::format("{}: <dynamics> says nothing; not used", owner),
-                     "Write damping=\"…\" or friction=\"…\", or take the element out.");
+    problems.warning(dynamics->GetLineNum(),
+                     fmt::format("{}: <dynamics> has neither damping nor friction; ignored", owner),
+                     "Write damping=\"…\" or friction=\"…\", or remove the element.");
   } else if (dynamics && out.type != JointType::fixed) {
     out.damping = number(*dynamics, "damping", owner, kDampingRange).value_or(0);
     out.friction = number(*dynamics, "friction", owner, kDampingRange).value_or(0);
@@ -84,9 +87,9 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
 
 JointType UrdfReader::joint_type(const Element& element, const std::string& owner) {
   const char* text = element.Attribute("type");
-  const std::string cure = "Use revolute, continuous, prismatic, fixed, planar or floating.";
+  const std::string fix = "Use revolute, continuous, prismatic, fixed, planar or floating.";
   if (!text) {
-    problems.error(element.GetLineNum(), fmt::format("{} has no type; taken as fixed", owner), cure);
+    problems.error(element.GetLineNum(), fmt::format("{} has no type; taken as fixed", owner), fix);
     return JointType::fixed;
   }
   for (const TypeName& known : kTypeNames) {
@@ -98,43 +101,42 @@ JointType UrdfReader::joint_type(const Element& element, const std::string& owne
     return known.type;
   }
   problems.error(element.GetLineNum(),
-                 fmt::format("{}: '{}' is not a URDF joint type; taken as fixed", owner, printable(text)), cure);
+                 fmt::format("{}: '{}' is not a URDF joint type; taken as fixed", owner, printable(text)), fix);
   return JointType::fixed;
 }
 
 Vec3 UrdfReader::axis(const Element& element, const std::string& owner) {
   const Vec3 fallback{1, 0, 0};
-  const std::string cure = "Write <axis xyz=\"x y z\"/>, a direction in the joint's frame.";
-  const Element* found = only_child(element, "axis", owner);
+  const std::string fix = "Write <axis xyz=\"x y z\"/>, a direction in the joint's frame.";
+  const Element* found = unique_child(element, "axis", owner);
   if (found) check_attributes(*found, {"xyz"});
   if (!found || !found->Attribute("xyz")) {
     problems.warning((found ? found : &element)->GetLineNum(),
-                     fmt::format("{} has no axis; URDF's default 1 0 0 is taken", owner), cure);
+                     fmt::format("{} has no axis; using URDF's default 1 0 0", owner), fix);
     return fallback;
   }
   const std::optional<Vec3> read = vector(*found, "xyz", owner, kAxisRange);
   if (!read) return fallback;
-  // scaled first, so that neither 1e-200 nor 1e200 is lost in the square
+  // scaled first, so that the squares of 1e-200 and 1e200 neither underflow nor overflow
   const double largest = std::max({std::abs(read->x), std::abs(read->y), std::abs(read->z)});
   if (largest == 0) {
-    problems.error(found->GetLineNum(), fmt::format("{}: axis 0 0 0 is no direction; 1 0 0 is taken", owner), cure);
+    problems.error(found->GetLineNum(), fmt::format("{}: axis 0 0 0 is not a direction; using 1 0 0", owner), fix);
     return fallback;
   }
   const double length = largest * glm::length(*read / largest);
   if (std::abs(length - 1) > 1e-3) {
-    problems.note(found->GetLineNum(),
-                  fmt::format("{}: the axis is {:.6g} long, not 1; its direction is taken", owner, length),
+    problems.note(found->GetLineNum(), fmt::format("{}: the axis has length {:.6g}, not 1; normalized", owner, length),
                   "Write a direction of length 1.");
   }
   return normalized(*read / largest);
 }
 
 void UrdfReader::limit(const Element& element, const std::string& owner, UrdfJoint& out) {
-  const Element* found = only_child(element, "limit", owner);
+  const Element* found = unique_child(element, "limit", owner);
   if (!found) {
     if (out.type == JointType::continuous) return;
     problems.warning(element.GetLineNum(), fmt::format("{} has no <limit>; it is free", owner),
-                     fmt::format("Write <limit lower= upper= effort= velocity=/>{}", or_continuous(out.type)));
+                     fmt::format("Write <limit lower= upper= effort= velocity=/>{}", or_continuous_hint(out.type)));
     return;
   }
   check_attributes(*found, {"lower", "upper", "effort", "velocity"});
@@ -153,7 +155,7 @@ void UrdfReader::bounds(const Element& limit, const std::string& owner, UrdfJoin
   const bool has_upper = limit.Attribute("upper");
   if (!has_lower && !has_upper) {
     problems.note(line, fmt::format("{}: <limit> has neither lower nor upper; it is free", owner),
-                  fmt::format("Write lower= and upper={}", or_continuous(out.type)));
+                  fmt::format("Write lower= and upper={}", or_continuous_hint(out.type)));
     return;
   }
   const std::optional<double> lower = number(limit, "lower", owner, kBoundRange);
@@ -163,19 +165,19 @@ void UrdfReader::bounds(const Element& limit, const std::string& owner, UrdfJoin
     return;
   }
   if (!has_lower || !has_upper) {
-    problems.warning(
-        line, fmt::format("{}: <limit> has no {}; URDF's default 0 is taken", owner, has_lower ? "upper" : "lower"),
-        "Write both lower= and upper=.");
+    problems.warning(line,
+                     fmt::format("{}: <limit> has no {}; using URDF's default 0", owner, has_lower ? "upper" : "lower"),
+                     "Write both lower= and upper=.");
   }
   out.lower = lower.value_or(0);
   out.upper = upper.value_or(0);
   if (out.lower > out.upper) {
     problems.warning(line,
                      fmt::format("{}: lower {:.6g} is above upper {:.6g}; it is free", owner, out.lower, out.upper),
-                     fmt::format("Exchange lower and upper{}", or_continuous(out.type)));
+                     fmt::format("Exchange lower and upper{}", or_continuous_hint(out.type)));
   } else if (out.lower < -kNoBound && out.upper > kNoBound) {
-    problems.note(line, fmt::format("{}: limits beyond {:g} mean none; it is free", owner, kNoBound),
-                  fmt::format("Leave lower and upper out{}", or_continuous(out.type)));
+    problems.note(line, fmt::format("{}: limits beyond {:g} mean no limits; it is free", owner, kNoBound),
+                  fmt::format("Remove lower and upper{}", or_continuous_hint(out.type)));
   } else {
     out.limited = true;
     out.lower = std::clamp(out.lower, -kNoBound, kNoBound);
@@ -185,14 +187,14 @@ void UrdfReader::bounds(const Element& limit, const std::string& owner, UrdfJoin
 }
 
 std::optional<UrdfMimic> UrdfReader::mimic(const Element& element, const std::string& owner) {
-  const Element* found = only_child(element, "mimic", owner);
+  const Element* found = unique_child(element, "mimic", owner);
   if (!found) return std::nullopt;
   UrdfMimic out;
   out.line = found->GetLineNum();
   check_attributes(*found, {"joint", "multiplier", "offset"});
   const char* joint = found->Attribute("joint");
   if (!joint || !*joint) {
-    problems.error(out.line, fmt::format("{}: <mimic> names no joint; left out", owner), "Write joint=\"…\".");
+    problems.error(out.line, fmt::format("{}: <mimic> names no joint; ignored", owner), "Write joint=\"…\".");
     return std::nullopt;
   }
   out.joint = joint;

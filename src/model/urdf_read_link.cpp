@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostShapes = 1000;
+constexpr std::size_t kMaxShapes = 1000;
 constexpr NumberRange kMassRange{0, 1e7, "from 0 to 1e7 kg"};
 constexpr NumberRange kTensorRange{-1e12, 1e12, "within 1e12 kg·m²"};
 constexpr NumberRange kScaleRange{-1e6, 1e6, "within 1e6, not 0"};
@@ -26,15 +26,15 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
   const std::string owner = fmt::format("link '{}'", printable(name));
   check_attributes(element, {"name"});
   check_concave(element, owner);
-  if (const Element* found = only_child(element, "inertial", owner)) out.inertial = inertial(*found, owner);
+  if (const Element* found = unique_child(element, "inertial", owner)) out.inertial = inertial(*found, owner);
   for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view kind = name_of(*e);
     if (kind != "visual" && kind != "collision") continue;
     std::vector<UrdfShape>& to = kind == "visual" ? out.visuals : out.collisions;
-    if (to.size() >= kMostShapes) {
+    if (to.size() >= kMaxShapes) {
       problems.error(e->GetLineNum(),
-                     fmt::format("{} has more than {} <{}> elements; the rest is left out", owner, kMostShapes, kind),
-                     "Join them in one mesh.");
+                     fmt::format("{} has more than {} <{}> elements; the rest is ignored", owner, kMaxShapes, kind),
+                     "Merge them into one mesh.");
       break;
     }
     std::optional<UrdfShape> read = shape(*e, owner);
@@ -45,9 +45,9 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
 
 std::optional<UrdfInertial> UrdfReader::inertial(const Element& element, const std::string& owner) {
   UrdfInertial out;
-  const Element* mass = only_child(element, "mass", owner);
+  const Element* mass = unique_child(element, "mass", owner);
   if (!mass || !mass->Attribute("value")) {
-    problems.error((mass ? mass : &element)->GetLineNum(), fmt::format("{}: <inertial> has no mass; left out", owner),
+    problems.error((mass ? mass : &element)->GetLineNum(), fmt::format("{}: <inertial> has no mass; ignored", owner),
                    "Write <mass value=\"…\"/> in kg inside <inertial>.");
     return std::nullopt;
   }
@@ -56,10 +56,10 @@ std::optional<UrdfInertial> UrdfReader::inertial(const Element& element, const s
   if (!value) return std::nullopt;
   out.mass = *value;
   out.origin = origin(element, owner);
-  if (const Element* found = only_child(element, "inertia", owner)) {
+  if (const Element* found = unique_child(element, "inertia", owner)) {
     tensor(*found, owner, out);
   } else if (out.mass > 0) {
-    problems.warning(element.GetLineNum(), fmt::format("{}: <inertial> has no <inertia>; the shape's is taken", owner),
+    problems.warning(element.GetLineNum(), fmt::format("{}: <inertial> has no <inertia>; using the shape's", owner),
                      "Write <inertia ixx= ixy= ixz= iyy= iyz= izz=/> in kg·m².");
   }
   return out;
@@ -83,7 +83,7 @@ void UrdfReader::tensor(const Element& element, const std::string& owner, UrdfIn
     }
   }
   if (!good) {
-    problems.error(element.GetLineNum(), fmt::format("{}: <inertia> is incomplete; the shape's tensor is taken", owner),
+    problems.error(element.GetLineNum(), fmt::format("{}: <inertia> is incomplete; using the shape's tensor", owner),
                    "Write all six: ixx ixy ixz iyy iyz izz, in kg·m².");
     return;
   }
@@ -97,16 +97,16 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
   check_attributes(element, {"name"});
   if (name_of(element) == "collision") check_concave(element, owner);
   out.origin = origin(element, owner);
-  const Element* geometry_element = only_child(element, "geometry", owner);
+  const Element* geometry_element = unique_child(element, "geometry", owner);
   const Element* kind = geometry_element ? geometry_element->FirstChildElement() : nullptr;
   if (!kind) {
-    problems.error(element.GetLineNum(), fmt::format("{}: a <{}> has no geometry; left out", owner, name_of(element)),
+    problems.error(element.GetLineNum(), fmt::format("{}: a <{}> has no geometry; ignored", owner, name_of(element)),
                    "Write <geometry> with one <box>, <sphere>, <cylinder>, <capsule> or <mesh> inside.");
     return std::nullopt;
   }
   if (kind->NextSiblingElement()) {
     problems.warning(kind->NextSiblingElement()->GetLineNum(),
-                     fmt::format("{}: a <geometry> holds more than one shape; the first counts", owner),
+                     fmt::format("{}: a <geometry> contains more than one shape; using the first", owner),
                      fmt::format("Write one <{}> for each shape.", name_of(element)));
   }
   if (!geometry(*kind, owner, out)) return std::nullopt;
@@ -120,11 +120,10 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
   return out;
 }
 
-bool UrdfReader::positive(const Element& element, const char* attribute, const std::string& owner, double& out) {
+bool UrdfReader::read_length(const Element& element, const char* attribute, const std::string& owner, double& out) {
   if (!element.Attribute(attribute)) {
-    problems.error(element.GetLineNum(),
-                   fmt::format("{}: <{}> has no {}; left out", owner, name_of(element), attribute),
-                   fmt::format("Write {}=\"…\" in metres.", attribute));
+    problems.error(element.GetLineNum(), fmt::format("{}: <{}> has no {}; ignored", owner, name_of(element), attribute),
+                   fmt::format("Write {}=\"…\" in meters.", attribute));
     return false;
   }
   const std::optional<double> value = number(element, attribute, owner, kLengthRange);
@@ -139,19 +138,19 @@ bool UrdfReader::geometry(const Element& element, const std::string& owner, Urdf
   if (kind == "sphere") {
     check_attributes(element, {"radius"});
     shape.kind = ShapeKind::sphere;
-    return positive(element, "radius", owner, shape.radius);
+    return read_length(element, "radius", owner, shape.radius);
   }
   if (kind == "cylinder" || kind == "capsule") {
     check_attributes(element, {"radius", "length"});
     shape.kind = kind == "cylinder" ? ShapeKind::cylinder : ShapeKind::capsule;
-    return positive(element, "radius", owner, shape.radius) && positive(element, "length", owner, shape.height);
+    return read_length(element, "radius", owner, shape.radius) && read_length(element, "length", owner, shape.height);
   }
   if (kind == "box") {
     check_attributes(element, {"size"});
     shape.kind = ShapeKind::box;
     if (!element.Attribute("size")) {
-      problems.error(element.GetLineNum(), fmt::format("{}: <box> has no size; left out", owner),
-                     "Write size=\"x y z\" in metres.");
+      problems.error(element.GetLineNum(), fmt::format("{}: <box> has no size; ignored", owner),
+                     "Write size=\"x y z\" in meters.");
       return false;
     }
     const std::optional<Vec3> size = vector(element, "size", owner, kLengthRange);
@@ -165,7 +164,8 @@ bool UrdfReader::geometry(const Element& element, const std::string& owner, Urdf
     shape.normal = glm::length(normal) > 0.5 ? normal : Vec3(0, 0, 1);
     return true;
   }
-  problems.error(element.GetLineNum(), fmt::format("{}: geometry <{}> is not known; left out", owner, printable(kind)),
+  problems.error(element.GetLineNum(),
+                 fmt::format("{}: geometry <{}> is not supported; ignored", owner, printable(kind)),
                  "Use box, sphere, cylinder, capsule, mesh, or a plane in a link that does not move.");
   return false;
 }
@@ -175,7 +175,7 @@ bool UrdfReader::mesh_geometry(const Element& element, const std::string& owner,
   check_attributes(element, {"filename", "scale"});
   const char* file = element.Attribute("filename");
   if (!file || !*file) {
-    problems.error(element.GetLineNum(), fmt::format("{}: <mesh> names no file; left out", owner),
+    problems.error(element.GetLineNum(), fmt::format("{}: <mesh> names no file; ignored", owner),
                    "Write filename=\"…\" with the path of an STL, OBJ or DAE file.");
     return false;
   }
@@ -185,8 +185,8 @@ bool UrdfReader::mesh_geometry(const Element& element, const std::string& owner,
   if (!scale) return false;
   out.mesh_scale = *scale;
   if (std::abs(scale->x) >= 1e-9 && std::abs(scale->y) >= 1e-9 && std::abs(scale->z) >= 1e-9) return true;
-  problems.error(element.GetLineNum(), fmt::format("{}: <mesh> has a scale of 0; left out", owner),
-                 "Write three factors other than 0, such as scale=\"0.001 0.001 0.001\" for millimetres.");
+  problems.error(element.GetLineNum(), fmt::format("{}: <mesh> has a scale of 0; ignored", owner),
+                 "Write three factors other than 0, such as scale=\"0.001 0.001 0.001\" for millimeters.");
   return false;
 }
 

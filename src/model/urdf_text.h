@@ -1,5 +1,5 @@
-// The first look at a URDF file: bytes into text that an XML parser can be shown safely. Lines stay where they were,
-// so that every later complaint has the user's line number.
+// Reads a URDF file and converts its bytes to text that is safe for an XML parser. Preserves line numbers, so that
+// later messages refer to the lines of the user's file.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace limber {
 
-inline constexpr std::size_t kMostUrdfBytes = 32u << 20;
-inline constexpr int kMostUrdfDepth = 64;
+inline constexpr std::size_t kMaxUrdfBytes = 32u << 20;
+inline constexpr int kMaxUrdfDepth = 64;
 
-/// The whole of a regular file of at most `most` bytes; the error names the file and the cure. [any]
-Result<std::string> read_whole_file(const std::string& path, std::size_t most);
+/// Reads a regular file of at most `max_bytes`; the error names the file and a fix. [any]
+Result<std::string> read_whole_file(const std::string& path, std::size_t max_bytes);
 
-/// Valid UTF-8 without NUL, DOCTYPE, processing instructions, elements nested deeper than 64 and anything after the
-/// first element's end; what was taken out or converted is said in `problems`. An error when there is no XML at all.
-/// [any]
+/// Returns valid UTF-8 without NUL, DOCTYPE, processing instructions, elements nested deeper than kMaxUrdfDepth, and
+/// anything after the first element; reports removals and conversions in `problems`. Errors if there is no XML element,
+/// or for UTF-16 and too large files. [any]
 Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Finds the tree in a URDF's links and joints, whatever cycles, second parents and loose ends the file has.
+// Finds the kinematic tree of a URDF's links and joints; tolerates cycles, second parents and unconnected links.
 #pragma once
 
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace limber {
 
-/// One link in stream order (root first, depth first, joints in file order), and what leads to it.
+/// One link of the tree, in depth-first order from the root (siblings in file order), with its parent.
 struct UrdfNode {
   int link = -1;    ///< Index into UrdfFile::links.
-  int joint = -1;   ///< Index into UrdfFile::joints of the joint that leads here; -1: the root.
-  int parent = -1;  ///< Index of the parent's node; -1: the root.
+  int joint = -1;   ///< Index into UrdfFile::joints of the joint to the parent; -1: this is the root.
+  int parent = -1;  ///< Index of the parent's node; -1: this is the root.
 };
 
-/// The largest tree, the first of equal ones; what is not part of it is said. The error (no link without a parent)
-/// starts with a line number and a colon. Time is linear in links and joints for every input. [any]
+/// Returns the largest tree (the first of equal ones) and reports links outside of it. The error (there is no root, as
+/// every link has a parent) starts with a line number and a colon. Linear in links and joints for any input. [any]
 Result<std::vector<UrdfNode>> find_tree(const UrdfFile& file, Problems& problems);
 
 }  // namespace limber

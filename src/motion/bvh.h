@@ -1,4 +1,4 @@
-// BVH: a skeleton a body, as programs for motion capture take it. Y up, metres, degrees.
+// BVH writer: one motion capture skeleton per body. Y up, meters, degrees.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,13 @@
 
 namespace limber {
 
-/// One file, where `path` ends with .bvh: a second body is an error then. Else a folder of that name with a file a
-/// body; it must not be there. Memory does not grow with time.
+/// Creates a writer. If `path` ends with .bvh, it writes one file, and a second body is an error; otherwise a folder of
+/// that name, which must not exist, with one file per body. `rate`: frames per second. Memory use is independent of the
+/// number of frames.
 Result<std::unique_ptr<MotionWriter>> write_bvh(const std::string& path, double rate);
 
-/// Turns about z, x and y, rad: R = Rz·Rx·Ry, as the channels stand in the file. Of all that give R those nearest to
-/// `before`, so that a turn never jumps.
-Vec3 bvh_angles(const Quat& rotation, const Vec3& before);
+/// Returns the Euler angles about z, x and y, rad: R = Rz·Rx·Ry, the order of the channels in the file. Of all
+/// equivalent angles, chooses those nearest to `previous`, so that a curve never jumps.
+Vec3 bvh_angles(const Quat& rotation, const Vec3& previous);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Rows have the columns that are known when they are written; those that came later are added at the end.
+// Lines are written with the columns known so far; finish() appends empty cells for columns that were added later.
 #include "motion/csv.h"
 
 #include <cerrno>
@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 
-// a column's name: what OSC would have changed is changed, so only quotes are left to be doubled
+// quotes a column name if necessary; names are already escaped for OSC, so only quotation marks need doubling
 std::string cell_of(const std::string& name) {
   if (name.find_first_of("\",\n\r") == std::string::npos) return name;
   std::string out = "\"";
@@ -25,61 +25,62 @@ std::string cell_of(const std::string& name) {
   return out + "\"";
 }
 
-// as exact as the simulation is, as short as can be
-void append_number(std::string& row, double value) {
-  fmt::format_to(std::back_inserter(row), ",{}", static_cast<float>(value));
+// shortest text with the simulation's (single) precision
+void append_number(std::string& line, double value) {
+  fmt::format_to(std::back_inserter(line), ",{}", static_cast<float>(value));
 }
 
 class CsvWriter : public MotionWriter {
  public:
-  explicit CsvWriter(const std::string& path) : path_(path), rows_(std::in_place, path) {}
+  explicit CsvWriter(const std::string& path) : path_(path), file_(std::in_place, path) {}
 
-  Result<void> begin() { return rows_->open(); }
+  Result<void> begin() { return file_->open(); }
 
   Result<void> add_body(const MotionBody& body) override {
-    const std::string place = names_.unique(escape_name(body.name));
+    const std::string prefix = names_.unique(escape_name(body.name));
     const std::size_t before = columns_;
     for (const MotionLink& link : body.links) {
       for (const char* value : {"x", "y", "z", "qx", "qy", "qz", "qw"})
-        add_column(fmt::format("{}/part/{}/{}", place, escape_name(link.name), value));
+        add_column(fmt::format("{}/part/{}/{}", prefix, escape_name(link.name), value));
     }
     for (const MotionJoint& joint : body.joints) {
       for (const std::string& value : joint.values)
-        add_column(fmt::format("{}/joint/{}/{}", place, escape_name(joint.name), value));
+        add_column(fmt::format("{}/joint/{}/{}", prefix, escape_name(joint.name), value));
     }
     widths_.push_back(columns_ - before);
     return {};
   }
 
   Result<void> add_frame(double time, std::span<const MotionSample> bodies) override {
-    row_.clear();
-    if (eras_.empty()) row_ = header_ + "\n";
-    if (eras_.empty() || eras_.back().columns != columns_) eras_.push_back({count_, columns_});
+    line_.clear();
+    if (column_changes_.empty()) line_ = header_ + "\n";
+    if (column_changes_.empty() || column_changes_.back().columns != columns_)
+      column_changes_.push_back({count_, columns_});
     count_++;
-    row_ += number_text(time);
+    line_ += number_text(time);
     for (std::size_t i = 0; i < bodies.size(); i++) {
-      if (bodies[i].there) {
+      if (bodies[i].present) {
         add_sample(bodies[i]);
       } else {
-        row_.append(widths_[i], ',');
+        line_.append(widths_[i], ',');
       }
     }
-    row_ += '\n';
-    return rows_->put(row_);
+    line_ += '\n';
+    return file_->put(line_);
   }
 
   Result<void> finish() override {
-    if (eras_.empty()) {
-      if (Result<void> put = rows_->put(header_ + "\n"); !put) return put;
+    if (column_changes_.empty()) {
+      if (Result<void> put = file_->put(header_ + "\n"); !put) return put;
     }
-    if (eras_.size() <= 1) return rows_->finish();
-    if (Result<void> flushed = rows_->flush(); !flushed) return flushed;
-    return widen();
+    if (column_changes_.size() <= 1) return file_->finish();
+    if (Result<void> flushed = file_->flush(); !flushed) return flushed;
+    return pad_lines();
   }
 
  private:
-  // rows from that number on have so many columns beside the time
-  struct Era {
+  // from line `first` on, lines have `columns` columns besides the time
+  struct ColumnChange {
     std::uint64_t first = 0;
     std::size_t columns = 0;
   };
@@ -93,30 +94,30 @@ class CsvWriter : public MotionWriter {
     for (const Pose& pose : sample.links) {
       const Vec3& p = pose.position;
       const Quat& q = pose.rotation;
-      for (const double value : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) append_number(row_, value);
+      for (const double value : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) append_number(line_, value);
     }
-    for (const double value : sample.values) append_number(row_, value);
+    for (const double value : sample.values) append_number(line_, value);
   }
 
-  // the rows again, under the whole header, each with an empty cell for every column that it did not know
-  Result<void> widen() {
-    OutFile whole(path_, beside_name(path_ + ".whole"));
-    const system::Descriptor in = system::open_file(rows_->beside(), system::OpenMode::read);
-    if (!in.open()) return read_fault();
-    if (Result<void> opened = whole.open(); !opened) return opened;
-    if (Result<void> put = whole.put(header_ + "\n"); !put) return put;
-    std::string piece(std::size_t{1} << 16u, '\0');
+  // copies the lines below the complete header and appends empty cells for columns that were added later
+  Result<void> pad_lines() {
+    OutFile padded(path_, temporary_name(path_ + ".whole"));
+    const system::Descriptor in = system::open_file(file_->temporary_path(), system::OpenMode::read);
+    if (!in.is_open()) return read_error();
+    if (Result<void> opened = padded.open(); !opened) return opened;
+    if (Result<void> put = padded.put(header_ + "\n"); !put) return put;
+    std::string chunk(std::size_t{1} << 16u, '\0');
     std::string out;
-    std::uint64_t line = 0;  // 0: the first header, which was too short
-    std::size_t era = 0;
-    for (std::ptrdiff_t n = 0; (n = system::read_some(in.fd(), piece.data(), piece.size())) != 0;) {
-      if (n < 0) return read_fault();
+    std::uint64_t line = 0;  // 0: the incomplete first header
+    std::size_t change = 0;
+    for (std::ptrdiff_t n = 0; (n = system::read_some(in.fd(), chunk.data(), chunk.size())) != 0;) {
+      if (n < 0) return read_error();
       out.clear();
-      for (const char c : std::string_view(piece).substr(0, static_cast<std::size_t>(n))) {
+      for (const char c : std::string_view(chunk).substr(0, static_cast<std::size_t>(n))) {
         if (c == '\n') {
           if (line > 0) {
-            while (era + 1 < eras_.size() && eras_[era + 1].first < line) era++;
-            out.append(columns_ - eras_[era].columns, ',');
+            while (change + 1 < column_changes_.size() && column_changes_[change + 1].first < line) change++;
+            out.append(columns_ - column_changes_[change].columns, ',');
             out += '\n';
           }
           line++;
@@ -124,24 +125,24 @@ class CsvWriter : public MotionWriter {
           out += c;
         }
       }
-      if (Result<void> put = whole.put(out); !put) return put;
+      if (Result<void> put = padded.put(out); !put) return put;
     }
-    rows_.reset();
-    return whole.finish();
+    file_.reset();
+    return padded.finish();
   }
 
-  Error read_fault() const {
+  Error read_error() const {
     return Error{fmt::format("{} can't be written: {}", printable(path_), std::generic_category().message(errno))};
   }
 
   std::string path_;
-  std::optional<OutFile> rows_;
+  std::optional<OutFile> file_;
   UniqueNames names_;
   std::string header_ = "time";
-  std::string row_;
+  std::string line_;
   std::size_t columns_ = 0;
-  std::vector<std::size_t> widths_;  // of the bodies
-  std::vector<Era> eras_;
+  std::vector<std::size_t> widths_;  // by body: number of columns
+  std::vector<ColumnChange> column_changes_;
   std::uint64_t count_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// CSV: a row a frame; where every link is, how it is turned, what every joint stands at.
+// CSV writer: one line per frame with the pose of every link and the value of every joint.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace limber {
 
-/// Memory does not grow with time: rows go to the disk as they come, and once more where a body came after the first
-/// row, since the header has its columns then. The error names the file.
+/// Creates a writer. Memory use is independent of the number of frames: lines are written to disk as they arrive. If a
+/// body was added after the first frame, finish() rewrites the file with the complete header. The error names the file.
 Result<std::unique_ptr<MotionWriter>> write_csv(const std::string& path);
 
 }  // namespace limber

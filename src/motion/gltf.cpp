@@ -1,4 +1,4 @@
-// Keys are gathered; the files are written at the end: .glb is a head, the text and the buffer.
+// Collects keyframes and writes the files at the end. A .glb file is a header, the JSON text and the binary buffer.
 #include "motion/gltf.h"
 
 #include <bit>
@@ -16,13 +16,13 @@ namespace limber {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x46546C67;  // "glTF"
-constexpr std::uint32_t kText = 0x4E4F534A;   // "JSON"
-constexpr std::uint32_t kBytes = 0x004E4942;  // "BIN"
+constexpr std::uint32_t kMagic = 0x46546C67;        // "glTF"
+constexpr std::uint32_t kJsonChunk = 0x4E4F534A;    // "JSON"
+constexpr std::uint32_t kBinaryChunk = 0x004E4942;  // "BIN"
 
 static_assert(std::endian::native == std::endian::little, "glTF's numbers are written as they lie in memory");
 
-std::string words(std::initializer_list<std::uint64_t> numbers) {
+std::string little_endian_words(std::initializer_list<std::uint64_t> numbers) {
   std::string out;
   for (const std::uint64_t number : numbers) {
     for (unsigned shift = 0; shift < 32; shift += 8) out.push_back(static_cast<char>(number >> shift & 0xffu));
@@ -39,14 +39,14 @@ Result<void> put_all(OutFile& file, const std::vector<std::string_view>& pieces)
 
 class GltfWriter : public MotionWriter {
  public:
-  GltfWriter(std::string path, std::uint64_t most)
+  GltfWriter(std::string path, std::uint64_t max_bytes)
       : path_(std::move(path)),
-        most_(most),
+        max_bytes_(max_bytes),
         file_(path_),
         bin_(std::filesystem::path(path_).replace_extension(".bin").string()) {}
 
   Result<void> begin() {
-    if (Result<void> opened = file_.open(); !opened || single()) return opened;
+    if (Result<void> opened = file_.open(); !opened || is_glb()) return opened;
     return bin_.open();
   }
 
@@ -57,23 +57,23 @@ class GltfWriter : public MotionWriter {
 
   Result<void> add_frame(double time, std::span<const MotionSample> bodies) override {
     tracks_.add_frame(time, bodies);
-    if (tracks_.bytes() <= most_) return {};
-    return Error{
-        fmt::format("{}: the keys of {} frames are {} MB, which few programs read: choose bodies by --body, fewer "
-                    "frames by --rate, or a stretch by --from and --to",
-                    printable(path_), tracks_.times().size(), tracks_.bytes() >> 20u)};
+    if (tracks_.bytes() <= max_bytes_) return {};
+    return Error{fmt::format(
+        "{}: the keys of {} frames take {} MB, more than most programs read. Choose bodies with --body, fewer "
+        "frames with --rate, or a range with --from and --to",
+        printable(path_), tracks_.times().size(), tracks_.bytes() >> 20u)};
   }
 
   Result<void> finish() override {
     const std::filesystem::path path(path_);
-    const std::string uri = single() ? "" : uri_name(std::filesystem::path(bin_.path()).filename().string());
+    const std::string uri = is_glb() ? "" : uri_name(std::filesystem::path(bin_.path()).filename().string());
     Result<GltfModel> model = gltf_model(tracks_, printable(path.stem().string()), uri);
     if (!model) return Error{fmt::format("{}: {}", printable(path_), model.error())};
-    return single() ? finish_glb(*model) : finish_gltf(*model);
+    return is_glb() ? finish_glb(*model) : finish_gltf(*model);
   }
 
  private:
-  bool single() const { return path_.ends_with(".glb"); }
+  bool is_glb() const { return path_.ends_with(".glb"); }
 
   Result<void> finish_gltf(const GltfModel& model) {
     if (Result<void> put = put_all(bin_, model.pieces); !put) return put;
@@ -87,18 +87,18 @@ class GltfWriter : public MotionWriter {
   Result<void> finish_glb(GltfModel& model) {
     model.json.resize((model.json.size() + 3) / 4 * 4, ' ');
     const bool has_bytes = model.bytes > 0;
-    const std::uint64_t whole = 12 + 8 + model.json.size() + (has_bytes ? 8 + model.bytes : 0);
-    const std::string head = words({kMagic, 2, whole, model.json.size(), kText});
-    if (Result<void> put = put_all(file_, {head, model.json}); !put) return put;
+    const std::uint64_t total_bytes = 12 + 8 + model.json.size() + (has_bytes ? 8 + model.bytes : 0);
+    const std::string header = little_endian_words({kMagic, 2, total_bytes, model.json.size(), kJsonChunk});
+    if (Result<void> put = put_all(file_, {header, model.json}); !put) return put;
     if (has_bytes) {
-      if (Result<void> put = file_.put(words({model.bytes, kBytes})); !put) return put;
+      if (Result<void> put = file_.put(little_endian_words({model.bytes, kBinaryChunk})); !put) return put;
       if (Result<void> put = put_all(file_, model.pieces); !put) return put;
     }
     return file_.finish();
   }
 
   std::string path_;
-  std::uint64_t most_;
+  std::uint64_t max_bytes_;
   OutFile file_;
   OutFile bin_;  // beside a .gltf
   GltfTracks tracks_;
@@ -106,8 +106,8 @@ class GltfWriter : public MotionWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t most) {
-  auto writer = std::make_unique<GltfWriter>(path, most);
+Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t max_bytes) {
+  auto writer = std::make_unique<GltfWriter>(path, max_bytes);
   if (const Result<void> begun = writer->begin(); !begun) return Error{begun.error()};
   return std::unique_ptr<MotionWriter>(std::move(writer));
 }

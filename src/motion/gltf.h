@@ -1,4 +1,4 @@
-// glTF 2.0: bodies with meshes and one animation, as programs for pictures and the web take them. Y up, metres.
+// glTF 2.0 writer: bodies with meshes and one animation, for 3D editors and the web. Y up, meters.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,11 @@
 
 namespace limber {
 
-/// Keys of the animation that a file may hold, bytes: more than that few programs read.
-inline constexpr std::uint64_t kMostGltfKeys = std::uint64_t{1800} << 20u;
+/// Default limit of the animation's keyframes, bytes; few programs read larger files.
+inline constexpr std::uint64_t kMaxGltfKeyBytes = std::uint64_t{1800} << 20u;
 
-/// `path` ends with .glb: one file; with .gltf: a text beside NAME.bin. Keys are held in memory until finish(), 28
-/// bytes a link and frame; past `most` of them an error says what to do.
-Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t most = kMostGltfKeys);
+/// Creates a writer. A `path` that ends with .glb gives one file; .gltf a text file and NAME.bin. Keyframes are stored
+/// in memory until finish(), 28 bytes per link and frame; more than `max_bytes` are an error.
+Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t max_bytes = kMaxGltfKeyBytes);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Nodes: the scene's root, which turns Z up to Y up; a body; its links as they hang on each other, with a mesh each.
-// tinygltf makes the text of it. The buffer is not handed over to it, since it would be copied twice.
+// Node hierarchy: the scene's root, which rotates Z up to Y up; the bodies; their links as a tree, each with a mesh.
+// tinygltf writes the JSON text. The buffer is not passed to tinygltf, because it would be copied twice.
 #include "motion/gltf_model.h"
 
 #include <algorithm>
@@ -18,18 +18,18 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kKey = sizeof(float);
+constexpr std::size_t kFloatBytes = sizeof(float);
 
 template <class T>
-std::string_view bytes_of(const std::vector<T>& of) {
-  return {reinterpret_cast<const char*>(of.data()), of.size() * sizeof(T)};
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
 }
 
-class Maker {
+class ModelBuilder {
  public:
-  Maker(const GltfTracks& tracks, GltfModel& out) : tracks_(tracks), out_(out) {}
+  ModelBuilder(const GltfTracks& tracks, GltfModel& out) : tracks_(tracks), out_(out) {}
 
-  tinygltf::Model make(const std::string& name) {
+  tinygltf::Model build(const std::string& name) {
     model_.asset.version = "2.0";
     model_.asset.generator = "Limber";
     tinygltf::Node root;
@@ -48,7 +48,7 @@ class Maker {
   }
 
  private:
-  // every piece is a whole number of floats, so that all are aligned as they must be
+  // the size of every piece is a multiple of 4 bytes, so that all pieces are aligned as glTF requires
   int add_view(std::string_view bytes, int target) {
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -76,21 +76,22 @@ class Maker {
     return add_accessor(add_view(bytes, 0), type, TINYGLTF_COMPONENT_TYPE_FLOAT, count);
   }
 
-  // the times of some frames on end
-  int times_of(std::size_t first, std::size_t count) {
-    const auto [known, fresh] = spans_.try_emplace({first, count}, 0);
-    if (!fresh) return known->second;
-    known->second = add_accessor(times_view_, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, count, first * kKey);
+  // accessor for the times of consecutive frames
+  int times_accessor(std::size_t first, std::size_t count) {
+    const auto [known, is_new] = time_accessors_.try_emplace({first, count}, 0);
+    if (!is_new) return known->second;
+    known->second =
+        add_accessor(times_view_, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT, count, first * kFloatBytes);
     model_.accessors.back().minValues = {tracks_.times()[first]};
     model_.accessors.back().maxValues = {tracks_.times()[first + count - 1]};
     return known->second;
   }
 
-  void add_channel(int node, const char* path, int times, int values, const char* between) {
+  void add_channel(int node, const char* path, int times, int values, const char* interpolation) {
     tinygltf::AnimationSampler sampler;
     sampler.input = times;
     sampler.output = values;
-    sampler.interpolation = between;
+    sampler.interpolation = interpolation;
     tinygltf::AnimationChannel channel;
     channel.sampler = static_cast<int>(animation_.samplers.size());
     channel.target_node = node;
@@ -107,57 +108,59 @@ class Maker {
   }
 
   void add_track(const GltfTrack& track) {
-    tinygltf::Node own;
-    own.name = names_.unique(track.body.name);
-    const int body = add_node(std::move(own), 0);
-    if (track.switches.size() > 1 || track.first > 0) add_switches(track, body);
+    tinygltf::Node body_node;
+    body_node.name = names_.unique(track.body.name);
+    const int body = add_node(std::move(body_node), 0);
+    if (track.presence_changes.size() > 1 || track.first > 0) add_visibility(track, body);
     std::vector<int> nodes(track.links.size(), body);
     for (const std::size_t i : link_order(track.body).links) {
       const MotionLink& link = track.body.links[i];
       const GltfLinkKeys& keys = track.links[i];
       tinygltf::Node node;
       node.name = names_.unique(track.body.name + "." + link.name);
-      node.mesh = mesh_of(link);
-      node.translation.assign(keys.places.begin(), keys.places.begin() + 3);
-      node.rotation.assign(keys.turns.begin(), keys.turns.begin() + 4);
+      node.mesh = mesh_index(link);
+      node.translation.assign(keys.positions.begin(), keys.positions.begin() + 3);
+      node.rotation.assign(keys.rotations.begin(), keys.rotations.begin() + 4);
       nodes[i] = add_node(std::move(node), link.parent < 0 ? body : nodes[static_cast<std::size_t>(link.parent)]);
-      if (keys.still) continue;
+      if (keys.at_rest) continue;
       const std::size_t count = track.keys();
-      const int times = times_of(track.first, count);
-      const int places = add_numbers(bytes_of(keys.places).substr(0, 3 * kKey * count), TINYGLTF_TYPE_VEC3, count);
-      const int turns = add_numbers(bytes_of(keys.turns).substr(0, 4 * kKey * count), TINYGLTF_TYPE_VEC4, count);
-      add_channel(nodes[i], "translation", times, places, "LINEAR");
-      add_channel(nodes[i], "rotation", times, turns, "LINEAR");
+      const int times = times_accessor(track.first, count);
+      const int positions =
+          add_numbers(bytes_of(keys.positions).substr(0, 3 * kFloatBytes * count), TINYGLTF_TYPE_VEC3, count);
+      const int rotations =
+          add_numbers(bytes_of(keys.rotations).substr(0, 4 * kFloatBytes * count), TINYGLTF_TYPE_VEC4, count);
+      add_channel(nodes[i], "translation", times, positions, "LINEAR");
+      add_channel(nodes[i], "rotation", times, rotations, "LINEAR");
     }
   }
 
-  // what comes and goes is of size 1 and 0; where nothing is animated it is there
-  void add_switches(const GltfTrack& track, int body) {
-    std::vector<float>& times = out_.kept.emplace_back();
-    std::vector<float>& sizes = out_.kept.emplace_back();
+  // animates the presence of a body as scale 1 or 0; viewers without animation show the body
+  void add_visibility(const GltfTrack& track, int body) {
+    std::vector<float>& times = out_.own_data.emplace_back();
+    std::vector<float>& sizes = out_.own_data.emplace_back();
     const auto add = [&](float time, float size) {
       times.push_back(time);
       sizes.insert(sizes.end(), 3, size);
     };
     if (track.first > 0) add(0, 0);
     float size = 0;
-    for (const std::size_t frame : track.switches) add(tracks_.times()[frame], size = 1 - size);
+    for (const std::size_t frame : track.presence_changes) add(tracks_.times()[frame], size = 1 - size);
     const int input = add_numbers(bytes_of(times), TINYGLTF_TYPE_SCALAR, times.size());
     model_.accessors.back().minValues = {times.front()};
     model_.accessors.back().maxValues = {times.back()};
     add_channel(body, "scale", input, add_numbers(bytes_of(sizes), TINYGLTF_TYPE_VEC3, times.size()), "STEP");
   }
 
-  int mesh_of(const MotionLink& link) {
+  int mesh_index(const MotionLink& link) {
     if (link.surfaces == nullptr || link.surfaces->empty()) return -1;
-    const auto [known, fresh] = meshes_.try_emplace(link.surfaces.get(), static_cast<int>(model_.meshes.size()));
-    if (!fresh) return known->second;
+    const auto [known, is_new] = meshes_.try_emplace(link.surfaces.get(), static_cast<int>(model_.meshes.size()));
+    if (!is_new) return known->second;
     tinygltf::Mesh mesh;
     mesh.name = link.name;
     for (const Surface& surface : *link.surfaces) {
       tinygltf::Primitive primitive;
       primitive.mode = TINYGLTF_MODE_TRIANGLES;
-      primitive.material = material_of(surface);
+      primitive.material = material_index(surface);
       primitive.attributes["POSITION"] = add_points(surface);
       primitive.attributes["NORMAL"] = add_vertices(surface.normals);
       const int view = add_view(bytes_of(surface.triangles), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
@@ -169,9 +172,9 @@ class Maker {
     return known->second;
   }
 
-  int add_vertices(const std::vector<std::array<float, 3>>& of) {
-    return add_accessor(add_view(bytes_of(of), TINYGLTF_TARGET_ARRAY_BUFFER), TINYGLTF_TYPE_VEC3,
-                        TINYGLTF_COMPONENT_TYPE_FLOAT, of.size());
+  int add_vertices(const std::vector<std::array<float, 3>>& vectors) {
+    return add_accessor(add_view(bytes_of(vectors), TINYGLTF_TARGET_ARRAY_BUFFER), TINYGLTF_TYPE_VEC3,
+                        TINYGLTF_COMPONENT_TYPE_FLOAT, vectors.size());
   }
 
   int add_points(const Surface& surface) {
@@ -189,11 +192,11 @@ class Maker {
     return accessor;
   }
 
-  int material_of(const Surface& surface) {
+  int material_index(const Surface& surface) {
     const Vec3& c = surface.color;
-    const auto [known, fresh] =
+    const auto [known, is_new] =
         materials_.try_emplace({c.x, c.y, c.z, surface.alpha}, static_cast<int>(model_.materials.size()));
-    if (!fresh) return known->second;
+    if (!is_new) return known->second;
     tinygltf::Material material;
     material.name = "material-" + std::to_string(known->second + 1);
     material.pbrMetallicRoughness.baseColorFactor = {c.x, c.y, c.z, surface.alpha};
@@ -210,7 +213,7 @@ class Maker {
   tinygltf::Animation animation_;
   UniqueNames names_;
   int times_view_ = -1;
-  std::map<std::pair<std::size_t, std::size_t>, int> spans_;
+  std::map<std::pair<std::size_t, std::size_t>, int> time_accessors_;
   std::map<const Surfaces*, int> meshes_;
   std::map<std::tuple<double, double, double, double>, int> materials_;
 };
@@ -220,9 +223,9 @@ class Maker {
 Result<GltfModel> gltf_model(const GltfTracks& tracks, const std::string& name, const std::string& uri) {
   GltfModel out;
   try {
-    const tinygltf::Model model = Maker(tracks, out).make(name);
+    const tinygltf::Model model = ModelBuilder(tracks, out).build(name);
     if (out.bytes > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-      return Error{"meshes and keys are more than 2 GB, which few programs read: leave bodies out by --body"};
+      return Error{"meshes and keys take more than 2 GB, more than most programs read. Choose bodies with --body"};
     std::ostringstream text;
     tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, text, false, false);
     nlohmann::json json = nlohmann::json::parse(text.str());

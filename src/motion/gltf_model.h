@@ -1,4 +1,4 @@
-// GltfModel: tracks and surfaces as a model of tinygltf, and the bytes behind it.
+// GltfModel: converts tracks and surfaces to glTF JSON and the pieces of its binary buffer.
 #pragma once
 
 #include <deque>
@@ -10,16 +10,16 @@
 
 namespace limber {
 
-/// The text of a glTF file, and what the buffer that it speaks of holds.
+/// The JSON text of a glTF file and the contents of its buffer.
 struct GltfModel {
   std::string json;
-  std::vector<std::string_view> pieces;  ///< One after the other they are the buffer; the tracks', or of `kept`.
-  std::uint64_t bytes = 0;               ///< Of the buffer.
-  std::deque<std::vector<float>> kept;
+  std::vector<std::string_view> pieces;  ///< Concatenated, they are the buffer; views of the tracks or of `own_data`.
+  std::uint64_t bytes = 0;               ///< Size of the buffer.
+  std::deque<std::vector<float>> own_data;  ///< Owns the data that is not in the tracks.
 };
 
-/// `name`: the animation's. `uri`: where the buffer is; empty: in the same file. The tracks outlive the answer. The
-/// error names no file.
+/// Converts tracks. `name`: name of the animation. `uri`: file of the buffer; empty: in the same file. The tracks must
+/// outlive the result. The error does not name the file.
 Result<GltfModel> gltf_model(const GltfTracks& tracks, const std::string& name, const std::string& uri);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// From world poses to keys.
+// Conversion of world poses to keyframes.
 #include "motion/gltf_tracks.h"
 
 #include <algorithm>
@@ -8,15 +8,15 @@ namespace limber {
 
 namespace {
 
-// what the simulation's rounding does to a thing that stands: a micrometre, a microradian
-constexpr float kStill = 1e-6F;
+// tolerance for the simulation's rounding of a body at rest: a micrometer, a microradian
+constexpr float kRestTolerance = 1e-6F;
 
-// puts numbers at the end; whether they are the first ones
+// appends a key; true if it equals the first key
 template <std::size_t N>
 bool add_key(std::vector<float>& keys, const std::array<double, N>& values) {
   for (const double value : values) keys.push_back(static_cast<float>(value));
   return std::equal(keys.end() - N, keys.end(), keys.begin(),
-                    [](float a, float b) { return std::abs(a - b) <= kStill; });
+                    [](float a, float b) { return std::abs(a - b) <= kRestTolerance; });
 }
 
 template <std::size_t N>
@@ -24,9 +24,9 @@ void repeat_key(std::vector<float>& keys) {
   for (std::size_t i = 0; i < N; i++) keys.push_back(keys[keys.size() - N]);
 }
 
-double dot_with_last(const std::vector<float>& turns, const Quat& q) {
-  if (turns.empty()) return 1;
-  const float* const last = turns.data() + turns.size() - 4;
+double dot_with_last(const std::vector<float>& rotations, const Quat& q) {
+  if (rotations.empty()) return 1;
+  const float* const last = rotations.data() + rotations.size() - 4;
   return last[0] * q.x + last[1] * q.y + last[2] * q.z + last[3] * q.w;
 }
 
@@ -43,13 +43,13 @@ void GltfTracks::add_keys(GltfTrack& track, const MotionSample& sample) {
   for (std::size_t i = 0; i < track.links.size(); i++) {
     const int parent = track.body.links[i].parent;
     const Pose& world = sample.links[i];
-    const Pose own = parent < 0 ? world : sample.links[static_cast<std::size_t>(parent)].inverse() * world;
+    const Pose local_pose = parent < 0 ? world : sample.links[static_cast<std::size_t>(parent)].inverse() * world;
     GltfLinkKeys& keys = track.links[i];
-    Quat q = glm::normalize(own.rotation);
-    if (dot_with_last(keys.turns, q) < 0) q = -q;
-    const Vec3& p = own.position;
-    const bool stays = add_key<3>(keys.places, {p.x, p.y, p.z});
-    keys.still = add_key<4>(keys.turns, {q.x, q.y, q.z, q.w}) && stays && keys.still;
+    Quat q = glm::normalize(local_pose.rotation);
+    if (dot_with_last(keys.rotations, q) < 0) q = -q;
+    const Vec3& p = local_pose.position;
+    const bool position_at_rest = add_key<3>(keys.positions, {p.x, p.y, p.z});
+    keys.at_rest = add_key<4>(keys.rotations, {q.x, q.y, q.z, q.w}) && position_at_rest && keys.at_rest;
   }
 }
 
@@ -59,15 +59,15 @@ void GltfTracks::add_frame(double time, std::span<const MotionSample> bodies) {
   times_.push_back(static_cast<float>(time - begin_));
   for (std::size_t i = 0; i < bodies.size(); i++) {
     GltfTrack& track = tracks_[i];
-    const bool was_there = track.switches.size() % 2 == 1;
-    if (bodies[i].there != was_there) track.switches.push_back(frame);
-    if (bodies[i].there) {
+    const bool was_present = track.presence_changes.size() % 2 == 1;
+    if (bodies[i].present != was_present) track.presence_changes.push_back(frame);
+    if (bodies[i].present) {
       add_keys(track, bodies[i]);
-      track.last_there = frame;
+      track.last_present = frame;
     } else {
       for (GltfLinkKeys& keys : track.links) {
-        repeat_key<3>(keys.places);
-        repeat_key<4>(keys.turns);
+        repeat_key<3>(keys.positions);
+        repeat_key<4>(keys.rotations);
       }
     }
     bytes_ += 28 * track.links.size();

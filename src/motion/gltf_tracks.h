@@ -1,4 +1,4 @@
-// GltfTracks: what bodies did, as keys of glTF's channels: each link in its parent's frame.
+// GltfTracks: records the motion of bodies as keyframes for glTF channels, each link relative to its parent.
 #pragma once
 
 #include <array>
@@ -10,22 +10,27 @@
 
 namespace limber {
 
+/// The keyframes of one link.
 struct GltfLinkKeys {
-  std::vector<float> places;  ///< Three a key.
-  std::vector<float> turns;   ///< Four a key, x y z w, never further than half a turn from the one before.
-  bool still = true;          ///< All keys are the same but for rounding.
+  std::vector<float> positions;  ///< x y z per key.
+  std::vector<float> rotations;  ///< x y z w per key, with the sign nearest to the previous key.
+  bool at_rest = true;           ///< All keys are equal, except for rounding.
 };
 
+/// The motion of one body.
 struct GltfTrack {
   MotionBody body;
-  std::size_t first = 0;              ///< The frame of the first key.
-  std::size_t last_there = 0;         ///< The last frame in which it is there: keys end with it.
-  std::vector<GltfLinkKeys> links;    ///< A key a frame from `first` on; what is gone stays as it was.
-  std::vector<std::size_t> switches;  ///< Frames in which it came, went, came again …; the first is `first`.
+  std::size_t first = 0;            ///< Frame of the first key.
+  std::size_t last_present = 0;     ///< Last frame in which the body is present; later keys are not written.
+  std::vector<GltfLinkKeys> links;  ///< One key per frame from `first` on; repeated while the body is absent.
+  std::vector<std::size_t>
+      presence_changes;  ///< Frames in which the body alternately appears and disappears; the first one is `first`.
 
-  std::size_t keys() const { return last_there - first + 1; }
+  /// Number of keys to write.
+  std::size_t keys() const { return last_present - first + 1; }
 };
 
+/// Collects the motion of all bodies, one frame after another. All keys are stored in memory.
 class GltfTracks {
  public:
   void add_body(const MotionBody& body);
@@ -33,7 +38,7 @@ class GltfTracks {
   const std::vector<GltfTrack>& tracks() const { return tracks_; }
   /// Seconds since the first frame.
   const std::vector<float>& times() const { return times_; }
-  /// Of all keys.
+  /// Size of all keys, bytes.
   std::uint64_t bytes() const { return bytes_; }
 
  private:

@@ -1,5 +1,5 @@
-// Motion: bodies as other programs take them: links in a tree, with what is seen of them, joints' values; and a writer
-// of a format, which is given one frame after the other.
+// Motion export: bodies as trees of links with surfaces and joint values, and MotionWriter, the interface of the file
+// formats, which receives one frame after another.
 #pragma once
 
 #include <array>
@@ -14,49 +14,52 @@
 
 namespace limber {
 
-/// Triangles of one colour, in the frame of their link, metres.
+/// Triangles of one color, in the frame of their link, meters.
 struct Surface {
   std::vector<std::array<float, 3>> points;
   std::vector<std::array<float, 3>> normals;  ///< Unit, as many as points.
-  std::vector<std::uint32_t> triangles;       ///< Three places among the points each, counter-clockwise from outside.
+  std::vector<std::uint32_t> triangles;       ///< Three indices of points each, counter-clockwise seen from outside.
   Vec3 color{0.5};                            ///< Linear red, green, blue, 0 .. 1.
   double alpha = 1;
 };
 using Surfaces = std::vector<Surface>;
 
+/// A rigid link of a body.
 struct MotionLink {
   std::string name;
-  int parent = -1;                           ///< Among the body's links, in any order; -1: it hangs on nothing.
-  Pose rest;                                 ///< In the body's first link, with every joint at 0.
-  std::shared_ptr<const Surfaces> surfaces;  ///< Links that look alike share them; null: nothing is seen.
+  int parent = -1;                           ///< Index among the body's links, in any order; -1: no parent.
+  Pose rest;                                 ///< Pose in the body's first link with every joint at 0.
+  std::shared_ptr<const Surfaces> surfaces;  ///< Shared by links that look alike; null: invisible.
 };
 
+/// A joint, which has one value per degree of freedom.
 struct MotionJoint {
   std::string name;
-  std::vector<std::string> values;  ///< What is told of it: "angle" (rad), "shift" (m), "angle_x" …
+  std::vector<std::string> values;  ///< Names of its values: "angle" (rad), "shift" (m), "angle_x" …
 };
 
+/// A body as a tree of links.
 struct MotionBody {
   std::string name;
   std::vector<MotionLink> links;
   std::vector<MotionJoint> joints;
 };
 
-/// A body at one time.
+/// The state of a body in one frame.
 struct MotionSample {
-  bool there = false;
-  std::vector<Pose> links;     ///< World, Z up.
-  std::vector<double> values;  ///< Of all joints, one after the other.
+  bool present = false;        ///< False: the body does not exist in this frame; the other fields are unused.
+  std::vector<Pose> links;     ///< World poses, Z up.
+  std::vector<double> values;  ///< Values of all joints, in the order of MotionBody::joints.
 };
 
-/// The links of a body, each behind its parent, the branches one after the other; cycles are nobody's.
+/// The links of a body in depth-first order, each after its parent. Links in cycles are omitted.
 struct LinkOrder {
   std::vector<std::size_t> links;
-  std::vector<std::size_t> depth;  ///< Of the link at the same place: how many are above it.
+  std::vector<std::size_t> depth;  ///< Number of ancestors of the link at the same index.
 };
 LinkOrder link_order(const MotionBody& body);
 
-/// Writes one file, or one a body. What is there already is replaced by finish(); without it nothing stays. Errors name
+/// Writes one file, or one per body. finish() replaces an existing file; without it no file is left behind. Errors name
 /// the file. [one thread]
 class MotionWriter {
  public:
@@ -65,11 +68,12 @@ class MotionWriter {
   MotionWriter& operator=(const MotionWriter&) = delete;
   virtual ~MotionWriter() = default;
 
-  /// A body that is in the next frame for the first time; bodies are counted from 0.
+  /// Declares a body that appears in the next frame for the first time. Bodies are numbered from 0.
   virtual Result<void> add_body(const MotionBody& body) = 0;
-  /// `bodies[i]` is the i-th body that was added. `time`: seconds, a frame's length behind the one before.
+  /// Appends a frame. `bodies[i]` is the i-th body that was added. `time`: seconds, one frame period after the
+  /// previous.
   virtual Result<void> add_frame(double time, std::span<const MotionSample> bodies) = 0;
-  /// Everything is on the disk, under its name.
+  /// Writes everything to disk, under its final name.
   virtual Result<void> finish() = 0;
 };
 

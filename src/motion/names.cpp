@@ -1,4 +1,4 @@
-// Characters that mean something to who reads become others.
+// Replaces or encodes characters that have a meaning in the file format.
 #include "motion/names.h"
 
 #include <fmt/format.h>
@@ -7,14 +7,14 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostBytes = 120;
+constexpr std::size_t kMaxBytes = 120;
 
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }
 
-std::string with_bars(std::string_view name, std::string_view instead_of) {
+std::string with_underscores(std::string_view name, std::string_view replaced) {
   std::string out(name);
   for (char& c : out) {
-    if (is_control(c) || instead_of.find(c) != std::string_view::npos) c = '_';
+    if (is_control(c) || replaced.find(c) != std::string_view::npos) c = '_';
   }
   return out.empty() ? "_" : out;
 }
@@ -22,19 +22,19 @@ std::string with_bars(std::string_view name, std::string_view instead_of) {
 }  // namespace
 
 std::string UniqueNames::unique(std::string_view name) {
-  std::string given(name);
-  for (int n = 2; !given_.insert(given).second; n++) given = fmt::format("{}-{}", name, n);
-  return given;
+  std::string candidate(name);
+  for (int n = 2; !used_.insert(candidate).second; n++) candidate = fmt::format("{}-{}", name, n);
+  return candidate;
 }
 
-std::string word_name(std::string_view name) { return with_bars(name, " \t{}"); }
+std::string word_name(std::string_view name) { return with_underscores(name, " \t{}"); }
 
 std::string file_name(std::string_view name) {
-  std::string out = with_bars(name, "/\\:*?\"<>|");
+  std::string out = with_underscores(name, "/\\:*?\"<>|");
   if (out.front() == '.') out.front() = '_';
-  if (out.size() <= kMostBytes) return out;
-  std::size_t end = kMostBytes;
-  while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xc0u) == 0x80u) end--;  // no letter is cut in two
+  if (out.size() <= kMaxBytes) return out;
+  std::size_t end = kMaxBytes;
+  while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xc0u) == 0x80u) end--;  // don't split a UTF-8 character
   return out.substr(0, end);
 }
 

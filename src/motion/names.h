@@ -1,4 +1,4 @@
-// Names as files of other programs can take them, none twice.
+// Converts names to valid and unique names for exported files.
 #pragma once
 
 #include <set>
@@ -7,20 +7,20 @@
 
 namespace limber {
 
-/// Gives each name once: a second "arm" becomes "arm-2", a third "arm-3".
+/// Makes names unique: a second "arm" becomes "arm-2", a third "arm-3".
 class UniqueNames {
  public:
   std::string unique(std::string_view name);
 
  private:
-  std::set<std::string, std::less<>> given_;
+  std::set<std::string, std::less<>> used_;
 };
 
-/// A word without blanks and braces, which end a name in a BVH file; empty: "_".
+/// Replaces blanks and braces, which end a name in a BVH file, by '_'; an empty name becomes "_".
 std::string word_name(std::string_view name);
-/// A file's name without folders, such as any file system takes; at most 120 bytes.
+/// A file name (without folders) that is valid on any file system; at most 120 bytes.
 std::string file_name(std::string_view name);
-/// One part of a URI: everything but letters, digits and "-._~" as %20.
+/// Percent-encodes one segment of a URI: everything except letters, digits and "-._~".
 std::string uri_name(std::string_view name);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Gathers what is put, so that the disk is asked seldom.
+// Buffers writes to reduce system calls; opens the file for each flush only.
 #include "motion/out_file.h"
 
 #include <cerrno>
@@ -18,16 +18,17 @@ using system::OpenMode;
 
 namespace {
 
-constexpr std::size_t kGathered = std::size_t{64} << 10u;
+constexpr std::size_t kBufferBytes = std::size_t{64} << 10u;
 
 }  // namespace
 
-std::string beside_name(const std::string& path) { return fmt::format("{}.{}.new", path, system::process_id()); }
+std::string temporary_name(const std::string& path) { return fmt::format("{}.{}.new", path, system::process_id()); }
 
-OutFile::OutFile(std::string path, std::string beside) : path_(std::move(path)), beside_(std::move(beside)) {}
+OutFile::OutFile(std::string path, std::string temporary_path)
+    : path_(std::move(path)), temporary_path_(std::move(temporary_path)) {}
 
 OutFile::~OutFile() {
-  if (open_) system::remove_file(beside_);
+  if (open_) system::remove_file(temporary_path_);
 }
 
 Error OutFile::failed() const {
@@ -35,39 +36,39 @@ Error OutFile::failed() const {
 }
 
 Result<void> OutFile::open() {
-  const system::Descriptor file = system::open_file(beside_, OpenMode::replace);
-  if (!file.open()) return failed();
+  const system::Descriptor file = system::open_file(temporary_path_, OpenMode::replace);
+  if (!file.is_open()) return failed();
   open_ = true;
   return {};
 }
 
 Result<void> OutFile::put(std::string_view bytes) {
-  waiting_.append(bytes);
+  buffer_.append(bytes);
   size_ += bytes.size();
-  return waiting_.size() < kGathered ? Result<void>() : flush();
+  return buffer_.size() < kBufferBytes ? Result<void>() : flush();
 }
 
 Result<void> OutFile::flush() {
-  const system::Descriptor file = system::open_file(beside_, OpenMode::append);
-  if (!file.open() || !system::write_all(file.fd(), waiting_)) return failed();
-  waiting_.clear();
+  const system::Descriptor file = system::open_file(temporary_path_, OpenMode::append);
+  if (!file.is_open() || !system::write_all(file.fd(), buffer_)) return failed();
+  buffer_.clear();
   return {};
 }
 
 Result<void> OutFile::patch(std::uint64_t at, std::string_view bytes) {
   if (Result<void> flushed = flush(); !flushed) return flushed;
-  const system::Descriptor file = system::open_file(beside_, OpenMode::write);
-  if (!file.open() || !system::seek_to(file.fd(), at) || !system::write_all(file.fd(), bytes)) return failed();
+  const system::Descriptor file = system::open_file(temporary_path_, OpenMode::write);
+  if (!file.is_open() || !system::seek_to(file.fd(), at) || !system::write_all(file.fd(), bytes)) return failed();
   return {};
 }
 
 Result<void> OutFile::finish() {
   if (Result<void> flushed = flush(); !flushed) return flushed;
   {
-    const system::Descriptor file = system::open_file(beside_, OpenMode::write);
-    if (!file.open() || !system::sync_file(file.fd())) return failed();
+    const system::Descriptor file = system::open_file(temporary_path_, OpenMode::write);
+    if (!file.is_open() || !system::sync_file(file.fd())) return failed();
   }
-  if (std::rename(beside_.c_str(), path_.c_str()) != 0) return failed();
+  if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) return failed();
   open_ = false;
   return {};
 }

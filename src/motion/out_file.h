@@ -1,4 +1,4 @@
-// OutFile: a file that is there whole or not at all: written beside its name, renamed at the end.
+// OutFile: writes a file atomically: into a temporary file in the same folder, renamed at the end.
 #pragma once
 
 #include <cstdint>
@@ -9,43 +9,44 @@
 
 namespace limber {
 
-/// What a file is called until it is whole: of this program, so that two don't share one.
-std::string beside_name(const std::string& path);
+/// The name of the temporary file of `path`; it contains the process id, so that two processes never share one.
+std::string temporary_name(const std::string& path);
 
 class OutFile {
  public:
-  /// Nothing is on the disk before open().
-  explicit OutFile(const std::string& path) : OutFile(path, beside_name(path)) {}
-  /// `beside`: what it is called until it is whole.
-  OutFile(std::string path, std::string beside);
-  /// Without finish() nothing stays.
+  /// Does not touch the disk before open().
+  explicit OutFile(const std::string& path) : OutFile(path, temporary_name(path)) {}
+  /// `temporary_path`: path of the temporary file.
+  OutFile(std::string path, std::string temporary_path);
+  /// Deletes the temporary file if finish() did not succeed.
   ~OutFile();
   OutFile(const OutFile&) = delete;
   OutFile& operator=(const OutFile&) = delete;
 
-  /// Begins it; the error says why it can't be written there.
+  /// Creates the temporary file.
   Result<void> open();
-  /// Adds to its end. Between two calls no descriptor is held, so thousands may be written side by side.
+  /// Appends bytes, buffered. No file descriptor is open between calls, so thousands of files can be written in
+  /// parallel.
   Result<void> put(std::string_view bytes);
-  /// What was put at `at` becomes `bytes`, as long as they are.
+  /// Overwrites the bytes at offset `at`.
   Result<void> patch(std::uint64_t at, std::string_view bytes);
-  /// Everything that was put stands in the file `beside()`.
+  /// Writes all buffered bytes to the temporary file.
   Result<void> flush();
-  /// On the disk, under its name.
+  /// Flushes, syncs to disk and renames the file to its final name.
   Result<void> finish();
 
-  /// Bytes put so far.
+  /// Number of bytes put so far.
   std::uint64_t size() const { return size_; }
   const std::string& path() const { return path_; }
-  /// Its name until finish().
-  const std::string& beside() const { return beside_; }
+  /// Name of the temporary file.
+  const std::string& temporary_path() const { return temporary_path_; }
 
  private:
   Error failed() const;
 
   std::string path_;
-  std::string beside_;
-  std::string waiting_;
+  std::string temporary_path_;
+  std::string buffer_;
   std::uint64_t size_ = 0;
   bool open_ = false;
 };

@@ -1,4 +1,4 @@
-// The two clocks of the network thread, handed in so that tests turn them by hand.
+// The two clocks of the network thread, injected so that tests can control them.
 #pragma once
 
 #include <chrono>
@@ -7,14 +7,14 @@
 
 namespace limber {
 
-/// Real time in two forms.
+/// Real time as monotonic time and as NTP time.
 struct NetClock {
-  /// Nanoseconds that only grow; the zero is anywhere.
+  /// Monotonic time in nanoseconds with an arbitrary zero.
   std::function<std::int64_t()> steady = [] {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
   };
-  /// NTP time as OSC's time tags have it: seconds since 1900 in the upper 32 bits, 1/2^32 s in the lower.
+  /// NTP time as in OSC time tags: seconds since 1900 in the upper 32 bits, units of 1/2^32 s in the lower.
   std::function<std::uint64_t()> ntp = [] {
     constexpr std::uint64_t kFrom1900To1970 = 2208988800u;
     const auto ns = static_cast<std::uint64_t>(

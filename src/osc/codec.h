@@ -1,5 +1,5 @@
-// The two OSC codecs: oscpack's, and our own for systems where oscpack is wrong (it takes the 64-bit `long` of arm64
-// for int32). CMake decides which of them decode_packet() and the functions of osc/encode.h use; tests compare both.
+// The two OSC codecs: oscpack's, and our own for systems where oscpack is wrong (it treats the 64-bit `long` of arm64
+// as int32). CMake selects the one that decode_packet() and the functions of osc/encode.h use; tests compare both.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-/// Our own: PacketWalk and PacketWriter. Never reads beyond the end, whether the packet was validated or not.
+/// Our own codec (PacketParser and PacketWriter). It never reads past the end, even if the packet was not validated.
 namespace own_codec {
 Result<Decoded> decode(const char* data, std::size_t size);
 std::span<const char> encode(const Message& message, PacketBuffer& buffer);
@@ -20,7 +20,7 @@ std::span<const char> encode_tagged(const Message& message, std::string_view tag
 std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer& buffer);
 }  // namespace own_codec
 
-/// oscpack's; decodes only what packet_fault() has passed. Not defined where LIMBER_OSCPACK is 0.
+/// oscpack's codec; decodes only packets that packet_fault() has accepted. Not defined if LIMBER_OSCPACK is 0.
 namespace oscpack_codec {
 Result<Decoded> decode(const char* data, std::size_t size);
 std::span<const char> encode(const Message& message, PacketBuffer& buffer);

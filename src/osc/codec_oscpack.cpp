@@ -1,4 +1,4 @@
-// oscpack's codec. Its exceptions stay in this file.
+// The oscpack codec. Its exceptions do not leave this file.
 #include <exception>
 
 #include <oscpack/osc/OscReceivedElements.h>
@@ -55,7 +55,7 @@ void add_message(const osc::ReceivedMessage& received, Decoded& out) {
   message.finish();
 }
 
-// the validator has bounded the depth
+// Recursion is safe because the validator limits the depth.
 void add_bundle(const osc::ReceivedBundle& bundle, Decoded& out) {
   for (auto element = bundle.ElementsBegin(); element != bundle.ElementsEnd(); ++element) {
     if (element->IsBundle()) {
@@ -66,7 +66,7 @@ void add_bundle(const osc::ReceivedBundle& bundle, Decoded& out) {
   }
 }
 
-// no call throws where the size was computed
+// The sizes were checked, so no call is expected to throw.
 template <class Encode>
 std::span<const char> without_exceptions(const Encode& encode) {
   try {
@@ -88,7 +88,7 @@ Result<Decoded> decode(const char* data, std::size_t size) {
     const osc::ReceivedPacket packet(data, static_cast<osc::osc_bundle_element_size_t>(size));
     if (packet.IsBundle()) {
       const osc::ReceivedBundle bundle(packet);
-      // 0 is no time at all; it is taken as now, like 1
+      // time tag 0 is undefined; it is treated as now, like 1
       decoded.time_tag = bundle.TimeTag() == 0 ? kImmediately : bundle.TimeTag();
       add_bundle(bundle, decoded);
     } else {

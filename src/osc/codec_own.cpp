@@ -1,4 +1,4 @@
-// Our own codec: a visitor of PacketWalk that builds messages, and PacketWriter.
+// Our own codec: a visitor of PacketParser that builds messages, and PacketWriter.
 #include <bit>
 #include <cstring>
 #include <optional>
@@ -40,12 +40,12 @@ Arg argument_of(char tag, const char* data) {
   }
 }
 
-class Building {
+class DecodingVisitor {
  public:
-  explicit Building(Decoded& out) : out_(out) {}
+  explicit DecodingVisitor(Decoded& out) : out_(out) {}
 
   void bundle(int depth, std::uint64_t time_tag) {
-    // 0 is no time at all; it is taken as now, like 1
+    // time tag 0 is undefined; it is treated as now, like 1
     if (depth == 1) out_.time_tag = time_tag == 0 ? kImmediately : time_tag;
   }
   void message(const char* address, const char* tags) { message_.emplace(out_, address, std::strlen(tags)); }
@@ -65,15 +65,15 @@ class Building {
 
  private:
   Decoded& out_;
-  std::optional<MessageBuilder> message_;  // none: the message was rejected
+  std::optional<MessageBuilder> message_;  // empty: the message was rejected
 };
 
 }  // namespace
 
 Result<Decoded> decode(const char* data, std::size_t size) {
   Decoded decoded;
-  Building building(decoded);
-  if (const char* const fault = PacketWalk<Building>(building).packet(data, size)) return Error{fault};
+  DecodingVisitor visitor(decoded);
+  if (const char* const fault = PacketParser<DecodingVisitor>(visitor).packet(data, size)) return Error{fault};
   return decoded;
 }
 

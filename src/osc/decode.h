@@ -1,5 +1,5 @@
-// From a validated datagram to messages. Every numeric tag becomes a number: clients differ in what they send for one
-// slider.
+// Decodes a validated datagram to messages. All numeric tags become numbers, because clients send different types for
+// the same slider.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,22 @@
 
 namespace limber {
 
-/// A message that was whole, but holds what no address takes.
-struct RefusedMessage {
+/// A well-formed message with arguments that no address accepts.
+struct RejectedMessage {
   std::string address;
-  std::string text;  ///< What was wrong with it.
+  std::string reason;  ///< Reason of the rejection.
 };
 
-/// What one datagram holds. Bundles are flattened in order, those inside others too.
+/// The contents of a datagram. Bundles, including nested ones, are flattened in order.
 struct Decoded {
   std::vector<Message> messages;
-  std::vector<RefusedMessage> refused;
-  std::uint64_t time_tag = 1;  ///< The outermost bundle's, NTP (seconds since 1900 in the upper half); 1: now.
+  std::vector<RejectedMessage> rejected;
+  std::uint64_t time_tag = 1;  ///< Of the outermost bundle; NTP (seconds since 1900 in the upper half); 1: now.
 };
 
-/// Decodes what packet_fault() has passed, and nothing else. i h f d become numbers, T F I booleans, s S c text, N nil;
-/// an array's elements stand in the message like others; t m r b and arrays in arrays are refused. NaN and
-/// infinity pass. [any]
+/// Decodes a packet that packet_fault() has accepted. i h f d become numbers, T F I booleans, s S c text, N nil; array
+/// elements become ordinary arguments; messages with t m r b or nested arrays are rejected. NaN and infinity pass.
+/// [any]
 Result<Decoded> decode_packet(const char* data, std::size_t size);
 
 }  // namespace limber

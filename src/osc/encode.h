@@ -1,4 +1,4 @@
-// From messages to datagrams. Limber itself sends f, i and s only, as ofxDabPhysics does.
+// Encodes messages as datagrams. Limber itself sends only the types f, i and s, as ofxDabPhysics does.
 #pragma once
 
 #include <array>
@@ -12,21 +12,22 @@
 
 namespace limber {
 
-/// Room for one datagram, and a little more, because oscpack asks for more than it writes.
+/// Buffer for one datagram, slightly larger because oscpack requires more space than it writes.
 struct PacketBuffer {
-  alignas(8) std::array<char, kLargestPacket + 64> bytes;
+  alignas(8) std::array<char, kMaxPacketSize + 64> bytes;
 };
 
-/// Writes a message: numbers as f (clamped to float's range), booleans as i 0 or 1, nothing as i 0, text as s up to
-/// its first NUL. Empty when it is larger than a datagram. The span lies in `buffer`. [any]
+/// Encodes a message: numbers as f (clamped to float's range), booleans as i 0 or 1, nil as i 0, text as s up to its
+/// first NUL. Returns an empty span if the message is larger than a datagram; otherwise the span points into `buffer`.
+/// [any]
 std::span<const char> encode_message(const Message& message, PacketBuffer& buffer);
 
-/// Writes the arguments as the tags say: i h f d (numbers, clamped), T or F (a boolean, as T or F), s, S, c (text), N,
-/// I (an argument without a value), r m t b (hexadecimal digits as text); arrays in [ ]. Each tag but [ ] has an
-/// argument that fits it. Empty when it is larger than a datagram. [any]
+/// Encodes the arguments with the given type tags: i h f d (numbers, clamped), T or F (booleans), s, S, c (text), N, I
+/// (an argument without a value), r m t b (text with hexadecimal digits); arrays in [ ]. Each tag except [ ] needs one
+/// argument of a matching kind. Returns an empty span if the message is larger than a datagram. [any]
 std::span<const char> encode_tagged(const Message& message, std::string_view tags, PacketBuffer& buffer);
 
-/// `/pong <tick i> <time f>`; ticks beyond 31 bits begin again at 0. [any]
+/// Encodes `/pong <tick i> <time f>`; ticks wrap to 0 after 31 bits. [any]
 std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer& buffer);
 
 }  // namespace limber

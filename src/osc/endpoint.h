@@ -1,4 +1,4 @@
-// Endpoints of OSC: those of the operating system layer, by short names.
+// Short names for the endpoint functions of the operating system layer.
 #pragma once
 
 #include "base/system/socket.h"

@@ -1,4 +1,4 @@
-// A linear search over 256 short entries; it runs only when something was refused.
+// Searches the at most 256 entries linearly; this happens only when a message was rejected.
 #include "osc/error_limit.h"
 
 #include <algorithm>
@@ -6,11 +6,11 @@
 
 namespace limber {
 
-bool ErrorLimit::allow(const Endpoint& sender, std::int64_t now) {
+bool ErrorRateLimit::allow(const Endpoint& sender, std::int64_t now) {
   auto window = std::ranges::find(windows_, sender, &Window::sender);
   if (window == windows_.end()) {
-    // the one that was quiet for longest makes room
-    if (windows_.size() >= kSenders) windows_.erase(std::ranges::min_element(windows_, {}, &Window::begin));
+    // replace the entry that has been idle longest
+    if (windows_.size() >= kMaxSenders) windows_.erase(std::ranges::min_element(windows_, {}, &Window::begin));
     windows_.push_back({sender, now, 0, 0, false});
     window = windows_.end() - 1;
   }
@@ -19,18 +19,18 @@ bool ErrorLimit::allow(const Endpoint& sender, std::int64_t now) {
     window->begin = now;
     window->count = 0;
   }
-  if (window->count >= kMost) return false;
+  if (window->count >= kMaxPerSecond) return false;
   window->count++;
   return true;
 }
 
-bool ErrorLimit::note_echo(const Endpoint& sender, std::int64_t now) {
+bool ErrorRateLimit::record_answer(const Endpoint& sender, std::int64_t now) {
   const auto window = std::ranges::find(windows_, sender, &Window::sender);
   if (window == windows_.end()) return false;
-  // ten errors a second: the window of the last one has begun less than two seconds ago
+  // The limit is ten errors a second, so the window of the last error began less than two seconds ago.
   if (now >= window->silent_until && now - window->begin >= 2 * kSecond) return false;
-  window->silent_until = now + kEchoPause;
-  return !std::exchange(window->echoes, true);
+  window->silent_until = now + kAnswerPause;
+  return !std::exchange(window->answers_errors, true);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// At most ten /error messages a second to one sender, however fast it errs.
+// Limits /error messages to ten per second and sender.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,20 @@
 namespace limber {
 
 /// Counts per sender, for the last 256 senders. [net]
-class ErrorLimit {
+class ErrorRateLimit {
  public:
-  static constexpr int kMost = 10;
-  static constexpr std::int64_t kSecond = 1'000'000'000;
-  static constexpr std::int64_t kEchoPause = 60 * kSecond;
-  static constexpr std::size_t kSenders = 256;
+  static constexpr int kMaxPerSecond = 10;
+  static constexpr std::int64_t kSecond = 1'000'000'000;  ///< ns
+  /// How long a sender that answers /error messages gets none.
+  static constexpr std::int64_t kAnswerPause = 60 * kSecond;
+  static constexpr std::size_t kMaxSenders = 256;
 
-  /// Whether one more may go to this sender; counts it when so. `now` in ns. In no span of a second that begins with
-  /// an answer are there more than ten.
+  /// Counts an /error message for this sender and returns true if it may be sent. No second that begins with an /error
+  /// contains more than ten. `now` in ns.
   bool allow(const Endpoint& sender, std::int64_t now);
-  /// This sender has answered an /error, as far as its message shows. If one went there within the last second, it gets
-  /// none for a minute from now on. True: that is new, and is to be reported.
-  bool note_echo(const Endpoint& sender, std::int64_t now);
+  /// Records that this sender seems to have answered an /error. If one was sent there within the last second, it gets
+  /// none for a minute. Returns true the first time, which is to be logged.
+  bool record_answer(const Endpoint& sender, std::int64_t now);
 
  private:
   struct Window {
@@ -30,7 +31,7 @@ class ErrorLimit {
     std::int64_t begin = 0;
     int count = 0;
     std::int64_t silent_until = 0;
-    bool echoes = false;
+    bool answers_errors = false;
   };
   std::vector<Window> windows_;
 };

@@ -1,4 +1,4 @@
-// Bundles with a time tag ahead of now wait here until they are due.
+// ScheduledCommands: stores bundles until the time of their time tag.
 #pragma once
 
 #include <cstddef>
@@ -11,44 +11,45 @@
 
 namespace limber {
 
-/// Waiting commands, in order of their time tags; equal tags in order of arrival. [net]
-class HeldCommands {
+/// Scheduled commands, ordered by time tag and, for equal tags, by arrival. [net]
+class ScheduledCommands {
  public:
-  static constexpr std::size_t kMost = 1024;
-  static constexpr std::size_t kMostBytes = std::size_t{32} << 20;
-  static constexpr std::uint64_t kFarthest = std::uint64_t{10} << 32;  ///< 10 s, NTP.
+  static constexpr std::size_t kMaxCommands = 1024;
+  static constexpr std::size_t kMaxBytes = std::size_t{32} << 20;
+  static constexpr std::uint64_t kMaxLead = std::uint64_t{10}
+                                            << 32;  ///< 10 s in NTP units; commands farther ahead are not scheduled.
 
-  enum class Verdict : std::uint8_t {
-    now,   ///< Not ahead: apply it.
-    held,  ///< Taken; it comes out of due() later.
-    far,   ///< More than 10 s ahead: apply it now, a clock is wrong.
-    full,  ///< No room: apply it now.
+  enum class ScheduleResult : std::uint8_t {
+    now,        ///< Not in the future: apply it.
+    scheduled,  ///< Stored; pop_due() returns it later.
+    too_far,    ///< More than 10 s ahead: apply it now, one of the clocks is wrong.
+    full,       ///< The schedule is full: apply it now.
   };
 
-  explicit HeldCommands(const NetClock& clock) : clock_(clock) {}
+  explicit ScheduledCommands(const NetClock& clock) : clock_(clock) {}
 
-  /// Whether a time tag is ahead of now, and not by too much. [any]
-  bool waits(std::uint64_t time_tag) const {
+  /// True if a time tag is in the future, by at most kMaxLead. [any]
+  bool is_future(std::uint64_t time_tag) const {
     const std::uint64_t now = clock_.ntp();
-    return time_tag > now && time_tag - now <= kFarthest;
+    return time_tag > now && time_tag - now <= kMaxLead;
   }
-  /// Moves from `command` only when the verdict is `held`.
-  Verdict offer(std::uint64_t time_tag, Command& command);
-  /// The next command that is due, or nothing.
-  std::optional<Command> due();
-  /// Nanoseconds until something is due; nothing when nothing waits.
-  std::optional<std::int64_t> wait() const;
-  std::size_t size() const { return held_.size(); }
+  /// Schedules a command. Moves from `command` only if the result is `scheduled`.
+  ScheduleResult schedule(std::uint64_t time_tag, Command& command);
+  /// Returns the next command that is due, if any.
+  std::optional<Command> pop_due();
+  /// Nanoseconds until a command is due; empty if none is scheduled.
+  std::optional<std::int64_t> timeout() const;
+  std::size_t size() const { return scheduled_.size(); }
 
  private:
   struct Entry {
     Command command;
     std::size_t bytes = 0;
-    std::int64_t at_latest = 0;  // steady time; a system clock that is turned back must not keep it for ever
+    std::int64_t deadline = 0;  // steady time; bounds the wait if the system clock is set back
   };
   const NetClock& clock_;
   std::size_t bytes_ = 0;
-  std::multimap<std::uint64_t, Entry> held_;  // a multimap keeps equal keys in order of insertion
+  std::multimap<std::uint64_t, Entry> scheduled_;  // a multimap keeps equal keys in insertion order
 };
 
 }  // namespace limber

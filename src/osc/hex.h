@@ -1,4 +1,4 @@
-// Hexadecimal digits as values of OSC types that have no other text: r m t b.
+// Parses hexadecimal digits, the text form of the OSC types r, m, t and b.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace limber {
 
-/// 0 .. 15; -1: no hexadecimal digit.
+/// Returns 0 .. 15, or -1 if `c` is no hexadecimal digit.
 constexpr int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -16,7 +16,7 @@ constexpr int hex_digit(char c) {
   return -1;
 }
 
-/// The lowest 64 bits of the number up to the first character that is no digit.
+/// Returns the lowest 64 bits of the number up to the first non-digit.
 constexpr std::uint64_t hex_number(std::string_view digits) {
   std::uint64_t number = 0;
   for (const char c : digits) {
@@ -26,7 +26,7 @@ constexpr std::uint64_t hex_number(std::string_view digits) {
   return number;
 }
 
-/// The bytes of pairs of digits, up to the first pair that is none.
+/// Converts pairs of digits to bytes, up to the first pair that is not two digits.
 inline std::string hex_bytes(std::string_view digits) {
   std::string bytes;
   for (std::size_t i = 0; i + 1 < digits.size() && hex_digit(digits[i]) >= 0 && hex_digit(digits[i + 1]) >= 0; i += 2) {

@@ -1,4 +1,4 @@
-// MessageBuilder: which arguments a message may hold, and how they become a Message. Both codecs build with it.
+// MessageBuilder: converts decoded OSC arguments to a Message and rejects unsupported ones. Both codecs use it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace limber {
 
-/// Builds one message of `out`. When a function returns false, the message is rejected and complete. [any]
+/// Builds one message of `out`. After a function has returned false, the message is rejected and must not be extended.
+/// [any]
 class MessageBuilder {
  public:
   MessageBuilder(Decoded& out, std::string_view address, std::size_t arguments) : out_(out) {
@@ -19,17 +20,18 @@ class MessageBuilder {
     message_.args.reserve(arguments);
   }
 
-  /// '[' or ']'; the elements of an array are arguments of the message like others.
+  /// Handles '[' and ']'; array elements become ordinary arguments of the message. Returns false for nested arrays.
   bool bracket(char tag) {
     level_ += tag == '[' ? 1 : -1;
-    return level_ < 2 || reject("an array inside an array is not taken; send one flat array");
+    return level_ < 2 || reject("nested arrays are not supported; send one flat array");
   }
-  /// Rejects what no address takes: b, t, m, r.
+  /// Returns false for the types that no address accepts: b, t, m, r.
   bool accept(char tag) {
     const char* const type = rejected_type(tag);
-    return type == nullptr || reject(fmt::format("{} is not taken; send numbers (i h f d T F) or text (s)", type));
+    return type == nullptr || reject(fmt::format("{} is not supported; send numbers (i h f d T F) or text (s)", type));
   }
   void add(Arg arg) { message_.args.push_back(std::move(arg)); }
+  /// Appends the message to the decoded ones.
   void finish() { out_.messages.push_back(std::move(message_)); }
 
  private:
@@ -42,13 +44,13 @@ class MessageBuilder {
       case 'm':
         return "a MIDI message (m)";
       case 'r':
-        return "a packed colour (r)";
+        return "a packed color (r)";
       default:
         return nullptr;
     }
   }
   bool reject(std::string text) {
-    out_.refused.push_back({std::move(message_.address), std::move(text)});
+    out_.rejected.push_back({std::move(message_.address), std::move(text)});
     return false;
   }
 

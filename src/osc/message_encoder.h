@@ -1,4 +1,4 @@
-// MessageEncoder: how a Message becomes a packet: sizes, rounding, ranges. Both codecs encode with it, each by its own
+// MessageEncoder: converts a Message to a packet: sizes, rounding, clamping. Both codecs use it, each with its own
 // writer.
 #pragma once
 
@@ -17,7 +17,7 @@
 
 namespace limber {
 
-/// Encodes with a Writer, which is made of a buffer and its size and has the functions of PacketWriter. [any]
+/// Encodes with a Writer, which is constructed from a buffer and its size and has the functions of PacketWriter. [any]
 template <class Writer>
 class MessageEncoder {
  public:
@@ -25,7 +25,7 @@ class MessageEncoder {
   static std::span<const char> message(const Message& message, PacketBuffer& buffer) {
     std::size_t size = padded(std::strlen(message.address.c_str())) + padded(1 + message.args.size());
     for (const Arg& arg : message.args) size += arg.is_text() ? padded(std::strlen(arg.text.c_str())) : 4;
-    if (size > kLargestPacket) return {};
+    if (size > kMaxPacketSize) return {};
     Writer out(buffer.bytes.data(), buffer.bytes.size());
     out.begin_message(message.address.c_str(), message.args.size());
     for (const Arg& arg : message.args) write(arg, out);
@@ -39,7 +39,7 @@ class MessageEncoder {
     LIMBER_CHECK(static_cast<std::size_t>(std::ranges::count_if(tags, has_value)) == message.args.size());
     std::size_t size = padded(std::strlen(message.address.c_str())) + padded(1 + tags.size());
     for (const Arg& arg : message.args) size += std::max<std::size_t>(8, padded(std::strlen(arg.text.c_str())));
-    if (size > kLargestPacket) return {};
+    if (size > kMaxPacketSize) return {};
     Writer out(buffer.bytes.data(), buffer.bytes.size());
     out.begin_message(message.address.c_str(), tags.size());
     auto arg = message.args.begin();
@@ -62,7 +62,7 @@ class MessageEncoder {
   }
 
  private:
-  // sizes are computed first, so no writer runs out of its buffer
+  // Sizes are checked before writing, so a writer can't run out of its buffer.
   static std::span<const char> finished(const Writer& out) {
     const std::span<const char> packet = out.packet();
     LIMBER_CHECK(!packet.empty());
@@ -70,17 +70,17 @@ class MessageEncoder {
   }
 
   static float as_float(double value) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    // a NaN stays one; so do infinities
-    return static_cast<float>(std::isfinite(value) ? std::clamp(value, -kMost, kMost) : value);
+    constexpr double kMax = std::numeric_limits<float>::max();
+    // NaN and infinities are sent unchanged.
+    return static_cast<float>(std::isfinite(value) ? std::clamp(value, -kMax, kMax) : value);
   }
 
   template <class Int>
   static Int as_integer(double value) {
-    constexpr auto kLow = static_cast<double>(std::numeric_limits<Int>::min());
-    // 2^63 is no int64; the next double below it is
-    constexpr double kHigh = sizeof(Int) == 8 ? 9223372036854774784.0 : std::numeric_limits<std::int32_t>::max();
-    return std::isfinite(value) ? static_cast<Int>(std::clamp(std::round(value), kLow, kHigh)) : Int{0};
+    constexpr auto kMin = static_cast<double>(std::numeric_limits<Int>::min());
+    // 2^63 does not fit an int64; this is the next smaller double.
+    constexpr double kMax = sizeof(Int) == 8 ? 9223372036854774784.0 : std::numeric_limits<std::int32_t>::max();
+    return std::isfinite(value) ? static_cast<Int>(std::clamp(std::round(value), kMin, kMax)) : Int{0};
   }
 
   static void write(const Arg& arg, Writer& out) {
@@ -135,7 +135,7 @@ class MessageEncoder {
     }
   }
 
-  // types that Limber itself never sends
+  // Types that Limber itself never sends.
   static void write_rare(char tag, const Arg& arg, Writer& out) {
     switch (tag) {
       case 'S':

@@ -1,4 +1,4 @@
-// What a look-up's thread shares with the network thread lives as long as either.
+// The look-up threads and HostResolver share ownership of the results, so either may end first.
 #include "osc/names.h"
 
 #include <condition_variable>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kThisMachine = 0x7f000001;
 
-std::optional<Endpoint> at_once(const std::string& host, std::uint16_t port) {
+std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t port) {
   if (const std::optional<std::uint32_t> ip = parse_ipv4(host)) return Endpoint{*ip, port};
   if (host == "localhost") return Endpoint{kThisMachine, port};
   return std::nullopt;
@@ -22,70 +22,70 @@ std::optional<Endpoint> at_once(const std::string& host, std::uint16_t port) {
 
 }  // namespace
 
-struct HostNames::Shared {
-  std::function<void()> ring;
-  std::mutex mutex;                                              // guards what follows
-  std::map<std::string, std::optional<Result<Endpoint>>> found;  // by host; nothing: on its way
-  bool news = false;
-  std::condition_variable ended;  // a look-up
+struct HostResolver::Shared {
+  std::function<void()> notify;
+  std::mutex mutex;                                                // guards the members below
+  std::map<std::string, std::optional<Result<Endpoint>>> results;  // by host; empty: pending
+  bool changed = false;
+  std::condition_variable look_up_ended;  // notified when a look-up ends
 };
 
-HostNames::HostNames(LookUp look_up, std::function<void()> ring)
+HostResolver::HostResolver(ResolveFunction look_up, std::function<void()> notify)
     : look_up_(std::move(look_up)), shared_(std::make_shared<Shared>()) {
-  shared_->ring = std::move(ring);
+  shared_->notify = std::move(notify);
 }
 
-std::optional<Result<Endpoint>> HostNames::find(const std::string& host, std::uint16_t port) {
-  if (const std::optional<Endpoint> at = at_once(host, port)) return *at;
+std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std::uint16_t port) {
+  if (const std::optional<Endpoint> at = parse_literal(host, port)) return *at;
   {
     const std::scoped_lock lock(shared_->mutex);
-    const auto [entry, fresh] = shared_->found.try_emplace(host);
-    if (!fresh) {
+    const auto [entry, inserted] = shared_->results.try_emplace(host);
+    if (!inserted) {
       if (!entry->second || !entry->second->ok()) return entry->second;
       return Endpoint{(*entry->second)->ip, port};
     }
   }
-  const auto look = [host, port, look_up = look_up_, shared = shared_] {
+  const auto run_look_up = [host, port, look_up = look_up_, shared = shared_] {
     Result<Endpoint> at = look_up(host, port);
     {
       const std::scoped_lock lock(shared->mutex);
-      shared->found[host] = std::move(at);
-      shared->news = true;
+      shared->results[host] = std::move(at);
+      shared->changed = true;
     }
-    shared->ended.notify_all();
-    shared->ring();
+    shared->look_up_ended.notify_all();
+    shared->notify();
   };
-  if (std::thread thread; system::start_thread(thread, look)) {
+  if (std::thread thread; system::start_thread(thread, run_look_up)) {
     thread.detach();
   } else {
-    look();  // no thread is left: this once it is waited for
+    run_look_up();  // no thread available: block this once
   }
   return std::nullopt;
 }
 
-std::optional<Result<Endpoint>> HostNames::wait_for(const std::string& host, std::uint16_t port,
-                                                    std::chrono::milliseconds limit) {
+std::optional<Result<Endpoint>> HostResolver::wait_for(const std::string& host, std::uint16_t port,
+                                                       std::chrono::milliseconds limit) {
   if (std::optional<Result<Endpoint>> at = find(host, port)) return at;
   {
     std::unique_lock lock(shared_->mutex);
-    shared_->ended.wait_for(lock, limit, [&] { return shared_->found[host].has_value(); });
+    shared_->look_up_ended.wait_for(lock, limit, [&] { return shared_->results[host].has_value(); });
   }
   return find(host, port);
 }
 
-bool HostNames::take_news() {
+bool HostResolver::consume_changed() {
   const std::scoped_lock lock(shared_->mutex);
-  return std::exchange(shared_->news, false);
+  return std::exchange(shared_->changed, false);
 }
 
-void HostNames::forget() {
+void HostResolver::invalidate() {
   const std::scoped_lock lock(shared_->mutex);
-  std::erase_if(shared_->found, [](const auto& entry) { return entry.second.has_value(); });
+  std::erase_if(shared_->results, [](const auto& entry) { return entry.second.has_value(); });
 }
 
-void HostNames::forget_failed() {
+void HostResolver::invalidate_failed() {
   const std::scoped_lock lock(shared_->mutex);
-  std::erase_if(shared_->found, [](const auto& entry) { return entry.second && !entry.second->ok(); });
+  std::erase_if(shared_->results, [](const auto& entry) { return entry.second && !entry.second->ok(); });
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// HostNames: host names looked up off the network thread, since a name server may let one wait for seconds.
+// HostResolver: resolves host names off the network thread, because a name server may block for seconds.
 #pragma once
 
 #include <chrono>
@@ -13,30 +13,31 @@
 
 namespace limber {
 
-/// How a host and a port become an address: resolve(), or a test's.
-using LookUp = std::function<Result<Endpoint>(const std::string& host, std::uint16_t port)>;
+/// Resolves a host and a port to an address: resolve(), or a replacement in tests.
+using ResolveFunction = std::function<Result<Endpoint>(const std::string& host, std::uint16_t port)>;
 
-/// [net], but for the look-ups, each of which has a thread of its own that nobody waits for.
-class HostNames {
+/// Asynchronous host name look-ups with a cache. [net]; each look-up runs on its own detached thread.
+class HostResolver {
  public:
-  /// `ring` is called, on a thread of the look-up's, when one has ended; also after this object is gone.
-  HostNames(LookUp look_up, std::function<void()> ring);
+  /// `notify` is called on the look-up's thread when a look-up ends, even after this object was destroyed.
+  HostResolver(ResolveFunction look_up, std::function<void()> notify);
 
-  /// Numbers and "localhost" at once; a name when its look-up has ended. Nothing: it is on its way.
+  /// Returns numeric addresses and "localhost" immediately, other names once their look-up has ended. Returns an empty
+  /// optional while the look-up is pending.
   std::optional<Result<Endpoint>> find(const std::string& host, std::uint16_t port);
-  /// The same; waits for a look-up, but not longer than this. [main, before the network thread runs]
+  /// As find(), but waits for the look-up up to `limit`. [main, before the network thread runs]
   std::optional<Result<Endpoint>> wait_for(const std::string& host, std::uint16_t port,
                                            std::chrono::milliseconds limit);
-  /// Whether a look-up has ended since the last call.
-  bool take_news();
-  /// Names that were found are looked up anew from now on: a machine may have moved.
-  void forget();
-  /// Names that were not found are looked up anew from now on.
-  void forget_failed();
+  /// True if a look-up has ended since the last call.
+  bool consume_changed();
+  /// Discards all finished look-ups, so that names are resolved again: a machine may have moved.
+  void invalidate();
+  /// Discards failed look-ups, so that these names are resolved again.
+  void invalidate_failed();
 
  private:
   struct Shared;
-  LookUp look_up_;
+  ResolveFunction look_up_;
   std::shared_ptr<Shared> shared_;
 };
 

@@ -1,4 +1,4 @@
-// Each parser names the option, what was written, and how it is written right.
+// The parsers' errors name the option, the text that was given and the correct form.
 #include "osc/options.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr const char* kOutForm =
+constexpr const char* kOutUsage =
     "write --osc-out HOST:PORT[,rate=60,bundle=1472,streams=pos+rot,bodies=arm*,errors=on], or off";
-constexpr const char* kAllowForm = "write --osc-allow 192.168.1.0/24, or several separated by commas";
+constexpr const char* kAllowUsage = "write --osc-allow 192.168.1.0/24, or several separated by commas";
 
 std::optional<std::uint16_t> parse_port(std::string_view text) {
   if (text.empty() || text.size() > 5) return std::nullopt;
@@ -28,13 +28,13 @@ std::optional<std::uint16_t> parse_port(std::string_view text) {
   return static_cast<std::uint16_t>(port);
 }
 
-std::optional<bool> parse_switch(std::string_view text) {
+std::optional<bool> parse_bool(std::string_view text) {
   if (text == "on" || text == "true" || text == "1") return true;
   if (text == "off" || text == "false" || text == "0") return false;
   return std::nullopt;
 }
 
-// the cure for one value of --osc-out, or nothing when it was taken
+// Returns an error text with the correct form, or nothing if the value was accepted.
 std::optional<std::string> set_streams(StreamTarget& target, std::string_view value) {
   target.pos = target.rot = target.relrot = target.relpos = false;
   if (value == "none") return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<std::string> set_streams(StreamTarget& target, std::string_view va
     } else if (name == "relpos") {
       target.relpos = true;
     } else {
-      return "streams are pos, rot, relrot and relpos, joined by +, or none";
+      return "streams must be pos, rot, relrot, relpos joined by +, or none";
     }
   }
   return std::nullopt;
@@ -57,30 +57,30 @@ std::optional<std::string> set_streams(StreamTarget& target, std::string_view va
 std::optional<std::string> set_option(StreamTarget& target, std::string_view key, std::string_view value) {
   if (key == "rate") {
     const std::optional<double> rate = parse_number(value);
-    if (!rate || *rate < 0.1 || *rate > 1000) return "rate is 0.1 to 1000 frames a second";
+    if (!rate || *rate < 0.1 || *rate > 1000) return "rate must be 0.1 to 1000 frames per second";
     target.rate = *rate;
   } else if (key == "bundle") {
     if (value != "off" && value != "1472" && value != "8192" && value != "65504") {
-      return "bundle is off, 1472, 8192 or 65504 bytes";
+      return "bundle must be off, 1472, 8192 or 65504 bytes";
     }
     target.bundle = value == "off" ? 0 : value == "1472" ? 1472 : value == "8192" ? 8192 : 65504;
   } else if (key == "streams") {
     return set_streams(target, value);
   } else if (key == "bodies") {
-    if (value.empty()) return "bodies is a name or a pattern, such as arm*";
+    if (value.empty()) return "bodies must be a name or a pattern, such as arm*";
     target.bodies = value;
   } else if (key == "errors") {
-    const std::optional<bool> on = parse_switch(value);
-    if (!on) return "errors is on or off";
+    const std::optional<bool> on = parse_bool(value);
+    if (!on) return "errors must be on or off";
     target.errors = *on;
   } else {
     const std::vector<std::string> keys = {"rate", "bundle", "streams", "bodies", "errors"};
-    return fmt::format("there is no '{}'{}", printable(key), name_hint(key, keys));
+    return fmt::format("unknown setting '{}'{}", printable(key), name_hint(key, keys));
   }
   return std::nullopt;
 }
 
-// cut at commas, but not inside the braces of a pattern
+// Splits at commas, except inside the braces of a pattern.
 std::vector<std::string_view> split_options(std::string_view text) {
   std::vector<std::string_view> pieces;
   int level = 0;
@@ -96,28 +96,27 @@ std::vector<std::string_view> split_options(std::string_view text) {
   return pieces;
 }
 
-// what speaks against listening at this address; null: nothing
-const char* unsupported(std::string_view address) {
+// Returns the reason why listening at this address is not supported, or null.
+const char* unsupported_reason(std::string_view address) {
   if (address.find(':') != std::string_view::npos || address.starts_with('[')) {
     return "IPv6 is not supported; write an IPv4 address, such as 127.0.0.1:9003 or 0.0.0.0:9003";
   }
   const std::optional<std::uint16_t> first = parse_port(address.substr(0, address.find('.')));
   if (first && *first >= 224 && *first <= 239) {
-    return "this is a multicast group, which can't be joined; have the sender address this machine, and listen at "
-           "0.0.0.0:9003";
+    return "multicast is not supported; let the sender use this machine's address, and listen at 0.0.0.0:9003";
   }
   return nullptr;
 }
 
 }  // namespace
 
-bool Cidr::holds(std::uint32_t address) const {
+bool Cidr::contains(std::uint32_t address) const {
   const std::uint32_t mask = bits == 0 ? 0 : ~std::uint32_t{0} << (32 - bits);
   return (address & mask) == (ip & mask);
 }
 
-bool holds(const std::vector<Cidr>& list, std::uint32_t address) {
-  return list.empty() || std::ranges::any_of(list, [&](const Cidr& c) { return c.holds(address); });
+bool is_allowed(const std::vector<Cidr>& list, std::uint32_t address) {
+  return list.empty() || std::ranges::any_of(list, [&](const Cidr& c) { return c.contains(address); });
 }
 
 Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text) { return parse_listen("--osc-in", text); }
@@ -130,8 +129,8 @@ Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::st
     const std::size_t colon = piece.rfind(':');
     const std::string_view port_text = colon == std::string_view::npos ? piece : piece.substr(colon + 1);
     if (colon != std::string_view::npos) address.address = piece.substr(0, colon);
-    if (const char* const why = unsupported(address.address)) {
-      return Error{fmt::format("{} '{}': {}", option, printable(text), why)};
+    if (const char* const reason = unsupported_reason(address.address)) {
+      return Error{fmt::format("{} '{}': {}", option, printable(text), reason)};
     }
     const std::optional<std::uint16_t> port = parse_port(port_text);
     if (!port || address.address.empty()) {
@@ -154,7 +153,7 @@ Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text) {
       colon == std::string_view::npos ? std::nullopt : parse_port(pieces[0].substr(colon + 1));
   if (!port || *port == 0 || colon == 0) {
     return Error{
-        fmt::format("--osc-out '{}': '{}' is no HOST:PORT; {}", printable(text), printable(pieces[0]), kOutForm)};
+        fmt::format("--osc-out '{}': '{}' is not HOST:PORT; {}", printable(text), printable(pieces[0]), kOutUsage)};
   }
   target.host = pieces[0].substr(0, colon);
   target.port = *port;
@@ -162,7 +161,7 @@ Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text) {
     const std::size_t equals = pieces[i].find('=');
     const std::string_view value = equals == std::string_view::npos ? "" : pieces[i].substr(equals + 1);
     if (const std::optional<std::string> fault = set_option(target, pieces[i].substr(0, equals), value)) {
-      return Error{fmt::format("--osc-out '{}': {}; {}", printable(text), *fault, kOutForm)};
+      return Error{fmt::format("--osc-out '{}': {}; {}", printable(text), *fault, kOutUsage)};
     }
   }
   return std::vector<StreamTarget>{target};
@@ -174,21 +173,21 @@ Result<std::vector<Cidr>> parse_osc_allow(std::string_view text) {
     const std::size_t slash = piece.find('/');
     const std::optional<std::uint16_t> bits =
         slash == std::string_view::npos ? std::uint16_t{32} : parse_port(piece.substr(slash + 1));
-    // only numbers here: a name that is looked up may answer differently tomorrow
+    // numeric addresses only: a host name may resolve differently later
     const std::optional<std::uint32_t> ip = parse_ipv4(std::string(piece.substr(0, slash)));
     if (!ip || !bits || *bits > 32) {
-      return Error{fmt::format("--osc-allow '{}': '{}' is no range of addresses; {}", printable(text), printable(piece),
-                               kAllowForm)};
+      return Error{fmt::format("--osc-allow '{}': '{}' is not an address range; {}", printable(text), printable(piece),
+                               kAllowUsage)};
     }
     list.push_back({*ip, *bits});
   }
   return list;
 }
 
-OscPlan default_osc_plan() { return {{ListenAddress{}}, {StreamTarget{}}}; }
+OscConfig default_osc_config() { return {{ListenAddress{}}, {StreamTarget{}}}; }
 
-OscPlan effective_plan(const OscOptions& options, const OscPlan* scene) {
-  OscPlan plan = default_osc_plan();
+OscConfig effective_config(const OscOptions& options, const OscConfig* scene) {
+  OscConfig plan = default_osc_config();
   if (scene != nullptr && !scene->listen.empty()) plan.listen = scene->listen;
   if (scene != nullptr && !scene->targets.empty()) plan.targets = scene->targets;
   if (options.in) plan.listen = *options.in;

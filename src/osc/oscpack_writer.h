@@ -1,4 +1,4 @@
-// OscpackWriter: oscpack's writing side with the functions of PacketWriter.
+// OscpackWriter: the interface of PacketWriter on top of oscpack.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace limber {
 
-/// oscpack throws when the buffer is too small, and leaves half a message; callers compute sizes first. Texts end with
-/// a NUL. [any]
+/// oscpack throws in the middle of a message if the buffer is too small, so callers check sizes first. Strings are
+/// NUL-terminated. [any]
 class OscpackWriter {
  public:
   OscpackWriter(char* buffer, std::size_t size) : out_(buffer, size) {}

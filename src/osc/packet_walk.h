@@ -1,5 +1,5 @@
-// PacketWalk: the grammar of OSC packets within our limits. Both the validator and our own decoder are visitors of it.
-// Every length is compared with the bytes that are left before anything behind it is read.
+// PacketParser: parses OSC packets within our limits and calls a visitor. The validator and our own decoder are
+// visitors. Each length is checked against the remaining bytes before anything after it is read.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 
 namespace limber {
 
-/// Visits the elements of a packet in order. A visitor has
+/// Visits the elements of a packet in order. A visitor has the functions
 ///   void bundle(int depth, std::uint64_t time_tag)         a bundle begins; the outermost has depth 1
-///   void message(const char* address, const char* tags)    both end with a NUL
-///   void argument(char tag, const char* data)              after its bounds are checked; brackets of arrays too
+///   void message(const char* address, const char* tags)    both are NUL-terminated
+///   void argument(char tag, const char* data)              its bounds are checked; also called for array brackets
 ///   void end_message()
-/// and must drop what it has built when `packet()` reports a fault. [any]
+/// and must discard its results if `packet()` returns an error. [any]
 template <class Visitor>
-class PacketWalk {
+class PacketParser {
  public:
-  explicit PacketWalk(Visitor& visitor) : visitor_(visitor) {}
+  explicit PacketParser(Visitor& visitor) : visitor_(visitor) {}
 
-  /// The fault of the packet as a constant text; null: it is valid.
+  /// Returns a constant error text, or null if the packet is valid.
   const char* packet(const char* data, std::size_t size) {
-    if (size > kLargestPacket) return "larger than 65504 bytes";
+    if (size > kMaxPacketSize) return "larger than 65504 bytes";
     return element(data, size, 0);
   }
 
  private:
-  /// The padded size of the string at `p`; 0 if it does not end within `left`. The last byte of the padding has to be
-  /// 0: oscpack looks for the end there only, so both readers agree on where a string ends.
+  /// Returns the padded size of the string at `p`, or 0 if it does not end within `left` bytes. The last padding byte
+  /// must be 0: oscpack looks for the end only there, so that both parsers agree on where a string ends.
   static std::size_t string_size(const char* p, std::size_t left) {
     const void* end = std::memchr(p, 0, left);
     if (end == nullptr) return 0;
@@ -52,11 +52,11 @@ class PacketWalk {
   static const char* one_argument(char tag, const char* data, std::size_t size, std::size_t& at);
 
   Visitor& visitor_;
-  int arguments_ = 0;  // type tags seen in the whole datagram
+  int arguments_ = 0;  // number of type tags so far in the whole datagram
 };
 
 template <class Visitor>
-const char* PacketWalk<Visitor>::bundle(const char* data, std::size_t size, int depth) {
+const char* PacketParser<Visitor>::bundle(const char* data, std::size_t size, int depth) {
   if (size < kBundleHeader || std::memcmp(data, "#bundle", 8) != 0) return "a bundle without its header";
   if (depth > OscLimits::kDepth) return "bundles nested deeper than 8";
   visitor_.bundle(depth, load_u64(data + 8));
@@ -72,9 +72,9 @@ const char* PacketWalk<Visitor>::bundle(const char* data, std::size_t size, int 
   return nullptr;
 }
 
-/// Moves `at` behind the argument.
+/// Advances `at` past the argument.
 template <class Visitor>
-const char* PacketWalk<Visitor>::one_argument(char tag, const char* data, std::size_t size, std::size_t& at) {
+const char* PacketParser<Visitor>::one_argument(char tag, const char* data, std::size_t size, std::size_t& at) {
   const std::size_t left = size - at;
   std::size_t length = 0;
   switch (tag) {
@@ -119,7 +119,7 @@ const char* PacketWalk<Visitor>::one_argument(char tag, const char* data, std::s
 }
 
 template <class Visitor>
-const char* PacketWalk<Visitor>::arguments(const char* data, std::size_t size, const char* tags, std::size_t at) {
+const char* PacketParser<Visitor>::arguments(const char* data, std::size_t size, const char* tags, std::size_t at) {
   int level = 0;
   int count = 0;
   for (const char* tag = tags; *tag != 0; tag++) {
@@ -137,7 +137,7 @@ const char* PacketWalk<Visitor>::arguments(const char* data, std::size_t size, c
 }
 
 template <class Visitor>
-const char* PacketWalk<Visitor>::message(const char* data, std::size_t size) {
+const char* PacketParser<Visitor>::message(const char* data, std::size_t size) {
   const std::size_t address = string_size(data, size);
   if (address == 0) return "an address that does not end";
   if (address > OscLimits::kString + 4) return "an address longer than 1024 bytes";

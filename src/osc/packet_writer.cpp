@@ -1,4 +1,4 @@
-// Element sizes are written when an element ends.
+// An element's size is written when the element ends.
 #include "osc/packet_writer.h"
 
 #include <bit>
@@ -19,7 +19,7 @@ char* PacketWriter::extend(std::size_t bytes) {
 }
 
 bool PacketWriter::begin_element() {
-  // one packet holds one outermost element
+  // a packet has exactly one outermost element
   valid_ = valid_ && !message_open_ && open_ < elements_.size() && (open_ > 0 || used_ == 0);
   if (open_ > 0 && extend(4) == nullptr) return false;
   if (!valid_) return false;
@@ -33,7 +33,7 @@ void PacketWriter::end_element() {
 }
 
 void PacketWriter::begin_bundle(std::uint64_t time_tag) {
-  // the deepest place is left to messages
+  // reserve the deepest level for messages
   valid_ = valid_ && open_ + 1 < elements_.size();
   if (!begin_element()) return;
   char* const at = extend(kBundleHeader);
@@ -76,16 +76,16 @@ char* PacketWriter::argument(char tag, std::size_t bytes) {
   return at;
 }
 
-void PacketWriter::four(char tag, std::uint32_t value) {
+void PacketWriter::write_u32(char tag, std::uint32_t value) {
   if (char* const at = argument(tag, 4)) store_u32(at, value);
 }
 
-void PacketWriter::eight(char tag, std::uint64_t value) {
+void PacketWriter::write_u64(char tag, std::uint64_t value) {
   if (char* const at = argument(tag, 8)) store_u64(at, value);
 }
 
-void PacketWriter::float32(float value) { four('f', std::bit_cast<std::uint32_t>(value)); }
-void PacketWriter::float64(double value) { eight('d', std::bit_cast<std::uint64_t>(value)); }
+void PacketWriter::float32(float value) { write_u32('f', std::bit_cast<std::uint32_t>(value)); }
+void PacketWriter::float64(double value) { write_u64('d', std::bit_cast<std::uint64_t>(value)); }
 
 void PacketWriter::padded_text(char tag, std::string_view text) {
   const std::size_t size = padded(text.size());

@@ -1,4 +1,4 @@
-// Datagrams in rounds of sixteen; nothing here throws, and nothing is logged per datagram.
+// Reads datagrams in batches of sixteen. Nothing here throws, and nothing is logged per datagram.
 #include "osc/receiver.h"
 
 #include <algorithm>
@@ -17,74 +17,76 @@ namespace limber {
 
 namespace {
 
-constexpr int kRounds = 64;
+constexpr int kMaxBatches = 64;
 constexpr int kReceiveBuffer = 4 << 20;
-constexpr std::size_t kRawCost = 256;  // of a datagram, beside its bytes
-constexpr const char* kTooFast = "OSC comes in faster than the simulation takes it: messages are dropped";
-constexpr const char* kCure = "choose another with --osc-in ADDR:PORT, or play without with --osc-optional";
+constexpr std::size_t kDatagramOverhead = 256;  // budget per datagram in addition to its bytes
+constexpr const char* kInboxFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
+constexpr const char* kListenHint =
+    "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
 
 std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
 
 }  // namespace
 
-// the text is made only when it is said
+// `text` is called only if the warning is logged.
 template <class Text>
-void Receiver::warn_seldom(Seldom& kind, const Text& text) {
-  if (const std::optional<std::string> more = kind.ask(clock_.steady())) log_warning("{}{}", text(), *more);
+void Receiver::warn_throttled(WarningThrottle& throttle, const Text& text) {
+  if (const std::optional<std::string> more = throttle.admit(clock_.steady())) log_warning("{}{}", text(), *more);
 }
 
-struct Receiver::Listening {
-  ListenAddress wish;
+struct Receiver::ListenSocket {
+  ListenAddress address;
   system::UdpSocket socket;
-  std::uint32_t kernel_drops = 0;  // the kernel counts from the socket's birth
+  std::uint32_t kernel_drops = 0;  // the kernel's counter, which starts with the socket
 };
 
-Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverAnswers answers, const NetClock& clock)
-    : link_(link), allow_(std::move(allow)), answers_(std::move(answers)), clock_(clock), held_(clock) {}
+Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks, const NetClock& clock)
+    : link_(link), allow_(std::move(allow)), callbacks_(std::move(callbacks)), clock_(clock), scheduled_(clock) {}
 
 Receiver::~Receiver() = default;
 
 void Receiver::close() { sockets_.clear(); }
 
 std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addresses) {
-  std::erase_if(sockets_, [&](const auto& s) { return std::ranges::find(addresses, s->wish) == addresses.end(); });
+  std::erase_if(sockets_, [&](const auto& s) { return std::ranges::find(addresses, s->address) == addresses.end(); });
   std::vector<std::string> faults;
   for (const ListenAddress& address : addresses) {
-    const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->wish == address; });
+    const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->address == address; });
     if (open_already) continue;
     if (std::optional<std::string> fault = open(address)) faults.push_back(*fault);
   }
   return faults;
 }
 
-bool Receiver::wants_more(const std::vector<ListenAddress>& addresses) const {
+bool Receiver::has_unopened(const std::vector<ListenAddress>& addresses) const {
   const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
   return numbers && std::ranges::any_of(addresses, [this](const ListenAddress& address) {
-           return std::ranges::none_of(sockets_, [&](const auto& s) { return s->wish == address; });
+           return std::ranges::none_of(sockets_, [&](const auto& s) { return s->address == address; });
          });
 }
 
 std::optional<std::string> Receiver::open(const ListenAddress& address) {
   const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);
-  if (!at) return fmt::format("OSC can't listen on {}: {}; {}", name, at.error(), kCure);
+  if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), kListenHint);
   Result<system::UdpSocket> socket = system::open_udp(*at);
-  if (!socket) return fmt::format("OSC can't listen on {}: {}; {}", name, socket.error(), kCure);
+  if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), kListenHint);
 
   system::count_dropped(socket->fd());
   const int granted = system::set_receive_buffer(socket->fd(), kReceiveBuffer);
-  if (granted < kReceiveBuffer && !said_buffer_) {
-    said_buffer_ = true;
+  if (granted < kReceiveBuffer && !reported_buffer_) {
+    reported_buffer_ = true;
     log_info(
-        "OSC in: the system grants a receive buffer of {} KiB instead of {}; bursts of many messages may lose "
-        "some; cure: sysctl -w net.core.rmem_max={}",
+        "OSC in: the system limits the receive buffer to {} KiB instead of {} KiB, so bursts may lose messages. "
+        "Increase it with sysctl -w net.core.rmem_max={}",
         granted / 1024, kReceiveBuffer / 1024, kReceiveBuffer);
   }
   if (at->ip == 0) {
     log_warning("OSC in {}: open to the network{}", name,
-                allow_.empty() ? ", everyone may play; --osc-allow CIDR limits it" : " for whom --osc-allow names");
+                allow_.empty() ? ", every sender is accepted. Restrict it with --osc-allow CIDR"
+                               : ", senders in --osc-allow are accepted");
   }
-  sockets_.push_back(std::make_unique<Listening>(Listening{address, std::move(*socket), 0}));
+  sockets_.push_back(std::make_unique<ListenSocket>(ListenSocket{address, std::move(*socket), 0}));
   return std::nullopt;
 }
 
@@ -103,44 +105,44 @@ std::vector<Endpoint> Receiver::bound() const {
 void Receiver::receive(int fd) {
   const auto found = std::ranges::find_if(sockets_, [&](const auto& s) { return s->socket.fd() == fd; });
   if (found == sockets_.end()) return;
-  Listening& socket = **found;
-  for (int round = 0; round < kRounds; round++) {
+  ListenSocket& socket = **found;
+  for (int round = 0; round < kMaxBatches; round++) {
     const std::span<const system::Datagram> datagrams = reader_.read(fd);
     for (const system::Datagram& datagram : datagrams) {
-      if (datagram.dropped) note_kernel_drops(socket, *datagram.dropped);
-      take_from(socket, datagram.data, datagram.size, datagram.from);
+      if (datagram.dropped) record_kernel_drops(socket, *datagram.dropped);
+      enqueue(socket, datagram.data, datagram.size, datagram.from);
     }
-    // an error (nothing there, a signal) is the same as an empty round: the wait says when there is more
-    if (datagrams.size() < system::DatagramReader::kMost) break;
+    // an error (no data, a signal) is handled like an empty batch: poll reports further data
+    if (datagrams.size() < system::DatagramReader::kMaxBatch) break;
   }
 }
 
-void Receiver::take_from(Listening& socket, const char* data, std::size_t size, const Endpoint& from) {
-  known_[slot_of(from) % kKnown] = {from, socket.socket.fd()};
-  answers_.received(from, size);
-  const Scanned scanned = scan(data, size, {Hand::osc, from.ip, from.port});
-  pushed_ = pushed_ || scanned.urgent;
-  if (raw_.size() < kMostRaw && raw_bytes_ + size <= kMostRawBytes) {
-    raw_.push_back({{data, size}, from, scanned});
-    raw_bytes_ += size;
+void Receiver::enqueue(ListenSocket& socket, const char* data, std::size_t size, const Endpoint& from) {
+  known_senders_[slot_of(from) % kKnownSlots] = {from, socket.socket.fd()};
+  callbacks_.received(from, size);
+  const ScanResult scanned = scan(data, size, {CommandSource::osc, from.ip, from.port});
+  wake_pending_ = wake_pending_ || scanned.urgent;
+  if (queue_.size() < kMaxQueued && queued_bytes_ + size <= kMaxQueuedBytes) {
+    queue_.push_back({{data, size}, from, scanned});
+    queued_bytes_ += size;
     return;
   }
   link_.counters.dropped.fetch_add(1, std::memory_order_relaxed);
-  warn_seldom(inbox_full_, [] { return kTooFast; });
+  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
 }
 
 namespace {
 
-// whether a valid packet has an urgent address
+// Visitor that detects urgent addresses in a valid packet.
 struct UrgentAddresses {
   bool any = false;
   static void bundle(int, std::uint64_t) {}
-  void message(const char* address, const char*) { any = any || urgent_address(address).has_value(); }
+  void message(const char* address, const char*) { any = any || urgent_kind_of(address).has_value(); }
   static void argument(char, const char*) {}
   static void end_message() {}
 };
 
-// an /error, or a message about one
+// True for an /error message or a message with /error as an argument.
 bool answers_error(const Message& message) {
   constexpr std::string_view kError = "/error";
   return same_address(message.address, kError) || std::ranges::any_of(message.args, [&](const Arg& arg) {
@@ -150,147 +152,149 @@ bool answers_error(const Message& message) {
 
 }  // namespace
 
-Receiver::Scanned Receiver::scan(const char* data, std::size_t size, const Origin& origin) const {
-  Scanned scanned{link_.inbox.arrive(), false};
+Receiver::ScanResult Receiver::scan(const char* data, std::size_t size, const CommandOrigin& origin) const {
+  ScanResult scanned{link_.command_queue.next_arrival(), false};
   UrgentAddresses addresses;
-  if (!allowed(origin.ip) || PacketWalk<UrgentAddresses>(addresses).packet(data, size) != nullptr || !addresses.any)
+  if (!allowed(origin.ip) || PacketParser<UrgentAddresses>(addresses).packet(data, size) != nullptr || !addresses.any)
     return scanned;
   Result<Decoded> decoded = decode_packet(data, size);
-  if (!decoded || held_.waits(decoded->time_tag)) return scanned;
+  if (!decoded || scheduled_.is_future(decoded->time_tag)) return scanned;
   scanned.urgent = true;
   for (Message& message : decoded->messages) {
     if (const std::optional<UrgentKind> kind = urgent_kind(message))
-      link_.inbox.push_urgent({*kind, std::move(message), origin, scanned.arrival});
+      link_.command_queue.push_urgent({*kind, std::move(message), origin, scanned.arrival});
   }
   return scanned;
 }
 
-void Receiver::decode_some() {
-  for (std::size_t bytes = 0; !raw_.empty() && bytes < kDecodedBytes;) {
-    const Raw raw = std::move(raw_.front());
-    raw_.pop_front();
-    raw_bytes_ -= raw.bytes.size();
-    bytes += raw.bytes.size() + kRawCost;
-    take(raw.bytes.data(), raw.bytes.size(), {Hand::osc, raw.from.ip, raw.from.port}, raw.scanned);
+void Receiver::decode_slice() {
+  for (std::size_t bytes = 0; !queue_.empty() && bytes < kDecodeSliceBytes;) {
+    const QueuedDatagram raw = std::move(queue_.front());
+    queue_.pop_front();
+    queued_bytes_ -= raw.bytes.size();
+    bytes += raw.bytes.size() + kDatagramOverhead;
+    process(raw.bytes.data(), raw.bytes.size(), {CommandSource::osc, raw.from.ip, raw.from.port}, raw.scanned);
   }
 }
 
-void Receiver::take(const char* data, std::size_t size, Origin origin, Scanned scanned) {
+void Receiver::process(const char* data, std::size_t size, CommandOrigin origin, ScanResult scanned) {
   const Endpoint from{origin.ip, origin.port};
   if (!allowed(from.ip)) {
     link_.counters.denied.fetch_add(1, std::memory_order_relaxed);
-    warn_seldom(not_allowed_,
-                [&] { return fmt::format("OSC from {} ignored: --osc-allow does not hold it", endpoint_text(from)); });
+    warn_throttled(denied_log_, [&] {
+      return fmt::format("OSC from {} ignored: its address is not in --osc-allow", endpoint_text(from));
+    });
     return;
   }
   const char* fault = packet_fault(data, size);
   Result<Decoded> decoded = fault == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{fault});
   if (!decoded) {
     link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
-    warn_seldom(malformed_, [&] {
-      return fmt::format("{} bytes from {} are no OSC: {}", size, endpoint_text(from), decoded.error());
+    warn_throttled(malformed_log_, [&] {
+      return fmt::format("OSC in: {} bytes from {} are not valid OSC: {}", size, endpoint_text(from), decoded.error());
     });
     return;
   }
-  link_.counters.received.fetch_add(decoded->messages.size() + decoded->refused.size(), std::memory_order_relaxed);
-  if (link_.traffic.watched()) note_traffic(origin, *decoded);
-  for (const RefusedMessage& r : decoded->refused) refuse(origin, r.address, r.text);
+  link_.counters.received.fetch_add(decoded->messages.size() + decoded->rejected.size(), std::memory_order_relaxed);
+  if (link_.message_log.enabled()) log_messages(origin, *decoded);
+  for (const RejectedMessage& r : decoded->rejected) reject(origin, r.address, r.reason);
 
-  // a ping asks this thread, not the simulation
+  // a ping is answered by this thread, not by the simulation
   const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
-  for (std::size_t i = 0; i < pings; i++) answers_.pong(origin);
+  for (std::size_t i = 0; i < pings; i++) callbacks_.pong(origin);
   std::erase_if(decoded->messages, [&](const Message& m) {
     if (m.address == "/token") {
-      answers_.token(m, origin);
+      callbacks_.token(m, origin);
       return true;
     }
-    if (answers_error(m)) answers_.echo(origin);
-    if (!Subscribers::is_one(m)) return false;
-    if (const Result<void> done = answers_.subscribe(m, origin); !done) refuse(origin, m.address, done.error());
+    if (answers_error(m)) callbacks_.error_answered(origin);
+    if (!Subscribers::handles(m)) return false;
+    if (const Result<void> done = callbacks_.subscribe(m, origin); !done) reject(origin, m.address, done.error());
     return true;
   });
-  origin.follows = origin.follows || answers_.follows(origin);
+  origin.is_subscriber = origin.is_subscriber || callbacks_.is_subscriber(origin);
   if (!decoded->messages.empty())
     deliver(decoded->time_tag, {std::move(decoded->messages), origin, nullptr, scanned.arrival}, scanned.urgent);
 }
 
-void Receiver::note_traffic(const Origin& origin, const Decoded& packet) {
-  const std::string end = endpoint_text({origin.ip, origin.port}) + (origin.hand == Hand::query ? " (WebSocket)" : "");
-  for (const Message& message : packet.messages) link_.traffic.note(true, end, message);
-  for (const RefusedMessage& refused : packet.refused) link_.traffic.note(true, end, {refused.address, {}});
+void Receiver::log_messages(const CommandOrigin& origin, const Decoded& packet) {
+  const std::string end =
+      endpoint_text({origin.ip, origin.port}) + (origin.source == CommandSource::oscquery ? " (WebSocket)" : "");
+  for (const Message& message : packet.messages) link_.message_log.add(true, end, message);
+  for (const RejectedMessage& rejected : packet.rejected) link_.message_log.add(true, end, {rejected.address, {}});
 }
 
-// what was found due by scan() is due, whatever the clock says now
+// A packet that scan() found to be due is applied now, even if the clock has changed since.
 void Receiver::deliver(std::uint64_t time_tag, Command command, bool urgent_pushed) {
-  switch (urgent_pushed ? HeldCommands::Verdict::now : held_.offer(time_tag, command)) {
-    case HeldCommands::Verdict::held:
+  switch (urgent_pushed ? ScheduledCommands::ScheduleResult::now : scheduled_.schedule(time_tag, command)) {
+    case ScheduledCommands::ScheduleResult::scheduled:
       return;
-    case HeldCommands::Verdict::far:
-      warn_seldom(far_, [&] {
+    case ScheduledCommands::ScheduleResult::too_far:
+      warn_throttled(far_future_log_, [&] {
         return fmt::format(
-            "a bundle from {} is dated more than 10 s ahead: applied now; its sender's clock or this "
-            "machine's is wrong",
+            "OSC in: the time tag of a bundle from {} is more than 10 s ahead; applied now. Check the clocks of the "
+            "sender and of this machine",
             endpoint_text({command.origin.ip, command.origin.port}));
       });
       break;
-    case HeldCommands::Verdict::full:
-      warn_seldom(held_full_, [] {
-        return fmt::format("{} bundles or {} MiB wait for their time: further ones are applied now",
-                           HeldCommands::kMost, HeldCommands::kMostBytes >> 20);
+    case ScheduledCommands::ScheduleResult::full:
+      warn_throttled(schedule_full_log_, [] {
+        return fmt::format("OSC in: {} bundles or {} MiB are scheduled; further ones are applied now",
+                           ScheduledCommands::kMaxCommands, ScheduledCommands::kMaxBytes >> 20);
       });
       break;
-    case HeldCommands::Verdict::now:
+    case ScheduledCommands::ScheduleResult::now:
       break;
   }
   push(std::move(command), urgent_pushed);
 }
 
-void Receiver::release_due() {
-  decode_some();
-  while (std::optional<Command> command = held_.due()) {
-    command->arrival = 0;  // it arrives now
+void Receiver::process_pending() {
+  decode_slice();
+  while (std::optional<Command> command = scheduled_.pop_due()) {
+    command->arrival = 0;  // it counts as arriving now
     push(std::move(*command));
   }
-  if (std::exchange(pushed_, false)) link_.wake_engine();
+  if (std::exchange(wake_pending_, false)) link_.wake_engine();
 }
 
 void Receiver::push(Command command, bool urgent_pushed) {
   const std::size_t count = command.messages.size();
-  if (link_.inbox.push(std::move(command), urgent_pushed)) {
-    pushed_ = true;
+  if (link_.command_queue.push(std::move(command), urgent_pushed)) {
+    wake_pending_ = true;
     return;
   }
   link_.counters.dropped.fetch_add(count, std::memory_order_relaxed);
-  warn_seldom(inbox_full_, [] { return kTooFast; });
+  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
 }
 
-void Receiver::refuse(const Origin& origin, const std::string& address, const std::string& text) {
+void Receiver::reject(const CommandOrigin& origin, const std::string& address, const std::string& text) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  answers_.error({Outgoing::To::error, origin, error_message(address, text)});
+  callbacks_.error({Outgoing::Destination::error, origin, error_message(address, text)});
 }
 
-void Receiver::note_kernel_drops(Listening& socket, std::uint32_t count) {
-  // unsigned: right even when the kernel's counter wraps
-  const std::uint32_t news = count - socket.kernel_drops;
+void Receiver::record_kernel_drops(ListenSocket& socket, std::uint32_t count) {
+  // unsigned arithmetic is correct even if the kernel's counter wraps
+  const std::uint32_t new_drops = count - socket.kernel_drops;
   socket.kernel_drops = count;
-  if (news == 0) return;
-  link_.counters.dropped_kernel.fetch_add(news, std::memory_order_relaxed);
-  warn_seldom(kernel_full_, [&] {
+  if (new_drops == 0) return;
+  link_.counters.dropped_kernel.fetch_add(new_drops, std::memory_order_relaxed);
+  warn_throttled(kernel_drops_log_, [&] {
     return fmt::format(
-        "OSC in {}: the system dropped {} datagrams; a larger net.core.rmem_max or bundles instead of "
-        "single messages help",
-        endpoint_text(socket.socket.local()), news);
+        "OSC in {}: the system dropped {} datagrams. Increase net.core.rmem_max, or send bundles instead of single "
+        "messages",
+        endpoint_text(socket.socket.local()), new_drops);
   });
 }
 
 int Receiver::socket_of(const Endpoint& sender) const {
-  const Known& known = known_[slot_of(sender) % kKnown];
+  const KnownSender& known = known_senders_[slot_of(sender) % kKnownSlots];
   if (known.sender != sender) return -1;
-  // the socket may have been closed since, and its number given to something else
+  // the socket may have been closed and its descriptor reused
   const bool ours = std::ranges::any_of(sockets_, [&](const auto& s) { return s->socket.fd() == known.fd; });
   return ours ? known.fd : -1;
 }
 
-bool Receiver::allowed(std::uint32_t ip) const { return holds(allow_, ip); }
+bool Receiver::allowed(std::uint32_t ip) const { return is_allowed(allow_, ip); }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Refusals: datagrams that came back because nobody listens where they went. Said, counted, and sent on all the same.
+// UnreachableTargets: logs targets that the system reports as unreachable. Sending to them continues.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace limber {
 
-/// Reads what the system reports about datagrams of one sender. [net]
-class Refusals {
+/// Reads the failures that the system reports for one sender's datagrams. [net]
+class UnreachableTargets {
  public:
-  static constexpr std::int64_t kPause = 60'000'000'000;  ///< ns; quiet so long, an end that refuses is said again.
-  static constexpr std::size_t kMost = 256;               ///< Ends that are remembered.
+  /// ns without failures after which a target is logged again.
+  static constexpr std::int64_t kQuietPeriod = 60'000'000'000;
+  static constexpr std::size_t kMaxTargets = 256;  ///< Maximum number of remembered targets.
 
-  /// Takes what came back since the last call: counts it as unsent, says once who refuses. `now` in ns.
-  void take(system::UdpSender& sender, Counters& counters, std::int64_t now);
+  /// Handles the failures reported since the last call: counts each as unsent and logs each target once. `now` in ns.
+  void poll(system::UdpSender& sender, Counters& counters, std::int64_t now);
 
  private:
-  void note(const Endpoint& end, int error, std::int64_t now);
+  void record(const Endpoint& end, int error, std::int64_t now);
 
-  std::map<Endpoint, std::int64_t> last_;
+  std::map<Endpoint, std::int64_t> last_failure_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Seldom: a warning of one kind is said once a minute at most, with how often it came in between.
+// WarningThrottle: logs one kind of warning at most once a minute, with the number of suppressed ones.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +9,29 @@
 
 namespace limber {
 
-/// One kind of warning. [one thread]
-class Seldom {
+/// Throttles one kind of warning. [one thread]
+class WarningThrottle {
  public:
-  static constexpr std::int64_t kPause = 60'000'000'000;  ///< ns
+  static constexpr std::int64_t kInterval = 60'000'000'000;  ///< ns
 
-  /// What to add to the text, "" or " (and 17 more since the last warning)"; nothing: be silent. `now` in ns.
-  std::optional<std::string> ask(std::int64_t now) {
-    if (said_ && now - last_ < kPause) {
-      silent_++;
+  /// Returns the suffix for the warning, "" or " (and 17 more since the last warning)"; empty if the warning is to be
+  /// suppressed. `now` in ns.
+  std::optional<std::string> admit(std::int64_t now) {
+    if (logged_ && now - last_ < kInterval) {
+      suppressed_++;
       return std::nullopt;
     }
-    std::string more = silent_ > 0 ? fmt::format(" (and {} more since the last warning)", silent_) : "";
-    said_ = true;
+    std::string suffix = suppressed_ > 0 ? fmt::format(" (and {} more since the last warning)", suppressed_) : "";
+    logged_ = true;
     last_ = now;
-    silent_ = 0;
-    return more;
+    suppressed_ = 0;
+    return suffix;
   }
 
  private:
-  bool said_ = false;
+  bool logged_ = false;
   std::int64_t last_ = 0;
-  std::uint64_t silent_ = 0;
+  std::uint64_t suppressed_ = 0;
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// SendBudget: how much subscriptions may send: bytes and values per second, for each sender and for all together. What
-// all may send is shared fairly: nobody gets less because others want more than their share.
+// SendBudget: limits the bytes and values per second that subscriptions send, per sender and in total. The total is
+// shared max-min fairly: no sender gets less because others demand more than their share.
 #pragma once
 
 #include <cstddef>
@@ -9,72 +9,75 @@
 
 namespace limber {
 
-/// Per second.
+/// Limits per second.
 struct SendLimits {
   double bytes = 0;
-  double values = 0;  ///< A datagram of a stream or an event counts as one.
+  double values = 0;  ///< A datagram of a stream or an event counts as one value.
 };
 
-/// [one thread]
+/// Token buckets with max-min fair refills. [one thread]
 class SendBudget {
  public:
-  static constexpr SendLimits kEach{24e6, 20e3};  ///< Of one sender: a thousand bodies' `pos` at 60 Hz.
-  static constexpr SendLimits kAll{48e6, 50e3};
-  static constexpr double kBurst = 0.1;                         ///< s of a sender's limit that may be sent at once.
-  static constexpr std::int64_t kWindow = 2'000'000'000;        ///< ns; how often a reduction is decided and reported.
-  static constexpr std::int64_t kShortest = 1'000'000;          ///< ns between two refills.
-  static constexpr std::int64_t kReportEvery = 10'000'000'000;  ///< ns, while a sender stays reduced.
+  static constexpr SendLimits kPerSender{24e6, 20e3};  ///< Per sender: a thousand bodies' `pos` at 60 Hz.
+  static constexpr SendLimits kTotal{48e6, 50e3};
+  static constexpr double kBurst = 0.1;  ///< s of a sender's limit that may be sent at once.
+  /// ns; interval in which reductions are determined and reported.
+  static constexpr std::int64_t kWindow = 2'000'000'000;
+  static constexpr std::int64_t kMinRefillInterval = 1'000'000;  ///< ns; minimum time between two refills.
+  /// ns; interval of repeated reports for a reduced sender.
+  static constexpr std::int64_t kReportInterval = 10'000'000'000;
 
-  explicit SendBudget(SendLimits each = kEach, SendLimits all = kAll) : each_(each), all_(all) {}
+  explicit SendBudget(SendLimits each = kPerSender, SendLimits all = kTotal) : each_(each), all_(all) {}
 
-  /// One sender's part.
+  /// The budget of one sender.
   class Account {
    public:
-    /// Whether so much may be sent now; counts it when so. What is larger than the burst is paid back.
-    bool spend(std::size_t bytes, std::size_t values);
+    /// Charges the amount. Returns false if nothing is left. A charge larger than the rest is allowed; the debt is paid
+    /// by later refills.
+    bool try_consume(std::size_t bytes, std::size_t values);
 
    private:
     friend class SendBudget;
-    SendLimits left_;
+    SendLimits available_;
     SendLimits spent_;            // in this window
-    std::uint64_t withheld_ = 0;  // times, in this window
+    std::uint64_t withheld_ = 0;  // number of rejected charges in this window
     bool reduced_ = false;
     std::int64_t reported_ = 0;
   };
 
-  /// Begins with a whole burst. The pointer is valid until close().
-  Account* open();
-  void close(const Account* account);
+  /// Opens an account with a full burst. The pointer is valid until close_account().
+  Account* open_account();
+  void close_account(const Account* account);
 
-  /// Gives what time has brought since the last call. Call it before spending. Allocates nothing while the number of
-  /// accounts stays the same.
+  /// Refills the accounts for the time since the last call. Call it before spending. Does not allocate while the number
+  /// of accounts stays the same.
   void refill(std::int64_t now);
 
-  /// A sender's reduction that has begun, goes on, or has ended.
+  /// Reports that a sender's reduction has begun, continues or has ended.
   struct Report {
     const Account* account = nullptr;
-    bool reduced = false;  ///< False: it gets all again.
+    bool reduced = false;  ///< False: the sender is no longer reduced.
     double bytes = 0;      ///< Per second, in the last window.
     double values = 0;
   };
-  /// What is to be reported now; empty between windows.
+  /// Returns the reports of the window that has ended; empty within a window.
   const std::vector<Report>& reports(std::int64_t now);
-  /// How many senders are reduced at the moment.
+  /// Number of senders that are currently reduced.
   std::size_t reduced() const;
-  /// When reports() has something to decide.
-  std::int64_t window_end() const { return window_ + kWindow; }
+  /// Time in ns of the next window's end, when reports() has new results.
+  std::int64_t window_end() const { return window_start_ + kWindow; }
 
  private:
-  void share(double SendLimits::*what, double seconds);
+  void distribute(double SendLimits::*member, double seconds);
 
   const SendLimits each_;
   const SendLimits all_;
   std::list<Account> accounts_;
-  std::vector<double> wanted_;  // scratch
+  std::vector<double> demands_;  // scratch memory of distribute()
   std::vector<Report> reports_;
-  std::int64_t filled_ = 0;  // ns
-  std::int64_t window_ = 0;  // its beginning
-  bool begun_ = false;
+  std::int64_t last_refill_ = 0;   // time of the last refill, ns
+  std::int64_t window_start_ = 0;  // start of the current window, ns
+  bool started_ = false;
 };
 
 }  // namespace limber

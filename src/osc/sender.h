@@ -1,5 +1,5 @@
-// The sender: answers, errors and a scene's messages, each one datagram, from a socket that is bound to no address, so
-// that one who listens on this machine only can still send to others.
+// Sender: sends answers, errors and a scene's messages, one datagram each. Its socket is not bound to an address,
+// so it reaches other machines even if the program listens on loopback only.
 #pragma once
 
 #include <cstdint>
@@ -18,79 +18,83 @@
 
 namespace limber {
 
-/// A stream target with its address looked up.
-struct Target {
-  StreamTarget wish;
-  Endpoint at;
-  bool subscribed = false;  ///< It has asked for it; else the performer has named it.
+/// A stream target with its resolved address.
+struct ResolvedTarget {
+  StreamTarget config;
+  Endpoint endpoint;
+  bool subscribed = false;  ///< True if a /subscribe created it, false if it is configured.
 
-  bool operator==(const Target&) const = default;
+  bool operator==(const ResolvedTarget&) const = default;
 };
 
-/// Whether a datagram of so many bytes may go to a sender now.
+/// Returns true if datagrams of `bytes` bytes in total may be sent to `to` now.
 using SendGate = std::function<bool(const Endpoint& to, std::size_t bytes, std::size_t datagrams)>;
 
-/// [net]
+/// Sends single messages. [net]
 class Sender {
  public:
-  /// `reply_socket` gives the listening socket of a sender's question, or -1.
-  Sender(Counters& counters, Traffic& traffic, std::function<int(const Endpoint&)> reply_socket, const NetClock& clock);
+  /// `reply_socket` returns the listening socket that received a sender's last message, or -1.
+  Sender(Counters& counters, MessageLog& message_log, std::function<int(const Endpoint&)> reply_socket,
+         const NetClock& clock);
 
-  /// Of answers, and of what subscribers get. What the performer has named as a target passes neither.
+  /// Sets the gates for answers and for messages to subscribers. Neither applies to configured targets.
   void set_gates(SendGate answers, SendGate subscriptions) {
     may_answer_ = std::move(answers);
     may_serve_ = std::move(subscriptions);
   }
-  /// Where this program listens itself, and the addresses of this machine: nothing is sent there.
-  void set_own(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses);
-  bool is_own(const Endpoint& end) const;
-  /// Reports an own input as a target, once.
-  void report_own(const Endpoint& end);
+  /// Sets the endpoints this program listens on and this machine's addresses. Nothing is sent to its own inputs.
+  void set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses);
+  bool is_own_input(const Endpoint& end) const;
+  /// Warns once that a target is the program's own input.
+  void report_own_input(const Endpoint& end);
 
+  /// Opens the socket. Call it before sending.
   Result<void> open();
   void close() { out_.close(); }
-  /// The socket, from which streams are sent too.
+  /// The socket, which the streams share.
   system::UdpSender& socket() { return out_; }
-  void set_targets(std::vector<Target> targets) { targets_ = std::move(targets); }
-  /// Who gets events beside them.
+  void set_targets(std::vector<ResolvedTarget> targets) { targets_ = std::move(targets); }
+  /// Sets the additional receivers of events.
   void set_subscribers(std::vector<Endpoint> ends) { subscribers_ = std::move(ends); }
 
-  /// Sends to whom it is for. Refused messages are answered ten times a second per sender, and never when what was
-  /// refused is itself an answer or a stream: two programs aimed at each other fall silent.
+  /// Sends a message to the receivers that `out.to` names. Error messages are limited to ten a second per sender, and
+  /// none is sent if the rejected message was itself an answer or a stream, so that two programs aimed at each other do
+  /// not loop.
   void send(const Outgoing& out);
-  void pong(const Origin& to, std::uint64_t tick, double time);
-  /// A subscriber's value. False: it may not be sent now.
+  /// Sends a `/pong` to the sender of a `/ping`.
+  void pong(const CommandOrigin& to, std::uint64_t tick, double time);
+  /// Sends a subscribed value. Returns false if the subscriber's budget does not allow it now.
   bool send_value(const Outgoing& out);
-  /// It has answered an /error: it gets none for a while.
-  void note_echo(const Endpoint& end);
-  /// Loops that were found and ended.
+  /// Records that `end` answers /error messages; it gets none for a minute.
+  void record_error_answer(const Endpoint& end);
+  /// Number of message loops detected and stopped.
   std::uint64_t loops() const { return loops_; }
 
  private:
-  void to_origin(const Origin& origin, std::span<const char> packet, bool answer);
-  void to_targets(std::span<const char> packet, bool only_those_wanting_errors);
-  void to_subscribers(std::span<const char> packet);
+  void send_to_origin(const CommandOrigin& origin, std::span<const char> packet, bool is_answer);
+  void send_to_targets(std::span<const char> packet, bool errors_only);
+  void send_to_subscribers(std::span<const char> packet);
   void send_to(const Endpoint& to, std::span<const char> packet);
   void reply(const Endpoint& to, std::span<const char> packet);
   std::span<const char> encode(const Message& message);
-  void note_result(int error, const Endpoint& to, std::span<const char> packet);
+  void handle_result(int error, const Endpoint& to, std::span<const char> packet);
 
   Counters& counters_;
-  Traffic& traffic_;
+  MessageLog& message_log_;
   std::function<int(const Endpoint&)> reply_socket_;
   const NetClock& clock_;
   system::UdpSender out_;
-  std::vector<Target> targets_;
+  std::vector<ResolvedTarget> targets_;
   std::vector<Endpoint> subscribers_;
   SendGate may_answer_ = [](const Endpoint&, std::size_t, std::size_t) { return true; };
   SendGate may_serve_ = may_answer_;
   std::vector<Endpoint> inputs_;
   std::vector<std::uint32_t> addresses_;
-  std::vector<Endpoint> own_reported_;
+  std::vector<Endpoint> reported_own_inputs_;
   std::uint64_t loops_ = 0;
-  ErrorLimit limit_;
+  ErrorRateLimit error_limiter_;
   PacketBuffer buffer_;
-  Seldom failed_, too_large_;
+  WarningThrottle failed_log_, too_large_log_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Tables of fixed size, in which an address has one place: nothing grows with the number of senders.
+// Fixed-size hash tables with one slot per address, so memory does not grow with the number of senders.
 #include "osc/source_limit.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr Cidr kLoopback{0x7f000000, 8};
 
 }  // namespace
 
-// the words are hashed as 16 bytes in little-endian order, and their length as the reference does
+// The two words are hashed as 16 little-endian bytes and their length, like in the reference implementation.
 std::uint64_t sip_hash(const std::array<std::uint64_t, 2>& key, std::uint64_t first, std::uint64_t second) {
   std::uint64_t v0 = key[0] ^ 0x736f6d6570736575u;
   std::uint64_t v1 = key[1] ^ 0x646f72616e646f6du;
@@ -44,44 +44,44 @@ std::uint64_t sip_hash(const std::array<std::uint64_t, 2>& key, std::uint64_t fi
 std::vector<Cidr> connected_subnets() {
   std::vector<Cidr> list = {kLoopback};
   for (const system::Subnet& subnet : system::connected_subnets()) {
-    // a link that reaches everything, such as a tunnel, says nothing about who is at its other end
+    // an interface that routes everything, such as a tunnel, does not prove that a sender is near
     if (subnet.bits > 0) list.push_back({subnet.ip, subnet.bits});
   }
   return list;
 }
 
-SourceLimit::SourceLimit(std::vector<Cidr> allow, Subnets connected, std::array<std::uint64_t, 2> secret)
+AmplificationLimit::AmplificationLimit(std::vector<Cidr> allow, Subnets connected, std::array<std::uint64_t, 2> secret)
     : allow_(std::move(allow)),
       connected_(std::move(connected)),
       secret_(secret),
-      sources_(kSources),
-      verified_(kSources) {}
+      sources_(kSlots),
+      verified_(kSlots) {}
 
-std::size_t SourceLimit::slot(std::uint32_t ip) const { return sip_hash(secret_, ip, 0) % kSources; }
+std::size_t AmplificationLimit::slot(std::uint32_t ip) const { return sip_hash(secret_, ip, 0) % kSlots; }
 
-SourceLimit::Source& SourceLimit::source(std::uint32_t ip) {
+AmplificationLimit::Source& AmplificationLimit::source(std::uint32_t ip) {
   Source& source = sources_[slot(ip)];
   if (source.ip != ip) source = {ip, 0, 0, false};
   return source;
 }
 
-bool SourceLimit::trusted(std::uint32_t ip, std::int64_t now) {
-  const auto in = [ip](const Cidr& range) { return range.holds(ip); };
+bool AmplificationLimit::trusted(std::uint32_t ip, std::int64_t now) {
+  const auto in = [ip](const Cidr& range) { return range.contains(ip); };
   if (std::ranges::any_of(allow_, in) || std::ranges::any_of(subnets_, in)) return true;
-  // networks come and go
-  if (subnets_at_ && now - *subnets_at_ < kSubnetsLast) return false;
+  // interfaces may have changed
+  if (subnets_at_ && now - *subnets_at_ < kSubnetsLifetime) return false;
   subnets_at_ = now;
   subnets_ = connected_();
   return std::ranges::any_of(subnets_, in);
 }
 
-void SourceLimit::received(std::uint32_t ip, std::size_t bytes, std::int64_t now) {
+void AmplificationLimit::add_credit(std::uint32_t ip, std::size_t bytes, std::int64_t now) {
   if (trusted(ip, now)) return;
   Source& from = source(ip);
-  from.credit = std::min(from.credit + kFactor * static_cast<std::int64_t>(bytes), kMostCredit);
+  from.credit = std::min(from.credit + kAmplification * static_cast<std::int64_t>(bytes), kMaxCredit);
 }
 
-bool SourceLimit::allows(std::uint32_t ip, std::size_t bytes, std::int64_t now) {
+bool AmplificationLimit::try_consume(std::uint32_t ip, std::size_t bytes, std::int64_t now) {
   if (trusted(ip, now)) return true;
   const Verified& known = verified(ip);
   if (known.ip == ip && now < known.until) return true;
@@ -95,26 +95,26 @@ bool SourceLimit::allows(std::uint32_t ip, std::size_t bytes, std::int64_t now) 
   return false;
 }
 
-std::optional<std::string> SourceLimit::token(std::uint32_t ip, bool wants_more, std::int64_t now) {
+std::optional<std::string> AmplificationLimit::make_challenge(std::uint32_t ip, bool wants_more, std::int64_t now) {
   if (trusted(ip, now)) return std::nullopt;
   const Verified& known = verified(ip);
   if (known.ip == ip && now < known.until) return std::nullopt;
   Source& to = source(ip);
   if (!wants_more && !to.withheld) return std::nullopt;
-  if (to.token_at != 0 && now - to.token_at < kTokenEvery) return std::nullopt;
+  if (to.token_at != 0 && now - to.token_at < kTokenInterval) return std::nullopt;
   to.token_at = now;
   to.withheld = false;
-  return token_of(ip, now / kTokenLasts);
+  return token_of(ip, now / kTokenLifetime);
 }
 
-bool SourceLimit::accept(std::uint32_t ip, std::string_view token, std::int64_t now) {
-  const std::int64_t epoch = now / kTokenLasts;
+bool AmplificationLimit::verify_token(std::uint32_t ip, std::string_view token, std::int64_t now) {
+  const std::int64_t epoch = now / kTokenLifetime;
   if (token != token_of(ip, epoch) && token != token_of(ip, epoch - 1)) return false;
-  verified(ip) = {ip, now + kVerifiedLasts};
+  verified(ip) = {ip, now + kVerifiedLifetime};
   return true;
 }
 
-std::string SourceLimit::token_of(std::uint32_t ip, std::int64_t epoch) const {
+std::string AmplificationLimit::token_of(std::uint32_t ip, std::int64_t epoch) const {
   return fmt::format("{:016x}", sip_hash(secret_, ip, static_cast<std::uint64_t>(epoch) + 1));
 }
 

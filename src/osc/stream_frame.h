@@ -1,5 +1,5 @@
-// A stream frame: all of a target's joint messages as finished datagrams in one buffer. Addresses, tags, names and
-// sizes are written once per roster; a frame overwrites the numbers only.
+// StreamFrame: all joint messages for one target, as complete datagrams in one buffer. Addresses, type tags, names and
+// sizes are written once per body list; each frame overwrites only the numbers.
 #pragma once
 
 #include <cstdint>
@@ -13,29 +13,29 @@
 
 namespace limber {
 
-/// [net]
+/// The datagrams of one frame of a stream. [net]
 class StreamFrame {
  public:
-  explicit StreamFrame(const LiveOffsets& offsets) : offsets_(offsets) {}
+  explicit StreamFrame(const TransientOffsets& offsets) : offsets_(offsets) {}
 
-  /// Lays the frame out anew when the roster or the wish has changed since the last call. Messages stand by stream
-  /// (pos, rot, relrot, relpos) and in it in the roster's order; bodies without joints have none. A message larger
-  /// than a datagram is left out and its body named in `too_large()`.
-  void lay_out(const std::shared_ptr<const Roster>& roster, const StreamTarget& wish);
-  /// Writes the snapshot's numbers into the messages. No allocation.
+  /// Rebuilds the layout if the body list or the configuration has changed since the last call. Messages are ordered by
+  /// stream (pos, rot, relrot, relpos), then as in the body list; bodies without joints have none. A message larger
+  /// than a datagram is omitted and its body listed in `too_large()`.
+  void lay_out(const std::shared_ptr<const BodyList>& body_list, const StreamTarget& config);
+  /// Writes the snapshot's numbers into the messages. Does not allocate.
   void fill(const Snapshot& snapshot);
 
-  /// The datagrams, one behind the other in `bytes()`.
+  /// The sizes of the datagrams, which are stored contiguously in `bytes()`.
   std::span<const std::uint32_t> datagram_sizes() const { return datagrams_; }
   std::span<const char> bytes() const { return bytes_; }
   const std::vector<std::string>& too_large() const { return too_large_; }
 
  private:
-  struct Numbers {
-    std::uint32_t to = 0;      // where in bytes_
-    std::uint32_t body = 0;    // which of the roster
-    std::uint32_t offset = 0;  // in a joint's block of Snapshot::live
-    std::uint32_t width = 0;   // numbers per joint
+  struct NumberBlock {
+    std::uint32_t position = 0;  // offset in bytes_
+    std::uint32_t body = 0;      // index in the body list
+    std::uint32_t offset = 0;    // offset in a joint's block of Snapshot::transient
+    std::uint32_t width = 0;     // numbers per joint
   };
   struct Stream {
     const char* address;
@@ -43,19 +43,19 @@ class StreamFrame {
     std::uint32_t width;
   };
 
-  void add_message(const Stream& stream, const RosterBody& body, std::uint32_t index, std::size_t limit);
+  void add_message(const Stream& stream, const BodyEntry& body, std::uint32_t index, std::size_t limit);
   void end_datagram();
 
-  const LiveOffsets offsets_;
-  std::shared_ptr<const Roster> roster_;
-  StreamTarget wish_;
+  const TransientOffsets offsets_;
+  std::shared_ptr<const BodyList> body_list_;
+  StreamTarget config_;
   std::vector<char> bytes_;
   std::vector<std::uint32_t> datagrams_;
-  std::vector<Numbers> numbers_;
+  std::vector<NumberBlock> numbers_;
   std::vector<std::string> too_large_;
   std::vector<std::uint32_t> open_;  // sizes of the messages since the last datagram
-  std::size_t begin_ = 0;            // where in bytes_ the open datagram begins
-  std::size_t first_numbers_ = 0;    // its first entry in numbers_
+  std::size_t begin_ = 0;            // offset of the open datagram in bytes_
+  std::size_t first_numbers_ = 0;    // index of its first entry in numbers_
 };
 
 }  // namespace limber

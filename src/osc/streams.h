@@ -1,4 +1,4 @@
-// The streams: frames of the newest snapshot to each target, at its own rate of real time.
+// Streams: sends frames of the latest snapshot to each target at its own rate, in real time.
 #pragma once
 
 #include <cstdint>
@@ -14,45 +14,47 @@
 
 namespace limber {
 
-/// Deadlines do not drift: frame n of a target is due n periods after its first. Frames that were missed by more than
-/// a period are left out, not sent late. [net]
+/// Schedules stream frames without drift: frame n of a target is due n periods after its first. Frames more than a
+/// period late are skipped. [net]
 class Streams {
  public:
-  static constexpr std::size_t kSlice = 131072;  ///< Bytes to subscribers, but for the last frame.
+  /// Bytes sent to subscribers per call, except for the last frame.
+  static constexpr std::size_t kSliceBytes = 131072;
 
-  /// `may_serve`: of frames to subscribers; a frame that may not be sent is left out.
+  /// `may_serve` is asked for each frame to a subscriber; a rejected frame is skipped.
   Streams(
-      EngineLink& link, const LiveOffsets& offsets, const NetClock& clock,
+      EngineLink& link, const TransientOffsets& offsets, const NetClock& clock,
       SendGate may_serve = [](const Endpoint&, std::size_t, std::size_t) { return true; });
 
-  /// Targets that stand in the old list too keep their beat.
-  void set_targets(const std::vector<Target>& targets);
-  /// Sends what is due, to subscribers at most a slice, so that input gets its turn. A paused world's snapshot is sent
-  /// again and again.
+  /// Targets that are also in the old list keep their schedule.
+  void set_targets(const std::vector<ResolvedTarget>& targets);
+  /// Sends the frames that are due; those to subscribers in slices, so that input is not delayed. The snapshot of a
+  /// paused world is sent repeatedly.
   void send_due(system::UdpSender& sender);
-  /// Nanoseconds until the next frame; nothing without streams.
-  std::optional<std::int64_t> wait() const;
+  /// Nanoseconds until the next frame is due; empty if there are no streams.
+  std::optional<std::int64_t> timeout() const;
 
  private:
   struct Stream {
-    Stream(const Target& t, const LiveOffsets& offsets, std::int64_t now) : target(t), due(now), frame(offsets) {}
-    Target target;
-    std::int64_t due;
+    Stream(const ResolvedTarget& t, const TransientOffsets& offsets, std::int64_t now)
+        : target(t), next_due(now), frame(offsets) {}
+    ResolvedTarget target;
+    std::int64_t next_due;
     StreamFrame frame;
-    std::shared_ptr<const Roster> said_too_large;  // the roster about which it was said
-    bool segmentation = true;
+    std::shared_ptr<const BodyList> reported_too_large;  // the body list for which a too large message was reported
+    bool segmentation = true;                            // cleared if the route does not support segmentation offload
   };
 
   std::size_t send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot);
-  void note_frame(const Stream& stream, std::size_t datagrams);
+  void log_frame(const Stream& stream, std::size_t datagrams);
 
   EngineLink& link_;
-  const LiveOffsets offsets_;
+  const TransientOffsets offsets_;
   const NetClock& clock_;
   const SendGate may_serve_;
   std::vector<std::unique_ptr<Stream>> streams_;
-  std::size_t next_ = 0;  // the first one to look at
-  Seldom lost_;
+  std::size_t first_ = 0;  // index of the stream to check first
+  WarningThrottle lost_log_;
 };
 
 }  // namespace limber

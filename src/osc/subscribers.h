@@ -1,6 +1,6 @@
-// Subscribers: who asked by /subscribe to be told of a path's changes or to be streamed to, until they let it lapse;
-// within a budget (osc/send_budget.h). Paths of one sender that overlap are merged: each value comes once, at the
-// highest of their rates. Work is done in slices, so that input gets its turn.
+// Subscribers: senders that asked with /subscribe for a path's changes or a stream. A subscription expires unless it is
+// renewed, and its traffic is limited by a budget (osc/send_budget.h). If several paths of one sender match the same
+// value, the value is sent once, at the highest of their rates. Work is done in slices, so that input is not delayed.
 #pragma once
 
 #include <cstdint>
@@ -18,85 +18,88 @@
 
 namespace limber {
 
-/// [net]
+/// The subscriptions of all senders. [net]
 class Subscribers {
  public:
-  static constexpr std::int64_t kLasts = 30'000'000'000;  ///< ns without renewal.
-  static constexpr std::size_t kMost = 64;                ///< Senders.
-  static constexpr std::size_t kMostEach = 256;           ///< Paths and streams of one.
+  static constexpr std::int64_t kLifetime = 30'000'000'000;  ///< ns without renewal until a subscription expires.
+  static constexpr std::size_t kMaxSubscribers = 64;         ///< Maximum number of senders.
+  static constexpr std::size_t kMaxSubscriptions = 256;      ///< Maximum number of paths and streams per sender.
 
-  static constexpr int kSlice = 128;                  ///< Values that are sent in one call of work().
-  static constexpr std::size_t kComparedForOne = 64;  ///< Values that are compared for the price of one that is sent.
+  static constexpr int kValuesPerSlice = 128;  ///< Values sent per call of work().
+  /// Number of compared values that costs as much of a slice as one sent value.
+  static constexpr std::size_t kComparisonsPerValue = 64;
 
-  /// What is told goes by `send`; false: it may not be sent now.
+  /// `send` sends values, events and errors; it returns false if a value may not be sent now.
   Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
-              SendLimits each = SendBudget::kEach, SendLimits all = SendBudget::kAll);
+              SendLimits each = SendBudget::kPerSender, SendLimits all = SendBudget::kTotal);
 
-  static bool is_one(const Message& message) {
+  static bool handles(const Message& message) {
     return message.address == "/subscribe" || message.address == "/unsubscribe";
   }
-  /// `/subscribe <stream|path> [rate]` (path or pattern; stream: pos, rot, relrot, relpos or its address; rate 0.1 to
-  /// 1000 a second, 60 when left out), `/unsubscribe [stream|path]` (without: all). The error says what it takes.
-  Result<void> take(const Message& message, const Origin& origin);
-  /// Whether what this sender sets is to be noted.
-  bool follows(const Origin& origin) const { return !list_.empty() && find(origin) != nullptr; }
+  /// Handles `/subscribe <stream|path> [rate]` (a path, a pattern or a stream: pos, rot, relrot, relpos or its address;
+  /// rate 0.1 to 1000 per second, default 60) and `/unsubscribe [stream|path]` (default: all). The error describes the
+  /// expected arguments.
+  Result<void> handle(const Message& message, const CommandOrigin& origin);
+  /// True if `origin` has subscriptions, so that the values it sets must be tracked.
+  bool is_subscriber(const CommandOrigin& origin) const { return !subscribers_.empty() && find(origin) != nullptr; }
 
-  /// To be called at each bell and when wait() is over: lets lapse, hears images, tells what is due. At most a slice:
-  /// wait() is 0 while there is more.
+  /// Expires subscriptions, reads new value snapshots and sends the values that are due. Call it on each wake-up and
+  /// when timeout() has elapsed. Does at most one slice of work; timeout() is 0 while there is more.
   void work();
-  /// Whether a subscriber's budget has room for a datagram; counts it when so. Others have none.
-  bool spend(const Endpoint& end, std::size_t bytes, std::size_t datagrams);
-  std::optional<std::int64_t> wait() const;
+  /// Charges a datagram to a subscriber's budget. Returns false if the budget is exhausted or `end` has no
+  /// subscription.
+  bool try_consume(const Endpoint& end, std::size_t bytes, std::size_t datagrams);
+  std::optional<std::int64_t> timeout() const;
 
-  /// Whom streams go to beside the plan's targets; whether that has changed since the last call.
-  bool take_news() { return std::exchange(news_, false); }
-  std::vector<Target> targets() const;
-  /// Everyone, for events.
-  std::vector<Endpoint> ends() const;
+  /// True if targets() or endpoints() changed since the last call.
+  bool consume_changed() { return std::exchange(changed_, false); }
+  std::vector<ResolvedTarget> targets() const;
+  /// All subscribers, as receivers of events.
+  std::vector<Endpoint> endpoints() const;
 
  private:
   struct Subscription {
-    std::string what;
-    std::optional<StreamTarget> stream;  // else values
+    std::string path;
+    std::optional<StreamTarget> stream;  // empty: a subscription to values
     std::int64_t period = 0;             // ns
-    std::int64_t due = 0;
-    std::int64_t lapses = 0;
-    bool looked_at = false;  // it was said if there is no such path
+    std::int64_t next_due = 0;
+    std::int64_t expires_at = 0;
+    bool checked = false;  // the path was checked, and reported if nothing matches it
   };
   struct Subscriber {
-    Origin origin;
+    CommandOrigin origin;
     std::vector<std::unique_ptr<Subscription>> subscriptions;
     SendBudget::Account* account = nullptr;
     Feed feed;
-    std::uint64_t heard = 0;      // image
-    bool said_truncated = false;  // that it asks for too many values
+    std::uint64_t snapshot_number = 0;  // number of the last snapshot
+    bool reported_truncated = false;    // it was reported that too many values match
   };
 
-  Subscriber* find(const Origin& origin) const;
-  Result<void> subscribe(const Origin& origin, const std::string& what, double rate);
-  void unsubscribe(const Origin& origin, const std::string* what);
-  void lapse(std::int64_t now);
-  void forget_idle();
+  Subscriber* find(const CommandOrigin& origin) const;
+  Result<void> subscribe(const CommandOrigin& origin, const std::string& path, double rate);
+  void unsubscribe(const CommandOrigin& origin, const std::string* path);
+  void expire(std::int64_t now);
+  void remove_idle();
   void begin_round();
-  bool go_round(std::int64_t now);
-  bool serve(Subscriber& who, std::int64_t now, int& left);
-  void look_at(Subscriber& who);
-  bool tell(Subscriber& who, const Subscription& s, int& left);
-  void report(std::int64_t now);
+  bool continue_round(std::int64_t now);
+  bool serve(Subscriber& subscriber, std::int64_t now, int& left);
+  void check_paths(Subscriber& subscriber);
+  bool send_values(Subscriber& subscriber, const Subscription& s, int& left);
+  void report_reductions(std::int64_t now);
 
   EngineLink& link_;
   const NetClock& clock_;
   std::function<bool(const Outgoing&)> send_;
   SendBudget budget_;
-  std::vector<std::unique_ptr<Subscriber>> list_;
-  std::shared_ptr<const Image> image_;  // that is heard, and told
-  std::uint64_t heard_ = 0;
-  bool in_round_ = false;    // some of list_ have not heard it
-  bool tells_ = false;       // it is fresh: what is due is told
-  std::size_t served_ = 0;   // how many have
-  std::size_t first_ = 0;    // who is served first
-  std::uint64_t asked_ = 0;  // 0: none is on its way
-  bool news_ = false;
+  std::vector<std::unique_ptr<Subscriber>> subscribers_;
+  std::shared_ptr<const ValueSnapshot> snapshot_;  // the snapshot being compared and sent
+  std::uint64_t snapshot_number_ = 0;
+  bool in_round_ = false;              // some subscribers have not been served with snapshot_
+  bool sends_values_ = false;          // snapshot_ was requested for due values, so they are sent
+  std::size_t served_count_ = 0;       // number of subscribers served in this round
+  std::size_t round_offset_ = 0;       // offset of the round's first subscriber; it rotates for fairness
+  std::uint64_t pending_request_ = 0;  // number of the snapshot request; 0: none is pending
+  bool changed_ = false;
 };
 
 }  // namespace limber

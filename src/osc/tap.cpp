@@ -1,14 +1,14 @@
-// What was encoded is decoded again: a frame of the streams exists as bytes only.
+// Decodes the encoded packets again, because stream frames exist only as bytes.
 #include "osc/tap.h"
 
 #include "osc/decode.h"
 
 namespace limber {
 
-void note_sent(Traffic& traffic, const Endpoint& to, std::span<const char> packet) {
+void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet) {
   const Result<Decoded> decoded = decode_packet(packet.data(), packet.size());
   if (!decoded) return;
-  for (const Message& message : decoded->messages) traffic.note(false, endpoint_text(to), message);
+  for (const Message& message : decoded->messages) message_log.add(false, endpoint_text(to), message);
 }
 
 }  // namespace limber

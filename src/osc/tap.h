@@ -1,4 +1,4 @@
-// Tap: tells the link's traffic what goes out, packet by packet. To be called while somebody watches only. [net]
+// Logs sent packets in the message log. [net]
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace limber {
 
-/// Each message of a packet that was made here.
-void note_sent(Traffic& traffic, const Endpoint& to, std::span<const char> packet);
+/// Logs each message of a packet that this program encoded. Costs a decoding, so call it only while the log is enabled.
+void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet);
 
 }  // namespace limber

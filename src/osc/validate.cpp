@@ -1,4 +1,4 @@
-// The walk through a packet without building anything.
+// Parses a packet with a visitor that does nothing.
 #include "osc/validate.h"
 
 #include "osc/packet_walk.h"
@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-struct Nothing {
+struct NullVisitor {
   static void bundle(int, std::uint64_t) {}
   static void message(const char*, const char*) {}
   static void argument(char, const char*) {}
@@ -17,8 +17,8 @@ struct Nothing {
 }  // namespace
 
 const char* packet_fault(const char* data, std::size_t size) {
-  Nothing nothing;
-  return PacketWalk<Nothing>(nothing).packet(data, size);
+  NullVisitor visitor;
+  return PacketParser<NullVisitor>(visitor).packet(data, size);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Sizes and byte order of OSC packets, for the code that reads them and the code that writes them.
+// Sizes and byte order of OSC packets, shared by parsers and writers.
 #pragma once
 
 #include <bit>
@@ -8,13 +8,13 @@
 
 namespace limber {
 
-inline constexpr std::size_t kLargestPacket = 65504;  ///< Bytes: the largest UDP payload that is a multiple of 4.
+inline constexpr std::size_t kMaxPacketSize = 65504;  ///< Bytes: the largest UDP payload that is a multiple of 4.
 inline constexpr std::size_t kBundleHeader = 16;      ///< "#bundle", its NUL, eight bytes of time tag.
 
-/// Bytes of a text of that length with its NULs up to a multiple of 4: one to four of them.
+/// Size of a string of that length with its one to four terminating NULs, a multiple of 4.
 constexpr std::size_t padded(std::size_t length) { return (length / 4 + 1) * 4; }
 
-/// Numbers of a packet are big-endian, at any address.
+/// Load and store big-endian numbers at any alignment.
 inline std::uint32_t load_u32(const char* from) {
   std::uint32_t value = 0;
   std::memcpy(&value, from, sizeof value);

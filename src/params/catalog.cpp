@@ -1,4 +1,4 @@
-// Addresses to places of the store.
+// Path and pattern lookup over the store.
 #include "params/catalog.h"
 
 #include <algorithm>
@@ -11,13 +11,13 @@ namespace limber {
 namespace {
 
 struct StoreShape {
-  using Place = limber::Place;
-  using PlaceRows = limber::PlaceRows;
+  using Ref = limber::PropertyRef;
+  using Set = limber::PropertySet;
   const Store& store;
 
   NodeId root() const { return store.root(); }
   std::string_view name(NodeId id) const { return store.name(id); }
-  const Table& table(NodeId id) const { return store.table(id); }
+  const PropertyTable& table(NodeId id) const { return store.table(id); }
   std::string path(NodeId id) const { return store.path(id); }
   std::uint32_t key(NodeId id) const { return id.slot; }
   std::size_t keys() const { return store.view()->slot_count; }
@@ -27,11 +27,11 @@ struct StoreShape {
   }
   template <class F>
   void each_child(NodeId parent, F&& f) const {
-    constexpr std::size_t kAhead = 4;  // their names may lie far off
+    constexpr std::size_t kAhead = 4;  // prefetch distance: the names are scattered in memory
     const std::span<const NodeId> children = store.children(parent);
-    for (const NodeId child : children.first(std::min(kAhead, children.size()))) store.fetch_node(child);
+    for (const NodeId child : children.first(std::min(kAhead, children.size()))) store.prefetch_node(child);
     for (std::size_t i = 0; i < children.size(); i++) {
-      if (i + kAhead < children.size()) store.fetch_node(children[i + kAhead]);
+      if (i + kAhead < children.size()) store.prefetch_node(children[i + kAhead]);
       if (!f(children[i])) return;
     }
   }
@@ -39,19 +39,19 @@ struct StoreShape {
 
 }  // namespace
 
-Result<Place> find_place(const Store& store, std::string_view path, bool hint) {
-  return PathWalk<StoreShape>::find({store}, path, hint);
+Result<PropertyRef> find_property(const Store& store, std::string_view path, bool hint) {
+  return PathMatcher<StoreShape>::find({store}, path, hint);
 }
 
-Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, PatternBudget& budget,
-                                        std::size_t limit) {
+Result<std::vector<PropertyRef>> match_properties(const Store& store, std::string_view pattern, PatternBudget& budget,
+                                                  std::size_t limit) {
   const StoreShape shape{store};
-  return PathWalk(shape, budget).match(pattern, limit);
+  return PathMatcher(shape, budget).match(pattern, limit);
 }
 
-Result<std::vector<PlaceRows>> match_things(const Store& store, std::string_view pattern, PatternBudget& budget) {
+Result<std::vector<PropertySet>> match_nodes(const Store& store, std::string_view pattern, PatternBudget& budget) {
   const StoreShape shape{store};
-  return PathWalk(shape, budget).match_things(pattern, SIZE_MAX);
+  return PathMatcher(shape, budget).match_nodes(pattern, SIZE_MAX);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Catalog: addresses to nodes and rows and back, by exact path or by OSC pattern. [sim]
+// Looks up nodes and properties of the store by path or by OSC address pattern. [sim]
 #pragma once
 
 #include <string>
@@ -10,28 +10,30 @@
 
 namespace limber {
 
-/// A row of a node, or the node itself when `row` is null.
-struct Place {
+/// Refers to a property of a node, or to the node itself if `property` is null.
+struct PropertyRef {
   NodeId node;
-  const Row* row = nullptr;
+  const Property* property = nullptr;
 };
 
-/// Rows of a node, a bit a row; none: the node itself.
-struct PlaceRows {
+/// Refers to some properties of a node, as a bit mask of their indices; 0: the node itself.
+struct PropertySet {
   NodeId node;
-  std::uint64_t rows = 0;
+  std::uint64_t properties = 0;
 };
 
-/// The place of an exact path such as "/physics/body/arm/part/tip/mass". Classes' and rows' names are compared by the
-/// one naming rule, names of things exactly (%20 style undone). The error names the part that fails and, if `hint` says
-/// so, near names, which are looked for among all that there are.
-Result<Place> find_place(const Store& store, std::string_view path, bool hint = true);
+/// Returns the property or node at an exact path such as "/physics/body/arm/part/tip/mass". Names of classes and
+/// properties are compared as same_name() does, names of objects exactly, after %20 style escapes are decoded. The
+/// error names the component that was not found and, with `hint`, similar names (their search visits
+/// all siblings).
+Result<PropertyRef> find_property(const Store& store, std::string_view path, bool hint = true);
 
-/// Every row that an OSC pattern reaches, in tree order: `?` `*` `[a-z]` `[!a]` `{a,b}` within a name, `//` any depth.
-/// At most `limit` places. Errors: it is no pattern, or more work than the budget allows.
-Result<std::vector<Place>> match_places(const Store& store, std::string_view pattern, PatternBudget& budget,
-                                        std::size_t limit = 1000000);
-/// The same thing by thing, where each has many.
-Result<std::vector<PlaceRows>> match_things(const Store& store, std::string_view pattern, PatternBudget& budget);
+/// Returns all properties and nodes that match an OSC address pattern, in tree order, at most `limit`. Wildcards:
+/// `?` `*` `[a-z]` `[!a]` `{a,b}` within a name, `//` for any depth. Errors: not a valid pattern, or it exceeds the
+/// budget.
+Result<std::vector<PropertyRef>> match_properties(const Store& store, std::string_view pattern, PatternBudget& budget,
+                                                  std::size_t limit = 1000000);
+/// Like match_properties(), with one result per node, without a limit.
+Result<std::vector<PropertySet>> match_nodes(const Store& store, std::string_view pattern, PatternBudget& budget);
 
 }  // namespace limber

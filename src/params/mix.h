@@ -1,13 +1,13 @@
-// Mixing: what lies between two values of a row.
+// Interpolation between two values of a property.
 #pragma once
 
 #include "params/table.h"
 
 namespace limber {
 
-/// `amount` 0: `a`, 1: `b`, each to the bit; numbers go straight and never beyond either end, rotations along the
-/// shorter arc, what has no values in between switches at one half. What lies between two values that the row takes, it
-/// takes. `out` may be `a` or `b`; row.width numbers each. [any]
-void mix(const Row& row, const double* a, const double* b, double amount, double* out);
+/// Writes the value at `amount` between `a` (0) and `b` (1) to `out`. Both ends are exact. Numbers are interpolated
+/// linearly and never leave [a, b], rotations along the shorter arc; booleans and choices switch at 0.5. If `a` and `b`
+/// are valid values of the property, so is the result. Each array has `width` numbers; `out` may be `a` or `b`. [any]
+void mix(const Property& property, const double* a, const double* b, double amount, double* out);
 
 }  // namespace limber

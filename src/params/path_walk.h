@@ -1,4 +1,4 @@
-// Walks by path and by pattern over what is shaped like the store: the store itself, and copies of its structure.
+// PathMatcher: path and pattern lookup over the store and over copies of its structure.
 #pragma once
 
 #include <algorithm>
@@ -20,87 +20,89 @@
 
 namespace limber {
 
-/// Whether the address may reach several places: it is matched, not looked up.
+/// True if the address is a pattern, which may match several properties, rather than a path.
 inline bool is_address_pattern(std::string_view address) {
   return address.find_first_of("?*[{") != std::string_view::npos || address.find("//") != std::string_view::npos;
 }
 
-/// A Shape has a `Place` {node, row}, a `PlaceRows` {node, rows as bits} and of its nodes: root(), name, table, path,
-/// key (a number of its own, below keys()), exact_child (the child of exactly that name, or nothing), and each_child,
-/// whose function says whether to go on.
+/// Looks up paths and patterns in a tree. A Shape is an adapter of the store or of a copy. It has the types `Ref`
+/// (node, property) and `Set` (node, bit mask of properties), and for nodes root(), name(), table(), path(), key() (a
+/// unique number below keys()), exact_child() (the child of exactly that name, if any) and each_child(), which stops
+/// when its function returns false. An object is used for one lookup.
 template <class Shape>
-class PathWalk {
+class PathMatcher {
  public:
-  using Place = typename Shape::Place;
-  using PlaceRows = typename Shape::PlaceRows;
-  using Id = decltype(Place::node);
+  using Ref = typename Shape::Ref;
+  using Set = typename Shape::Set;
+  using Id = decltype(Ref::node);
 
-  PathWalk(const Shape& shape, PatternBudget& budget) : shape_(shape), budget_(budget) {}
+  PathMatcher(const Shape& shape, PatternBudget& budget) : shape_(shape), budget_(budget) {}
 
-  /// `hint`: near names in the error, which may be much work.
-  static Result<Place> find(const Shape& shape, std::string_view path, bool hint = true) {
+  /// Returns the property or node at an exact path. `hint`: the error lists similar names, which visits all siblings.
+  static Result<Ref> find(const Shape& shape, std::string_view path, bool hint = true) {
     if (path.empty() || path.front() != '/')
-      return Error{fmt::format("'{}' is no address: it must begin with /", printable(path))};
+      return Error{fmt::format("'{}' is not an address: it must begin with /", printable(path))};
     if (path.back() == '/') path.remove_suffix(1);
-    Id at = shape.root();
+    Id node = shape.root();
     const std::vector<std::string_view> pieces =
         path.empty() ? std::vector<std::string_view>{} : split(path.substr(1), '/');
     for (std::size_t i = 0; i < pieces.size(); i++) {
       const std::string name = unescape_name(pieces[i]);
-      if (const auto child = child_named(shape, at, name)) {
-        at = *child;
+      if (const auto child = child_named(shape, node, name)) {
+        node = *child;
         continue;
       }
-      const Row* row = shape.table(at).find(name);
-      if (row != nullptr && i + 1 == pieces.size()) return Place{at, row};
-      return Error{fmt::format("there is no '{}' in {}{}", printable(name), shape.path(at),
-                               hint ? near_names(shape, at, name) : "")};
+      const Property* property = shape.table(node).find(name);
+      if (property != nullptr && i + 1 == pieces.size()) return Ref{node, property};
+      return Error{fmt::format("there is no '{}' in {}{}", printable(name), shape.path(node),
+                               hint ? similar_names(shape, node, name) : "")};
     }
-    return Place{at, nullptr};
+    return Ref{node, nullptr};
   }
 
-  Result<std::vector<Place>> match(std::string_view pattern, std::size_t limit) {
-    const Result<std::vector<PlaceRows>> things = match_things(pattern, limit);
-    if (!things) return Error{things.error()};
-    std::vector<Place> places;
-    places.reserve(std::min(count_, limit));
-    for (const PlaceRows& thing : *things) {
-      if (thing.rows == 0) places.push_back({thing.node, nullptr});
-      const Table& table = shape_.table(thing.node);
-      for (std::uint64_t rows = thing.rows; rows != 0 && places.size() < limit; rows &= rows - 1)
-        places.push_back({thing.node, &table.row(static_cast<std::uint32_t>(std::countr_zero(rows)))});
+  /// Returns the properties and nodes that match, in tree order, at most `limit`.
+  Result<std::vector<Ref>> match(std::string_view pattern, std::size_t limit) {
+    const Result<std::vector<Set>> sets = match_nodes(pattern, limit);
+    if (!sets) return Error{sets.error()};
+    std::vector<Ref> refs;
+    refs.reserve(std::min(count_, limit));
+    for (const Set& set : *sets) {
+      if (set.properties == 0) refs.push_back({set.node, nullptr});
+      const PropertyTable& table = shape_.table(set.node);
+      for (std::uint64_t remaining = set.properties; remaining != 0 && refs.size() < limit; remaining &= remaining - 1)
+        refs.push_back({set.node, &table.property(static_cast<std::uint32_t>(std::countr_zero(remaining)))});
     }
-    return places;
+    return refs;
   }
 
-  /// The same thing by thing; the rows of the last may go beyond the limit.
-  Result<std::vector<PlaceRows>> match_things(std::string_view pattern, std::size_t limit) {
+  /// Like match(), with one result per node. The properties of the last one may exceed the limit.
+  Result<std::vector<Set>> match_nodes(std::string_view pattern, std::size_t limit) {
     if (pattern.empty() || pattern.front() != '/')
-      return Error{fmt::format("'{}' is no address: it must begin with /", printable(pattern))};
+      return Error{fmt::format("'{}' is not an address: it must begin with /", printable(pattern))};
     if (!is_address_pattern(pattern)) {
-      const Result<Place> place = find(shape_, pattern);
-      if (!place) return Error{place.error()};
+      const Result<Ref> ref = find(shape_, pattern);
+      if (!ref) return Error{ref.error()};
       count_ = 1;
-      return std::vector<PlaceRows>{{place->node, place->row == nullptr ? 0 : std::uint64_t{1} << place->row->index}};
+      return std::vector<Set>{{ref->node, ref->property == nullptr ? 0 : std::uint64_t{1} << ref->property->index}};
     }
     pieces_ = split(pattern.substr(1), '/');
     limit_ = limit;
-    const std::size_t places = pieces_.size() * shape_.keys();
-    if (budget_.spend(static_cast<int>(std::min<std::size_t>(places / 64, PatternBudget::kMessage)))) {
-      been_.assign(places, false);
+    const std::size_t flags = pieces_.size() * shape_.keys();
+    if (budget_.charge(static_cast<int>(std::min<std::size_t>(flags / 64, PatternBudget::kStepsPerMessage)))) {
+      visited_.assign(flags, false);
       walk(shape_.root(), 0);
     }
-    if (budget_.over()) {
-      return Error{fmt::format("the pattern '{}' is too much work; say more of the path, or send fewer at a time",
+    if (budget_.exceeded()) {
+      return Error{fmt::format("the pattern '{}' needs too much work; make it more specific, or send fewer at a time",
                                printable(shortened(pattern, 100)))};
     }
-    return std::move(found_);
+    return std::move(results_);
   }
 
  private:
-  // whether a node's own name is the house's (a group such as `part`, or a singleton such as `sim`) and so compared
-  // loosely
-  static bool house_name(const Shape& shape, Id id) {
+  // True if the program defines the node's name (a group such as `part`, or a singleton such as `sim`). Such names are
+  // compared as same_name() does.
+  static bool is_fixed_name(const Shape& shape, Id id) {
     const std::string& path = shape.table(id).path();
     return path.empty() || path.back() != '>';
   }
@@ -109,15 +111,15 @@ class PathWalk {
     std::optional<Id> found = shape.exact_child(parent, name);
     if (found) return found;
     shape.each_child(parent, [&](Id child) {
-      if (!house_name(shape, child)) return false;  // siblings are of one kind; a thousand bodies are not walked
+      if (!is_fixed_name(shape, child)) return false;  // siblings are alike: skip them all
       if (same_name(shape.name(child), name)) found = child;
       return !found;
     });
     return found;
   }
 
-  static std::string near_names(const Shape& shape, Id id, std::string_view name) {
-    std::vector<std::string_view> near = shape.table(id).row_names();
+  static std::string similar_names(const Shape& shape, Id id, std::string_view name) {
+    std::vector<std::string_view> near = shape.table(id).property_names();
     shape.each_child(id, [&](Id other) {
       near.push_back(shape.name(other));
       return true;
@@ -125,7 +127,7 @@ class PathWalk {
     return name_hint(name, near);
   }
 
-  bool over() const { return count_ >= limit_ || budget_.over(); }
+  bool exceeded() const { return count_ >= limit_ || budget_.exceeded(); }
 
   bool name_matches(Id id, std::string_view piece) {
     const std::string_view name = shape_.name(id);
@@ -134,54 +136,55 @@ class PathWalk {
     return escaped != name && budget_.match(piece, escaped);
   }
 
-  // the rows of a class that the last piece means: found once, for all of its things
-  std::uint64_t rows_of(const Table& table) {
-    if (last_.first == &table) return last_.second;
-    const auto [known, fresh] = rows_.try_emplace(&table, 0);
-    if (fresh) {
+  // The properties of a class that match the last component of the pattern; computed once per class.
+  std::uint64_t matching_properties(const PropertyTable& table) {
+    if (last_match_.first == &table) return last_match_.second;
+    const auto [entry, inserted] = matches_by_table_.try_emplace(&table, 0);
+    if (inserted) {
       const std::string_view piece = pieces_.back();
       const bool pattern = is_pattern(piece);
-      const Row* const exact = pattern ? nullptr : table.find(piece);
+      const Property* const exact = pattern ? nullptr : table.find(piece);
       const std::string plain = plain_name(piece);
-      for (const Row& row : table.rows()) {
-        const bool meant =
-            pattern ? budget_.match(piece, row.name) || budget_.match(plain, plain_name(row.name)) : &row == exact;
-        if (meant) known->second |= std::uint64_t{1} << row.index;
+      for (const Property& property : table.properties()) {
+        const bool matches =
+            pattern ? budget_.match(piece, property.name) || budget_.match(plain, plain_name(property.name))
+                    : &property == exact;
+        if (matches) entry->second |= std::uint64_t{1} << property.index;
       }
     }
-    last_ = *known;
-    return known->second;
+    last_match_ = *entry;
+    return entry->second;
   }
 
-  void rows(Id id) {
-    const std::uint64_t rows = rows_of(shape_.table(id));
-    if (rows == 0 || over()) return;
-    found_.push_back({id, rows});
-    count_ += static_cast<std::size_t>(std::popcount(rows));
+  void add_properties(Id id) {
+    const std::uint64_t properties = matching_properties(shape_.table(id));
+    if (properties == 0 || exceeded()) return;
+    results_.push_back({id, properties});
+    count_ += static_cast<std::size_t>(std::popcount(properties));
   }
 
-  void walk(Id id, std::size_t at) {
-    if (at >= pieces_.size() || over() || !budget_.spend(PatternBudget::kName)) return;
-    if (pieces_[at].empty()) {  // `//`: any depth, this one included
-      // several `//` lead to one place by many ways: each is gone once
-      const std::size_t place = at * shape_.keys() + shape_.key(id);
-      if (been_[place]) return;
-      been_[place] = true;
-      walk(id, at + 1);
+  void walk(Id id, std::size_t piece) {
+    if (piece >= pieces_.size() || exceeded() || !budget_.charge(PatternBudget::kStepsPerName)) return;
+    if (pieces_[piece].empty()) {  // `//`: any depth, including none
+      // With several `//`, a node is reached in many ways; it is visited once per component.
+      const std::size_t flag = piece * shape_.keys() + shape_.key(id);
+      if (visited_[flag]) return;
+      visited_[flag] = true;
+      walk(id, piece + 1);
       shape_.each_child(id, [&](Id child) {
-        walk(child, at);
+        walk(child, piece);
         return true;
       });
       return;
     }
-    if (at + 1 == pieces_.size()) return rows(id);
-    if (!is_pattern(pieces_[at])) {
-      if (const auto child = child_named(shape_, id, unescape_name(pieces_[at]))) walk(*child, at + 1);
+    if (piece + 1 == pieces_.size()) return add_properties(id);
+    if (!is_pattern(pieces_[piece])) {
+      if (const auto child = child_named(shape_, id, unescape_name(pieces_[piece]))) walk(*child, piece + 1);
       return;
     }
     shape_.each_child(id, [&](Id child) {
-      if (over()) return false;
-      if (name_matches(child, pieces_[at])) walk(child, at + 1);
+      if (exceeded()) return false;
+      if (name_matches(child, pieces_[piece])) walk(child, piece + 1);
       return true;
     });
   }
@@ -190,11 +193,11 @@ class PathWalk {
   PatternBudget& budget_;
   std::vector<std::string_view> pieces_;
   std::size_t limit_ = 0;
-  std::vector<PlaceRows> found_;
-  std::size_t count_ = 0;  // of rows
-  std::unordered_map<const Table*, std::uint64_t> rows_;
-  std::pair<const Table*, std::uint64_t> last_{};  // neighbours are alike
-  std::vector<bool> been_;                         // by piece and key
+  std::vector<Set> results_;
+  std::size_t count_ = 0;  // of properties
+  std::unordered_map<const PropertyTable*, std::uint64_t> matches_by_table_;
+  std::pair<const PropertyTable*, std::uint64_t> last_match_{};  // consecutive nodes mostly have the same table
+  std::vector<bool> visited_;                                    // by pattern component and node key
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// PatternBudget: how much work patterns may be. One that asks for more is refused whole, so that no message, whatever
-// stands in it, holds up a tick.
+// PatternBudget: limits the work of matching OSC address patterns. A pattern that exceeds it is rejected as a whole, so
+// that no message can delay a tick.
 #pragma once
 
 #include <string_view>
@@ -8,24 +8,24 @@
 
 namespace limber {
 
-/// Counted in steps of matching, some nanoseconds each.
+/// Counts matching steps, which take a few nanoseconds each.
 struct PatternBudget {
-  static constexpr int kMessage = 1'000'000;  ///< A few milliseconds.
-  static constexpr int kName = 6;             ///< A name that is looked at.
+  static constexpr int kStepsPerMessage = 1'000'000;  ///< Budget of a message: a few milliseconds.
+  static constexpr int kStepsPerName = 6;             ///< Cost of visiting a name.
 
-  int left = kMessage;
+  int remaining = kStepsPerMessage;
 
-  bool over() const { return left < 0; }
-  /// False: it is used up.
-  bool spend(int steps) {
-    left -= steps;
-    return left >= 0;
+  bool exceeded() const { return remaining < 0; }
+  /// Subtracts the steps. Returns false if the budget is exceeded.
+  bool charge(int steps) {
+    remaining -= steps;
+    return remaining >= 0;
   }
-  /// pattern_match, at this budget's cost.
+  /// Returns pattern_match() and charges its steps; false also if the budget is exceeded.
   bool match(std::string_view pattern, std::string_view name) {
-    int steps = kName;
+    int steps = kStepsPerName;
     const bool hit = pattern_match(pattern, name, &steps);
-    return spend(steps) && hit;
+    return charge(steps) && hit;
   }
 };
 

@@ -1,4 +1,4 @@
-// Ranges and defaults as text.
+// Formats ranges, values and defaults of properties.
 #include "params/row_text.h"
 
 #include <algorithm>
@@ -11,27 +11,29 @@
 
 namespace limber {
 
-std::string values_text(const Row& row) {
-  if (row.kind == RowKind::action) return "";
-  if (!row.choices.empty()) return fmt::format("{}", fmt::join(row.choices, "|"));
-  if (row.type == RowType::boolean || row.type == RowType::flags3) return "true|false";
-  if (!std::isfinite(row.min) && !std::isfinite(row.max)) return "any";
-  return range_text(row);
+std::string range_or_choices_text(const Property& property) {
+  if (property.kind == PropertyKind::action) return "";
+  if (!property.choices.empty()) return fmt::format("{}", fmt::join(property.choices, "|"));
+  if (property.type == PropertyType::boolean || property.type == PropertyType::flags3) return "true|false";
+  if (!std::isfinite(property.min) && !std::isfinite(property.max)) return "any";
+  return range_text(property);
 }
 
-std::string value_text(const Row& row, const double* values) {
-  if (!row.choices.empty()) {
-    const double label = std::clamp(values[0], 0.0, static_cast<double>(row.choices.size() - 1));
-    return row.choices[static_cast<std::size_t>(label)];
+std::string value_text(const Property& property, const double* values) {
+  if (!property.choices.empty()) {
+    const double label = std::clamp(values[0], 0.0, static_cast<double>(property.choices.size() - 1));
+    return property.choices[static_cast<std::size_t>(label)];
   }
-  if (row.type == RowType::boolean || row.type == RowType::flags3) {
-    std::vector<std::string_view> truths;
-    for (std::uint32_t i = 0; i < row.width; i++) truths.emplace_back(values[i] != 0 ? "true" : "false");
-    return fmt::format("{}", fmt::join(truths, " "));
+  if (property.type == PropertyType::boolean || property.type == PropertyType::flags3) {
+    std::vector<std::string_view> flags;
+    for (std::uint32_t i = 0; i < property.width; i++) flags.emplace_back(values[i] != 0 ? "true" : "false");
+    return fmt::format("{}", fmt::join(flags, " "));
   }
-  return fmt::format("{:g}", fmt::join(values, values + row.width, " "));
+  return fmt::format("{:g}", fmt::join(values, values + property.width, " "));
 }
 
-std::string initial_text(const Row& row) { return row.writable() ? value_text(row, row.initial.data()) : ""; }
+std::string initial_text(const Property& property) {
+  return property.writable() ? value_text(property, property.initial.data()) : "";
+}
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A row's values as people read them: in the reference and in the definitions for editors.
+// Ranges and values of properties as text, for the reference and the editor annotations.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace limber {
 
-/// "0 .. 10", "off|servo", "true|false", "any"; empty for an action. [any]
-std::string values_text(const Row& row);
-/// Numbers of that row: "1", "0 0 -9.81", "servo", "true"; six digits are what a person reads. [any]
-std::string value_text(const Row& row, const double* values);
-/// The default: "1", "0 0 -9.81", "servo", "true"; empty where nothing can be set. [any]
-std::string initial_text(const Row& row);
+/// Returns the allowed values: "0 .. 10", "off|servo", "true|false", "any"; empty for an action. [any]
+std::string range_or_choices_text(const Property& property);
+/// Returns a value with six digits: "1", "0 0 -9.81", "servo", "true". [any]
+std::string value_text(const Property& property, const double* values);
+/// Returns the default in the same form; empty if the property can't be set. [any]
+std::string initial_text(const Property& property);
 
 }  // namespace limber

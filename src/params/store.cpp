@@ -1,4 +1,4 @@
-// The store: nodes, blocks, the door, marks.
+// The store: nodes, blocks of values, the setter, dirty properties.
 #include "params/store.h"
 
 #include <algorithm>
@@ -17,14 +17,14 @@ namespace limber {
 
 namespace {
 
-const Table& group_table() {
-  static const Table table("group", "", "", {});
+const PropertyTable& group_table() {
+  static const PropertyTable table("group", "", "", {});
   return table;
 }
 
-// grows by a quarter, not to the double: a thousand bodies' values are most of what they weigh
+// Grows by a quarter instead of doubling: with many bodies, the values are most of their memory.
 template <class T>
-void make_room(std::vector<T>& v, std::size_t more) {
+void reserve(std::vector<T>& v, std::size_t more) {
   if (v.size() + more > v.capacity()) v.reserve(v.size() + v.size() / 4 + more);
 }
 
@@ -37,7 +37,7 @@ Store::Store() {
   refresh_view();
 }
 
-std::uint32_t Store::table_number(const Table& table) {
+std::uint32_t Store::table_number(const PropertyTable& table) {
   const auto found = std::find(tables_.begin(), tables_.end(), &table);
   if (found != tables_.end()) return static_cast<std::uint32_t>(found - tables_.begin());
   tables_.push_back(&table);
@@ -45,16 +45,16 @@ std::uint32_t Store::table_number(const Table& table) {
 }
 
 void Store::refresh_view() {
-  view_ = {slots_.data(), kept_.data(), live_.data(), static_cast<std::uint32_t>(slots_.size())};
-  for (StoreView* const copy : view_copies_) *copy = view_;
+  view_ = {slots_.data(), persistent_.data(), transient_.data(), static_cast<std::uint32_t>(slots_.size())};
+  for (StoreView* const copy : registered_views_) *copy = view_;
 }
 
-void Store::show_view(StoreView& copy) {
+void Store::register_view(StoreView& copy) {
   copy = view_;
-  view_copies_.push_back(&copy);
+  registered_views_.push_back(&copy);
 }
 
-void Store::hide_view(StoreView& copy) { std::erase(view_copies_, &copy); }
+void Store::unregister_view(StoreView& copy) { std::erase(registered_views_, &copy); }
 
 void Store::order_children(NodeId parent, std::span<const NodeId> first) {
   if (!alive(parent)) return;
@@ -66,29 +66,29 @@ void Store::order_children(NodeId parent, std::span<const NodeId> first) {
                [&](NodeId child) { return !named[child.slot]; });
   LIMBER_CHECK(ordered.size() == children.size());
   children = std::move(ordered);
-  note_change(parent);
+  record_structure_change(parent);
 }
 
-std::uint32_t Store::take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
-                                std::uint32_t width) {
-  if (width < spare.size() && !spare[width].empty()) {
-    const std::uint32_t base = spare[width].back();
-    spare[width].pop_back();
+std::uint32_t Store::allocate_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& free_list,
+                                    std::uint32_t width) {
+  if (width < free_list.size() && !free_list[width].empty()) {
+    const std::uint32_t base = free_list[width].back();
+    free_list[width].pop_back();
     return base;
   }
   const auto base = static_cast<std::uint32_t>(block.size());
-  make_room(block, width);
+  reserve(block, width);
   block.resize(block.size() + width, 0.0);
   return base;
 }
 
-NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thing) {
+NodeId Store::add(const PropertyTable& table, NodeId parent, std::string name, void* object) {
   LIMBER_CHECK(alive(parent) && child(parent, name).null());
   std::uint32_t slot = 0;
   if (free_slots_.empty()) {
     slot = static_cast<std::uint32_t>(slots_.size());
-    make_room(slots_, 1);
-    make_room(nodes_, 1);
+    reserve(slots_, 1);
+    reserve(nodes_, 1);
     slots_.emplace_back();
     nodes_.emplace_back();
   } else {
@@ -98,18 +98,18 @@ NodeId Store::add(const Table& table, NodeId parent, std::string name, void* thi
   NodeSlot& s = slots_[slot];
   s.generation++;  // even to odd: alive
   s.table = table_number(table);
-  s.kept = take_block(kept_, spare_kept_, table.kept_width());
-  s.live = take_block(live_, spare_live_, table.live_width());
+  s.persistent = allocate_block(persistent_, free_persistent_, table.persistent_width());
+  s.transient = allocate_block(transient_, free_transient_, table.transient_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, thing, std::move(name), parent, {}, 0, 0, structure_version_ + 1, 0};
+  nodes_[slot] = {&table, object, std::move(name), parent, {}, 0, 0, structure_version_ + 1, 0};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
-  for (const Row& row : table.rows()) {
-    if (row.stored()) std::copy_n(row.initial.data(), row.width, slot_values(id, row));
+  for (const Property& property : table.properties()) {
+    if (property.stored()) std::copy_n(property.initial.data(), property.width, slot_values(id, property));
   }
-  mark_all(id);
-  kept_version_++;
-  note_change(id);
+  mark_all_dirty(id);
+  persistent_version_++;
+  record_structure_change(id);
   refresh_view();
   return id;
 }
@@ -120,108 +120,111 @@ NodeId Store::add_group(NodeId parent, std::string name) {
 
 bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
 
-const Store::Node& Store::nobody() {
+const Store::Node& Store::null_node() {
   static const Node none{&group_table(), nullptr, "", {}, {}, 0, 0, 0, 0};
   return none;
 }
 
-NodeId Store::retable(NodeId id, const Table& table, void* thing) {
+NodeId Store::change_table(NodeId id, const PropertyTable& table, void* object) {
   if (!alive(id)) return {};
   Node& node = nodes_[id.slot];
   LIMBER_CHECK(node.children.empty());
-  node.thing = thing;
+  node.object = object;
   if (node.table == &table) return id;
-  // what both tables have is carried over
+  // Keep the values of properties that both tables have.
   std::vector<double> carried;
-  const Table& before = *node.table;
-  for (const Row& row : table.rows()) {
+  const PropertyTable& previous_table = *node.table;
+  for (const Property& property : table.properties()) {
     const std::size_t at = carried.size();
-    carried.insert(carried.end(), row.initial.begin(), row.initial.begin() + row.width);
-    const Row* const old = before.find(row.name);
-    if (!row.stored() || old == nullptr || !old->stored() || old->type != row.type) continue;
-    const double* const values = slot_values(id, *old);
-    for (std::uint32_t i = 0; i < row.width; i++) carried[at + i] = std::clamp(values[i], row.low(i), row.high(i));
-    if (row.type != RowType::choice) continue;
-    // a choice is its label, wherever that now stands
-    const auto label =
-        std::find(row.choices.begin(), row.choices.end(), old->choices[static_cast<std::size_t>(values[0])]);
-    carried[at] = label == row.choices.end() ? row.initial[0] : static_cast<double>(label - row.choices.begin());
+    carried.insert(carried.end(), property.initial.begin(), property.initial.begin() + property.width);
+    const Property* const previous = previous_table.find(property.name);
+    if (!property.stored() || previous == nullptr || !previous->stored() || previous->type != property.type) continue;
+    const double* const values = slot_values(id, *previous);
+    for (std::uint32_t i = 0; i < property.width; i++)
+      carried[at + i] = std::clamp(values[i], property.low(i), property.high(i));
+    if (property.type != PropertyType::choice) continue;
+    // A choice keeps its label; its number may differ between the tables.
+    const auto label = std::find(property.choices.begin(), property.choices.end(),
+                                 previous->choices[static_cast<std::size_t>(values[0])]);
+    carried[at] =
+        label == property.choices.end() ? property.initial[0] : static_cast<double>(label - property.choices.begin());
   }
-  give_back_blocks(id.slot);
+  free_blocks(id.slot);
   NodeSlot& slot = slots_[id.slot];
   slot.generation += 2;
   slot.table = table_number(table);
-  slot.kept = take_block(kept_, spare_kept_, table.kept_width());
-  slot.live = take_block(live_, spare_live_, table.live_width());
+  slot.persistent = allocate_block(persistent_, free_persistent_, table.persistent_width());
+  slot.transient = allocate_block(transient_, free_transient_, table.transient_width());
   node.table = &table;
-  node.marks = 0;
-  node.born = structure_version_ + 1;
-  const NodeId renewed{id.slot, slot.generation};
+  node.dirty = 0;
+  node.added_version = structure_version_ + 1;
+  const NodeId changed_id{id.slot, slot.generation};
   std::vector<NodeId>& siblings = nodes_[node.parent.slot].children;
-  std::replace(siblings.begin(), siblings.end(), id, renewed);
+  std::replace(siblings.begin(), siblings.end(), id, changed_id);
   std::size_t at = 0;
-  for (const Row& row : table.rows()) {
-    if (row.stored()) std::copy_n(carried.data() + at, row.width, slot_values(renewed, row));
-    at += row.width;
+  for (const Property& property : table.properties()) {
+    if (property.stored()) std::copy_n(carried.data() + at, property.width, slot_values(changed_id, property));
+    at += property.width;
   }
-  mark_all(renewed);
-  kept_version_++;
-  note_change(renewed);
+  mark_all_dirty(changed_id);
+  persistent_version_++;
+  record_structure_change(changed_id);
   refresh_view();
-  return renewed;
+  return changed_id;
 }
 
-// the numbers of a node, whose room is used again
-void Store::give_back_blocks(std::uint32_t at) {
-  const NodeSlot& slot = slots_[at];
-  const Table& table = *nodes_[at].table;
-  const auto spare = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
+// Returns the blocks of a node to the free lists.
+void Store::free_blocks(std::uint32_t slot_index) {
+  const NodeSlot& slot = slots_[slot_index];
+  const PropertyTable& table = *nodes_[slot_index].table;
+  const auto add_free = [](std::vector<std::vector<std::uint32_t>>& list, std::uint32_t base, std::uint32_t width) {
     if (width == 0) return;
     if (list.size() <= width) list.resize(width + 1);
     list[width].push_back(base);
   };
-  // a freed block is zero, so that snapshots and hashes do not tell of the dead
-  std::fill_n(kept_.begin() + slot.kept, table.kept_width(), 0.0);
-  std::fill_n(live_.begin() + slot.live, table.live_width(), 0.0);
-  spare(spare_kept_, slot.kept, table.kept_width());
-  spare(spare_live_, slot.live, table.live_width());
+  // Free blocks are zero, so that snapshots and hashes do not depend on removed nodes.
+  std::fill_n(persistent_.begin() + slot.persistent, table.persistent_width(), 0.0);
+  std::fill_n(transient_.begin() + slot.transient, table.transient_width(), 0.0);
+  add_free(free_persistent_, slot.persistent, table.persistent_width());
+  add_free(free_transient_, slot.transient, table.transient_width());
 }
 
-void Store::release(NodeId id) {
-  for (const NodeId child : nodes_[id.slot].children) release(child);
+void Store::remove_subtree(NodeId id) {
+  for (const NodeId child : nodes_[id.slot].children) remove_subtree(child);
   child_of_.erase(child_of_.find(id.slot));
-  slots_[id.slot].generation++;  // odd to even: gone
-  give_back(id.slot);
+  slots_[id.slot].generation++;  // odd to even: removed
+  free_slot(id.slot);
 }
 
-// what a slot holds, of a node that is gone
-void Store::give_back(std::uint32_t at) {
-  give_back_blocks(at);
-  free_slots_.push_back(at);
-  nodes_[at] = {};
+// Frees the slot and the blocks of a removed node.
+void Store::free_slot(std::uint32_t slot) {
+  free_blocks(slot);
+  free_slots_.push_back(slot);
+  nodes_[slot] = {};
 }
 
-// Something came, went or changed there, which all above it know of.
-void Store::note_change(NodeId at) {
+// Updates the structure version, also of the node and its ancestors.
+void Store::record_structure_change(NodeId at) {
   structure_version_++;
-  for (; !at.null(); at = nodes_[at.slot].parent) nodes_[at.slot].changed = structure_version_;
+  for (; !at.null(); at = nodes_[at.slot].parent) nodes_[at.slot].changed_version = structure_version_;
 }
 
-// its place among its siblings, which it leaves; what goes is mostly what came last
-std::size_t Store::leave_siblings(NodeId id) {
+// Returns the position that the node had among its siblings. Searches from the end, since mostly recent nodes are
+// removed.
+std::size_t Store::unlink_from_parent(NodeId id) {
   std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
   const auto at = std::find(siblings.rbegin(), siblings.rend(), id).base() - 1;
-  const auto place = static_cast<std::size_t>(at - siblings.begin());
+  const auto position = static_cast<std::size_t>(at - siblings.begin());
   siblings.erase(at);
-  return place;
+  return position;
 }
 
 void Store::remove(NodeId id) {
   if (!alive(id) || id == root_) return;
-  note_change(id);
-  leave_siblings(id);
-  release(id);
-  kept_version_++;
+  record_structure_change(id);
+  unlink_from_parent(id);
+  remove_subtree(id);
+  persistent_version_++;
 }
 
 NodeId Store::child(NodeId parent, std::string_view name) const {
@@ -236,122 +239,124 @@ std::string Store::path(NodeId id) const {
   return path;
 }
 
-Result<SetOutcome> Store::set(NodeId id, std::string_view row, std::span<const double> values) {
-  if (!alive(id)) return Error{"this thing no longer exists"};
-  return set(id, table(id).at(row), values);
+Result<SetOutcome> Store::set(NodeId id, std::string_view property, std::span<const double> values) {
+  if (!alive(id)) return Error{"this object no longer exists"};
+  return set(id, table(id).at(property), values);
 }
 
-Result<SetOutcome> Store::take(NodeId id, const Row& row, std::span<const double> values, double* taken) const {
-  const auto where = [&] { return fmt::format("{}/{}", path(id), row.name); };
-  if (!alive(id)) return Error{"this thing no longer exists"};
-  if (!row.writable() || (row.view() && row.write == nullptr)) {
-    return Error{fmt::format("{} can be {}, not set", where(), row.kind == RowKind::action ? "done" : "read")};
-  }
-  if (values.size() != row.width) {
+Result<SetOutcome> Store::validate(NodeId id, const Property& property, std::span<const double> values,
+                                   double* accepted) const {
+  const auto where = [&] { return fmt::format("{}/{}", path(id), property.name); };
+  if (!alive(id)) return Error{"this object no longer exists"};
+  if (!property.writable() || (property.computed() && property.write == nullptr)) {
     return Error{
-        fmt::format("{} takes {} number{}, not {}", where(), row.width, row.width == 1 ? "" : "s", values.size())};
+        fmt::format("{} can be {}, not set", where(), property.kind == PropertyKind::action ? "called" : "read")};
+  }
+  if (values.size() != property.width) {
+    return Error{fmt::format("{} takes {} number{}, not {}", where(), property.width, property.width == 1 ? "" : "s",
+                             values.size())};
   }
   SetOutcome outcome;
-  for (std::size_t i = 0; i < row.width; i++) {
+  for (std::size_t i = 0; i < property.width; i++) {
     double v = values[i];
-    if (!std::isfinite(v)) return Error{fmt::format("{} takes numbers; {} is none", where(), v)};
-    if (row.type == RowType::boolean || row.type == RowType::flags3) {
+    if (!std::isfinite(v)) return Error{fmt::format("{} takes finite numbers, not {}", where(), v)};
+    if (property.type == PropertyType::boolean || property.type == PropertyType::flags3) {
       v = v >= 0.5 ? 1 : 0;
-    } else if (row.type == RowType::integer || row.type == RowType::choice) {
+    } else if (property.type == PropertyType::integer || property.type == PropertyType::choice) {
       v = std::round(v);
     }
-    taken[i] = std::clamp(v, row.low(i), row.high(i));
-    const bool flag = row.type == RowType::boolean || row.type == RowType::flags3;
-    if (!flag && taken[i] != v) outcome.clamped = true;
+    accepted[i] = std::clamp(v, property.low(i), property.high(i));
+    const bool flag = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
+    if (!flag && accepted[i] != v) outcome.clamped = true;
   }
-  if (row.type == RowType::choice && outcome.clamped) {
-    return Error{
-        fmt::format("{} has the choices {}; {} is none of them", where(), fmt::join(row.choices, ", "), values[0])};
+  if (property.type == PropertyType::choice && outcome.clamped) {
+    return Error{fmt::format("{} must be one of {} (got {})", where(), fmt::join(property.choices, ", "), values[0])};
   }
-  if (row.type == RowType::quat) {
-    const double square = taken[0] * taken[0] + taken[1] * taken[1] + taken[2] * taken[2] + taken[3] * taken[3];
-    if (square < 1e-18) return Error{fmt::format("{} takes a rotation; 0 0 0 0 is none", where())};
-    // what is of length 1 but for rounding stays to the bit: a value that was read can be set again
+  if (property.type == PropertyType::quat) {
+    const double square =
+        accepted[0] * accepted[0] + accepted[1] * accepted[1] + accepted[2] * accepted[2] + accepted[3] * accepted[3];
+    if (square < 1e-18) return Error{fmt::format("{} takes a rotation, not 0 0 0 0", where())};
+    // A unit quaternion up to rounding stays bit-identical, so that setting a value that was read does not change it.
     if (std::abs(square - 1) > 1e-14) {
-      for (std::size_t i = 0; i < 4; i++) taken[i] /= std::sqrt(square);
+      for (std::size_t i = 0; i < 4; i++) accepted[i] /= std::sqrt(square);
     }
   }
-  if (row.refuse != nullptr) {
-    if (const Result<void> may = row.refuse(nodes_[id.slot].thing, taken); !may) {
-      return Error{fmt::format("{}: {}", where(), may.error())};
+  if (property.validate != nullptr) {
+    if (const Result<void> allowed = property.validate(nodes_[id.slot].object, accepted); !allowed) {
+      return Error{fmt::format("{}: {}", where(), allowed.error())};
     }
   }
   return outcome;
 }
 
-Result<SetOutcome> Store::set(NodeId id, const Row& row, std::span<const double> values) {
-  std::array<double, 4> taken{};
-  Result<SetOutcome> outcome = take(id, row, values, taken.data());
+Result<SetOutcome> Store::set(NodeId id, const Property& property, std::span<const double> values) {
+  std::array<double, 4> accepted{};
+  Result<SetOutcome> outcome = validate(id, property, values, accepted.data());
   if (!outcome) return outcome;
-  void* const the_thing = nodes_[id.slot].thing;
-  if (saying_) say(id, row);
-  if (row.view()) {
-    row.write(the_thing, taken.data());
+  void* const object = nodes_[id.slot].object;
+  if (tracks_explicit_sets_) mark_explicitly_set(id, property);
+  if (property.computed()) {
+    property.write(object, accepted.data());
     return outcome;
   }
-  write(id, row, taken.data());
-  mark(id, row);
-  if (row.written != nullptr) row.written(the_thing, row);
+  write(id, property, accepted.data());
+  mark_dirty(id, property);
+  if (property.on_write != nullptr) property.on_write(object, property);
   return outcome;
 }
 
-void Store::get(NodeId id, const Row& row, double* out) const {
-  if (!alive(id)) return (void)std::fill_n(out, row.width, 0.0);
-  if (row.view()) return row.read(nodes_[id.slot].thing, out);
-  if (row.stored()) std::copy_n(values(id, row), row.width, out);
+void Store::get(NodeId id, const Property& property, double* out) const {
+  if (!alive(id)) return (void)std::fill_n(out, property.width, 0.0);
+  if (property.computed()) return property.read(nodes_[id.slot].object, out);
+  if (property.stored()) std::copy_n(values(id, property), property.width, out);
 }
 
-void Store::mark(NodeId id, const Row& row) {
-  if (row.effect == nullptr || !alive(id)) return;
+void Store::mark_dirty(NodeId id, const Property& property) {
+  if (property.on_change == nullptr || !alive(id)) return;
   Node& node = nodes_[id.slot];
-  if (node.marks == 0) marked_.push_back(id);
-  node.marks |= std::uint64_t{1} << row.index;
-  apart_ = apart_ && row.apart;
+  if (node.dirty == 0) dirty_nodes_.push_back(id);
+  node.dirty |= std::uint64_t{1} << property.index;
+  dirty_are_independent_ = dirty_are_independent_ && property.independent;
 }
 
-void Store::mark_all(NodeId id) {
-  for (const Row& row : nodes_[id.slot].table->rows()) mark(id, row);
+void Store::mark_all_dirty(NodeId id) {
+  for (const Property& property : nodes_[id.slot].table->properties()) mark_dirty(id, property);
 }
 
-void Store::apply_marks(Team* team) {
-  // an effect may mark again (a view of a view): then once more, but not for ever
-  for (int round = 0; round < 4 && !marked_.empty(); round++) {
-    applying_.clear();
-    applying_.swap(marked_);
-    Team* const helpers = std::exchange(apart_, true) ? team : nullptr;
-    share_out_places(helpers, static_cast<int>(applying_.size()), [this](int, int first, int end) {
+void Store::flush(ThreadPool* pool) {
+  // A callback may set other properties; at most four rounds, in case of a cycle.
+  for (int round = 0; round < 4 && !dirty_nodes_.empty(); round++) {
+    flushing_.clear();
+    flushing_.swap(dirty_nodes_);
+    ThreadPool* const usable_pool = std::exchange(dirty_are_independent_, true) ? pool : nullptr;
+    parallel_for_ranges(usable_pool, static_cast<int>(flushing_.size()), [this](int, int first, int end) {
       for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); i++) {
-        fetch_ahead(i, applying_.size(), [this](std::size_t place) { return applying_[place]; });
-        run_marks(applying_[i]);
+        prefetch_ahead(i, flushing_.size(), [this](std::size_t index) { return flushing_[index]; });
+        flush_node(flushing_[i]);
       }
     });
   }
 }
 
-// the node stays in the list, where it finds nothing left to do: looking for it would cost more
-void Store::apply_marks(NodeId id) {
-  apart_ = false;
-  run_marks(id);
+// The node stays in the list of dirty nodes, without dirty bits: to search the list would cost more.
+void Store::flush(NodeId id) {
+  dirty_are_independent_ = false;
+  flush_node(id);
 }
 
-void Store::run_marks(NodeId id) {
-  if (alive(id)) run_effects(id, std::exchange(nodes_[id.slot].marks, 0));
+void Store::flush_node(NodeId id) {
+  if (alive(id)) run_callbacks(id, std::exchange(nodes_[id.slot].dirty, 0));
 }
 
-void Store::run_effects(NodeId id, std::uint64_t rows) {
-  const Table& table = *nodes_[id.slot].table;
-  std::array<void (*)(void*), 64> done;
-  auto end = done.begin();
-  for (; rows != 0; rows &= rows - 1) {
-    const Row& row = table.row(static_cast<std::uint32_t>(std::countr_zero(rows)));
-    if (row.effect == nullptr || std::find(done.begin(), end, row.effect) != end) continue;
-    *end++ = row.effect;
-    row.effect(nodes_[id.slot].thing);
+void Store::run_callbacks(NodeId id, std::uint64_t properties) {
+  const PropertyTable& table = *nodes_[id.slot].table;
+  std::array<void (*)(void*), 64> called;
+  auto end = called.begin();
+  for (; properties != 0; properties &= properties - 1) {
+    const Property& property = table.property(static_cast<std::uint32_t>(std::countr_zero(properties)));
+    if (property.on_change == nullptr || std::find(called.begin(), end, property.on_change) != end) continue;
+    *end++ = property.on_change;
+    property.on_change(nodes_[id.slot].object);
   }
 }
 

@@ -1,5 +1,6 @@
-// Store: every thing is a node of one tree, its values plain numbers in two flat blocks: kept (properties) and live
-// (states and readouts). One door writes: it refuses what is no number, clamps, writes and marks. [sim]
+// Store: the tree of all nodes (bodies, joints, settings, …) with the values of their properties, which are numbers in
+// two flat arrays: persistent values (settings) and transient values (states and readouts that the simulation changes).
+// The setter, Store::set(), validates, clamps, writes, and marks properties dirty. [sim]
 #pragma once
 
 #include <algorithm>
@@ -20,23 +21,23 @@
 
 namespace limber {
 
-/// What scripts read without a call: where a node's numbers are. Layout known to script/c_api.inc.
+/// The location of a node's numbers. Scripts read it without a call: script/c_api.inc declares the same layout.
 struct NodeSlot {
   std::uint32_t generation = 0;  ///< Odd: alive.
-  std::uint32_t table = 0;       ///< Number of its class in the order of first use.
-  std::uint32_t kept = 0;        ///< First number in the kept block.
-  std::uint32_t live = 0;        ///< First number in the live block.
+  std::uint32_t table = 0;       ///< Index of its class in Store::tables().
+  std::uint32_t persistent = 0;  ///< First number in the persistent block.
+  std::uint32_t transient = 0;   ///< First number in the transient block.
 };
 
-/// The arrays behind the store; they move when nodes are added, so ask again through the same pointer.
+/// Pointers to the store's arrays. They change when nodes are added, so read them again through Store::view().
 struct StoreView {
   const NodeSlot* slots = nullptr;
-  const double* kept = nullptr;
-  const double* live = nullptr;
+  const double* persistent = nullptr;
+  const double* transient = nullptr;
   std::uint32_t slot_count = 0;
 };
 
-/// How a value was taken.
+/// The result of a successful Store::set().
 struct SetOutcome {
   bool clamped = false;
 };
@@ -47,182 +48,201 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// The root of the tree; it has no rows.
+  /// The root of the tree; it has no properties.
   NodeId root() const { return root_; }
 
-  /// Adds a node under `parent`; values are the table's defaults, every effect is marked. `thing` is handed to the
-  /// rows' functions. Names among siblings must be unique: that is the caller's to check with child().
-  NodeId add(const Table& table, NodeId parent, std::string name, void* thing);
-  /// A node without rows, such as /physics/body.
+  /// Adds a node under `parent` with default values; all properties are dirty. `object` is passed to the properties'
+  /// callbacks. Names of siblings must be unique; the caller checks this with child().
+  NodeId add(const PropertyTable& table, NodeId parent, std::string name, void* object);
+  /// Adds a node without properties, such as /physics/body.
   NodeId add_group(NodeId parent, std::string name);
-  /// Gives a node without children another table and thing, in its place and under its name. Rows of the same name and
-  /// type keep their values, brought into their ranges; the others have their defaults. The id stays when the table
-  /// does; else the old one is stale.
-  NodeId retable(NodeId id, const Table& table, void* thing);
-  /// Removes the node and all below it.
+  /// Replaces the table and object of a node that has no children; its name and position remain. Properties of the same
+  /// name and type keep their values, clamped to the new ranges; the others get their defaults. Returns the node's id,
+  /// which is new if the table differs; the old id is stale then.
+  NodeId change_table(NodeId id, const PropertyTable& table, void* object);
+  /// Removes the node and its descendants; their ids are stale then. Ignores the root and stale ids.
   void remove(NodeId id);
 
   bool alive(NodeId id) const {
     return id.slot < slots_.size() && slots_[id.slot].generation == id.generation && (id.generation & 1u) != 0;
   }
-  // Of a stale id: a table without rows, no name, null, a null id, no children.
-  const Table& table(NodeId id) const { return *node(id).table; }
+  // For a stale id these return an empty table, an empty name, null, a null id, and no children.
+  const PropertyTable& table(NodeId id) const { return *node(id).table; }
   const std::string& name(NodeId id) const { return node(id).name; }
-  void* thing(NodeId id) const { return node(id).thing; }
+  void* object(NodeId id) const { return node(id).object; }
   NodeId parent(NodeId id) const { return node(id).parent; }
   std::span<const NodeId> children(NodeId id) const { return node(id).children; }
+  /// True for a node that add_group() added.
   bool is_group(NodeId id) const;
-  /// The child of exactly that name, or a null id.
+  /// Returns the child of exactly that name, or a null id.
   NodeId child(NodeId parent, std::string_view name) const;
-  /// The address of a node: "/physics/body/arm/part/tip". Formed when asked.
+  /// Returns the address of a node: "/physics/body/arm/part/tip". Builds the string.
   std::string path(NodeId id) const;
 
-  /// The door. Refuses NaN, infinities, a wrong count, a row that is not writable; clamps to the range; writes; marks.
-  /// A view's value goes to the rows behind it. Nothing of a refused value is applied.
-  Result<SetOutcome> set(NodeId id, const Row& row, std::span<const double> values);
-  Result<SetOutcome> set(NodeId id, std::string_view row, std::span<const double> values);
-  /// What set() would make of the values: `taken` has room for 4. The same is refused.
-  Result<SetOutcome> take(NodeId id, const Row& row, std::span<const double> values, double* taken) const;
-  /// For what moves a stored row of a living thing between two values that take() gave: writes and tells like set(),
-  /// but checks nothing more and marks nothing. The effect is the caller's to run.
-  void go_on(NodeId id, const Row& row, const double* values) {
-    write(id, row, values);
-    if (row.written != nullptr) row.written(nodes_[id.slot].thing, row);
+  /// Sets a property: clamps the value to the range, writes it, marks the property dirty, and notifies the listener.
+  /// The value of a computed property goes to its setter. Errors: NaN or infinity, a wrong number of numbers, a
+  /// property that can't be set, a value that the object rejects. On error nothing is written.
+  Result<SetOutcome> set(NodeId id, const Property& property, std::span<const double> values);
+  Result<SetOutcome> set(NodeId id, std::string_view property, std::span<const double> values);
+  /// Validates like set() and stores the clamped value in `accepted` (4 numbers), without writing it to the property.
+  Result<SetOutcome> validate(NodeId id, const Property& property, std::span<const double> values,
+                              double* accepted) const;
+  /// Writes a value that validate() returned, or one between two such values, to a stored property of a live node, and
+  /// notifies like set(). Does not mark the property dirty: the caller runs the on-change callback.
+  void write_unchecked(NodeId id, const Property& property, const double* values) {
+    write(id, property, values);
+    if (property.on_write != nullptr) property.on_write(nodes_[id.slot].object, property);
   }
 
-  /// Reads a row (views are computed): `out` takes row.width numbers.
-  void get(NodeId id, const Row& row, double* out) const;
+  /// Reads a property into `out` (`width` numbers); computed ones through their getter.
+  void get(NodeId id, const Property& property, double* out) const;
 
-  /// The numbers of a stored row, for the thing itself.
-  const double* values(NodeId id, const Row& row) const { return const_cast<Store*>(this)->slot_values(id, row); }
-  /// For the thing that tells a readout or a state: writes past the door, since nothing is to be brought into the
-  /// world.
-  double* tell(NodeId id, const Row& row) { return slot_values(id, row); }
-  double* live_block(NodeId id) { return live_.data() + slots_[id.slot].live; }
-  const double* live_block(NodeId id) const { return live_.data() + slots_[id.slot].live; }
-  double* kept_block(NodeId id) {
-    kept_version_++;
-    return kept_.data() + slots_[id.slot].kept;
+  /// The numbers of a stored property, for the object itself.
+  const double* values(NodeId id, const Property& property) const {
+    return const_cast<Store*>(this)->slot_values(id, property);
   }
-  const double* kept_block(NodeId id) const { return kept_.data() + slots_[id.slot].kept; }
+  /// Direct write access to a stored property, for the object that owns it and updates a readout or state. The write is
+  /// not validated, marks nothing dirty and notifies no listener.
+  double* mutable_values(NodeId id, const Property& property) { return slot_values(id, property); }
+  /// The numbers of all transient or persistent properties of a node, at Property::offset. Write access to the
+  /// persistent ones counts as a write.
+  double* transient_block(NodeId id) { return transient_.data() + slots_[id.slot].transient; }
+  const double* transient_block(NodeId id) const { return transient_.data() + slots_[id.slot].transient; }
+  double* persistent_block(NodeId id) {
+    persistent_version_++;
+    return persistent_.data() + slots_[id.slot].persistent;
+  }
+  const double* persistent_block(NodeId id) const { return persistent_.data() + slots_[id.slot].persistent; }
 
-  /// The rows that a scene's run has said of a node, a bit a row: what went through the door while a Saying lived,
-  /// views and the rows behind them, and what say() added.
-  std::uint64_t said(NodeId id) const { return node(id).said; }
-  void say(NodeId id, std::uint64_t rows) {
-    if (alive(id)) nodes_[id.slot].said |= rows;
+  /// The properties of a node that the scene's script set explicitly, as a bit mask: those that were set while an
+  /// ExplicitSetScope existed, including computed properties and the ones behind them, and those that
+  /// mark_explicitly_set() added.
+  std::uint64_t explicitly_set(NodeId id) const { return node(id).explicitly_set; }
+  void mark_explicitly_set(NodeId id, std::uint64_t properties) {
+    if (alive(id)) nodes_[id.slot].explicitly_set |= properties;
   }
-  void say(NodeId id, const Row& row) { say(id, std::uint64_t{1} << row.index); }
-  /// While one lives, what is set counts as said.
-  class Saying {
+  void mark_explicitly_set(NodeId id, const Property& property) {
+    mark_explicitly_set(id, std::uint64_t{1} << property.index);
+  }
+  /// While one exists with `true`, set() marks properties as explicitly set.
+  class ExplicitSetScope {
    public:
-    Saying(Store& store, bool said) : store_(store), before_(store.saying_) { store_.saying_ = said; }
-    ~Saying() { store_.saying_ = before_; }
-    Saying(const Saying&) = delete;
-    Saying& operator=(const Saying&) = delete;
+    ExplicitSetScope(Store& store, bool explicitly_set) : store_(store), previous_(store.tracks_explicit_sets_) {
+      store_.tracks_explicit_sets_ = explicitly_set;
+    }
+    ~ExplicitSetScope() { store_.tracks_explicit_sets_ = previous_; }
+    ExplicitSetScope(const ExplicitSetScope&) = delete;
+    ExplicitSetScope& operator=(const ExplicitSetScope&) = delete;
 
    private:
     Store& store_;
-    bool before_;
+    bool previous_;
   };
 
-  /// Marks a row as if it had been set.
-  void mark(NodeId id, const Row& row);
-  /// Marks every row that has an effect.
-  void mark_all(NodeId id);
-  /// Runs the effects of all marked rows, each function once a node, in the order in which nodes were marked; where all
-  /// of them are apart, side by side.
-  void apply_marks(Team* team = nullptr);
-  /// The same for one node, ahead of the others.
-  void apply_marks(NodeId id);
-  /// For who goes through many things and is at one of them: after a tick of physics they are far off, and the
-  /// processor fetches those behind it while it goes on. What one finds leads to the next: first the node and its
-  /// numbers, then the thing, then what its effects look at. `id_of(place)`: a null or dead id is passed over.
+  /// Marks a property dirty, as if it had been set. Has no effect without an on-change callback.
+  void mark_dirty(NodeId id, const Property& property);
+  /// Marks every property dirty that has an on-change callback.
+  void mark_all_dirty(NodeId id);
+  /// Runs the on-change callbacks of all dirty properties, each function once per node, in the order in which the nodes
+  /// became dirty. Runs in parallel if all of them are independent.
+  void flush(ThreadPool* pool = nullptr);
+  /// Runs the callbacks of one node ahead of the others.
+  void flush(NodeId id);
+  /// Prefetches the data of the next nodes in a loop over `count` nodes, at index `at`. After a tick of physics, their
+  /// data is no longer in the cache. Works in three stages, since each one needs the pointers of the previous: the node
+  /// and its numbers, then the object, then the data that its callbacks read. `id_of(index)` may return a null or stale
+  /// id.
   template <class IdOf>
-  void fetch_ahead(std::size_t at, std::size_t count, IdOf&& id_of) const {
+  void prefetch_ahead(std::size_t at, std::size_t count, IdOf&& id_of) const {
     constexpr std::size_t kAhead = 5;
     if (const NodeId far = at + 3 * kAhead < count ? id_of(at + 3 * kAhead) : NodeId{}; alive(far)) {
-      fetch_node(far);
-      fetch_numbers(far);
+      prefetch_node(far);
+      prefetch_values(far);
     }
     if (const NodeId nearer = at + 2 * kAhead < count ? id_of(at + 2 * kAhead) : NodeId{}; alive(nearer))
-      fetch_thing(nearer);
-    if (const NodeId near = at + kAhead < count ? id_of(at + kAhead) : NodeId{}; alive(near)) fetch_effects(near);
+      prefetch_object(nearer);
+    if (const NodeId near = at + kAhead < count ? id_of(at + kAhead) : NodeId{}; alive(near)) prefetch_callbacks(near);
   }
-  // A compiler that looks at these alone sees that nothing comes of them and leaves them out: they have no calls.
-  [[gnu::always_inline]] void fetch_node(NodeId id) const {
+  // Inlined, because a compiler may treat a function that only prefetches as having no effect and drop the call.
+  [[gnu::always_inline]] void prefetch_node(NodeId id) const {
     const Node& node = nodes_[id.slot];
     __builtin_prefetch(&node);
     __builtin_prefetch(&node.children);
   }
-  [[gnu::always_inline]] void fetch_numbers(NodeId id) const { prefetch(kept_.data() + slots_[id.slot].kept, 128); }
-  [[gnu::always_inline]] void fetch_thing(NodeId id) const {
-    if (const void* const thing = nodes_[id.slot].thing; thing != nullptr) prefetch(thing, 64);
+  [[gnu::always_inline]] void prefetch_values(NodeId id) const {
+    prefetch(persistent_.data() + slots_[id.slot].persistent, 128);
   }
-  void fetch_effects(NodeId id) const {
-    const Node& its = node(id);
-    its.table->fetch(its.thing);
+  [[gnu::always_inline]] void prefetch_object(NodeId id) const {
+    if (const void* const object = nodes_[id.slot].object; object != nullptr) prefetch(object, 64);
   }
-  /// Runs the effects of these rows of a node, a bit a row, each function once.
-  void run_effects(NodeId id, std::uint64_t rows);
-  /// Whether the row waits for its effect.
-  bool marked(NodeId id, const Row& row) const { return (node(id).marks >> row.index & 1u) != 0; }
+  void prefetch_callbacks(NodeId id) const {
+    const Node& owner = node(id);
+    owner.table->prefetch(owner.object);
+  }
+  /// Runs the on-change callbacks of these properties of a node (a bit mask), each function once.
+  void run_callbacks(NodeId id, std::uint64_t properties);
+  /// True if the property is dirty: its on-change callback is pending.
+  bool is_dirty(NodeId id, const Property& property) const { return (node(id).dirty >> property.index & 1u) != 0; }
 
-  /// From here on the log keeps what each value was, until end_undo() or take_back(). Allocates only while it grows.
-  void begin_undo();
-  /// Whether the log is empty.
-  bool undo_untouched() const { return undo_.values.empty(); }
-  /// The call ended well: what it wrote stays.
-  void end_undo();
-  /// The call failed: every value, and whether its effect waits, is as it was when begin_undo() was called.
-  void take_back();
-  /// Before something writes past the door: lets the log know the value. Costs nothing outside of a guarded call.
-  void keep(NodeId id, const Row& row) {
-    if (undo_.active) keep_value(id, row);
+  /// Begins a transaction: previous values are logged until commit_transaction() or rollback(). Allocates only while
+  /// the log grows.
+  void begin_transaction();
+  /// True if no value was written in the transaction.
+  bool transaction_is_empty() const { return transaction_.values.empty(); }
+  /// Ends the transaction, keeps its writes and sends the deferred notifications.
+  void commit_transaction();
+  /// Ends the transaction and restores all values and dirty flags to those at begin_transaction().
+  void rollback();
+  /// Logs the current value before a write that bypasses set(). Does nothing outside a transaction.
+  void save_before_write(NodeId id, const Property& property) {
+    if (transaction_.active) save_value(id, property);
   }
-  /// Takes the node and all below it out of sight, as if removed; the answer is its place among its siblings.
+  /// Hides the node and its descendants as if they were removed; their ids are stale until show(). Returns its position
+  /// among its siblings.
   std::size_t hide(NodeId id);
-  /// Brings a hidden node back to its place, with the id that it had.
-  void show(NodeId id, std::size_t place);
-  /// Removes a hidden node for good.
-  void drop_hidden(NodeId id);
+  /// Shows a hidden node again at its position, with the id that it had.
+  void show(NodeId id, std::size_t position);
+  /// Removes a hidden node permanently.
+  void remove_hidden(NodeId id);
 
-  /// Told of each row that is written through the door, of a view the rows behind it, and of what it was before; or,
-  /// `later`, that is going to be written as time goes on. Of a guarded call once it has ended well.
+  /// Called before each write of set() and write_unchecked() with the previous value; for a computed property, with the
+  /// stored properties behind it. `later`: the property will be written over time (by a ramp). In a transaction, the
+  /// calls are deferred until the commit.
   struct Listener {
-    void (*heard)(void* who, NodeId id, const Row& row, bool later, const double* before) = nullptr;
-    void* who = nullptr;
+    void (*callback)(void* context, NodeId id, const Property& property, bool later, const double* before) = nullptr;
+    void* context = nullptr;
   };
-  /// From here on this one hears; the answer: who did before.
-  Listener listen(Listener listener) { return std::exchange(listener_, listener); }
-  /// Who listens hears of the row.
-  void announce(NodeId id, const Row& row, bool later) {
-    if (listener_.heard == nullptr) return;
-    if (undo_.active && !later) return hear_later(id, row);
-    listener_.heard(listener_.who, id, row, later, values(id, row));
+  /// Sets the listener and returns the previous one.
+  Listener set_listener(Listener listener) { return std::exchange(listener_, listener); }
+  /// Notifies the listener about a property; deferred in a transaction unless `later`.
+  void notify(NodeId id, const Property& property, bool over_time) {
+    if (listener_.callback == nullptr) return;
+    if (transaction_.active && !over_time) return defer_notification(id, property);
+    listener_.callback(listener_.context, id, property, over_time, values(id, property));
   }
 
-  std::span<const double> kept() const { return kept_; }
-  std::span<const double> live() const { return live_; }
-  /// Counts writes to kept values and changes of structure: copies are made anew when it has changed.
-  std::uint64_t kept_version() const { return kept_version_; }
+  std::span<const double> persistent_values() const { return persistent_; }
+  std::span<const double> transient_values() const { return transient_; }
+  /// Counts writes to persistent values and changes of the structure. Copies are out of date when it has changed.
+  std::uint64_t persistent_version() const { return persistent_version_; }
   std::uint64_t structure_version() const { return structure_version_; }
-  /// Something that is no node has come or gone.
-  void note_structure() { structure_version_++; }
-  /// The structure's version when the node came, or got another table.
-  std::uint64_t born(NodeId id) const { return node(id).born; }
-  /// The structure's version when something came, went or got another place or table at the node or below it.
-  std::uint64_t changed(NodeId id) const { return node(id).changed; }
+  /// Counts a change of something that is not a node.
+  void bump_structure_version() { structure_version_++; }
+  /// The structure version when the node was added or got another table.
+  std::uint64_t added_version(NodeId id) const { return node(id).added_version; }
+  /// The structure version of the last change at the node or below it: added, removed, moved, or another table.
+  std::uint64_t changed_version(NodeId id) const { return node(id).changed_version; }
   const StoreView* view() const { return &view_; }
-  /// Keeps `copy` like view() until hide_view(): for readers that may turn to another store.
-  void show_view(StoreView& copy);
-  void hide_view(StoreView& copy);
-  /// Brings children into this order; those that are not named stand behind, in the order that they had.
+  /// Keeps `copy` equal to view() until unregister_view(), for readers that may switch to another store.
+  void register_view(StoreView& copy);
+  void unregister_view(StoreView& copy);
+  /// Moves these children to the front in this order; the others follow in their previous order.
   void order_children(NodeId parent, std::span<const NodeId> first);
-  std::uint32_t table_number(const Table& table);
-  std::span<const Table* const> tables() const { return tables_; }
+  /// Returns the index of the table in tables(), which it is added to if necessary.
+  std::uint32_t table_number(const PropertyTable& table);
+  std::span<const PropertyTable* const> tables() const { return tables_; }
 
-  /// Calls f(id) for each node below `id` and itself, parents first, children in order.
+  /// Calls f(id) for the node and its descendants, parents first, children in order.
   template <class F>
   void walk(NodeId id, F&& f) const {
     f(id);
@@ -230,19 +250,19 @@ class Store {
   }
 
  private:
-  friend class WorldKey;
+  friend class WorldCheckpoint;
   struct Node {
-    const Table* table = nullptr;
-    void* thing = nullptr;
+    const PropertyTable* table = nullptr;
+    void* object = nullptr;
     std::string name;
     NodeId parent;
     std::vector<NodeId> children;
-    std::uint64_t marks = 0;
-    std::uint64_t said = 0;
-    std::uint64_t born = 0;
-    std::uint64_t changed = 0;
+    std::uint64_t dirty = 0;
+    std::uint64_t explicitly_set = 0;
+    std::uint64_t added_version = 0;
+    std::uint64_t changed_version = 0;
   };
-  // children are found by parent and name; the set holds slots, the names stand in the nodes alone
+  // Index of children by parent and name. The set holds slots; the names are in the nodes.
   struct ChildKey {
     std::uint32_t parent;
     std::string_view name;
@@ -268,52 +288,53 @@ class Store {
     }
   };
 
-  const Node& node(NodeId id) const { return alive(id) ? nodes_[id.slot] : nobody(); }
-  static const Node& nobody();
-  double* slot_values(NodeId id, const Row& row) {
+  const Node& node(NodeId id) const { return alive(id) ? nodes_[id.slot] : null_node(); }
+  static const Node& null_node();
+  double* slot_values(NodeId id, const Property& property) {
     NodeSlot& slot = slots_[id.slot];
-    return row.live ? live_.data() + slot.live + row.offset : kept_.data() + slot.kept + row.offset;
+    return property.transient ? transient_.data() + slot.transient + property.offset
+                              : persistent_.data() + slot.persistent + property.offset;
   }
-  std::uint32_t take_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& spare,
-                           std::uint32_t width);
-  void note_change(NodeId at);
-  std::size_t leave_siblings(NodeId id);
-  void release(NodeId id);
-  void give_back_blocks(std::uint32_t slot);
-  void give_back(std::uint32_t slot);
-  void write(NodeId id, const Row& row, const double* values) {
-    announce(id, row, false);
-    keep(id, row);
-    double* const to = slot_values(id, row);
-    for (std::uint32_t i = 0; i < row.width; i++) to[i] = values[i];  // so few that a call would cost more
-    if (!row.live) kept_version_++;
+  std::uint32_t allocate_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& free_list,
+                               std::uint32_t width);
+  void record_structure_change(NodeId at);
+  std::size_t unlink_from_parent(NodeId id);
+  void remove_subtree(NodeId id);
+  void free_blocks(std::uint32_t slot);
+  void free_slot(std::uint32_t slot);
+  void write(NodeId id, const Property& property, const double* values) {
+    notify(id, property, false);
+    save_before_write(id, property);
+    double* const to = slot_values(id, property);
+    for (std::uint32_t i = 0; i < property.width; i++) to[i] = values[i];  // at most 4: a call would cost more
+    if (!property.transient) persistent_version_++;
   }
-  void keep_value(NodeId id, const Row& row);
-  void hear_later(NodeId id, const Row& row);
-  StoreUndo::Kept& kept_of(NodeId id);
-  void turn_hidden(NodeId id, bool hide);
-  void run_marks(NodeId id);
+  void save_value(NodeId id, const Property& property);
+  void defer_notification(NodeId id, const Property& property);
+  StoreTransaction::Saved& saved_in_transaction(NodeId id);
+  void set_hidden(NodeId id, bool hidden);
+  void flush_node(NodeId id);
   void refresh_view();
 
   std::vector<NodeSlot> slots_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> free_slots_;
-  std::vector<double> kept_;
-  std::vector<double> live_;
-  std::vector<std::vector<std::uint32_t>> spare_kept_;  // by width
-  std::vector<std::vector<std::uint32_t>> spare_live_;
+  std::vector<double> persistent_;
+  std::vector<double> transient_;
+  std::vector<std::vector<std::uint32_t>> free_persistent_;  // by width
+  std::vector<std::vector<std::uint32_t>> free_transient_;
   std::unordered_set<std::uint32_t, ChildHash, ChildEqual> child_of_{0, ChildHash{{&nodes_}}, ChildEqual{{&nodes_}}};
-  std::vector<const Table*> tables_;
-  std::vector<NodeId> marked_;
-  bool apart_ = true;  // all that is marked are effects apart, and no node is in the list twice
-  std::vector<NodeId> applying_;
-  StoreUndo undo_;
+  std::vector<const PropertyTable*> tables_;
+  std::vector<NodeId> dirty_nodes_;
+  bool dirty_are_independent_ = true;  // all pending callbacks are independent, and no node is in the list twice
+  std::vector<NodeId> flushing_;
+  StoreTransaction transaction_;
   NodeId root_;
-  std::uint64_t kept_version_ = 0;
+  std::uint64_t persistent_version_ = 0;
   std::uint64_t structure_version_ = 0;
   StoreView view_;
-  std::vector<StoreView*> view_copies_;
-  bool saying_ = false;
+  std::vector<StoreView*> registered_views_;
+  bool tracks_explicit_sets_ = false;
   Listener listener_;
 };
 

@@ -1,4 +1,4 @@
-// StoreUndo: what the store was before a guarded call touched it, so that a call that fails can be taken back. [sim]
+// StoreTransaction: the rollback log of a script call. If the call fails, the store is restored from it. [sim]
 #pragma once
 
 #include <array>
@@ -10,35 +10,35 @@
 
 namespace limber {
 
-struct Row;
+struct Property;
 
-/// The log of one call. Its room is kept from call to call.
-struct StoreUndo {
+/// The log of one transaction. Its memory is reused by the next one.
+struct StoreTransaction {
   struct Value {
     NodeId id;
-    const Row* row = nullptr;
-    std::array<double, 4> before{};
-    bool marked = false;  ///< Its effect was waiting already.
+    const Property* property = nullptr;
+    std::array<double, 4> previous{};
+    bool was_dirty = false;  ///< It was dirty already.
   };
-  /// Which rows of a slot are in the log of which call: each is kept once.
-  struct Kept {
-    std::uint64_t call = 0;
-    std::uint64_t rows = 0;
-    std::uint64_t set = 0;  ///< Of these, who listens is told at the call's end.
+  /// The properties of a slot that are in the log already, as bit masks; each value is saved once per transaction.
+  struct Saved {
+    std::uint64_t transaction = 0;    ///< The entry is valid in the transaction of this number only.
+    std::uint64_t values = 0;         ///< Properties with a saved value.
+    std::uint64_t notifications = 0;  ///< Properties with a deferred notification.
   };
-  /// A row that was set through the door, and what it was.
-  struct Set {
+  /// A deferred notification: a property that was set, and its previous value.
+  struct Notification {
     NodeId id;
-    const Row* row = nullptr;
-    std::array<double, 4> before{};
+    const Property* property = nullptr;
+    std::array<double, 4> previous{};
   };
 
   bool active = false;
-  std::uint64_t call = 0;
+  std::uint64_t number = 0;  ///< Number of the transaction, counted from 1.
   std::vector<Value> values;
-  std::vector<Set> set;
-  std::vector<Kept> kept;         ///< By slot.
-  std::size_t marked_before = 0;  ///< So many nodes waited for their effects when the call began.
+  std::vector<Notification> notifications;
+  std::vector<Saved> saved;      ///< By slot.
+  std::size_t dirty_before = 0;  ///< Number of dirty nodes when the transaction began.
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Tables: layout of the rows, look-up by name.
+// Property tables: layout of the properties in blocks, lookup by name, builders.
 #include "params/table.h"
 
 #include <bit>
@@ -13,190 +13,197 @@
 
 namespace limber {
 
-std::uint32_t width_of(RowType type) {
+std::uint32_t width_of(PropertyType type) {
   switch (type) {
-    case RowType::vec3:
-    case RowType::flags3:
+    case PropertyType::vec3:
+    case PropertyType::flags3:
       return 3;
-    case RowType::quat:
+    case PropertyType::quat:
       return 4;
-    case RowType::none:
-    case RowType::text:
+    case PropertyType::none:
+    case PropertyType::text:
       return 0;
     default:
       return 1;
   }
 }
 
-std::string_view type_name(RowType type) {
+std::string_view type_name(PropertyType type) {
   constexpr std::string_view kNames[] = {"number", "integer", "boolean", "choice", "vec3",
                                          "flags3", "quat",    "action",  "text"};
   return kNames[static_cast<std::size_t>(type)];
 }
 
-std::string_view kind_name(RowKind kind) {
+std::string_view kind_name(PropertyKind kind) {
   constexpr std::string_view kNames[] = {"property", "state", "readout", "action"};
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-std::string range_text(const Row& row) {
-  if (row.axis_min.empty() || row.axis_max.empty()) return fmt::format("{} .. {}", row.min, row.max);
-  return fmt::format("{} .. {}", fmt::join(row.axis_min, " "), fmt::join(row.axis_max, " "));
+std::string range_text(const Property& property) {
+  if (property.axis_min.empty() || property.axis_max.empty())
+    return fmt::format("{} .. {}", property.min, property.max);
+  return fmt::format("{} .. {}", fmt::join(property.axis_min, " "), fmt::join(property.axis_max, " "));
 }
 
-Table::Table(std::string name, std::string path, std::string seed, std::vector<Row> rows,
-             void (*fetch)(const void* thing))
-    : name_(std::move(name)), path_(std::move(path)), seed_(std::move(seed)), rows_(std::move(rows)), fetch_(fetch) {
-  LIMBER_CHECK(rows_.size() <= 64);
-  for (std::uint32_t i = 0; i < rows_.size(); i++) {
-    Row& row = rows_[i];
-    row.index = i;
-    row.width = width_of(row.type);
-    plain_.push_back(plain_name(row.name));
-    LIMBER_CHECK(known_unit(row.unit));
-    LIMBER_CHECK(row.axis_min.empty() || row.axis_min.size() == row.width);
-    LIMBER_CHECK(row.axis_max.empty() || row.axis_max.size() == row.width);
-    if (!row.stored()) continue;
-    std::uint32_t& width = row.live ? live_width_ : kept_width_;
-    row.offset = width;
-    width += row.width;
-    row.hashed = row.hashed || row.writable();
-    std::uint64_t key = hash_bytes(row.name);
-    for (std::uint32_t number = 0; number < row.width; number++) {
+PropertyTable::PropertyTable(std::string name, std::string path, std::string legacy_prefix,
+                             std::vector<Property> properties, void (*prefetch)(const void* object))
+    : name_(std::move(name)),
+      path_(std::move(path)),
+      legacy_prefix_(std::move(legacy_prefix)),
+      properties_(std::move(properties)),
+      prefetch_(prefetch) {
+  LIMBER_CHECK(properties_.size() <= 64);
+  for (std::uint32_t i = 0; i < properties_.size(); i++) {
+    Property& property = properties_[i];
+    property.index = i;
+    property.width = width_of(property.type);
+    plain_names_.push_back(plain_name(property.name));
+    LIMBER_CHECK(known_unit(property.unit));
+    LIMBER_CHECK(property.axis_min.empty() || property.axis_min.size() == property.width);
+    LIMBER_CHECK(property.axis_max.empty() || property.axis_max.size() == property.width);
+    if (!property.stored()) continue;
+    std::uint32_t& width = property.transient ? transient_width_ : persistent_width_;
+    property.offset = width;
+    width += property.width;
+    property.hashed = property.hashed || property.writable();
+    std::uint64_t key = hash_bytes(property.name);
+    for (std::uint32_t number = 0; number < property.width; number++) {
       const std::uint64_t next = splitmix64(key);
-      (row.live ? hashed_live_ : hashed_kept_)
-          .push_back({row.hashed ? next : 0, std::bit_cast<std::uint64_t>(row.initial[number])});
+      (property.transient ? hashed_transient_ : hashed_persistent_)
+          .push_back({property.hashed ? next : 0, std::bit_cast<std::uint64_t>(property.initial[number])});
     }
   }
 }
 
-const Row* Table::find(std::string_view name) const {
-  for (std::size_t i = 0; i < rows_.size(); i++) {
-    if (rows_[i].name == name || same_name(plain_[i], name)) return &rows_[i];
+const Property* PropertyTable::find(std::string_view name) const {
+  for (std::size_t i = 0; i < properties_.size(); i++) {
+    if (properties_[i].name == name || same_name(plain_names_[i], name)) return &properties_[i];
   }
   return nullptr;
 }
 
-const Row& Table::at(std::string_view name) const {
-  for (const Row& row : rows_) {
-    if (row.name == name) return row;
+const Property& PropertyTable::at(std::string_view name) const {
+  for (const Property& property : properties_) {
+    if (property.name == name) return property;
   }
-  LIMBER_CHECK(!"a row that its class has");
-  return rows_.front();
+  LIMBER_CHECK(!"the class has this property");
+  return properties_.front();
 }
 
-std::vector<std::string_view> Table::row_names() const {
+std::vector<std::string_view> PropertyTable::property_names() const {
   std::vector<std::string_view> names;
-  for (const Row& row : rows_) names.push_back(row.name);
+  for (const Property& property : properties_) names.push_back(property.name);
   return names;
 }
 
-namespace rows {
+namespace properties {
 
 namespace {
-Row make(std::string name, RowType type, std::string unit, double min, double max, std::string doc) {
-  Row row;
-  row.name = std::move(name);
-  row.type = type;
-  row.unit = std::move(unit);
-  row.min = min;
-  row.max = max;
-  row.doc = std::move(doc);
-  return row;
+Property make(std::string name, PropertyType type, std::string unit, double min, double max, std::string doc) {
+  Property property;
+  property.name = std::move(name);
+  property.type = type;
+  property.unit = std::move(unit);
+  property.min = min;
+  property.max = max;
+  property.doc = std::move(doc);
+  return property;
 }
 }  // namespace
 
-Row number(std::string name, std::string unit, double initial, double min, double max, std::string doc) {
-  Row row = make(std::move(name), RowType::number, std::move(unit), min, max, std::move(doc));
-  row.initial[0] = initial;
-  return row;
+Property number(std::string name, std::string unit, double initial, double min, double max, std::string doc) {
+  Property property = make(std::move(name), PropertyType::number, std::move(unit), min, max, std::move(doc));
+  property.initial[0] = initial;
+  return property;
 }
 
-Row integer(std::string name, double initial, double min, double max, std::string doc) {
-  Row row = make(std::move(name), RowType::integer, "", min, max, std::move(doc));
-  row.initial[0] = initial;
-  return row;
+Property integer(std::string name, double initial, double min, double max, std::string doc) {
+  Property property = make(std::move(name), PropertyType::integer, "", min, max, std::move(doc));
+  property.initial[0] = initial;
+  return property;
 }
 
-Row boolean(std::string name, bool initial, std::string doc) {
-  Row row = make(std::move(name), RowType::boolean, "", 0, 1, std::move(doc));
-  row.initial[0] = initial ? 1 : 0;
-  return row;
+Property boolean(std::string name, bool initial, std::string doc) {
+  Property property = make(std::move(name), PropertyType::boolean, "", 0, 1, std::move(doc));
+  property.initial[0] = initial ? 1 : 0;
+  return property;
 }
 
-Row choice(std::string name, std::vector<std::string> labels, std::uint32_t initial, std::string doc) {
-  Row row = make(std::move(name), RowType::choice, "", 0, static_cast<double>(labels.size()) - 1, std::move(doc));
-  row.initial[0] = initial;
-  row.choices = std::move(labels);
-  return row;
+Property choice(std::string name, std::vector<std::string> labels, std::uint32_t initial, std::string doc) {
+  Property property =
+      make(std::move(name), PropertyType::choice, "", 0, static_cast<double>(labels.size()) - 1, std::move(doc));
+  property.initial[0] = initial;
+  property.choices = std::move(labels);
+  return property;
 }
 
-Row vec3(std::string name, std::string unit, std::array<double, 3> initial, double min, double max, std::string doc) {
-  Row row = make(std::move(name), RowType::vec3, std::move(unit), min, max, std::move(doc));
-  row.initial = {initial[0], initial[1], initial[2], 0};
-  return row;
+Property vec3(std::string name, std::string unit, std::array<double, 3> initial, double min, double max,
+              std::string doc) {
+  Property property = make(std::move(name), PropertyType::vec3, std::move(unit), min, max, std::move(doc));
+  property.initial = {initial[0], initial[1], initial[2], 0};
+  return property;
 }
 
-Row flags3(std::string name, std::array<bool, 3> initial, std::string doc) {
-  Row row = make(std::move(name), RowType::flags3, "", 0, 1, std::move(doc));
-  for (std::size_t i = 0; i < 3; i++) row.initial[i] = initial[i] ? 1 : 0;
-  return row;
+Property flags3(std::string name, std::array<bool, 3> initial, std::string doc) {
+  Property property = make(std::move(name), PropertyType::flags3, "", 0, 1, std::move(doc));
+  for (std::size_t i = 0; i < 3; i++) property.initial[i] = initial[i] ? 1 : 0;
+  return property;
 }
 
-Row quat(std::string name, std::string doc) {
-  Row row = make(std::move(name), RowType::quat, "", -1, 1, std::move(doc));
-  row.initial = {0, 0, 0, 1};
-  return row;
+Property quat(std::string name, std::string doc) {
+  Property property = make(std::move(name), PropertyType::quat, "", -1, 1, std::move(doc));
+  property.initial = {0, 0, 0, 1};
+  return property;
 }
 
-Row text(std::string name, std::string doc) {
-  Row row = make(std::move(name), RowType::text, "", 0, 0, std::move(doc));
-  row.kind = RowKind::readout;
-  return row;
+Property text(std::string name, std::string doc) {
+  Property property = make(std::move(name), PropertyType::text, "", 0, 0, std::move(doc));
+  property.kind = PropertyKind::readout;
+  return property;
 }
 
-Row action(std::string name, std::uint32_t min_args, std::uint32_t max_args, std::string doc) {
-  Row row = make(std::move(name), RowType::none, "", 0, 0, std::move(doc));
-  row.kind = RowKind::action;
-  row.min_args = min_args;
-  row.max_args = max_args;
-  return row;
+Property action(std::string name, std::uint32_t min_args, std::uint32_t max_args, std::string doc) {
+  Property property = make(std::move(name), PropertyType::none, "", 0, 0, std::move(doc));
+  property.kind = PropertyKind::action;
+  property.min_args = min_args;
+  property.max_args = max_args;
+  return property;
 }
 
-Row state(Row row) {
-  row.kind = RowKind::state;
-  return row;
+Property state(Property property) {
+  property.kind = PropertyKind::state;
+  return property;
 }
 
-Row readout(Row row) {
-  row.kind = RowKind::readout;
-  return row;
+Property readout(Property property) {
+  property.kind = PropertyKind::readout;
+  return property;
 }
 
-Row live(Row row) {
-  row.live = true;
-  return row;
+Property transient(Property property) {
+  property.transient = true;
+  return property;
 }
 
-Row axes(Row row) {
-  row.own_axis = true;
-  return row;
+Property axes(Property property) {
+  property.own_axis = true;
+  return property;
 }
 
-Row hashed(Row row) {
-  row.hashed = true;
-  return row;
+Property hashed(Property property) {
+  property.hashed = true;
+  return property;
 }
 
-Row turns(Row row) {
-  row.turns = true;
-  return row;
+Property euler_angles(Property property) {
+  property.euler = true;
+  return property;
 }
 
-Row apart(Row row) {
-  row.apart = true;
-  return row;
+Property independent(Property property) {
+  property.independent = true;
+  return property;
 }
 
-}  // namespace rows
+}  // namespace properties
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Tables: what can be set, read or done on a class of things, one row each. Everything else (OSC, Lua, panel, presets,
-// reference) is derived from these rows. Built once, never changed.
+// Property tables: the properties, states, readouts and actions of each class (body, joint, motor, …). OSC, Lua, the
+// panel, presets and the reference are derived from these tables. A table is immutable once it is built.
 #pragma once
 
 #include <array>
@@ -14,215 +14,223 @@
 
 namespace limber {
 
-enum class RowKind : std::uint8_t {
-  property,  ///< A value that may be set and kept.
-  state,     ///< May be set, but belongs to the moment: poses, velocities, `paused`.
-  readout,   ///< A value that the simulation tells.
-  action,    ///< Something to do.
+enum class PropertyKind : std::uint8_t {
+  setting,  ///< Can be set and is saved in scenes and presets. Listings call this kind "property".
+  state,    ///< Can be set but is not saved: poses, velocities, `paused`.
+  readout,  ///< Read-only, computed by the simulation.
+  action,   ///< A command.
 };
 
-enum class RowType : std::uint8_t {
+enum class PropertyType : std::uint8_t {
   number,
   integer,
   boolean,
   choice,  ///< A number with labels.
   vec3,
-  flags3,  ///< Three booleans, one an axis.
+  flags3,  ///< Three booleans, one per axis.
   quat,    ///< x y z w.
-  none,    ///< Actions: what they take stands in `min_args`, `max_args`.
-  text,    ///< What a thing says: a readout without numbers.
+  none,    ///< Actions; `min_args` and `max_args` limit their arguments.
+  text,    ///< A readout that is a string; it has no numbers.
 };
 
-/// How many numbers a value of the type has.
-std::uint32_t width_of(RowType type);
-std::string_view type_name(RowType type);
-std::string_view kind_name(RowKind kind);
+/// Returns how many numbers a value of the type has.
+std::uint32_t width_of(PropertyType type);
+std::string_view type_name(PropertyType type);
+std::string_view kind_name(PropertyKind kind);
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// One row. `thing` below is the object that the node stands for, as its class knows it.
-struct Row {
-  std::string name;  ///< snake_case, the same word everywhere.
-  RowType type = RowType::number;
-  RowKind kind = RowKind::property;
-  std::string unit;          ///< As in units(); empty: a pure number.
-  double min = -kUnbounded;  ///< Each number is clamped to min .. max.
+/// Describes one property, state, readout or action. The `object` that its callbacks receive is the simulation object
+/// of the node, of the class that the table describes.
+struct Property {
+  std::string name;  ///< snake_case; the same in OSC, Lua, the panel and files.
+  PropertyType type = PropertyType::number;
+  PropertyKind kind = PropertyKind::setting;
+  std::string unit;          ///< A symbol of units(), or empty for a dimensionless number.
+  double min = -kUnbounded;  ///< Each number is clamped to [min, max].
   double max = kUnbounded;
-  std::vector<double> axis_min;  ///< Where each number has a range of its own: one a number; min, max are the widest.
+  std::vector<double> axis_min;  ///< One range per number, if they differ; min and max then enclose all of them.
   std::vector<double> axis_max;
-  double step = 0;                   ///< What a turn of a wheel changes it by; 0: nothing is said.
+  double step = 0;                   ///< Suggested increment for one notch of a mouse wheel; 0: none.
   std::array<double, 4> initial{};   ///< The default.
-  std::string doc;                   ///< One line for a person.
-  std::vector<std::string> choices;  ///< Labels of a choice: 0, 1, 2 …
-  bool own_axis = false;  ///< vec3 and flags3 of joints and motors: one number means the own axis (booleans: all).
-  bool turns = false;     ///< vec3: the turn Rx·Ry·Rz, degrees. Between two of them lies a rotation.
-  bool live = false;      ///< Stored in the live block: changes by itself, part of every snapshot.
-  bool hashed = false;  ///< Part of the state hash: every stored property and state is, a readout where it is declared.
+  std::string doc;                   ///< A one-line description.
+  std::vector<std::string> choices;  ///< Labels of the values 0, 1, 2 … of a choice.
+  /// vec3 and flags3 of joints and motors: a single number sets the joint's own axis, a single boolean all axes.
+  bool own_axis = false;
+  bool euler = false;      ///< vec3: Euler angles of the rotation Rx·Ry·Rz, in degrees; interpolated as a rotation.
+  bool transient = false;  ///< Stored in the transient block: changed by the simulation, part of every snapshot.
+  bool hashed = false;  ///< Part of the state hash: all stored settings and states, and readouts that are declared so.
 
-  void (*effect)(void* thing) = nullptr;  ///< Brings a changed value into the world; once, before the next step.
-  bool apart = false;  ///< The effect touches what is this thing's alone: of many things they may run side by side.
-  void (*read)(const void* thing, double* out) = nullptr;                 ///< A view: computed when asked, not stored.
-  void (*write)(void* thing, const double* in) = nullptr;                 ///< A view's way to the rows behind it.
-  std::string_view (*say)(const void* thing) = nullptr;                   ///< A text's words, until the thing changes.
-  Result<void> (*refuse)(const void* thing, const double* in) = nullptr;  ///< Why this thing can't take this value.
-  Result<void> (*act)(void* thing, std::span<const double> args) = nullptr;
-  void (*written)(void* thing, const Row& row) = nullptr;  ///< Told at once of each write, even of the same value.
-  std::uint32_t min_args = 0;                              ///< Numbers that an action takes.
+  void (*on_change)(void* object) = nullptr;  ///< On-change callback: applies new values. Called by Store::flush().
+  bool independent =
+      false;  ///< The on-change callback uses this object's data only, so several objects may run in parallel.
+  void (*read)(const void* object, double* out) = nullptr;      ///< Getter of a computed property; it is not stored.
+  void (*write)(void* object, const double* in) = nullptr;      ///< Setter of a computed property.
+  std::string_view (*read_text)(const void* object) = nullptr;  ///< Text of a readout; valid until the object changes.
+  Result<void> (*validate)(const void* object, const double* in) = nullptr;  ///< Error if the object rejects the value.
+  Result<void> (*invoke)(void* object, std::span<const double> args) = nullptr;  ///< Runs an action.
+  void (*on_write)(void* object,
+                   const Property& property) = nullptr;  ///< Called after every write, even of an equal value.
+  std::uint32_t min_args = 0;                            ///< Number of arguments of an action.
   std::uint32_t max_args = 0;
 
   std::uint32_t index = 0;   ///< Position in the table.
-  std::uint32_t offset = 0;  ///< First number in the node's kept or live block.
+  std::uint32_t offset = 0;  ///< First number in the node's persistent or transient block.
   std::uint32_t width = 0;
 
   double low(std::size_t i) const { return axis_min.empty() ? min : axis_min[i]; }
   double high(std::size_t i) const { return axis_max.empty() ? max : axis_max[i]; }
-  bool view() const { return read != nullptr; }
-  bool stored() const { return kind != RowKind::action && !view(); }
-  bool writable() const { return kind == RowKind::property || kind == RowKind::state; }
+  bool computed() const { return read != nullptr; }
+  bool stored() const { return kind != PropertyKind::action && !computed(); }
+  bool writable() const { return kind == PropertyKind::setting || kind == PropertyKind::state; }
 };
 
-/// "0 .. 10", or with ranges of their own "0 1 2 .. 5 5 5".
-std::string range_text(const Row& row);
+/// Returns the range as text: "0 .. 10", or "0 1 2 .. 5 5 5" if each number has its own.
+std::string range_text(const Property& property);
 
-/// A number of a node's block as the state hash sees it.
+/// How one number of a node's block enters the state hash.
 struct HashedNumber {
-  std::uint64_t key = 0;  ///< Of the row's name and the number's place in the row, not of the row's place in the table.
-  std::uint64_t initial =
-      0;  ///< Bits of the default. A number that has them adds nothing, nor does one whose key is 0.
+  std::uint64_t key = 0;      ///< Hash of the property's name and the number's index; 0: the number is not hashed.
+  std::uint64_t initial = 0;  ///< Bits of the default. A number with these bits adds nothing to the hash.
 };
 
-class Table;
-/// A table for rows that are known only while the program runs (a scene's parameters, a behaviour's). It lives as long
-/// as the program, since stores keep tables by address; an equal one is used again. [any]
-const Table& shared_table(std::string name, std::string path, std::vector<Row> rows);
+class PropertyTable;
+/// Returns a table for properties that are defined at run time (parameters of scenes and behaviors). Equal arguments
+/// give the same table. Tables are never freed, because stores refer to them by address. [any]
+const PropertyTable& shared_table(std::string name, std::string path, std::vector<Property> properties);
 
-/// The rows of one class.
-class Table {
+/// The properties of one class, at most 64.
+class PropertyTable {
  public:
-  /// `path`: where its nodes stand, with <name> for the user's names; `seed`: the seed's address prefix, or empty.
-  /// `fetch`: has the processor fetch what the effects of a thing will look at, for who goes through many.
-  Table(std::string name, std::string path, std::string seed, std::vector<Row> rows,
-        void (*fetch)(const void* thing) = nullptr);
+  /// `path`: the address of its nodes, with <name> for names that the user gives. `legacy_prefix`: the address prefix
+  /// of ofxDabPhysics (legacy addresses), or empty. `prefetch`: prefetches the data that an object's on-change
+  /// callbacks read.
+  PropertyTable(std::string name, std::string path, std::string legacy_prefix, std::vector<Property> properties,
+                void (*prefetch)(const void* object) = nullptr);
 
   const std::string& name() const { return name_; }
   const std::string& path() const { return path_; }
-  const std::string& seed() const { return seed_; }
-  std::span<const Row> rows() const { return rows_; }
-  const Row& row(std::uint32_t index) const { return rows_[index]; }
-  std::uint32_t kept_width() const { return kept_width_; }
-  std::uint32_t live_width() const { return live_width_; }
-  /// For each number of the kept block, or of the live block.
-  std::span<const HashedNumber> hashed_kept() const { return hashed_kept_; }
-  std::span<const HashedNumber> hashed_live() const { return hashed_live_; }
-  void fetch(const void* thing) const {
-    if (fetch_ != nullptr) fetch_(thing);
+  const std::string& legacy_prefix() const { return legacy_prefix_; }
+  std::span<const Property> properties() const { return properties_; }
+  const Property& property(std::uint32_t index) const { return properties_[index]; }
+  std::uint32_t persistent_width() const { return persistent_width_; }
+  std::uint32_t transient_width() const { return transient_width_; }
+  /// How each number of a node's persistent block enters the state hash, and each of its transient block.
+  std::span<const HashedNumber> hashed_persistent() const { return hashed_persistent_; }
+  std::span<const HashedNumber> hashed_transient() const { return hashed_transient_; }
+  void prefetch(const void* object) const {
+    if (prefetch_ != nullptr) prefetch_(object);
   }
 
-  /// The row of that name, compared by the one naming rule; null when there is none.
-  const Row* find(std::string_view name) const;
-  /// The row of exactly that name; it is a fault of ours when there is none.
-  const Row& at(std::string_view name) const;
-  std::vector<std::string_view> row_names() const;
+  /// Returns the property of that name (compared as same_name() does), or null.
+  const Property* find(std::string_view name) const;
+  /// Returns the property of exactly that name, which must exist (checked).
+  const Property& at(std::string_view name) const;
+  std::vector<std::string_view> property_names() const;
 
  private:
   std::string name_;
   std::string path_;
-  std::string seed_;
-  std::vector<Row> rows_;
-  std::vector<std::string> plain_;
-  std::uint32_t kept_width_ = 0;
-  std::uint32_t live_width_ = 0;
-  std::vector<HashedNumber> hashed_kept_;
-  std::vector<HashedNumber> hashed_live_;
-  void (*fetch_)(const void* thing) = nullptr;
+  std::string legacy_prefix_;
+  std::vector<Property> properties_;
+  std::vector<std::string> plain_names_;
+  std::uint32_t persistent_width_ = 0;
+  std::uint32_t transient_width_ = 0;
+  std::vector<HashedNumber> hashed_persistent_;
+  std::vector<HashedNumber> hashed_transient_;
+  void (*prefetch_)(const void* object) = nullptr;
 };
 
-namespace rows {
+namespace properties {
 
-/// Starting points of rows; designated changes follow: `with(number("mass", "kg", 1), …)`.
-Row number(std::string name, std::string unit, double initial, double min, double max, std::string doc);
-Row integer(std::string name, double initial, double min, double max, std::string doc);
-Row boolean(std::string name, bool initial, std::string doc);
-Row choice(std::string name, std::vector<std::string> labels, std::uint32_t initial, std::string doc);
-Row vec3(std::string name, std::string unit, std::array<double, 3> initial, double min, double max, std::string doc);
-Row flags3(std::string name, std::array<bool, 3> initial, std::string doc);
-Row quat(std::string name, std::string doc);
-Row text(std::string name, std::string doc);
-Row action(std::string name, std::uint32_t min_args, std::uint32_t max_args, std::string doc);
+// Builders of properties. They nest: transient(readout(vec3("velocity", "m/s", …))).
 
-/// The row as a state, a readout, a live one, one of three axes with an own axis.
-Row state(Row row);
-Row readout(Row row);
-Row live(Row row);
-Row axes(Row row);
-/// A readout as part of the state hash.
-Row hashed(Row row);
-/// The three numbers as a turn.
-Row turns(Row row);
-/// Its effect as one that many things may have side by side.
-Row apart(Row row);
+/// Properties of each type, of kind `setting` (a text is a readout).
+Property number(std::string name, std::string unit, double initial, double min, double max, std::string doc);
+Property integer(std::string name, double initial, double min, double max, std::string doc);
+Property boolean(std::string name, bool initial, std::string doc);
+Property choice(std::string name, std::vector<std::string> labels, std::uint32_t initial, std::string doc);
+Property vec3(std::string name, std::string unit, std::array<double, 3> initial, double min, double max,
+              std::string doc);
+Property flags3(std::string name, std::array<bool, 3> initial, std::string doc);
+Property quat(std::string name, std::string doc);
+Property text(std::string name, std::string doc);
+Property action(std::string name, std::uint32_t min_args, std::uint32_t max_args, std::string doc);
 
-/// A member function of T as effect, view or action of a row.
+// Functions that set one field of a property and return it: `kind` (state, readout), `transient`, `own_axis` (axes),
+// `hashed`, `euler` (euler_angles), `independent`.
+Property state(Property property);
+Property readout(Property property);
+Property transient(Property property);
+Property axes(Property property);
+Property hashed(Property property);
+Property euler_angles(Property property);
+Property independent(Property property);
+
+/// Wraps a member function of the object's class as a callback of a property.
 template <auto Member>
 struct Bind;
 template <class T, void (T::*Member)()>
 struct Bind<Member> {
-  static void effect(void* thing) { (static_cast<T*>(thing)->*Member)(); }
+  static void on_change(void* object) { (static_cast<T*>(object)->*Member)(); }
 };
 template <class T, void (T::*Member)(double*) const>
 struct Bind<Member> {
-  static void read(const void* thing, double* out) { (static_cast<const T*>(thing)->*Member)(out); }
+  static void read(const void* object, double* out) { (static_cast<const T*>(object)->*Member)(out); }
 };
 template <class T, void (T::*Member)(const double*)>
 struct Bind<Member> {
-  static void write(void* thing, const double* in) { (static_cast<T*>(thing)->*Member)(in); }
+  static void write(void* object, const double* in) { (static_cast<T*>(object)->*Member)(in); }
 };
 template <class T, std::string_view (T::*Member)() const>
 struct Bind<Member> {
-  static std::string_view say(const void* thing) { return (static_cast<const T*>(thing)->*Member)(); }
+  static std::string_view read_text(const void* object) { return (static_cast<const T*>(object)->*Member)(); }
 };
 template <class T, Result<void> (T::*Member)(const double*) const>
 struct Bind<Member> {
-  static Result<void> refuse(const void* thing, const double* in) {
-    return (static_cast<const T*>(thing)->*Member)(in);
+  static Result<void> validate(const void* object, const double* in) {
+    return (static_cast<const T*>(object)->*Member)(in);
   }
 };
 template <class T, Result<void> (T::*Member)(std::span<const double>)>
 struct Bind<Member> {
-  static Result<void> act(void* thing, std::span<const double> args) { return (static_cast<T*>(thing)->*Member)(args); }
+  static Result<void> invoke(void* object, std::span<const double> args) {
+    return (static_cast<T*>(object)->*Member)(args);
+  }
 };
 
+// Functions that set a callback of a property to a member function and return the property.
 template <auto Member>
-Row effect(Row row) {
-  row.effect = &Bind<Member>::effect;
-  return row;
+Property on_change(Property property) {
+  property.on_change = &Bind<Member>::on_change;
+  return property;
 }
 template <auto Read, auto Write>
-Row view(Row row) {
-  row.read = &Bind<Read>::read;
-  row.write = &Bind<Write>::write;
-  return row;
+Property computed(Property property) {
+  property.read = &Bind<Read>::read;
+  property.write = &Bind<Write>::write;
+  return property;
 }
 template <auto Read>
-Row view(Row row) {
-  row.read = &Bind<Read>::read;
-  return row;
+Property computed(Property property) {
+  property.read = &Bind<Read>::read;
+  return property;
 }
 template <auto Member>
-Row say(Row row) {
-  row.say = &Bind<Member>::say;
-  return row;
+Property text_from(Property property) {
+  property.read_text = &Bind<Member>::read_text;
+  return property;
 }
 template <auto Member>
-Row refuse(Row row) {
-  row.refuse = &Bind<Member>::refuse;
-  return row;
+Property validated_by(Property property) {
+  property.validate = &Bind<Member>::validate;
+  return property;
 }
 template <auto Member>
-Row act(Row row) {
-  row.act = &Bind<Member>::act;
-  return row;
+Property invokes(Property property) {
+  property.invoke = &Bind<Member>::invoke;
+  return property;
 }
 
-}  // namespace rows
+}  // namespace properties
 }  // namespace limber

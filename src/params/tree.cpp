@@ -1,4 +1,4 @@
-// The copy of the structure, and the same walks as over the store.
+// Copies the store's structure, and looks up paths and patterns in the copy.
 #include "params/tree.h"
 
 #include <algorithm>
@@ -12,16 +12,16 @@ namespace limber {
 namespace {
 
 struct TreeShape {
-  using Place = TreePlace;
-  struct PlaceRows {
+  using Ref = TreePropertyRef;
+  struct Set {
     std::uint32_t node = 0;
-    std::uint64_t rows = 0;
+    std::uint64_t properties = 0;
   };
-  const Tree& tree;
+  const TreeSnapshot& tree;
 
   std::uint32_t root() const { return 0; }
   std::string_view name(std::uint32_t node) const { return tree.name(node); }
-  const Table& table(std::uint32_t node) const { return *tree.nodes()[node].table; }
+  const PropertyTable& table(std::uint32_t node) const { return *tree.nodes()[node].table; }
   std::string path(std::uint32_t node) const { return tree.path(node); }
   std::uint32_t key(std::uint32_t node) const { return node; }
   std::size_t keys() const { return tree.nodes().size(); }
@@ -41,75 +41,77 @@ struct TreeShape {
 
 }  // namespace
 
-Tree::Tree(const Store& store) { add(store, store.root(), 0); }
+TreeSnapshot::TreeSnapshot(const Store& store) { add(store, store.root(), 0); }
 
-void Tree::add(const Store& store, NodeId id, std::uint32_t parent) {
-  const auto at = static_cast<std::uint32_t>(nodes_.size());
+void TreeSnapshot::add(const Store& store, NodeId id, std::uint32_t parent) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
   const std::string& name = store.name(id);
   const NodeSlot& slot = store.view()->slots[id.slot];
   Node& node = nodes_.emplace_back();
   node.id = id;
   node.table = &store.table(id);
   node.parent = parent;
-  node.name_at = static_cast<std::uint32_t>(names_.size());
+  node.name_offset = static_cast<std::uint32_t>(names_.size());
   node.name_size = static_cast<std::uint32_t>(name.size());
-  node.kept = slot.kept;
-  node.live = slot.live;
-  node.views = views_width_;
+  node.persistent = slot.persistent;
+  node.transient = slot.transient;
+  node.computed = computed_width_;
   node.texts = text_count_;
   names_ += name;
-  for (const Row& row : node.table->rows()) {
-    if (row.view()) views_width_ += row.width;
-    if (row.type == RowType::text) text_count_++;
+  for (const Property& property : node.table->properties()) {
+    if (property.computed()) computed_width_ += property.width;
+    if (property.type == PropertyType::text) text_count_++;
   }
-  for (const NodeId child : store.children(id)) add(store, child, at);
-  nodes_[at].end = static_cast<std::uint32_t>(nodes_.size());
+  for (const NodeId child : store.children(id)) add(store, child, index);
+  nodes_[index].subtree_end = static_cast<std::uint32_t>(nodes_.size());
 }
 
-std::string Tree::path(std::uint32_t node) const {
+std::string TreeSnapshot::path(std::uint32_t node) const {
   if (node == 0) return "/";
-  std::vector<std::uint32_t> line;
-  for (std::uint32_t at = node; at != 0; at = nodes_[at].parent) line.push_back(at);
+  std::vector<std::uint32_t> ancestors;
+  for (std::uint32_t at = node; at != 0; at = nodes_[at].parent) ancestors.push_back(at);
   std::string path;
-  std::for_each(line.rbegin(), line.rend(), [&](std::uint32_t at) { path += "/" + escape_name(name(at)); });
+  std::for_each(ancestors.rbegin(), ancestors.rend(), [&](std::uint32_t at) { path += "/" + escape_name(name(at)); });
   return path;
 }
 
-std::string Tree::path(const TreePlace& place) const {
+std::string TreeSnapshot::path(const TreePropertyRef& place) const {
   std::string thing = path(place.node);
-  if (place.row == nullptr) return thing;
-  return place.node == 0 ? thing + place.row->name : thing + "/" + place.row->name;
+  if (place.property == nullptr) return thing;
+  return place.node == 0 ? thing + place.property->name : thing + "/" + place.property->name;
 }
 
-TreeNumbers Tree::numbers(const TreePlace& place) const {
+ValueLocation TreeSnapshot::location(const TreePropertyRef& place) const {
   const Node& node = nodes_[place.node];
-  const Row& row = *place.row;
-  if (row.type == RowType::text) {
-    std::uint32_t at = node.texts;
-    for (const Row& before : node.table->rows().first(row.index)) at += before.type == RowType::text ? 1 : 0;
-    return {TreeNumbers::Block::texts, at};
+  const Property& property = *place.property;
+  if (property.type == PropertyType::text) {
+    std::uint32_t offset = node.texts;
+    for (const Property& before : node.table->properties().first(property.index))
+      offset += before.type == PropertyType::text ? 1 : 0;
+    return {ValueLocation::Block::texts, offset};
   }
-  if (row.stored()) {
-    return row.live ? TreeNumbers{TreeNumbers::Block::live, node.live + row.offset}
-                    : TreeNumbers{TreeNumbers::Block::kept, node.kept + row.offset};
+  if (property.stored()) {
+    return property.transient ? ValueLocation{ValueLocation::Block::transient, node.transient + property.offset}
+                              : ValueLocation{ValueLocation::Block::persistent, node.persistent + property.offset};
   }
-  if (!row.view()) return {};
-  std::uint32_t at = node.views;
-  for (const Row& before : node.table->rows().first(row.index)) {
-    if (before.view()) at += before.width;
+  if (!property.computed()) return {};
+  std::uint32_t offset = node.computed;
+  for (const Property& before : node.table->properties().first(property.index)) {
+    if (before.computed()) offset += before.width;
   }
-  return {TreeNumbers::Block::views, at};
+  return {ValueLocation::Block::computed, offset};
 }
 
-Result<TreePlace> Tree::find(std::string_view path) const {
-  if (path == "/") return TreePlace{};
-  return PathWalk<TreeShape>::find({*this}, path);
+Result<TreePropertyRef> TreeSnapshot::find(std::string_view path) const {
+  if (path == "/") return TreePropertyRef{};
+  return PathMatcher<TreeShape>::find({*this}, path);
 }
 
-Result<std::vector<TreePlace>> Tree::match(std::string_view pattern, PatternBudget& budget, std::size_t limit) const {
-  if (pattern == "/") return std::vector<TreePlace>{{}};
+Result<std::vector<TreePropertyRef>> TreeSnapshot::match(std::string_view pattern, PatternBudget& budget,
+                                                         std::size_t limit) const {
+  if (pattern == "/") return std::vector<TreePropertyRef>{{}};
   const TreeShape shape{*this};
-  return PathWalk(shape, budget).match(pattern, limit);
+  return PathMatcher(shape, budget).match(pattern, limit);
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The table of units.
+// The list of units.
 #include "params/units.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace limber {
 
 namespace {
 constexpr std::array kUnits = {
-    Unit{"m", "metre"},
+    Unit{"m", "meter"},
     Unit{"kg", "kilogram"},
     Unit{"s", "second"},
     Unit{"ms", "millisecond of simulated time"},
@@ -16,25 +16,25 @@ constexpr std::array kUnits = {
     Unit{"rad", "radian"},
     Unit{"deg", "degree"},
     Unit{"Hz", "per second"},
-    Unit{"m/s", "metre per second"},
-    Unit{"m/s²", "metre per second squared"},
+    Unit{"m/s", "meter per second"},
+    Unit{"m/s²", "meter per second squared"},
     Unit{"rad/s", "radian per second"},
-    Unit{"m/s | rad/s", "metre per second along, radian per second about the axis"},
-    Unit{"m | rad", "metre along, radian about the axis"},
+    Unit{"m/s | rad/s", "meter per second along, radian per second about the axis"},
+    Unit{"m | rad", "meter along, radian about the axis"},
     Unit{"N", "newton"},
-    Unit{"N·m", "newton metre"},
-    Unit{"N | N·m", "newton along, newton metre about the axis"},
+    Unit{"N·m", "newton meter"},
+    Unit{"N | N·m", "newton along, newton meter about the axis"},
     Unit{"N·s", "newton second"},
-    Unit{"N/m", "newton per metre"},
-    Unit{"N·s/m", "newton second per metre"},
-    Unit{"m/N", "metre per newton"},
-    Unit{"rad/(N·m)", "radian per newton metre"},
-    Unit{"N·m/rad", "newton metre per radian"},
-    Unit{"N·m·s/rad", "newton metre second per radian"},
-    Unit{"N·s/m | N·m·s/rad", "newton second per metre along, newton metre second per radian about the axis"},
+    Unit{"N/m", "newton per meter"},
+    Unit{"N·s/m", "newton second per meter"},
+    Unit{"m/N", "meter per newton"},
+    Unit{"rad/(N·m)", "radian per newton meter"},
+    Unit{"N·m/rad", "newton meter per radian"},
+    Unit{"N·m·s/rad", "newton meter second per radian"},
+    Unit{"N·s/m | N·m·s/rad", "newton second per meter along, newton meter second per radian about the axis"},
     Unit{"1/s", "fraction lost per second"},
     Unit{"1/s²", "per second squared"},
-    Unit{"kg·m²", "kilogram metre squared"},
+    Unit{"kg·m²", "kilogram meter squared"},
     Unit{"× real time", "simulated seconds per real second"},
     Unit{"hsb", "hue, saturation, brightness"},
 };

@@ -1,4 +1,4 @@
-// The units that rows may have: a closed list, so that a mistyped one is found.
+// The list of units that properties may have. PropertyTable checks units against it, which finds typing errors.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@ namespace limber {
 
 struct Unit {
   std::string_view symbol;
-  std::string_view means;
+  std::string_view meaning;
 };
 
 std::span<const Unit> units();
-/// The empty text counts: a pure number.
+/// True for a symbol in units() and for the empty text (a dimensionless number).
 bool known_unit(std::string_view symbol);
 
 }  // namespace limber

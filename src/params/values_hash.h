@@ -1,5 +1,5 @@
-// Hashes of nodes' values, for the state hash: a value at its default adds nothing, and the place of a property in its
-// table does not matter, so that a new property leaves the hashes of before as they are. [sim]
+// Hashes of node values, for the state hash. A value at its default adds nothing, and the position of a property in its
+// table does not matter, so a new property does not change existing hashes. [sim]
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,16 @@
 
 namespace limber {
 
-/// Of the numbers of a kept or live block that differ from their defaults; 0: none does.
-std::uint64_t values_hash(std::span<const HashedNumber> plan, const double* block);
-/// Of a node's properties; 0: all are at their defaults.
-std::uint64_t kept_hash(const Store& store, NodeId id);
-/// Of a node's properties, states and hashed readouts.
+/// Returns the hash of the numbers of a node's persistent or transient block that differ from their defaults; 0: none
+/// does. `numbers` has an entry for each number.
+std::uint64_t values_hash(std::span<const HashedNumber> numbers, const double* block);
+/// Returns the hash of a node's persistent values; 0: all are at their defaults.
+std::uint64_t persistent_hash(const Store& store, NodeId id);
+/// Returns the hash of a node's settings, states and hashed readouts.
 std::uint64_t node_hash(const Store& store, NodeId id);
-/// Of the properties of a node that every world has, such as the camera, for a sum of several; 0: all are at their
-/// defaults, so that a class of its kind that is new adds nothing.
+/// Returns the hash of the persistent values of a node that every world has, such as the camera, mixed with its class
+/// name, so that the hashes of several nodes can be added. 0: all values are at their defaults, so a new class of such
+/// nodes does not change existing hashes.
 std::uint64_t fixed_node_hash(const Store& store, NodeId id);
 
 }  // namespace limber

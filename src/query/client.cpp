@@ -1,4 +1,4 @@
-// Commands are JSON of any content; nothing of it is trusted to have a shape.
+// Commands are untrusted JSON, so the type of each member is checked.
 #include "query/client.h"
 
 #include <utility>
@@ -12,7 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLogLines = 100;  // in one frame
+constexpr std::size_t kLogLines = 100;  // maximum number per frame
 
 std::string_view level_name(LogLevel level) {
   return level == LogLevel::error ? "error" : level == LogLevel::warning ? "warning" : "info";
@@ -20,57 +20,57 @@ std::string_view level_name(LogLevel level) {
 
 }  // namespace
 
-Client::Client(const Origin& origin, ClientLine& line, const QueryDoors& doors)
-    : origin_(origin), line_(line), doors_(doors) {}
+Client::Client(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host)
+    : origin_(origin), sink_(sink), host_(host) {}
 
-bool Client::text(std::string_view frame) {
+bool Client::on_text(std::string_view frame) {
   const nlohmann::json json = nlohmann::json::parse(frame, nullptr, false);
   if (!json.is_object()) return false;
   const auto command = json.find("COMMAND");
   const auto data = json.find("DATA");
   if (command == json.end() || !command->is_string() || data == json.end()) return false;
-  const std::string& word = command->get_ref<const std::string&>();
-  if (word == "LIMBER_LOG" && data->is_boolean()) {
+  const std::string& name = command->get_ref<const std::string&>();
+  if (name == "LIMBER_LOG" && data->is_boolean()) {
     wants_log_ = data->get<bool>();
     seen_line_ = 0;
-    if (wants_log_) log();
+    if (wants_log_) send_log();
     return false;
   }
   if (!data->is_string()) return false;
   const std::string& path = data->get_ref<const std::string&>();
-  bool waits = false;
-  if (word == "LISTEN") waits = feed_.add(path);
-  if (word == "IGNORE") feed_.remove(path);
-  origin_.follows = listens();
-  return waits;
+  bool needs_value = false;
+  if (name == "LISTEN") needs_value = feed_.add(path);
+  if (name == "IGNORE") feed_.remove(path);
+  origin_.is_subscriber = is_listening();
+  return needs_value;
 }
 
-void Client::binary(std::string_view frame) { doors_.take(origin_, std::string(frame)); }
+void Client::on_binary(std::string_view frame) { host_.process(origin_, std::string(frame)); }
 
-void Client::image(const std::shared_ptr<const Image>& image, std::span<const std::string> notices) {
-  for (const std::string& notice : notices) line_.send(true, notice);
-  if (!listens()) return;
-  feed_.hear(image, origin_);
-  feed_.tell([this](const std::string& path, const Row& row, const RowValue& value) {
-    if (line_.waiting() >= kRoom) return false;
-    line_.send(false, doors_.encode(value_message(path, row, value), tags_of(row)));
+void Client::on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot, std::span<const std::string> events) {
+  for (const std::string& event : events) sink_.send(true, event);
+  if (!is_listening()) return;
+  feed_.update(snapshot, origin_);
+  feed_.send_changes([this](const std::string& path, const Property& property, const PropertyValue& value) {
+    if (sink_.queued_bytes() >= kMaxQueuedForValues) return false;
+    sink_.send(false, host_.encode(value_message(path, property, value), tags_of(property)));
     return true;
   });
 }
 
-void Client::answer(const Outgoing& out, double now) {
-  if (out.to == Outgoing::To::error) {
-    if (now - errors_since_ >= 1) {
-      errors_since_ = now;
+void Client::send_reply(const Outgoing& out, double now) {
+  if (out.destination == Outgoing::Destination::error) {
+    if (now - error_window_start_ >= 1) {
+      error_window_start_ = now;
       errors_ = 0;
     }
-    if (++errors_ > kMostErrors) return;
+    if (++errors_ > kMaxErrors) return;
   }
-  line_.send(false, doors_.encode(out.message, ""));
+  sink_.send(false, host_.encode(out.message, ""));
 }
 
-void Client::log() {
-  if (!wants_log_ || line_.waiting() >= kRoom) return;
+void Client::send_log() {
+  if (!wants_log_ || sink_.queued_bytes() >= kMaxQueuedForValues) return;
   std::vector<LogLine> lines = log_since(seen_line_);
   if (lines.empty()) return;
   seen_line_ = lines.back().number;
@@ -79,7 +79,7 @@ void Client::log() {
   for (std::size_t i = first; i < lines.size(); i++)
     data.push_back({{"LEVEL", level_name(lines[i].level)}, {"TEXT", std::move(lines[i].text)}});
   const nlohmann::json frame = {{"COMMAND", "LIMBER_LOG"}, {"DATA", std::move(data)}};
-  line_.send(true, frame.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  sink_.send(true, frame.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Client: one WebSocket's conversation: what it listens to, what it is told. Knows no sockets. [query]
+// Client: protocol state of one WebSocket connection: the paths it listens to and the frames sent to it. It does no I/O
+// itself. [query]
 #pragma once
 
 #include <cstdint>
@@ -15,48 +16,50 @@
 
 namespace limber {
 
-/// The way to a client.
-class ClientLine {
+/// The sending side of a client's connection.
+class ClientSink {
  public:
-  virtual ~ClientLine() = default;
-  /// Queues a frame: text, else binary. More than it can hold ends the connection.
+  virtual ~ClientSink() = default;
+  /// Queues a text or binary frame. Closes the connection if the queue exceeds its limit.
   virtual void send(bool text, std::string frame) = 0;
-  /// Bytes that wait to be taken.
-  virtual std::size_t waiting() const = 0;
+  /// Number of queued bytes.
+  virtual std::size_t queued_bytes() const = 0;
 };
 
+/// One WebSocket client.
 class Client {
  public:
-  static constexpr std::size_t kRoom = std::size_t{64} << 10;  ///< Values are told while less than this waits.
-  static constexpr int kMostErrors = 10;                       ///< In a second.
+  /// Values are sent only while fewer bytes are queued.
+  static constexpr std::size_t kMaxQueuedForValues = std::size_t{64} << 10;
+  static constexpr int kMaxErrors = 10;  ///< Per second.
 
-  /// `line` outlives it.
-  Client(const Origin& origin, ClientLine& line, const QueryDoors& doors);
+  /// `sink` must outlive the client.
+  Client(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host);
 
-  /// A text frame: `{"COMMAND":"LISTEN","DATA":"/path"}`, IGNORE, LIMBER_LOG (`DATA` true or false). What is none is
-  /// left alone. True: it waits for a first value.
-  bool text(std::string_view frame);
-  /// A binary frame: an OSC packet, handed on as if it had come by UDP.
-  void binary(std::string_view frame);
+  /// Handles a text frame: `{"COMMAND":"LISTEN","DATA":"/path"}`, IGNORE or LIMBER_LOG (`DATA` true or false). Ignores
+  /// unknown frames. Returns true if the client waits for the first value of a path.
+  bool on_text(std::string_view frame);
+  /// Handles a binary frame: an OSC packet, processed as if it had arrived by UDP.
+  void on_binary(std::string_view frame);
 
-  /// A new image, and the notices of what came and went since the one before.
-  void image(const std::shared_ptr<const Image>& image, std::span<const std::string> notices);
-  /// An answer to something that it has sent; errors at most ten a second. `now` in s.
-  void answer(const Outgoing& out, double now);
-  /// New lines of the log, where it has asked for them.
-  void log();
+  /// Sends path events and changed values from a new value snapshot.
+  void on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot, std::span<const std::string> events);
+  /// Sends the reply to one of the client's messages; errors at most ten per second. `now` in s.
+  void send_reply(const Outgoing& out, double now);
+  /// Sends new log lines if the client has requested them.
+  void send_log();
 
-  bool listens() const { return !feed_.empty(); }
-  const Origin& origin() const { return origin_; }
+  bool is_listening() const { return !feed_.empty(); }
+  const CommandOrigin& origin() const { return origin_; }
 
  private:
-  Origin origin_;
-  ClientLine& line_;
-  const QueryDoors& doors_;
+  CommandOrigin origin_;
+  ClientSink& sink_;
+  const QueryHost& host_;
   Feed feed_;
   bool wants_log_ = false;
   std::uint64_t seen_line_ = 0;
-  double errors_since_ = 0;  // s
+  double error_window_start_ = 0;  // start of the current second, s
   int errors_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// A connection: HTTP requests one after the other, or, after an upgrade, a WebSocket. Boost.Beast reads and checks what
-// comes in; limits on sizes, counts and times are here. [query]
+// A connection: a sequence of HTTP requests or, after an upgrade, a WebSocket. Boost.Beast parses the input; this file
+// sets the limits on sizes, counts and times. [query]
 #pragma once
 
 #include <cstdint>
@@ -12,61 +12,64 @@
 
 namespace limber {
 
-/// Limits on what one client may ask of us.
+/// Limits per client and for the whole server.
 struct QueryLimits {
   static constexpr int kConnections = 256;
-  static constexpr int kOfOneAddress = 64;                         ///< So that no client takes all of them.
-  static constexpr std::uint32_t kHeader = 8192;                   ///< Bytes of a request's head.
-  static constexpr std::size_t kFrame = std::size_t{64} << 10;     ///< Bytes of a WebSocket message that comes in.
-  static constexpr std::size_t kQueue = std::size_t{1} << 20;      ///< Bytes that wait for a client; more: it goes.
-  static constexpr std::size_t kAnswers = std::size_t{256} << 20;  ///< Bytes of all answers that are on their way.
-  static constexpr int kSendBuffer = 64 << 10;                     ///< Of a WebSocket, bytes.
-  static constexpr int kReadSeconds = 10;                          ///< For a request to come.
-  static constexpr int kWriteSeconds = 5;                          ///< For a client to take anything at all.
-  static constexpr int kIdleSeconds = 60;                          ///< For a WebSocket to give a sign of life.
+  static constexpr int kConnectionsPerAddress = 64;             ///< So that one client can't use up all connections.
+  static constexpr std::uint32_t kHeader = 8192;                ///< Bytes of a request's header.
+  static constexpr std::size_t kFrame = std::size_t{64} << 10;  ///< Bytes of an incoming WebSocket message.
+  /// Bytes queued for a client; the connection is closed if there are more.
+  static constexpr std::size_t kQueue = std::size_t{1} << 20;
+  static constexpr std::size_t kResponses = std::size_t{256} << 20;  ///< Bytes of all responses being sent.
+  static constexpr int kSendBuffer = 64 << 10;                       ///< Send buffer of a WebSocket's socket, bytes.
+  static constexpr int kReadSeconds = 10;                            ///< Timeout for receiving a request.
+  static constexpr int kWriteSeconds = 5;                            ///< Timeout for a client that receives nothing.
+  static constexpr int kIdleSeconds = 60;                            ///< Timeout for an idle WebSocket.
 };
 
-/// What connections share.
-struct QueryDesk {
-  Hall& hall;
-  int seats = 0;
-  std::map<std::uint32_t, int> seats_of = {};  ///< By address.
-  int turned_away = 0;                         ///< Connections that are told why they can't stay.
-  std::size_t answering = 0;                   ///< Bytes of answers on their way.
+/// State shared by all connections.
+struct QueryContext {
+  QueryHub& hub;
+  int connections = 0;
+  std::map<std::uint32_t, int> connections_by_address = {};  ///< By IPv4 address; 0: unknown.
+  int rejected = 0;                ///< Number of rejected connections that are still receiving the reason.
+  std::size_t response_bytes = 0;  ///< Bytes of responses being sent.
 
+  /// True if a further connection from this address must be rejected.
   bool full(std::uint32_t address) const {
-    const auto taken = seats_of.find(address);
-    return seats >= QueryLimits::kConnections ||
-           (taken != seats_of.end() && taken->second >= QueryLimits::kOfOneAddress);
+    const auto used = connections_by_address.find(address);
+    return connections >= QueryLimits::kConnections ||
+           (used != connections_by_address.end() && used->second >= QueryLimits::kConnectionsPerAddress);
   }
 };
 
-/// Counts what is open, as long as it lives.
-class Seat {
+/// Counts an open connection during its lifetime.
+class ConnectionSlot {
  public:
-  /// `stays`: it counts among those of its address.
-  Seat(QueryDesk& desk, std::uint32_t address, bool stays) : desk_(&desk), address_(address), stays_(stays) {
-    (stays ? desk.seats : desk.turned_away)++;
-    if (stays) desk.seats_of[address]++;
+  /// `accepted`: true for an accepted connection, false for a rejected one.
+  ConnectionSlot(QueryContext& context, std::uint32_t address, bool accepted)
+      : context_(&context), address_(address), accepted_(accepted) {
+    (accepted ? context.connections : context.rejected)++;
+    if (accepted) context.connections_by_address[address]++;
   }
-  Seat(Seat&& other) noexcept
-      : desk_(std::exchange(other.desk_, nullptr)), address_(other.address_), stays_(other.stays_) {}
-  Seat& operator=(Seat&&) = delete;
-  ~Seat() {
-    if (desk_ == nullptr) return;
-    (stays_ ? desk_->seats : desk_->turned_away)--;
-    if (!stays_) return;
-    const auto taken = desk_->seats_of.find(address_);
-    if (--taken->second == 0) desk_->seats_of.erase(taken);
+  ConnectionSlot(ConnectionSlot&& other) noexcept
+      : context_(std::exchange(other.context_, nullptr)), address_(other.address_), accepted_(other.accepted_) {}
+  ConnectionSlot& operator=(ConnectionSlot&&) = delete;
+  ~ConnectionSlot() {
+    if (context_ == nullptr) return;
+    (accepted_ ? context_->connections : context_->rejected)--;
+    if (!accepted_) return;
+    const auto used = context_->connections_by_address.find(address_);
+    if (--used->second == 0) context_->connections_by_address.erase(used);
   }
 
  private:
-  QueryDesk* desk_;
+  QueryContext* context_;
   std::uint32_t address_;
-  bool stays_;
+  bool accepted_;
 };
 
-/// Serves a client from its first byte to its last. `desk` outlives the io_context's handlers.
-void serve_connection(boost::asio::ip::tcp::socket socket, QueryDesk& desk);
+/// Serves a client for the whole lifetime of its connection. `context` must outlive the io_context's handlers.
+void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What the query room is handed by the app, since it doesn't see the OSC room.
+// Functions and settings that the application provides to the query server, which does not depend on the OSC module.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,19 @@
 
 namespace limber {
 
-struct QueryDoors {
-  /// A message as an OSC packet, its arguments written as the tags say (f i h T s, arrays in [ ]); without tags as OSC
-  /// goes out elsewhere. [query]
+/// The application's side of the query server.
+struct QueryHost {
+  /// Encodes a message as an OSC packet with the given type tags (f i h T s, arrays in [ ]); without tags as
+  /// encode_message() does. [query]
   std::function<std::string(const Message& message, std::string_view tags)> encode;
-  /// Bytes of a client, to be looked at and carried out as what comes by UDP is. [query]
-  std::function<void(const Origin& origin, std::string packet)> take;
-  /// Where OSC comes in by UDP, if it does. [query]
+  /// Processes a client's OSC packet like one that arrived by UDP. [query]
+  std::function<void(const CommandOrigin& origin, std::string packet)> process;
+  /// Returns the UDP port for incoming OSC, if one is open. [query]
   std::function<std::optional<std::uint16_t>()> osc_port = [] { return std::nullopt; };
-  /// Names by which browsers may ask for this machine, beside its own. [query]
+  /// Additional host names by which browsers may address this machine. [query]
   std::vector<std::string> names;
-  /// Whether this address may connect (IPv4, host order). [query]
-  std::function<bool(std::uint32_t ip)> allowed = [](std::uint32_t) { return true; };
+  /// True if this address (IPv4, host byte order) may connect. [query]
+  std::function<bool(std::uint32_t ip)> is_allowed = [](std::uint32_t) { return true; };
 };
 
 }  // namespace limber

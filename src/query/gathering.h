@@ -1,5 +1,5 @@
-// Gathering: a socket that takes whole frames into memory and gives the system many of them with one call. A client
-// that takes nothing for some seconds is dropped. [query]
+// CoalescingStream: a stream that buffers whole frames and writes many of them with one system call. It closes the
+// connection of a client that receives nothing for some seconds. [query]
 #pragma once
 
 #include <functional>
@@ -17,31 +17,32 @@
 
 namespace limber {
 
-/// The layer below Beast's WebSocket: what that writes (answers to pings, the end) and what append() adds come out in
-/// the order of the calls, each whole.
-class Gathering {
+/// The layer below Beast's WebSocket stream. Beast's own writes (pongs, close frames) and append() are sent in call
+/// order, each unbroken.
+class CoalescingStream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
   using error_code = boost::beast::error_code;
 
-  explicit Gathering(boost::beast::tcp_stream&& next) : next_(std::move(next)), patience_(next_.get_executor()) {}
+  explicit CoalescingStream(boost::beast::tcp_stream&& next)
+      : next_(std::move(next)), write_timer_(next_.get_executor()) {}
 
-  /// Who must live while something is written; `seconds` is a client's time to take something.
-  void keep(std::weak_ptr<void> owner, int seconds) {
+  /// Sets the owner, which is kept alive during writes, and the client's write timeout.
+  void set_owner(std::weak_ptr<void> owner, int seconds) {
     owner_ = std::move(owner);
-    seconds_ = seconds;
+    timeout_seconds_ = seconds;
   }
   executor_type get_executor() noexcept { return next_.get_executor(); }
   boost::beast::tcp_stream& next_layer() noexcept { return next_; }
   const boost::beast::tcp_stream& next_layer() const noexcept { return next_; }
 
-  /// Adds bytes to what goes out soon.
+  /// Queues bytes; they are written soon.
   void append(std::string_view bytes) {
     pending_ += bytes;
     flush_soon();
   }
-  /// Bytes that the system has not taken yet.
-  std::size_t waiting() const { return pending_.size() + active_.size() - sent_; }
+  /// Number of bytes not yet written to the socket.
+  std::size_t unsent_bytes() const { return pending_.size() + active_.size() - sent_; }
 
   template <class Buffers, class Handler>
   auto async_read_some(const Buffers& buffers, Handler&& handler) {
@@ -65,12 +66,12 @@ class Gathering {
  private:
   void flush_soon();
   void flush();
-  void taken(error_code error, std::size_t size);
+  void on_written(error_code error, std::size_t size);
 
   boost::beast::tcp_stream next_;
-  boost::asio::steady_timer patience_;
+  boost::asio::steady_timer write_timer_;
   std::weak_ptr<void> owner_;
-  int seconds_ = 0;
+  int timeout_seconds_ = 0;
   std::string pending_;
   std::string active_;
   std::size_t sent_ = 0;  // of active_
@@ -78,14 +79,14 @@ class Gathering {
   error_code failed_;
 };
 
-// how Beast ends a connection of this kind
-inline void teardown(boost::beast::role_type role, Gathering& stream, boost::beast::error_code& error) {
+// Beast's customization points for closing this stream.
+inline void teardown(boost::beast::role_type role, CoalescingStream& stream, boost::beast::error_code& error) {
   boost::beast::websocket::teardown(role, stream.next_layer().socket(), error);
 }
 template <class Handler>
-void async_teardown(boost::beast::role_type role, Gathering& stream, Handler&& handler) {
+void async_teardown(boost::beast::role_type role, CoalescingStream& stream, Handler&& handler) {
   boost::beast::websocket::async_teardown(role, stream.next_layer().socket(), std::forward<Handler>(handler));
 }
-inline void beast_close_socket(Gathering& stream) { stream.next_layer().close(); }
+inline void beast_close_socket(CoalescingStream& stream) { stream.next_layer().close(); }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Images are asked for, never waited for.
+// Value snapshots are requested asynchronously; nothing here blocks.
 #include "query/hall.h"
 
 #include <algorithm>
@@ -12,102 +12,107 @@ namespace limber {
 
 namespace {
 
-HttpAnswer too_busy(const char* why) { return {503, "text/plain; charset=utf-8", fmt::format("{}\n", why), {}}; }
+HttpResponse too_busy(const char* reason) {
+  return {503, "text/plain; charset=utf-8", fmt::format("{}\n", reason), {}};
+}
 
 }  // namespace
 
-Hall::Hall(EngineLink& link, QueryDoors doors, std::vector<std::string> names, double (*now)())
-    : link_(link), doors_(std::move(doors)), names_(std::move(names)), now_(now) {}
+QueryHub::QueryHub(EngineLink& link, QueryHost host, std::vector<std::string> names, double (*now)())
+    : link_(link), host_(std::move(host)), names_(std::move(names)), now_(now) {}
 
-HostInfo Hall::info() const { return {names_, doors_.osc_port()}; }
+HostInfo QueryHub::info() const { return {names_, host_.osc_port()}; }
 
-void Hall::ask(HttpRequest request, Answer answer) {
-  if (std::optional<HttpAnswer> known = answer_at_once(request, info())) return answer(std::move(*known));
-  if (waiting_.size() >= kMostWaiting) return answer(too_busy("too many ask at once; ask again"));
-  waiting_.push_back({std::move(request), std::move(answer), link_.ask_image(), now_()});
+void QueryHub::handle_request(HttpRequest request, Respond respond) {
+  if (std::optional<HttpResponse> known = respond_without_tree(request, info())) return respond(std::move(*known));
+  if (pending_.size() >= kMaxRequests) return respond(too_busy("too many requests at once; try again"));
+  pending_.push_back({std::move(request), std::move(respond), link_.request_value_snapshot(), now_()});
 }
 
-void Hall::enter(Client& client) {
+void QueryHub::add_client(Client& client) {
   clients_.push_back(&client);
-  hurry();
+  request_values();
 }
 
-void Hall::leave(const Client& client) { std::erase(clients_, &client); }
+void QueryHub::remove_client(const Client& client) { std::erase(clients_, &client); }
 
-void Hall::hurry() {
-  // one is on its way: those who hurry now get the one after it, however many do
-  if (asked_ != 0) return (void)(again_ = true);
-  asked_ = link_.ask_image();
-  last_ask_ = now_();
+void QueryHub::request_values() {
+  // a request is pending: coalesce all further ones into one that follows it
+  if (pending_request_ != 0) return (void)(request_again_ = true);
+  pending_request_ = link_.request_value_snapshot();
+  last_request_ = now_();
 }
 
-void Hall::bell() {
-  send_answers();
-  const std::shared_ptr<const Image> image = link_.images.read();
-  if (image == nullptr) return;
-  answer_waiting(image);
-  if (asked_ == 0 || image->asks < asked_) return;
-  asked_ = 0;
-  take_image(image);
-  if (std::exchange(again_, false)) hurry();
+void QueryHub::on_link_event() {
+  send_replies();
+  const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+  if (snapshot == nullptr) return;
+  respond_pending(snapshot);
+  if (pending_request_ == 0 || snapshot->request < pending_request_) return;
+  pending_request_ = 0;
+  update_clients(snapshot);
+  if (std::exchange(request_again_, false)) request_values();
 }
 
-void Hall::take_image(const std::shared_ptr<const Image>& image) {
-  std::vector<std::string> notices;
-  if (image_ != nullptr && image_->tree != image->tree) notices = notices_between(*image_->tree, *image->tree);
-  image_ = image;
-  // a client may leave while it is told
+void QueryHub::update_clients(const std::shared_ptr<const ValueSnapshot>& snapshot) {
+  std::vector<std::string> events;
+  if (snapshot_ != nullptr && snapshot_->tree != snapshot->tree)
+    events = path_events_between(*snapshot_->tree, *snapshot->tree);
+  snapshot_ = snapshot;
+  // a client may be removed while a snapshot is delivered to it
   for (Client* const client : std::vector<Client*>(clients_)) {
-    if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->image(image, notices);
+    if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->on_snapshot(snapshot, events);
   }
 }
 
-void Hall::answer_waiting(const std::shared_ptr<const Image>& image) {
-  std::vector<Waiting> due;
-  std::erase_if(waiting_, [&](Waiting& w) {
-    if (image->asks < w.ask) return false;
-    due.push_back(std::move(w));
+void QueryHub::respond_pending(const std::shared_ptr<const ValueSnapshot>& snapshot) {
+  std::vector<PendingRequest> ready;
+  std::erase_if(pending_, [&](PendingRequest& w) {
+    if (snapshot->request < w.snapshot_request) return false;
+    ready.push_back(std::move(w));
     return true;
   });
   std::size_t bytes = 0;
-  for (const Waiting& w : due) {
-    if (bytes > kMostBytes) {
-      w.answer(too_busy("too many ask for much at once; ask again"));
+  for (const PendingRequest& pending : ready) {
+    if (bytes > kMaxResponseBytes) {
+      pending.respond(too_busy("too many large responses at once; try again"));
       continue;
     }
-    HttpAnswer answer = answer_from(w.request, *image);
-    bytes += answer.body.size();
-    w.answer(std::move(answer));
+    HttpResponse response = respond_from_tree(pending.request, *snapshot);
+    bytes += response.body.size();
+    pending.respond(std::move(response));
   }
 }
 
-void Hall::beat() {
+void QueryHub::tick() {
   const double now = now_();
-  const bool listened = std::any_of(clients_.begin(), clients_.end(), [](const Client* c) { return c->listens(); });
-  // half a beat of slack: timers are never exact
-  const double pause = listened ? kBeat / 2 : kIdleBeat - kBeat / 2;
-  if (!clients_.empty() && asked_ == 0 && now - last_ask_ >= pause) hurry();
+  const bool listening =
+      std::any_of(clients_.begin(), clients_.end(), [](const Client* c) { return c->is_listening(); });
+  // half a tick of tolerance, because timers are inexact
+  const double interval = listening ? kTick / 2 : kIdleTick - kTick / 2;
+  if (!clients_.empty() && pending_request_ == 0 && now - last_request_ >= interval) request_values();
   for (Client* const client : std::vector<Client*>(clients_)) {
-    if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->log();
+    if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->send_log();
   }
-  // an engine that is busy, or has not begun, must not hold up who asks
-  std::vector<Waiting> late;
-  std::erase_if(waiting_, [&](Waiting& w) {
-    if (now - w.since < kPatience) return false;
-    late.push_back(std::move(w));
+  // do not delay requests while the engine is busy or has not started
+  std::vector<PendingRequest> expired;
+  std::erase_if(pending_, [&](PendingRequest& w) {
+    if (now - w.since < kRequestTimeout) return false;
+    expired.push_back(std::move(w));
     return true;
   });
-  const std::shared_ptr<const Image> image = link_.images.read();
-  for (const Waiting& w : late) {
-    w.answer(image != nullptr ? answer_from(w.request, *image) : too_busy("the simulation is busy; ask again"));
+  const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+  for (const PendingRequest& pending : expired) {
+    pending.respond(snapshot != nullptr ? respond_from_tree(pending.request, *snapshot)
+                                        : too_busy("the simulation is busy; try again"));
   }
 }
 
-void Hall::send_answers() {
-  link_.query_outbox.drain(answers_);
-  for (const Outgoing& out : answers_) {
+void QueryHub::send_replies() {
+  link_.query_output_queue.drain(replies_);
+  for (const Outgoing& out : replies_) {
     const auto to = std::ranges::find_if(clients_, [&](const Client* c) { return c->origin() == out.origin; });
-    if (to != clients_.end()) (*to)->answer(out, now_());
+    if (to != clients_.end()) (*to)->send_reply(out, now_());
   }
 }
 

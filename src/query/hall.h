@@ -1,4 +1,5 @@
-// Hall: where requests wait for an image and clients are told of changes. Knows the engine's link, no sockets. [query]
+// QueryHub: holds requests until a value snapshot is available, and distributes changes to clients. It uses the
+// engine's link and does no I/O. [query]
 #pragma once
 
 #include <cstdint>
@@ -14,61 +15,63 @@
 
 namespace limber {
 
-class Hall {
+/// The part of the query server between the engine and its connections.
+class QueryHub {
  public:
-  static constexpr double kBeat = 1.0 / 30;  ///< s; how often those who listen are told.
-  static constexpr double kIdleBeat = 0.2;   ///< s; how often others hear of what came and went.
-  static constexpr double kPatience = 1;     ///< s; how long a request waits for an image.
-  static constexpr std::size_t kMostWaiting = 256;
-  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;  ///< Of answers from one image, about.
+  static constexpr double kTick = 1.0 / 30;     ///< s; update interval while a client listens to paths.
+  static constexpr double kIdleTick = 0.2;      ///< s; interval of path events to the other clients.
+  static constexpr double kRequestTimeout = 1;  ///< s; how long a request waits for a value snapshot.
+  static constexpr std::size_t kMaxRequests = 256;
+  /// Approximate limit of all responses from one snapshot.
+  static constexpr std::size_t kMaxResponseBytes = std::size_t{64} << 20;
 
-  using Answer = std::function<void(HttpAnswer answer)>;
+  using Respond = std::function<void(HttpResponse answer)>;
 
-  /// `now` reads a clock in seconds. `link` outlives it.
-  Hall(EngineLink& link, QueryDoors doors, std::vector<std::string> names, double (*now)() = &system::clock_seconds);
+  /// `now` returns a time in seconds. `link` must outlive the hub.
+  QueryHub(EngineLink& link, QueryHost host, std::vector<std::string> names, double (*now)() = &system::clock_seconds);
 
-  const QueryDoors& doors() const { return doors_; }
+  const QueryHost& host() const { return host_; }
   HostInfo info() const;
-  /// Answers at once, or in bell() or beat().
-  void ask(HttpRequest request, Answer answer);
+  /// Calls `respond` immediately, or later from on_link_event() or tick().
+  void handle_request(HttpRequest request, Respond respond);
 
-  void enter(Client& client);
-  void leave(const Client& client);
-  /// The client waits for its first values: an image soon.
-  void hurry();
+  void add_client(Client& client);
+  void remove_client(const Client& client);
+  /// Requests a value snapshot soon, because a client waits for its first values.
+  void request_values();
 
-  /// Something may have come by the link: an image, answers.
-  void bell();
-  /// To be called every kBeat while busy().
-  void beat();
-  /// Lets go of all who wait, unanswered: what their answers hold (a connection, say) goes now.
-  void dismiss() { waiting_.clear(); }
-  /// Whether anybody waits or may be told something.
-  bool busy() const { return !waiting_.empty() || !clients_.empty(); }
+  /// Handles snapshots and replies that may have arrived by the link.
+  void on_link_event();
+  /// Updates clients and expires requests. Call it every kTick while busy().
+  void tick();
+  /// Discards all pending requests without a response and thereby releases their connections.
+  void cancel_all() { pending_.clear(); }
+  /// True if there are pending requests or connected clients.
+  bool busy() const { return !pending_.empty() || !clients_.empty(); }
 
  private:
-  struct Waiting {
+  struct PendingRequest {
     HttpRequest request;
-    Answer answer;
-    std::uint64_t ask = 0;
+    Respond respond;
+    std::uint64_t snapshot_request = 0;
     double since = 0;
   };
 
-  void take_image(const std::shared_ptr<const Image>& image);
-  void answer_waiting(const std::shared_ptr<const Image>& image);
-  void send_answers();
+  void update_clients(const std::shared_ptr<const ValueSnapshot>& snapshot);
+  void respond_pending(const std::shared_ptr<const ValueSnapshot>& snapshot);
+  void send_replies();
 
   EngineLink& link_;
-  const QueryDoors doors_;
+  const QueryHost host_;
   const std::vector<std::string> names_;
   double (*now_)();
-  std::vector<Waiting> waiting_;
+  std::vector<PendingRequest> pending_;
   std::vector<Client*> clients_;
-  std::shared_ptr<const Image> image_;  // heard last by the clients
-  std::uint64_t asked_ = 0;             // for the clients; 0: nothing is on its way
-  bool again_ = false;                  // and another one after it
-  double last_ask_ = 0;                 // s
-  std::vector<Outgoing> answers_;
+  std::shared_ptr<const ValueSnapshot> snapshot_;  // the last one sent to the clients
+  std::uint64_t pending_request_ = 0;              // request number for the clients; 0: none is pending
+  bool request_again_ = false;                     // request another one after it
+  double last_request_ = 0;                        // time of the last request for the clients, s
+  std::vector<Outgoing> replies_;
 };
 
 }  // namespace limber

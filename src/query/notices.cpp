@@ -1,4 +1,5 @@
-// Both trees are walked side by side, by names: a reset makes the same things anew, and nothing has changed then.
+// Walks both trees in parallel and compares nodes by name, because a reset creates the same objects again, which is not
+// a change.
 #include "query/notices.h"
 
 #include <algorithm>
@@ -13,20 +14,20 @@ namespace limber {
 
 namespace {
 
-struct Notice {
+struct PathEvent {
   std::string_view command;
   std::string path;
 };
 
 class Comparison {
  public:
-  Comparison(const Tree& before, const Tree& after) : before_(before), after_(after) {}
+  Comparison(const TreeSnapshot& before, const TreeSnapshot& after) : before_(before), after_(after) {}
 
-  void things(std::uint32_t a, std::uint32_t b) {
-    const Table& old_table = *before_.nodes()[a].table;
-    const Table& new_table = *after_.nodes()[b].table;
-    if (&old_table != &new_table) rows(a, old_table, b, new_table);
-    if (same_names(a, b)) return pairwise(a, b);
+  void compare_nodes(std::uint32_t a, std::uint32_t b) {
+    const PropertyTable& old_table = *before_.nodes()[a].table;
+    const PropertyTable& new_table = *after_.nodes()[b].table;
+    if (&old_table != &new_table) compare_properties(a, old_table, b, new_table);
+    if (same_names(a, b)) return compare_in_order(a, b);
     std::unordered_map<std::string_view, std::uint32_t> old_children;
     before_.each_child(a, [&](std::uint32_t child) { return old_children.emplace(before_.name(child), child).second; });
     after_.each_child(b, [&](std::uint32_t child) {
@@ -34,7 +35,7 @@ class Comparison {
       if (known == old_children.end()) {
         add("PATH_ADDED", after_.path(child));
       } else {
-        things(known->second, child);
+        compare_nodes(known->second, child);
         old_children.erase(known);
       }
       return true;
@@ -45,26 +46,28 @@ class Comparison {
     });
   }
 
-  const std::vector<Notice>& notices() const { return notices_; }
+  const std::vector<PathEvent>& events() const { return events_; }
 
  private:
-  void add(std::string_view command, std::string path) { notices_.push_back({command, std::move(path)}); }
+  void add(std::string_view command, std::string path) { events_.push_back({command, std::move(path)}); }
 
-  void rows(std::uint32_t a, const Table& old_table, std::uint32_t b, const Table& new_table) {
-    const auto named = [](const Table& table, const std::string& name) {
-      const auto rows = table.rows();
-      const auto found = std::ranges::find_if(rows, [&](const Row& row) { return row.name == name; });
-      return found == rows.end() ? nullptr : &*found;
+  void compare_properties(std::uint32_t a, const PropertyTable& old_table, std::uint32_t b,
+                          const PropertyTable& new_table) {
+    const auto find_property = [](const PropertyTable& table, const std::string& name) {
+      const auto properties = table.properties();
+      const auto found =
+          std::ranges::find_if(properties, [&](const Property& property) { return property.name == name; });
+      return found == properties.end() ? nullptr : &*found;
     };
-    for (const Row& row : old_table.rows()) {
-      if (named(new_table, row.name) == nullptr) add("PATH_REMOVED", before_.path({a, &row}));
+    for (const Property& property : old_table.properties()) {
+      if (find_property(new_table, property.name) == nullptr) add("PATH_REMOVED", before_.path({a, &property}));
     }
-    for (const Row& row : new_table.rows()) {
-      const Row* const old = named(old_table, row.name);
+    for (const Property& property : new_table.properties()) {
+      const Property* const old = find_property(old_table, property.name);
       if (old == nullptr) {
-        add("PATH_ADDED", after_.path({b, &row}));
-      } else if (attributes_text(*old) != attributes_text(row)) {
-        add("PATH_CHANGED", after_.path({b, &row}));
+        add("PATH_ADDED", after_.path({b, &property}));
+      } else if (attributes_text(*old) != attributes_text(property)) {
+        add("PATH_CHANGED", after_.path({b, &property}));
       }
     }
   }
@@ -72,33 +75,33 @@ class Comparison {
   bool same_names(std::uint32_t a, std::uint32_t b) const {
     std::uint32_t x = a + 1;
     std::uint32_t y = b + 1;
-    while (x < before_.nodes()[a].end && y < after_.nodes()[b].end) {
+    while (x < before_.nodes()[a].subtree_end && y < after_.nodes()[b].subtree_end) {
       if (before_.name(x) != after_.name(y)) return false;
-      x = before_.nodes()[x].end;
-      y = after_.nodes()[y].end;
+      x = before_.nodes()[x].subtree_end;
+      y = after_.nodes()[y].subtree_end;
     }
-    return x == before_.nodes()[a].end && y == after_.nodes()[b].end;
+    return x == before_.nodes()[a].subtree_end && y == after_.nodes()[b].subtree_end;
   }
 
-  void pairwise(std::uint32_t a, std::uint32_t b) {
+  void compare_in_order(std::uint32_t a, std::uint32_t b) {
     std::uint32_t y = b + 1;
     before_.each_child(a, [&](std::uint32_t x) {
-      things(x, y);
-      y = after_.nodes()[y].end;
+      compare_nodes(x, y);
+      y = after_.nodes()[y].subtree_end;
       return true;
     });
   }
 
-  const Tree& before_;
-  const Tree& after_;
-  std::vector<Notice> notices_;
+  const TreeSnapshot& before_;
+  const TreeSnapshot& after_;
+  std::vector<PathEvent> events_;
 };
 
-// the longest path that all of them lie in
-std::string common_parent(const std::vector<Notice>& notices) {
-  std::string_view common = notices.front().path;
+// Returns the deepest path that contains all of them.
+std::string common_parent(const std::vector<PathEvent>& events) {
+  std::string_view common = events.front().path;
   common = common.substr(0, common.rfind('/'));
-  for (const Notice& n : notices) {
+  for (const PathEvent& n : events) {
     while (!common.empty() && !(n.path.starts_with(common) && n.path[common.size()] == '/'))
       common = common.substr(0, common.rfind('/'));
   }
@@ -111,14 +114,14 @@ std::string frame(std::string_view command, std::string_view path) {
 
 }  // namespace
 
-std::vector<std::string> notices_between(const Tree& before, const Tree& after) {
+std::vector<std::string> path_events_between(const TreeSnapshot& before, const TreeSnapshot& after) {
   Comparison comparison(before, after);
-  comparison.things(0, 0);
-  const std::vector<Notice>& notices = comparison.notices();
-  if (notices.size() > kMostNotices) return {frame("PATH_CHANGED", common_parent(notices))};
+  comparison.compare_nodes(0, 0);
+  const std::vector<PathEvent>& events = comparison.events();
+  if (events.size() > kMaxPathEvents) return {frame("PATH_CHANGED", common_parent(events))};
   std::vector<std::string> frames;
-  frames.reserve(notices.size());
-  for (const Notice& n : notices) frames.push_back(frame(n.command, n.path));
+  frames.reserve(events.size());
+  for (const PathEvent& n : events) frames.push_back(frame(n.command, n.path));
   return frames;
 }
 

@@ -1,4 +1,4 @@
-// Notices: what came, went or changed between two trees, as OSCQuery tells it. [any]
+// Path events: OSCQuery notifications of the differences between two trees. [any]
 #pragma once
 
 #include <string>
@@ -8,10 +8,11 @@
 
 namespace limber {
 
-/// Frames such as `{"COMMAND":"PATH_ADDED","DATA":"/physics/body/arm"}`: the topmost path of each thing or row that
-/// came or went; PATH_CHANGED of a row that is of another kind now. More than kMostNotices of them are told as one
-/// PATH_CHANGED of what they all lie in.
-inline constexpr std::size_t kMostNotices = 64;
-std::vector<std::string> notices_between(const Tree& before, const Tree& after);
+inline constexpr std::size_t kMaxPathEvents = 64;
+
+/// Returns frames such as `{"COMMAND":"PATH_ADDED","DATA":"/physics/body/arm"}`, with the topmost path of each added or
+/// removed object or property, and PATH_CHANGED for a property with different attributes. More than kMaxPathEvents
+/// events are replaced by one PATH_CHANGED of their common parent.
+std::vector<std::string> path_events_between(const TreeSnapshot& before, const TreeSnapshot& after);
 
 }  // namespace limber

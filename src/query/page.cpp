@@ -1,4 +1,4 @@
-// The page with its style and its scripts in it: nothing else is asked for.
+// Inlines the style sheet and scripts into the page, so that browsers load nothing else.
 #include "query/page.h"
 
 #include <string>
@@ -12,17 +12,17 @@ std::span<const EmbeddedFile> panel_files();
 
 namespace {
 
-constexpr std::string_view kMark = "@file:";
+constexpr std::string_view kIncludeMark = "@file:";
 
-// index.html names the others: "@file:style.css@"
+// index.html includes the other files by "@file:style.css@".
 std::string assemble() {
   const EmbeddedFile* const index = find_embedded(panel_files(), "index.html");
   LIMBER_CHECK(index != nullptr);
   std::string page;
   std::string_view left = index->text;
-  for (std::size_t at = left.find(kMark); at != std::string_view::npos; at = left.find(kMark)) {
+  for (std::size_t at = left.find(kIncludeMark); at != std::string_view::npos; at = left.find(kIncludeMark)) {
     page += left.substr(0, at);
-    left.remove_prefix(at + kMark.size());
+    left.remove_prefix(at + kIncludeMark.size());
     const std::string_view name = left.substr(0, left.find('@'));
     const EmbeddedFile* const file = find_embedded(panel_files(), name);
     LIMBER_CHECK(file != nullptr);

@@ -1,11 +1,11 @@
-// The remote panel's page, put together from the files of src/query/panel.
+// The web page of the remote panel, assembled from the files of src/query/panel.
 #pragma once
 
 #include <string_view>
 
 namespace limber {
 
-/// For the life of the program. [any]
+/// Returns the page; valid for the lifetime of the program. [any]
 std::string_view panel_page();
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Paths and attributes of OSCQuery; the statuses are its own: 204 nothing to tell, 400, 403, 404.
+// OSCQuery paths and attributes with the status codes that it defines: 204 no content, 400, 403, 404.
 #include "query/request.h"
 
 #include <algorithm>
@@ -20,20 +20,21 @@ namespace limber {
 namespace {
 
 constexpr std::string_view kText = "text/plain; charset=utf-8";
-// attributes of the proposal that nothing here has
-constexpr std::array<std::string_view, 4> kUnused = {"TAGS", "CRITICAL", "OVERLOADS", "HTML"};
-// requests of other servers' clients that would change the tree
-constexpr std::array<std::string_view, 3> kChanging = {"ADD_NODE", "REMOVE_NODE", "RENAME_NODE"};
+// attributes of the OSCQuery proposal that are not used here
+constexpr std::array<std::string_view, 4> kUnusedAttributes = {"TAGS", "CRITICAL", "OVERLOADS", "HTML"};
+// requests of other OSCQuery servers that modify the tree
+constexpr std::array<std::string_view, 3> kModifyingRequests = {"ADD_NODE", "REMOVE_NODE", "RENAME_NODE"};
 constexpr std::array<std::string_view, 8> kExtensions = {"LISTEN",       "IGNORE",       "PATH_ADDED",  "PATH_REMOVED",
                                                          "PATH_CHANGED", "LIMBER_DEPTH", "LIMBER_FIND", "LIMBER_LOG"};
 
-HttpAnswer refusal(int status, const std::string& text) { return {status, kText, text + "\n", {}}; }
+HttpResponse rejection(int status, const std::string& text) { return {status, kText, text + "\n", {}}; }
 
-HttpAnswer json_answer(std::string json) { return {200, "application/json", std::move(json), {}}; }
-HttpAnswer nothing_to_tell() { return {204, "", "", {}}; }
+HttpResponse json_response(std::string json) { return {200, "application/json", std::move(json), {}}; }
+HttpResponse no_content() { return {204, "", "", {}}; }
 
-// the page may load nothing, and speak with this server alone; not every browser counts a WebSocket to it as 'self'
-HttpAnswer page_answer(const std::string& host) {
+// The page may load nothing and connect only to this server; the WebSocket address is listed because not every browser
+// includes it in 'self'.
+HttpResponse page_response(const std::string& host) {
   const bool plain = std::all_of(host.begin(), host.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '.' || c == '-' || c == ':' || c == '[' || c == ']';
   });
@@ -55,32 +56,32 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-// "name:9003" without the port, "[::1]:9003" without it and the brackets
+// Removes the port from "name:9003", and the brackets as well from "[::1]:9003".
 std::string_view host_name(std::string_view host) {
   if (host.starts_with('[')) return host.substr(1, std::min(host.find(']'), host.size()) - 1);
   return host.substr(0, host.find(':'));
 }
 
-// a request's target: the path as it was sent, and what stands behind the ?
-struct Target {
+// A parsed request target: the path, still escaped, and the query after the question mark.
+struct ParsedTarget {
   std::string_view path;
   std::string_view key;
   std::string_view value;
-  bool asks = false;
+  bool has_query = false;
 };
 
-Target parse_target(std::string_view target) {
+ParsedTarget parse_target(std::string_view target) {
   target = target.substr(0, target.find('#'));
-  // "http://host/path", as to a proxy
+  // absolute form "http://host/path", as sent to a proxy
   if (target.starts_with("http://")) {
     const std::size_t slash = target.find('/', 7);
     target = slash == std::string_view::npos ? "/" : target.substr(slash);
   }
-  Target out;
+  ParsedTarget out;
   const std::size_t mark = target.find('?');
   out.path = target.substr(0, mark);
   if (mark == std::string_view::npos) return out;
-  out.asks = true;
+  out.has_query = true;
   std::string_view query = target.substr(mark + 1);
   query = query.substr(0, query.find('&'));
   const std::size_t equals = query.find('=');
@@ -89,31 +90,31 @@ Target parse_target(std::string_view target) {
   return out;
 }
 
-// as addresses are written, or as HTTP writes them once more
-Result<TreePlace> find(const Tree& tree, std::string_view path) {
-  Result<TreePlace> place = tree.find(path);
-  if (place || path.find('%') == std::string_view::npos) return place;
-  const Result<TreePlace> again = tree.find(unescape_name(path));
-  return again ? again : place;
+// Finds a path that is escaped like an address, or additionally percent-encoded by the HTTP client.
+Result<TreePropertyRef> find(const TreeSnapshot& tree, std::string_view path) {
+  Result<TreePropertyRef> ref = tree.find(path);
+  if (ref || path.find('%') == std::string_view::npos) return ref;
+  const Result<TreePropertyRef> unescaped = tree.find(unescape_name(path));
+  return unescaped ? unescaped : ref;
 }
 
-HttpAnswer attribute_of(const Image& image, const TreePlace& place, std::string_view name) {
-  const auto member = [&](std::string_view json) { return json_answer(fmt::format(R"({{"{}":{}}})", name, json)); };
-  HttpAnswer nothing = nothing_to_tell();
-  if (name == "FULL_PATH") return member(json_text(image.tree->path(place)));
+HttpResponse attribute_of(const ValueSnapshot& snapshot, const TreePropertyRef& ref, std::string_view name) {
+  const auto member = [&](std::string_view json) { return json_response(fmt::format(R"({{"{}":{}}})", name, json)); };
+  HttpResponse nothing = no_content();
+  if (name == "FULL_PATH") return member(json_text(snapshot.tree->path(ref)));
   if (name == "VALUE") {
-    const std::string value = place_value_json(image, place);
+    const std::string value = property_value_json(snapshot, ref);
     return value.empty() ? nothing : member(value);
   }
-  if (place.row == nullptr) {
+  if (ref.property == nullptr) {
     if (name == "ACCESS") return member("0");
-    if (name == "TYPE") return json_answer("{}");
+    if (name == "TYPE") return json_response("{}");
     if (name != "CONTENTS") return nothing;
-    const std::string node = node_json(image, place);
+    const std::string node = node_json(snapshot, ref);
     const std::size_t at = node.find(R"("CONTENTS":)");
-    return json_answer("{" + node.substr(at));
+    return json_response("{" + node.substr(at));
   }
-  for (const auto& [attribute, json] : attributes_of(*place.row)) {
+  for (const auto& [attribute, json] : attributes_of(*ref.property)) {
     if (attribute == name) return member(json);
   }
   return nothing;
@@ -121,63 +122,64 @@ HttpAnswer attribute_of(const Image& image, const TreePlace& place, std::string_
 
 }  // namespace
 
-std::optional<HttpAnswer> refuse_stranger(const HttpRequest& request, const HostInfo& info) {
-  if (!request.host) return refusal(400, "a request must name its host");
+std::optional<HttpResponse> reject_unknown_origin(const HttpRequest& request, const HostInfo& info) {
+  if (!request.host) return rejection(400, "the request must have a Host header");
   const std::string host = lower(*request.host);
   std::string name(host_name(host));
   if (name.ends_with('.')) name.pop_back();
-  const bool ours =
+  const bool known =
       name == "localhost" || system::is_ip_address(name) ||
       std::any_of(info.names.begin(), info.names.end(), [&](const std::string& n) { return lower(n) == name; });
-  if (!ours) {
-    return refusal(
-        403, fmt::format("'{}' is no name of this machine; ask for its number (such as 127.0.0.1) or its name, or "
-                         "allow this one by --query-name",
-                         printable(shortened(name, 100))));
+  if (!known) {
+    return rejection(403,
+                     fmt::format("'{}' is not a name of this machine; use its IP address (such as 127.0.0.1) or its "
+                                 "name, or allow this one with --query-name",
+                                 printable(shortened(name, 100))));
   }
-  // a browser says which site's page asks
+  // browsers send the origin of the page that makes the request
   if (request.origin && lower(*request.origin) != "http://" + host)
-    return refusal(403, fmt::format("pages of '{}' may not ask here", printable(shortened(*request.origin, 100))));
+    return rejection(
+        403, fmt::format("requests by pages of '{}' are not allowed", printable(shortened(*request.origin, 100))));
   return std::nullopt;
 }
 
-std::optional<HttpAnswer> answer_at_once(const HttpRequest& request, const HostInfo& info) {
-  if (std::optional<HttpAnswer> stranger = refuse_stranger(request, info)) return stranger;
+std::optional<HttpResponse> respond_without_tree(const HttpRequest& request, const HostInfo& info) {
+  if (std::optional<HttpResponse> rejection = reject_unknown_origin(request, info)) return rejection;
   if (request.method != "GET" && request.method != "HEAD") {
-    return refusal(405, "only GET is answered; values are set by OSC, over UDP or this port's WebSocket");
+    return rejection(405, "only GET is supported; set values by OSC over UDP or this port's WebSocket");
   }
-  const Target target = parse_target(request.target);
-  if (!target.path.starts_with('/')) return refusal(400, "a path begins with /");
-  if (!target.asks) {
+  const ParsedTarget target = parse_target(request.target);
+  if (!target.path.starts_with('/')) return rejection(400, "the path must begin with /");
+  if (!target.has_query) {
     if (target.path != "/" || request.accept.find("text/html") == std::string::npos) return std::nullopt;
-    return page_answer(*request.host);
+    return page_response(*request.host);
   }
-  if (target.key == "HOST_INFO") return json_answer(host_info_json(info));
-  if (contains(kChanging, target.key))
-    return refusal(403, "the tree is the scene's: things come and go by its script, not by requests");
-  if (contains(kUnused, target.key)) return nothing_to_tell();
+  if (target.key == "HOST_INFO") return json_response(host_info_json(info));
+  if (contains(kModifyingRequests, target.key))
+    return rejection(403, "the tree is read-only; objects are added and removed by the scene's script");
+  if (contains(kUnusedAttributes, target.key)) return no_content();
   if (target.key == "LIMBER_DEPTH" || target.key == "LIMBER_FIND" || contains(known_attributes(), target.key))
     return std::nullopt;
-  return refusal(400, fmt::format("there is no attribute '{}'{}", printable(shortened(target.key, 100)),
-                                  name_hint(target.key.substr(0, 100), known_attributes())));
+  return rejection(400, fmt::format("attribute '{}' not found{}", printable(shortened(target.key, 100)),
+                                    name_hint(target.key.substr(0, 100), known_attributes())));
 }
 
-HttpAnswer answer_from(const HttpRequest& request, const Image& image) {
-  const Target target = parse_target(request.target);
-  const Result<TreePlace> place = find(*image.tree, target.path);
-  if (!place) return refusal(404, place.error());
-  if (!target.asks) return json_answer(node_json(image, *place));
+HttpResponse respond_from_tree(const HttpRequest& request, const ValueSnapshot& snapshot) {
+  const ParsedTarget target = parse_target(request.target);
+  const Result<TreePropertyRef> ref = find(*snapshot.tree, target.path);
+  if (!ref) return rejection(404, ref.error());
+  if (!target.has_query) return json_response(node_json(snapshot, *ref));
   if (target.key == "LIMBER_DEPTH") {
     const std::optional<double> depth = parse_number(target.value);
-    if (!depth || *depth < 0 || *depth > 64) return refusal(400, "LIMBER_DEPTH is 0 to 64 levels");
-    return json_answer(node_json(image, *place, static_cast<int>(*depth)));
+    if (!depth || *depth < 0 || *depth > 64) return rejection(400, "LIMBER_DEPTH must be 0 to 64");
+    return json_response(node_json(snapshot, *ref, static_cast<int>(*depth)));
   }
   if (target.key == "LIMBER_FIND") {
     std::string words = unescape_name(target.value);
     std::replace(words.begin(), words.end(), '+', ' ');
-    return json_answer(find_json(image, shortened(words, 256)));
+    return json_response(find_json(snapshot, shortened(words, 256)));
   }
-  return attribute_of(image, *place, target.key);
+  return attribute_of(snapshot, *ref, target.key);
 }
 
 std::string host_info_json(const HostInfo& info) {

@@ -1,4 +1,4 @@
-// HTTP requests answered: who may ask, the panel's page, OSCQuery's paths and attributes. Knows no sockets. [any]
+// Answers HTTP requests: access checks, the panel's page, OSCQuery paths and attributes. Does no I/O. [any]
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace limber {
 
-/// What of a request counts. Text from outside, of any content.
+/// The relevant parts of a request. Untrusted text.
 struct HttpRequest {
   std::string method;
   std::string target;  ///< "/physics/sim/gravity?VALUE"
@@ -21,30 +21,31 @@ struct HttpRequest {
   bool keep_alive = true;
 };
 
-struct HttpAnswer {
+/// A response to an HTTP request.
+struct HttpResponse {
   int status = 200;
   std::string_view type = "application/json";
   std::string body;
-  std::string policy;  ///< Content-Security-Policy, of a page.
+  std::string policy;  ///< Content-Security-Policy of an HTML page.
 };
 
-/// What the server is called and where its OSC comes in.
+/// Names and OSC port of the server.
 struct HostInfo {
-  std::vector<std::string> names;         ///< Names of this machine, beside localhost and numbers.
-  std::optional<std::uint16_t> osc_port;  ///< Nothing: no OSC comes in by UDP.
+  std::vector<std::string> names;         ///< Names of this machine, in addition to localhost and IP addresses.
+  std::optional<std::uint16_t> osc_port;  ///< Empty: OSC input by UDP is off.
 };
 
-/// Why this request is not answered at all: a page of another site asks (Origin), or asks by a name of its own for this
-/// machine (Host).
-std::optional<HttpAnswer> refuse_stranger(const HttpRequest& request, const HostInfo& info);
+/// Returns the rejection of a request from another site's page (header Origin) or for an unknown host name (header
+/// Host, which protects against DNS rebinding).
+std::optional<HttpResponse> reject_unknown_origin(const HttpRequest& request, const HostInfo& info);
 
-/// The answer, where none of the tree is needed for it: the panel's page, HOST_INFO, refusals.
-std::optional<HttpAnswer> answer_at_once(const HttpRequest& request, const HostInfo& info);
+/// Returns the response if it does not depend on the tree: the panel's page, HOST_INFO, rejections.
+std::optional<HttpResponse> respond_without_tree(const HttpRequest& request, const HostInfo& info);
 
-/// The answer from the tree.
-HttpAnswer answer_from(const HttpRequest& request, const Image& image);
+/// Returns the response for a path of the tree.
+HttpResponse respond_from_tree(const HttpRequest& request, const ValueSnapshot& snapshot);
 
-/// `{"NAME":…,"EXTENSIONS":{…},…}`
+/// Returns the HOST_INFO document, `{"NAME":…,"EXTENSIONS":{…},…}`.
 std::string host_info_json(const HostInfo& info);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Everything is derived from the row.
+// Derives all attributes from the property's description.
 #include "query/row_face.h"
 
 #include <algorithm>
@@ -16,146 +16,156 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLongestLabel = 60;
+constexpr std::size_t kMaxLabel = 60;
 
-bool is_truth(const Row& row) { return row.type == RowType::boolean || row.type == RowType::flags3; }
+bool is_boolean(const Property& property) {
+  return property.type == PropertyType::boolean || property.type == PropertyType::flags3;
+}
 
 std::string number_json(double value) { return std::isfinite(value) ? number_text(value) : "null"; }
 
-// one element a number, nested as the tags are
+// Returns a JSON array with one element per number, nested like the type tags.
 template <class F>
-std::string array_of(const Row& row, F&& element) {
-  std::string text = row.type == RowType::quat ? "[[" : "[";
-  for (std::size_t i = 0; i < row.width; i++) {
+std::string array_of(const Property& property, F&& element) {
+  std::string text = property.type == PropertyType::quat ? "[[" : "[";
+  for (std::size_t i = 0; i < property.width; i++) {
     if (i > 0) text += ',';
     text += element(i);
   }
-  return text + (row.type == RowType::quat ? "]]" : "]");
+  return text + (property.type == PropertyType::quat ? "]]" : "]");
 }
 
-std::string range_json(const Row& row, std::size_t i) {
+std::string range_json(const Property& property, std::size_t i) {
   std::string text;
-  if (std::isfinite(row.low(i))) text += fmt::format(R"("MIN":{})", number_text(row.low(i)));
-  if (std::isfinite(row.high(i)))
-    text += fmt::format(R"({}"MAX":{})", text.empty() ? "" : ",", number_text(row.high(i)));
+  if (std::isfinite(property.low(i))) text += fmt::format(R"("MIN":{})", number_text(property.low(i)));
+  if (std::isfinite(property.high(i)))
+    text += fmt::format(R"({}"MAX":{})", text.empty() ? "" : ",", number_text(property.high(i)));
   return text.empty() ? "null" : "{" + text + "}";
 }
 
-std::string labels_json(const Row& row) {
+std::string labels_json(const Property& property) {
   std::string text = R"([{"VALS":[)";
-  for (const std::string& label : row.choices) text += (&label == &row.choices.front() ? "" : ",") + json_text(label);
+  for (const std::string& label : property.choices)
+    text += (&label == &property.choices.front() ? "" : ",") + json_text(label);
   return text + "]}]";
 }
 
-bool has_range(const Row& row) {
-  for (std::size_t i = 0; i < row.width; i++) {
-    if (std::isfinite(row.low(i)) || std::isfinite(row.high(i))) return true;
+bool has_range(const Property& property) {
+  for (std::size_t i = 0; i < property.width; i++) {
+    if (std::isfinite(property.low(i)) || std::isfinite(property.high(i))) return true;
   }
   return false;
 }
 
-std::string clip_json(const Row& row, std::size_t i) {
-  const bool low = std::isfinite(row.low(i));
-  const bool high = std::isfinite(row.high(i));
+std::string clip_json(const Property& property, std::size_t i) {
+  const bool low = std::isfinite(property.low(i));
+  const bool high = std::isfinite(property.high(i));
   return low && high ? R"("both")" : low ? R"("low")" : high ? R"("high")" : R"("none")";
 }
 
-// colours are hue, saturation and brightness, as in the seed's messages
-bool is_color(const Row& row) { return row.type == RowType::vec3 && row.unit == "hsb"; }
+// Colors are hue, saturation and brightness, as in ofxDabPhysics messages.
+bool is_color(const Property& property) { return property.type == PropertyType::vec3 && property.unit == "hsb"; }
 
 using Attributes = std::vector<std::pair<std::string_view, std::string>>;
 
-Attributes make_attributes(const Row& row) {
+Attributes make_attributes(const Property& property) {
   Attributes list;
-  list.emplace_back("TYPE", json_text(tags_of(row)));
-  list.emplace_back("ACCESS", std::to_string(access_of(row)));
-  list.emplace_back("DESCRIPTION", json_text(short_doc(row)));
-  if (row.type == RowType::choice) {
-    list.emplace_back("RANGE", labels_json(row));
-  } else if (!is_truth(row) && has_range(row)) {
-    list.emplace_back("RANGE", array_of(row, [&](std::size_t i) { return range_json(row, i); }));
-    if (row.writable()) list.emplace_back("CLIPMODE", array_of(row, [&](std::size_t i) { return clip_json(row, i); }));
+  list.emplace_back("TYPE", json_text(tags_of(property)));
+  list.emplace_back("ACCESS", std::to_string(access_of(property)));
+  list.emplace_back("DESCRIPTION", json_text(short_doc(property)));
+  if (property.type == PropertyType::choice) {
+    list.emplace_back("RANGE", labels_json(property));
+  } else if (!is_boolean(property) && has_range(property)) {
+    list.emplace_back("RANGE", array_of(property, [&](std::size_t i) { return range_json(property, i); }));
+    if (property.writable())
+      list.emplace_back("CLIPMODE", array_of(property, [&](std::size_t i) { return clip_json(property, i); }));
   }
-  if (!row.unit.empty()) list.emplace_back("UNIT", array_of(row, [&](std::size_t) { return json_text(row.unit); }));
-  if (row.type == RowType::quat) list.emplace_back("EXTENDED_TYPE", R"(["quaternion"])");
-  if (is_color(row)) list.emplace_back("EXTENDED_TYPE", R"(["hue","saturation","brightness"])");
-  if (row.kind == RowKind::property) list.emplace_back("DEFAULT_VALUE", value_json(row, {row.initial.data(), {}}));
-  if (row.step > 0) list.emplace_back("STEP_SIZE", array_of(row, [&](std::size_t) { return number_text(row.step); }));
-  list.emplace_back("DOC", json_text(row.doc));
+  if (!property.unit.empty())
+    list.emplace_back("UNIT", array_of(property, [&](std::size_t) { return json_text(property.unit); }));
+  if (property.type == PropertyType::quat) list.emplace_back("EXTENDED_TYPE", R"(["quaternion"])");
+  if (is_color(property)) list.emplace_back("EXTENDED_TYPE", R"(["hue","saturation","brightness"])");
+  if (property.kind == PropertyKind::setting)
+    list.emplace_back("DEFAULT_VALUE", value_json(property, {property.initial.data(), {}}));
+  if (property.step > 0)
+    list.emplace_back("STEP_SIZE", array_of(property, [&](std::size_t) { return number_text(property.step); }));
+  list.emplace_back("DOC", json_text(property.doc));
   return list;
 }
 
-struct Face {
+struct AttributeCache {
   Attributes attributes;
   std::string text;
 };
 
-// by the row's address: tables live as long as the program. One thread at a time: each has faces of its own
-const Face& face_of(const Row& row) {
-  static thread_local std::unordered_map<const Row*, std::unique_ptr<const Face>> faces;
-  std::unique_ptr<const Face>& face = faces[&row];
-  if (face == nullptr) {
-    Face made{make_attributes(row), {}};
-    for (const auto& [name, json] : made.attributes) made.text += fmt::format(R"(,"{}":{})", name, json);
-    face = std::make_unique<const Face>(std::move(made));
+// Cached by the property's address, because property tables live as long as the program. Each thread has its own cache,
+// so no lock is needed.
+const AttributeCache& attributes_cached(const Property& property) {
+  static thread_local std::unordered_map<const Property*, std::unique_ptr<const AttributeCache>> caches;
+  std::unique_ptr<const AttributeCache>& cache = caches[&property];
+  if (cache == nullptr) {
+    AttributeCache new_cache{make_attributes(property), {}};
+    for (const auto& [name, json] : new_cache.attributes) new_cache.text += fmt::format(R"(,"{}":{})", name, json);
+    cache = std::make_unique<const AttributeCache>(std::move(new_cache));
   }
-  return *face;
+  return *cache;
 }
 
 }  // namespace
 
-std::string tags_of(const Row& row) {
-  switch (row.type) {
-    case RowType::number:
+std::string tags_of(const Property& property) {
+  switch (property.type) {
+    case PropertyType::number:
       return "f";
-    case RowType::integer:
-      return row.writable() && row.max > std::numeric_limits<std::int32_t>::max() ? "h" : "i";
-    case RowType::boolean:
+    case PropertyType::integer:
+      return property.writable() && property.max > std::numeric_limits<std::int32_t>::max() ? "h" : "i";
+    case PropertyType::boolean:
       return "T";
-    case RowType::choice:
-    case RowType::text:
+    case PropertyType::choice:
+    case PropertyType::text:
       return "s";
-    case RowType::vec3:
+    case PropertyType::vec3:
       return "fff";
-    case RowType::flags3:
+    case PropertyType::flags3:
       return "TTT";
-    case RowType::quat:
+    case PropertyType::quat:
       return "[ffff]";
-    case RowType::none:
+    case PropertyType::none:
       break;
   }
-  return row.min_args == 0 ? "N" : std::string(row.min_args, 'f');
+  return property.min_args == 0 ? "N" : std::string(property.min_args, 'f');
 }
 
-int access_of(const Row& row) { return row.kind == RowKind::action ? 2 : row.writable() ? 3 : 1; }
+int access_of(const Property& property) {
+  return property.kind == PropertyKind::action ? 2 : property.writable() ? 3 : 1;
+}
 
-const Attributes& attributes_of(const Row& row) { return face_of(row).attributes; }
+const Attributes& attributes_of(const Property& property) { return attributes_cached(property).attributes; }
 
-const std::string& attributes_text(const Row& row) { return face_of(row).text; }
+const std::string& attributes_text(const Property& property) { return attributes_cached(property).text; }
 
-std::string value_json(const Row& row, const RowValue& value) {
-  if (row.type == RowType::text) return "[" + json_text(value.text) + "]";
+std::string value_json(const Property& property, const PropertyValue& value) {
+  if (property.type == PropertyType::text) return "[" + json_text(value.text) + "]";
   const double* const values = value.numbers;
-  if (row.type == RowType::choice) {
+  if (property.type == PropertyType::choice) {
     const auto at = static_cast<std::size_t>(std::max(0.0, values[0]));
-    return at < row.choices.size() ? "[" + json_text(row.choices[at]) + "]" : "[null]";
+    return at < property.choices.size() ? "[" + json_text(property.choices[at]) + "]" : "[null]";
   }
-  return array_of(row, [&](std::size_t i) -> std::string {
-    if (is_truth(row)) return values[i] != 0 ? "true" : "false";
+  return array_of(property, [&](std::size_t i) -> std::string {
+    if (is_boolean(property)) return values[i] != 0 ? "true" : "false";
     return number_json(values[i]);
   });
 }
 
-Message value_message(const std::string& path, const Row& row, const RowValue& value) {
+Message value_message(const std::string& path, const Property& property, const PropertyValue& value) {
   Message message{path, {}};
-  if (row.type == RowType::text) message.args.push_back(Arg::of(value.text));
+  if (property.type == PropertyType::text) message.args.push_back(Arg::of(value.text));
   const double* const values = value.numbers;
-  for (std::size_t i = 0; i < row.width; i++) {
-    if (is_truth(row)) {
+  for (std::size_t i = 0; i < property.width; i++) {
+    if (is_boolean(property)) {
       message.args.push_back(Arg::of(values[i] != 0));
-    } else if (row.type == RowType::choice) {
+    } else if (property.type == PropertyType::choice) {
       const auto at = static_cast<std::size_t>(std::max(0.0, values[i]));
-      message.args.push_back(Arg::of(at < row.choices.size() ? row.choices[at] : std::string()));
+      message.args.push_back(Arg::of(at < property.choices.size() ? property.choices[at] : std::string()));
     } else {
       message.args.push_back(Arg::of(values[i]));
     }
@@ -167,10 +177,10 @@ std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string short_doc(const Row& row) {
-  const std::string clause = row.doc.substr(0, row.doc.find_first_of(".;:"));
-  if (!clause.empty() && clause.size() <= kLongestLabel) return clause;
-  std::string name = row.name;
+std::string short_doc(const Property& property) {
+  const std::string clause = property.doc.substr(0, property.doc.find_first_of(".;:"));
+  if (!clause.empty() && clause.size() <= kMaxLabel) return clause;
+  std::string name = property.name;
   std::replace(name.begin(), name.end(), '_', ' ');
   return name;
 }

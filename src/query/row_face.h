@@ -1,4 +1,4 @@
-// RowFace: how a row shows itself to OSCQuery: type tags, attributes, values as JSON and as arguments. [any]
+// OSCQuery attributes: a property's type tags, attributes and values as JSON and as OSC arguments. [any]
 #pragma once
 
 #include <string>
@@ -12,31 +12,34 @@
 
 namespace limber {
 
-/// OSC type tags of a row's message: f; i, or h where 31 bits are too few; T (and F) for truths; s for a choice's
-/// label; [ffff] for a rotation, since four bare f would be drawn as a colour; N for an action that is pressed.
-std::string tags_of(const Row& row);
+/// Returns the OSC type tags of a property's message: f; i, or h if the range exceeds 31 bits; T (or F) for booleans; s
+/// for the label of a choice; [ffff] for a rotation, because clients show four plain f as a color; N for an action
+/// without arguments.
+std::string tags_of(const Property& property);
 
-/// OSCQuery's ACCESS: 1 to read, 2 to write, 3 both.
-int access_of(const Row& row);
+/// Returns OSCQuery's ACCESS: 1 read, 2 write, 3 both.
+int access_of(const Property& property);
 
-/// Name and JSON of each attribute that the row has, but for FULL_PATH and VALUE, in the order in which they are
-/// written. VALUE's and RANGE's kin are arrays, one element a tag. Made once a row, kept for the program's life.
-const std::vector<std::pair<std::string_view, std::string>>& attributes_of(const Row& row);
-/// All of them as members of an object, a comma in front of each.
-const std::string& attributes_text(const Row& row);
+/// Returns the name and JSON of each attribute of the property in output order, without FULL_PATH and VALUE. The value
+/// of VALUE, RANGE and similar attributes is an array with one element per tag. Created once per property and thread;
+/// valid until the thread ends.
+const std::vector<std::pair<std::string_view, std::string>>& attributes_of(const Property& property);
+/// Returns these attributes as members of a JSON object, each preceded by a comma.
+const std::string& attributes_text(const Property& property);
 
-/// The numbers as JSON: `[-9.81]`, `["servo"]`, `[[0,0,0,1]]`.
-std::string value_json(const Row& row, const RowValue& value);
-/// The numbers as a message's arguments; with tags_of they say the same as the JSON.
-Message value_message(const std::string& path, const Row& row, const RowValue& value);
+/// Returns the value as JSON: `[-9.81]`, `["servo"]`, `[[0,0,0,1]]`.
+std::string value_json(const Property& property, const PropertyValue& value);
+/// Returns a message with the value; with the tags of tags_of() it is equivalent to the JSON.
+Message value_message(const std::string& path, const Property& property, const PropertyValue& value);
 
-/// Text as a JSON string, whatever bytes it holds.
+/// Returns the text as a quoted JSON string; invalid UTF-8 is replaced.
 std::string json_text(std::string_view text);
 
-/// At most 60 bytes of the row's doc: clients show it as a label. The row's name where the first clause is longer.
-std::string short_doc(const Row& row);
+/// Returns a label of at most 60 bytes: the first clause of the property's documentation or, if that is longer, the
+/// property's name.
+std::string short_doc(const Property& property);
 
-/// Every attribute that a node may have here, in order; FULL_PATH, CONTENTS and VALUE among them.
+/// Returns all supported attributes, including FULL_PATH, CONTENTS and VALUE.
 const std::vector<std::string_view>& known_attributes();
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// One io_context on one thread: accepting, the engine's bell, the beat.
+// One io_context on one thread: accepts connections, handles wake-ups by the engine, and runs the hub's timer.
 #include "query/server.h"
 
 #include <chrono>
@@ -26,12 +26,12 @@ using error_code = boost::system::error_code;
 
 namespace {
 
-constexpr const char* kCure =
-    "choose another with --query [ADDR:]PORT, or play without with --query off or --osc-optional";
+constexpr const char* kListenHint =
+    "Choose another port with --query [ADDR:]PORT, or continue without it with --query off or --osc-optional";
 
-// as a machine beside this one may call it; and further names
-std::vector<std::string> own_names(const QueryDoors& doors) {
-  std::vector<std::string> names = doors.names;
+// Names by which other machines on the network may address this one, and the configured ones.
+std::vector<std::string> own_names(const QueryHost& host) {
+  std::vector<std::string> names = host.names;
   const std::string name = system::host_name();
   if (!name.empty()) names.insert(names.end(), {name, fmt::format("{}.local", name)});
   return names;
@@ -40,13 +40,13 @@ std::vector<std::string> own_names(const QueryDoors& doors) {
 }  // namespace
 
 struct QueryServer::Running {
-  Running(EngineLink& link, const QueryDoors& doors, const std::shared_ptr<system::Wake>& bell)
-      : wake(bell), hall(link, doors, own_names(doors)) {}
+  Running(EngineLink& link, const QueryHost& host, const std::shared_ptr<system::Wake>& engine_wake)
+      : wake(engine_wake), hub(link, host, own_names(host)) {}
   ~Running() {
     io.stop();
     if (thread.joinable()) thread.join();
-    descriptor.release();  // the bell's, who closes it
-    hall.dismiss();        // connections that wait: their sockets need `io`
+    descriptor.release();  // the Wake owns and closes it
+    hub.cancel_all();      // pending requests hold connections, and their sockets need `io`
   }
 
   error_code open(const ListenAddress& at) {
@@ -65,8 +65,8 @@ struct QueryServer::Running {
   void begin() {
     descriptor.assign(wake->fd());
     accept();
-    listen_for_bell();
-    beat();
+    wait_for_wake();
+    start_tick();
     thread = std::thread([this] { run(); });
   }
 
@@ -77,8 +77,8 @@ struct QueryServer::Running {
         io.run();
         return;
       } catch (const std::exception& e) {
-        // one connection's; the others go on
-        log_warning("the query server: {}", e.what());
+        // caused by one connection; the others continue
+        log_warning("OSCQuery: {}", e.what());
       }
     }
   }
@@ -89,48 +89,48 @@ struct QueryServer::Running {
       if (!error) {
         error_code ignored;
         socket.set_option(tcp::no_delay(true), ignored);
-        serve_connection(std::move(socket), desk);
+        serve_connection(std::move(socket), context);
         return accept();
       }
-      // out of descriptors, say: better in a moment
-      pause.expires_after(std::chrono::milliseconds(100));
-      pause.async_wait([this](error_code) { accept(); });
+      // for example out of file descriptors: retry shortly
+      retry_timer.expires_after(std::chrono::milliseconds(100));
+      retry_timer.async_wait([this](error_code) { accept(); });
     });
   }
 
-  void listen_for_bell() {
+  void wait_for_wake() {
     descriptor.async_wait(net::posix::stream_descriptor::wait_read, [this](error_code error) {
       if (error) return;
       wake->clear();
-      hall.bell();
-      listen_for_bell();
+      hub.on_link_event();
+      wait_for_wake();
     });
   }
 
-  void beat() {
-    timer.expires_after(
-        std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(Hall::kBeat)));
+  void start_tick() {
+    timer.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+        std::chrono::duration<double>(QueryHub::kTick)));
     timer.async_wait([this](error_code error) {
       if (error) return;
-      if (hall.busy()) hall.beat();
-      beat();
+      if (hub.busy()) hub.tick();
+      start_tick();
     });
   }
 
   const std::shared_ptr<system::Wake> wake;
-  Hall hall;
-  QueryDesk desk{hall};
-  // behind what its handlers use: it takes them along when it goes
+  QueryHub hub;
+  QueryContext context{hub};
+  // declared after everything that its handlers use, because its destructor destroys the handlers
   net::io_context io{1};
   tcp::acceptor acceptor{io};
   net::posix::stream_descriptor descriptor{io};
   net::steady_timer timer{io};
-  net::steady_timer pause{io};
+  net::steady_timer retry_timer{io};
   std::thread thread;
 };
 
-QueryServer::QueryServer(EngineLink& link, QueryDoors doors)
-    : link_(link), doors_(std::move(doors)), wake_(std::make_shared<system::Wake>()) {
+QueryServer::QueryServer(EngineLink& link, QueryHost host)
+    : link_(link), host_(std::move(host)), wake_(std::make_shared<system::Wake>()) {
   link_.wake_query = [wake = wake_] { wake->notify(); };
 }
 
@@ -138,15 +138,15 @@ QueryServer::~QueryServer() { stop(); }
 
 Result<void> QueryServer::start(const ListenAddress& at) {
   if (running_ != nullptr) return {};
-  running_ = std::make_unique<Running>(link_, doors_, wake_);
+  running_ = std::make_unique<Running>(link_, host_, wake_);
   if (const error_code error = running_->open(at)) {
     running_.reset();
-    return Error{fmt::format("OSCQuery can't listen on {}:{} (TCP): {}; {}", printable(at.address), at.port,
-                             error.message(), kCure)};
+    return Error{fmt::format("OSCQuery can't listen on {}:{} (TCP): {}. {}", printable(at.address), at.port,
+                             error.message(), kListenHint)};
   }
   error_code ignored;
   if (running_->acceptor.local_endpoint(ignored).address().is_unspecified())
-    log_warning("OSCQuery {}:{}: open to the network, everyone may look and play; --osc-allow CIDR limits it",
+    log_warning("OSCQuery {}:{}: open to the network, every client is accepted. Restrict it with --osc-allow CIDR",
                 at.address, port());
   running_->begin();
   return {};

@@ -1,4 +1,4 @@
-// QueryServer: OSCQuery and the remote panel, HTTP and WebSocket on one TCP port, on a thread of its own.
+// QueryServer: OSCQuery and the remote panel over HTTP and WebSocket on one TCP port, on its own thread.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@
 
 namespace limber {
 
+/// The HTTP and WebSocket server.
 class QueryServer {
  public:
-  /// Make it before the engine starts (it sets `link.wake_query`, which stays usable when the server is gone). `link`
-  /// outlives it.
-  QueryServer(EngineLink& link, QueryDoors doors);
+  /// Create it before the engine starts: the constructor sets `link.wake_query`, which stays callable after the server
+  /// is destroyed. `link` must outlive the server.
+  QueryServer(EngineLink& link, QueryHost host);
   ~QueryServer();
   QueryServer(const QueryServer&) = delete;
   QueryServer& operator=(const QueryServer&) = delete;
@@ -25,16 +26,16 @@ class QueryServer {
   /// Opens the port (0: the system chooses) and starts the thread. The error names the address and the options that
   /// change it. [main]
   Result<void> start(const ListenAddress& at);
-  /// Ends the thread at once and closes everything. Idempotent. [main]
+  /// Stops the thread immediately and closes all connections. Idempotent. [main]
   void stop();
 
-  /// The port as bound; 0: not open. [main]
+  /// The bound port; 0 if it is not open. [main]
   std::uint16_t port() const;
 
  private:
   struct Running;
   EngineLink& link_;
-  QueryDoors doors_;
+  QueryHost host_;
   std::unique_ptr<Running> running_;
   std::shared_ptr<system::Wake> wake_;
 };

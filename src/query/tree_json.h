@@ -1,4 +1,4 @@
-// The tree as OSCQuery's JSON, from an image. [any]
+// OSCQuery's JSON of the tree, from a value snapshot. [any]
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,19 @@
 
 namespace limber {
 
-/// A node with all below it: FULL_PATH, then CONTENTS, or a row's attributes and VALUE. What lies more than `depth`
-/// levels below is left out, its container's CONTENTS being empty; so is, of a tree of more than kMostRows, what lies
-/// deepest, whole levels at a time.
-inline constexpr std::size_t kMostRows = 100000;
-std::string node_json(const Image& image, const TreePlace& place, int depth = 64);
+inline constexpr std::size_t kMaxProperties = 100000;
 
-/// Rows whose paths hold every word, compared by the naming rule, as `{"FOUND":[{…},…],"MORE":false}`; no words, no
-/// rows. At most `limit` of them; MORE says whether there are others.
-std::string find_json(const Image& image, std::string_view words, std::size_t limit = 100);
+/// Returns a node and its descendants: FULL_PATH, then CONTENTS, or a property's attributes and VALUE. Nodes more than
+/// `depth` levels below are omitted and their parent's CONTENTS is empty. If there are more than kMaxProperties
+/// properties, whole levels are omitted, the deepest first.
+std::string node_json(const ValueSnapshot& snapshot, const TreePropertyRef& ref, int depth = 64);
 
-/// The value of a row as JSON, or empty where it has none.
-std::string place_value_json(const Image& image, const TreePlace& place);
+/// Returns the properties that contain every word in their path, compared as normalized names, as
+/// `{"FOUND":[{…},…],"MORE":false}`; without words there are none. At most `limit` of them; MORE is true if there are
+/// others.
+std::string find_json(const ValueSnapshot& snapshot, std::string_view words, std::size_t limit = 100);
+
+/// Returns the value of a property as JSON; empty if it has none.
+std::string property_value_json(const ValueSnapshot& snapshot, const TreePropertyRef& ref);
 
 }  // namespace limber

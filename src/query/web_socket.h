@@ -1,4 +1,5 @@
-// A WebSocket after its upgrade: frames in to a Client, frames out gathered into few system calls. [query]
+// A WebSocket connection after its upgrade: passes incoming frames to a Client and sends outgoing frames in few system
+// calls. [query]
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>
@@ -9,9 +10,9 @@
 
 namespace limber {
 
-/// Answers the upgrade and serves the client until one of both ends it.
+/// Accepts the upgrade and serves the client until either side closes the connection.
 void serve_web_socket(boost::beast::tcp_stream stream,
-                      const boost::beast::http::request<boost::beast::http::empty_body>& upgrade, QueryDesk& desk,
-                      Seat seat);
+                      const boost::beast::http::request<boost::beast::http::empty_body>& upgrade, QueryContext& context,
+                      ConnectionSlot slot);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Rows to fields.
+// Converts properties to LuaCATS fields.
 #include "script/annotate.h"
 
 #include <array>
@@ -17,67 +17,69 @@
 
 namespace limber {
 
-/// The files of src/script/annotations, which the build puts inside the program.
+/// The files of src/script/annotations, embedded by the build.
 std::span<const EmbeddedFile> annotation_files();
 
 namespace {
 
-constexpr std::size_t kWidth = 116;  // of a line of names
+constexpr std::size_t kMaxLineWidth = 116;  // of a line of names, characters
 
-const Table& table_named(std::string_view name) {
-  const std::array<const Table*, 10> classes = {&World::table(), &Body::table(),  &Part::table(),    &Joint::table(),
-                                                &Motor::table(), &Shape::table(), &Visuals::table(), &Camera::table(),
-                                                &Look::table(),  &Gear::table()};
-  for (const Table* table : classes) {
+const PropertyTable& class_table(std::string_view name) {
+  const std::array<const PropertyTable*, 10> classes = {
+      &World::table(), &Body::table(),    &Part::table(),   &Joint::table(),      &Motor::table(),
+      &Shape::table(), &Visuals::table(), &Camera::table(), &Appearance::table(), &Gear::table()};
+  for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }
   LIMBER_CHECK(!"a class that scripts see");
   return World::table();
 }
 
-// what a script reads, and what else it may write
-std::string type_text(const Row& row) {
-  switch (row.type) {
-    case RowType::integer:
+// the LuaCATS type: of the value on reading, plus the other types that may be assigned
+std::string type_text(const Property& property) {
+  switch (property.type) {
+    case PropertyType::integer:
       return "integer";
-    case RowType::boolean:
+    case PropertyType::boolean:
       return "boolean";
-    case RowType::choice:
-      return fmt::format("\"{}\"", fmt::join(row.choices, "\"|\""));
-    case RowType::vec3:
-      return !row.writable() ? "vec3" : row.own_axis ? "vec3like|number" : "vec3like";
-    case RowType::flags3:
-      return row.writable() ? "flags3|boolean[]|boolean" : "flags3";
-    case RowType::quat:
+    case PropertyType::choice:
+      return fmt::format("\"{}\"", fmt::join(property.choices, "\"|\""));
+    case PropertyType::vec3:
+      return !property.writable() ? "vec3" : property.own_axis ? "vec3like|number" : "vec3like";
+    case PropertyType::flags3:
+      return property.writable() ? "flags3|boolean[]|boolean" : "flags3";
+    case PropertyType::quat:
       return "quat";
     default:
       return "number";
   }
 }
 
-// "kg, 0.001 .. 1000000, default 1. Mass; …"
-std::string about(const Row& row) {
-  std::vector<std::string> facts;
-  const bool counts = row.type == RowType::number || row.type == RowType::integer || row.type == RowType::vec3;
-  const bool bounded = std::isfinite(row.min) || std::isfinite(row.max);
-  if (!row.writable()) facts.emplace_back("read-only");
-  if (!row.unit.empty()) facts.push_back(row.unit);
-  if (row.writable() && counts && bounded) facts.push_back(values_text(row));
-  if (row.kind == RowKind::property) facts.push_back("default " + initial_text(row));
-  return fmt::format("{}{}{}", fmt::join(facts, ", "), facts.empty() ? "" : ". ", row.doc);
+// for example "kg, 0.001 .. 1000000, default 1. Mass; …"
+std::string description(const Property& property) {
+  std::vector<std::string> details;
+  const bool is_numeric = property.type == PropertyType::number || property.type == PropertyType::integer ||
+                          property.type == PropertyType::vec3;
+  const bool bounded = std::isfinite(property.min) || std::isfinite(property.max);
+  if (!property.writable()) details.emplace_back("read-only");
+  if (!property.unit.empty()) details.push_back(property.unit);
+  if (property.writable() && is_numeric && bounded) details.push_back(range_or_choices_text(property));
+  if (property.kind == PropertyKind::setting) details.push_back("default " + initial_text(property));
+  return fmt::format("{}{}{}", fmt::join(details, ", "), details.empty() ? "" : ". ", property.doc);
 }
 
-std::string fields(const Table& table, bool as_options) {
+std::string fields(const PropertyTable& table, bool as_options) {
   std::string text;
-  for (const Row& row : table.rows()) {
-    if (row.kind == RowKind::action || (as_options && !row.writable())) continue;
-    text += fmt::format("---@field {}{} {} # {}\n", row.name, as_options ? "?" : "", type_text(row), about(row));
+  for (const Property& property : table.properties()) {
+    if (property.kind == PropertyKind::action || (as_options && !property.writable())) continue;
+    text += fmt::format("---@field {}{} {} # {}\n", property.name, as_options ? "?" : "", type_text(property),
+                        description(property));
   }
   return text;
 }
 
-// the names that no line so far has defined: those of Lua's own libraries, which editors know
-std::string own_names(std::string_view names, std::string_view text) {
+// names of Lua's own libraries that `text` does not define; editors know them
+std::string builtin_names(std::string_view names, std::string_view text) {
   std::string lines = "--";
   std::size_t width = lines.size();
   for (const std::string_view name : split(names, '\n')) {
@@ -88,7 +90,7 @@ std::string own_names(std::string_view names, std::string_view text) {
     const bool defined = text.find(fmt::format("\nfunction {}(", name)) != std::string_view::npos ||
                          text.find(fmt::format("\n{} = ", name)) != std::string_view::npos;
     if (defined) continue;
-    if (width + name.size() + 1 > kWidth) {
+    if (width + name.size() + 1 > kMaxLineWidth) {
       lines += "\n--";
       width = 2;
     }
@@ -106,12 +108,12 @@ std::string annotations(std::string_view names) {
     if (!text.empty()) text += "\n";
     for (const std::string_view line : split(file.text.substr(0, file.text.find_last_not_of('\n') + 1), '\n')) {
       const std::vector<std::string_view> words = split(line, ' ');
-      if (words[0] == "---@rows" || words[0] == "---@opts") {
-        text += fields(table_named(words[1]), words[0] == "---@opts");
+      if (words[0] == "---@properties" || words[0] == "---@opts") {
+        text += fields(class_table(words[1]), words[0] == "---@opts");
       } else if (words[0] == "---@action") {
-        text += fmt::format("---{}\n", table_named(words[1]).at(words[2]).doc);
+        text += fmt::format("---{}\n", class_table(words[1]).at(words[2]).doc);
       } else if (words[0] == "---@names") {
-        text += own_names(names, text);
+        text += builtin_names(names, text);
       } else {
         text += fmt::format("{}\n", line);
       }

@@ -1,4 +1,5 @@
-// Definitions for editors: the files of src/script/annotations with the rows of the classes' tables put in.
+// Generates the LuaCATS definitions for editors: the files of src/script/annotations plus the properties of all
+// classes.
 #pragma once
 
 #include <string>
@@ -6,9 +7,10 @@
 
 namespace limber {
 
-/// LuaCATS, as lua-language-server reads it. `names`: what Scene::names() says. Lines that begin with one of these are
-/// replaced: "---@rows CLASS" by a field for each value of the class, "---@opts CLASS" by those that can be set, as
-/// options, "---@action CLASS NAME" by what the action's row says, "---@names" by the names of Lua's own. [any]
+/// Returns the definitions as lua-language-server reads them. `names`: the result of Scene::names(). Replaces lines
+/// that begin with "---@properties CLASS" (one field per property of the class), "---@opts CLASS" (the writable ones,
+/// as options), "---@action CLASS NAME" (the action's description) and "---@names" (names of Lua's own libraries).
+/// [any]
 std::string annotations(std::string_view names);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The door's table of functions, its text for LuaJIT, and a check that both sides lay the store out alike.
+// The function table, its text for LuaJIT, and checks that the C structs match the C++ layouts.
 #include "script/c_api.h"
 
 #include <cstddef>
@@ -13,22 +13,22 @@ namespace limber {
 static_assert(sizeof(LimberSlot) == sizeof(NodeSlot));
 static_assert(offsetof(LimberSlot, generation) == offsetof(NodeSlot, generation));
 static_assert(offsetof(LimberSlot, table) == offsetof(NodeSlot, table));
-static_assert(offsetof(LimberSlot, kept) == offsetof(NodeSlot, kept));
-static_assert(offsetof(LimberSlot, live) == offsetof(NodeSlot, live));
+static_assert(offsetof(LimberSlot, persistent) == offsetof(NodeSlot, persistent));
+static_assert(offsetof(LimberSlot, transient) == offsetof(NodeSlot, transient));
 static_assert(sizeof(LimberMatch) == sizeof(Match));
 static_assert(offsetof(LimberMatch, count) == offsetof(Match, count));
 static_assert(offsetof(LimberMatch, from) == offsetof(Match, from));
 static_assert(offsetof(LimberMatch, length) == offsetof(Match, length));
 static_assert(sizeof(LimberView) == sizeof(StoreView));
 static_assert(offsetof(LimberView, slots) == offsetof(StoreView, slots));
-static_assert(offsetof(LimberView, kept) == offsetof(StoreView, kept));
-static_assert(offsetof(LimberView, live) == offsetof(StoreView, live));
+static_assert(offsetof(LimberView, persistent) == offsetof(StoreView, persistent));
+static_assert(offsetof(LimberView, transient) == offsetof(StoreView, transient));
 static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
 
-static_assert(sizeof(LimberSolid) == sizeof(PartSolid));
-static_assert(offsetof(LimberSolid, inertia_x) == offsetof(PartSolid, unit_inertia));
-static_assert(sizeof(LimberSolids) == sizeof(PartSolids::View));
-static_assert(offsetof(LimberSolids, places) == offsetof(PartSolids::View, places));
+static_assert(sizeof(LimberMassEntry) == sizeof(MassProperties));
+static_assert(offsetof(LimberMassEntry, inertia_x) == offsetof(MassProperties, unit_inertia));
+static_assert(sizeof(LimberMassTable) == sizeof(MassTable::View));
+static_assert(offsetof(LimberMassTable, indices) == offsetof(MassTable::View, index_of_slot));
 static_assert(sizeof(LimberNeighbor) == sizeof(Neighbor));
 static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
 static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));

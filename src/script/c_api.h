@@ -1,4 +1,4 @@
-// What the trusted Lua prelude calls in C++: a struct of function pointers, made from c_api.inc. [sim]
+// The C API of the trusted Lua prelude: a struct of function pointers, generated from c_api.inc. [sim]
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace limber {
 #undef LIMBER_CALL
 #undef LIMBER_STRUCT
 
-/// What most calls answer.
+/// Results of most calls.
 inline constexpr std::int32_t kOk = 0;
-inline constexpr std::int32_t kClamped = 1;   ///< Done, with the value brought into its range; how: the answer's text.
-inline constexpr std::int32_t kRefused = -1;  ///< Nothing was done; why: the answer's text.
-inline constexpr std::int32_t kGone = -2;     ///< The thing no longer exists.
+inline constexpr std::int32_t kClamped = 1;    ///< Done with a clamped value; details: the answer's text.
+inline constexpr std::int32_t kRejected = -1;  ///< Nothing was done; reason: the answer's text.
+inline constexpr std::int32_t kRemoved = -2;   ///< The object no longer exists.
 
 struct LimberApi {
 #define LIMBER_STRUCT(...)
@@ -26,7 +26,7 @@ struct LimberApi {
 #undef LIMBER_STRUCT
 };
 
-/// The functions themselves, in calls_*.cpp.
+/// The functions; defined in calls_*.cpp.
 namespace calls {
 #define LIMBER_STRUCT(...)
 #define LIMBER_CALL(result, name, arguments) result name arguments;
@@ -35,7 +35,7 @@ namespace calls {
 #undef LIMBER_STRUCT
 }  // namespace calls
 
-/// The one table of them.
+/// The table of all functions.
 const LimberApi& limber_api();
 /// The same declarations as text for LuaJIT's ffi.cdef.
 const std::string& limber_cdef();

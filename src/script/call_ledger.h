@@ -1,6 +1,5 @@
-// CallLedger: the guarded calls of scripts between two ticks, by number, and which of them were stopped. What stops a
-// call (computing time, memory) is not the same in every run, so a take keeps the numbers, and a replay stops the same
-// ones. [sim]
+// CallLog: numbers the guarded script calls of a tick and records those that were stopped. Stops for CPU time or memory
+// differ from run to run, so a take stores their numbers, and a replay skips the same calls. [sim]
 #pragma once
 
 #include <cstddef>
@@ -18,55 +17,55 @@ struct StoppedCall {
   std::string text;
 };
 
-class CallLedger {
+class CallLog {
  public:
-  /// A tick begins; these are the calls that it must not make.
-  void begin_tick(std::vector<StoppedCall> forbidden = {}) {
+  /// Starts a tick; `skip_list`: the calls that it must skip.
+  void begin_tick(std::vector<StoppedCall> skip_list = {}) {
     count_ = rewound_at_ = 0;
     rewound_stops_ = 0;
     stopped_.clear();
-    forbidden_ = std::move(forbidden);
-    next_ = 0;
+    skip_list_ = std::move(skip_list);
+    next_skip_ = 0;
   }
-  /// Whether the call that would be next must not be made.
-  bool forbids_next() const { return next_ < forbidden_.size() && forbidden_[next_].number == count_ + 1; }
-  /// A call begins.
-  void count() { count_++; }
-  /// The next call is not made; what was reported of it then. It counts as stopped: history does not make it either.
+  /// True if the next call must be skipped.
+  bool skips_next() const { return next_skip_ < skip_list_.size() && skip_list_[next_skip_].number == count_ + 1; }
+  /// Counts a call.
+  void count_call() { count_++; }
+  /// Skips the next call and returns its recorded stop. It counts as stopped, so that history skips it as well.
   const StoppedCall& skip() {
     count_++;
-    return stopped_.emplace_back(forbidden_[next_++]);
+    return stopped_.emplace_back(skip_list_[next_skip_++]);
   }
-  /// The call that was counted last was stopped.
-  void note_stop(std::string file, int line, std::string text) {
+  /// Records that the latest call was stopped.
+  void record_stop(std::string file, int line, std::string text) {
     stopped_.push_back({count_, std::move(file), line, std::move(text)});
   }
 
-  /// Time has gone back in this tick: for history the tick begins here, for a take it does not.
-  void note_rewind() {
+  /// Records a rewind within the tick. History numbers the calls from here, a take from the start of the tick.
+  void record_rewind() {
     rewound_at_ = count_;
     rewound_stops_ = stopped_.size();
   }
 
   const std::vector<StoppedCall>& stopped() const { return stopped_; }
-  /// Those since the last rewind, numbered from there.
+  /// Returns the stops since the last rewind, numbered from there.
   std::vector<StoppedCall> stopped_since_rewind() const {
     std::vector<StoppedCall> stops(stopped_.begin() + static_cast<std::ptrdiff_t>(rewound_stops_), stopped_.end());
     for (StoppedCall& stop : stops) stop.number -= rewound_at_;
     return stops;
   }
-  /// Calls that were stopped, though they were not among those that must not be made.
-  std::size_t unforeseen() const { return stopped_.size() - next_; }
-  /// Calls that should have been stopped and did not come.
-  std::size_t missed() const { return forbidden_.size() - next_; }
+  /// Number of stopped calls that were not on the skip list.
+  std::size_t unexpected_stops() const { return stopped_.size() - next_skip_; }
+  /// Number of calls on the skip list that did not occur.
+  std::size_t missing_stops() const { return skip_list_.size() - next_skip_; }
 
  private:
   std::uint64_t count_ = 0;
   std::uint64_t rewound_at_ = 0;
   std::size_t rewound_stops_ = 0;
   std::vector<StoppedCall> stopped_;
-  std::vector<StoppedCall> forbidden_;
-  std::size_t next_ = 0;
+  std::vector<StoppedCall> skip_list_;
+  std::size_t next_skip_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Behind the door: attaching behaviours, what they are.
+// C API: attaching and querying behaviors.
 #include <fmt/format.h>
 
 #include "base/text.h"
@@ -8,15 +8,15 @@ namespace limber::calls {
 
 std::int32_t table_name(void* c, std::int32_t table) {
   ScriptContext& context = context_of(c);
-  return context.say(context.world->store().tables()[static_cast<std::size_t>(table)]->name());
+  return context.set_text(context.world->store().tables()[static_cast<std::size_t>(table)]->name());
 }
 
 std::int32_t behavior_type(void* c, const char* type, std::int32_t length, std::int32_t group) {
   ScriptContext& context = context_of(c);
   const auto found = context.world->behaviors().types().require(text_of(type, length));
-  if (!found) return context.refuse(found.error());
-  const Table* const table = group != 0 ? (*found)->group_table : (*found)->table;
-  // what is wrong with the other kind is said when it is attached
+  if (!found) return context.reject(found.error());
+  const PropertyTable* const table = group != 0 ? (*found)->group_table : (*found)->table;
+  // a type that does not exist in this kind is reported when it is attached
   context.answer.count =
       static_cast<std::int32_t>(context.world->store().table_number(table == nullptr ? *(*found)->table : *table));
   return kOk;
@@ -38,30 +38,31 @@ void select_word(void* c, std::int32_t of, const char* text, std::int32_t length
 std::int32_t add_behavior(void* c, std::int32_t slot, std::int32_t generation, const char* type,
                           std::int32_t type_length, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  Body* body = thing_of<Body>(context, id_of(slot, generation));
-  if (body == nullptr) return kGone;
-  const auto& said = context.selections;
-  const Result<Behavior*> behavior = context.world->behaviors().add(
-      *body, text_of(type, type_length), std::string(text_of(name, length)), {said[0], said[1], said[2]});
-  return behavior ? context.tell((*behavior)->id()) : context.refuse(behavior.error());
+  Body* body = object_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kRemoved;
+  const auto& selections = context.selections;
+  const Result<Behavior*> behavior =
+      context.world->behaviors().add(*body, text_of(type, type_length), std::string(text_of(name, length)),
+                                     {selections[0], selections[1], selections[2]});
+  return behavior ? context.set_id((*behavior)->id()) : context.reject(behavior.error());
 }
 
 std::int32_t add_group(void* c, const char* type, std::int32_t type_length, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const auto& said = context.selections;
+  const auto& selections = context.selections;
   const Result<BehaviorGroup*> group = context.world->behaviors().add_group(
-      text_of(type, type_length), std::string(text_of(name, length)), {said[3], said[0], said[4]});
-  return group ? context.tell((*group)->id()) : context.refuse(group.error());
+      text_of(type, type_length), std::string(text_of(name, length)), {selections[3], selections[0], selections[4]});
+  return group ? context.set_id((*group)->id()) : context.reject(group.error());
 }
 
 std::int32_t behavior_text(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
-  if (const BehaviorGroup* group = group_of(context, id)) return context.say(group->type().name);
+  if (const BehaviorGroup* group = group_of(context, id)) return context.set_text(group->type().name);
   const Behavior* const behavior = behavior_of(context, id);
-  if (behavior == nullptr) return kGone;
-  if (which == 0) return context.say(behavior->type().name);
-  return behavior->error().empty() ? kRefused : context.say(behavior->error());
+  if (behavior == nullptr) return kRemoved;
+  if (which == 0) return context.set_text(behavior->type().name);
+  return behavior->error().empty() ? kRejected : context.set_text(behavior->error());
 }
 
 }  // namespace limber::calls

@@ -1,4 +1,4 @@
-// Behind the door: OSC patterns, messages on their way out, ports that a scene declares.
+// C API: OSC patterns, outgoing messages, ports declared by a scene.
 #include <fmt/format.h>
 
 #include "base/address.h"
@@ -10,10 +10,10 @@ namespace limber::calls {
 
 namespace {
 
-constexpr std::size_t kMostHeld = 10000;  // messages of one call
-constexpr std::size_t kMostHeldText = std::size_t{1} << 20u;
+constexpr std::size_t kMaxPendingMessages = 10000;  // messages per call
+constexpr std::size_t kMaxPendingText = std::size_t{1} << 20u;
 
-// "127.0.0.1:9000" as an IPv4 address in host order and a port
+// "127.0.0.1:9000" as IPv4 address in host byte order and port
 struct HostPort {
   std::string host;
   std::uint32_t ip = 0;  // 0: the host is a name
@@ -40,7 +40,8 @@ Result<HostPort> host_port(std::string_view text) {
   const bool whole = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
   const double port = whole ? parse_number(digits).value_or(0) : 0;
   if (port < 1 || port > 65535 || colon == 0 || printable(text) != text) {
-    return Error{fmt::format("'{}' is no address; write \"host:port\", such as \"127.0.0.1:9000\"", printable(text))};
+    return Error{
+        fmt::format("'{}' is not an address; write \"host:port\", such as \"127.0.0.1:9000\"", printable(text))};
   }
   const std::string_view host = text.substr(0, colon);
   return HostPort{std::string(host), ip_of(host).value_or(0), static_cast<std::uint16_t>(port)};
@@ -53,7 +54,7 @@ std::int32_t osc_matches(void*, const char* pattern, std::int32_t pattern_length
   const std::string_view a = text_of(pattern, pattern_length);
   const std::string_view b = text_of(address, length);
   if (a == b) return 1;
-  // the handler may be a pattern, and so may what comes in
+  // both the handler's and the incoming address may be patterns
   return address_matches(a, b) || address_matches(b, a) ? 1 : 0;
 }
 
@@ -69,34 +70,34 @@ void message_text(void* c, const char* text, std::int32_t length) {
   context_of(c).message.args.push_back(Arg::of(text_of(text, length)));
 }
 
-std::int32_t message_send(void* c, std::int32_t way, double ip, std::int32_t port) {
+std::int32_t message_send(void* c, std::int32_t route, double ip, std::int32_t port) {
   ScriptContext& context = context_of(c);
-  if (way == 1 && !context.handling_message) {
-    return context.refuse("osc:reply answers the message that is being handled: call it inside an osc:on function");
+  if (route == 1 && !context.handling_message) {
+    return context.reject("osc:reply answers the message that is being handled: call it inside an osc:on function");
   }
   std::size_t text = 0;
   for (const Arg& arg : context.message.args) text += arg.text.size();
-  if (context.held.empty()) context.held_text = 0;
-  context.held_text += text;
-  if (context.held.size() >= kMostHeld || context.held_text > kMostHeldText) {
-    return context.refuse(fmt::format("one call may send up to {} messages and 1 MB of text", kMostHeld));
+  if (context.pending_messages.empty()) context.pending_text_bytes = 0;
+  context.pending_text_bytes += text;
+  if (context.pending_messages.size() >= kMaxPendingMessages || context.pending_text_bytes > kMaxPendingText) {
+    return context.reject(fmt::format("one call may send up to {} messages and 1 MB of text", kMaxPendingMessages));
   }
-  using Way = ScriptContext::Way;
-  const Origin direct{Hand::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
-  context.held.push_back({way == 0   ? Way::all
-                          : way == 1 ? Way::sender
-                                     : Way::direct,
-                          way == 1 ? context.sender : direct, std::move(context.message)});
+  using Route = ScriptContext::Route;
+  const CommandOrigin direct{CommandSource::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
+  context.pending_messages.push_back({route == 0   ? Route::all
+                                      : route == 1 ? Route::sender
+                                                   : Route::direct,
+                                      route == 1 ? context.sender : direct, std::move(context.message)});
   return kOk;
 }
 
 std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
   ScriptContext& context = context_of(c);
   const Result<HostPort> parsed = host_port(text_of(text, length));
-  if (!parsed) return context.refuse(parsed.error());
+  if (!parsed) return context.reject(parsed.error());
   if (parsed->ip == 0) {
-    return context.refuse(fmt::format(
-        "'{}' is a name, and a script must not wait for a name server; write the address in numbers", parsed->host));
+    return context.reject(
+        fmt::format("'{}' is a host name, which scripts can't resolve; write a numeric address", parsed->host));
   }
   context.answer.number[0] = parsed->ip;
   context.answer.number[1] = parsed->port;
@@ -113,14 +114,14 @@ std::int32_t disable_handler(void* c) {
 }
 
 void osc_listen(void* c, std::int32_t port) {
-  context_of(c).plan.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
+  context_of(c).osc_config.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
 }
 
 std::int32_t osc_target(void* c, const char* address, std::int32_t length, double rate, std::int32_t streams,
                         const char* bodies, std::int32_t bodies_length, std::int32_t bundle, std::int32_t errors) {
   ScriptContext& context = context_of(c);
   const Result<HostPort> parsed = host_port(text_of(address, length));
-  if (!parsed) return context.refuse(parsed.error());
+  if (!parsed) return context.reject(parsed.error());
   StreamTarget target;
   target.host = parsed->host;
   target.port = parsed->port;
@@ -132,7 +133,7 @@ std::int32_t osc_target(void* c, const char* address, std::int32_t length, doubl
   target.bodies = std::string(text_of(bodies, bodies_length));
   target.bundle = bundle;
   target.errors = errors != 0;
-  context.plan.targets.push_back(std::move(target));
+  context.osc_config.targets.push_back(std::move(target));
   return kOk;
 }
 

@@ -1,4 +1,4 @@
-// Behind the door: names of things, what belongs to what, lists in stream order.
+// C API: names and relations of objects, lists in stream order.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -13,19 +13,19 @@ namespace {
 
 enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears };
 
-// the i-th of a span of owned things, or a null id behind the end; the count when i is -1
+// The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
 template <class T>
 std::int32_t item(ScriptContext& c, std::span<const std::unique_ptr<T>> list, std::int32_t i) {
   if (i < 0) return static_cast<std::int32_t>(list.size());
   const auto at = static_cast<std::size_t>(i);
-  return c.tell(at < list.size() ? list[at]->id() : NodeId{});
+  return c.set_id(at < list.size() ? list[at]->id() : NodeId{});
 }
 
 template <class T>
 std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
   if (i < 0) return static_cast<std::int32_t>(list.size());
   const auto at = static_cast<std::size_t>(i);
-  return c.tell(at < list.size() ? list[at]->id() : NodeId{});
+  return c.set_id(at < list.size() ? list[at]->id() : NodeId{});
 }
 
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
@@ -37,43 +37,43 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
     return item<BehaviorGroup>(c, all, i);
   }
   if (const Behavior* behavior = behavior_of(c, id)) {
-    c.world->behaviors().follow_bodies();
+    c.world->behaviors().update_members();
     if (kind == parts) return item(c, behavior->parts(), i);
     if (kind == joints) return item(c, behavior->joints(), i);
     return item(c, behavior->motors(), i);
   }
-  const Body* body = thing_of<Body>(c, id);
-  if (body == nullptr) return kGone;
+  const Body* body = object_of<Body>(c, id);
+  if (body == nullptr) return kRemoved;
   if (kind == behaviors) return item(c, body->behaviors(), i);
   if (kind == parts) return item(c, body->parts(), i);
   if (kind == joints) return item(c, body->joints(), i);
   return item(c, body->motors(), i);
 }
 
-// a name among what a thing has
+// an object of a list by name
 template <class T>
-std::int32_t found_among(ScriptContext& c, std::span<T* const> list, std::string_view kind, NodeId of,
-                         std::string_view name) {
+std::int32_t find_among(ScriptContext& c, std::span<T* const> list, std::string_view kind, NodeId of,
+                        std::string_view name) {
   for (const T* each : list) {
-    if (each->name() == name) return c.tell(each->id());
+    if (each->name() == name) return c.set_id(each->id());
   }
   std::vector<std::string_view> names;
   for (const T* each : list) names.push_back(each->name());
-  return c.refuse(fmt::format("{} has no {} '{}'{}", label_of(c, of), kind, printable(name), name_hint(name, names)));
+  return c.reject(fmt::format("{} has no {} '{}'{}", label_of(c, of), kind, printable(name), name_hint(name, names)));
 }
 
 template <class T>
-std::int32_t found(ScriptContext& c, const T* thing, std::span<const std::unique_ptr<T>> list, std::string_view kind,
-                   std::string_view where, std::string_view name) {
-  if (thing != nullptr) return c.tell(thing->id());
+std::int32_t id_or_error(ScriptContext& c, const T* object, std::span<const std::unique_ptr<T>> list,
+                         std::string_view kind, std::string_view where, std::string_view name) {
+  if (object != nullptr) return c.set_id(object->id());
   std::vector<std::string_view> names;
   for (const auto& each : list) names.push_back(each->name());
-  return c.refuse(fmt::format("{} no {} '{}'{}", where, kind, printable(name), name_hint(name, names)));
+  return c.reject(fmt::format("{} no {} '{}'{}", where, kind, printable(name), name_hint(name, names)));
 }
 
 template <class T>
-std::size_t place_in(std::span<const std::unique_ptr<T>> list, const T* thing) {
-  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == thing; });
+std::size_t index_in(std::span<const std::unique_ptr<T>> list, const T* object) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == object; });
   return static_cast<std::size_t>(at - list.begin());
 }
 
@@ -84,36 +84,36 @@ std::int32_t structure(void* c) { return static_cast<std::int32_t>(context_of(c)
 std::int32_t name(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
-  if (!context.alive(id)) return kGone;
-  return context.say(context.world->store().name(id));
+  if (!context.alive(id)) return kRemoved;
+  return context.set_text(context.world->store().name(id));
 }
 
 std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  // a body's things stand in its groups of parts, joints …
+  // the objects of a body are in its store groups: parts, joints …
   const Store& store = context.world->store();
   const NodeId above = store.parent(store.parent(id_of(slot, generation)));
-  return context.tell(thing_of<Body>(context, above) == nullptr ? NodeId{} : above);
+  return context.set_id(object_of<Body>(context, above) == nullptr ? NodeId{} : above);
 }
 
 std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
-  if (!context.alive(id)) return kGone;
-  if (const Joint* joint = thing_of<Joint>(context, id)) {
-    if (which == 0) return context.tell(joint->parent().id());
-    if (which == 1) return context.tell(joint->child().id());
-    return context.tell(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
+  if (!context.alive(id)) return kRemoved;
+  if (const Joint* joint = object_of<Joint>(context, id)) {
+    if (which == 0) return context.set_id(joint->parent().id());
+    if (which == 1) return context.set_id(joint->child().id());
+    return context.set_id(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
   }
-  if (const Motor* motor = thing_of<Motor>(context, id)) return context.tell(motor->joint().id());
-  if (const Gear* gear = thing_of<Gear>(context, id)) {
-    return context.tell(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
+  if (const Motor* motor = object_of<Motor>(context, id)) return context.set_id(motor->joint().id());
+  if (const Gear* gear = object_of<Gear>(context, id)) {
+    return context.set_id(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
   }
-  if (const Part* part = thing_of<Part>(context, id)) {
-    return context.tell(context.alive(part->shape()) ? part->shape() : NodeId{});
+  if (const Part* part = object_of<Part>(context, id)) {
+    return context.set_id(context.alive(part->shape()) ? part->shape() : NodeId{});
   }
-  const Body* body = thing_of<Body>(context, id);
-  return context.tell(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
+  const Body* body = object_of<Body>(context, id);
+  return context.set_id(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
 }
 
 std::int32_t list_count(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind) {
@@ -129,26 +129,27 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   ScriptContext& context = context_of(c);
   const World& world = *context.world;
   const std::string_view wanted = text_of(name, length);
-  if (kind == bodies) return found(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
-  if (kind == shapes) return found(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
-  if (kind == gears) return found(context, world.find_gear(wanted), world.gears(), "gear", "there is", wanted);
+  if (kind == bodies) return id_or_error(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
+  if (kind == shapes)
+    return id_or_error(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
+  if (kind == gears) return id_or_error(context, world.find_gear(wanted), world.gears(), "gear", "there is", wanted);
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<BehaviorGroup*> all = world.behaviors().groups();
-    return found_among<BehaviorGroup>(context, all, "group behavior", id, wanted);
+    return find_among<BehaviorGroup>(context, all, "group behavior", id, wanted);
   }
   if (const Behavior* behavior = behavior_of(context, id)) {
-    if (kind == parts) return found_among(context, behavior->parts(), "part", id, wanted);
-    if (kind == joints) return found_among(context, behavior->joints(), "joint", id, wanted);
-    return found_among(context, behavior->motors(), "motor", id, wanted);
+    if (kind == parts) return find_among(context, behavior->parts(), "part", id, wanted);
+    if (kind == joints) return find_among(context, behavior->joints(), "joint", id, wanted);
+    return find_among(context, behavior->motors(), "motor", id, wanted);
   }
-  const Body* body = thing_of<Body>(context, id);
-  if (body == nullptr) return kGone;
-  if (kind == behaviors) return found_among(context, body->behaviors(), "behavior", id, wanted);
-  // texts are made only when they are needed: a look-up in every tick must not allocate
+  const Body* body = object_of<Body>(context, id);
+  if (body == nullptr) return kRemoved;
+  if (kind == behaviors) return find_among(context, body->behaviors(), "behavior", id, wanted);
+  // create texts only for errors: a look-up in every tick must not allocate
   const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
-    if (thing != nullptr) return context.tell(thing->id());
-    return found(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
+    if (thing != nullptr) return context.set_id(thing->id());
+    return id_or_error(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
   };
   if (kind == parts) return in_body(body->find_part(wanted), body->parts(), "part");
   if (kind == joints) return in_body(body->find_joint(wanted), body->joints(), "joint");
@@ -156,8 +157,8 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 }
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // bodies first to last, within a body itself, its parts, joints, motors, behaviours; then shapes, gears, groups; the
-  // gone ones last
+  // Sort order: bodies, each followed by its parts, joints, motors, behaviors; then shapes, gears, groups; removed
+  // objects last.
   const ScriptContext& context = context_of(c);
   const World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -165,18 +166,18 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   constexpr double kKind = 0x1p23;
   constexpr double kShapes = 0x1p52;
   const auto within = [&](const Body& body, double kind, std::size_t at) {
-    return kBody * static_cast<double>(1 + place_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
+    return kBody * static_cast<double>(1 + index_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
   };
-  if (const Body* body = thing_of<Body>(context, id)) return within(*body, 0, 0);
-  if (const Part* part = thing_of<Part>(context, id)) {
-    return within(part->body(), 1, place_in(part->body().parts(), part));
+  if (const Body* body = object_of<Body>(context, id)) return within(*body, 0, 0);
+  if (const Part* part = object_of<Part>(context, id)) {
+    return within(part->body(), 1, index_in(part->body().parts(), part));
   }
-  if (const Joint* joint = thing_of<Joint>(context, id)) {
-    return within(joint->body(), 2, place_in(joint->body().joints(), joint));
+  if (const Joint* joint = object_of<Joint>(context, id)) {
+    return within(joint->body(), 2, index_in(joint->body().joints(), joint));
   }
-  if (const Motor* motor = thing_of<Motor>(context, id)) {
+  if (const Motor* motor = object_of<Motor>(context, id)) {
     const Body& body = motor->joint().body();
-    return within(body, 3, place_in(body.motors(), motor));
+    return within(body, 3, index_in(body.motors(), motor));
   }
   if (const Behavior* behavior = behavior_of(context, id)) {
     const std::span<Behavior* const> all = behavior->body().behaviors();
@@ -187,28 +188,28 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     const std::vector<BehaviorGroup*> all = world.behaviors().groups();
     return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
   }
-  if (const Gear* gear = thing_of<Gear>(context, id)) {
-    return kShapes * 1.125 + static_cast<double>(place_in(world.gears(), gear));
+  if (const Gear* gear = object_of<Gear>(context, id)) {
+    return kShapes * 1.125 + static_cast<double>(index_in(world.gears(), gear));
   }
-  if (const Shape* shape = thing_of<Shape>(context, id)) {
-    return kShapes + static_cast<double>(place_in(world.shapes(), shape));
+  if (const Shape* shape = object_of<Shape>(context, id)) {
+    return kShapes + static_cast<double>(index_in(world.shapes(), shape));
   }
   return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
 }
 
 std::int32_t joint_type(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Joint* joint = thing_of<Joint>(context, id_of(slot, generation));
-  if (joint == nullptr) return kGone;
-  return context.say(std::string(joint_type_name(joint->type())));
+  const Joint* joint = object_of<Joint>(context, id_of(slot, generation));
+  if (joint == nullptr) return kRemoved;
+  return context.set_text(std::string(joint_type_name(joint->type())));
 }
 
 std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const Body* body = thing_of<Body>(context, id_of(slot, generation));
-  if (body == nullptr) return kGone;
+  const Body* body = object_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kRemoved;
   const Result<Pose> pose = body->link_pose(text_of(name, length));
-  if (!pose) return context.refuse(pose.error());
+  if (!pose) return context.reject(pose.error());
   const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
                            pose->rotation.y, pose->rotation.z, pose->rotation.w};
   std::copy(std::begin(values), std::end(values), context.answer.number);
@@ -218,11 +219,11 @@ std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, cons
 std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
-  if (!context.alive(id)) return kGone;
-  if (const Body* body = thing_of<Body>(context, id)) {
-    return context.say(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
+  if (!context.alive(id)) return kRemoved;
+  if (const Body* body = object_of<Body>(context, id)) {
+    return context.set_text(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
   }
-  return context.say(fmt::format("{:016x}", context.hash(context.world->state_hash())));
+  return context.set_text(fmt::format("{:016x}", context.hash(context.world->state_hash())));
 }
 
 }  // namespace limber::calls

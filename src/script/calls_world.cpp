@@ -1,4 +1,4 @@
-// Behind the door: texts and names, randomness, contacts, a scene's parameters, errors on their way out.
+// C API: texts and names, random numbers, contacts, a scene's parameters, error reports.
 #include <algorithm>
 #include <cmath>
 
@@ -20,10 +20,10 @@ namespace {
 Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generation) {
   if (slot < -1) return c.behaviors->generator(-2 - slot);
   const NodeId id = id_of(slot, generation);
-  // one that outlives its behaviour draws from the scene's
+  // an rng object that outlives its behavior draws from the scene's generator
   if (slot < 0 || !c.alive(id)) return c.generator();
-  auto& behavior = *static_cast<Behavior*>(c.world->store().thing(id));
-  c.world->behaviors().undo().keep(behavior);
+  auto& behavior = *static_cast<Behavior*>(c.world->store().object(id));
+  c.world->behaviors().transaction().save(behavior);
   return behavior.random();
 }
 
@@ -32,7 +32,7 @@ Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generatio
 std::int32_t hint(void* c, const char* written, std::int32_t length, const char* names, std::int32_t names_length) {
   std::vector<std::string_view> list;
   if (names_length > 0) list = split(text_of(names, names_length), '\n');
-  return context_of(c).say(name_hint(printable(text_of(written, length)), list));
+  return context_of(c).set_text(name_hint(printable(text_of(written, length)), list));
 }
 
 std::int32_t is_pattern(void*, const char* text, std::int32_t length) {
@@ -50,16 +50,16 @@ std::int32_t find_match(void* c, const char* text, std::int32_t length, const ch
   ScriptContext& context = context_of(c);
   switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
                               anchors != 0, context.match)) {
-    case Found::yes:
+    case SearchResult::found:
       return 1;
-    case Found::no:
+    case SearchResult::not_found:
       return 0;
-    case Found::fault:
-      return context.refuse(context.search.fault());
-    case Found::too_long:
+    case SearchResult::bad_pattern:
+      return context.reject(context.search.fault());
+    case SearchResult::too_long:
       break;
   }
-  return context.refuse(
+  return context.reject(
       "this pattern takes too many steps on this text; make it simpler (fewer * + - next to each other), or the text "
       "shorter");
 }
@@ -84,19 +84,19 @@ void report(void* c) {
 std::int32_t stopped(void* c) {
   ScriptContext& context = context_of(c);
   if (!context.guard->stopped()) return 0;
-  context.say(std::string(context.guard->stop_file()));
+  context.set_text(std::string(context.guard->stop_file()));
   context.answer.number[0] = context.guard->stop_line();
   return 1;
 }
 
 std::int32_t fault(void* c) {
   ScriptContext& context = context_of(c);
-  return context.say(context.guard->fault().text);
+  return context.set_text(context.guard->fault().text);
 }
 
 std::int32_t stop_text(void* c) {
   ScriptContext& context = context_of(c);
-  return context.say(context.guard->stop_text());
+  return context.set_text(context.guard->stop_text());
 }
 
 std::int32_t read_lib(void* c, std::int32_t of, const char* name, std::int32_t length) {
@@ -105,11 +105,11 @@ std::int32_t read_lib(void* c, std::int32_t of, const char* name, std::int32_t l
   const Result<std::string> file =
       behavior == nullptr ? context.sources->find_lib(context.files, text_of(name, length))
                           : context.sources->find_behavior_lib(context.files, text_of(name, length), behavior->path);
-  if (!file) return context.refuse(file.error());
+  if (!file) return context.reject(file.error());
   Result<std::string> text = context.sources->text(*file);
-  if (!text) return context.refuse(text.error());
-  // the name that errors show, a line of its own, then the text
-  return context.say(context.files.shown(*file) + "\n" + *text);
+  if (!text) return context.reject(text.error());
+  // the name for messages on a line of its own, then the text
+  return context.set_text(context.files.display_path(*file) + "\n" + *text);
 }
 
 double random_uniform(void* c, std::int32_t slot, std::int32_t generation) {
@@ -140,10 +140,10 @@ double clamp(double x, double lo, double hi) {
 std::int32_t contact(void* c, std::int32_t index) {
   ScriptContext& context = context_of(c);
   const std::span<const ContactEvent> list = context.world->contacts();
-  if (index >= static_cast<std::int32_t>(list.size())) return kRefused;
+  if (index >= static_cast<std::int32_t>(list.size())) return kRejected;
   const ContactEvent& event = list[static_cast<std::size_t>(index)];
-  // a callback before may have removed one of the two
-  if (!context.alive(event.part) || !context.alive(event.other)) return kGone;
+  // an earlier callback may have removed one of them
+  if (!context.alive(event.part) || !context.alive(event.other)) return kRemoved;
   const auto word = [](std::uint32_t v) { return static_cast<double>(v); };
   const double numbers[] = {event.impulse,          event.position.x,
                             event.position.y,       event.position.z,
@@ -158,7 +158,7 @@ std::int32_t camera_glide(void* c, double eye_x, double eye_y, double eye_z, dou
   const ScriptContext& context = context_of(c);
   const Vec3 eye(eye_x, eye_y, eye_z);
   const Vec3 target(target_x, target_y, target_z);
-  if (!is_finite(eye) || !is_finite(target)) return kRefused;
+  if (!is_finite(eye) || !is_finite(target)) return kRejected;
   context.world->camera_moves().glide(eye, target, seconds);
   return kOk;
 }
@@ -167,44 +167,44 @@ void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {
   context_of(c).world->camera_moves().follow(slot < 0 ? NodeId{} : id_of(slot, generation));
 }
 
-void ask_reset(void* c) { context_of(c).reset_wanted = true; }
+void request_reset(void* c) { context_of(c).reset_requested = true; }
 
-void ask_panic(void* c) { context_of(c).panic_wanted = true; }
+void request_panic(void* c) { context_of(c).panic_requested = true; }
 
-void param_begin(void* c) { context_of(c).param_rows.clear(); }
+void param_begin(void* c) { context_of(c).param_properties.clear(); }
 
-std::int32_t param_row(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
-                       const double* low, const double* high) {
+std::int32_t param_property(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
+                            const double* low, const double* high) {
   ScriptContext& context = context_of(c);
   const std::string_view wanted = text_of(name, length);
-  if (context.param_rows.size() >= 64) return context.refuse("params: more than 64 parameters");
-  for (const Row& other : context.param_rows) {
+  if (context.param_properties.size() >= 64) return context.reject("params: more than 64 parameters");
+  for (const Property& other : context.param_properties) {
     if (same_name(other.name, wanted)) {
-      return context.refuse(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",
+      return context.reject(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",
                                         other.name, printable(wanted)));
     }
   }
-  Row row;
-  row.name = std::string(wanted);
-  row.type = static_cast<RowType>(type);
-  const std::size_t width = width_of(row.type);
+  Property property;
+  property.name = std::string(wanted);
+  property.type = static_cast<PropertyType>(type);
+  const std::size_t width = width_of(property.type);
   for (std::size_t i = 0; i < width; i++) {
-    if (!(low[i] <= high[i])) return context.refuse(fmt::format("params: '{}' has a min above its max", wanted));
-    row.initial[i] = std::clamp(initial[i], low[i], high[i]);
+    if (!(low[i] <= high[i])) return context.reject(fmt::format("params: '{}' has a min above its max", wanted));
+    property.initial[i] = std::clamp(initial[i], low[i], high[i]);
   }
-  row.min = *std::min_element(low, low + width);
-  row.max = *std::max_element(high, high + width);
+  property.min = *std::min_element(low, low + width);
+  property.max = *std::max_element(high, high + width);
   const auto differ = [&](const double* v) { return std::any_of(v, v + width, [&](double x) { return x != v[0]; }); };
   if (differ(low) || differ(high)) {
-    row.axis_min.assign(low, low + width);
-    row.axis_max.assign(high, high + width);
+    property.axis_min.assign(low, low + width);
+    property.axis_max.assign(high, high + width);
   }
-  context.param_rows.push_back(std::move(row));
+  context.param_properties.push_back(std::move(property));
   return kOk;
 }
 
 void param_doc(void* c, const char* text, std::int32_t length) {
-  context_of(c).param_rows.back().doc = printable(text_of(text, length));
+  context_of(c).param_properties.back().doc = printable(text_of(text, length));
 }
 
 std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
@@ -213,48 +213,50 @@ std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
   if (!known_unit(unit)) {
     std::vector<std::string_view> known;
     for (const Unit& each : units()) known.push_back(each.symbol);
-    return context.refuse(fmt::format("params: '{}' has the unit '{}', which limber doesn't know{}",
-                                      context.param_rows.back().name, printable(unit), name_hint(unit, known)));
+    return context.reject(fmt::format("params: '{}': unknown unit '{}'{}", context.param_properties.back().name,
+                                      printable(unit), name_hint(unit, known)));
   }
-  context.param_rows.back().unit = std::string(unit);
+  context.param_properties.back().unit = std::string(unit);
   return kOk;
 }
 
 void param_rerun(void* c) {
   ScriptContext& context = context_of(c);
-  context.rerun_rows |= std::uint64_t{1} << (context.param_rows.size() - 1);
+  context.rerun_properties |= std::uint64_t{1} << (context.param_properties.size() - 1);
 }
 
-void param_step(void* c, double step) { context_of(c).param_rows.back().step = step; }
+void param_step(void* c, double step) { context_of(c).param_properties.back().step = step; }
 
 void param_choice(void* c, const char* text, std::int32_t length) {
-  Row& row = context_of(c).param_rows.back();
-  row.choices.emplace_back(text_of(text, length));
-  row.max = static_cast<double>(row.choices.size()) - 1;
+  Property& property = context_of(c).param_properties.back();
+  property.choices.emplace_back(text_of(text, length));
+  property.max = static_cast<double>(property.choices.size()) - 1;
 }
 
 std::int32_t param_done(void* c) {
   ScriptContext& context = context_of(c);
-  context.params = std::make_unique<ParamsNode>(context.world->store(), std::move(context.param_rows));
-  context.param_rows.clear();
-  if (context.beside != nullptr) context.params->keep(context.beside->params);
+  context.params = std::make_unique<ParamsNode>(context.world->store(), std::move(context.param_properties));
+  context.param_properties.clear();
+  if (context.detached_inputs != nullptr) context.params->carry_over(context.detached_inputs->params);
   return params_node(c);
 }
 
 std::int32_t params_node(void* c) {
   ScriptContext& context = context_of(c);
-  const NodeId id = context.params != nullptr ? context.params->id() : context.params_of_show;
-  if (!context.alive(id)) return kGone;
-  context.tell(id);
+  const NodeId id = context.params != nullptr ? context.params->id() : context.live_params;
+  if (!context.alive(id)) return kRemoved;
+  context.set_id(id);
   Store& store = context.world->store();
   context.answer.count = static_cast<std::int32_t>(store.table_number(store.table(id)));
   return kOk;
 }
 
-void cancel_timer(void* c, std::int32_t run, std::int32_t number) { context_of(c).cancels.push_back({run, number}); }
+void cancel_timer(void* c, std::int32_t run, std::int32_t number) {
+  context_of(c).cancellations.push_back({run, number});
+}
 
 void handles(void* c, std::int32_t** ids, std::int32_t count) {
-  context_of(c).things = {ids, static_cast<std::size_t>(count)};
+  context_of(c).handle_ids = {ids, static_cast<std::size_t>(count)};
 }
 
 }  // namespace limber::calls

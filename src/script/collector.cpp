@@ -1,4 +1,4 @@
-// The collector's slices.
+// Incremental garbage collection.
 #include "script/collector.h"
 
 #include <algorithm>
@@ -16,47 +16,47 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kSlice = std::chrono::microseconds(100);
-constexpr std::size_t kGrowth = std::size_t{512} << 10u;  // a cycle begins when the heap has grown by half and this
+constexpr std::size_t kGrowth = std::size_t{512} << 10u;  // a cycle begins when the heap has grown by half plus this
 
 }  // namespace
 
-Collector::Collector(lua_State* state, const Memory& memory) : state_(state), memory_(memory) {
+GarbageCollector::GarbageCollector(lua_State* state, const LuaMemory& memory) : state_(state), memory_(memory) {
   lua_gc(state_, LUA_GCCOLLECT, 0);
   used_after_cycle_ = memory_.used();
-  rest();
+  pause();
 }
 
-void Collector::rest() { lua_gc(state_, LUA_GCSTOP, 0); }
+void GarbageCollector::pause() { lua_gc(state_, LUA_GCSTOP, 0); }
 
-void Collector::pass_memory(KeyBytes& key) { key.pass_all(used_after_cycle_, cycles_); }
+void GarbageCollector::serialize(Archive& archive) { archive.serialize_all(used_after_cycle_, cycles_left_); }
 
-void Collector::begin_run() { lua_gc(state_, LUA_GCRESTART, 0); }
+void GarbageCollector::begin_run() { lua_gc(state_, LUA_GCRESTART, 0); }
 
-// what a run has made stays, most of it: it is no garbage that came between ticks
-void Collector::end_run() {
+// most of the memory allocated by a run stays in use, so it must not count as growth
+void GarbageCollector::end_run() {
   used_after_cycle_ = memory_.used();
-  rest();
+  pause();
 }
 
-void Collector::begin_calls() {
+void GarbageCollector::begin_calls() {
   if (memory_.used() > memory_.cap() / 2) lua_gc(state_, LUA_GCRESTART, 0);
 }
 
-void Collector::after_tick() {
+void GarbageCollector::after_tick() {
   const std::size_t used = memory_.used();
   const std::size_t limit = used_after_cycle_ + used_after_cycle_ / 2 + kGrowth;
-  if (cycles_ == 0 && used < limit) return rest();
-  cycles_ = std::max(cycles_, 1);
-  // a script that makes more than a slice can collect gets longer ones
-  const bool much = used > 2 * limit || used > memory_.cap() / 2;
-  const Clock::time_point end = Clock::now() + (much ? 10 * kSlice : kSlice);
+  if (cycles_left_ == 0 && used < limit) return pause();
+  cycles_left_ = std::max(cycles_left_, 1);
+  // use longer slices if scripts allocate more than a normal slice can collect
+  const bool behind = used > 2 * limit || used > memory_.cap() / 2;
+  const Clock::time_point end = Clock::now() + (behind ? 10 * kSlice : kSlice);
   do {
     if (lua_gc(state_, LUA_GCSTEP, 1) == 0) continue;
-    cycles_--;
+    cycles_left_--;
     used_after_cycle_ = memory_.used();
-    if (cycles_ == 0) break;
+    if (cycles_left_ == 0) break;
   } while (Clock::now() < end);
-  rest();  // a step starts the collector again
+  pause();  // LUA_GCSTEP restarts the automatic collector
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Collector: Lua's garbage, collected between ticks in short slices. [sim]
+// GarbageCollector: runs Lua's garbage collection between ticks in short slices. [sim]
 #pragma once
 
 #include <cstddef>
@@ -7,33 +7,33 @@ struct lua_State;
 
 namespace limber {
 
-class KeyBytes;
-class Memory;
+class Archive;
+class LuaMemory;
 
-class Collector {
+class GarbageCollector {
  public:
-  Collector(lua_State* state, const Memory& memory);
+  GarbageCollector(lua_State* state, const LuaMemory& memory);
 
-  /// Before a scene's top level, and after it: the collector works by itself meanwhile.
+  /// Around a scene's top level, during which Lua's automatic collection is enabled.
   void begin_run();
   void end_run();
-  /// Before a tick's calls. It rests in them, unless memory is scarce.
+  /// Before a tick's calls. The collector is paused during calls unless memory is scarce.
   void begin_calls();
-  /// After the tick: about 100 µs at most when there is enough to collect; longer when scripts make more than that, and
-  /// at the end of a cycle when very much is written to all the time, which is looked at again in one go.
+  /// After the tick: collects for up to about 100 µs if enough has been allocated. Takes longer if scripts allocate
+  /// more than that, and at the end of a cycle that has to traverse frequently written tables again (atomic phase).
   void after_tick();
-  /// After a script was stopped for memory: whole cycles, in slices too.
-  void collect_all() { cycles_ = 2; }
-  /// For a key state.
-  void pass_memory(KeyBytes& key);
+  /// After a script was stopped for memory: runs two full cycles, in slices as well.
+  void collect_all() { cycles_left_ = 2; }
+  /// For a checkpoint.
+  void serialize(Archive& archive);
 
  private:
-  void rest();
+  void pause();
 
   lua_State* state_;
-  const Memory& memory_;
+  const LuaMemory& memory_;
   std::size_t used_after_cycle_;
-  int cycles_ = 0;  // to be finished
+  int cycles_left_ = 0;  // cycles still to complete
 };
 
 }  // namespace limber

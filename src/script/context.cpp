@@ -1,4 +1,4 @@
-// Answers, names of things, the scene's generator.
+// Results, object names, random numbers, and begin and end of guarded calls.
 #include "script/context.h"
 
 #include <fmt/format.h>
@@ -14,35 +14,35 @@ ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
     : world(&w),
       host(h),
       options(std::move(o)),
-      search([this] { return guard->stop_asked(); }),
+      search([this] { return guard->stop_requested(); }),
       behaviors(std::make_shared<BehaviorScripts>(*this)) {
-  look_at(world);
+  set_world(world);
 }
 
 ScriptContext::~ScriptContext() {
-  behaviors->close();
-  look_at(nullptr);
+  behaviors->detach();
+  set_world(nullptr);
 }
 
-void ScriptContext::look_at(World* other) {
+void ScriptContext::set_world(World* new_world) {
   if (world != nullptr) {
-    world->store().hide_view(view);
-    world->solids().hide_view(solids);
+    world->store().unregister_view(view);
+    world->mass_table().unregister_view(mass_table);
   }
-  world = other;
+  world = new_world;
   if (world == nullptr) return;
-  world->store().show_view(view);
-  world->solids().show_view(solids);
+  world->store().register_view(view);
+  world->mass_table().register_view(mass_table);
 }
 
-std::int32_t ScriptContext::say(std::string what) {
-  text = std::move(what);
+std::int32_t ScriptContext::set_text(std::string new_text) {
+  text = std::move(new_text);
   answer.text = text.data();
   answer.length = static_cast<std::int32_t>(text.size());
   return kOk;
 }
 
-std::int32_t ScriptContext::tell(NodeId id) {
+std::int32_t ScriptContext::set_id(NodeId id) {
   answer.slot = static_cast<std::int32_t>(id.slot);
   answer.generation = static_cast<std::int32_t>(id.generation);
   answer.count = id.null() ? 0 : 1;
@@ -50,9 +50,9 @@ std::int32_t ScriptContext::tell(NodeId id) {
 }
 
 Random& ScriptContext::generator() {
-  // a seed that comes later counts from the next start
-  const bool anew = !seeded_with || (answer.top_level != 0 && *seeded_with != world->seed());
-  if (anew) {
+  // a change of the seed in a callback takes effect at the next start
+  const bool reseed = !seeded_with || (answer.top_level != 0 && *seeded_with != world->seed());
+  if (reseed) {
     seeded_with = world->seed();
     random = Random(world->seed(), random_name);
   }
@@ -60,86 +60,86 @@ Random& ScriptContext::generator() {
 }
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) const {
-  NumberHash numbers(behaviors->hash(start) + (params != nullptr ? kept_hash(world->store(), params->id()) : 0));
-  if (random.drawn()) numbers.add(random.state());
+  NumberHash numbers(behaviors->hash(start) + (params != nullptr ? persistent_hash(world->store(), params->id()) : 0));
+  if (random.used()) numbers.add(random.state());
   return numbers.value();
 }
 
 void ScriptContext::count_call() {
-  answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps after a day
+  answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps around after a day
   random_before_ = random;
   seeded_before_ = seeded_with;
 }
 
 void ScriptContext::begin_call() {
   count_call();
-  reset_wanted = panic_wanted = false;
-  cancels_before_call = cancels.size();
-  means_of_all = {};
-  world->undo().begin();
+  reset_requested = panic_requested = false;
+  cancellations_before_call = cancellations.size();
+  group_means = {};
+  world->transaction().begin();
 }
 
 bool ScriptContext::next_call() {
-  if (!world->undo().untouched() || !held.empty() || reset_wanted || panic_wanted ||
-      cancels.size() > cancels_before_call) {
+  if (!world->transaction().is_empty() || !pending_messages.empty() || reset_requested || panic_requested ||
+      cancellations.size() > cancellations_before_call) {
     end_call(true);
     begin_call();
     return true;
   }
   count_call();
-  forces.commit(world->loads());
+  forces.commit(world->force_accumulators());
   return false;
 }
 
-void ScriptContext::end_call(bool good) {
-  forces.apply_committed(world->loads());
-  if (good) {
-    world->undo().end();
-    forces.apply(world->loads());
-    for (Held& h : held) {
-      if (h.way == Way::all) {
-        host.send(std::move(h.message));
-      } else if (h.way == Way::sender) {
-        host.reply(h.to, std::move(h.message));
+void ScriptContext::end_call(bool success) {
+  forces.apply_committed(world->force_accumulators());
+  if (success) {
+    world->transaction().commit();
+    forces.apply(world->force_accumulators());
+    for (PendingMessage& pending : pending_messages) {
+      if (pending.route == Route::all) {
+        host.send(std::move(pending.message));
+      } else if (pending.route == Route::sender) {
+        host.reply(pending.to, std::move(pending.message));
       } else {
-        host.send_direct(h.to, std::move(h.message));
+        host.send_direct(pending.to, std::move(pending.message));
       }
     }
-    for (Message& wish : preset_wishes) host.ask_preset(std::move(wish));
-    if (reset_wanted) host.ask_reset();
-    if (panic_wanted) host.ask_panic();
+    for (Message& request : preset_requests) host.request_preset(std::move(request));
+    if (reset_requested) host.request_reset();
+    if (panic_requested) host.request_panic();
   } else {
-    forces.take_back();
-    world->undo().take_back();
-    cancels.resize(cancels_before_call);
+    forces.discard_uncommitted();
+    world->transaction().rollback();
+    cancellations.resize(cancellations_before_call);
     random = random_before_;
     seeded_with = seeded_before_;
   }
-  held.clear();
-  preset_wishes.clear();
+  pending_messages.clear();
+  preset_requests.clear();
 }
 
 Behavior* behavior_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   if (!c.alive(id) || store.table(id).name() != "behavior") return nullptr;
-  return static_cast<Behavior*>(store.thing(id));
+  return static_cast<Behavior*>(store.object(id));
 }
 
 BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
-  // Store's own nodes without rows are called groups too
+  // groups of the store without properties are also called groups
   if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
-  return static_cast<BehaviorGroup*>(store.thing(id));
+  return static_cast<BehaviorGroup*>(store.object(id));
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
-  if (!store.alive(id)) return "a thing that no longer exists";
-  const Table* const table = &store.table(id);
+  if (!store.alive(id)) return "an object that no longer exists";
+  const PropertyTable* const table = &store.table(id);
   if (table == &World::table()) return "sim";
   if (table == &Visuals::table()) return "visuals";
   if (table == &Camera::table()) return "visuals.camera";
-  if (table == &Look::table()) return "visuals.look";
+  if (table == &Appearance::table()) return "visuals.look";
   const std::string& name = store.name(id);
   if (table == &Body::table() || table == &Shape::table() || table == &Gear::table())
     return fmt::format("{} '{}'", table->name(), name);

@@ -1,4 +1,4 @@
-// ScriptContext: what the functions behind the door work on; one for each scene. [sim]
+// ScriptContext: the state that the functions of the C API work on; one per scene run. [sim]
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@
 namespace limber {
 
 class BehaviorScripts;
-class CallLedger;
+class CallLog;
 class Guard;
 
 struct ScriptContext {
@@ -36,95 +36,98 @@ struct ScriptContext {
   ScriptContext(const ScriptContext&) = delete;
   ScriptContext& operator=(const ScriptContext&) = delete;
 
-  World* world;    ///< Another one once a run beside the show becomes the show; null once it was replaced.
-  StoreView view;  ///< Of that world's store: one address for the life of the context.
-  PartSolids::View solids;
-  /// The views become those of that world, or of none.
-  void look_at(World* other);
+  World* world;                ///< Replaced when a detached run goes live; null after the run was replaced.
+  StoreView view;              ///< View of that world's store; its address is constant for the life of the context.
+  MassTable::View mass_table;  ///< View of that world's mass table.
+  /// Attaches the views to that world, or detaches them (null).
+  void set_world(World* new_world);
   ScriptHost& host;
   SceneOptions options;
   ScriptFiles files;
   std::shared_ptr<Sources> sources = std::make_shared<Sources>();
-  const RunInputs* beside = nullptr;  ///< During a run beside the show: what it may read of it.
+  const RunInputs* detached_inputs = nullptr;  ///< During a detached run: the data of the live scene that it may read.
 
   LimberAnswer answer{};
-  std::string text;  ///< What `answer.text` points to.
-  LimberRow row{};
-  MatchSearch search;  ///< Ends early when the call is to be stopped.
+  std::string text;  ///< Storage of `answer.text`.
+  LimberProperty property_info{};
+  MatchSearch search;  ///< Ends early when the running call is to be stopped.
   Match match;
 
-  // generator of the scene's file: of the seed and the file's name, anew when the top level changes the seed
+  // Generator of the scene's file, seeded with the world's seed and the file name; seeded again when the top level
+  // changes the seed.
   std::string random_name;
   std::optional<std::uint64_t> seeded_with;
   Random random;
   Random& generator();
-  /// The world's hash with the bits of the generators that were drawn from, and of the scene's parameters.
+  /// Returns the hash continued with the states of used generators and the values of the scene's parameters.
   std::uint64_t hash(std::uint64_t start) const;
 
-  // gathered by several calls before the one that makes something of them
+  // collected by several API calls before the one that uses them
   std::vector<Vec3> mesh_points;
   ImportOptions import;
   BuildOptions build;
   Message message;
-  std::vector<Row> param_rows;
-  std::array<Selection, 5> selections;  ///< Of parts, joints, motors, bodies, neighbour parts.
+  std::vector<Property> param_properties;
+  std::array<Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
 
-  // walks over neighbours, several at a time where loops stand inside each other
-  static constexpr std::size_t kWalks = 16;
-  std::array<LimberWalk, kWalks> walks{};
-  std::array<std::vector<Neighbor>, kWalks> found;
-  LimberMeansOfAll means_of_all{};  ///< The means that were asked for last, of a whole group; until the call ends.
+  // iterations over neighbors; nested loops use several at a time
+  static constexpr std::size_t kMaxIterations = 16;
+  std::array<LimberIteration, kMaxIterations> iterations{};
+  std::array<std::vector<Neighbor>, kMaxIterations> neighbor_lists;
+  LimberGroupMeans group_means{};  ///< Neighbor means of a whole group, as last requested; valid until the call ends.
 
-  // what the run loaded, by what it asked for: callbacks may have it again, since they must not wait for a disk
+  // Models and meshes that the run has loaded, by request: callbacks can reuse them, but must not read from disk.
   std::map<std::string, std::shared_ptr<const BodyModel>> loaded_models;
   std::map<std::string, std::shared_ptr<const MeshModel>> loaded_meshes;
-  OscPlan plan;
-  Origin sender;  ///< Of the message that is handled now.
+  OscConfig osc_config;
+  CommandOrigin sender;  ///< Of the message being handled.
   bool handling_message = false;
-  std::int32_t handlers = 0;           ///< Registered by osc:on.
-  std::int32_t disabled_handlers = 0;  ///< Of these: failed or were stopped.
+  std::int32_t handlers = 0;           ///< Number registered by osc:on.
+  std::int32_t disabled_handlers = 0;  ///< Number of these that are disabled because they failed or were stopped.
   std::unique_ptr<ParamsNode> params;
-  NodeId params_of_show;            ///< Of an earlier run, which has none itself: those of the run that plays, or none.
-  std::uint64_t rerun_rows = 0;     ///< Parameters with `rerun`, a bit a row.
-  std::optional<double> timers_at;  ///< Time at which timers were looked at last.
-  std::span<std::int32_t* const> things;       ///< Slot and generation of every handle, while these are given others.
-  std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviours that live in the world.
+  NodeId live_params;                  ///< Of an earlier run, which has no parameters: the live run's node, or null.
+  std::uint64_t rerun_properties = 0;  ///< Bit mask of the parameters with `rerun`, by property index.
+  std::optional<double> timers_at;     ///< Time at which timers were last checked.
+  std::span<std::int32_t* const> handle_ids;   ///< Slot and generation of every handle, while the handles are remapped.
+  std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviors in the world.
 
-  // guarded calls: what one asks of the outside waits until it has ended well
+  // Requests of a guarded call that are carried out only when it succeeds: messages, presets, reset, panic, forces.
   Guard* guard = nullptr;       ///< Of the scene's Vm.
-  CallLedger* calls = nullptr;  ///< Who counts them, where somebody does.
-  enum class Way : std::uint8_t { all, sender, direct };
-  struct Held {
-    Way way;
-    Origin to;
+  CallLog* call_log = nullptr;  ///< Counts the calls; may be null.
+  enum class Route : std::uint8_t { all, sender, direct };
+  struct PendingMessage {
+    Route route;
+    CommandOrigin to;
     Message message;
   };
-  std::vector<Held> held;
-  std::size_t held_text = 0;  ///< Bytes of text in them.
-  std::vector<Message> preset_wishes;
-  struct Cancel {
+  std::vector<PendingMessage> pending_messages;
+  std::size_t pending_text_bytes = 0;  ///< Bytes of text in them.
+  std::vector<Message> preset_requests;
+  struct TimerCancellation {
     std::int32_t run;
     std::int32_t number;
   };
-  std::vector<Cancel> cancels;          ///< Timers of earlier runs, by this call and by those that ended well.
-  std::size_t cancels_before_call = 0;  ///< Those of the latter.
-  bool reset_wanted = false;
-  bool panic_wanted = false;
+  std::vector<TimerCancellation>
+      cancellations;  ///< Timers of earlier runs to cancel, by successful calls and the current one.
+  std::size_t cancellations_before_call = 0;  ///< Number of those by successful calls.
+  bool reset_requested = false;
+  bool panic_requested = false;
   ForceQueue forces;
-  /// From here on everything that a script does is kept for the undo.
+  /// Starts recording changes for a rollback.
   void begin_call();
-  /// A good one's messages go out; a bad one is taken back, its random draws too.
-  void end_call(bool good);
-  /// Ends a good one and begins another; whether it did more than push parts. Where not, it costs next to nothing.
+  /// Success: sends the messages. Failure: rolls back all changes, including random draws.
+  void end_call(bool success);
+  /// Ends a successful call and begins another. Returns true if the ended call did more than apply forces; otherwise
+  /// the switch costs almost nothing.
   bool next_call();
 
-  // answers
-  std::int32_t say(std::string what);
-  std::int32_t refuse(std::string why) {
-    say(std::move(why));
-    return kRefused;
+  // results for Lua
+  std::int32_t set_text(std::string new_text);
+  std::int32_t reject(std::string reason) {
+    set_text(std::move(reason));
+    return kRejected;
   }
-  std::int32_t tell(NodeId id);
+  std::int32_t set_id(NodeId id);
   bool alive(NodeId id) const { return world->store().alive(id); }
 
  private:
@@ -140,16 +143,16 @@ inline NodeId id_of(std::int32_t slot, std::int32_t generation) {
 inline std::string_view text_of(const char* text, std::int32_t length) {
   return {text, static_cast<std::size_t>(length)};
 }
-/// The thing of an id when it is alive and of that class, else null.
+/// Returns the object with this id if it exists and is of class T, else null.
 template <class T>
-T* thing_of(const ScriptContext& c, NodeId id) {
+T* object_of(const ScriptContext& c, NodeId id) {
   if (!c.alive(id) || &c.world->store().table(id) != &T::table()) return nullptr;
-  return static_cast<T*>(c.world->store().thing(id));
+  return static_cast<T*>(c.world->store().object(id));
 }
-/// The behaviour, or the group, of an id, when it is alive and one, else null.
+/// Returns the behavior or group with this id, or null.
 Behavior* behavior_of(const ScriptContext& c, NodeId id);
 BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
-/// How errors name a thing: "motor 'arm/joint_2'", "body 'arm'", "sim".
+/// Returns the name of an object for messages: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 
 }  // namespace limber

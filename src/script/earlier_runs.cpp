@@ -1,4 +1,4 @@
-// Runs that were replaced: their timers, and where their handles point.
+// Earlier runs: their timers, and remapping of their handles.
 #include "script/earlier_runs.h"
 
 #include <algorithm>
@@ -15,8 +15,9 @@ namespace limber {
 
 namespace {
 
-// names from the node up to the root, and the type of a behavior; no name has a 0 in it
-std::string name_of(const ScriptContext& c, NodeId id) {
+// Unique key of an object: names from the node to the root, and the type of a behavior. Separated by zero bytes, which
+// names can't contain.
+std::string object_key(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   std::string name;
   if (const Behavior* behavior = behavior_of(c, id)) name = behavior->type().name;
@@ -30,22 +31,22 @@ std::string name_of(const ScriptContext& c, NodeId id) {
 
 }  // namespace
 
-void HandleNames::note(const ScriptContext& context) {
+void HandleNames::capture(const ScriptContext& context) {
   names_.clear();
-  for (const std::int32_t* const handle : context.things) {
+  for (const std::int32_t* const handle : context.handle_ids) {
     const NodeId id = id_of(handle[0], handle[1]);
-    names_.push_back(context.alive(id) ? name_of(context, id) : std::string());
+    names_.push_back(context.alive(id) ? object_key(context, id) : std::string());
   }
 }
 
-void HandleNames::follow(const ScriptContext& context) const {
+void HandleNames::resolve(const ScriptContext& context) const {
   const Store& store = context.world->store();
-  std::unordered_map<std::string, NodeId> found;  // filled when the first is looked for
+  std::unordered_map<std::string, NodeId> found;  // filled on first use
   for (std::size_t i = 0; i < names_.size(); i++) {
-    std::int32_t* const handle = context.things[i];
+    std::int32_t* const handle = context.handle_ids[i];
     if (context.alive(id_of(handle[0], handle[1]))) continue;
     if (found.empty() && !names_[i].empty())
-      store.walk(store.root(), [&](NodeId id) { found.emplace(name_of(context, id), id); });
+      store.walk(store.root(), [&](NodeId id) { found.emplace(object_key(context, id), id); });
     const auto at = names_[i].empty() ? found.end() : found.find(names_[i]);
     handle[0] = at == found.end() ? -1 : static_cast<std::int32_t>(at->second.slot);
     if (at != found.end()) handle[1] = static_cast<std::int32_t>(at->second.generation);
@@ -57,9 +58,9 @@ EarlierRuns::Run::Run(std::unique_ptr<ScriptContext> its_context, std::unique_pt
 EarlierRuns::Run::~Run() = default;
 EarlierRuns::Run::Run(Run&&) noexcept = default;
 EarlierRuns::Run& EarlierRuns::Run::operator=(Run&& other) noexcept {
-  vm = std::move(other.vm);  // first: it works on the context
+  vm = std::move(other.vm);  // first, because the Vm uses the context
   context = std::move(other.context);
-  names = std::move(other.names);
+  handle_names = std::move(other.handle_names);
   number = other.number;
   timers = other.timers;
   ended_at = other.ended_at;
@@ -70,64 +71,65 @@ EarlierRuns::Run& EarlierRuns::Run::operator=(Run&& other) noexcept {
 EarlierRuns::EarlierRuns() = default;
 EarlierRuns::~EarlierRuns() = default;
 
-void EarlierRuns::note_things() {
+void EarlierRuns::capture_handles() {
   for (Run& run : runs_) {
     run.vm->gather_handles();
-    run.names.note(*run.context);
+    run.handle_names.capture(*run.context);
   }
 }
 
-void EarlierRuns::follow_things(NodeId params) {
+void EarlierRuns::resolve_handles(NodeId params) {
   for (Run& run : runs_) {
-    run.names.follow(*run.context);
-    run.context->params_of_show = params;
+    run.handle_names.resolve(*run.context);
+    run.context->live_params = params;
     run.vm->handles_moved();
-    run.context->things = {};
+    run.context->handle_ids = {};
   }
 }
 
-// What it has made stays, and it may take a little more: all runs together stay within a known multiple of the limit.
+// Each run keeps its memory and may allocate a little more, so the total is bounded by a small multiple of the limit.
 ScriptLimits EarlierRuns::limits_of(const Run& run, const ScriptLimits& limits) {
   ScriptLimits own = limits;
-  own.memory = run.vm->guard().memory().used() + limits.memory / kMax;
+  own.memory = run.vm->guard().memory().used() + limits.memory / kMaxRuns;
   return own;
 }
 
 std::uint64_t EarlierRuns::add(Run run) {
-  // a run begins history again, so nothing goes back to where the ended ones had timers
+  // a reload restarts the history, so no rewind can reach the time when ended runs had timers
   std::erase_if(runs_, [](const Run& old) { return old.timers == 0; });
   run.timers = run.vm->callback_timers().timers;
   run.state = run.vm->state_text();
-  run.vm->guard().limit(limits_of(run, run.context->options.limits));
+  run.vm->guard().set_limits(limits_of(run, run.context->options.limits));
   runs_.push_back(std::move(run));
-  if (runs_.size() <= kMax) return 0;
+  if (runs_.size() <= kMaxRuns) return 0;
   const std::uint64_t ended = runs_.front().timers;
   runs_.erase(runs_.begin());
   return ended;
 }
 
-void EarlierRuns::cancel(ScriptContext& by, std::uint64_t tick) {
-  for (const ScriptContext::Cancel& wish : by.cancels) {
-    const auto run = std::ranges::find_if(
-        runs_, [&](const Run& each) { return each.number == static_cast<std::uint64_t>(wish.run) && each.timers > 0; });
+void EarlierRuns::apply_cancellations(ScriptContext& by, std::uint64_t tick) {
+  for (const ScriptContext::TimerCancellation& request : by.cancellations) {
+    const auto run = std::ranges::find_if(runs_, [&](const Run& each) {
+      return each.number == static_cast<std::uint64_t>(request.run) && each.timers > 0;
+    });
     if (run == runs_.end()) continue;
-    run->vm->cancel_timer(wish.number);
+    run->vm->cancel_timer(request.number);
     run->timers = run->vm->callback_timers().timers;
     if (run->timers == 0) run->ended_at = tick;
   }
-  by.cancels.clear();
+  by.cancellations.clear();
 }
 
-void EarlierRuns::tick(Vm& show, std::uint64_t tick) {
+void EarlierRuns::tick(Vm& live, std::uint64_t tick) {
   for (Run& run : runs_) {
     if (run.timers == 0 || !run.vm->timers_due()) continue;
-    const std::string before = show.state_text();
-    if (before != run.state) run.vm->change_state(run.state, before);
+    const std::string before = live.state_text();
+    if (before != run.state) run.vm->apply_state_changes(run.state, before);
     run.timers = run.vm->run_timers();
     run.state = run.vm->state_text();
-    if (run.state != before) show.change_state(before, run.state);
+    if (run.state != before) live.apply_state_changes(before, run.state);
     if (run.timers == 0) run.ended_at = tick;
-    cancel(*run.context, tick);
+    apply_cancellations(*run.context, tick);
   }
 }
 
@@ -135,12 +137,12 @@ void EarlierRuns::collect_garbage() {
   for (Run& run : runs_) run.vm->collect_garbage();
 }
 
-void EarlierRuns::do_again(bool on) {
-  for (Run& run : runs_) run.vm->guard().do_again(on);
+void EarlierRuns::set_replaying(bool on) {
+  for (Run& run : runs_) run.vm->guard().set_replaying(on);
 }
 
-void EarlierRuns::limit(const ScriptLimits& limits) {
-  for (Run& run : runs_) run.vm->guard().limit(limits_of(run, limits));
+void EarlierRuns::set_limits(const ScriptLimits& limits) {
+  for (Run& run : runs_) run.vm->guard().set_limits(limits_of(run, limits));
 }
 
 std::uint64_t EarlierRuns::hash(std::uint64_t start) const {

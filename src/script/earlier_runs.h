@@ -1,5 +1,5 @@
-// EarlierRuns: runs of a scene whose file was saved since. Timers that their callbacks set go on, each in the Lua state
-// that it was set in, with its functions and variables. [sim]
+// EarlierRuns: runs of a scene that a reload has replaced. Timers set by their callbacks continue, each in its own Lua
+// state with its functions and variables. [sim]
 #pragma once
 
 #include <cstddef>
@@ -17,23 +17,23 @@ class Store;
 class Vm;
 struct ScriptContext;
 
-/// Where the handles of a Lua state point, by the names of things, while things are made again.
+/// Names of the objects that a Lua state's handles refer to, saved while objects are rebuilt.
 class HandleNames {
  public:
-  /// Before: notes the name of each living thing. The handles are those that the state has gathered.
-  void note(const ScriptContext& context);
-  /// After: a handle whose thing was made again gets the id of that of the same name and kind; others that are gone
-  /// are gone for good.
-  void follow(const ScriptContext& context) const;
+  /// Before the rebuild: saves the name of each existing object. Uses the handles collected in the context.
+  void capture(const ScriptContext& context);
+  /// After the rebuild: updates each handle to the object of the same name and kind. Handles without one become invalid
+  /// permanently.
+  void resolve(const ScriptContext& context) const;
 
  private:
-  std::vector<std::string> names_;  // one a handle; empty: gone
+  std::vector<std::string> names_;  // one per handle; empty: the object did not exist
 };
 
 class EarlierRuns {
  public:
-  /// More runs than that are not kept: each is a Lua state of its own.
-  static constexpr std::size_t kMax = 16;
+  /// Maximum number of runs; each has a Lua state of its own.
+  static constexpr std::size_t kMaxRuns = 16;
 
   struct Run {
     Run(std::unique_ptr<ScriptContext> its_context, std::unique_ptr<Vm> its_vm);
@@ -43,11 +43,11 @@ class EarlierRuns {
 
     std::unique_ptr<ScriptContext> context;
     std::unique_ptr<Vm> vm;
-    HandleNames names;
-    std::uint64_t number = 0;    ///< Of the run, counted through the show.
-    std::uint64_t timers = 0;    ///< That wait; 0: it has ended, and is kept for a rewind.
-    std::uint64_t ended_at = 0;  ///< The tick in which its last timer ended.
-    std::string state;           ///< `state` as the run had it last.
+    HandleNames handle_names;
+    std::uint64_t number = 0;    ///< Sequence number of the run within the session.
+    std::uint64_t timers = 0;    ///< Number of pending timers; 0: the run has ended and exists only for a rewind.
+    std::uint64_t ended_at = 0;  ///< Tick in which the last timer ended.
+    std::string state;           ///< The scene's `state` after this run's last timer, serialized.
   };
 
   EarlierRuns();
@@ -55,25 +55,26 @@ class EarlierRuns {
   EarlierRuns(const EarlierRuns&) = delete;
   EarlierRuns& operator=(const EarlierRuns&) = delete;
 
-  /// Before and after things of the world are made again. Those of `params` are at that node then, or nowhere.
-  void note_things();
-  void follow_things(NodeId params);
-  /// One more. The answer: timers that ended because there are too many runs.
+  /// Called before objects of the world are rebuilt: saves the names behind the handles.
+  void capture_handles();
+  /// Called after objects were rebuilt: updates the handles. `params`: node of the live run's parameters, or null.
+  void resolve_handles(NodeId params);
+  /// Adds a run. Returns the number of timers that ended because there were too many runs.
   std::uint64_t add(Run run);
-  /// Timers that are due, oldest run first. `show`: the run that plays; `state` is the same for all.
-  void tick(Vm& show, std::uint64_t tick);
+  /// Runs due timers, oldest run first. `live`: the live run; `state` is shared by all runs.
+  void tick(Vm& live, std::uint64_t tick);
   /// Ends the timers that a run's calls have canceled.
-  void cancel(ScriptContext& by, std::uint64_t tick);
+  void apply_cancellations(ScriptContext& by, std::uint64_t tick);
   void collect_garbage();
-  void do_again(bool on);
-  void limit(const ScriptLimits& limits);
-  /// With the runs that have timers left; without any it stays as it is.
+  void set_replaying(bool on);
+  void set_limits(const ScriptLimits& limits);
+  /// Returns the hash continued with the runs that have pending timers; unchanged if there are none.
   std::uint64_t hash(std::uint64_t start) const;
-  /// Runs that had ended before that tick are released: nothing goes back to where they had not.
+  /// Releases runs that ended before that tick; no rewind can reach the time when they had timers.
   void release_ended(std::uint64_t before);
 
   std::vector<Run>& all() { return runs_; }
-  /// Timers that wait, and how many of them repeat.
+  /// Pending timers, and how many of them repeat.
   struct Counts {
     std::uint64_t timers = 0;
     std::uint64_t repeating = 0;

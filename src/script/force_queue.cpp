@@ -1,4 +1,4 @@
-// From the queue to the parts.
+// Applying the queued forces to parts.
 #include "script/force_queue.h"
 
 #include <algorithm>
@@ -10,54 +10,56 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kFirst = 1024;
-constexpr std::size_t kMost = std::size_t{1} << 20u;
-constexpr std::int32_t kEnough = 256;  // of one go: they are in the nearest cache still
+constexpr std::size_t kInitialSize = 1024;
+constexpr std::size_t kMaxSize = std::size_t{1} << 20u;
+constexpr std::int32_t kFlushCount = 256;  // entries to apply at once, while they are still in the L1 cache
 }  // namespace
 
-ForceQueue::ForceQueue() : entries_(kFirst) { view_ = {entries_.data(), 0, static_cast<std::int32_t>(kFirst)}; }
+ForceQueue::ForceQueue() : entries_(kInitialSize) {
+  view_ = {entries_.data(), 0, static_cast<std::int32_t>(kInitialSize)};
+}
 
 bool ForceQueue::grow() {
-  if (entries_.size() >= kMost) return false;
+  if (entries_.size() >= kMaxSize) return false;
   entries_.resize(2 * entries_.size());
   view_.list = entries_.data();
-  view_.room = static_cast<std::int32_t>(entries_.size());
+  view_.capacity = static_cast<std::int32_t>(entries_.size());
   return true;
 }
 
-void ForceQueue::give(std::int32_t from, std::int32_t to, PartLoads& loads) const {
+void ForceQueue::apply_range(std::int32_t from, std::int32_t to, ForceAccumulators& loads) const {
   for (std::int32_t i = from; i < to; i++) {
     const LimberForce& f = entries_[static_cast<std::size_t>(i)];
-    PartLoads::Load* const load = loads.load_of_slot(static_cast<std::uint32_t>(f.slot));
-    if (load != nullptr) (f.turns == 0 ? load->force : load->torque) += Vec3(f.x, f.y, f.z);
+    ForceAccumulators::Wrench* const load = loads.wrench_of_slot(static_cast<std::uint32_t>(f.slot));
+    if (load != nullptr) (f.is_torque == 0 ? load->force : load->torque) += Vec3(f.x, f.y, f.z);
   }
 }
 
-void ForceQueue::commit(PartLoads& loads) {
+void ForceQueue::commit(ForceAccumulators& loads) {
   committed_ = view_.count;
-  if (committed_ >= kEnough) apply(loads);
+  if (committed_ >= kFlushCount) apply(loads);
 }
 
-void ForceQueue::apply_committed(PartLoads& loads) {
+void ForceQueue::apply_committed(ForceAccumulators& loads) {
   if (committed_ == 0) return;
-  give(0, committed_, loads);
+  apply_range(0, committed_, loads);
   std::copy(entries_.begin() + committed_, entries_.begin() + view_.count, entries_.begin());
   view_.count -= std::exchange(committed_, 0);
 }
 
-void ForceQueue::apply(PartLoads& loads) {
-  give(0, view_.count, loads);
+void ForceQueue::apply(ForceAccumulators& loads) {
+  apply_range(0, view_.count, loads);
   view_.count = committed_ = 0;
 }
 
-void ForceQueue::apply_kept(World& world) {
-  apply_committed(world.loads());
+void ForceQueue::apply_with_rollback(World& world) {
+  apply_committed(world.force_accumulators());
   for (const LimberForce& f : std::span(entries_).first(static_cast<std::size_t>(view_.count))) {
     const std::uint32_t slot = static_cast<std::uint32_t>(f.slot);
-    PartLoads::Load* const load = world.loads().load_of_slot(slot);
-    if (load != nullptr) load->part->keep();
+    ForceAccumulators::Wrench* const load = world.force_accumulators().wrench_of_slot(slot);
+    if (load != nullptr) load->part->save_for_rollback();
   }
-  apply(world.loads());
+  apply(world.force_accumulators());
 }
 
 }  // namespace limber

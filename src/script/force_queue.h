@@ -1,5 +1,5 @@
-// ForceQueue: forces and torques that a guarded call gives to parts. Compiled Lua writes them here without a call; they
-// reach the parts when the call has ended well, and are forgotten when it fails. [sim]
+// ForceQueue: forces and torques applied to parts by a guarded call. Compiled Lua writes them into this buffer without
+// a function call; they reach the parts when the call succeeds and are discarded when it fails. [sim]
 #pragma once
 
 #include <vector>
@@ -8,32 +8,32 @@
 
 namespace limber {
 
-class PartLoads;
+class ForceAccumulators;
 class World;
 
 class ForceQueue {
  public:
   ForceQueue();
-  /// As the prelude sees it: entries, how many there are, how many there can be.
+  /// The buffer as the prelude sees it: entries, count, capacity.
   LimberForces* view() { return &view_; }
-  /// Room for more; false: there can't be, apply() makes some.
+  /// Doubles the capacity. Returns false at the maximum; apply() frees entries then.
   bool grow();
-  /// What is there came from calls that ended well: it stays. Most of the time it waits on, for others to come.
-  void commit(PartLoads& loads);
-  /// Gives what stays to its parts, in the order in which it came. Parts that are gone are passed over.
-  void apply_committed(PartLoads& loads);
-  /// Gives all to their parts.
-  void apply(PartLoads& loads);
-  /// The same in the middle of a call, which may still fail.
-  void apply_kept(World& world);
-  /// Forgets what came since commit().
-  void take_back() { view_.count = committed_; }
+  /// Marks all entries as coming from successful calls. They are applied later, together with others, to save time.
+  void commit(ForceAccumulators& loads);
+  /// Applies the committed entries in order. Skips parts that have been removed.
+  void apply_committed(ForceAccumulators& loads);
+  /// Applies all entries.
+  void apply(ForceAccumulators& loads);
+  /// Applies all entries in the middle of a call, recording the parts for a rollback if the call fails.
+  void apply_with_rollback(World& world);
+  /// Discards the entries since commit().
+  void discard_uncommitted() { view_.count = committed_; }
 
  private:
-  void give(std::int32_t from, std::int32_t to, PartLoads& loads) const;
+  void apply_range(std::int32_t from, std::int32_t to, ForceAccumulators& loads) const;
 
   std::vector<LimberForce> entries_;
-  std::int32_t committed_ = 0;  // so many of the entries stay
+  std::int32_t committed_ = 0;  // number of entries that are committed
   LimberForces view_{};
 };
 

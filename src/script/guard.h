@@ -1,5 +1,5 @@
-// Guard: calls scripts' code so that nothing it does harms the show. What errs, computes too long or eats memory is
-// stopped, what it had done to the world is taken back, and the fault says where. [sim]
+// Guard: calls script code safely. Stops code that fails, computes too long or uses too much memory, rolls back its
+// changes to the world, and reports a fault with its place. [sim]
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ struct lua_State;
 
 namespace limber {
 
-class KeyBytes;
+class Archive;
 struct ScriptContext;
 
-/// Why a call failed, as a person reads it.
+/// The reason for a failed call, for display.
 struct ScriptFault {
   std::string file;
   int line = 0;
-  std::string text;      ///< "file:line: what", the source line, the traceback.
-  bool stopped = false;  ///< By the guard, for time or memory; else it erred by itself.
+  std::string text;      ///< "file:line: message", the source line, the traceback.
+  bool stopped = false;  ///< Stopped by the guard for time or memory; false: the script itself raised an error.
 };
 
 class Guard {
  public:
   enum class Kind : std::uint8_t {
-    call,  ///< A callback, a handler, a step of a behavior: its budget is ScriptLimits::call_ms; taken back on failure.
-    run,   ///< A scene's top level: run_ms; nothing is taken back, since a scene whose run fails is thrown away.
+    call,  ///< A callback, handler or behavior step: budget ScriptLimits::call_ms; rolled back on failure.
+    run,   ///< A scene's top level: budget run_ms; not rolled back, since the scene of a failed run is discarded.
   };
 
   Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits);
@@ -40,84 +40,86 @@ class Guard {
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
 
-  /// Calls the function that lies below its `arguments` on the stack, as lua_pcall does, on the state's main thread.
-  /// True: `results` values lie there instead. False: nothing does, and fault() tells why; what the call had written
-  /// is taken back, what it wanted to send is not sent. Not from inside another guarded call.
+  /// Calls the function below its `arguments` on the stack, like lua_pcall, on the state's main thread. Success:
+  /// replaces them with `results` values. Failure: leaves nothing on the stack, sets fault(), rolls back changes and
+  /// discards messages. Must not be called from inside another guarded call.
   bool call(int arguments, int results, Kind kind = Kind::call);
   const ScriptFault& fault() const { return fault_; }
-  /// In the middle of a call: what it did until here was good and stays, and another begins, with a budget of its own.
-  /// False: it is to be stopped, or has much garbage, and should end first. `changed` becomes true where the call did
-  /// more than push parts.
+  /// Within a call: commits its effects so far and begins a new call with a fresh budget. Returns false if the call
+  /// should end first, because it is to be stopped or there is much garbage. Sets `changed` if the call did more than
+  /// apply forces.
   bool next_call(bool& changed);
-  /// A fault that tells no place is that of the function on top of the stack.
-  void blame_function();
+  /// If the fault has no place, sets it to the function on top of the stack.
+  void attribute_to_function();
+  /// The same with a file that was run.
+  void attribute_to_file(std::string_view name);
 
-  /// From the next call on, these limits hold.
-  void limit(const ScriptLimits& limits);
+  /// Sets limits, effective from the next call.
+  void set_limits(const ScriptLimits& limits);
   const ScriptLimits& limits() const { return limits_; }
 
-  /// Registry references of functions of the prelude: the message handler; the fault of a call that was stopped
-  /// without an error coming out; what is to be done after a failure.
-  void use(int handler, int stopped_fault, int failed);
+  /// Registry references of prelude functions: the message handler; one that creates the fault of a call that was
+  /// stopped without an error being raised; one to call after a failure.
+  void set_functions(int handler, int stopped_fault, int failed);
 
-  VmMode mode() const { return live_ ? VmMode::live : VmMode::draft; }
-  /// Draft to live: false while another state of the process is live. Compiled code is forgotten.
+  VmMode mode() const { return live_ ? VmMode::live : VmMode::interpreted; }
+  /// Switches to live mode; false while another state of the process is live.
   bool arm();
-  /// Live to draft.
+  /// Switches back to interpreted mode.
   void disarm();
 
-  // what the prelude asks in the middle of a call
-  bool stopped() const { return fired_; }
-  /// Whether native code that works on for long should end: the call that runs is going to be stopped.
-  bool stop_asked() { return running_ && (reason_ != Reason::none || watch_.stop_asked()); }
+  // queries of the prelude during a call
+  bool stopped() const { return error_raised_; }
+  /// True if the running call is going to be stopped; native code that takes long must end then.
+  bool stop_requested() { return running_ && (reason_ != Reason::none || watch_.stop_requested()); }
   std::string_view stop_file() const { return stop_file_; }
   int stop_line() const { return stop_line_; }
   std::string stop_text() const;
-  /// Whether a call was stopped for memory since the last time that this was asked.
-  bool take_memory_stop() { return std::exchange(memory_stop_, false); }
-  const Memory& memory() const { return memory_; }
-  /// A key state takes the count of what Lua holds, and brings it back with that.
-  void pass_memory(KeyBytes& key);
-  /// While `on`, what was done once is done again: only the calls that the ledger forbids are stopped, and those that
-  /// take many times what they took then, because the runs differ.
-  void do_again(bool on) { again_ = on; }
+  /// Returns whether a call was stopped for memory since the last query.
+  bool consume_memory_stop() { return std::exchange(memory_stop_, false); }
+  const LuaMemory& memory() const { return memory_; }
+  /// Serializes the memory count for a checkpoint.
+  void serialize(Archive& archive);
+  /// While `on`, a recorded run is repeated: only the calls that the log lists are stopped, and those that need many
+  /// times the original budget because the runs have diverged.
+  void set_replaying(bool on) { replaying_ = on; }
 
  private:
   enum class Reason : std::uint8_t { none, time, memory };
   void begin(Kind kind);
   void end();
   void stop(Reason reason);
-  void heal();
+  void clear_hook_flag();
   bool skip_call(int arguments);
   std::string memory_text() const;
-  void take_fault(int status, int function);
-  void place_at_function(int function);
-  void note_place(lua_State* state, int level = 0);
+  void capture_fault(int status, int function);
+  void set_place_to_function(int function);
+  void record_place(lua_State* state, int level = 0);
   static int on_error(lua_State* state);
-  bool place_of(lua_State* state, int level);
+  bool find_place(lua_State* state, int level);
   static void on_hook(lua_State* state, lua_Debug* at);
 
   lua_State* state_;
   ScriptContext& context_;
   ScriptLimits limits_;
-  Memory memory_;
+  LuaMemory memory_;
   Watch watch_;
   std::shared_ptr<Watchdog> watchdog_;
   ScriptFault fault_;
   int handler_ = -1;
-  int stopped_fault_ = -1;
-  int failed_ = -1;
+  int make_stop_fault_ = -1;
+  int failure_callback_ = -1;
   Kind kind_ = Kind::call;
   bool live_ = false;
   bool running_ = false;
   bool memory_stop_ = false;
-  bool again_ = false;
-  // written from the signal too
-  volatile bool hooked_ = false;
+  bool replaying_ = false;
+  // also written by the signal handler
+  volatile bool hook_set_ = false;
   volatile Reason reason_ = Reason::none;
   bool overflowed_ = false;
-  // where the stop, or the overflow of the stack, met the script
-  bool fired_ = false;
+  // place in the script at the stop or stack overflow
+  bool error_raised_ = false;
   int stop_line_ = 0;
   char stop_file_[256] = {};
 };

@@ -1,4 +1,4 @@
-// ScriptHost: what a scene may ask of the outside. The engine implements it; scripts never see a socket. [sim]
+// ScriptHost: services that a scene may request from the engine, which implements this interface. [sim]
 #pragma once
 
 #include <span>
@@ -17,31 +17,31 @@ class ScriptHost {
  public:
   virtual ~ScriptHost() = default;
 
-  /// osc:send — to every target.
+  /// osc:send — sends to all targets.
   virtual void send(Message message) = 0;
-  /// osc:reply — to the sender of the message that is being handled.
-  virtual void reply(const Origin& to, Message message) = 0;
+  /// osc:reply — sends to the sender of the message being handled.
+  virtual void reply(const CommandOrigin& to, Message message) = 0;
   /// osc:to("host:port"):send.
-  virtual void send_direct(const Origin& to, Message message) = 0;
-  /// What the scene's run said by osc:listen and osc:stream_to; called once, after a good run.
-  virtual void plan_osc(const OscPlan& plan) = 0;
-  /// sim:reset() from a callback: done between two ticks.
-  virtual void ask_reset() = 0;
-  /// sim:panic() from a callback: done before the next step.
-  virtual void ask_panic() {}
-  /// presets:store, recall, morph, delete from a callback, as the message that means it: whether it would be taken,
-  /// were those of `before` done.
-  virtual Result<void> check_preset(const Message& wish, std::span<const Message> before) {
-    (void)wish, (void)before;
+  virtual void send_direct(const CommandOrigin& to, Message message) = 0;
+  /// Ports and targets declared by osc:listen and osc:stream_to; called once after a successful run.
+  virtual void configure_osc(const OscConfig& plan) = 0;
+  /// sim:reset() from a callback: carried out between two ticks.
+  virtual void request_reset() = 0;
+  /// sim:panic() from a callback: carried out before the next step.
+  virtual void request_panic() {}
+  /// presets:store, recall, morph, delete from a callback, as the equivalent message: checks whether it would be
+  /// accepted after those of `earlier`.
+  virtual Result<void> check_preset(const Message& request, std::span<const Message> earlier) {
+    (void)request, (void)earlier;
     return Error{"there are no presets here"};
   }
-  /// One that would is done once the tick's callbacks are.
-  virtual void ask_preset(Message&& wish) { (void)wish; }
-  /// Their names, in order.
+  /// Queues a checked request; carried out after the tick's callbacks.
+  virtual void request_preset(Message&& request) { (void)request; }
+  /// Preset names, sorted.
   virtual std::vector<std::string> preset_names() { return {}; }
-  /// A script's fault, with file and line: log, panel, /script/error. Empty text: the file is mended.
+  /// Reports a script error with file and line to log, panel and /script/error. Empty text: the error is fixed.
   virtual void script_error(std::string_view file, int line, std::string_view text) = 0;
-  /// print(…): a line of text, as it is, to stdout. A run beside the show prints too. [any]
+  /// print(…): writes a line of text unchanged to stdout. Also called by detached runs. [any]
   virtual void print(std::string_view text) { write_line(OutputTo::out, text); }
 };
 

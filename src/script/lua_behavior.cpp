@@ -1,4 +1,4 @@
-// From the world's calls to the script's functions.
+// Forwards the world's calls to script functions.
 #include "script/lua_behavior.h"
 
 #include <utility>
@@ -16,96 +16,97 @@ LuaBehavior::LuaBehavior(std::shared_ptr<BehaviorScripts> scripts, std::int32_t 
     : scripts_(std::move(scripts)), file_(file) {}
 
 LuaBehavior::~LuaBehavior() {
-  if (number_ != 0) scripts_->drop(number_);
+  if (number_ != 0) scripts_->release(number_);
 }
 
-bool LuaBehavior::well(BehaviorFault fault) {
+bool LuaBehavior::check(BehaviorFault fault) {
   if (fault.text.empty()) return true;
   fail(std::move(fault));
   return false;
 }
 
-// known to the Vm, with the state that it has inherited
-bool LuaBehavior::ready() {
-  if (number_ == 0) number_ = scripts_->make(*this, file_);
+// registers in the Vm and restores the inherited state
+bool LuaBehavior::prepare() {
+  if (number_ == 0) number_ = scripts_->create(*this, file_);
   if (number_ == 0) return false;
   if (!inherited_) return true;
-  const Inheritance given = *std::exchange(inherited_, std::nullopt);
-  return well(scripts_->restore(number_, given.state, given.from != file().text));
+  const InheritedState inherited = *std::exchange(inherited_, std::nullopt);
+  return check(scripts_->restore(number_, inherited.state, inherited.source_text != file().text));
 }
 
 void LuaBehavior::start() {
   started_ = false;
-  if (ready()) started_ = well(scripts_->start(number_));
+  if (prepare()) started_ = check(scripts_->start(number_));
 }
 
 void LuaBehavior::step(double dt) {
-  // one that failed in its start tries that again first
+  // retry after a failed start
   if (!started_) start();
-  if (started_ && ready()) well(scripts_->step(number_, dt));
+  if (started_ && prepare()) check(scripts_->step(number_, dt));
 }
 
-// the number of one that needs no more than its step; 0: of one that is to be looked at by itself
-std::int32_t LuaBehavior::number_in_row(const Behavior& member) const {
+// number of a member that only needs its step; 0: must be handled individually
+std::int32_t LuaBehavior::batch_number(const Behavior& member) const {
   const auto& other = static_cast<const LuaBehavior&>(member);
   const bool only_steps = other.started_ && !other.inherited_;
   return only_steps && other.scripts_ == scripts_ && other.file_ == file_ ? other.number_ : 0;
 }
 
 void LuaBehavior::step_group(std::span<Behavior* const> members, double dt) {
-  // thousands of members lie far from each other: they are looked at only after something happened to them
-  if (std::exchange(numbered_at_, group()->prepared()) != group()->prepared()) {
+  // thousands of members are scattered in memory, so they are visited only after something has changed
+  if (std::exchange(numbered_at_, group()->members_version()) != group()->members_version()) {
     numbers_.clear();
-    for (const auto& member : group()->members()) numbers_.push_back(number_in_row(*member));
+    for (const auto& member : group()->members()) numbers_.push_back(batch_number(*member));
   }
-  const std::span<const std::uint32_t> places = group()->running();
-  row_.clear();
-  for (const std::uint32_t place : places) row_.push_back(numbers_[place]);
+  const std::span<const std::uint32_t> running = group()->running_indices();
+  running_numbers_.clear();
+  for (const std::uint32_t index : running) running_numbers_.push_back(numbers_[index]);
   bool changed = false;
   for (std::size_t i = 0; i < members.size();) {
     std::size_t end = i;
-    while (end < members.size() && row_[end] != 0) end++;
+    while (end < members.size() && running_numbers_[end] != 0) end++;
     if (end > i) {
-      BehaviorScripts::StepRow row{members.subspan(i, end - i), std::span(row_).subspan(i, end - i), changed};
-      scripts_->step_all(row, dt);
-      changed = row.changed;
-      i += row.next;
+      BehaviorScripts::StepBatch batch{members.subspan(i, end - i), std::span(running_numbers_).subspan(i, end - i),
+                                       changed};
+      scripts_->step_all(batch, dt);
+      changed = batch.changed;
+      i += batch.next;
     } else {
       if (members[i]->runs()) members[i]->step(dt);
-      numbers_[places[i]] = number_in_row(*members[i]);
+      numbers_[running[i]] = batch_number(*members[i]);
       changed = true;
       i++;
     }
   }
 }
 
-void LuaBehavior::take_over(Behavior& before) {
-  auto* const old = dynamic_cast<LuaBehavior*>(&before);
+void LuaBehavior::adopt_state(Behavior& previous) {
+  auto* const old = dynamic_cast<LuaBehavior*>(&previous);
   if (old == nullptr) return;
   started_ = old->started_;
   if (old->inherited_) {
     inherited_ = std::move(old->inherited_);
   } else if (old->number_ != 0) {
-    Result<std::string> kept = old->state();
-    if (kept) {
-      inherited_ = {std::move(*kept), old->file().text};
+    Result<std::string> state = old->state();
+    if (state) {
+      inherited_ = {std::move(*state), old->file().text};
     } else {
       started_ = false;
-      log_warning("behavior '{}/{}' begins anew: {}", body().name(), name(), kept.error());
+      log_warning("behavior '{}/{}' restarts with an empty state: {}", body().name(), name(), state.error());
     }
   }
 }
 
-void LuaBehavior::pass_memory(KeyBytes& key) {
+void LuaBehavior::serialize(Archive& archive) {
   bool inherits = inherited_.has_value();
-  key.pass_all(number_, started_, inherits);
+  archive.serialize_all(number_, started_, inherits);
   if (inherits) {
-    Inheritance& inherited = inherited_ ? *inherited_ : inherited_.emplace();
-    key.pass_all(inherited.state, inherited.from);
+    InheritedState& inherited = inherited_ ? *inherited_ : inherited_.emplace();
+    archive.serialize_all(inherited.state, inherited.source_text);
   } else {
     inherited_.reset();
   }
-  if (key.bringing()) numbered_at_ = 0;
+  if (archive.loading()) numbered_at_ = 0;
 }
 
 Result<std::string> LuaBehavior::state() const { return scripts_->state(number_); }

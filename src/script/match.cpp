@@ -1,4 +1,4 @@
-// The matcher: recursive, as Lua's manual describes its patterns; the depth is bounded as in LuaJIT.
+// The pattern matcher: recursive, as described in Lua's manual; the depth is limited as in LuaJIT.
 #include "script/match.h"
 
 #include <algorithm>
@@ -8,13 +8,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostDepth = 200;
-// steps of one search: about 20 ms, and more for a long text, which must be walked once at least
+constexpr int kMaxMatchDepth = 200;
+// step budget of one search: about 20 ms, and more for long texts, which must be scanned at least once
 constexpr std::int64_t kSteps = 4'000'000;
 constexpr std::int64_t kStepsPerByte = 8;
-constexpr std::int64_t kAskEvery = 1 << 16;
+constexpr std::int64_t kPollInterval = 1 << 16;
 
-// %a %c %d … in the C locale: letters beyond ASCII are none
+// %a %c %d … in the C locale: only ASCII letters count as letters
 bool in_class(unsigned char c, unsigned char wanted) {
   const auto between = [c](int low, int high) { return c >= low && c <= high; };
   const bool lower = between('a', 'z');
@@ -59,7 +59,7 @@ bool in_class(unsigned char c, unsigned char wanted) {
     default:
       return wanted == c;
   }
-  // the capital letter means all others
+  // an uppercase class is the complement
   return in == (wanted >= 'a');
 }
 
@@ -67,75 +67,76 @@ unsigned char byte(const char* p) { return static_cast<unsigned char>(*p); }
 
 }  // namespace
 
-const char* MatchSearch::wrong(const char* fault) {
+const char* MatchSearch::set_fault(const char* fault) {
   if (fault_ == nullptr) fault_ = fault;
   return nullptr;
 }
 
-// false: enough
-bool MatchSearch::spend(std::ptrdiff_t steps) {
-  left_ -= steps;
-  if (left_ > next_ask_) return true;
-  next_ask_ = left_ - kAskEvery;
-  if (left_ <= 0 || stop_()) spent_ = true;
-  return !spent_;
+// returns false when the search must end
+bool MatchSearch::count_steps(std::ptrdiff_t steps) {
+  steps_left_ -= steps;
+  if (steps_left_ > next_poll_) return true;
+  next_poll_ = steps_left_ - kPollInterval;
+  if (steps_left_ <= 0 || stop_()) exhausted_ = true;
+  return !exhausted_;
 }
 
-Found MatchSearch::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors, Match& out) {
+SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors,
+                               Match& out) {
   begin_ = text.data();
   end_ = begin_ + text.size();
   // as in Lua, a zero byte ends a pattern
   const char* p = pattern.data();
   pattern_end_ = p + std::min(pattern.find('\0'), pattern.size());
   fault_ = nullptr;
-  spent_ = false;
-  left_ = kSteps + kStepsPerByte * static_cast<std::int64_t>(text.size());
-  next_ask_ = left_ - kAskEvery;
+  exhausted_ = false;
+  steps_left_ = kSteps + kStepsPerByte * static_cast<std::int64_t>(text.size());
+  next_poll_ = steps_left_ - kPollInterval;
   out_ = &out;
   const bool anchored = anchors && p != pattern_end_ && *p == '^';
   if (anchored) p++;
   for (const char* s = begin_ + from; s <= end_; s++) {
     out.count = 0;
     depth_ = 0;
-    if (!spend(1)) return Found::too_long;
+    if (!count_steps(1)) return SearchResult::too_long;
     const char* const e = match(s, p);
-    if (fault_ != nullptr) return Found::fault;
-    if (spent_) return Found::too_long;
+    if (fault_ != nullptr) return SearchResult::bad_pattern;
+    if (exhausted_) return SearchResult::too_long;
     if (e != nullptr) {
       out.start = static_cast<std::int32_t>(s - begin_);
       out.end = static_cast<std::int32_t>(e - begin_);
-      return Found::yes;
+      return SearchResult::found;
     }
     if (anchored) break;
   }
-  return Found::no;
+  return SearchResult::not_found;
 }
 
 std::size_t MatchSearch::find_plain(std::string_view text, std::string_view wanted, std::size_t from) {
-  // in pieces, between which it may be asked to end
-  constexpr std::size_t kPiece = std::size_t{1} << 16u;
-  const std::size_t piece = std::max(kPiece, 4 * wanted.size());
+  // in blocks, to poll `stop` between them
+  constexpr std::size_t kBlockSize = std::size_t{1} << 16u;
+  const std::size_t block_size = std::max(kBlockSize, 4 * wanted.size());
   while (from + wanted.size() <= text.size()) {
-    const std::size_t size = std::min(piece + wanted.size(), text.size() - from);
+    const std::size_t size = std::min(block_size + wanted.size(), text.size() - from);
     const void* const found = memmem(text.data() + from, size, wanted.data(), wanted.size());
     if (found != nullptr) return static_cast<std::size_t>(static_cast<const char*>(found) - text.data());
-    from += size < piece + wanted.size() ? size : piece;
+    from += size < block_size + wanted.size() ? size : block_size;
     if (stop_()) break;
   }
   return std::string_view::npos;
 }
 
 const char* MatchSearch::match(const char* s, const char* p) {
-  if (++depth_ > kMostDepth) return wrong("pattern too complex");
+  if (++depth_ > kMaxMatchDepth) return set_fault("pattern too complex");
   const char* const e = match_here(s, p);
   depth_--;
   return e;
 }
 
-// where a match of the pattern from p on, at s, ends; null: there is none, or over()
+// Returns the end of the match of pattern p at s; null: no match, or ended().
 const char* MatchSearch::match_here(const char* s, const char* p) {
   while (p != pattern_end_) {
-    if (over()) return nullptr;
+    if (ended()) return nullptr;
     switch (*p) {
       case '(':
         if (p + 1 != pattern_end_ && p[1] == ')') return start_capture(s, p + 2, Match::kPosition);
@@ -169,25 +170,26 @@ const char* MatchSearch::match_here(const char* s, const char* p) {
       default:
         break;
     }
-    bool on = false;
-    const char* const e = item(s, p, on);
-    if (!on) return e;
+    bool advanced = false;
+    const char* const e = match_item(s, p, advanced);
+    if (!advanced) return e;
   }
   return s;
 }
 
-// one character or class with what follows it (* + - ?). `on`: both have moved on, and the next item comes
-const char* MatchSearch::item(const char*& s, const char*& p, bool& on) {
+// matches one character or class with its suffix (* + - ?); `advanced`: s and p have
+// advanced, so the caller continues with the next item
+const char* MatchSearch::match_item(const char*& s, const char*& p, bool& advanced) {
   const char* const ep = class_end(p);
   if (ep == nullptr) return nullptr;
-  const bool fits = s < end_ && single(s, p, ep);
+  const bool fits = s < end_ && matches_single(s, p, ep);
   switch (ep == pattern_end_ ? '\0' : *ep) {
     case '?':
       if (fits) {
         if (const char* const e = match(s + 1, ep + 1)) return e;
       }
       p = ep + 1;
-      on = true;
+      advanced = true;
       return nullptr;
     case '*':
       return max_expand(s, p, ep);
@@ -199,35 +201,35 @@ const char* MatchSearch::item(const char*& s, const char*& p, bool& on) {
       if (!fits) return nullptr;
       s++;
       p = ep;
-      on = true;
+      advanced = true;
       return nullptr;
   }
 }
 
 const char* MatchSearch::max_expand(const char* s, const char* p, const char* ep) {
   std::ptrdiff_t i = 0;
-  while (s + i < end_ && single(s + i, p, ep)) i++;
-  for (; i >= 0 && !over(); i--) {
-    if (!spend(1)) return nullptr;
+  while (s + i < end_ && matches_single(s + i, p, ep)) i++;
+  for (; i >= 0 && !ended(); i--) {
+    if (!count_steps(1)) return nullptr;
     if (const char* const e = match(s + i, ep + 1)) return e;
   }
   return nullptr;
 }
 
 const char* MatchSearch::min_expand(const char* s, const char* p, const char* ep) {
-  while (!over()) {
+  while (!ended()) {
     if (const char* const e = match(s, ep + 1)) return e;
-    if (s >= end_ || !single(s, p, ep)) return nullptr;
+    if (s >= end_ || !matches_single(s, p, ep)) return nullptr;
     s++;
   }
   return nullptr;
 }
 
-const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_t what) {
-  if (out_->count >= Match::kMostCaptures) return wrong("too many captures");
+const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_t length) {
+  if (out_->count >= Match::kMaxCaptures) return set_fault("too many captures");
   const auto at = static_cast<std::size_t>(out_->count++);
   out_->from[at] = static_cast<std::int32_t>(s - begin_);
-  out_->length[at] = what;
+  out_->length[at] = length;
   const char* const e = match(s, p);
   if (e == nullptr) out_->count--;
   return e;
@@ -236,7 +238,7 @@ const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_
 const char* MatchSearch::end_capture(const char* s, const char* p) {
   std::int32_t open = out_->count - 1;
   while (open >= 0 && out_->length[static_cast<std::size_t>(open)] != Match::kUnfinished) open--;
-  if (open < 0) return wrong("invalid pattern capture");
+  if (open < 0) return set_fault("invalid pattern capture");
   const auto at = static_cast<std::size_t>(open);
   out_->length[at] = static_cast<std::int32_t>(s - begin_) - out_->from[at];
   const char* const e = match(s, p);
@@ -248,21 +250,21 @@ const char* MatchSearch::back_reference(const char* s, char digit) {
   const int wanted = digit - '1';
   const auto at = static_cast<std::size_t>(wanted);
   if (wanted < 0 || wanted >= out_->count || out_->length[at] == Match::kUnfinished) {
-    return wrong("invalid capture index");
+    return set_fault("invalid capture index");
   }
-  // a capture of a place has no text, and its mark is no length
+  // a position capture has no text; its marker is not a length
   const auto length = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(out_->length[at]));
   if (static_cast<std::size_t>(end_ - s) < length) return nullptr;
-  if (!spend(1 + static_cast<std::ptrdiff_t>(length) / 16)) return nullptr;
+  if (!count_steps(1 + static_cast<std::ptrdiff_t>(length) / 16)) return nullptr;
   return std::memcmp(begin_ + out_->from[at], s, length) == 0 ? s + length : nullptr;
 }
 
 const char* MatchSearch::balance(const char* s, const char* p) {
-  if (pattern_end_ - p < 2) return wrong("unbalanced pattern");
+  if (pattern_end_ - p < 2) return set_fault("unbalanced pattern");
   if (s >= end_ || *s != *p) return nullptr;
   int open = 1;
   for (s++; s < end_; s++) {
-    if (!spend(1)) return nullptr;
+    if (!count_steps(1)) return nullptr;
     if (*s == p[1]) {
       if (--open == 0) return s + 1;
     } else if (*s == p[0]) {
@@ -272,14 +274,14 @@ const char* MatchSearch::balance(const char* s, const char* p) {
   return nullptr;
 }
 
-// p: at the set; moves behind it
+// p points to the set and is advanced past it
 bool MatchSearch::frontier(const char* s, const char*& p) {
-  if (p == pattern_end_ || *p != '[') return wrong("missing '[' after '%f' in pattern") != nullptr;
+  if (p == pattern_end_ || *p != '[') return set_fault("missing '[' after '%f' in pattern") != nullptr;
   const char* const ep = class_end(p);
   if (ep == nullptr) return false;
   const unsigned char before = s == begin_ ? 0 : byte(s - 1);
   const unsigned char here = s == end_ ? 0 : byte(s);
-  if (!spend(ep - p)) return false;
+  if (!count_steps(ep - p)) return false;
   const bool at = !in_set(before, p, ep - 1) && in_set(here, p, ep - 1);
   p = ep;
   return at;
@@ -288,20 +290,20 @@ bool MatchSearch::frontier(const char* s, const char*& p) {
 const char* MatchSearch::class_end(const char* p) {
   const char first = *p++;
   if (first == '%') {
-    if (p == pattern_end_) return wrong("malformed pattern (ends with '%')");
+    if (p == pattern_end_) return set_fault("malformed pattern (ends with '%')");
     return p + 1;
   }
   if (first != '[') return p;
   if (p != pattern_end_ && *p == '^') p++;
   do {
-    if (p == pattern_end_) return wrong("malformed pattern (missing ']')");
+    if (p == pattern_end_) return set_fault("malformed pattern (missing ']')");
     if (*p++ == '%' && p != pattern_end_) p++;
   } while (p == pattern_end_ || *p != ']');
   return p + 1;
 }
 
-bool MatchSearch::single(const char* s, const char* p, const char* ep) {
-  if (!spend(ep - p)) return false;
+bool MatchSearch::matches_single(const char* s, const char* p, const char* ep) {
+  if (!count_steps(ep - p)) return false;
   switch (*p) {
     case '.':
       return true;
@@ -314,7 +316,7 @@ bool MatchSearch::single(const char* s, const char* p, const char* ep) {
   }
 }
 
-// last: at the ]
+// last: points to the ]
 bool MatchSearch::in_set(unsigned char c, const char* p, const char* last) {
   const bool wanted = p[1] != '^';
   if (!wanted) p++;

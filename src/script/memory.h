@@ -1,5 +1,5 @@
-// Memory: counts what a Lua state holds, and tells when a running script has taken too much. It never refuses a small
-// request: LuaJIT takes some in places where a refusal would end the program. [sim]
+// LuaMemory: an allocator that counts the memory of a Lua state and signals when a running script has used too much. It
+// never rejects small requests, because LuaJIT aborts the program if some of them fail. [sim]
 #pragma once
 
 #include <cstddef>
@@ -10,30 +10,30 @@ struct lua_State;
 
 namespace limber {
 
-class KeyBytes;
+class Archive;
 
-class Memory {
+class LuaMemory {
  public:
-  /// `cap`: bytes that scripts may hold. `full` is called inside the allocator, while a call runs.
-  Memory(std::size_t cap, void (*full)(void* owner), void* owner) : cap_(cap), full_(full), owner_(owner) {}
+  /// `cap`: bytes that scripts may use. `full` is called inside the allocator during a call.
+  LuaMemory(std::size_t cap, void (*full)(void* owner), void* owner) : cap_(cap), on_full_(full), owner_(owner) {}
 
-  /// Puts the count between a state and its allocator, and takes it away again before the state is closed.
+  /// Installs the counting allocator in a state, and removes it before the state is closed.
   void attach(lua_State* state);
   void detach(lua_State* state);
 
-  /// Only what is taken between these two is watched.
-  /// `free`: only what no good call takes, since it was good before.
-  void begin_call(bool free = false);
+  /// Monitors the allocations between these two calls. `replaying`: the call is known to succeed, so only an
+  /// amount far above normal calls triggers `full`.
+  void begin_call(bool replaying = false);
   void end_call() {
-    alarm_ = kNever;
+    alarm_at_ = kNever;
     in_call_ = false;
   }
 
-  /// For a key state.
-  void pass(KeyBytes& key);
+  /// For a checkpoint.
+  void serialize(Archive& archive);
 
-  /// From the next call on.
-  void limit(std::size_t cap) { cap_ = cap; }
+  /// Sets the cap, effective from the next call.
+  void set_cap(std::size_t cap) { cap_ = cap; }
   std::size_t used() const { return used_; }
   std::size_t cap() const { return cap_; }
 
@@ -42,12 +42,12 @@ class Memory {
   static void* allocate(void* self, void* block, std::size_t before, std::size_t after);
 
   std::size_t cap_;
-  void (*full_)(void* owner);
+  void (*on_full_)(void* owner);
   void* owner_;
-  void* (*inner_)(void* self, void* block, std::size_t before, std::size_t after) = nullptr;
-  void* inner_self_ = nullptr;
+  void* (*base_allocator_)(void* self, void* block, std::size_t before, std::size_t after) = nullptr;
+  void* base_allocator_data_ = nullptr;
   std::size_t used_ = 0;
-  std::size_t alarm_ = kNever;
+  std::size_t alarm_at_ = kNever;
   bool in_call_ = false;
 };
 

@@ -31,7 +31,7 @@ double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
 double mix(double t, double a, double b) { return a + t * (b - a); }
 
-// one of twelve directions to the edges of a cube, times the offset
+// dot product of the offset with one of twelve directions to the edges of a cube
 double slope(std::size_t hash, double x, double y, double z) {
   const std::size_t h = hash & 15u;
   const double u = h < 8 ? x : y;
@@ -39,7 +39,7 @@ double slope(std::size_t hash, double x, double y, double z) {
   return ((h & 1u) == 0 ? u : -u) + ((h & 2u) == 0 ? v : -v);
 }
 
-// the lattice cell of a coordinate, whatever its size
+// index of the lattice cell of a coordinate, modulo 256
 std::size_t cell(double floor) {
   return static_cast<std::size_t>(static_cast<std::uint64_t>(floor - 256 * std::floor(floor / 256)));
 }

@@ -1,4 +1,4 @@
-// The node /scene.
+// The node /scene and the values carried over by a reload.
 #include "script/params_node.h"
 
 #include <algorithm>
@@ -9,53 +9,59 @@ namespace limber {
 
 namespace {
 
-const std::string& label(const Row& row, double value) { return row.choices[static_cast<std::size_t>(value)]; }
-
-bool same_default(const Row& row, const Row& before) {
-  if (row.type == RowType::choice) return label(row, row.initial[0]) == label(before, before.initial[0]);
-  return std::equal(row.initial.begin(), row.initial.begin() + row.width, before.initial.begin());
+const std::string& label(const Property& property, double value) {
+  return property.choices[static_cast<std::size_t>(value)];
 }
 
-// the value as it is now; nothing when the default counts
-std::optional<std::array<double, 4>> kept_values(const Row& row, const LiveParam& before) {
-  if (row.type != before.row.type || !same_default(row, before.row)) return {};
+bool same_default(const Property& property, const Property& previous) {
+  if (property.type == PropertyType::choice)
+    return label(property, property.initial[0]) == label(previous, previous.initial[0]);
+  return std::equal(property.initial.begin(), property.initial.begin() + property.width, previous.initial.begin());
+}
+
+// the current value; nothing if the default applies
+std::optional<std::array<double, 4>> carried_values(const Property& property, const LiveParam& previous) {
+  if (property.type != previous.property.type || !same_default(property, previous.property)) return {};
   std::array<double, 4> values{};
-  if (row.type == RowType::choice) {
-    // a choice is its label, wherever that stands now
-    const auto found = std::find(row.choices.begin(), row.choices.end(), label(before.row, before.values[0]));
-    if (found == row.choices.end()) return {};
-    values[0] = static_cast<double>(found - row.choices.begin());
+  if (property.type == PropertyType::choice) {
+    // choices are identified by label; their index may have changed
+    const auto found =
+        std::find(property.choices.begin(), property.choices.end(), label(previous.property, previous.values[0]));
+    if (found == property.choices.end()) return {};
+    values[0] = static_cast<double>(found - property.choices.begin());
     return values;
   }
-  for (std::size_t i = 0; i < row.width; i++) values[i] = std::clamp(before.values[i], row.low(i), row.high(i));
+  for (std::size_t i = 0; i < property.width; i++)
+    values[i] = std::clamp(previous.values[i], property.low(i), property.high(i));
   return values;
 }
 
 }  // namespace
 
-ParamsNode::ParamsNode(Store& store, std::vector<Row> rows)
-    : store_(store), id_(store.add(shared_table("scene", "/scene", std::move(rows)), store.root(), "scene", this)) {}
+ParamsNode::ParamsNode(Store& store, std::vector<Property> properties)
+    : store_(store),
+      id_(store.add(shared_table("scene", "/scene", std::move(properties)), store.root(), "scene", this)) {}
 
 ParamsNode::~ParamsNode() { store_.remove(id_); }
 
-std::vector<LiveParam> ParamsNode::live() const {
+std::vector<LiveParam> ParamsNode::values() const {
   std::vector<LiveParam> params;
-  for (const Row& row : table().rows()) {
-    LiveParam& param = params.emplace_back(LiveParam{row, {}});
-    store_.get(id_, row, param.values.data());
+  for (const Property& property : table().properties()) {
+    LiveParam& param = params.emplace_back(LiveParam{property, {}});
+    store_.get(id_, property, param.values.data());
   }
   return params;
 }
 
-std::uint64_t ParamsNode::keep(std::span<const LiveParam> before) {
+std::uint64_t ParamsNode::carry_over(std::span<const LiveParam> previous) {
   std::uint64_t defaults = 0;
-  for (const Row& row : table().rows()) {
-    const auto known =
-        std::find_if(before.begin(), before.end(), [&](const LiveParam& p) { return p.row.name == row.name; });
-    if (known == before.end()) continue;  // a new one
-    const std::optional<std::array<double, 4>> kept = kept_values(row, *known);
-    if (!kept) defaults |= std::uint64_t{1} << row.index;
-    std::copy_n((kept ? *kept : row.initial).data(), row.width, store_.tell(id_, row));
+  for (const Property& property : table().properties()) {
+    const auto known = std::find_if(previous.begin(), previous.end(),
+                                    [&](const LiveParam& p) { return p.property.name == property.name; });
+    if (known == previous.end()) continue;  // a new parameter
+    const std::optional<std::array<double, 4>> carried = carried_values(property, *known);
+    if (!carried) defaults |= std::uint64_t{1} << property.index;
+    std::copy_n((carried ? *carried : property.initial).data(), property.width, store_.mutable_values(id_, property));
   }
   return defaults;
 }

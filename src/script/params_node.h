@@ -11,20 +11,20 @@ namespace limber {
 
 class ParamsNode {
  public:
-  /// Adds /scene with these rows (at most 64, no two alike by the naming rule).
-  ParamsNode(Store& store, std::vector<Row> rows);
+  /// Adds /scene with these properties (at most 64, with names that differ by the naming rule).
+  ParamsNode(Store& store, std::vector<Property> properties);
   ~ParamsNode();
   ParamsNode(const ParamsNode&) = delete;
   ParamsNode& operator=(const ParamsNode&) = delete;
 
   NodeId id() const { return id_; }
-  const Table& table() const { return store_.table(id_); }
+  const PropertyTable& table() const { return store_.table(id_); }
 
-  /// The rows with the values in force.
-  std::vector<LiveParam> live() const;
-  /// Takes over what the parameters of the run before hold: a value whose default stayed, within the new range and
-  /// choices. An edited default or another type starts at the default: these are the answer, a bit a row.
-  std::uint64_t keep(std::span<const LiveParam> before);
+  /// Returns the properties with their current values.
+  std::vector<LiveParam> values() const;
+  /// Carries over the values of the previous run's parameters, clamped to the new ranges and choices. A parameter
+  /// with an edited default or type starts at its default. Returns a bit mask of these, by property index.
+  std::uint64_t carry_over(std::span<const LiveParam> previous);
 
  private:
   Store& store_;

@@ -1,4 +1,4 @@
-// The Lua files of src/script/prelude, which the build puts inside the program.
+// The Lua files of src/script/prelude, which the build embeds in the program.
 #pragma once
 
 #include "base/embedded.h"
@@ -7,7 +7,7 @@ namespace limber {
 
 using PreludeFile = EmbeddedFile;
 
-/// All of them, sorted by name: the order in which they run; names for tracebacks. [any]
+/// All files, sorted by name, which is the order in which they run; the names appear in tracebacks. [any]
 std::span<const PreludeFile> prelude_files();
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// RunInputs: what a scene that is run beside the show may read of it, as plain data that travels between threads.
+// RunInputs: the data of the live scene that a detached run may read; plain data that can be passed between threads.
 #pragma once
 
 #include <array>
@@ -13,18 +13,18 @@ namespace limber {
 
 class Sources;
 
-/// A parameter of the scene as the show has it.
+/// A parameter of the live scene.
 struct LiveParam {
-  Row row;
+  Property property;
   std::array<double, 4> values{};
 };
 
 struct RunInputs {
   std::uint64_t tick = 0;
   double time = 0;
-  std::string state;  ///< As Scene::state() gives it.
+  std::string state;  ///< Result of Vm::state_text().
   std::vector<LiveParam> params;
-  std::shared_ptr<const Sources> sources;  ///< What to read instead of the disk; null: the disk.
+  std::shared_ptr<const Sources> sources;  ///< Files to use instead of the disk; null: the disk.
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// A scene's run and its callbacks, on top of the Vm.
+// A scene's run and callbacks, implemented with the Vm.
 #include "script/scene.h"
 
 #include <filesystem>
@@ -16,12 +16,12 @@ Scene::Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted
 
 Scene::~Scene() = default;
 
-Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
+Result<void> Scene::run(const std::string& file, const RunInputs* detached) {
   ScriptContext& c = *context_;
-  if (beside != nullptr && beside->sources != nullptr) c.sources = std::make_shared<Sources>(beside->sources);
+  if (detached != nullptr && detached->sources != nullptr) c.sources = std::make_shared<Sources>(detached->sources);
   if (c.options.sources != nullptr) c.sources = std::make_shared<Sources>(c.options.sources);
   c.files = ScriptFiles(file, c.options.data_dir);
-  fault_ = {c.files.shown(file), 0};
+  fault_ = {c.files.display_path(file), 0};
   const Result<std::string> text = c.sources->text(file);
   if (!text) return Error{text.error()};
   c.random_name = std::filesystem::path(file).filename().string();
@@ -30,54 +30,54 @@ Result<void> Scene::run(const std::string& file, const RunInputs* beside) {
     const Result<SetOutcome> set = c.world->store().set(c.world->id(), "seed", {&seed, 1});
     if (!set) return Error{set.error()};
   }
-  if (beside != nullptr) {
-    c.beside = beside;
-    c.world->restart_time(beside->tick, beside->time);
-    vm_->begin_beside(beside->state);
+  if (detached != nullptr) {
+    c.detached_inputs = detached;
+    c.world->restart_time(detached->tick, detached->time);
+    vm_->begin_detached(detached->state);
   }
-  if (beside == nullptr) vm_->number_run(run_number_);
+  if (detached == nullptr) vm_->set_run_number(run_number_);
   c.answer.top_level = 1;
-  Result<void> ran = vm_->run(*text, c.files.shown(file), fault_);
-  c.generator();  // the seed as the top level leaves it
+  Result<void> result = vm_->run(*text, c.files.display_path(file), fault_);
+  c.generator();  // seed the generator with the seed set by the top level
   c.answer.top_level = 0;
-  c.beside = nullptr;
+  c.detached_inputs = nullptr;
   c.sources->close();
-  if (ran && beside == nullptr) c.host.plan_osc(c.plan);
-  return ran;
+  if (result && detached == nullptr) c.host.configure_osc(c.osc_config);
+  return result;
 }
 
 std::shared_ptr<const Sources> Scene::sources() const { return context_->sources; }
 
-void Scene::count_calls(CallLedger& calls) { context_->calls = &calls; }
+void Scene::set_call_log(CallLog& calls) { context_->call_log = &calls; }
 
-void Scene::limit(const ScriptLimits& limits) {
-  vm_->guard().limit(limits);
+void Scene::set_limits(const ScriptLimits& limits) {
+  vm_->guard().set_limits(limits);
   context_->options.limits = limits;
   context_->options.keep_timers = true;
-  earlier_->limit(limits);
+  earlier_->set_limits(limits);
 }
 
 void Scene::start() { vm_->start(); }
 
 void Scene::tick(double dt) {
   context_->timers_at = context_->world->time();
-  earlier_->cancel(*context_, context_->world->tick());
+  earlier_->apply_cancellations(*context_, context_->world->tick());
   earlier_->tick(*vm_, context_->world->tick());
   vm_->tick(dt);
 }
 
-bool Scene::listens() const { return context_->handlers > 0; }
+bool Scene::has_handlers() const { return context_->handlers > 0; }
 
 std::size_t Scene::disabled_handlers() const { return static_cast<std::size_t>(context_->disabled_handlers); }
 
-bool Scene::message(const Message& message, const Origin& origin) {
-  if (!listens()) return false;
+bool Scene::handle_message(const Message& message, const CommandOrigin& origin) {
+  if (!has_handlers()) return false;
   ScriptContext& c = *context_;
   c.sender = origin;
   c.handling_message = true;
-  const bool heard = vm_->message(message, origin);
+  const bool handled = vm_->handle_message(message, origin);
   c.handling_message = false;
-  return heard;
+  return handled;
 }
 
 void Scene::collect_garbage() {
@@ -87,9 +87,9 @@ void Scene::collect_garbage() {
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return earlier_->hash(context_->hash(start)); }
 
-void Scene::do_again(bool on) {
-  vm_->guard().do_again(on);
-  earlier_->do_again(on);
+void Scene::set_replaying(bool on) {
+  vm_->guard().set_replaying(on);
+  earlier_->set_replaying(on);
 }
 
 VmMode Scene::mode() const { return vm_->mode(); }
@@ -98,9 +98,9 @@ bool Scene::arm() { return vm_->arm(); }
 
 void Scene::disarm() { vm_->disarm(); }
 
-Evaluation Scene::evaluate(std::string_view text) { return vm_->ask("evaluate", text); }
+Evaluation Scene::evaluate(std::string_view text) { return vm_->query("evaluate", text); }
 
-Evaluation Scene::complete(std::string_view text) { return vm_->ask("complete", text); }
+Evaluation Scene::complete(std::string_view text) { return vm_->query("complete", text); }
 
 std::string Scene::names() { return vm_->names(); }
 

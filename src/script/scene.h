@@ -1,4 +1,4 @@
-// Scene: a Lua file that says what exists, and its callbacks that act. Made anew for each run. [sim]
+// Scene: runs a Lua file, which creates the objects, and its callbacks. A new one is created for each run. [sim]
 #pragma once
 
 #include <cstdint>
@@ -20,108 +20,109 @@ namespace limber {
 
 class Sources;
 class World;
-class CallLedger;
+class CallLog;
 class EarlierRuns;
 class HandleNames;
 class Vm;
 struct ScriptContext;
 
-/// A place in a script.
+/// Source location in a script.
 struct ScriptPlace {
   std::string file;
   int line = 0;
 };
 
-/// What a save has left of the scheduled calls of the runs before.
-struct KeptTimers {
-  std::uint64_t timers = 0;     ///< That callbacks have set, and that go on.
-  std::uint64_t repeating = 0;  ///< Those of them without an end.
-  std::uint64_t ended = 0;      ///< Ended now, because too many runs had some.
-  std::uint64_t handlers = 0;   ///< Registered in callbacks (osc:on, sim:on_step, sim:on_contact), ended now.
+/// Timers and handlers of replaced runs, counted when a run goes live.
+struct CarriedTimers {
+  std::uint64_t timers = 0;     ///< Timers set by callbacks that continue.
+  std::uint64_t repeating = 0;  ///< Number of these that repeat.
+  std::uint64_t ended = 0;      ///< Timers ended because there were too many earlier runs.
+  std::uint64_t handlers = 0;   ///< Handlers of callbacks (osc:on, sim:on_step, sim:on_contact) that were removed.
 };
 
 class Scene {
  public:
-  /// World and host outlive the scene. What a scene made in the world stays when the scene goes, but its parameters.
-  /// Live when that is wanted and no other scene of the process is: only one can run compiled.
+  /// World and host outlive the scene. Objects that a scene created in the world stay when the scene is destroyed,
+  /// except its parameters. The mode is live only if `wanted` and no other scene of the process is, because only one
+  /// can be compiled.
   Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::live);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
 
-  /// Runs the file: the top level. The error has file:line: what, the source line and the traceback. Once only.
-  /// `beside`: the run is one beside a show, which hears nothing of it, and may read that much of the show; on any
-  /// thread, in a world of its own.
-  Result<void> run(const std::string& file, const RunInputs* beside = nullptr);
-  /// Where the run failed: the file as messages show it, the line or 0.
+  /// Runs the file's top level; once only. The error has "file:line: message", the source line and the traceback.
+  /// `detached`: makes it a detached run, on any thread and in a world of its own, which may read these data of the
+  /// live scene and does not affect it.
+  Result<void> run(const std::string& file, const RunInputs* detached = nullptr);
+  /// Place of the error in a failed run: the file as messages show it, the line or 0.
   const ScriptPlace& fault() const { return fault_; }
-  /// What the run has read so far.
+  /// The files that the run has read so far.
   std::shared_ptr<const Sources> sources() const;
-  /// From here on guarded calls are counted there; it outlives the scene. [sim]
-  void count_calls(CallLedger& calls);
-  /// A take has ended: what scripts may take from here on. [sim]
-  void limit(const ScriptLimits& limits);
-  /// The callbacks of on_start; the world is settled before.
+  /// Counts guarded calls in `calls` from now on; it outlives the scene. [sim]
+  void set_call_log(CallLog& calls);
+  /// Sets new limits, after a take has ended. [sim]
+  void set_limits(const ScriptLimits& limits);
+  /// Runs the on_start callbacks. The world must be flushed before.
   void start();
-  /// Timers, contacts of the tick before, on_step with `dt` seconds, each in the order of registration.
+  /// Runs timers, contacts of the previous tick and on_step with `dt` seconds, each in the order of registration.
   void tick(double dt);
-  /// Whether any osc:on handler is registered.
-  bool listens() const;
-  /// Handlers that failed or were stopped: they are disabled until the next good run of the scene.
+  /// True if any osc:on handler is registered.
+  bool has_handlers() const;
+  /// Number of handlers that failed or were stopped; they are disabled until the next successful run of the scene.
   std::size_t disabled_handlers() const;
-  /// Calls the osc:on handlers that fit, in order of registration; false when none does.
-  bool message(const Message& message, const Origin& origin);
-  /// After each tick: about 100 µs at most, nothing while there is little to collect.
+  /// Calls the matching osc:on handlers in the order of registration; false if there is none.
+  bool handle_message(const Message& message, const CommandOrigin& origin);
+  /// Collects garbage after a tick: about 100 µs at most; does nothing if there is little garbage.
   void collect_garbage();
-  /// While `on`, what was done once is done again: nothing is stopped but what the ledger forbids. [sim]
-  void do_again(bool on);
+  /// While `on`, a recorded run is repeated: only the calls that the log lists are stopped. [sim]
+  void set_replaying(bool on);
   VmMode mode() const;
-  /// Draft to live: once the other scene has gone, or was disarmed; false while it has not.
+  /// Switches to live mode; false while another scene is live and not disarmed.
   bool arm();
   void disarm();
-  /// A world's hash with the bits of the scene's generator and parameters.
+  /// Returns a world's hash continued with the scene's generators and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
 
-  /// What a run beside this show may read of it.
+  /// Returns the data that a detached run may read.
   RunInputs inputs();
-  /// After a good run beside the show, still on its thread: what takes long of becoming the show.
+  /// Prepares a successful detached run for going live. Called on its thread, because it is slow.
   void prepare();
-  /// Before things are made again for a run that becomes the show: notes the handles of functions that go on.
-  void note_things();
-  /// The run beside the show `before` (null: there was none) becomes the show: its handles are given the ids that
-  /// things have in `world`; parameters, `state` and the beat of timers are handed over. Where callbacks of `before`
-  /// have set timers, these go on with its functions and variables. The answer: rows of the parameters that start at
-  /// their defaults again. `before` may then be destroyed on any thread.
-  std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before);
-  /// What become_live() has kept of the runs before.
-  const KeptTimers& kept() const { return kept_; }
-  /// Runs whose timers had all ended before that tick are released: nothing goes back to it. [sim]
+  /// Before objects are rebuilt for a new live run: saves the names behind the handles of callbacks that continue.
+  void capture_handles();
+  /// Makes this detached run live, replacing `previous` (may be null): maps its handles to the ids in `world`, and
+  /// takes over parameters, `state` and the phase of timers. If callbacks of `previous` have set timers, they continue
+  /// with its functions and variables. Returns a bit mask of the parameters that start at their defaults again.
+  /// `previous` may then be destroyed on any thread.
+  std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous);
+  /// Timers of earlier runs that become_live() carried over.
+  const CarriedTimers& carried_timers() const { return carried_timers_; }
+  /// Releases runs in which all timers ended before that tick; no rewind can reach it. [sim]
   void release_ended(std::uint64_t before_tick);
   /// The node of the scene's parameters, or a null id.
   NodeId params() const;
-  /// Values of the parameters with `rerun`, one after the other.
+  /// Returns the values of the parameters with `rerun`, concatenated.
   void rerun_values(std::vector<double>& out) const;
 
-  /// Runs a text in the scene's environment, as a callback: an expression has a value, statements have none.
+  /// Runs text in the scene's environment as a callback. Expressions have a value, statements have none.
   Evaluation evaluate(std::string_view text);
-  /// The names that may stand at the end of a half-written text: globals, members, and inside quotes names of things.
-  /// Runs nothing of the scene's.
+  /// Returns completions for the end of an incomplete text: globals, members, and inside quotes names of objects. Runs
+  /// no code of the scene.
   Evaluation complete(std::string_view text);
-  /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method.
+  /// All names that a scene sees, one per line: globals, library.member, thing.member, thing:method.
   std::string names();
-  /// The folder that the scene's show lives in.
+  /// The folder that contains the scene's `scripts/`.
   const std::string& show_folder() const;
 
  private:
-  friend class SceneKey;
-  void keep_run(Scene& before);
+  friend class SceneCheckpoint;
+  void adopt_run(Scene& previous);
   std::unique_ptr<EarlierRuns> earlier_;
   std::unique_ptr<ScriptContext> context_;
   std::unique_ptr<Vm> vm_;
   ScriptPlace fault_;
   std::uint64_t run_number_ = 1;
-  KeptTimers kept_;
-  std::unique_ptr<HandleNames> names_;  // from note_things() to become_live(), where the run is kept
+  CarriedTimers carried_timers_;
+  std::unique_ptr<HandleNames> handle_names_;  // from capture_handles() to become_live(), if the run continues
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What of a scene lies beside Lua's heap: generators, the beat of timers, counts.
+// Scene state outside Lua's heap: generators, phase of timers, counters.
 #include "script/scene_key.h"
 
 #include <algorithm>
@@ -13,77 +13,79 @@ namespace limber {
 
 namespace {
 
-void pass_context(KeyBytes& key, ScriptContext& context) {
-  key.pass_all(context.random, context.seeded_with, context.timers_at, context.handlers, context.disabled_handlers,
-               context.cancels);
-  context.behaviors->pass_memory(key);
+void serialize_context(Archive& archive, ScriptContext& context) {
+  archive.serialize_all(context.random, context.seeded_with, context.timers_at, context.handlers,
+                        context.disabled_handlers, context.cancellations);
+  context.behaviors->serialize(archive);
 }
 
-void pass_run(KeyBytes& key, EarlierRuns::Run& run) {
-  pass_context(key, *run.context);
-  key.pass_all(run.timers, run.ended_at, run.state);
+void serialize_run(Archive& archive, EarlierRuns::Run& run) {
+  serialize_context(archive, *run.context);
+  archive.serialize_all(run.timers, run.ended_at, run.state);
 }
 
 }  // namespace
 
-template <class Beside>
-void SceneKey::take(State& to, Vm& vm, PageStore& pages, const State* before, KeyBytes& scratch, Beside pass) {
-  vm.copy_heap(pages, before == nullptr ? nullptr : &before->heap, to.heap);
-  scratch.begin_taking();
-  pass(scratch);
-  vm.pass_counts(scratch);
-  to.own_size = scratch.bytes().size();
-  to.own.clear();
-  pages.append(to.own, scratch.bytes(), before == nullptr ? nullptr : &before->own);
+template <class SerializeExtra>
+void SceneCheckpoint::capture(State& to, Vm& vm, PageStore& pages, const State* previous, Archive& scratch,
+                              SerializeExtra serialize_extra) {
+  vm.copy_heap(pages, previous == nullptr ? nullptr : &previous->heap, to.heap);
+  scratch.begin_saving();
+  serialize_extra(scratch);
+  vm.serialize_counts(scratch);
+  to.extra_size = scratch.bytes().size();
+  to.extra.clear();
+  pages.append(to.extra, scratch.bytes(), previous == nullptr ? nullptr : &previous->extra);
 }
 
-template <class Beside>
-void SceneKey::bring_back(const State& from, Vm& vm, const PageStore& pages, KeyBytes& scratch, Beside pass) {
-  vm.bring_back_heap(pages, from.heap);
-  scratch.bytes().resize(from.own_size);
-  pages.copy_back(from.own, 0, scratch.bytes());
-  scratch.begin_bringing();
-  pass(scratch);
-  vm.pass_counts(scratch);
+template <class SerializeExtra>
+void SceneCheckpoint::restore(const State& from, Vm& vm, const PageStore& pages, Archive& scratch,
+                              SerializeExtra serialize_extra) {
+  vm.restore_heap(pages, from.heap);
+  scratch.bytes().resize(from.extra_size);
+  pages.restore(from.extra, 0, scratch.bytes());
+  scratch.begin_loading();
+  serialize_extra(scratch);
+  vm.serialize_counts(scratch);
 }
 
-void SceneKey::take(Scene& scene, PageStore& pages, const SceneKey* before, KeyBytes& scratch) {
-  const auto pass_scene = [&](KeyBytes& key) { pass_context(key, *scene.context_); };
-  take(state_, *scene.vm_, pages, before == nullptr ? nullptr : &before->state_, scratch, pass_scene);
+void SceneCheckpoint::capture(Scene& scene, PageStore& pages, const SceneCheckpoint* previous, Archive& scratch) {
+  const auto serialize_scene = [&](Archive& archive) { serialize_context(archive, *scene.context_); };
+  capture(state_, *scene.vm_, pages, previous == nullptr ? nullptr : &previous->state_, scratch, serialize_scene);
   earlier_.clear();
   for (EarlierRuns::Run& run : scene.earlier_->all()) {
     if (run.timers == 0) continue;
     const State* older = nullptr;
-    if (before != nullptr) {
-      for (const EarlierState& known : before->earlier_) {
+    if (previous != nullptr) {
+      for (const EarlierState& known : previous->earlier_) {
         if (known.number == run.number) older = &known.state;
       }
     }
     EarlierState& to = earlier_.emplace_back();
     to.number = run.number;
-    take(to.state, *run.vm, pages, older, scratch, [&](KeyBytes& key) { pass_run(key, run); });
+    capture(to.state, *run.vm, pages, older, scratch, [&](Archive& archive) { serialize_run(archive, run); });
   }
 }
 
-void SceneKey::bring_back(Scene& scene, const PageStore& pages, KeyBytes& scratch) const {
-  bring_back(state_, *scene.vm_, pages, scratch, [&](KeyBytes& key) { pass_context(key, *scene.context_); });
+void SceneCheckpoint::restore(Scene& scene, const PageStore& pages, Archive& scratch) const {
+  restore(state_, *scene.vm_, pages, scratch, [&](Archive& archive) { serialize_context(archive, *scene.context_); });
   for (EarlierRuns::Run& run : scene.earlier_->all()) {
     const auto known =
         std::ranges::find_if(earlier_, [&](const EarlierState& state) { return state.number == run.number; });
     if (known == earlier_.end()) {
-      run.timers = 0;  // it had ended by then
+      run.timers = 0;  // the run had ended at that time
     } else {
-      bring_back(known->state, *run.vm, pages, scratch, [&](KeyBytes& key) { pass_run(key, run); });
+      restore(known->state, *run.vm, pages, scratch, [&](Archive& archive) { serialize_run(archive, run); });
     }
   }
 }
 
-void SceneKey::release(PageStore& pages) {
+void SceneCheckpoint::release(PageStore& pages) {
   pages.release(state_.heap);
-  pages.release(state_.own);
+  pages.release(state_.extra);
   for (EarlierState& earlier : earlier_) {
     pages.release(earlier.state.heap);
-    pages.release(earlier.state.own);
+    pages.release(earlier.state.extra);
   }
   earlier_.clear();
 }

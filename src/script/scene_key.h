@@ -1,4 +1,4 @@
-// SceneKey: a scene between two ticks: Lua's whole heap, generators, timers, to be brought back to the bit. [sim]
+// SceneCheckpoint: the exact state of a scene between two ticks: Lua's heap, generators, timers. [sim]
 #pragma once
 
 #include <cstdint>
@@ -12,33 +12,35 @@ namespace limber {
 class Scene;
 class Vm;
 
-class SceneKey {
+class SceneCheckpoint {
  public:
-  /// Takes the scene as it is, in pages that are shared with `before`, an older key of it, or null. `scratch` is used
-  /// again and again.
-  void take(Scene& scene, PageStore& pages, const SceneKey* before, KeyBytes& scratch);
-  /// The scene is as it was taken; it is the same run of it.
-  void bring_back(Scene& scene, const PageStore& pages, KeyBytes& scratch) const;
-  /// Gives its pages back.
+  /// Captures the scene, sharing pages with the older checkpoint `previous` (may be null). `scratch` is a reusable
+  /// buffer.
+  void capture(Scene& scene, PageStore& pages, const SceneCheckpoint* previous, Archive& scratch);
+  /// Restores the captured state. The scene must be the same run.
+  void restore(Scene& scene, const PageStore& pages, Archive& scratch) const;
+  /// Releases its pages.
   void release(PageStore& pages);
 
  private:
-  /// One Lua state: its heap, and the numbers beside it.
+  /// One Lua state: its heap, and the serialized data outside the heap.
   struct State {
-    PageStore::Image heap, own;
-    std::size_t own_size = 0;
+    PageStore::PageList heap, extra;
+    std::size_t extra_size = 0;
   };
   struct EarlierState {
-    std::uint64_t number = 0;  // of the run
+    std::uint64_t number = 0;  // sequence number of the run
     State state;
   };
-  template <class Beside>
-  static void take(State& to, Vm& vm, PageStore& pages, const State* before, KeyBytes& scratch, Beside pass);
-  template <class Beside>
-  static void bring_back(const State& from, Vm& vm, const PageStore& pages, KeyBytes& scratch, Beside pass);
+  template <class SerializeExtra>
+  static void capture(State& to, Vm& vm, PageStore& pages, const State* previous, Archive& scratch,
+                      SerializeExtra serialize_extra);
+  template <class SerializeExtra>
+  static void restore(const State& from, Vm& vm, const PageStore& pages, Archive& scratch,
+                      SerializeExtra serialize_extra);
 
   State state_;
-  std::vector<EarlierState> earlier_;  // runs with timers that go on
+  std::vector<EarlierState> earlier_;  // earlier runs with pending timers
 };
 
 }  // namespace limber

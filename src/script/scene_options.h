@@ -1,4 +1,4 @@
-// SceneOptions: what the command line says about running a scene.
+// SceneOptions: command line options for running a scene.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +14,13 @@ namespace limber {
 class Sources;
 
 struct SceneOptions {
-  std::string data_dir;                    ///< Installed data, looked into last; empty: none.
-  std::vector<std::string> package_paths;  ///< Where package:// of URDF files is looked for.
-  std::optional<std::uint64_t> seed;       ///< Wins over the scene's `sim.seed`.
+  std::string data_dir;                    ///< Installed data, searched last; empty: none.
+  std::vector<std::string> package_paths;  ///< Search path for package:// of URDF files.
+  std::optional<std::uint64_t> seed;       ///< Overrides the scene's `sim.seed`.
   ScriptLimits limits;
-  /// A save keeps timers: those of callbacks, and the time of the top level's sim:after. False for takes of before.
+  /// A reload carries over timers: those of callbacks, and the time of the top level's sim:after. False for old takes.
   bool keep_timers = true;
-  std::shared_ptr<const Sources> sources = nullptr;  ///< What to read instead of the disk; null: the disk.
+  std::shared_ptr<const Sources> sources = nullptr;  ///< Files to use instead of the disk; null: the disk.
 };
 
 }  // namespace limber

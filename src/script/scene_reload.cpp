@@ -1,4 +1,4 @@
-// Scene: what a run beside the show is given of it, and how such a run becomes the show.
+// Scene: data for a detached run, and going live.
 #include <algorithm>
 
 #include "script/behavior_scripts.h"
@@ -15,86 +15,87 @@ RunInputs Scene::inputs() {
   inputs.tick = c.world->tick();
   inputs.time = c.world->time();
   inputs.state = vm_->state_text();
-  if (c.params != nullptr) inputs.params = c.params->live();
+  if (c.params != nullptr) inputs.params = c.params->values();
   return inputs;
 }
 
 void Scene::prepare() { vm_->prepare(); }
 
-void Scene::note_things() {
-  const bool keeps = context_->options.keep_timers && vm_->callback_timers().timers > 0;
-  earlier_->note_things();
-  names_ = keeps ? std::make_unique<HandleNames>() : nullptr;
-  if (!keeps) return;
+void Scene::capture_handles() {
+  const bool has_timers = context_->options.keep_timers && vm_->callback_timers().timers > 0;
+  earlier_->capture_handles();
+  handle_names_ = has_timers ? std::make_unique<HandleNames>() : nullptr;
+  if (!has_timers) return;
   vm_->gather_handles();
-  names_->note(*context_);
+  handle_names_->capture(*context_);
 }
 
 void Scene::release_ended(std::uint64_t before_tick) { earlier_->release_ended(before_tick); }
 
-// of a run whose place this one takes
-void Scene::keep_run(Scene& before) {
-  ScriptContext& old = *before.context_;
-  old.behaviors->close();  // it may go on another thread
-  run_number_ = before.run_number_ + 1;
-  before.earlier_->cancel(old, old.world->tick());
-  earlier_ = std::move(before.earlier_);
-  kept_ = {};
-  if (before.names_ == nullptr) {
-    old.look_at(nullptr);
+// takes over the earlier runs, and the replaced run if it has timers
+void Scene::adopt_run(Scene& previous) {
+  ScriptContext& old = *previous.context_;
+  old.behaviors->detach();  // it may be destroyed on another thread
+  run_number_ = previous.run_number_ + 1;
+  previous.earlier_->apply_cancellations(old, old.world->tick());
+  earlier_ = std::move(previous.earlier_);
+  carried_timers_ = {};
+  if (previous.handle_names_ == nullptr) {
+    old.set_world(nullptr);
   } else {
-    EarlierRuns::Run run(std::move(before.context_), std::move(before.vm_));
-    run.names = std::move(*before.names_);
-    run.number = before.run_number_;
-    kept_.handlers = run.vm->become_earlier();
-    kept_.ended = earlier_->add(std::move(run));
+    EarlierRuns::Run run(std::move(previous.context_), std::move(previous.vm_));
+    run.handle_names = std::move(*previous.handle_names_);
+    run.number = previous.run_number_;
+    carried_timers_.handlers = run.vm->retire();
+    carried_timers_.ended = earlier_->add(std::move(run));
   }
-  earlier_->follow_things(params());
+  earlier_->resolve_handles(params());
   const EarlierRuns::Counts counts = earlier_->counts();
-  kept_.timers = counts.timers;
-  kept_.repeating = counts.repeating;
+  carried_timers_.timers = counts.timers;
+  carried_timers_.repeating = counts.repeating;
 }
 
-std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* before) {
+std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
   ScriptContext& c = *context_;
-  // handles: the ids that their things have in the other store, or none
-  for (std::int32_t* const id : c.things) {
+  // map the handles to the ids in the live store
+  for (std::int32_t* const id : c.handle_ids) {
     const NodeId live = live_id(id_of(id[0], id[1]));
     id[0] = live.null() ? -1 : static_cast<std::int32_t>(live.slot);
     id[1] = static_cast<std::int32_t>(live.generation);
   }
-  c.things = {};
-  std::vector<Row> rows;
-  if (c.params != nullptr) rows.assign(c.params->table().rows().begin(), c.params->table().rows().end());
+  c.handle_ids = {};
+  std::vector<Property> properties;
+  if (c.params != nullptr)
+    properties.assign(c.params->table().properties().begin(), c.params->table().properties().end());
   const bool has_params = c.params != nullptr;
-  const Table* const table = has_params ? &c.params->table() : nullptr;
+  const PropertyTable* const table = has_params ? &c.params->table() : nullptr;
   c.params = nullptr;
-  c.look_at(&world);
+  c.set_world(&world);
 
-  ScriptContext* const old = before == nullptr ? nullptr : before->context_.get();
+  ScriptContext* const old = previous == nullptr ? nullptr : previous->context_.get();
   std::vector<LiveParam> live;
-  if (old != nullptr && old->params != nullptr) live = old->params->live();
+  if (old != nullptr && old->params != nullptr) live = old->params->values();
   std::uint64_t defaults = 0;
   if (has_params && old != nullptr && old->params != nullptr && &old->params->table() == table) {
-    c.params = std::move(old->params);  // the same node, with all that it holds
+    c.params = std::move(old->params);  // same node, with all its values
   } else {
     if (old != nullptr) old->params = nullptr;
     if (has_params) {
-      c.params = std::make_unique<ParamsNode>(world.store(), std::move(rows));
-      defaults = c.params->keep(live);
+      c.params = std::make_unique<ParamsNode>(world.store(), std::move(properties));
+      defaults = c.params->carry_over(live);
     }
   }
   if (old != nullptr) {
-    vm_->take_state(before->vm_->state_text());
-    if (c.options.keep_timers) vm_->take_afters(before->vm_->afters_text());
+    vm_->adopt_state(previous->vm_->state_text());
+    if (c.options.keep_timers) vm_->adopt_afters(previous->vm_->afters_text());
     c.timers_at = old->timers_at;
-    before->disarm();
-    keep_run(*before);
+    previous->disarm();
+    adopt_run(*previous);
   }
-  vm_->number_run(run_number_);
+  vm_->set_run_number(run_number_);
   vm_->become_live(c.timers_at);
   arm();
-  c.host.plan_osc(c.plan);
+  c.host.configure_osc(c.osc_config);
   return defaults;
 }
 
@@ -103,12 +104,12 @@ NodeId Scene::params() const { return context_->params == nullptr ? NodeId{} : c
 void Scene::rerun_values(std::vector<double>& out) const {
   const ScriptContext& c = *context_;
   out.clear();
-  if (c.rerun_rows == 0 || c.params == nullptr) return;
+  if (c.rerun_properties == 0 || c.params == nullptr) return;
   const Store& store = c.world->store();
-  for (const Row& row : c.params->table().rows()) {
-    if ((c.rerun_rows >> row.index & 1u) == 0) continue;
-    const double* const values = store.values(c.params->id(), row);
-    out.insert(out.end(), values, values + row.width);
+  for (const Property& property : c.params->table().properties()) {
+    if ((c.rerun_properties >> property.index & 1u) == 0) continue;
+    const double* const values = store.values(c.params->id(), property);
+    out.insert(out.end(), values, values + property.width);
   }
 }
 

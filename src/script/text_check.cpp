@@ -1,4 +1,4 @@
-// Words and signs of Lua, without strings and comments.
+// Checks on tokens of Lua, skipping strings and comments.
 #include "script/text_check.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// LuaJIT's compiler looks through all jumps that are open when one more comes, and a hook can't stop it
-constexpr std::size_t kMostJumps = 2000;
+// for each new jump LuaJIT's compiler scans all open ones, and a hook can't stop it
+constexpr std::size_t kMaxJumps = 2000;
 
 std::size_t jumps_in(std::string_view text) {
   std::size_t count = 0;
@@ -31,7 +31,7 @@ class Tokens {
  public:
   explicit Tokens(std::string_view text) : text_(text) {}
 
-  /// A word, or one sign; of a string its quote; empty: the end.
+  /// Returns a word or a single character; for a string its quote; empty at the end.
   std::string_view next() {
     while (at_ < text_.size()) {
       const char c = text_[at_];
@@ -66,7 +66,7 @@ class Tokens {
     return text_.substr(from, 1);
   }
 
-  // behind [[ … ]] or [==[ … ]==], if one begins here
+  // skips [[ … ]] or [==[ … ]==], if one begins here
   bool skip_long() {
     std::size_t open = at_;
     if (open >= text_.size() || text_[open] != '[') return false;
@@ -84,9 +84,9 @@ class Tokens {
   std::ptrdiff_t begin_ = 0;
 };
 
-// `local a` and `for _ in (nil):f() do` behind it make LuaJIT 2.1.0-beta3 read an instruction that it has not written:
-// it expects that the first value of a loop over an iterator writes one, but a nil only lengthens the one before
-std::optional<int> nil_loop(std::string_view text) {
+// `local a` followed by `for _ in (nil):f() do` makes LuaJIT 2.1.0-beta3 read an instruction that it has not written:
+// it assumes that the first value of an iterator loop emits one, but nil only extends the previous one.
+std::optional<int> find_nil_loop(std::string_view text) {
   if (text.find("nil") == text.npos) return std::nullopt;
   enum class Where : std::uint8_t { elsewhere, names, values };
   Where where = Where::elsewhere;
@@ -108,8 +108,8 @@ std::optional<int> nil_loop(std::string_view text) {
   return std::nullopt;
 }
 
-// 1LL, 0x1ULL and 2i are numbers of LuaJIT's foreign function interface, which scripts don't see otherwise
-bool is_foreign_number(std::string_view token) {
+// 1LL, 0x1ULL and 2i are numbers of LuaJIT's FFI, which scripts can't use otherwise
+bool is_ffi_number(std::string_view token) {
   if (token[0] < '0' || token[0] > '9') return false;
   const auto ends_with = [&](std::string_view suffix) {
     return token.size() > suffix.size() &&
@@ -118,10 +118,10 @@ bool is_foreign_number(std::string_view token) {
   return ends_with("ll") || ends_with("i");
 }
 
-std::optional<int> foreign_number(std::string_view text) {
+std::optional<int> find_ffi_number(std::string_view text) {
   Tokens tokens(text);
   for (std::string_view token = tokens.next(); !token.empty(); token = tokens.next()) {
-    if (is_foreign_number(token)) return tokens.line();
+    if (is_ffi_number(token)) return tokens.line();
   }
   return std::nullopt;
 }
@@ -129,12 +129,12 @@ std::optional<int> foreign_number(std::string_view text) {
 }  // namespace
 
 std::optional<TextFault> text_fault(std::string_view text) {
-  if (jumps_in(text) > kMostJumps)
-    return TextFault{1, fmt::format("a text may hold {} times break, goto, elseif; part it", kMostJumps)};
-  if (const std::optional<int> line = nil_loop(text))
+  if (jumps_in(text) > kMaxJumps)
+    return TextFault{1, fmt::format("a text can have at most {} break, goto and elseif; split it", kMaxJumps)};
+  if (const std::optional<int> line = find_nil_loop(text))
     return TextFault{*line, "the values of a loop can't begin with nil; put them into a local variable before it"};
-  if (const std::optional<int> line = foreign_number(text))
-    return TextFault{*line, "numbers can't end in LL, ULL or i; a number of Lua holds integers up to 2^53 exactly"};
+  if (const std::optional<int> line = find_ffi_number(text))
+    return TextFault{*line, "numbers can't end in LL, ULL or i; Lua numbers represent integers up to 2^53 exactly"};
   return std::nullopt;
 }
 

@@ -1,4 +1,4 @@
-// What a script's text must not hold, since LuaJIT's compiler can't be stopped there, or crashes. [any]
+// Rejects script texts that LuaJIT's compiler can't process: it would crash, or could not be stopped. [any]
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@ namespace limber {
 
 struct TextFault {
   int line = 1;
-  std::string what;
+  std::string message;
 };
 
-/// Nothing: the compiler may read the text. Linear in its length.
+/// Returns the fault, or nothing if the text is acceptable. Linear time.
 std::optional<TextFault> text_fault(std::string_view text);
 
 }  // namespace limber

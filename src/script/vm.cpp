@@ -1,4 +1,4 @@
-// The Lua state: opened, filled with the prelude, called, collected.
+// The Lua state: creation, prelude, calls, garbage collection.
 #include "script/vm.h"
 
 #include <algorithm>
@@ -20,17 +20,17 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kMostArguments = 4000;  // of a message that a handler hears; Lua's stack has an end
+constexpr std::size_t kMaxArguments = 4000;  // max. arguments of a message for a handler; Lua's stack is limited
 
 void push(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
 
 std::string_view text_at(lua_State* L, int index) {
   std::size_t length = 0;
   const char* text = lua_tolstring(L, index, &length);
-  return text == nullptr ? std::string_view("an error without text") : std::string_view(text, length);
+  return text == nullptr ? std::string_view("an error without a message") : std::string_view(text, length);
 }
 
-// function, arguments … -> whether the guarded call ended well
+// function, arguments … -> true if the guarded call succeeded
 template <Guard::Kind kind>
 int guarded(lua_State* L) {
   Guard& guard = *static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1)));
@@ -38,20 +38,20 @@ int guarded(lua_State* L) {
   return 1;
 }
 
-// a text in pieces, between which the compiler can be stopped
-struct Pieces {
+// feeds a text to the compiler in blocks, so that it can be stopped between them
+struct TextReader {
   Guard& guard;
   const char* text;
   std::size_t left;
   static const char* next(lua_State*, void* self, std::size_t* size) {
-    constexpr std::size_t kPiece = 256;
-    auto& pieces = *static_cast<Pieces*>(self);
-    if (pieces.guard.stop_asked()) pieces.left = 0;
-    *size = std::min(kPiece, pieces.left);
-    const char* const piece = pieces.text;
-    pieces.text += *size;
-    pieces.left -= *size;
-    return piece;
+    constexpr std::size_t kBlockSize = 256;
+    auto& reader = *static_cast<TextReader*>(self);
+    if (reader.guard.stop_requested()) reader.left = 0;
+    *size = std::min(kBlockSize, reader.left);
+    const char* const block = reader.text;
+    reader.text += *size;
+    reader.left -= *size;
+    return block;
   }
 };
 
@@ -59,24 +59,24 @@ void* heap_block(void* heap, void* block, std::size_t before, std::size_t after)
   return static_cast<Arena*>(heap)->resize(block, before, after);
 }
 
-// with the libraries: opening that of the compiler switches it on
+// with the libraries, since opening the jit library turns the compiler on
 lua_State* open_state(Arena& heap) {
   lua_State* const L = heap.exists() ? lua_newstate(heap_block, &heap) : luaL_newstate();
   luaL_openlibs(L);
   return L;
 }
 
-// text, name, environment -> function, or nil and what is wrong; never bytecode
+// text, name, environment -> function, or nil and an error message; never loads bytecode
 int load_text(lua_State* L) {
   std::size_t size = 0;
   const char* const text = lua_tolstring(L, 1, &size);
   if (const std::optional<TextFault> fault = text_fault({text, size})) {
     lua_pushnil(L);
-    lua_pushfstring(L, "%s:%d: %s", lua_tostring(L, 2) + 1, fault->line, fault->what.c_str());
+    lua_pushfstring(L, "%s:%d: %s", lua_tostring(L, 2) + 1, fault->line, fault->message.c_str());
     return 2;
   }
-  Pieces pieces{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};
-  if (lua_loadx(L, &Pieces::next, &pieces, lua_tostring(L, 2), "t") != 0) {
+  TextReader reader{*static_cast<Guard*>(lua_touserdata(L, lua_upvalueindex(1))), text, size};
+  if (lua_loadx(L, &TextReader::next, &reader, lua_tostring(L, 2), "t") != 0) {
     lua_pushnil(L);
     lua_insert(L, -2);
     return 2;
@@ -88,14 +88,14 @@ int load_text(lua_State* L) {
 
 }  // namespace
 
-void Vm::Close::operator()(lua_State* state) const { lua_close(state); }
+void Vm::Closer::operator()(lua_State* state) const { lua_close(state); }
 
 Vm::Vm(ScriptContext& context, VmMode wanted)
     : state_(open_state(heap_)), guard_(state_.get(), context, context.options.limits) {
   context.guard = &guard_;
   load_prelude(context);
-  keep_entries();
-  context.behaviors->open(*this);
+  store_entries();
+  context.behaviors->attach(*this);
   if (wanted == VmMode::live) arm();
   collector_.emplace(state_.get(), guard_.memory());
 }
@@ -104,24 +104,24 @@ Vm::~Vm() = default;
 
 void Vm::load_prelude(ScriptContext& context) {
   lua_State* const L = state_.get();
-  lua_newtable(L);  // what the files share: their P
+  lua_newtable(L);  // the table P shared by the prelude's files
   push(L, limber_cdef());
   lua_setfield(L, -2, "cdef");
   lua_pushlightuserdata(L, const_cast<LimberApi*>(&limber_api()));
   lua_setfield(L, -2, "api");
   lua_pushlightuserdata(L, &context);
   lua_setfield(L, -2, "context");
-  const auto only = [&](const std::string& name, NodeId id) {
+  const auto set_id_fields = [&](const std::string& name, NodeId id) {
     lua_pushnumber(L, id.slot);
     lua_setfield(L, -2, (name + "_slot").c_str());
     lua_pushnumber(L, id.generation);
     lua_setfield(L, -2, (name + "_generation").c_str());
   };
   const Visuals& visuals = context.world->visuals();
-  only("world", context.world->id());
-  only("visuals", visuals.id());
-  only("camera", visuals.camera().id());
-  only("look", visuals.look().id());
+  set_id_fields("world", context.world->id());
+  set_id_fields("visuals", visuals.id());
+  set_id_fields("camera", visuals.camera().id());
+  set_id_fields("look", visuals.appearance().id());
   const auto guard_function = [&](const char* name, lua_CFunction function) {
     lua_pushlightuserdata(L, &guard_);
     lua_pushcclosure(L, function, 1);
@@ -145,41 +145,41 @@ void Vm::load_prelude(ScriptContext& context) {
   }
 }
 
-void Vm::keep_entries() {
+void Vm::store_entries() {
   lua_State* const L = state_.get();
   lua_getfield(L, -1, "entry");
-  const auto keep = [L](const char* name) {
+  const auto reference = [L](const char* name) {
     lua_getfield(L, -1, name);
     return luaL_ref(L, LUA_REGISTRYINDEX);
   };
   if (lua_istable(L, -1)) {
-    run_ = keep("run");
-    start_ = keep("start");
-    tick_ = keep("tick");
-    message_ = keep("message");
-    names_ = keep("names");
-    const int handler = keep("handler");
-    const int stopped_fault = keep("stopped_fault");
-    guard_.use(handler, stopped_fault, keep("failed"));
+    run_ = reference("run");
+    start_ = reference("start");
+    tick_ = reference("tick");
+    message_ = reference("message");
+    names_ = reference("names");
+    const int handler = reference("handler");
+    const int stopped_fault = reference("stopped_fault");
+    guard_.set_functions(handler, stopped_fault, reference("failed"));
     lua_pushvalue(L, -1);
     entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
-    warm_ = keep("warm");
-    make_behavior_ = keep("make_behavior");
-    renew_behavior_ = keep("renew_behavior");
-    restore_behavior_ = keep("restore_behavior");
-    migrated_behavior_ = keep("migrated_behavior");
-    step_behaviors_ = keep("step_behaviors");
-    behavior_state_ = keep("behavior_state");
-    drop_behavior_ = keep("drop_behavior");
-    behavior_self_ = keep("behavior_self");
-    behavior_start_ = keep("behavior_start");
-    behavior_step_ = keep("behavior_step");
-    behavior_migrate_ = keep("behavior_migrate");
+    warm_ = reference("warm");
+    make_behavior_ = reference("make_behavior");
+    clear_behavior_lists_ = reference("clear_behavior_lists");
+    restore_behavior_ = reference("restore_behavior");
+    accept_migrated_state_ = reference("accept_migrated_state");
+    step_behaviors_ = reference("step_behaviors");
+    behavior_state_ = reference("behavior_state");
+    drop_behavior_ = reference("drop_behavior");
+    behavior_self_ = reference("behavior_self");
+    behavior_start_ = reference("behavior_start");
+    behavior_step_ = reference("behavior_step");
+    behavior_migrate_ = reference("behavior_migrate");
   }
   lua_settop(L, 0);
 }
 
-// an entry catches what scripts throw; what still comes out is a fault of the prelude
+// an entry catches all errors of scripts; other errors are faults of the prelude
 bool Vm::call(int arguments, int results) {
   lua_State* const L = state_.get();
   const bool entry_caught_all = lua_pcall(L, arguments, results, 0) == 0;
@@ -190,7 +190,7 @@ bool Vm::call(int arguments, int results) {
   return false;
 }
 
-// LuaJIT works at what scripts will call most before they do
+// compiles the most frequently used prelude functions before scripts call them
 bool Vm::arm() {
   if (!guard_.arm()) return false;
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, warm_);
@@ -205,11 +205,12 @@ Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& 
   push(L, text);
   push(L, name);
   const bool called = call(2, 1);
-  const bool good = called && lua_toboolean(L, -1) != 0;
+  const bool success = called && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   collector_->end_run();
-  if (good) return {};
+  if (success) return {};
   if (!called) return Error{fmt::format("{}: the scene could not be run", name)};
+  guard_.attribute_to_file(name);
   fault = {guard_.fault().file, guard_.fault().line};
   return Error{guard_.fault().text};
 }
@@ -227,11 +228,11 @@ void Vm::tick(double dt) {
   call(1, 0);
 }
 
-bool Vm::message(const Message& message, const Origin& origin) {
+bool Vm::handle_message(const Message& message, const CommandOrigin& origin) {
   lua_State* const L = state_.get();
-  if (message.args.size() > kMostArguments || lua_checkstack(L, static_cast<int>(message.args.size()) + 8) == 0) {
-    log_warning("{}: {} arguments are more than a script's handler takes ({})", printable(message.address),
-                message.args.size(), kMostArguments);
+  if (message.args.size() > kMaxArguments || lua_checkstack(L, static_cast<int>(message.args.size()) + 8) == 0) {
+    log_warning("{}: {} arguments are more than a script's handler can receive ({})", printable(message.address),
+                message.args.size(), kMaxArguments);
     return false;
   }
   lua_rawgeti(L, LUA_REGISTRYINDEX, message_);
@@ -254,12 +255,12 @@ bool Vm::message(const Message& message, const Origin& origin) {
     }
   }
   collector_->begin_calls();
-  const bool heard = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
+  const bool handled = call(static_cast<int>(message.args.size()) + 2, 1) && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
-  return heard;
+  return handled;
 }
 
-Evaluation Vm::ask(const char* entry, std::string_view text) {
+Evaluation Vm::query(const char* entry, std::string_view text) {
   using Kind = Evaluation::Kind;
   constexpr std::pair<std::string_view, Kind> kKinds[] = {
       {"value", Kind::value}, {"error", Kind::error}, {"incomplete", Kind::incomplete}, {"names", Kind::names}};
@@ -267,18 +268,18 @@ Evaluation Vm::ask(const char* entry, std::string_view text) {
   lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
   lua_getfield(L, -1, entry);
   push(L, text);
-  Evaluation said;
+  Evaluation result;
   if (call(1, 3)) {
     for (const auto& [word, kind] : kKinds) {
-      if (text_at(L, -3) == word) said.kind = kind;
+      if (text_at(L, -3) == word) result.kind = kind;
     }
-    said.text = shortened(text_at(L, -2), kMostEvaluated);
-    said.word = static_cast<std::size_t>(lua_tonumber(L, -1));
+    result.text = shortened(text_at(L, -2), kMaxEvaluatedBytes);
+    result.word = static_cast<std::size_t>(lua_tonumber(L, -1));
   } else {
-    said = {Kind::error, "the console has a fault, the log tells which"};
+    result = {Kind::error, "internal error of the console; see the log"};
   }
   lua_settop(L, 0);
-  return said;
+  return result;
 }
 
 std::string Vm::names() {
@@ -289,23 +290,23 @@ std::string Vm::names() {
   return names;
 }
 
-void Vm::copy_heap(PageStore& pages, const PageStore::Image* before, PageStore::Image& out) {
+void Vm::copy_heap(PageStore& pages, const PageStore::PageList* previous, PageStore::PageList& out) {
   luaJIT_setmode(state_.get(), 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_FLUSH);
-  heap_.copy(pages, before, out);
+  heap_.capture(pages, previous, out);
 }
 
-void Vm::bring_back_heap(const PageStore& pages, const PageStore::Image& image) {
+void Vm::restore_heap(const PageStore& pages, const PageStore::PageList& image) {
   luaJIT_setmode(state_.get(), 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_FLUSH);
-  heap_.bring_back(pages, image);
+  heap_.restore(pages, image);
 }
 
-void Vm::pass_counts(KeyBytes& key) {
-  guard_.pass_memory(key);
-  collector_->pass_memory(key);
+void Vm::serialize_counts(Archive& archive) {
+  guard_.serialize(archive);
+  collector_->serialize(archive);
 }
 
 void Vm::collect_garbage() {
-  if (guard_.take_memory_stop()) collector_->collect_all();
+  if (guard_.consume_memory_stop()) collector_->collect_all();
   collector_->after_tick();
 }
 

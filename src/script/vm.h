@@ -1,4 +1,4 @@
-// Vm: the one LuaJIT state of a scene, with the trusted prelude inside. Everything runs on the simulation thread.
+// Vm: the LuaJIT state of a scene, including the trusted prelude. Used on the simulation thread only.
 #pragma once
 
 #include <cstdint>
@@ -20,115 +20,122 @@ struct lua_State;
 
 namespace limber {
 
-class KeyBytes;
+class Archive;
 struct ScriptContext;
 struct ScriptPlace;
 
 class Vm {
  public:
-  /// The context is what the prelude's calls work on; it outlives the Vm. Live when that is wanted and no other Vm of
-  /// the process is. [sim]
+  /// The prelude's API calls work on `context`, which outlives the Vm. The mode is live only if `wanted` and no other
+  /// Vm of the process is live. [sim]
   Vm(ScriptContext& context, VmMode wanted);
   ~Vm();
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
 
-  /// Runs a scene's text in a fresh environment. The error: file:line: what, the source line, the traceback; `fault`:
-  /// its place. [sim]
+  /// Runs a scene's text in a fresh environment. The error has "file:line: message", the source line and the traceback;
+  /// `fault` receives its place. [sim]
   Result<void> run(std::string_view text, std::string_view name, ScriptPlace& fault);
-  /// The callbacks of on_start. Those that err are told to the host. [sim]
+  /// Runs the on_start callbacks. Errors are reported to the host. [sim]
   void start();
-  /// Timers, contacts, on_step. Allocates nothing here; what scripts make is Lua's. [sim]
+  /// Runs timers, contacts, on_step. Allocates no C++ memory. [sim]
   void tick(double dt);
-  /// The handlers of osc:on that fit; whether there were any. [sim]
-  bool message(const Message& message, const Origin& origin);
-  /// Asks an entry of the prelude's 95_console.lua, "evaluate" or "complete", about a text. [sim]
-  Evaluation ask(const char* entry, std::string_view text);
-  // Behaviours of behaviors_lua/ (behavior_scripts.h); a fault without text: it went well.
-  /// Makes the `self` of an instance: its number, from 1. [sim]
+  /// Runs the matching osc:on handlers; false if there are none. [sim]
+  bool handle_message(const Message& message, const CommandOrigin& origin);
+  /// Calls the prelude function `entry` of 95_console.lua ("evaluate" or "complete") with a text. [sim]
+  Evaluation query(const char* entry, std::string_view text);
+  // Behaviors of behaviors_lua/ (behavior_scripts.h). A fault without text means success.
+  /// Creates the `self` of an instance and returns its number, from 1. [sim]
   std::int32_t make_behavior(std::int32_t file, NodeId id);
   BehaviorFault start_behavior(std::int32_t number);
   BehaviorFault step_behavior(std::int32_t number, double dt);
-  /// Steps the instances that BehaviorScripts::next_step names, until it names none or one fails; `stepping` is the one
-  /// at hand.
+  /// Steps the instances that BehaviorScripts::next_step() returns, until it returns 0 or one fails. `stepping`: number
+  /// of the current one, updated by next_step().
   BehaviorFault step_behaviors(double dt, const std::int32_t& stepping);
+  /// Sets the instance's `state` from text; `migrate`: through its `migrate` function, if it has one.
   BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
+  /// Returns the instance's `state` serialized as text. The error names the key of a value that can't be serialized.
   Result<std::string> behavior_state(std::int32_t number);
+  /// Releases the instance's data. Its number is not used again.
   void drop_behavior(std::int32_t number);
-  /// Every name that a scene sees, one a line: globals, library.member, thing.member, thing:method. [sim]
+  /// All names that a scene sees, one per line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
-  /// Calls of scripts' code, from C++ too: the state's main thread is `state()`. [sim]
+  /// Guards all calls of script code, including those from C++. Runs on the main thread of `state()`.
   Guard& guard() { return guard_; }
   lua_State* state() const { return state_.get(); }
   VmMode mode() const { return guard_.mode(); }
-  /// Draft to live, once the other Vm has gone or was disarmed; false while it has not.
+  /// Switches to live mode; false while another Vm is live and not disarmed.
   bool arm();
+  /// Switches back to interpreted mode.
   void disarm() { guard_.disarm(); }
 
-  /// `state` as plain data: text of its own, equal where the data are. [sim]
+  /// Returns `state` serialized as text; equal data give equal texts. [sim]
   std::string state_text();
-  /// Before a run beside the show: `state` starts as that text; nothing is compiled until become_live().
-  void begin_beside(std::string_view state);
-  /// After the run: which keys of `state` it wrote; every handle is told to the context (ScriptContext::things).
+  /// Before a detached run: sets `state`. Nothing is compiled until become_live().
+  void begin_detached(std::string_view state);
+  /// After the run: notes which keys of `state` it wrote, and collects all handles (ScriptContext::handle_ids).
   void prepare();
-  /// `state` of the show that this run takes the place of; keys that the run wrote itself stay. [sim]
-  void take_state(std::string_view state);
-  /// Handles have other ids now; timers go on from where they were looked at last, if they were. [sim]
+  /// Takes over `state` of the live run that is being replaced, except keys that this run wrote itself. [sim]
+  void adopt_state(std::string_view state);
+  /// Handles have been remapped; timers continue from the given time of the last check, if any. [sim]
   void become_live(std::optional<double> timers_at);
 
-  // An earlier run, whose place another one has taken; only timers of its callbacks go on.
-  /// Timers that callbacks have set, and how many of them repeat.
+  // Functions for an earlier run, which has been replaced; only timers of its callbacks continue.
+  /// Timers set by callbacks, and how many of them repeat.
   struct CallbackTimers {
     std::uint64_t timers = 0;
     std::uint64_t repeating = 0;
   };
   CallbackTimers callback_timers();
-  /// All that is no such timer ends; how many handlers of callbacks there were among it.
-  std::uint64_t become_earlier();
-  /// Top-level timers of sim:after as text, and those of the run before this one.
+  /// Ends everything but such timers. Returns the number of handlers registered by callbacks that ended.
+  std::uint64_t retire();
+  /// Serializes top-level timers of sim:after, and takes over those of the previous run.
   std::string afters_text();
-  void take_afters(std::string_view afters);
-  /// Timers in `state` name the run by this number.
-  void number_run(std::uint64_t number);
+  void adopt_afters(std::string_view afters);
+  /// Sets the run's number, by which timers in `state` identify it.
+  void set_run_number(std::uint64_t number);
+  /// Cancels a timer of this run by its number.
   void cancel_timer(std::int32_t number);
-  /// Every handle is told to the context (ScriptContext::things); later, that they may have other ids.
+  /// Collects all handles in the context (ScriptContext::handle_ids).
   void gather_handles();
+  /// Updates the prelude's tables after these handles were remapped.
   void handles_moved();
+  /// True if a timer is due at the current simulation time.
   bool timers_due();
-  /// Calls those that are due; how many timers are left.
+  /// Runs the due timers and returns the number of pending ones.
   std::uint64_t run_timers();
-  /// What has changed from one text of `state` to the next is changed in this run's too.
-  void change_state(std::string_view before, std::string_view after);
+  /// Applies the difference between two texts of `state` to this run's `state`.
+  void apply_state_changes(std::string_view before, std::string_view after);
 
-  /// Between two ticks: all that Lua holds, in pages that are shared with an older copy, or null. Compiled code is
-  /// forgotten, since it lies elsewhere; it comes again as it is needed. [sim]
-  void copy_heap(PageStore& pages, const PageStore::Image* before, PageStore::Image& out);
-  void bring_back_heap(const PageStore& pages, const PageStore::Image& image);
-  /// What is counted of it beside the heap.
-  void pass_counts(KeyBytes& key);
+  /// Between two ticks: copies Lua's heap, sharing pages with the older copy `previous` (may be null). Flushes compiled
+  /// code, which is outside the heap and compiled again when needed. [sim]
+  void copy_heap(PageStore& pages, const PageStore::PageList* previous, PageStore::PageList& out);
+  void restore_heap(const PageStore& pages, const PageStore::PageList& image);
+  /// Serializes the counters outside the heap.
+  void serialize_counts(Archive& archive);
 
-  /// Collects for about 100 µs when there is enough to collect. The collector rests at all other times. [sim]
+  /// Collects garbage for about 100 µs if there is enough. The collector is paused at all other times. [sim]
   void collect_garbage();
 
  private:
   void load_prelude(ScriptContext& context);
-  void keep_entries();
+  void store_entries();
   bool call(int arguments, int results);
   void push_entry(const char* name);
-  std::string text_of(const char* entry);
-  std::uint64_t count_of(const char* entry);
+  std::string text_from(const char* entry);
+  std::uint64_t count_from(const char* entry);
   void call_with(const char* entry, double number);
   bool push_behavior(int functions, std::int32_t number);
   BehaviorFault guarded_behavior(int arguments, int results);
 
-  struct Close {
+  struct Closer {
     void operator()(lua_State* state) const;
   };
   Arena heap_;
-  std::unique_ptr<lua_State, Close> state_;
+  std::unique_ptr<lua_State, Closer> state_;
   Guard guard_;
-  std::optional<Collector> collector_;  // once the prelude is in
-  int entries_ = -1;                    // registry references: the prelude's entries, all and each
+  std::optional<GarbageCollector> collector_;  // created after the prelude is loaded
+  int entries_ = -1;  // registry references: the table of the prelude's entries, and individual ones
   int run_ = -1;
   int start_ = -1;
   int tick_ = -1;
@@ -136,13 +143,13 @@ class Vm {
   int names_ = -1;
   int warm_ = -1;
   int make_behavior_ = -1;
-  int renew_behavior_ = -1;
+  int clear_behavior_lists_ = -1;
   int restore_behavior_ = -1;
-  int migrated_behavior_ = -1;
+  int accept_migrated_state_ = -1;
   int step_behaviors_ = -1;
   int behavior_state_ = -1;
   int drop_behavior_ = -1;
-  int behavior_self_ = -1;  // tables by the number of the instance
+  int behavior_self_ = -1;  // tables indexed by the instance's number
   int behavior_start_ = -1;
   int behavior_step_ = -1;
   int behavior_migrate_ = -1;

@@ -1,4 +1,4 @@
-// The Vm's calls for behaviours of behaviors_lua/.
+// Calls into behaviors of behaviors_lua/.
 #include <lua.hpp>
 
 #include "script/vm.h"
@@ -15,7 +15,7 @@ std::string string_at(lua_State* L, int index) {
 
 }  // namespace
 
-// puts the function of an instance and its self on the stack; false: it has no such function
+// pushes an instance's function and its self; false if it has no such function
 bool Vm::push_behavior(int functions, std::int32_t number) {
   lua_State* const L = state_.get();
   lua_rawgeti(L, LUA_REGISTRYINDEX, functions);
@@ -27,7 +27,7 @@ bool Vm::push_behavior(int functions, std::int32_t number) {
   return false;
 }
 
-// the guarded call of what push_behavior put there, with arguments behind it
+// guarded call of the function pushed by push_behavior, with further arguments
 BehaviorFault Vm::guarded_behavior(int arguments, int results) {
   collector_->begin_calls();
   if (guard_.call(arguments, results)) return {};
@@ -49,7 +49,7 @@ std::int32_t Vm::make_behavior(std::int32_t file, NodeId id) {
 
 BehaviorFault Vm::start_behavior(std::int32_t number) {
   lua_State* const L = state_.get();
-  lua_rawgeti(L, LUA_REGISTRYINDEX, renew_behavior_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, clear_behavior_lists_);
   lua_pushnumber(L, number);
   call(1, 0);
   if (!push_behavior(behavior_start_, number)) return {};
@@ -72,10 +72,10 @@ BehaviorFault Vm::step_behaviors(double dt, const std::int32_t& stepping) {
   lua_rawgeti(L, LUA_REGISTRYINDEX, step_behaviors_);
   lua_pushnumber(L, dt);
   BehaviorFault fault = guarded_behavior(1, 0);
-  // one that was stopped in its last instruction
+  // the instance was stopped in its last instruction
   if (!fault.text.empty() && fault.line == 0 && push_behavior(behavior_step_, stepping)) {
     lua_settop(L, -2);
-    guard_.blame_function();
+    guard_.attribute_to_function();
     fault = {guard_.fault().text, guard_.fault().file, guard_.fault().line};
   }
   lua_settop(L, 0);
@@ -91,9 +91,9 @@ BehaviorFault Vm::restore_behavior(std::int32_t number, std::string_view state, 
     lua_settop(L, 0);
     return {};
   }
-  lua_pushvalue(L, 1);  // the old state
+  lua_pushvalue(L, 1);  // the previous state
   if (BehaviorFault fault = guarded_behavior(2, 1); !fault.text.empty()) return fault;
-  lua_rawgeti(L, LUA_REGISTRYINDEX, migrated_behavior_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, accept_migrated_state_);
   lua_pushnumber(L, number);
   lua_pushvalue(L, -3);
   BehaviorFault fault;

@@ -1,12 +1,11 @@
-// Vm: a run beside the show, from its start to the moment when it becomes the show; and an earlier one, whose timers go
-// on when another has taken its place.
+// Vm: detached runs and going live; earlier runs, which keep their timers after they were replaced.
 #include <lua.hpp>
 
 #include "script/vm.h"
 
 namespace limber {
 
-// a function of the prelude by its name: what is called once a reload has no place of its own
+// pushes a prelude function by name; functions that are called once per reload have no registry reference
 void Vm::push_entry(const char* name) {
   lua_State* const L = state_.get();
   lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
@@ -14,7 +13,7 @@ void Vm::push_entry(const char* name) {
   lua_remove(L, -2);
 }
 
-std::string Vm::text_of(const char* entry) {
+std::string Vm::text_from(const char* entry) {
   lua_State* const L = state_.get();
   std::string text;
   push_entry(entry);
@@ -27,18 +26,18 @@ std::string Vm::text_of(const char* entry) {
   return text;
 }
 
-std::uint64_t Vm::count_of(const char* entry) {
+std::uint64_t Vm::count_from(const char* entry) {
   push_entry(entry);
   const std::uint64_t count = call(0, 1) ? static_cast<std::uint64_t>(lua_tonumber(state_.get(), -1)) : 0;
   lua_settop(state_.get(), 0);
   return count;
 }
 
-std::string Vm::state_text() { return text_of("state"); }
+std::string Vm::state_text() { return text_from("state"); }
 
-void Vm::begin_beside(std::string_view state) {
+void Vm::begin_detached(std::string_view state) {
   lua_State* const L = state_.get();
-  push_entry("give_state");
+  push_entry("set_initial_state");
   lua_pushlstring(L, state.data(), state.size());
   call(1, 0);
 }
@@ -48,8 +47,8 @@ void Vm::prepare() {
   call(0, 0);
 }
 
-void Vm::take_state(std::string_view state) {
-  push_entry("take_state");
+void Vm::adopt_state(std::string_view state) {
+  push_entry("adopt_state");
   lua_pushlstring(state_.get(), state.data(), state.size());
   call(1, 0);
 }
@@ -77,12 +76,12 @@ Vm::CallbackTimers Vm::callback_timers() {
   return all;
 }
 
-std::uint64_t Vm::become_earlier() { return count_of("become_earlier"); }
+std::uint64_t Vm::retire() { return count_from("retire"); }
 
-std::string Vm::afters_text() { return text_of("afters"); }
+std::string Vm::afters_text() { return text_from("afters"); }
 
-void Vm::take_afters(std::string_view afters) {
-  push_entry("take_afters");
+void Vm::adopt_afters(std::string_view afters) {
+  push_entry("adopt_afters");
   lua_pushlstring(state_.get(), afters.data(), afters.size());
   call(1, 0);
 }
@@ -93,17 +92,17 @@ void Vm::call_with(const char* entry, double number) {
   call(1, 0);
 }
 
-void Vm::number_run(std::uint64_t number) { call_with("number_run", static_cast<double>(number)); }
+void Vm::set_run_number(std::uint64_t number) { call_with("set_run_number", static_cast<double>(number)); }
 
 void Vm::cancel_timer(std::int32_t number) { call_with("cancel_timer", number); }
 
 void Vm::gather_handles() {
-  push_entry("gather");
+  push_entry("gather_handles");
   call(0, 0);
 }
 
 void Vm::handles_moved() {
-  push_entry("things_moved");
+  push_entry("handles_moved");
   call(0, 0);
 }
 
@@ -116,10 +115,10 @@ bool Vm::timers_due() {
 
 std::uint64_t Vm::run_timers() {
   collector_->begin_calls();
-  return count_of("run_timers");
+  return count_from("run_timers");
 }
 
-void Vm::change_state(std::string_view before, std::string_view after) {
+void Vm::apply_state_changes(std::string_view before, std::string_view after) {
   push_entry("change_state");
   lua_pushlstring(state_.get(), before.data(), before.size());
   lua_pushlstring(state_.get(), after.data(), after.size());

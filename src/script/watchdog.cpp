@@ -1,4 +1,4 @@
-// The watchdog's loop, and the signal by which it reaches the thread that runs Lua.
+// The watchdog's loop, and the signal that it sends to the thread that runs Lua.
 #include "script/watchdog.h"
 
 #include <algorithm>
@@ -13,12 +13,12 @@ namespace limber {
 
 namespace {
 
-// ignored by default and used by nobody here: a late one does no harm
+// ignored by default and otherwise unused by the program, so a late signal does no harm
 constexpr int kSignal = SIGURG;
-constexpr std::int64_t kAgain = 5'000'000;  // a signal that met an unlucky moment is sent again after that, ns
-constexpr std::int64_t kAnswer = 200'000;   // so soon one who computes has answered, ns
+constexpr std::int64_t kResendInterval = 5'000'000;  // interval after which an ineffective signal is sent again, ns
+constexpr std::int64_t kPingReplyTime = 200'000;     // time in which a computing thread answers a ping, ns
 
-thread_local Watch* watched_here = nullptr;
+thread_local Watch* current_watch = nullptr;
 
 template <class T>
 T load(T& word, std::memory_order order = std::memory_order_relaxed) {
@@ -30,18 +30,19 @@ void store(T& word, T value, std::memory_order order = std::memory_order_relaxed
   std::atomic_ref(word).store(value, order);
 }
 
-// runs anywhere inside the call: in Lua, in compiled code, in C++. A signal that comes late finds another number
+// Runs anywhere inside the call: in Lua, in compiled code, in C++. A late signal is ignored, because the call has
+// another number.
 #if defined(__GNUC__)
 __attribute__((no_sanitize("thread")))
 #endif
 void on_signal(int) {
-  Watch* const watch = watched_here;
+  Watch* const watch = current_watch;
   if (watch == nullptr) return;
   const std::uint64_t call = __atomic_load_n(&watch->call, __ATOMIC_RELAXED);
   if ((call & 1u) == 0) return;
-  if (__atomic_load_n(&watch->hailed, __ATOMIC_RELAXED) == call)
-    __atomic_store_n(&watch->answered, call, __ATOMIC_RELAXED);
-  if (__atomic_load_n(&watch->asked, __ATOMIC_RELAXED) == call) watch->stop(*watch);
+  if (__atomic_load_n(&watch->pinged_call, __ATOMIC_RELAXED) == call)
+    __atomic_store_n(&watch->answered_call, call, __ATOMIC_RELAXED);
+  if (__atomic_load_n(&watch->stop_call, __ATOMIC_RELAXED) == call) watch->stop(*watch);
 }
 
 struct ThisThread {
@@ -56,23 +57,23 @@ void Watch::begin(std::int64_t budget_ns) {
   store(clock, here.clock);
   store(thread, here.id);
   store(budget, budget_ns);
-  watched_here = this;
-  store(call, call + 1, std::memory_order_release);  // nobody else writes it
+  current_watch = this;
+  store(call, call + 1, std::memory_order_release);  // the only writer
 }
 
 void Watch::end() {
   store(call, call + 1, std::memory_order_release);
   std::atomic_signal_fence(std::memory_order_seq_cst);
-  watched_here = nullptr;
+  current_watch = nullptr;
 }
 
-// still odd; who asked for the call before is not heard any more
-void Watch::next() {
+// still odd; a pending request to stop the previous call no longer matches
+void Watch::next_call() {
   store(call, call + 2, std::memory_order_release);
   std::atomic_signal_fence(std::memory_order_seq_cst);
 }
 
-bool Watch::stop_asked() { return (call & 1u) != 0 && load(asked) == call; }
+bool Watch::stop_requested() { return (call & 1u) != 0 && load(stop_call) == call; }
 
 std::shared_ptr<Watchdog> Watchdog::instance() {
   static std::mutex mutex;
@@ -84,8 +85,8 @@ std::shared_ptr<Watchdog> Watchdog::instance() {
 }
 
 Watchdog::Watchdog() {
-  // compiled Lua makes no calls, to which a sanitizer could put the handler off
-  system::handle_signal_at_once(kSignal, on_signal);
+  // installed without a sanitizer's wrapper, which defers handlers to the next call; compiled Lua makes no calls
+  system::handle_signal_immediately(kSignal, on_signal);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -108,7 +109,7 @@ void Watchdog::add(Watch& watch, std::int64_t poll_ns) {
 
 void Watchdog::remove(Watch& watch) {
   const std::scoped_lock lock(mutex_);
-  std::erase_if(watches_, [&](const Watched& w) { return w.watch == &watch; });
+  std::erase_if(watches_, [&](const Entry& w) { return w.watch == &watch; });
 }
 
 void Watchdog::run() {
@@ -118,34 +119,34 @@ void Watchdog::run() {
       changed_.wait(lock);
       continue;
     }
-    std::int64_t wait = kAgain;
-    for (const Watched& w : watches_) wait = std::min(wait, look(*w.watch, w.poll));
+    std::int64_t wait = kResendInterval;
+    for (const Entry& w : watches_) wait = std::min(wait, check(*w.watch, w.poll));
     changed_.wait_for(lock, std::chrono::nanoseconds(wait));
   }
 }
 
-// how long this watch may be left alone, ns: CPU time never runs faster than the clock on the wall
-std::int64_t Watchdog::look(Watch& watch, std::int64_t poll) {
+// Returns the time until the next check, ns: CPU time never runs faster than wall time.
+std::int64_t Watchdog::check(Watch& watch, std::int64_t poll) {
   const std::uint64_t call = load(watch.call, std::memory_order_acquire);
   if ((call & 1u) == 0) return poll;
   const std::int64_t now = system::cpu_nanoseconds(load(watch.clock));
-  if (now < 0) return poll;  // its thread has ended
-  if (watch.seen != call) {
-    watch.seen = call;
-    watch.since = now;
+  if (now < 0) return poll;  // the thread has ended
+  if (watch.observed_call != call) {
+    watch.observed_call = call;
+    watch.observed_at = now;
     watch.second_half = false;
   }
-  if (!watch.second_half && load(watch.answered) == call) {
-    watch.since = now;
+  if (!watch.second_half && load(watch.answered_call) == call) {
+    watch.observed_at = now;
     watch.second_half = true;
   }
   const std::int64_t budget = load(watch.budget);
   const std::int64_t part = watch.second_half ? budget - budget / 2 : budget / 2;
-  const std::int64_t left = part - (now - watch.since);
+  const std::int64_t left = part - (now - watch.observed_at);
   if (left > 0) return std::min(left, poll);
-  store(watch.second_half ? watch.asked : watch.hailed, call);
+  store(watch.second_half ? watch.stop_call : watch.pinged_call, call);
   system::signal_thread(load(watch.thread), kSignal);
-  return watch.second_half ? std::min(poll, kAgain) : kAnswer;
+  return watch.second_half ? std::min(poll, kResendInterval) : kPingReplyTime;
 }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// AxisGoals: carries the targets of a joint's servos and springs through the internal steps of a tick, so that targets
-// that change from tick to tick make a steady motion.
+// AxisGoals: interpolates the targets of a joint's servos and springs over the internal steps of a tick, so that
+// targets that change once per tick cause a smooth motion.
 #pragma once
 
 #include <array>
@@ -10,32 +10,35 @@
 
 namespace limber {
 
-/// One internal step of a target: m or rad, m/s or rad/s.
+/// Target of one internal step: m or rad, m/s or rad/s.
 struct GoalStep {
-  double from;       ///< Target in force at the end of the step before.
+  double from;       ///< Target at the end of the previous step.
   double to;         ///< At the end of this step: on the straight line from the last tick's target to this tick's.
   double end;        ///< At the end of the tick.
-  double last_rate;  ///< Speed of the target in the last tick.
+  double last_rate;  ///< Speed of the target in the previous tick.
 };
 
 /// Targets of six axes. A target that was set since the last tick is reached at the end of this tick, at a constant
-/// speed. Optionally a low-pass filter smooths targets that arrive at irregular times. [sim]
+/// speed. A low-pass filter can smooth targets that arrive at irregular times. [sim]
 class AxisGoals {
  public:
-  /// The next step of this axis starts at the target that it finds: after a change of drive, or a teleport.
+  /// Makes the next step of this axis start at its target, without interpolation; to be called after a change of drive
+  /// or a teleport.
   void restart(int axis) { restart_ = static_cast<std::uint8_t>(restart_ | bit(axis)); }
   void restart() { restart_ = kAll; }
-  /// Smoothing time, s; 0: none. Allocates on the first use, within the caller's BulletMemory::Scope.
+  /// Sets the smoothing time, s; 0: no filter. Allocates on the first use, within the caller's BulletMemory::Scope.
   void set_smoothing(double time);
   double smoothing() const { return filter_ == nullptr ? 0 : filter_->time; }
-  /// Call once in each internal step of length h. `left`: internal steps to the end of the tick, this one included.
-  GoalStep advance(int axis, double target, double h, int left);
-  /// After end_tick(): whether a target moved in that tick: it was set, or the filter has not reached it yet.
+  /// Call once in each internal step of length h. `steps_left`: number of internal steps to the end of the tick, this
+  /// one included.
+  GoalStep advance(int axis, double target, double h, int steps_left);
+  /// To be called after end_tick(). True if a target moved in that tick: it was set, or the filter has not reached it
+  /// yet.
   bool moving() const;
-  /// Axes that did not move in the tick start from their target when they move again.
+  /// Ends a tick. Axes that did not move in it start at their target when they move again.
   void end_tick() {
-    restart_ = static_cast<std::uint8_t>(restart_ | (kAll & ~begun_));
-    begun_ = 0;
+    restart_ = static_cast<std::uint8_t>(restart_ | (kAll & ~started_));
+    started_ = 0;
   }
 
  private:
@@ -44,11 +47,11 @@ class AxisGoals {
   static unsigned bit(int axis) { return 1u << axis; }
 
   struct Goal {
-    double position = 0;  // in force
+    double position = 0;  // target of the current step
     float rate = 0;       // in this tick
-    float last_rate = 0;  // in the tick before
+    float last_rate = 0;  // in the previous tick
   };
-  /// Three equal first-order stages: no overshoot, and a ramp comes out as the same ramp, later.
+  /// Three equal first-order stages: no overshoot, and a ramp is delayed only.
   struct Filter {
     BT_DECLARE_ALIGNED_ALLOCATOR();
     double time = 0;
@@ -58,8 +61,8 @@ class AxisGoals {
 
   std::array<Goal, 6> goals_{};
   std::unique_ptr<Filter> filter_;
-  std::uint8_t restart_ = kAll;
-  std::uint8_t begun_ = 0;  // axes that have begun this tick
+  std::uint8_t restart_ = kAll;  // bit set of axes that start at their target
+  std::uint8_t started_ = 0;     // bit set of axes that were advanced in this tick
 };
 
 }  // namespace limber

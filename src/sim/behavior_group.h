@@ -1,5 +1,5 @@
-// BehaviorGroup: one behaviour on several bodies, an instance a body, all under one name. Bodies that come and go
-// become members and cease to be. What is written to the group goes to every member. [sim]
+// BehaviorGroup: one behavior for several bodies, with an instance per body, all under one name. Members are added
+// and removed with their bodies. Values set on the group are set on every member. [sim]
 #pragma once
 
 #include <memory>
@@ -12,19 +12,19 @@
 
 namespace limber {
 
-/// What a group acts on. Its neighbours are parts of all bodies that it means, own parts or not.
+/// The targets of a group. Neighbors are parts of all bodies that it selects; its own parts may be among them.
 struct GroupSetup {
   Selection bodies;
   Selection parts;
-  Selection neighbor_parts;  ///< Left out: as `parts`.
+  Selection neighbor_parts;  ///< Default: the same as `parts`.
   bool operator==(const GroupSetup&) const = default;
 };
 
 class BehaviorGroup {
  public:
-  static std::vector<Row> common_rows();
-  /// A group's row was written: its members' rows follow.
-  static void hand_on(void* thing, const Row& row);
+  static std::vector<Property> common_properties();
+  /// Callback after a property of a group was set: sets it on all members.
+  static void set_on_members(void* object, const Property& property);
 
   ~BehaviorGroup();
   BehaviorGroup(const BehaviorGroup&) = delete;
@@ -35,56 +35,59 @@ class BehaviorGroup {
   const BehaviorType& type() const { return *type_; }
   const GroupSetup& setup() const { return setup_; }
   World& world() const { return world_; }
-  /// In the order in which they became members.
+  /// In the order in which they were added.
   std::span<const std::unique_ptr<Behavior>> members() const { return members_; }
-  /// Parts that members look at, in stream order; a member leaves out those of its own body.
+  /// Candidate neighbors of all members, in stream order; a member skips those of its own body.
   std::span<Part* const> neighbor_parts() const { return neighbors_->parts(); }
   NeighborSet& neighbors() const { return *neighbors_; }
-  /// For types that step all members at once, laid out in a row: which members run in this step, and of each of all
-  /// members where its parameters' numbers and its parts are.
+  /// Data layout for types that step all members at once: for each member of the group, the location of its
+  /// parameters and of its parts, in contiguous arrays.
   struct Layout {
-    std::vector<std::uint32_t> values;      ///< In Store::kept(): of the first parameter, the others follow.
-    std::vector<std::uint32_t> first_part;  ///< In `parts`; one more behind the last.
+    /// Index of the first parameter in the store's persistent values; the others follow it.
+    std::vector<std::uint32_t> values;
+    std::vector<std::uint32_t> first_part;  ///< Index in `parts`; one more than the number of members.
     std::vector<Part*> parts;
-    std::vector<std::uint32_t> load;     ///< In World::loads(), of each of `parts`.
-    std::vector<std::uint32_t> mass;     ///< In Store::kept(), of each of `parts`.
-    std::vector<double> least_inertia;   ///< Its least principal moment for 1 kg, m², of each of `parts`.
-    std::vector<std::uint32_t> enabled;  ///< In Store::live(): its body's row.
+    std::vector<std::uint32_t> accumulator;  ///< For each of `parts`, index in World::force_accumulators().
+    std::vector<std::uint32_t> mass;         ///< For each of `parts`, index in the store's persistent values.
+    std::vector<double> min_inertia;         ///< For each of `parts`, the least principal moment for 1 kg, m².
+    std::vector<std::uint32_t> enabled;      ///< Index of the body's `enabled` in the store's transient values.
   };
   const Layout& layout() const { return layout_; }
-  std::span<const std::uint32_t> running() const { return running_numbers_; }
-  /// Another number whenever members may be others, or may have been started, since.
-  std::uint64_t prepared() const { return prepared_; }
-  /// Seconds of the last tick, spread over the members.
-  double seconds_a_member() const;
+  /// Indices in members() of the members that run in this step, ascending.
+  std::span<const std::uint32_t> running_indices() const { return running_indices_; }
+  /// A version that changes whenever the members may have changed or been started.
+  std::uint64_t members_version() const { return members_version_; }
+  /// Duration of the last tick in seconds, divided by the number of members.
+  double seconds_per_member() const;
 
   std::uint64_t state_hash(std::uint64_t start) const;
 
  private:
   friend class Behavior;
   friend class BehaviorList;
-  friend class BehaviorUndo;
-  friend class WorldKey;
+  friend class BehaviorTransaction;
+  friend class WorldCheckpoint;
   BehaviorGroup(World& world, NodeId parent, std::string name, std::shared_ptr<const BehaviorType> type,
                 GroupSetup setup);
 
   Behavior* member_of(const Body& body) const;
-  /// Whether a body is meant: by the selection, or as a copy of a member.
-  bool means(const Body& body) const;
+  /// True if the selection includes the body, or it has a member already (copies of a member's body).
+  bool includes(const Body& body) const;
   const Selection& neighbor_selection() const;
-  /// Members and neighbours anew, after bodies came, went or changed. The error names a body or part that is missing.
-  Result<void> follow();
-  Result<Behavior*> join(Body& body);
-  /// Takes the type that now has its type's name; members are renewed by the list.
-  void renew(const std::shared_ptr<const BehaviorType>& type);
-  void lay_out();
+  /// Updates members and neighbors after bodies were added, removed or changed. The error names a missing body or
+  /// part.
+  Result<void> update_members();
+  Result<Behavior*> add_member(Body& body);
+  /// Replaces its type by the reloaded one of the same name; BehaviorList replaces the members.
+  void set_type(const std::shared_ptr<const BehaviorType>& type);
+  void build_layout();
   void prepare_members();
   void step(double dt);
-  Result<void> names_exist() const;
+  Result<void> check_names() const;
   void read_time(double* out) const;
   void read_place(double* out) const;
   void write_place(const double* in);
-  Result<void> refuse_place(const double* in) const;
+  Result<void> validate_place(const double* in) const;
   Result<void> act_remove(std::span<const double> args);
 
   World& world_;
@@ -94,16 +97,16 @@ class BehaviorGroup {
   std::shared_ptr<const BehaviorSetup> member_setup_;
   std::vector<std::unique_ptr<Behavior>> members_;
   Layout layout_;
-  bool laid_out_ = false;  // false: members or their parts have changed since
-  std::uint64_t prepared_ = 0;
-  bool attention_ = true;                       // a member starts, or has an error
-  std::uint64_t seed_ = Behavior::kNoSeed;      // of the step before
-  std::vector<Behavior*> running_;              // members that run in this step
-  std::vector<std::uint32_t> running_numbers_;  // their places in members_
-  std::vector<NodeId> left_;                    // bodies whose instance was taken away by hand
+  bool layout_valid_ = false;  // false: members or their parts have changed since it was built
+  std::uint64_t members_version_ = 0;
+  bool needs_preparation_ = true;                // a member has to be started or has an error
+  std::uint64_t last_seed_ = Behavior::kNoSeed;  // of the previous step
+  std::vector<Behavior*> running_;               // members that run in this step
+  std::vector<std::uint32_t> running_indices_;   // their indices in members_
+  std::vector<NodeId> removed_bodies_;           // bodies that a member was removed from explicitly
   std::shared_ptr<NeighborSet> neighbors_;
-  double seconds_ = 0;       // of the last tick
-  std::uint32_t place_ = 0;  // as BehaviorList last counted it
+  double step_seconds_ = 0;  // duration of the last tick
+  std::uint32_t place_ = 0;  // as computed by the last BehaviorList::compute_places()
 };
 
 }  // namespace limber

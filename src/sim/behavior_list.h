@@ -1,5 +1,5 @@
-// BehaviorList: a world's behaviours, in the order in which they act, C++ and Lua alike: that in which they were made,
-// until one is put elsewhere. A group stands where it was made. [sim]
+// BehaviorList: a world's behaviors, built-in and Lua, in the order in which they are stepped: the order of their
+// creation, unless one was moved. A group is one entry. [sim]
 #pragma once
 
 #include <functional>
@@ -27,12 +27,12 @@ class BehaviorList {
   BehaviorTypes& types() { return types_; }
   const BehaviorTypes& types() const { return types_; }
 
-  /// Attaches a behaviour to a body. Errors name what exists: a type, a part, a joint, a motor; a taken name.
+  /// Attaches a behavior to a body. Errors: unknown type, part, joint or motor (with a hint), the name is taken.
   Result<Behavior*> add(Body& body, std::string_view type, const std::string& name, BehaviorSetup setup = {});
-  /// Attaches one to each of several bodies. Errors as of add; a body that is named and does not exist.
+  /// Attaches a behavior to each of several bodies. Errors as for add(), or a named body doesn't exist.
   Result<BehaviorGroup*> add_group(std::string_view type, std::string name, GroupSetup setup = {});
-  /// Detaches it. May be called while behaviours step: it does not act again. A guarded call that fails has not done
-  /// it.
+  /// Detaches a behavior; allowed while behaviors are stepped: it isn't stepped again. Rolled back if the guarded
+  /// call fails.
   void remove(Behavior& behavior);
   void remove_group(BehaviorGroup& group);
   void clear();
@@ -41,56 +41,56 @@ class BehaviorList {
   std::vector<BehaviorGroup*> groups() const;
   NodeId group_node() const { return group_node_; }
 
-  /// All behaviours of the source for its copy, with their values; groups get a member more. Of a body of another world
-  /// there are none: whoever copies it makes them.
+  /// Copies all behaviors of `source` with their values to its copy, as a new member if they belong to a group. Does
+  /// nothing if the source is of another world: the caller must add them then.
   void copy(const Body& source, Body& copy);
-  void body_gone(Body& body);
-  /// start() again before the next step, generators anew.
-  void body_reset(Body& body);
-  /// Instances of that type are made again of the type that now has its name: rows that both have keep their values
-  /// (clamped), targets, place, generator and beats stay, and Behavior::take_over is called. Instances of a type that
-  /// no longer has an entry stay as they are.
-  void renew(std::string_view type);
+  void on_body_destroyed(Body& body);
+  /// Starts the body's behaviors again before the next step, with freshly seeded generators.
+  void on_body_reset(Body& body);
+  /// Replaces the instances of a reloaded type by instances of the type that now has its name. Properties that exist
+  /// in both keep their values (clamped). Targets, place, generator and intervals are preserved, and
+  /// Behavior::adopt_state() is called. Instances of a type that was removed are left unchanged.
+  void replace_instances(std::string_view type);
 
-  /// Members of groups, and targets, as bodies now are. Cheap while none has come, gone or changed.
-  void follow_bodies();
-  /// Which one it is, from 1, of those that act on its body: its own, and groups that it is a member of. [sim]
+  /// Updates group members and targets to the present bodies. Cheap if none was added, removed or changed.
+  void update_members();
+  /// Returns its position, from 1, among the behaviors that act on its body, including groups that the body is in.
   std::size_t place(const Behavior& behavior) const;
-  /// Which one it is, from 1, of all names that behaviours of bodies and groups have, by their first.
+  /// Returns its position, from 1, among all names of behaviors and groups, ordered by their first entry.
   std::size_t place(const BehaviorGroup& group) const;
-  /// It acts there from the next step on; beyond the last: as the last. The others keep their order. A guarded call
-  /// that fails has not done it. Not while they step, and not for a member.
-  void put_at(Behavior& behavior, std::size_t place);
-  /// The same for a group among names: then all behaviours act in the order of their names, in every body.
-  void put_at(BehaviorGroup& group, std::size_t place);
-  /// An error: they step now.
-  Result<void> may_move() const;
-  /// Names in the order in which they act: "body/behaviour", and "/group".
+  /// Moves a behavior to position `place`, clamped to the last, from the next step on. The others keep their order.
+  /// Rolled back if the guarded call fails. Not allowed while behaviors are stepped, or for a group's member.
+  void move_to(Behavior& behavior, std::size_t place);
+  /// The same for a group, among all names: behaviors of the same name become adjacent in the order.
+  void move_to(BehaviorGroup& group, std::size_t place);
+  /// Returns an error while behaviors are being stepped.
+  Result<void> check_can_move() const;
+  /// Keys of all entries in step order: "body/behavior", or "/group".
   std::vector<std::string> order() const;
-  /// Brings them into such an order; those that are not named act behind, as they did.
-  void bring_into(const std::vector<std::string>& order);
-  /// Every behaviour that runs, in order.
+  /// Sorts the entries into such an order; those that it doesn't contain follow in their previous order.
+  void set_order(const std::vector<std::string>& order);
+  /// Steps every behavior that runs, in order.
   void step(double dt);
-  /// Counts the steps.
-  std::uint64_t turn() const { return turn_; }
-  /// The set of these parts, shared by all groups that look at the same ones.
+  /// Number of steps so far.
+  std::uint64_t step_count() const { return step_count_; }
+  /// Returns the neighbor set of these parts, which all groups with the same neighbors share.
   std::shared_ptr<NeighborSet> neighbor_set(std::vector<Part*> parts);
 
-  /// What guarded calls do to behaviours.
-  BehaviorUndo& undo() { return undo_; }
+  /// Rolls back changes of behaviors by guarded calls.
+  BehaviorTransaction& transaction() { return transaction_; }
 
-  /// How many have an error and are suspended, members of groups among them. Looks at each.
-  std::size_t suspended() const;
-  /// Told of each error, once.
+  /// Number of behaviors, including group members, that are suspended by an error. O(n).
+  std::size_t suspended_count() const;
+  /// Sets the callback that is called once for each error.
   void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
   std::uint64_t state_hash(std::uint64_t start) const;
 
  private:
   friend class Behavior;
   friend class BehaviorGroup;
-  friend class BehaviorUndo;
-  friend class WorldKey;
-  /// One behaviour or one group.
+  friend class BehaviorTransaction;
+  friend class WorldCheckpoint;
+  /// A single behavior or a group.
   struct Entry {
     std::unique_ptr<Behavior> single;
     std::unique_ptr<BehaviorGroup> group;
@@ -100,36 +100,36 @@ class BehaviorList {
   static std::string_view name_of(const Entry& entry);
   static bool acts_on(const Entry& entry, const Body& body);
   std::vector<std::string_view> names() const;
-  void count_places() const;
-  void note_order();
+  void compute_places() const;
+  void save_order();
   Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
                                          const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
                                          BehaviorGroup* group);
-  std::unique_ptr<Behavior> renewed(Behavior& before, const std::shared_ptr<const BehaviorType>& type);
+  std::unique_ptr<Behavior> make_replacement(Behavior& previous, const std::shared_ptr<const BehaviorType>& type);
   void copy_values(const Behavior& from, Behavior& to);
-  void say_fault(const Behavior& behavior) const;
-  void note_made();
-  void drop(Behavior& behavior);
-  void drop_group(BehaviorGroup& group);
-  void drop_last();
-  void bury(std::unique_ptr<Behavior> behavior);
-  void bury(std::unique_ptr<BehaviorGroup> group);
-  void close_gap(std::size_t place);
-  Entry& open_gap(std::size_t place);
+  void report_fault(const Behavior& behavior) const;
+  void record_entry_count();
+  void destroy(Behavior& behavior);
+  void destroy_group(BehaviorGroup& group);
+  void destroy_last();
+  void retire(std::unique_ptr<Behavior> behavior);
+  void retire(std::unique_ptr<BehaviorGroup> group);
+  void erase_entry(std::size_t index);
+  Entry& insert_entry(std::size_t index);
 
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
   std::vector<Entry> entries_;
-  std::vector<std::unique_ptr<Behavior>> graves_;  // removed while they were stepped
-  std::vector<std::unique_ptr<BehaviorGroup>> group_graves_;
+  std::vector<std::unique_ptr<Behavior>> retired_;  // removed while they were stepped
+  std::vector<std::unique_ptr<BehaviorGroup>> retired_groups_;
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
-  std::uint64_t structure_ = 0;
-  mutable std::uint64_t places_of_ = ~std::uint64_t{0};  // the structure whose places were counted
-  std::vector<std::vector<std::string>> orders_before_;  // of a guarded call
-  std::uint64_t turn_ = 0;
+  std::uint64_t structure_version_ = 0;
+  mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
+  std::vector<std::vector<std::string>> saved_orders_;          // orders to restore if the guarded call fails
+  std::uint64_t step_count_ = 0;
   bool stepping_ = false;
-  BehaviorUndo undo_{*this};
+  BehaviorTransaction transaction_{*this};
   std::function<void(const Behavior&)> on_fault_;
 };
 

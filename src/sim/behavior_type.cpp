@@ -1,4 +1,4 @@
-// The types' tables, the list of the built-in ones, a world's registry.
+// BehaviorType: property tables, the registry of built-in types, and the types of a world.
 #include "sim/behavior_type.h"
 
 #include <algorithm>
@@ -15,48 +15,54 @@ namespace limber {
 
 namespace {
 
-using namespace rows;
-using Describe = BehaviorType (*)();
+using namespace properties;
+using TypeFactory = BehaviorType (*)();
 
-std::vector<Describe>& registered() {
-  static std::vector<Describe> list;
+std::vector<TypeFactory>& type_factories() {
+  static std::vector<TypeFactory> list;
   return list;
 }
 
-std::vector<Row> with_common(std::vector<Row> common, const std::vector<Row>& parameters) {
-  LIMBER_CHECK(common.size() == kCommonBehaviorRows);
-  for (const Row& row : parameters) {
-    LIMBER_CHECK(row.kind == RowKind::property && row.effect == nullptr && !row.view() && !row.live);
-    common.push_back(row);
+std::vector<Property> with_common(std::vector<Property> common, const std::vector<Property>& parameters) {
+  LIMBER_CHECK(common.size() == kCommonBehaviorProperties);
+  for (const Property& property : parameters) {
+    LIMBER_CHECK(property.kind == PropertyKind::setting && property.on_change == nullptr && !property.computed() &&
+                 !property.transient);
+    common.push_back(property);
   }
   return common;
 }
 
-Row error_row() {
-  Row row = text("error", "Why it rests although it is active; empty: it does not.");
-  row.say = [](const void* thing) -> std::string_view { return static_cast<const Behavior*>(thing)->error(); };
-  return row;
+Property error_property() {
+  Property property = text("error", "Error that suspended it; empty: none.");
+  property.read_text = [](const void* object) -> std::string_view {
+    return static_cast<const Behavior*>(object)->error();
+  };
+  return property;
 }
 
 }  // namespace
 
-std::string plain_type_name(std::string_view name) {
-  constexpr std::string_view kEnd = "behavior";
-  std::string plain = plain_name(name);
-  if (plain.size() > kEnd.size() && plain.ends_with(kEnd)) plain.resize(plain.size() - kEnd.size());
-  return plain;
+std::string normalized_type_name(std::string_view name) {
+  constexpr std::string_view kSuffix = "behavior";
+  std::string normalized = plain_name(name);
+  if (normalized.size() > kSuffix.size() && normalized.ends_with(kSuffix))
+    normalized.resize(normalized.size() - kSuffix.size());
+  return normalized;
 }
 
-BehaviorType BehaviorType::of(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
-                              std::vector<Row> parameters, std::function<std::unique_ptr<Behavior>()> make) {
+BehaviorType BehaviorType::create(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
+                                  std::vector<Property> parameters, std::function<std::unique_ptr<Behavior>()> make) {
   BehaviorType type;
-  std::vector<Row> rows = with_common(Behavior::common_rows(), parameters);
-  rows.push_back(error_row());  // last: it has no number, and so no place in a scene's said rows
-  type.table = &shared_table("behavior", fmt::format("/physics/body/<body>/behavior/<{}>", name), std::move(rows));
+  std::vector<Property> properties = with_common(Behavior::common_properties(), parameters);
+  properties.push_back(error_property());  // must be last: it has no numeric value, and so no bit in the set of
+                                           // explicitly set properties
+  type.table =
+      &shared_table("behavior", fmt::format("/physics/body/<body>/behavior/<{}>", name), std::move(properties));
   if (is_group) {
-    for (Row& row : parameters) row.written = &BehaviorGroup::hand_on;
+    for (Property& property : parameters) property.on_write = &BehaviorGroup::set_on_members;
     type.group_table = &shared_table("group", fmt::format("/physics/group/<{}>", name),
-                                     with_common(BehaviorGroup::common_rows(), parameters));
+                                     with_common(BehaviorGroup::common_properties(), parameters));
   }
   type.name = std::move(name);
   type.doc = std::move(doc);
@@ -66,11 +72,11 @@ BehaviorType BehaviorType::of(std::string name, std::string doc, BehaviorTargets
   return type;
 }
 
-BuiltInBehavior::BuiltInBehavior(Describe describe) { registered().push_back(describe); }
+BuiltInBehavior::BuiltInBehavior(TypeFactory factory) { type_factories().push_back(factory); }
 
 BehaviorTypes::BehaviorTypes() {
-  for (const Describe describe : registered()) {
-    BehaviorType type = describe();
+  for (const TypeFactory factory : type_factories()) {
+    BehaviorType type = factory();
     type.is_built_in = true;
     types_.push_back(std::make_shared<const BehaviorType>(std::move(type)));
   }
@@ -78,17 +84,17 @@ BehaviorTypes::BehaviorTypes() {
 }
 
 Result<void> BehaviorTypes::add(BehaviorType type) {
-  if (const auto fault = name_fault(type.name)) return Error{fmt::format("behavior type: {}", *fault)};
-  const std::string plain = plain_type_name(type.name);
-  const auto same = [&](const auto& t) { return plain_type_name(t->name) == plain; };
-  const auto known = std::find_if(types_.begin(), types_.end(), same);
-  if (known != types_.end() && (*known)->is_built_in) {
-    return Error{fmt::format("'{}' is a built-in behavior type ('{}'); call the file something else",
-                             printable(type.name), (*known)->name)};
+  if (const auto fault = name_error(type.name)) return Error{fmt::format("behavior type: {}", *fault)};
+  const std::string normalized = normalized_type_name(type.name);
+  const auto has_same_name = [&](const auto& t) { return normalized_type_name(t->name) == normalized; };
+  const auto existing = std::find_if(types_.begin(), types_.end(), has_same_name);
+  if (existing != types_.end() && (*existing)->is_built_in) {
+    return Error{fmt::format("'{}' is a built-in behavior type ('{}'); rename the file", printable(type.name),
+                             (*existing)->name)};
   }
   auto shared = std::make_shared<const BehaviorType>(std::move(type));
-  if (known != types_.end()) {
-    *known = std::move(shared);
+  if (existing != types_.end()) {
+    *existing = std::move(shared);
   } else {
     types_.push_back(std::move(shared));
   }
@@ -96,14 +102,14 @@ Result<void> BehaviorTypes::add(BehaviorType type) {
 }
 
 void BehaviorTypes::remove(std::string_view name) {
-  const std::string plain = plain_type_name(name);
-  std::erase_if(types_, [&](const auto& t) { return !t->is_built_in && plain_type_name(t->name) == plain; });
+  const std::string normalized = normalized_type_name(name);
+  std::erase_if(types_, [&](const auto& t) { return !t->is_built_in && normalized_type_name(t->name) == normalized; });
 }
 
 std::shared_ptr<const BehaviorType> BehaviorTypes::find(std::string_view name) const {
-  const std::string plain = plain_type_name(name);
+  const std::string normalized = normalized_type_name(name);
   for (const auto& type : types_) {
-    if (plain_type_name(type->name) == plain) return type;
+    if (normalized_type_name(type->name) == normalized) return type;
   }
   return nullptr;
 }
@@ -112,10 +118,10 @@ Result<std::shared_ptr<const BehaviorType>> BehaviorTypes::require(std::string_v
   if (std::shared_ptr<const BehaviorType> type = find(name)) return type;
   std::vector<std::string_view> names;
   for (const auto& type : types_) names.push_back(type->name);
-  // near ones are looked for without the ending of the seed's class names
-  const std::string plain = plain_type_name(name);
-  const std::string_view written = plain.size() < plain_name(name).size() ? plain : name;
-  return Error{fmt::format("there is no behavior type '{}'{}", printable(name), name_hint(written, names))};
+  // search similar names without the suffix of ofxDabPhysics' class names
+  const std::string normalized = normalized_type_name(name);
+  const std::string_view typed_name = normalized.size() < plain_name(name).size() ? normalized : name;
+  return Error{fmt::format("there is no behavior type '{}'{}", printable(name), name_hint(typed_name, names))};
 }
 
 }  // namespace limber

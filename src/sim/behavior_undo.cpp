@@ -1,4 +1,4 @@
-// BehaviorUndo: out of sight, back into its place, or gone.
+// BehaviorTransaction: hides behaviors, restores them, or destroys them.
 #include "sim/behavior_undo.h"
 
 #include <algorithm>
@@ -12,153 +12,154 @@ namespace limber {
 namespace {
 
 template <class List>
-auto iterator_at(List& list, std::size_t place) {
-  return list.begin() + static_cast<std::ptrdiff_t>(place);
+auto iterator_at(List& list, std::size_t index) {
+  return list.begin() + static_cast<std::ptrdiff_t>(index);
 }
 
-template <class List, class Is>
-std::size_t place_in(const List& list, Is is) {
-  return static_cast<std::size_t>(std::find_if(list.begin(), list.end(), is) - list.begin());
+template <class List, class Predicate>
+std::size_t index_in(const List& list, Predicate predicate) {
+  return static_cast<std::size_t>(std::find_if(list.begin(), list.end(), predicate) - list.begin());
 }
 
 }  // namespace
 
-void BehaviorUndo::begin() {
+void BehaviorTransaction::begin() {
   call_++;
-  kept_count_ = 0;
-  targets_.clear();
-  list_.orders_before_.clear();
+  saved_count_ = 0;
+  saved_targets_.clear();
+  list_.saved_orders_.clear();
 }
 
-void BehaviorUndo::end() {
+void BehaviorTransaction::commit() {
   Store& store = list_.world_.store();
   for (Hidden& hidden : hidden_) {
-    if (hidden.node_hidden) store.drop_hidden(hidden.id);
+    if (hidden.node_hidden) store.remove_hidden(hidden.id);
     if (hidden.group != nullptr) {
-      list_.bury(std::move(hidden.group));
+      list_.retire(std::move(hidden.group));
     } else {
-      list_.bury(std::move(hidden.behavior));
+      list_.retire(std::move(hidden.behavior));
     }
   }
   hidden_.clear();
 }
 
-void BehaviorUndo::keep(Behavior& behavior) {
-  WorldUndo& undo = list_.world_.undo();
-  if (!undo.active() || std::exchange(behavior.kept_in_, call_) == call_) return;
-  if (kept_count_ == kept_.size()) kept_.emplace_back();
-  Kept& kept = kept_[kept_count_];
-  kept.behavior = &behavior;
-  kept.random = behavior.random_;
-  kept.seeded_with = behavior.seeded_with_;
-  kept.fresh = behavior.fresh_;
-  kept.fault = behavior.fault_;
-  kept.beats = behavior.beats_;
-  undo.note(
+void BehaviorTransaction::save(Behavior& behavior) {
+  WorldTransaction& transaction = list_.world_.transaction();
+  if (!transaction.active() || std::exchange(behavior.saved_in_call_, call_) == call_) return;
+  if (saved_count_ == saved_.size()) saved_.emplace_back();
+  SavedState& saved = saved_[saved_count_];
+  saved.behavior = &behavior;
+  saved.random = behavior.random_;
+  saved.seeded_with = behavior.seeded_with_;
+  saved.needs_start = behavior.needs_start_;
+  saved.fault = behavior.fault_;
+  saved.timers = behavior.timers_;
+  transaction.record(
       [](void* owner, std::size_t at) {
-        const Kept& kept = static_cast<BehaviorUndo*>(owner)->kept_[at];
-        Behavior& behavior = *kept.behavior;
-        behavior.random_ = kept.random;
-        behavior.seeded_with_ = kept.seeded_with;
-        behavior.fresh_ = kept.fresh;
-        behavior.fault_ = kept.fault;
-        behavior.beats_ = kept.beats;
-        behavior.call_attention();
+        const SavedState& saved = static_cast<BehaviorTransaction*>(owner)->saved_[at];
+        Behavior& behavior = *saved.behavior;
+        behavior.random_ = saved.random;
+        behavior.seeded_with_ = saved.seeded_with;
+        behavior.needs_start_ = saved.needs_start;
+        behavior.fault_ = saved.fault;
+        behavior.timers_ = saved.timers;
+        behavior.request_preparation();
       },
-      this, kept_count_++);
+      this, saved_count_++);
 }
 
-void BehaviorUndo::keep_targets(Behavior& behavior) {
-  WorldUndo& undo = list_.world_.undo();
-  if (!undo.active()) return;
-  keep(behavior);
-  targets_.push_back({&behavior, behavior.parts_, behavior.joints_, behavior.motors_});
-  undo.note(
+void BehaviorTransaction::save_targets(Behavior& behavior) {
+  WorldTransaction& transaction = list_.world_.transaction();
+  if (!transaction.active()) return;
+  save(behavior);
+  saved_targets_.push_back({&behavior, behavior.parts_, behavior.joints_, behavior.motors_});
+  transaction.record(
       [](void* owner, std::size_t at) {
-        Targets& kept = static_cast<BehaviorUndo*>(owner)->targets_[at];
-        kept.behavior->parts_ = std::move(kept.parts);
-        kept.behavior->joints_ = std::move(kept.joints);
-        kept.behavior->motors_ = std::move(kept.motors);
+        SavedTargets& saved = static_cast<BehaviorTransaction*>(owner)->saved_targets_[at];
+        saved.behavior->parts_ = std::move(saved.parts);
+        saved.behavior->joints_ = std::move(saved.joints);
+        saved.behavior->motors_ = std::move(saved.motors);
       },
-      this, targets_.size() - 1);
+      this, saved_targets_.size() - 1);
 }
 
-void BehaviorUndo::made_member(const Behavior& member) {
+void BehaviorTransaction::member_added(const Behavior& member) {
   constexpr unsigned kHalf = 32;
-  const NodeId made = member.id();
-  list_.world_.undo().note(
+  const NodeId added = member.id();
+  list_.world_.transaction().record(
       [](void* owner, std::size_t value) {
-        BehaviorList& list = static_cast<BehaviorUndo*>(owner)->list_;
+        BehaviorList& list = static_cast<BehaviorTransaction*>(owner)->list_;
         const NodeId id{static_cast<std::uint32_t>(value >> kHalf), static_cast<std::uint32_t>(value)};
-        if (!list.world_.store().alive(id)) return;  // gone with its group
-        auto& member = *static_cast<Behavior*>(list.world_.store().thing(id));
+        if (!list.world_.store().alive(id)) return;  // removed with its group
+        auto& member = *static_cast<Behavior*>(list.world_.store().object(id));
         BehaviorGroup& group = *member.group();
-        list.drop(member);
-        group.left_.pop_back();  // nobody took it away by hand
+        list.destroy(member);
+        group.removed_bodies_.pop_back();  // not an explicit removal
       },
-      this, std::size_t{made.slot} << kHalf | made.generation);
+      this, std::size_t{added.slot} << kHalf | added.generation);
 }
 
-// a node of a body that is out of sight is so already
-void BehaviorUndo::hide_node(Hidden& hidden) const {
+// If the body is hidden, its nodes are hidden already.
+void BehaviorTransaction::hide_node(Hidden& hidden) const {
   Store& store = list_.world_.store();
   hidden.node_hidden = store.alive(hidden.id);
-  if (hidden.node_hidden) hidden.place_in_tree = store.hide(hidden.id);
+  if (hidden.node_hidden) hidden.sibling_index = store.hide(hidden.id);
 }
 
-void BehaviorUndo::hide(Behavior& behavior) {
+void BehaviorTransaction::hide(Behavior& behavior) {
   Hidden hidden;
   hidden.id = behavior.id();
   hide_node(hidden);
   auto& on_body = behavior.body().behaviors_;
-  hidden.place_on_body = place_in(on_body, [&](const Behavior* b) { return b == &behavior; });
-  on_body.erase(iterator_at(on_body, hidden.place_on_body));
+  hidden.index_on_body = index_in(on_body, [&](const Behavior* b) { return b == &behavior; });
+  on_body.erase(iterator_at(on_body, hidden.index_on_body));
   if (BehaviorGroup* const group = behavior.group()) {
-    group->left_.push_back(behavior.body().id());
+    group->removed_bodies_.push_back(behavior.body().id());
     auto& members = group->members_;
-    hidden.place = place_in(members, [&](const auto& member) { return member.get() == &behavior; });
-    hidden.behavior = std::move(members[hidden.place]);
-    members.erase(iterator_at(members, hidden.place));
-    group->laid_out_ = false;
+    hidden.index = index_in(members, [&](const auto& member) { return member.get() == &behavior; });
+    hidden.behavior = std::move(members[hidden.index]);
+    members.erase(iterator_at(members, hidden.index));
+    group->layout_valid_ = false;
   } else {
-    hidden.place = place_in(list_.entries_, [&](const auto& entry) { return entry.single.get() == &behavior; });
-    hidden.behavior = std::move(list_.entries_[hidden.place].single);
-    list_.close_gap(hidden.place);
+    hidden.index = index_in(list_.entries_, [&](const auto& entry) { return entry.single.get() == &behavior; });
+    hidden.behavior = std::move(list_.entries_[hidden.index].single);
+    list_.erase_entry(hidden.index);
   }
-  put_away(std::move(hidden));
+  record_hidden(std::move(hidden));
 }
 
-void BehaviorUndo::hide(BehaviorGroup& group) {
+void BehaviorTransaction::hide(BehaviorGroup& group) {
   while (!group.members_.empty()) hide(*group.members_.back());
   Hidden hidden;
   hidden.id = group.id();
   hide_node(hidden);
-  hidden.place = place_in(list_.entries_, [&](const auto& entry) { return entry.group.get() == &group; });
-  hidden.group = std::move(list_.entries_[hidden.place].group);
-  list_.close_gap(hidden.place);
-  put_away(std::move(hidden));
+  hidden.index = index_in(list_.entries_, [&](const auto& entry) { return entry.group.get() == &group; });
+  hidden.group = std::move(list_.entries_[hidden.index].group);
+  list_.erase_entry(hidden.index);
+  record_hidden(std::move(hidden));
 }
 
-void BehaviorUndo::put_away(Hidden hidden) {
+void BehaviorTransaction::record_hidden(Hidden hidden) {
   hidden_.push_back(std::move(hidden));
-  list_.world_.undo().note([](void* owner, std::size_t) { static_cast<BehaviorUndo*>(owner)->bring_back(); }, this);
+  list_.world_.transaction().record(
+      [](void* owner, std::size_t) { static_cast<BehaviorTransaction*>(owner)->show_last(); }, this);
 }
 
-// the one that was hidden last: all that came after is undone
-void BehaviorUndo::bring_back() {
+// Restores the behavior that was hidden last; all later changes are undone already.
+void BehaviorTransaction::show_last() {
   Hidden hidden = std::move(hidden_.back());
   hidden_.pop_back();
-  if (hidden.node_hidden) list_.world_.store().show(hidden.id, hidden.place_in_tree);
-  if (hidden.group != nullptr) return list_.open_gap(hidden.place).group.swap(hidden.group);
+  if (hidden.node_hidden) list_.world_.store().show(hidden.id, hidden.sibling_index);
+  if (hidden.group != nullptr) return list_.insert_entry(hidden.index).group.swap(hidden.group);
   Behavior& behavior = *hidden.behavior;
   auto& on_body = behavior.body().behaviors_;
-  on_body.insert(iterator_at(on_body, hidden.place_on_body), &behavior);
+  on_body.insert(iterator_at(on_body, hidden.index_on_body), &behavior);
   if (BehaviorGroup* const group = behavior.group()) {
-    group->left_.pop_back();
-    group->members_.insert(iterator_at(group->members_, hidden.place), std::move(hidden.behavior));
-    group->laid_out_ = false;
+    group->removed_bodies_.pop_back();
+    group->members_.insert(iterator_at(group->members_, hidden.index), std::move(hidden.behavior));
+    group->layout_valid_ = false;
   } else {
-    list_.open_gap(hidden.place).single = std::move(hidden.behavior);
+    list_.insert_entry(hidden.index).single = std::move(hidden.behavior);
   }
 }
 

@@ -1,5 +1,5 @@
-// BehaviorUndo: what a guarded call of a script does to behaviours, so that a call that fails can be taken back. What
-// it removes is out of sight until it has ended. [sim]
+// BehaviorTransaction: logs a guarded call's changes of behaviors, to roll them back if the call fails. Behaviors that
+// the call removes are hidden until it ends. [sim]
 #pragma once
 
 #include <cstddef>
@@ -14,57 +14,58 @@ namespace limber {
 
 class BehaviorList;
 
-class BehaviorUndo {
+class BehaviorTransaction {
  public:
-  explicit BehaviorUndo(BehaviorList& list) : list_(list) {}
+  explicit BehaviorTransaction(BehaviorList& list) : list_(list) {}
 
-  /// A call begins.
+  /// Call when a guarded call begins.
   void begin();
-  /// It ended well: what it removed goes.
-  void end();
-  /// Generator, beats, error, and whether it is to start: before they are changed. Outside of calls it does nothing.
-  void keep(Behavior& behavior);
-  /// What it acts on, before that is found anew: as bodies are in the middle of the call.
-  void keep_targets(Behavior& behavior);
-  /// A body of the call, or with parts of the call, has become a member of a group.
-  void made_member(const Behavior& member);
-  /// Takes a behaviour, or a group with its members, out of its list and out of sight.
+  /// The call succeeded: destroys the behaviors that it removed.
+  void commit();
+  /// Saves random generator, interval timers, error and start flag. Call before they change. Does nothing outside of
+  /// guarded calls.
+  void save(Behavior& behavior);
+  /// Saves the targets. Call before they are resolved again.
+  void save_targets(Behavior& behavior);
+  /// Logs that a group got a new member.
+  void member_added(const Behavior& member);
+  /// Removes a behavior, or a group with its members, from its list and keeps it hidden until the call ends.
   void hide(Behavior& behavior);
   void hide(BehaviorGroup& group);
 
  private:
-  struct Kept {
+  struct SavedState {
     Behavior* behavior = nullptr;
     Random random;
     std::uint64_t seeded_with = 0;
-    bool fresh = false;
+    bool needs_start = false;
     BehaviorFault fault;
-    std::vector<Behavior::Beat> beats;
+    std::vector<Behavior::IntervalTimer> timers;
   };
-  struct Targets {
+  struct SavedTargets {
     Behavior* behavior = nullptr;
     std::vector<Part*> parts;
     std::vector<Joint*> joints;
     std::vector<Motor*> motors;
   };
   struct Hidden {
-    std::unique_ptr<Behavior> behavior;  // or
+    std::unique_ptr<Behavior> behavior;  // one of the two is set
     std::unique_ptr<BehaviorGroup> group;
     NodeId id;
-    bool node_hidden = false;  // here; else with its body
-    std::size_t place = 0;     // in the list, or among the members of its group
-    std::size_t place_on_body = 0;
-    std::size_t place_in_tree = 0;  // among its node's siblings
+    bool node_hidden = false;  // its node was hidden here; else it is hidden with its body
+    std::size_t index = 0;     // index in the list, or among the members of its group
+    std::size_t index_on_body = 0;
+    std::size_t sibling_index = 0;  // index among its node's siblings
   };
   void hide_node(Hidden& hidden) const;
-  void put_away(Hidden hidden);
-  void bring_back();
+  void record_hidden(Hidden hidden);
+  void show_last();
 
   BehaviorList& list_;
   std::uint64_t call_ = 0;
-  std::vector<Kept> kept_;  // the first kept_count_ are of this call; their room is used again
-  std::size_t kept_count_ = 0;
-  std::vector<Targets> targets_;
+  std::vector<SavedState> saved_;  // the first saved_count_ are valid; the others are reused to avoid allocations
+  std::size_t saved_count_ = 0;
+  std::vector<SavedTargets> saved_targets_;
   std::vector<Hidden> hidden_;
 };
 

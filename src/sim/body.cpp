@@ -20,12 +20,12 @@ namespace limber {
 
 namespace {
 
-using namespace rows;
+using namespace properties;
 
 template <class T>
 T* find_by_name(const Store& store, NodeId group, std::string_view name) {
   const NodeId id = store.child(group, name);
-  return id.null() ? nullptr : static_cast<T*>(store.thing(id));
+  return id.null() ? nullptr : static_cast<T*>(store.object(id));
 }
 
 void add_vector(NumberHash& numbers, const btVector3& v) { numbers.add(v.x(), v.y(), v.z()); }
@@ -40,37 +40,37 @@ void add_motion(NumberHash& numbers, const btRigidBody& rigid) {
 
 }  // namespace
 
-const Table& Body::table() {
-  static const Table table(
+const PropertyTable& Body::table() {
+  static const PropertyTable table(
       "body", "/physics/body/<body>", "",
       {
-          state(view<&Body::read_position, &Body::write_position>(
+          state(computed<&Body::read_position, &Body::write_position>(
               vec3("position", "m", {0, 0, 0}, -1e4, 1e4,
-                   "The root's link frame, world; setting it moves the whole body rigidly. The stability check "
-                   "restores it from 10 km on."))),
-          state(view<&Body::read_rotation, &Body::write_rotation>(quat(
-              "rotation", "The root's link frame, world: x y z w; setting it turns the whole body about the root."))),
-          state(view<&Body::read_linear_velocity, &Body::write_linear_velocity>(
+                   "Position of the root's link frame, world; setting it moves the whole body rigidly. Beyond 10 km, "
+                   "the stability check restores the body."))),
+          state(computed<&Body::read_rotation, &Body::write_rotation>(quat(
+              "rotation",
+              "Rotation of the root's link frame, world: x y z w; setting it rotates the whole body about the root."))),
+          state(computed<&Body::read_linear_velocity, &Body::write_linear_velocity>(
               vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
-                   "The root's; setting it gives the whole body this motion. The stability check restores it from 500 "
-                   "m/s on."))),
-          state(view<&Body::read_angular_velocity, &Body::write_angular_velocity>(
+                   "Velocity of the root; setting it sets that of all parts. From 500 m/s on, the stability check "
+                   "restores the body."))),
+          state(computed<&Body::read_angular_velocity, &Body::write_angular_velocity>(
               vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
-                   "The root's; setting it turns the whole body about the root. The stability check restores what "
-                   "tumbles at 1000 rad/s."))),
-          effect<&Body::effect_self_collision>(
-              boolean("self_collision", true,
-                      "Whether its parts collide with each other; two that a joint connects never do, nor pairs of "
-                      "excluded_pairs.")),
-          effect<&Body::effect_can_sleep>(
-              boolean("can_sleep", true,
-                      "Whether its parts fall asleep when they are at rest; asleep, they cost nothing until something "
-                      "acts on them.")),
-          view<&Body::read_asleep>(readout(boolean("asleep", false, "All its parts that can move are asleep."))),
-          live(state(effect<&Body::effect_enabled>(boolean(
-              "enabled", true, "False: out of the world, as health leaves a body that broke twice; reset enables.")))),
-          act<&Body::act_reset>(action("reset", 0, 0, "Back to the start pose, at rest.")),
-          act<&Body::act_remove>(action("remove", 0, 0, "Takes the body away.")),
+                   "Angular velocity of the root; setting it rotates the whole body about the root. From 1000 rad/s of "
+                   "tumbling on, the stability check restores the body."))),
+          on_change<&Body::apply_self_collision>(boolean(
+              "self_collision", true,
+              "Whether its parts collide with each other, except for pairs connected by a joint and excluded_pairs.")),
+          on_change<&Body::apply_can_sleep>(boolean(
+              "can_sleep", true,
+              "Whether its parts may fall asleep at rest; sleeping parts cost nothing until something acts on them.")),
+          computed<&Body::read_asleep>(readout(boolean("asleep", false, "True if all its movable parts sleep."))),
+          transient(state(on_change<&Body::apply_enabled>(
+              boolean("enabled", true,
+                      "False: removed from the simulation, as after the second instability; reset enables it.")))),
+          invokes<&Body::act_reset>(action("reset", 0, 0, "Returns to the start pose, at rest.")),
+          invokes<&Body::act_remove>(action("remove", 0, 0, "Removes the body.")),
       });
   return table;
 }
@@ -84,8 +84,8 @@ Body::Body(World& world, NodeId group, std::string name)
 }
 
 Body::~Body() {
-  world_.behaviors().body_gone(*this);
-  // joints let go of parts before those go
+  world_.behaviors().on_body_destroyed(*this);
+  // joints detach from their parts before the parts are destroyed
   motors_.clear();
   joints_.clear();
   parts_.clear();
@@ -116,30 +116,29 @@ Result<Pose> Body::link_pose(std::string_view name) const {
   return Error{fmt::format("body '{}' has no link '{}'{}", this->name(), name, name_hint(name, names))};
 }
 
-// before a guarded call changes it
-void Body::keep() {
-  if (world_.undo().active()) world_.undo().keep(*this);
+// Saves the body's state before a guarded call changes it.
+void Body::save_for_rollback() {
+  if (world_.transaction().active()) world_.transaction().save(*this);
 }
 
-void Body::note_moved() {
-  keep();
-  moved_ = true;
+void Body::mark_joints_dirty() {
+  save_for_rollback();
+  joints_dirty_ = true;
 }
 
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
-  if (const Result<void> free = world_.name_is_free(part_group_, "part", name); !free) return Error{free.error()};
+  if (const Result<void> free = world_.check_new_name(part_group_, "part", name); !free) return Error{free.error()};
   if (!is_finite(pose.position) || !is_finite(pose.rotation) || glm::dot(pose.rotation, pose.rotation) < 1e-18) {
     return Error{fmt::format("part '{}/{}' needs a position of three numbers and a rotation that is not zero",
                              this->name(), name)};
   }
-  const Row& mass_row = Part::table().at("mass");
-  if (mass != 0 && !(mass >= mass_row.min && mass <= mass_row.max)) {
-    return Error{fmt::format("part '{}/{}' needs a mass of {} .. {} kg, or 0 to never move, not {}", this->name(), name,
-                             mass_row.min, mass_row.max, mass)};
+  const Property& mass_property = Part::table().at("mass");
+  if (mass != 0 && !(mass >= mass_property.min && mass <= mass_property.max)) {
+    return Error{fmt::format("part '{}/{}' needs a mass of {} .. {} kg, or 0 for a static part, not {}", this->name(),
+                             name, mass_property.min, mass_property.max, mass)};
   }
   if (shape.model().kind == ShapeKind::plane && mass > 0) {
-    return Error{
-        fmt::format("part '{}/{}' is a plane, which has mass 0 and never moves, not {} kg", this->name(), name, mass)};
+    return Error{fmt::format("part '{}/{}' is a plane: its mass must be 0, not {} kg", this->name(), name, mass)};
   }
   if (shape.placed().empty()) {
     return Error{fmt::format("compound '{}' is empty; add its children before a part is made of it", shape.name())};
@@ -148,75 +147,75 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
                                      Pose{pose.position, glm::normalize(pose.rotation)});
   part->set_shape(shape.id());
   if (shape.model().kind == ShapeKind::plane) {
-    // two parts' values multiply: a plane leaves the other's as they are
-    store().tell(part->id(), Part::table().at("friction"))[0] = 1;
-    store().tell(part->id(), Part::table().at("restitution"))[0] = 1;
+    // friction and restitution of two parts multiply: a plane with 1 leaves the other part's values unchanged
+    store().mutable_values(part->id(), Part::table().at("friction"))[0] = 1;
+    store().mutable_values(part->id(), Part::table().at("restitution"))[0] = 1;
   }
   parts_.push_back(std::move(part));
-  structure_++;
-  world_.undo().made_part(*this);
+  structure_version_++;
+  world_.transaction().part_added(*this);
   return parts_.back().get();
 }
 
 Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
                                const Vec3& axis) {
-  if (const Result<void> free = world_.name_is_free(joint_group_, "joint", name); !free) return Error{free.error()};
-  const auto fault = [&](std::string_view what) {
-    return Error{fmt::format("joint '{}/{}': {}", this->name(), name, what)};
+  if (const Result<void> free = world_.check_new_name(joint_group_, "joint", name); !free) return Error{free.error()};
+  const auto fault = [&](std::string_view problem) {
+    return Error{fmt::format("joint '{}/{}': {}", this->name(), name, problem)};
   };
-  if (&parent == &child) return fault("a part can't hang on itself");
+  if (&parent == &child) return fault("parent and child must be different parts");
   if (&parent.body() != this || &child.body() != this) return fault("both parts must be of this body");
   if (!is_finite(position) || !is_finite(axis)) return fault("position and axis must be numbers");
   if (glm::length(axis) < 1e-9) return fault("the axis must not be zero");
   if (parent.is_static() && child.is_static()) return fault("both parts are static; one must have mass");
-  // z of the joint's frame is the axis; about it the frame is turned as little as possible from the world's
+  // z of the joint's frame is the axis; an upright axis keeps the world's orientation
   const Vec3 z = normalized(axis);
-  const Vec3 side = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  const Vec3 y = normalized(glm::cross(z, side));
+  const Vec3 reference = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = normalized(glm::cross(z, reference));
   const bool upright = z.z > 1 - 1e-12;
   const Pose frame{position, upright ? quat_identity() : glm::normalize(glm::quat_cast(Mat3(glm::cross(y, z), y, z)))};
   JointSpec spec;
   spec.type = type;
   spec.frame_in_parent = parent.pose().inverse() * frame;
   spec.frame_in_child = child.pose().inverse() * frame;
-  // the parts stand where they were put before the joint reads its zero
-  parent.settle();
-  child.settle();
+  // Bullet must have the poses that were set before the joint reads its zero
+  parent.flush();
+  child.flush();
   joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
-  world_.undo().made_joint(*this);
-  joints_.back()->read_anew();
-  structure_++;
+  world_.transaction().joint_added(*this);
+  joints_.back()->update_from_parts();
+  structure_version_++;
   return joints_.back().get();
 }
 
 Result<Motor*> Body::add_motor(Joint& joint) {
-  const auto fault = [&](std::string_view what) {
-    return Error{fmt::format("joint '{}/{}' {}", joint.body().name(), joint.name(), what)};
+  const auto fault = [&](std::string_view problem) {
+    return Error{fmt::format("joint '{}/{}' {}", joint.body().name(), joint.name(), problem)};
   };
   if (&joint.body() != this) return fault("belongs to another body");
   if (joint.motor() != nullptr) return fault("has a motor already");
-  if (joint.type() == JointType::fixed) return fault("is fixed and takes no motor");
+  if (joint.type() == JointType::fixed) return fault("is fixed and can't have a motor");
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
-  structure_++;
-  world_.undo().made_motor(*this);
+  structure_version_++;
+  world_.transaction().motor_added(*this);
   return motors_.back().get();
 }
 
-Pose Body::pose() const { return parts_.empty() ? planned_ : root()->pose(); }
+Pose Body::pose() const { return parts_.empty() ? initial_pose_ : root()->pose(); }
 
 void Body::set_pose(const Pose& pose) {
   if (parts_.empty()) {
-    keep();
-    planned_ = pose;
+    save_for_rollback();
+    initial_pose_ = pose;
     return;
   }
-  const Pose moved = pose * this->pose().inverse();
-  for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : moved * part->pose());
+  const Pose displacement = pose * this->pose().inverse();
+  for (const auto& part : parts_) part->set_pose(part.get() == root() ? pose : displacement * part->pose());
 }
 
 bool Body::enabled() const {
-  static const Row& row = table().at("enabled");
-  return store().values(id_, row)[0] != 0;
+  static const Property& property = table().at("enabled");
+  return store().values(id_, property)[0] != 0;
 }
 
 void Body::set_enabled(bool on) {
@@ -224,115 +223,114 @@ void Body::set_enabled(bool on) {
   (void)store().set(id_, table().at("enabled"), {&value, 1});
 }
 
-void Body::effect_enabled() {
+void Body::apply_enabled() {
   if (enabled() == in_world_) return;
   in_world_ = enabled();
   if (in_world_) {
-    moved_ = true;  // world_ settles it: there it enters too
+    joints_dirty_ = true;  // World::flush() then adds it to Bullet's world and updates its joints
   } else {
-    for (const auto& joint : joints_) joint->leave();
-    for (const auto& part : parts_) part->leave();
-    entered_parts_ = entered_joints_ = 0;
+    for (const auto& joint : joints_) joint->remove_from_world();
+    for (const auto& part : parts_) part->remove_from_world();
+    added_parts_ = added_joints_ = 0;
   }
 }
 
-// Parts enter Bullet's world where they are before the next step, not where they were made: copies of an arm are made
-// in one place, and there each would meet all others.
-void Body::enter() {
+// Parts are added to Bullet's world in their poses before the next step, not in those of their creation: copies of an
+// arm are created in one place and would collide with each other there.
+void Body::add_to_world() {
   if (!in_world_) return;
-  for (; entered_parts_ < parts_.size(); entered_parts_++) parts_[entered_parts_]->enter();
-  for (; entered_joints_ < joints_.size(); entered_joints_++) joints_[entered_joints_]->enter();
-  for (Joint* follower : followers_) follower->enter_mimic_gear();
+  for (; added_parts_ < parts_.size(); added_parts_++) parts_[added_parts_]->add_to_world();
+  for (; added_joints_ < joints_.size(); added_joints_++) joints_[added_joints_]->add_to_world();
+  for (Joint* follower : followers_) follower->add_mimic_gear();
 }
 
-void Body::effect_self_collision() {
-  for (const auto& part : parts_) part->effect_collision();
+void Body::apply_self_collision() {
+  for (const auto& part : parts_) part->apply_collision();
 }
 
 bool Body::self_collision() const {
-  static const Row& row = table().at("self_collision");
-  return store().values(id_, row)[0] != 0;
+  static const Property& property = table().at("self_collision");
+  return store().values(id_, property)[0] != 0;
 }
 
 bool Body::can_sleep() const {
-  static const Row& row = table().at("can_sleep");
-  return store().values(id_, row)[0] != 0;
+  static const Property& property = table().at("can_sleep");
+  return store().values(id_, property)[0] != 0;
 }
 
 bool Body::asleep() const {
-  bool any = false;
+  bool has_movable_part = false;
   for (const auto& part : parts_) {
     if (part->is_static()) continue;
     if (!part->asleep()) return false;
-    any = true;
+    has_movable_part = true;
   }
-  return any && in_world_;
+  return has_movable_part && in_world_;
 }
 
-void Body::effect_can_sleep() {
+void Body::apply_can_sleep() {
   for (const auto& part : parts_) world_.bullet().sleep().allow(part->rigid(), can_sleep());
 }
 
 void Body::reset() {
-  keep();
+  save_for_rollback();
   for (const auto& part : parts_) {
     part->set_pose(part->start_pose());
     part->set_velocity(Vec3(0), Vec3(0));
     part->clear_forces();
   }
-  for (const auto& joint : joints_) joint->go_to_start();
-  world_.behaviors().body_reset(*this);
+  for (const auto& joint : joints_) joint->restore_start();
+  world_.behaviors().on_body_reset(*this);
   restored_once_ = false;
-  good_poses_ = 0;
+  good_pose_count_ = 0;
   set_enabled(true);
 }
 
-void Body::take_start_pose() {
+void Body::save_start_pose() {
   for (const auto& part : parts_) part->set_start_pose(part->pose());
-  for (const auto& joint : joints_) joint->take_start();
+  for (const auto& joint : joints_) joint->save_start();
 }
 
-void Body::take_good_pose() {
-  last_good_.resize(parts_.size());
-  for (std::size_t i = 0; i < parts_.size(); i++) last_good_[i] = parts_[i]->pose();
-  good_poses_ = parts_.size();
+void Body::save_good_pose() {
+  good_poses_.resize(parts_.size());
+  for (std::size_t i = 0; i < parts_.size(); i++) good_poses_[i] = parts_[i]->pose();
+  good_pose_count_ = parts_.size();
 }
 
-void Body::tell() {
+void Body::publish() {
   for (const auto& part : parts_) {
-    part->tell();
+    part->publish();
     clamped_ = clamped_ || clamped_by(part->rigid()) > 0;
   }
   for (const auto& joint : joints_) {
-    joint->tell();
-    if (joint->comes_apart()) torn_ = joint.get();
+    joint->publish();
+    if (joint->check_separation()) separated_joint_ = joint.get();
     const JointConstraint& constraint = joint->constraint();
-    warns_ = warns_ || constraint.holds_spring() || constraint.target_outside();
+    has_joint_warnings_ = has_joint_warnings_ || constraint.spring_limited() || constraint.target_outside();
   }
 }
 
-void Body::say_clamp() {
-  if (!std::exchange(clamped_, false) || said_clamp_) return;
-  said_clamp_ = true;
-  const auto clamp = [](const std::unique_ptr<Part>& part) { return clamped_by(part->rigid()); };
-  const Part& part = **std::ranges::max_element(parts_, {}, clamp);
-  const double allowed = kTurnClamp * world_.substeps() / world_.timestep();
-  const double by = clamped_by(part.rigid());
-  const double wanted = std::max(glm::length(part.angular_velocity()), allowed + by);
+void Body::warn_clamped() {
+  if (!std::exchange(clamped_, false) || warned_clamped_) return;
+  warned_clamped_ = true;
+  const auto clamped_of = [](const std::unique_ptr<Part>& part) { return clamped_by(part->rigid()); };
+  const Part& part = **std::ranges::max_element(parts_, {}, clamped_of);
+  const double allowed = kMaxRotationPerStep * world_.substeps() / world_.timestep();
+  const double excess = clamped_by(part.rigid());
+  const double requested = std::max(glm::length(part.angular_velocity()), allowed + excess);
   log_warning(
       "part '{}/{}': rotation of {:.4g} rad/s is clamped by {:.4g} rad/s, since it exceeds 45 degrees per substep; "
-      "about "
-      "{} substeps would allow it (reported once per body)",
-      name(), part.name(), wanted, by, std::ceil(wanted * world_.timestep() / kTurnClamp));
+      "about {} substeps would allow it (reported once per body)",
+      name(), part.name(), requested, excess, std::ceil(requested * world_.timestep() / kMaxRotationPerStep));
 }
 
-void Body::say_caps() {
-  say_clamp();
-  if (!std::exchange(warns_, false)) return;
+void Body::log_warnings() {
+  warn_clamped();
+  if (!std::exchange(has_joint_warnings_, false)) return;
   for (const auto& joint : joints_) {
     if (joint->motor() == nullptr) continue;
-    if (joint->constraint().holds_spring()) joint->motor()->say_cap();
-    if (joint->constraint().target_outside()) joint->motor()->warn_outside();
+    if (joint->constraint().spring_limited()) joint->motor()->warn_capped();
+    if (joint->constraint().target_outside()) joint->motor()->warn_target_outside();
   }
 }
 
@@ -343,8 +341,8 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   add_node(id_);
   if (parts_.empty()) {
     std::array<double, 7> pose{};
-    put(pose.data(), planned_.position);
-    put(pose.data() + 3, planned_.rotation);
+    put(pose.data(), initial_pose_.position);
+    put(pose.data() + 3, initial_pose_.rotation);
     numbers.add(pose);
   }
   for (const auto& part : parts_) {
@@ -366,12 +364,12 @@ bool Body::is_static() const {
          std::all_of(parts_.begin(), parts_.end(), [](const auto& part) { return part->is_static(); });
 }
 
-void Body::report_static_velocity(std::string_view what) {
-  if (std::exchange(reported_static_velocity_, true)) return;
+void Body::warn_static_velocity(std::string_view subject) {
+  if (std::exchange(warned_static_velocity_, true)) return;
   log_warning(
       "body '{}': {} static (mass 0), so a velocity has no effect; ignored (reported once). Give a mass, or set the "
       "position.",
-      name(), what);
+      name(), subject);
 }
 
 void Body::read_position(double* out) const { put(out, pose().position); }
@@ -390,7 +388,7 @@ void Body::write_rotation(const double* in) { set_pose({pose().position, quat_xy
 void Body::read_linear_velocity(double* out) const { put(out, parts_.empty() ? Vec3(0) : root()->linear_velocity()); }
 
 void Body::write_linear_velocity(const double* in) {
-  if (is_static()) return report_static_velocity("its parts are");
+  if (is_static()) return warn_static_velocity("its parts are");
   for (const auto& part : parts_) {
     if (!part->is_static()) part->set_velocity(vec3_at(in), part->angular_velocity());
   }
@@ -400,7 +398,7 @@ void Body::read_angular_velocity(double* out) const { put(out, parts_.empty() ? 
 
 void Body::write_angular_velocity(const double* in) {
   if (parts_.empty()) return;
-  if (is_static()) return report_static_velocity("its parts are");
+  if (is_static()) return warn_static_velocity("its parts are");
   const Vec3 omega = vec3_at(in);
   const Vec3 pivot = root()->center();
   const Vec3 velocity = root()->linear_velocity();

@@ -1,4 +1,4 @@
-// Body: a named tree of parts, joints and motors; made by hand, from a model, or as a copy. [sim]
+// Body: a named tree of parts, joints and motors, created part by part, from a model, or as a copy. [sim]
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,16 @@ namespace limber {
 
 class World;
 
-/// How a body is made from a model.
+/// Options for building a body from a model.
 struct BuildOptions {
-  bool servo_motors = true;      ///< false: motors are made off.
-  std::optional<Vec3> position;  ///< Of the root's link frame; left out: as the model places it.
+  bool servo_motors = true;      ///< false: motors are created in mode `off`.
+  std::optional<Vec3> position;  ///< Of the root's link frame; default: as in the model.
   std::optional<Quat> rotation;
 };
 
 class Body {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Body(World& world, NodeId group, std::string name);
   ~Body();
@@ -43,103 +43,109 @@ class Body {
   std::span<const std::unique_ptr<Part>> parts() const { return parts_; }
   std::span<const std::unique_ptr<Joint>> joints() const { return joints_; }
   std::span<const std::unique_ptr<Motor>> motors() const { return motors_; }
-  /// In the order in which they were made; the world's list (sim/behavior_list.h) makes and removes them.
+  /// In order of creation. The world's BehaviorList (sim/behavior_list.h) creates and removes them.
   std::span<Behavior* const> behaviors() const { return behaviors_; }
   Part* root() const { return parts_.empty() ? nullptr : parts_.front().get(); }
   Part* find_part(std::string_view name) const;
   Joint* find_joint(std::string_view name) const;
   Motor* find_motor(std::string_view name) const;
   Behavior* find_behavior(std::string_view name) const;
-  /// The model it was imported from, or null; carries the merged links' frames.
+  /// The model that it was imported from, or null; contains the frames of merged links.
   const std::shared_ptr<const BodyModel>& model() const { return model_; }
-  /// World pose of a link by name, merged ones included.
+  /// Returns the world pose of a link by name, including links that the importer merged into a part.
   Result<Pose> link_pose(std::string_view name) const;
 
-  /// Adds a part of a shape; `mass` 0: static. Errors: a taken or unprintable name, a plane with mass.
+  /// Adds a part with the given shape; `mass` in kg, 0: static. Errors: the name is taken or can't be printed, the pose
+  /// is invalid, the mass is out of range, a plane with mass, an empty compound.
   Result<Part*> add_part(std::string name, Shape& shape, double mass, const Pose& pose);
-  /// Adds a joint in the pose that the parts have now, which becomes its zero. `position` and `axis` are world.
+  /// Adds a joint. The present pose of its parts becomes its zero position. `position` and `axis` are in world
+  /// coordinates. Errors: the name is taken, parts of another body, the same part twice, two static parts, an axis of
+  /// length 0.
   Result<Joint*> add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
                            const Vec3& axis);
-  /// One motor a joint; a fixed joint takes none.
+  /// Adds a motor. A joint has at most one; a fixed joint can't have one.
   Result<Motor*> add_motor(Joint& joint);
 
-  /// Pairs of its parts that overlap or were edited. Pairs excluded from collision by default: a model's that overlap
-  /// with all joints at 0, and, of other parts, those that overlap in the first tick.
+  /// Pairs of its parts that overlap or were edited. Two parts don't collide by default if they overlap with all
+  /// joints at 0 (bodies from models), or in the first tick (other parts).
   const PartPairs& pairs() const { return pairs_; }
   bool excludes(const Part& a, const Part& b) const;
-  /// Excludes a pair of its parts from collision, or includes it, or restores its default; from the next step on.
-  /// Errors: a part of another body, twice the same part.
+  /// Excludes a pair of its parts from collision, includes it, or restores its default, from the next step on.
+  /// Errors: a part of another body, the same part twice.
   Result<void> edit_pair(const Part& a, const Part& b, PairEdit edit);
   bool self_collision() const;
-  /// Whether it has parts and none of them moves.
+  /// True if it has parts and none of them can move.
   bool is_static() const;
-  /// Warns once that a velocity has no effect; `what`: "part 'floor' is".
-  void report_static_velocity(std::string_view what);
+  /// Warns, once per body, that setting a velocity has no effect. `subject` begins the sentence: "part 'floor' is".
+  void warn_static_velocity(std::string_view subject);
 
-  /// The root's link frame. Setting moves the whole body rigidly; velocities stay.
+  /// Pose of the root's link frame. Setting it moves the whole body rigidly; velocities don't change.
   Pose pose() const;
-  /// Of a body without parts: where its first part is placed, unless that is told a pose of its own.
+  /// If the body has no parts yet, sets the pose for its first part, unless that part gets a pose of its own.
   void set_pose(const Pose& pose);
   bool enabled() const;
-  /// Whether its parts may fall asleep.
+  /// Whether its parts are allowed to fall asleep.
   bool can_sleep() const;
-  /// Whether all its parts that can move sleep, and there are some.
+  /// True if it has parts that can move and all of these sleep.
   bool asleep() const;
-  /// Whether it takes part: what `enabled` said at the last effects.
+  /// True if it takes part in the simulation: the value of `enabled` when changes were last applied.
   bool in_world() const { return in_world_; }
-  /// Takes the body out of the world, or back in, before the next step: what health does, and `reset` undoes.
+  /// Removes the body from the simulation or adds it again, before the next step. The stability check disables a
+  /// body, and reset() enables it.
   void set_enabled(bool on);
-  /// Back to the start pose, at rest, enabled; values stay.
+  /// Returns to the start pose, at rest and enabled; other values don't change.
   void reset();
-  /// The present pose becomes the start pose.
-  void take_start_pose();
-  /// The pose of a body of the same making becomes the start pose.
-  void take_start_pose(const Body& other);
+  /// Makes the present pose the start pose.
+  void save_start_pose();
+  /// Makes the pose of `other`, a body of the same structure, the start pose.
+  void save_start_pose(const Body& other);
 
-  /// For each part, by number, the part at whose end of the joints it hangs: the first that no joint leads to.
+  /// For each part, the index of the root of its tree of joints: the first part that is no joint's child.
   std::vector<std::size_t> trees() const;
-  /// Moves the parts of one tree rigidly, so that its first part is at `pose`; velocities stay.
-  void move_tree(std::size_t first, const Pose& pose);
+  /// Moves the parts of one tree rigidly, so that its root is at `pose`; velocities don't change.
+  void move_tree(std::size_t root, const Pose& pose);
 
-  /// A part's pose was set by hand: joints read it anew before the next step.
-  void note_moved();
+  /// Requests that joints read their positions from the parts again before the next step, because a part's pose was
+  /// set.
+  void mark_joints_dirty();
 
-  /// Joints that are coupled to a leader (URDF mimic), in their order.
+  /// Joints that are coupled to a leader (URDF mimic), in order of creation.
   std::span<Joint* const> followers() const { return followers_; }
-  /// Readouts of its parts and joints. [any thread, while nobody else is at this body]
-  void tell();
-  /// After tell(): logs, once each, springs whose stiffness is capped, targets outside limits and clamped rotations.
-  void say_caps();
-  /// Logs followers that something holds away from where their leader puts them, once each.
-  void report_slips() const;
-  /// The present pose is what health goes back to.
-  void take_good_pose();
+  /// Publishes the readouts of its parts and joints. [any, one thread per body]
+  void publish();
+  /// After publish(): logs, once each, springs with a capped stiffness, targets outside limits, and clamped
+  /// rotations.
+  void log_warnings();
+  /// Warns, once each, about mimic joints that something keeps from the positions that their leaders demand.
+  void warn_slipping_joints() const;
+  /// Saves the present pose as the one that the stability check restores.
+  void save_good_pose();
   std::uint64_t state_hash(std::uint64_t start) const;
 
  private:
   friend class World;
   friend class Behavior;
   friend class BehaviorList;
-  friend class BehaviorUndo;
-  friend class WorldUndo;
-  friend class WorldKey;
-  void keep();
-  void say_clamp();
+  friend class BehaviorTransaction;
+  friend class WorldTransaction;
+  friend class WorldCheckpoint;
+  void save_for_rollback();
+  void warn_clamped();
   void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
   void build_copy(const Body& source);
-  void enter();
-  /// True when parts were moved by hand.
-  bool settle_joints();
+  void add_to_world();
+  /// Makes joints read their positions again if parts were moved; returns whether they were.
+  bool update_moved_joints();
   void couple_followers();
-  void effect_enabled();
-  void effect_self_collision();
+  void apply_enabled();
+  void apply_self_collision();
   void set_pair(std::size_t a, std::size_t b, PairEdit edit);
   void apply_pair(std::size_t a, std::size_t b);
   void apply_pairs();
-  bool has_unchecked_parts() const { return pairs_.checked < parts_.size(); }
+  bool has_unchecked_parts() const { return pairs_.checked_count < parts_.size(); }
   void find_overlaps();
-  void effect_can_sleep();
+  void apply_can_sleep();
   void read_asleep(double* out) const { out[0] = asleep() ? 1 : 0; }
   void read_position(double* out) const;
   void write_position(const double* in);
@@ -161,26 +167,26 @@ class Body {
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Joint*> followers_;
   std::vector<Behavior*> behaviors_;
-  std::uint32_t structure_ = 0;  // counts what is added: behaviours then look for their targets anew
+  std::uint32_t structure_version_ = 0;  // counts additions: behaviors then resolve their targets again
   PartPairs pairs_;
-  Pose planned_;  // while there is no part
+  Pose initial_pose_;  // pose for the first part, used while there are no parts
   bool in_world_ = true;
-  std::size_t entered_parts_ = 0;  // the first so many are in Bullet's world
-  std::size_t entered_joints_ = 0;
-  bool moved_ = false;
-  bool reported_static_velocity_ = false;
-  bool fresh_ = true;  // made since the last step: where it is then is its start pose
+  std::size_t added_parts_ = 0;  // number of parts that have been added to Bullet's world, in order; joints alike
+  std::size_t added_joints_ = 0;
+  bool joints_dirty_ = false;
+  bool warned_static_velocity_ = false;
+  bool is_new_ = true;  // created since the last step: the next step stores its start pose
 
-  // health: the pose after the last good tick, and whether it was needed already
-  std::vector<Pose> last_good_;
-  std::size_t good_poses_ = 0;  // so many of them count
-  std::uint64_t kept_in_ = 0;   // the guarded call whose undo knows this body
+  // Stability check: the pose after the last good tick, and whether it was restored before.
+  std::vector<Pose> good_poses_;
+  std::size_t good_pose_count_ = 0;  // number of valid elements of good_poses_
+  std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved this body
   bool restored_once_ = false;
-  bool broken_ = false;   // healed in this tick
-  bool warns_ = false;    // a joint may have to report a capped spring or a target outside its limits
-  bool clamped_ = false;  // the rotation of a part was clamped in this tick
-  bool said_clamp_ = false;
-  Joint* torn_ = nullptr;  // a joint that came apart in this tick
+  bool restored_this_tick_ = false;
+  bool has_joint_warnings_ = false;  // a joint may have to report a capped spring or a target outside its limits
+  bool clamped_ = false;             // the rotation of a part was clamped in this tick
+  bool warned_clamped_ = false;
+  Joint* separated_joint_ = nullptr;  // a joint that came apart in this tick
 };
 
 }  // namespace limber

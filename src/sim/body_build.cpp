@@ -1,4 +1,4 @@
-// Body: built from a model, or as a copy of another body.
+// Body: construction from a model, and as a copy of another body.
 #include <algorithm>
 #include <utility>
 
@@ -13,19 +13,19 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
   Pose root = model->links.front().start;
   if (options.position) root.position = *options.position;
   if (options.rotation) root.rotation = *options.rotation;
-  const Pose moved = root * model->links.front().start.inverse();
-  const auto& geometries = world_.geometries_of(model);
+  const Pose displacement = root * model->links.front().start.inverse();
+  const auto& geometries = world_.geometries_for(model);
   for (std::size_t i = 0; i < model->links.size(); i++) {
     const LinkModel& link = model->links[i];
-    parts_.push_back(
-        std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass, moved * link.start));
-    if (!link.self_collision) store().tell(parts_.back()->id(), Part::table().at("self_collision"))[0] = 0;
-    parts_.back()->settle();
+    parts_.push_back(std::make_unique<Part>(*this, part_group_, link.name, geometries[i], link.inertial.mass,
+                                            displacement * link.start));
+    if (!link.self_collision) store().mutable_values(parts_.back()->id(), Part::table().at("self_collision"))[0] = 0;
+    parts_.back()->flush();
   }
   for (const Overlap& overlap : model->overlaps) {
     (void)pairs_.set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
   }
-  pairs_.checked = parts_.size();
+  pairs_.checked_count = parts_.size();
   apply_pairs();
   for (const JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
@@ -35,9 +35,9 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     Part& child = *parts_[static_cast<std::size_t>(m.child)];
     joints_.push_back(std::make_unique<Joint>(*this, joint_group_, m.name, parent, child, spec));
     Joint& joint = *joints_.back();
-    joint.effect_limits();
+    joint.apply_limits();
     joint.constraint().reset(joint.own_axis() == 5 ? Vec3(0, 0, m.start) : Vec3(0));
-    joint.tell();
+    joint.publish();
     if (m.type != JointType::fixed) build_motor(joint, m, options.servo_motors);
   }
   couple_followers();
@@ -47,39 +47,42 @@ void Body::build_motor(Joint& joint, const JointModel& m, bool servo) {
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
   Motor& motor = *motors_.back();
   const bool linear = joint.own_axis() == 2;
-  store().tell(motor.id(), Motor::table().at(linear ? "max_linear_force" : "max_angular_force"))[2] = m.effort;
-  store().tell(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
-  store().tell(motor.id(), Motor::table().at("damping"))[0] = m.damping;
-  // planar and floating joints move in several axes, followers with their leader: no servo holds these by default
-  const bool holds = servo && m.type != JointType::floating && m.type != JointType::planar && !joint.spec().mimic;
-  if (!holds) motor.set_mode(MotorMode::off);
+  store().mutable_values(motor.id(), Motor::table().at(linear ? "max_linear_force" : "max_angular_force"))[2] =
+      m.effort;
+  store().mutable_values(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] =
+      m.velocity;
+  store().mutable_values(motor.id(), Motor::table().at("damping"))[0] = m.damping;
+  // planar and floating joints have several axes, and mimic joints follow their leader: none gets a servo by default
+  const bool use_servo = servo && m.type != JointType::floating && m.type != JointType::planar && !joint.spec().mimic;
+  if (!use_servo) motor.set_mode(MotorMode::off);
 }
 
 void Body::build_copy(const Body& source) {
-  const Store& theirs = source.store();
+  const Store& source_store = source.store();
   model_ = source.model_;
-  const auto copy_values = [&](NodeId from, NodeId to, const Table& table) {
-    std::copy_n(theirs.kept_block(from), table.kept_width(), store().kept_block(to));
-    std::copy_n(theirs.live_block(from), table.live_width(), store().live_block(to));
-    store().say(to, theirs.said(from));  // a copy of what was said
+  const auto copy_values = [&](NodeId from, NodeId to, const PropertyTable& table) {
+    std::copy_n(source_store.persistent_block(from), table.persistent_width(), store().persistent_block(to));
+    std::copy_n(source_store.transient_block(from), table.transient_width(), store().transient_block(to));
+    store().mark_explicitly_set(to,
+                                source_store.explicitly_set(from));  // copies the set of explicitly set properties too
   };
   for (const auto& from : source.parts_) {
-    const double mass = theirs.values(from->id(), Part::table().at("mass"))[0];
+    const double mass = source_store.values(from->id(), Part::table().at("mass"))[0];
     parts_.push_back(std::make_unique<Part>(*this, part_group_, from->name(), from->geometry(), mass, from->pose()));
     Part& part = *parts_.back();
-    part.set_shape(world_.same_shape(source.world_, from->shape()));
+    part.set_shape(world_.matching_shape(source.world_, from->shape()));
     part.set_start_pose(from->start_pose());
     copy_values(from->id(), part.id(), Part::table());
   }
   copy_values(source.id_, id_, table());
-  planned_ = source.planned_;
+  initial_pose_ = source.initial_pose_;
   pairs_ = source.pairs_;
   apply_pairs();
-  // to the bit: what the store tells of a pose has gone through a quaternion
+  // copy Bullet's state bit for bit: poses in the store have been converted to quaternions and back
   for (std::size_t i = 0; i < parts_.size(); i++) {
-    parts_[i]->settle();
-    source.parts_[i]->settle();
-    parts_[i]->stand(source.parts_[i]->stance());
+    parts_[i]->flush();
+    source.parts_[i]->flush();
+    parts_[i]->set_state(source.parts_[i]->capture_state());
   }
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());
@@ -87,7 +90,7 @@ void Body::build_copy(const Body& source) {
     joints_.push_back(std::make_unique<Joint>(*this, joint_group_, from->name(), parent, child, from->spec()));
     Joint& joint = *joints_.back();
     copy_values(from->id(), joint.id(), Joint::table());
-    joint.effect_limits();
+    joint.apply_limits();
     joint.constraint().reset(from->constraint().angles());
     if (from->motor() == nullptr) continue;
     motors_.push_back(std::make_unique<Motor>(joint, motor_group_));

@@ -1,4 +1,5 @@
-// Friction and its normals: rounds of a convex problem in which friction's bounds stay, and the tied one from there.
+// Coulomb friction: rounds of a convex problem in which friction's bounds are frozen, each followed by pivoting with
+// friction tied to its normals.
 #include <algorithm>
 #include <cmath>
 
@@ -7,181 +8,186 @@
 namespace limber {
 namespace {
 
-constexpr int kTiedExchanges = 4;
-constexpr int kDescents = 60;
-constexpr int kBriefDescents = 10;  // where there is no time for more
-constexpr int kBlockReleases = 30;
-constexpr int kRecenterings = 5;
-constexpr int kFrictionRounds = 12;
-/// Changes of a status, for each row, before a path is given up.
-constexpr int kMostChanges = 4;
-constexpr int kFullRounds = 3;  // after them friction's bounds follow by halves
+constexpr int kMaxTiedExchanges = 4;
+constexpr int kMaxDescents = 60;
+constexpr int kBriefDescents = 10;  // once the work budget is exceeded
+constexpr int kMaxBlockReleases = 30;
+constexpr int kMaxRecenterings = 5;
+constexpr int kMaxFrictionRounds = 12;
+/// Status changes per row before the path is aborted.
+constexpr int kMaxChangesPerRow = 4;
+constexpr int kUndampedRounds = 3;  // later rounds move friction's bounds only halfway
 
 }  // namespace
 
-// Bounds that stay make it a convex problem: from the least within the free rows to that of the next set of them, cut
-// off at bounds where that still leads down. Each step makes the dual energy less.
-bool BoxSolver::descend() {
-  before_.resize(rows_.size());
-  follow_normals();
-  int settled = 0;
-  for (int round = 0; round < (effort_.over() ? kBriefDescents : kDescents); ++round) {
-    if (!choose_free()) return false;
+// Active-set descent of the convex problem with frozen bounds (subspace minimization): steps to the minimum of the free
+// rows, projected to the bounds if that decreases the dual energy. Each step decreases it.
+bool BoxedLcp::descend() {
+  impulses_before_.resize(rows_.size());
+  update_bounded_rows();
+  int recenterings = 0;
+  for (int round = 0; round < (budget_.exceeded() ? kBriefDescents : kMaxDescents); ++round) {
+    if (!factor_free()) return false;
     step_free();
-    if (!step_within_bounds()) continue;
-    if (release(round > kBlockReleases) > 0) continue;
+    if (!project_step()) continue;
+    if (release_rows(round > kMaxBlockReleases) > 0) continue;
     recenter();
-    least_missed_ = missed();
-    if (least_missed_ <= tolerance() || ++settled == kRecenterings) return true;
+    violation_ = max_violation();
+    if (violation_ <= tolerance() || ++recenterings == kMaxRecenterings) return true;
   }
   recenter();
-  least_missed_ = missed();
-  return effort_.over();  // then that has to do
+  violation_ = max_violation();
+  return budget_.exceeded();  // then this result is accepted
 }
 
-bool BoxSolver::choose_free() {
-  marks_.resize(rows_.size());
-  for (int i = 0; i < size(); ++i) marks_[nth(i)] = status_[nth(i)] == free && response(i, i) > 0 ? 1 : 0;
-  return steady_.choose(marks_, kMostFree);
+bool BoxedLcp::factor_free() {
+  is_free_.resize(rows_.size());
+  for (int i = 0; i < size(); ++i) is_free_[nth(i)] = status_[nth(i)] == free && response(i, i) > 0 ? 1 : 0;
+  return free_factor_.select(is_free_, kMaxFree);
 }
 
-// What free rows miss is given to them.
-void BoxSolver::step_free() {
-  const std::span<const int> rows = steady_.rows();
-  left_before_ = left_;
+// Applies the impulses that make the residuals of the free rows zero.
+void BoxedLcp::step_free() {
+  const std::span<const int> rows = free_factor_.rows();
+  residuals_before_ = residuals_;
   step_.resize(rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    before_[nth(rows[k])] = row(rows[k]).impulse;
-    step_[k] = left_[nth(rows[k])];
+    impulses_before_[nth(rows[k])] = row(rows[k]).impulse;
+    step_[k] = residuals_[nth(rows[k])];
   }
-  steady_.solve(step_);
-  for (std::size_t k = 0; k < rows.size(); ++k) change(rows[k], step_[k]);
-  respond();
+  free_factor_.solve(step_);
+  for (std::size_t k = 0; k < rows.size(); ++k) queue_change(rows[k], step_[k]);
+  apply_changes();
 }
 
-// From before_ to where the free rows want to be, or as far as that may be gone. True: all of it.
-bool BoxSolver::step_within_bounds() {
-  effort_.lines(2 * size(), 0);
-  const std::span<const int> rows = steady_.rows();
-  double reach = 1;
+// Projects the step from impulses_before_ to the bounds, or shortens it if the projection increases the dual energy.
+// Returns true if the full step is within the bounds.
+bool BoxedLcp::project_step() {
+  budget_.charge(2 * size(), 0);
+  const std::span<const int> rows = free_factor_.rows();
+  double step_length = 1;
   for (const int i : rows) {
     const Row& r = row(i);
-    const double from = before_[nth(i)];
-    if (r.impulse > r.upper) reach = std::min(reach, (r.upper - from) / (r.impulse - from));
-    if (r.impulse < r.lower) reach = std::min(reach, (r.lower - from) / (r.impulse - from));
+    const double from = impulses_before_[nth(i)];
+    if (r.impulse > r.upper) step_length = std::min(step_length, (r.upper - from) / (r.impulse - from));
+    if (r.impulse < r.lower) step_length = std::min(step_length, (r.lower - from) / (r.impulse - from));
   }
-  if (reach == 1) return true;
+  if (step_length == 1) return true;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const int i = rows[k];
-    step_[k] = row(i).impulse - before_[nth(i)];
-    change_to(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    step_[k] = row(i).impulse - impulses_before_[nth(i)];
+    queue_impulse(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
   }
-  respond();
-  double gained = 0;
-  for (const int i : rows) gained += (row(i).impulse - before_[nth(i)]) * (left_before_[nth(i)] + left_[nth(i)]);
-  const bool down = gained > 0;
+  apply_changes();
+  double energy_decrease = 0;
+  for (const int i : rows)
+    energy_decrease += (row(i).impulse - impulses_before_[nth(i)]) * (residuals_before_[nth(i)] + residuals_[nth(i)]);
+  const bool decreases = energy_decrease > 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const int i = rows[k];
     Row& r = row(i);
-    const double from = before_[nth(i)];
+    const double from = impulses_before_[nth(i)];
     const double to = from + step_[k];
-    const bool over = to > r.upper;
-    if (!over && to >= r.lower) {
-      if (!down) change_to(i, from + reach * step_[k]);
+    const bool above = to > r.upper;
+    if (!above && to >= r.lower) {
+      if (!decreases) queue_impulse(i, from + step_length * step_[k]);
       continue;
     }
-    const double bound = over ? r.upper : r.lower;
-    if (down || std::fabs(bound - from) <= reach * std::fabs(step_[k]) * (1 + 1e-12)) {
-      change_to(i, bound);
-      status_[nth(i)] = over ? at_upper : at_lower;
+    const double bound = above ? r.upper : r.lower;
+    if (decreases || std::fabs(bound - from) <= step_length * std::fabs(step_[k]) * (1 + 1e-12)) {
+      queue_impulse(i, bound);
+      status_[nth(i)] = above ? at_upper : at_lower;
     } else {
-      change_to(i, from + reach * step_[k]);
+      queue_impulse(i, from + step_length * step_[k]);
     }
   }
-  respond();
+  apply_changes();
   return false;
 }
 
-// Rows at their bounds that would leave them become free: all, or the one that wants it most.
-int BoxSolver::release(bool only_one) {
-  effort_.lines(size(), 0);
-  const double least = 0.5 * tolerance();
+// Frees rows whose residual points away from their bound: all of them, or the one with the largest residual. Returns
+// the number of such rows.
+int BoxedLcp::release_rows(bool only_one) {
+  budget_.charge(size(), 0);
+  const double threshold = 0.5 * tolerance();
   int released = 0;
-  int most = -1;
-  double wish = 0;
+  int best = -1;
+  double largest = 0;
   for (int i = 0; i < size(); ++i) {
     const Row& r = row(i);
     if (status_[nth(i)] == free || !(response(i, i) > 0) || !(r.lower < r.upper)) continue;
-    const double wants = status_[nth(i)] == at_lower ? left_[nth(i)] : -left_[nth(i)];
-    if (!(wants > least)) continue;
+    const double violation = status_[nth(i)] == at_lower ? residuals_[nth(i)] : -residuals_[nth(i)];
+    if (!(violation > threshold)) continue;
     released++;
     if (!only_one) status_[nth(i)] = free;
-    if (wants > wish) {
-      wish = wants;
-      most = i;
+    if (violation > largest) {
+      largest = violation;
+      best = i;
     }
   }
-  if (only_one && most >= 0) status_[nth(most)] = free;
+  if (only_one && best >= 0) status_[nth(best)] = free;
   return released;
 }
 
-// Bounds of friction go that part of the way to what the normals of the moment say, and stay there.
-void BoxSolver::hold_friction(double part) {
+// Moves friction's bounds by `fraction` of the way to those of the present normals and freezes them.
+void BoxedLcp::freeze_friction(double fraction) {
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
     if (r.normal < 0) continue;
-    const double before = held_[nth(i)];
-    frozen_ = false;
-    bound(r);
-    const double reach = part == 1 ? r.upper : before + part * (r.upper - before);
-    held_[nth(i)] = r.upper = reach;
-    r.lower = -reach;
+    const double before = friction_bounds_[nth(i)];
+    friction_frozen_ = false;
+    update_bounds(r);
+    const double max_friction = fraction == 1 ? r.upper : before + fraction * (r.upper - before);
+    friction_bounds_[nth(i)] = r.upper = max_friction;
+    r.lower = -max_friction;
   }
-  frozen_ = true;
+  friction_frozen_ = true;
 }
 
-// Friction bounded by the normals of the round before: a problem that always has a solution, and one that the tied one
-// is near.
-bool BoxSolver::settle_friction() {
-  steady_.start(response_, stride_);
-  for (int round = 0; round < kFrictionRounds; ++round) {
-    hold_friction(round < kFullRounds ? 1 : 0.5);
-    for (int i = 0; i < size(); ++i) change_to(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
-    respond();
-    if (round == 0) read_statuses();
+// Staggered friction (Kaufman and others, 2008): each round bounds friction by the normals of the previous round, a
+// convex problem that always has a solution, and starts pivoting with tied friction from that solution. Returns false
+// if a matrix could not be factored.
+bool BoxedLcp::solve_staggered() {
+  free_factor_.reset(response_, stride_);
+  for (int round = 0; round < kMaxFrictionRounds; ++round) {
+    freeze_friction(round < kUndampedRounds ? 1 : 0.5);
+    for (int i = 0; i < size(); ++i) queue_impulse(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    apply_changes();
+    if (round == 0) classify_rows();
     if (!descend()) return false;
-    if (round + 1 == kFrictionRounds || effort_.over()) break;
-    frozen_ = false;
-    least_missed_ = missed();
-    if (least_missed_ <= tolerance()) return true;
-    for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
-    settled_status_ = status_;
-    const double settled_missed = least_missed_;
-    least_missed_ = 1e300;
-    if (pivot(kTiedExchanges)) return true;
-    least_missed_ = settled_missed;
-    for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
-    respond();
+    if (round + 1 == kMaxFrictionRounds || budget_.exceeded()) break;
+    friction_frozen_ = false;
+    violation_ = max_violation();
+    if (violation_ <= tolerance()) return true;
+    for (int i = 0; i < size(); ++i) saved_impulses_[nth(i)] = row(i).impulse;
+    saved_status_ = status_;
+    const double saved_violation = violation_;
+    violation_ = 1e300;
+    if (pivot(kMaxTiedExchanges)) return true;
+    violation_ = saved_violation;
+    for (int i = 0; i < size(); ++i) queue_impulse(i, saved_impulses_[nth(i)]);
+    apply_changes();
     recenter();
-    status_ = settled_status_;
+    status_ = saved_status_;
   }
   return true;
 }
 
-// Where no round agreed with its normals, a solution may be found on the path from the last one, or that stays.
-void BoxSolver::agree_at_last() {
-  for (int i = 0; i < size(); ++i) settled_[nth(i)] = row(i).impulse;
-  const double settled_missed = least_missed_;
-  frozen_ = false;
-  least_missed_ = 1e300;
-  const int changes = kMostChanges * (size() + 8);
+// Called if no round has converged: follows Lemke's path from the present impulses, and if that fails, from zero. If
+// both fail, restores the last round's result.
+void BoxedLcp::solve_by_path() {
+  for (int i = 0; i < size(); ++i) saved_impulses_[nth(i)] = row(i).impulse;
+  const double saved_violation = violation_;
+  friction_frozen_ = false;
+  violation_ = 1e300;
+  const int changes = kMaxChangesPerRow * (size() + 8);
   if (follow_path(changes)) return;
-  for (int i = 0; i < size(); ++i) change_to(i, std::clamp(0.0, row(i).lower, row(i).upper));
-  respond();
+  for (int i = 0; i < size(); ++i) queue_impulse(i, std::clamp(0.0, row(i).lower, row(i).upper));
+  apply_changes();
   if (follow_path(changes)) return;
-  for (int i = 0; i < size(); ++i) change_to(i, settled_[nth(i)]);
-  respond();
-  least_missed_ = settled_missed;
+  for (int i = 0; i < size(); ++i) queue_impulse(i, saved_impulses_[nth(i)]);
+  apply_changes();
+  violation_ = saved_violation;
 }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// The path to the solution: a problem that the present impulses solve is led over into the one that is asked, and its
-// solution followed from one change of a row's status to the next. Lemke's method, on rows with bounds.
+// Lemke's method for bounded rows: follows the solution along a path from a problem that the present impulses solve to
+// the given one, from one change of a row's status to the next.
 #include <algorithm>
 #include <cmath>
 
@@ -8,109 +8,115 @@
 namespace limber {
 namespace {
 
-/// Exchanges in which the end of the path is made exact.
-constexpr int kPolishes = 8;
-/// Slower than this part of the fastest, nothing moves.
-constexpr double kStill = 1e-12;
+/// Exchanges that make the end of the path exact.
+constexpr int kFinalExchanges = 8;
+/// Rates below this fraction of the largest one count as zero.
+constexpr double kMinRelativeRate = 1e-12;
 
 }  // namespace
 
-// Adds to what is left so that every law holds at the present impulses; rows that want to leave their bounds will do so
-// one after another, as it is taken away.
-void BoxSolver::cover() {
-  cover_.assign(nth(stride_), 0);
-  double most = 0;
-  const auto side = [this](int i) { return status_[nth(i)] == free ? 0 : status_[nth(i)] == at_upper ? 1 : -1; };
+// Adds the covering vector to the residuals, so that the present impulses solve the problem. Its spread makes rows
+// leave their bounds one at a time as it is removed.
+void BoxedLcp::add_covering() {
+  covering_.assign(nth(stride_), 0);
+  double largest = 0;
+  const auto bound_sign = [this](int i) { return status_[nth(i)] == free ? 0 : status_[nth(i)] == at_upper ? 1 : -1; };
   for (int i = 0; i < size(); ++i) {
-    if (response(i, i) > 0 && row(i).lower < row(i).upper) most = std::max(most, -side(i) * left_[nth(i)]);
+    if (response(i, i) > 0 && row(i).lower < row(i).upper)
+      largest = std::max(largest, -bound_sign(i) * residuals_[nth(i)]);
   }
   for (int i = 0; i < size(); ++i) {
     if (!(response(i, i) > 0)) continue;
-    const double left = left_[nth(i)];
+    const double residual = residuals_[nth(i)];
     if (status_[nth(i)] == free) {
-      cover_[nth(i)] = -left;
+      covering_[nth(i)] = -residual;
     } else if (row(i).lower < row(i).upper) {
       const double spread = 0.1 + std::fmod(0.6180339887498949 * (i + 1), 1.0);
-      cover_[nth(i)] = side(i) * (std::max(-side(i) * left, 0.0) + most * spread);
+      covering_[nth(i)] = bound_sign(i) * (std::max(-bound_sign(i) * residual, 0.0) + largest * spread);
     }
   }
-  uncover(-1);
+  remove_covering(-1);
 }
 
-void BoxSolver::uncover(double part) {
-  for (std::size_t i = 0; i < cover_.size(); ++i) left_[i] -= part * cover_[i];
+void BoxedLcp::remove_covering(double fraction) {
+  for (std::size_t i = 0; i < covering_.size(); ++i) residuals_[i] -= fraction * covering_[i];
 }
 
-// How impulses and what is left change per part of the cover, while no status does. False: that can't be told.
-bool BoxSolver::lead() {
+// Finds the path's direction: rates of impulses and residuals per unit of the covering, at the present statuses.
+// Returns false if the matrix is singular or too large.
+bool BoxedLcp::find_direction() {
   assemble();
-  if (static_cast<int>(free_.size()) > kMostFree || !decompose()) return false;
+  if (static_cast<int>(free_.size()) > kMaxFree || !factor_lu()) return false;
   step_.resize(free_.size());
-  for (std::size_t i = 0; i < free_.size(); ++i) step_[i] = cover_[nth(free_[i])];
-  solve_step();
-  along_.assign(nth(stride_), 0);
-  for (std::size_t i = 0; i < free_.size(); ++i) along_[nth(free_[i])] = step_[i];
+  for (std::size_t i = 0; i < free_.size(); ++i) step_[i] = covering_[nth(free_[i])];
+  solve_lu();
+  impulse_rates_.assign(nth(stride_), 0);
+  for (std::size_t i = 0; i < free_.size(); ++i) impulse_rates_[nth(free_[i])] = step_[i];
   for (int i = 0; i < size(); ++i) {
-    if (slides_with(i) >= 0) along_[nth(i)] = (status_[nth(i)] == at_upper ? 1 : -1) * room_along(i, free);
+    if (tied_normal(i) >= 0) impulse_rates_[nth(i)] = (status_[nth(i)] == at_upper ? 1 : -1) * slack_rate(i, free);
   }
-  left_along_ = cover_;
-  effort_.lines(size(), static_cast<double>(free_.size()));
+  residual_rates_ = covering_;
+  budget_.charge(size(), static_cast<double>(free_.size()));
   for (int i = 0; i < size(); ++i) {
-    if (along_[nth(i)] != 0) respond(left_along_, i, along_[nth(i)]);
+    if (impulse_rates_[nth(i)] != 0) apply_changes(residual_rates_, i, impulse_rates_[nth(i)]);
   }
   return true;
 }
 
-// How the room of a row towards one of its bounds changes, or (free) the width of its bounds.
-double BoxSolver::room_along(int i, Status side) const {
+// Rate of the distance between a row's impulse and one of its bounds; for `free`: rate of its upper bound.
+double BoxedLcp::slack_rate(int i, Status side) const {
   const Row& r = rows_[nth(i)];
-  const double wider = r.normal >= 0 && status_[nth(r.normal)] == free ? r.friction * along_[nth(r.normal)] : 0;
-  return side == free ? wider : (side == at_upper ? wider - along_[nth(i)] : wider + along_[nth(i)]);
+  const double bound_rate =
+      r.normal >= 0 && status_[nth(r.normal)] == free ? r.friction * impulse_rates_[nth(r.normal)] : 0;
+  return side == free ? bound_rate
+                      : (side == at_upper ? bound_rate - impulse_rates_[nth(i)] : bound_rate + impulse_rates_[nth(i)]);
 }
 
-void BoxSolver::meet(Change& next, int i, double room, double rate, Status to) const {
+void BoxedLcp::update_ratio_test(StatusChange& next, int i, double slack, double rate, Status to) const {
   if (!(rate < 0)) return;
-  const double way = std::max(room, 0.0) / -rate;
-  if (way < next.way) next = {i, way, to};
+  const double distance = std::max(slack, 0.0) / -rate;
+  if (distance < next.distance) next = {i, distance, to};
 }
 
-// The first one within `most`, going where the cover becomes more (sign 1) or less (-1).
-BoxSolver::Change BoxSolver::next_change(double sign, double most) {
-  Change next{-1, most, free};
-  double fast = 0;
-  double left_fast = 0;
+// Ratio test: finds the first status change within `max_distance`, where the covering grows (sign 1) or shrinks (-1).
+BoxedLcp::StatusChange BoxedLcp::ratio_test(double sign, double max_distance) {
+  StatusChange next{-1, max_distance, free};
+  double fastest = 0;
+  double fastest_residual = 0;
   for (int i = 0; i < size(); ++i) {
-    fast = std::max(fast, std::fabs(along_[nth(i)]));
-    left_fast = std::max(left_fast, std::fabs(left_along_[nth(i)]));
+    fastest = std::max(fastest, std::fabs(impulse_rates_[nth(i)]));
+    fastest_residual = std::max(fastest_residual, std::fabs(residual_rates_[nth(i)]));
   }
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
     if (!(response(i, i) > 0)) continue;
-    bound(r);
+    update_bounds(r);
     if (status_[nth(i)] == free) {
       for (const Status side : {at_lower, at_upper}) {
-        const double room = side == at_upper ? r.upper - r.impulse : r.impulse - r.lower;
-        const double rate = sign * room_along(i, side);
-        if (rate < -kStill * fast) meet(next, i, room, rate, side);
+        const double slack = side == at_upper ? r.upper - r.impulse : r.impulse - r.lower;
+        const double rate = sign * slack_rate(i, side);
+        if (rate < -kMinRelativeRate * fastest) update_ratio_test(next, i, slack, rate, side);
       }
     } else if (r.normal >= 0 || r.lower < r.upper) {
       const double side = status_[nth(i)] == at_upper ? 1 : -1;
-      const double rate = side * sign * left_along_[nth(i)];
-      if (rate < -kStill * left_fast) meet(next, i, side * left_[nth(i)], rate, free);
+      const double rate = side * sign * residual_rates_[nth(i)];
+      if (rate < -kMinRelativeRate * fastest_residual)
+        update_ratio_test(next, i, side * residuals_[nth(i)], rate, free);
     }
   }
   return next;
 }
 
-void BoxSolver::walk(double way) {
+void BoxedLcp::advance(double distance) {
   for (int i = 0; i < size(); ++i) {
-    row(i).impulse += way * along_[nth(i)];
-    left_[nth(i)] += way * left_along_[nth(i)];
+    row(i).impulse += distance * impulse_rates_[nth(i)];
+    residuals_[nth(i)] += distance * residual_rates_[nth(i)];
   }
 }
 
-// False where nothing else follows from it: friction without a normal's impulse, which may be at either of its bounds.
-bool BoxSolver::take_change(const Change& change) {
+// Applies a status change. Returns false if the path's direction doesn't change: friction without a normal impulse may
+// be at either bound.
+bool BoxedLcp::apply_status_change(const StatusChange& change) {
   const int i = change.row;
   Row& r = row(i);
   if (change.to == free && r.normal >= 0 && status_[nth(r.normal)] != free) {
@@ -119,44 +125,47 @@ bool BoxSolver::take_change(const Change& change) {
   }
   status_[nth(i)] = change.to;
   if (change.to == free) return true;
-  bound(r);
-  put(i, change.to == at_upper ? r.upper : r.lower);
+  update_bounds(r);
+  set_impulse(i, change.to == at_upper ? r.upper : r.lower);
   for (int k = 0; k < size(); ++k) {
     if (row(k).normal != i) continue;
-    put(k, 0);
+    set_impulse(k, 0);
     if (status_[nth(k)] == free) status_[nth(k)] = at_upper;
   }
   return true;
 }
 
-bool BoxSolver::follow_path(int changes) {
-  if (std::any_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.most > 0; })) return false;
+// Follows the path through at most `max_changes` status changes. Returns true if it has reached the given problem;
+// otherwise removes the covering vector.
+bool BoxedLcp::follow_path(int max_changes) {
+  if (std::any_of(rows_.begin(), rows_.end(), [](const Row& r) { return r.max_impulse > 0; })) return false;
   for (int i = 0; i < size(); ++i) {
-    bound(row(i));
-    put(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
+    update_bounds(row(i));
+    set_impulse(i, std::clamp(row(i).impulse, row(i).lower, row(i).upper));
   }
-  read_statuses();
-  cover();
-  double covered = 1;
+  classify_rows();
+  add_covering();
+  double remaining = 1;
   double sign = -1;
-  int entered = -1;
-  Status was = free;
-  for (; changes > 0 && !effort_.over() && lead(); --changes) {
-    if (entered >= 0) {
-      const Status now = status_[nth(entered)];
-      const double opens = now == free ? room_along(entered, was)
-                                       : (now == at_upper ? left_along_[nth(entered)] : -left_along_[nth(entered)]);
-      sign = opens > 0 ? 1 : -1;
+  int last_changed = -1;
+  Status last_status = free;
+  for (; max_changes > 0 && !budget_.exceeded() && find_direction(); --max_changes) {
+    if (last_changed >= 0) {
+      const Status now = status_[nth(last_changed)];
+      const double opening_rate =
+          now == free ? slack_rate(last_changed, last_status)
+                      : (now == at_upper ? residual_rates_[nth(last_changed)] : -residual_rates_[nth(last_changed)]);
+      sign = opening_rate > 0 ? 1 : -1;
     }
-    const Change next = next_change(sign, sign < 0 ? covered : 1e6);
+    const StatusChange next = ratio_test(sign, sign < 0 ? remaining : 1e6);
     if (next.row < 0 && sign > 0) break;
-    walk(sign * next.way);
-    covered += sign * next.way;
-    if (next.row < 0) return pivot(kPolishes);
-    was = status_[nth(next.row)];
-    entered = take_change(next) ? next.row : -1;
+    advance(sign * next.distance);
+    remaining += sign * next.distance;
+    if (next.row < 0) return pivot(kFinalExchanges);
+    last_status = status_[nth(next.row)];
+    last_changed = apply_status_change(next) ? next.row : -1;
   }
-  uncover(covered);
+  remove_covering(remaining);
   return false;
 }
 

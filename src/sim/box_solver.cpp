@@ -1,4 +1,5 @@
-// Exchanges of rows at their bounds, all free rows solved for at once; sweeps guess where that begins badly.
+// Block pivoting: exchanges rows between free and bounded and solves for all free rows at once; sweeps improve the
+// start if that fails.
 #include "sim/box_solver.h"
 
 #include <algorithm>
@@ -10,38 +11,40 @@
 namespace limber {
 namespace {
 
-constexpr int kFirstExchanges = 5;  // from where the rows stand
+constexpr int kMaxFirstExchanges = 5;  // from the initial statuses
 constexpr int kSweeps = 8;
-constexpr int kLastSweeps = 48;
-/// Where there is no time for more.
+constexpr int kFinalSweeps = 48;
+/// Once the work budget is exceeded.
 constexpr int kBriefSweeps = 16;
-constexpr int kSweepsBetweenLooks = 4;
-/// After so many exchanges, a larger part of the rows that is still broken means that few more will not mend them.
-constexpr int kTrials = 1;
-constexpr double kHopeless = 0.2;
-constexpr int kPatience = 3;  // exchanges that may bring nothing before they are made one by one
-/// Rows that depend on each other (four contact points of a box) get this much softness, as part of their response.
+constexpr int kSweepsPerCheck = 4;
+/// After kTrialExchanges, pivoting is aborted if more than this fraction of the rows is still violated: it would rarely
+/// converge.
+constexpr int kTrialExchanges = 1;
+constexpr double kMaxViolatedFraction = 0.2;
+constexpr int kPatience = 3;  // exchanges without improvement before they are made one at a time
+/// Proximal softness relative to a row's response, for rows that depend on each other (four contact points of a box).
 constexpr double kSoftness = 1e-6;
 
 }  // namespace
 
-BoxSolver::BoxSolver(Effort& effort) : effort_(effort), steady_(effort, kUsualRows) {
-  for (std::vector<double>* square : {&response_, &old_response_}) take_room(*square, kUsualRows * kUsualRows);
-  take_room(factor_, nth(kMostFree * kMostFree));
+BoxedLcp::BoxedLcp(WorkBudget& budget) : budget_(budget), free_factor_(budget, kReservedRows) {
+  for (std::vector<double>* square : {&response_, &old_response_})
+    clear_and_reserve(*square, kReservedRows * kReservedRows);
+  clear_and_reserve(lu_, nth(kMaxFree * kMaxFree));
 }
 
-void BoxSolver::start(int rows) {
+void BoxedLcp::reset(int rows) {
   stride_ = (rows + 1) / 2 * 2;
-  make_room(response_, nth(rows * stride_));
+  reserve(response_, nth(rows * stride_));
   rows_.assign(nth(rows), Row{});
   response_.assign(nth(rows * stride_), 0);
-  left_.assign(nth(stride_), 0);
+  residuals_.assign(nth(stride_), 0);
 }
 
-void BoxSolver::grow(std::span<const int> from) {
+void BoxedLcp::remap(std::span<const int> from) {
   old_response_.swap(response_);
   const int old_stride = stride_;
-  start(static_cast<int>(from.size()));
+  reset(static_cast<int>(from.size()));
   for (int i = 0; i < size(); ++i) {
     if (from[nth(i)] < 0) continue;
     const double* line = &old_response_[nth(from[nth(i)] * old_stride)];
@@ -51,279 +54,283 @@ void BoxSolver::grow(std::span<const int> from) {
   }
 }
 
-void BoxSolver::add_squares(std::span<const double> lines, int width) {
+void BoxedLcp::add_outer_products(std::span<const double> vectors, int width) {
   for (int i = 0; i < size(); ++i) {
     changed_.clear();
-    for (std::size_t first = 0; first < lines.size(); first += nth(width)) {
-      changed_.push_back({&lines[first], -lines[first + nth(i)]});
+    for (std::size_t first = 0; first < vectors.size(); first += nth(width)) {
+      changed_.push_back({&vectors[first], -vectors[first + nth(i)]});
     }
     subtract_scaled(&response(i, 0), changed_, stride_);
   }
   changed_.clear();
 }
 
-void BoxSolver::bound(Row& row) const {
-  if (row.normal < 0 || frozen_) return;
-  double reach = row.friction * std::max(rows_[nth(row.normal)].impulse, 0.0);
-  if (row.most > 0) reach = std::min(reach, row.most);
-  row.lower = -reach;
-  row.upper = reach;
+void BoxedLcp::update_bounds(Row& row) const {
+  if (row.normal < 0 || friction_frozen_) return;
+  double max_friction = row.friction * std::max(rows_[nth(row.normal)].impulse, 0.0);
+  if (row.max_impulse > 0) max_friction = std::min(max_friction, row.max_impulse);
+  row.lower = -max_friction;
+  row.upper = max_friction;
 }
 
-void BoxSolver::apply(int i, double change) {
+void BoxedLcp::change_impulse(int i, double change) {
   if (change == 0) return;
   row(i).impulse += change;
-  respond(left_, i, change);
+  apply_changes(residuals_, i, change);
 }
 
-void BoxSolver::respond(std::vector<double>& to, int i, double change) const {
+void BoxedLcp::apply_changes(std::vector<double>& to, int i, double change) const {
   subtract_scaled(to.data(), &response_[nth(i * stride_)], change, stride_);
 }
 
-// Changes of impulses that others need not hear of at once: respond() tells all rows together.
-void BoxSolver::change(int i, double by) {
-  if (by == 0) return;
-  row(i).impulse += by;
-  changed_.push_back({&response_[nth(i * stride_)], by});
+// Changes an impulse; apply_changes() updates the residuals for all queued changes together.
+void BoxedLcp::queue_change(int i, double change) {
+  if (change == 0) return;
+  row(i).impulse += change;
+  changed_.push_back({&response_[nth(i * stride_)], change});
 }
 
-void BoxSolver::respond() {
-  effort_.lines(static_cast<double>(changed_.size()), stride_);
-  subtract_scaled(left_.data(), changed_, stride_);
+void BoxedLcp::apply_changes() {
+  budget_.charge(static_cast<double>(changed_.size()), stride_);
+  subtract_scaled(residuals_.data(), changed_, stride_);
   changed_.clear();
 }
 
-void BoxSolver::restart() {
+void BoxedLcp::restart() {
   for (int i = 0; i < size(); ++i) {
-    row(i).impulse = center_[nth(i)] = start_[nth(i)];
-    left_[nth(i)] = row(i).left;
+    row(i).impulse = center_[nth(i)] = start_impulses_[nth(i)];
+    residuals_[nth(i)] = row(i).residual;
   }
 }
 
-void BoxSolver::sweep() {
-  effort_.lines(size(), stride_);
+void BoxedLcp::sweep() {
+  budget_.charge(size(), stride_);
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
     if (!(response(i, i) > 0)) continue;
-    bound(r);
-    put(i, std::clamp(r.impulse + left_[nth(i)] * eases_[nth(i)], r.lower, r.upper));
+    update_bounds(r);
+    set_impulse(i, std::clamp(r.impulse + residuals_[nth(i)] * inverse_diagonal_[nth(i)], r.lower, r.upper));
   }
 }
 
-// Until no row misses its law by more than it may.
-void BoxSolver::sweep(int most) {
-  double miss = 1e300;
-  for (int i = 0; i < most && miss > tolerance(); i += kSweepsBetweenLooks) {
-    for (int k = 0; k < kSweepsBetweenLooks; ++k) sweep();
-    miss = missed();
+// Sweeps until no row violates its condition by more than the tolerance.
+void BoxedLcp::sweep(int max_sweeps) {
+  double violation = 1e300;
+  for (int i = 0; i < max_sweeps && violation > tolerance(); i += kSweepsPerCheck) {
+    for (int k = 0; k < kSweepsPerCheck; ++k) sweep();
+    violation = max_violation();
   }
 }
 
-double BoxSolver::missed() {
-  effort_.lines(size(), 0);
-  double most = 0;
+double BoxedLcp::max_violation() {
+  budget_.charge(size(), 0);
+  double largest = 0;
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
-    const double own = response(i, i);
-    if (!(own > 0)) continue;
-    bound(r);
-    const double miss = std::fabs(std::clamp(left_[nth(i)], (r.lower - r.impulse) * own, (r.upper - r.impulse) * own));
-    if (!(miss <= most)) most = miss;
+    const double diagonal = response(i, i);
+    if (!(diagonal > 0)) continue;
+    update_bounds(r);
+    const double violation =
+        std::fabs(std::clamp(residuals_[nth(i)], (r.lower - r.impulse) * diagonal, (r.upper - r.impulse) * diagonal));
+    if (!(violation <= largest)) largest = violation;
   }
-  return most;
+  return largest;
 }
 
-double BoxSolver::take_missed() {
+double BoxedLcp::record_violation() {
   recenter();
-  const double miss = missed();
-  if (miss < least_missed_) least_missed_ = miss;
-  return miss;
+  const double violation = max_violation();
+  if (violation < violation_) violation_ = violation;
+  return violation;
 }
 
-void BoxSolver::read_statuses() {
+void BoxedLcp::classify_rows() {
   for (int i = 0; i < size(); ++i) {
     Row& r = row(i);
-    bound(r);
+    update_bounds(r);
     const double slack = 1e-9 * (1e-6 + std::fabs(r.impulse));
     status_[nth(i)] = r.impulse <= r.lower + slack ? at_lower : r.impulse >= r.upper - slack ? at_upper : free;
-    // at no impulse a friction row slides where it would be pushed back
-    if (r.normal >= 0 && r.lower == r.upper) status_[nth(i)] = left_[nth(i)] > 0 ? at_upper : at_lower;
+    // at zero impulse a friction row slides against its residual
+    if (r.normal >= 0 && r.lower == r.upper) status_[nth(i)] = residuals_[nth(i)] > 0 ? at_upper : at_lower;
   }
 }
 
-// The free row whose impulse sets that of row i, at its bound; -1: none.
-int BoxSolver::slides_with(int i) const {
-  if (frozen_) return -1;
+// If row i slides: index in free_ of the normal whose impulse determines the row's; -1: none.
+int BoxedLcp::tied_normal(int i) const {
+  if (friction_frozen_) return -1;
   const Row& r = rows_[nth(i)];
-  const int tie = ties_[nth(i)];
-  const bool capped = tie >= 0 && r.most > 0 && r.friction * rows_[nth(r.normal)].impulse > r.most;
-  return capped ? -1 : tie;
+  const int normal_index = tied_normals_[nth(i)];
+  const bool capped =
+      normal_index >= 0 && r.max_impulse > 0 && r.friction * rows_[nth(r.normal)].impulse > r.max_impulse;
+  return capped ? -1 : normal_index;
 }
 
-// The system of the free rows; a sliding row's impulse is a part of its normal's.
-void BoxSolver::assemble() {
+// Assembles the matrix of the free rows. Sliding rows are eliminated: their impulse is a multiple of their normal's.
+void BoxedLcp::assemble() {
   free_.clear();
-  place_.resize(rows_.size());
-  ties_.resize(rows_.size());
+  free_index_.resize(rows_.size());
+  tied_normals_.resize(rows_.size());
   for (int i = 0; i < size(); ++i) {
     const int normal = row(i).normal;
     const bool bounded = status_[nth(i)] != free;
-    place_[nth(i)] = -1;
-    ties_[nth(i)] = bounded && normal >= 0 ? place_[nth(normal)] : -1;
+    free_index_[nth(i)] = -1;
+    tied_normals_[nth(i)] = bounded && normal >= 0 ? free_index_[nth(normal)] : -1;
     if (bounded || !(response(i, i) > 0)) continue;
-    place_[nth(i)] = static_cast<int>(free_.size());
+    free_index_[nth(i)] = static_cast<int>(free_.size());
     free_.push_back(i);
   }
   const int n = static_cast<int>(free_.size());
-  effort_.lines(n + size(), n);
+  budget_.charge(n + size(), n);
   width_ = (n + 1) / 2 * 2;
-  factor_.assign(nth(n * width_), 0);
+  lu_.assign(nth(n * width_), 0);
   for (int i = 0; i < n; ++i) {
     const double* from = &response(free_[nth(i)], 0);
-    double* to = &factor_[nth(i * width_)];
+    double* to = &lu_[nth(i * width_)];
     for (int k = 0; k < n; ++k) to[k] = from[free_[nth(k)]];
   }
   for (int k = 0; k < size(); ++k) {
-    const int with = slides_with(k);
-    if (with < 0) continue;
-    const double part = status_[nth(k)] == at_upper ? row(k).friction : -row(k).friction;
-    for (int i = 0; i < n; ++i) factor_[nth(i * width_ + with)] += part * response(free_[nth(i)], k);
+    const int normal_index = tied_normal(k);
+    if (normal_index < 0) continue;
+    const double factor = status_[nth(k)] == at_upper ? row(k).friction : -row(k).friction;
+    for (int i = 0; i < n; ++i) lu_[nth(i * width_ + normal_index)] += factor * response(free_[nth(i)], k);
   }
 }
 
-// Into a lower and an upper triangle, lines exchanged. False where there are none.
-bool BoxSolver::decompose() {
+// LU decomposition with partial pivoting. Returns false if the matrix is singular.
+bool BoxedLcp::factor_lu() {
   const int n = static_cast<int>(free_.size());
-  effort_.lines(0.5 * n * n, 0.7 * n);
-  exchanged_.resize(nth(n));
+  budget_.charge(0.5 * n * n, 0.7 * n);
+  pivots_.resize(nth(n));
   for (int c = 0; c < n; ++c) {
-    int top = c;
+    int pivot_row = c;
     for (int r = c + 1; r < n; ++r) {
-      if (std::fabs(factor_[nth(r * width_ + c)]) > std::fabs(factor_[nth(top * width_ + c)])) top = r;
+      if (std::fabs(lu_[nth(r * width_ + c)]) > std::fabs(lu_[nth(pivot_row * width_ + c)])) pivot_row = r;
     }
-    double* line = &factor_[nth(c * width_)];
-    exchanged_[nth(c)] = top;
-    if (top != c) std::swap_ranges(line, line + width_, &factor_[nth(top * width_)]);
+    double* line = &lu_[nth(c * width_)];
+    pivots_[nth(c)] = pivot_row;
+    if (pivot_row != c) std::swap_ranges(line, line + width_, &lu_[nth(pivot_row * width_)]);
     if (!(std::fabs(line[c]) > 0) || !std::isfinite(line[c])) return false;
     const double inverse = 1 / line[c];
     for (int r = c + 1; r < n; ++r) {
-      double* other = &factor_[nth(r * width_)];
-      const double part = other[c] * inverse;
-      other[c] = part;
-      if (part == 0) continue;
+      double* other = &lu_[nth(r * width_)];
+      const double factor = other[c] * inverse;
+      other[c] = factor;
+      if (factor == 0) continue;
       int from = c + 1;
       if (from % 2 != 0) {
-        other[from] -= part * line[from];
+        other[from] -= factor * line[from];
         from++;
       }
-      subtract_scaled(other + from, line + from, part, width_ - from);
+      subtract_scaled(other + from, line + from, factor, width_ - from);
     }
   }
   return true;
 }
 
-// With the factor at hand: impulses of the free rows that answer what step_ holds.
-void BoxSolver::solve_step() {
+// Solves for step_ in place with the LU factor.
+void BoxedLcp::solve_lu() {
   const int n = static_cast<int>(free_.size());
-  effort_.lines(2 * n, 0.5 * n);
-  for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(exchanged_[nth(c)])]);
-  for (int r = 0; r < n; ++r) step_[nth(r)] -= product(&factor_[nth(r * width_)], step_.data(), r);
+  budget_.charge(2 * n, 0.5 * n);
+  for (int c = 0; c < n; ++c) std::swap(step_[nth(c)], step_[nth(pivots_[nth(c)])]);
+  for (int r = 0; r < n; ++r) step_[nth(r)] -= dot_product(&lu_[nth(r * width_)], step_.data(), r);
   for (int r = n; r-- > 0;) {
-    const double* line = &factor_[nth(r * width_)];
-    step_[nth(r)] = (step_[nth(r)] - product(line + r + 1, step_.data() + r + 1, n - r - 1)) / line[r];
+    const double* line = &lu_[nth(r * width_)];
+    step_[nth(r)] = (step_[nth(r)] - dot_product(line + r + 1, step_.data() + r + 1, n - r - 1)) / line[r];
   }
 }
 
-// What free rows still miss is given to them, with what slides along.
-void BoxSolver::correct_free() {
+// Applies the impulses that make the residuals of the free rows zero, and updates sliding rows.
+void BoxedLcp::correct_free() {
   const int n = static_cast<int>(free_.size());
   step_.resize(nth(n));
-  for (int i = 0; i < n; ++i) step_[nth(i)] = left_[nth(free_[nth(i)])];
-  solve_step();
-  for (int i = 0; i < n; ++i) change(free_[nth(i)], step_[nth(i)]);
-  follow_normals();
+  for (int i = 0; i < n; ++i) step_[nth(i)] = residuals_[nth(free_[nth(i)])];
+  solve_lu();
+  for (int i = 0; i < n; ++i) queue_change(free_[nth(i)], step_[nth(i)]);
+  update_bounded_rows();
 }
 
-void BoxSolver::follow_normals() {
-  effort_.lines(size(), 0);
+void BoxedLcp::update_bounded_rows() {
+  budget_.charge(size(), 0);
   for (int i = 0; i < size(); ++i) {
     if (status_[nth(i)] == free) continue;
     Row& r = row(i);
-    if (slides_with(i) >= 0) {
-      // tied also where the normal pulls, which the next exchange sees
-      change_to(i, (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse);
+    if (tied_normal(i) >= 0) {
+      // tied even if the normal pulls; the next exchange corrects that
+      queue_impulse(i, (status_[nth(i)] == at_upper ? r.friction : -r.friction) * row(r.normal).impulse);
     } else {
-      bound(r);
-      change_to(i, status_[nth(i)] == at_upper ? r.upper : r.lower);
+      update_bounds(r);
+      queue_impulse(i, status_[nth(i)] == at_upper ? r.upper : r.lower);
     }
   }
-  respond();
+  apply_changes();
 }
 
-bool BoxSolver::solve_free() {
-  if (!factored_) {
+bool BoxedLcp::solve_free() {
+  if (!lu_valid_) {
     assemble();
-    if (static_cast<int>(free_.size()) > kMostFree || !decompose()) return false;
-    factored_ = true;
+    if (static_cast<int>(free_.size()) > kMaxFree || !factor_lu()) return false;
+    lu_valid_ = true;
   }
-  follow_normals();
+  update_bounded_rows();
   correct_free();
   return true;
 }
 
-// Softness pulls towards the impulses of the moment, so that it is worth nothing where they are right.
-void BoxSolver::recenter() {
+// Proximal point: moves the center of the softness to the present impulses, so that it vanishes at convergence.
+void BoxedLcp::recenter() {
   for (int i = 0; i < size(); ++i) {
-    left_[nth(i)] += kSoftness / (1 + kSoftness) * response(i, i) * (row(i).impulse - center_[nth(i)]);
+    residuals_[nth(i)] += kSoftness / (1 + kSoftness) * response(i, i) * (row(i).impulse - center_[nth(i)]);
     center_[nth(i)] = row(i).impulse;
   }
 }
 
-// Rows whose status their law does not allow change it; returns how many there were.
-int BoxSolver::exchange(bool only_last) {
-  effort_.lines(size(), 0);
-  const double most = tolerance();
-  int broken = 0;
+// Exchanges the status of rows that violate their condition (`only_last`: of the last one). Returns the number of
+// violations.
+int BoxedLcp::exchange(bool only_last) {
+  budget_.charge(size(), 0);
+  const double threshold = tolerance();
+  int violated = 0;
   for (int i = size(); i-- > 0;) {
     Row& r = row(i);
     if (!(response(i, i) > 0)) continue;
-    bound(r);
+    update_bounds(r);
     Status& status = status_[nth(i)];
-    Status to = status;
-    const double left = left_[nth(i)];
+    Status new_status = status;
+    const double residual = residuals_[nth(i)];
     if (status == free) {
-      const double slack = 0.1 * most * eases_[nth(i)];
-      if (r.impulse < r.lower - slack) to = at_lower;
-      if (r.impulse > r.upper + slack) to = at_upper;
-    } else if (r.lower < r.upper && (status == at_lower ? left > most : left < -most)) {
-      to = free;
+      const double slack = 0.1 * threshold * inverse_diagonal_[nth(i)];
+      if (r.impulse < r.lower - slack) new_status = at_lower;
+      if (r.impulse > r.upper + slack) new_status = at_upper;
+    } else if (r.lower < r.upper && (status == at_lower ? residual > threshold : residual < -threshold)) {
+      new_status = free;
     }
-    if (to == status) continue;
-    broken++;
-    if (!only_last || broken == 1) status = to;
+    if (new_status == status) continue;
+    violated++;
+    if (!only_last || violated == 1) status = new_status;
   }
-  return broken;
+  return violated;
 }
 
-bool BoxSolver::pivot(int exchanges) {
-  int fewest = size() + 1;
+// Block principal pivoting. Returns true if no row violates its condition.
+bool BoxedLcp::pivot(int max_exchanges) {
+  int fewest_violations = size() + 1;
   int patience = kPatience;
-  factored_ = false;
-  double before = 1e300;
-  for (int round = 0; round < exchanges; ++round) {
+  lu_valid_ = false;
+  double last_violation = 1e300;
+  for (int round = 0; round < max_exchanges; ++round) {
     if (!solve_free()) return false;
-    const int broken = exchange(patience == 0);
-    if (broken == 0) {
-      const double miss = take_missed();
-      if (least_missed_ <= tolerance()) return true;
-      if (miss > 0.7 * before) return false;
-      before = miss;
+    const int violated = exchange(patience == 0);
+    if (violated == 0) {
+      const double violation = record_violation();
+      if (violation_ <= tolerance()) return true;
+      if (violation > 0.7 * last_violation) return false;
+      last_violation = violation;
       continue;
     }
-    factored_ = false;
-    if (round >= kTrials && broken > kHopeless * size()) return false;
-    if (broken < fewest) {
-      fewest = broken;
+    lu_valid_ = false;
+    if (round >= kTrialExchanges && violated > kMaxViolatedFraction * size()) return false;
+    if (violated < fewest_violations) {
+      fewest_violations = violated;
       patience = kPatience;
     } else {
       patience = std::max(patience - 1, 0);
@@ -332,96 +339,96 @@ bool BoxSolver::pivot(int exchanges) {
   return false;
 }
 
-void BoxSolver::begin() {
+void BoxedLcp::begin() {
   const std::size_t n = rows_.size();
-  start_.resize(n);
+  start_impulses_.resize(n);
   center_.resize(n);
   status_.resize(n);
-  settled_.resize(n);
-  held_.resize(n);
-  frozen_ = false;
-  least_missed_ = 1e300;
-  for (std::size_t i = 0; i < n; ++i) start_[i] = rows_[i].impulse;
-  eases_.resize(n);
+  saved_impulses_.resize(n);
+  friction_bounds_.resize(n);
+  friction_frozen_ = false;
+  violation_ = 1e300;
+  for (std::size_t i = 0; i < n; ++i) start_impulses_[i] = rows_[i].impulse;
+  inverse_diagonal_.resize(n);
   for (int i = 0; i < size(); ++i) {
     response(i, i) *= 1 + kSoftness;
-    eases_[nth(i)] = 1 / response(i, i);
+    inverse_diagonal_[nth(i)] = 1 / response(i, i);
   }
   restart();
 }
 
-void BoxSolver::end() {
+void BoxedLcp::end() {
   for (int i = 0; i < size(); ++i) response(i, i) /= 1 + kSoftness;
 }
 
-double BoxSolver::solve(double tolerance) {
-  asked_ = tolerance;
+double BoxedLcp::solve(double tolerance) {
+  requested_tolerance_ = tolerance;
   begin();
-  if (effort_.over()) {
-    search_briefly();
+  if (budget_.exceeded()) {
+    solve_approximately();
   } else {
-    search();
+    solve_fully();
   }
   end();
-  return least_missed_;
+  return violation_;
 }
 
-double BoxSolver::polish() {
+double BoxedLcp::refine_friction() {
   begin();
-  const double before = missed();
-  if (before > tolerance()) sweep(kBriefSweeps);
-  take_missed();
-  if (!(least_missed_ < before)) {
+  const double initial_violation = max_violation();
+  if (initial_violation > tolerance()) sweep(kBriefSweeps);
+  record_violation();
+  if (!(violation_ < initial_violation)) {
     restart();
-    least_missed_ = before;
+    violation_ = initial_violation;
   }
-  read_statuses();
+  classify_rows();
   end();
-  return least_missed_;
+  return violation_;
 }
 
-void BoxSolver::start_ahead() {
+void BoxedLcp::restart_from_guess() {
   restart();
-  for (int i = 0; i < size(); ++i) change(i, row(i).ahead);
-  respond();
+  for (int i = 0; i < size(); ++i) queue_change(i, row(i).initial_change);
+  apply_changes();
 }
 
-// From where the rows may stand: sweeps, and where they do not do, friction held to the normals that they found.
-void BoxSolver::search_briefly() {
-  start_ahead();
+// Budget exceeded: sweeps from the initial guess, then one convex problem with frozen friction bounds.
+void BoxedLcp::solve_approximately() {
+  restart_from_guess();
   sweep(kBriefSweeps);
-  read_statuses();
-  take_missed();
-  if (least_missed_ > tolerance() && !settle_friction()) sweep_last();
+  classify_rows();
+  record_violation();
+  if (violation_ > tolerance() && !solve_staggered()) final_sweeps();
 }
 
-void BoxSolver::sweep_last() {
-  for (int i = 0; i < kLastSweeps; ++i) sweep();
+void BoxedLcp::final_sweeps() {
+  for (int i = 0; i < kFinalSweeps; ++i) sweep();
   recenter();
-  least_missed_ = missed();
+  violation_ = max_violation();
 }
 
-void BoxSolver::search() {
-  read_statuses();
+void BoxedLcp::solve_fully() {
+  classify_rows();
   for (int i = 0; i < size(); ++i) {
     const Row& r = row(i);
-    if (r.guess != unknown) {
-      status_[nth(i)] = r.guess;
+    if (r.initial_status != unknown) {
+      status_[nth(i)] = r.initial_status;
     } else if (r.normal >= 0 && r.lower < r.upper) {
-      // friction, by where it would go if it stood alone
-      const double alone = r.impulse + left_[nth(i)] * eases_[nth(i)];
-      status_[nth(i)] = alone < r.lower ? at_lower : alone > r.upper ? at_upper : free;
+      // friction: status that the row would have if it were solved alone
+      const double uncoupled_impulse = r.impulse + residuals_[nth(i)] * inverse_diagonal_[nth(i)];
+      status_[nth(i)] = uncoupled_impulse < r.lower ? at_lower : uncoupled_impulse > r.upper ? at_upper : free;
     }
   }
-  if (pivot(kFirstExchanges)) return;
-  start_ahead();
+  if (pivot(kMaxFirstExchanges)) return;
+  restart_from_guess();
   for (int i = 0; i < kSweeps; ++i) sweep();
-  take_missed();
-  if (least_missed_ <= tolerance()) return;
-  if (!settle_friction()) {
-    sweep_last();
-  } else if (frozen_ && !effort_.over()) {
-    agree_at_last();
+  record_violation();
+  if (violation_ <= tolerance()) return;
+  if (!solve_staggered()) {
+    final_sweeps();
+  } else if (friction_frozen_ && !budget_.exceeded()) {
+    solve_by_path();
   }
 }
 

@@ -1,5 +1,6 @@
-// BoxSolver: impulses within bounds, friction's bounds following its normal, for a dense response matrix. Block
-// pivoting with friction that slides tied to its normal; projected Gauss-Seidel where that needs help. No Bullet.
+// BoxedLcp: solves a linear complementarity problem with bounds (boxed LCP) on a dense matrix, in which the bounds of
+// friction rows depend on their normals. Block pivoting with sliding friction tied to its normal, then projected
+// Gauss-Seidel, staggered convex problems and Lemke's path; docs/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <cstddef>
@@ -12,142 +13,144 @@
 
 namespace limber {
 
-/// left = wanted rate - response·impulses, one each row; a row obeys when left is 0 within its bounds, <= 0 at the
-/// lower and >= 0 at the upper one. [sim]
-class BoxSolver {
+/// The residual of a row is its target rate - (response·impulses). A row satisfies its complementarity condition if its
+/// residual is 0 within the bounds, <= 0 at the lower and >= 0 at the upper bound. [sim]
+class BoxedLcp {
  public:
   enum Status : unsigned char { free, at_lower, at_upper, unknown };
   struct Row {
-    double left = 0;  ///< What is missing at the present impulse.
+    double residual = 0;  ///< At the present impulse.
     double impulse = 0;
     double lower = 0;
     double upper = 0;
-    int normal = -1;         ///< Friction: the row before this one whose impulse it follows.
-    double friction = 0;     ///< Its bounds are plus and minus this part of the normal's impulse,
-    double most = 0;         ///< or this, where it is less (0: no such bound).
-    Status guess = unknown;  ///< Where it may stand in the end; unknown: as its impulse says.
-    double ahead = 0;        ///< The search begins with so much more than its impulse.
+    int normal = -1;         ///< Friction: index of the normal row, which must be before this one.
+    double friction = 0;     ///< Friction: the bounds are plus and minus this factor times the normal's impulse,
+    double max_impulse = 0;  ///< or this, where it is less (0: no such limit).
+    Status initial_status = unknown;  ///< Status to start with; unknown: derived from the impulse.
+    double initial_change = 0;        ///< Added to the impulse before the sweeps start.
   };
 
-  explicit BoxSolver(Effort& effort);
-  /// Rows and a response of zeros.
-  void start(int rows);
-  /// As many rows as `from` has, each where that says that it was (-1: new); responses between rows that were are kept,
-  /// others are 0.
-  void grow(std::span<const int> from);
-  /// Adds the square of each line to the responses; lines have a number for each row at least, `width` (even) in all.
-  void add_squares(std::span<const double> lines, int width);
+  explicit BoxedLcp(WorkBudget& budget);
+  /// Sets the number of rows; rows have their defaults, and the response matrix is zero.
+  void reset(int rows);
+  /// Changes the rows: row i was row from[i] before (-1: new). Responses between rows that existed are preserved,
+  /// others are 0; all other values of rows get their defaults.
+  void remap(std::span<const int> from);
+  /// Adds the outer product of each vector with itself to the responses. Vectors are `width` (even) elements apart and
+  /// have at least one element for each row.
+  void add_outer_products(std::span<const double> vectors, int width);
   int size() const { return static_cast<int>(rows_.size()); }
   Row& row(int i) { return rows_[static_cast<std::size_t>(i)]; }
-  /// Response of row i to a unit impulse of row j; symmetric, to be set for both orders. Softness stands on the
-  /// diagonal.
+  /// Response of row i to a unit impulse of row j; symmetric, but both orders must be set. The diagonal includes the
+  /// softness.
   double& response(int i, int j) {
     return response_[static_cast<std::size_t>(i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(j)];
   }
 
-  /// Until no row misses its law by more than `tolerance` (in units of rate), or what the effort allows by now. Returns
-  /// by how much one still does.
-  /// Where friction and its normals agree on nothing (they need not), or there is no time left to agree, friction's
-  /// bounds are those of the normals one round before; all other laws hold.
+  /// Solves until no row violates its condition by more than `tolerance` (rate), which is relaxed once the work budget
+  /// is exceeded. Returns the largest violation. If friction doesn't converge with its normals (a solution needn't
+  /// exist, or the budget may not suffice), friction's bounds are those of the normals in the previous round; all other
+  /// conditions are met.
   double solve(double tolerance);
-  /// Whether friction's bounds are those of the normals that were found.
-  bool agrees() const { return !frozen_; }
-  /// Where they are not: brings them nearer to each other, from where the rows stand. Returns what a row still misses.
-  double polish();
-  /// Where a row stood in what was found last.
+  /// True if friction's bounds are those of the final normals.
+  bool friction_converged() const { return !friction_frozen_; }
+  /// If not converged: sweeps from the present impulses and keeps the result if it is better. Returns the largest
+  /// violation.
+  double refine_friction();
+  /// Status of a row in the last solution.
   Status status(int i) const { return status_[static_cast<std::size_t>(i)]; }
 
  private:
-  /// More rows than this are not solved at once: it costs their cube.
-  static constexpr int kMostFree = 90;
-  /// Up to so many nothing has to be allocated.
-  static constexpr std::size_t kUsualRows = 160;
+  /// More free rows than this are not factored, because the cost is cubic.
+  static constexpr int kMaxFree = 90;
+  /// Up to this number of rows nothing is allocated.
+  static constexpr std::size_t kReservedRows = 160;
   static std::size_t nth(int i) { return static_cast<std::size_t>(i); }
-  void bound(Row& row) const;
-  double tolerance() const { return effort_.tolerance(asked_); }
+  void update_bounds(Row& row) const;
+  double tolerance() const { return budget_.tolerance(requested_tolerance_); }
   void begin();
   void end();
-  void search();
-  void search_briefly();
-  void sweep_last();
-  void start_ahead();
+  void solve_fully();
+  void solve_approximately();
+  void final_sweeps();
+  void restart_from_guess();
   void restart();
   void recenter();
-  void apply(int i, double change);
-  void put(int i, double impulse) { apply(i, impulse - row(i).impulse); }
-  void change(int i, double by);
-  void change_to(int i, double impulse) { change(i, impulse - row(i).impulse); }
-  void respond();
+  void change_impulse(int i, double change);
+  void set_impulse(int i, double impulse) { change_impulse(i, impulse - row(i).impulse); }
+  void queue_change(int i, double change);
+  void queue_impulse(int i, double impulse) { queue_change(i, impulse - row(i).impulse); }
+  void apply_changes();
   void sweep();
-  void sweep(int most);
-  double missed();
-  double take_missed();
-  void read_statuses();
-  bool pivot(int exchanges);
+  void sweep(int max_sweeps);
+  double max_violation();
+  double record_violation();
+  void classify_rows();
+  bool pivot(int max_exchanges);
   int exchange(bool only_last);
-  void follow_normals();
+  void update_bounded_rows();
   bool solve_free();
   void assemble();
-  int slides_with(int i) const;
-  bool decompose();
-  void solve_step();
+  int tied_normal(int i) const;
+  bool factor_lu();
+  void solve_lu();
   void correct_free();
   bool descend();
-  bool choose_free();
+  bool factor_free();
   void step_free();
-  bool step_within_bounds();
-  int release(bool only_one);
-  struct Change {  // of a row's status, on the path
+  bool project_step();
+  int release_rows(bool only_one);
+  struct StatusChange {  // of a row's status, on Lemke's path
     int row = -1;
-    double way = 0;
+    double distance = 0;
     Status to = free;
   };
-  bool follow_path(int changes);
-  void cover();
-  void uncover(double part);
-  bool lead();
-  double room_along(int i, Status side) const;
-  Change next_change(double sign, double most);
-  void meet(Change& next, int i, double room, double rate, Status to) const;
-  void walk(double way);
-  bool take_change(const Change& change);
-  void respond(std::vector<double>& to, int i, double change) const;
-  void hold_friction(double part);
-  bool settle_friction();
-  void agree_at_last();
+  bool follow_path(int max_changes);
+  void add_covering();
+  void remove_covering(double fraction);
+  bool find_direction();
+  double slack_rate(int i, Status side) const;
+  StatusChange ratio_test(double sign, double max_distance);
+  void update_ratio_test(StatusChange& next, int i, double slack, double rate, Status to) const;
+  void advance(double distance);
+  bool apply_status_change(const StatusChange& change);
+  void apply_changes(std::vector<double>& to, int i, double change) const;
+  void freeze_friction(double fraction);
+  bool solve_staggered();
+  void solve_by_path();
 
-  Effort& effort_;
-  double asked_ = 0;  // tolerance of a cheap step
-  int stride_ = 0;
+  WorkBudget& budget_;
+  double requested_tolerance_ = 0;  // tolerance passed to solve()
+  int stride_ = 0;                  // elements per row of the response matrix
   std::vector<Row> rows_;
-  std::vector<double> left_;
+  std::vector<double> residuals_;
   std::vector<double> response_;
   std::vector<double> old_response_;
-  std::vector<double> eases_;  // one through a row's own response
-  std::vector<ScaledLine> changed_;
-  std::vector<double> start_;   // impulses
-  std::vector<double> center_;  // impulses that softness pulls to
+  std::vector<double> inverse_diagonal_;  // 1 / diagonal of the response
+  std::vector<ScaledVector> changed_;     // queued changes of residuals
+  std::vector<double> start_impulses_;    // impulses at the call of solve()
+  std::vector<double> center_;            // proximal point: impulses that the softness pulls to
   std::vector<Status> status_;
-  std::vector<Status> settled_status_;
-  std::vector<double> settled_;
-  std::vector<double> held_;  // bounds of friction
-  FreeFactor steady_;         // of the free rows, while friction's bounds stay
-  std::vector<unsigned char> marks_;
-  std::vector<double> before_;
-  std::vector<double> left_before_;
+  std::vector<Status> saved_status_;
+  std::vector<double> saved_impulses_;
+  std::vector<double> friction_bounds_;  // frozen bounds of friction
+  IncrementalLdlt free_factor_;          // of the free rows, while friction's bounds are frozen
+  std::vector<unsigned char> is_free_;
+  std::vector<double> impulses_before_;
+  std::vector<double> residuals_before_;
   std::vector<int> free_;
-  std::vector<int> place_;  // row: in free_, or -1
-  std::vector<int> ties_;   // row: place of the normal that it slides with, or -1
-  std::vector<double> factor_;
-  std::vector<int> exchanged_;  // line of the factor that came in each one's place
+  std::vector<int> free_index_;    // row: index in free_, or -1
+  std::vector<int> tied_normals_;  // row: index in free_ of the normal that it slides with, or -1
+  std::vector<double> lu_;
+  std::vector<int> pivots_;  // pivot rows of the LU factor
   std::vector<double> step_;
-  std::vector<double> cover_;  // added to what is left, times what of the path is left to go
-  std::vector<double> along_;  // of impulses and of what is left, per way along the path
-  std::vector<double> left_along_;
-  double least_missed_ = 0;
-  int width_ = 0;          // of a line of the factor
-  bool frozen_ = false;    // friction's bounds stay
-  bool factored_ = false;  // for the present statuses
+  std::vector<double> covering_;  // covering vector; added to the residuals, times the remaining fraction of the path
+  std::vector<double> impulse_rates_;  // rates of impulses and of residuals, per distance along the path
+  std::vector<double> residual_rates_;
+  double violation_ = 0;
+  int width_ = 0;                 // row length of the LU factor
+  bool friction_frozen_ = false;  // friction's bounds don't follow the normals
+  bool lu_valid_ = false;         // the LU factor belongs to the present statuses
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Boxes that meet, found through two trees; planes by their distance.
+// Overlapping boxes are found by tree queries; planes by their distance.
 #include "sim/broadphase.h"
 
 #include <algorithm>
@@ -10,20 +10,20 @@
 namespace limber {
 namespace {
 
-/// Boxes that are alone are larger where their objects go, by the way of so many steps: they are left the more seldom.
-/// Among others that would cost more, since contacts are looked for with all that a box meets. What jumps by more than
-/// its own size will not jump on.
-constexpr btScalar kStepsAhead = 2;
-/// Largest extension of a box along its object's motion in a step, m. Contacts can't stop faster objects.
-constexpr btScalar kFarthestAhead = 10;
-/// So many ahead the memory of what has left its box is asked for, and then of its place in the tree: who looked at it,
-/// or moved it, may have been another processor.
-constexpr std::size_t kAhead = 8;
-constexpr std::size_t kLeafAhead = 4;
-/// Of those whose neighbours are looked for, so many at a time; it changes no result.
-constexpr int kSearched = 16;
-/// So many that came one after the other are in one tree: they are mostly near each other.
-constexpr int kInTree = 256;
+/// Boxes without neighbors are extended along the motion of this many steps, so that objects leave them less often.
+/// Near others that would cost more, since every overlapping box is a candidate for contacts. Boxes of objects that
+/// moved by more than their own size (teleported) are not extended.
+constexpr btScalar kExtensionSteps = 2;
+/// Largest extension of an AABB along its object's motion in a step, m. Contacts can't stop faster objects.
+constexpr btScalar kMaxExtension = 10;
+/// Prefetch distances for objects that left their box and for their tree leaves, which another processor may have
+/// written.
+constexpr std::size_t kProxiesAhead = 8;
+constexpr std::size_t kLeavesAhead = 4;
+/// Objects per search task; results don't depend on it.
+constexpr int kProxiesPerTask = 16;
+/// This many consecutively added objects share a tree: they are mostly near each other.
+constexpr int kProxiesPerTree = 256;
 
 }  // namespace
 
@@ -31,41 +31,42 @@ struct Broadphase::Proxy : btBroadphaseProxy {
   using btBroadphaseProxy::btBroadphaseProxy;
 
   btDbvtNode* leaf = nullptr;  // null: a plane
-  btDbvtVolume box{};          // the leaf's: which would be another place in memory
+  btDbvtVolume box{};          // copy of the leaf's volume, to avoid a cache miss
   bool moves = false;
-  int tree = 0;               // of those of what moves
-  bool anew = false;          // who may collide with it has changed
-  bool near = false;          // something was found around it lately
-  int marked = 0;             // place in marked_, from 1 on; 0: none
-  btScalar reach = 0;         // how far from its surface contacts begin
-  btVector3 way{0, 0, 0};     // of its box in the last step
-  btVector3 normal{0, 0, 0};  // a plane's, and its distance from the origin
-  btScalar distance = 0;
+  int tree = 0;                   // index in moving_
+  bool filter_changed = false;    // since the last search
+  bool has_neighbors = false;     // something was found around it in the last search
+  int marked_index = 0;           // index in marked_, from 1 on; 0: not marked
+  btScalar contact_distance = 0;  // distance from its surface within which contacts begin
+  btVector3 motion{0, 0, 0};      // motion of its box in the last step
+  btVector3 normal{0, 0, 0};      // of a plane
+  btScalar distance = 0;          // of a plane from the origin
 
   btCollisionObject& object() const { return *static_cast<btCollisionObject*>(m_clientObject); }
 
-  // as a plane: was it moved
-  bool look_at_plane() {
+  // for planes: updates normal and distance; returns true if they changed
+  bool update_plane() {
     const auto& shape = *static_cast<const btStaticPlaneShape*>(object().getCollisionShape());
-    const btTransform& at = object().getWorldTransform();
-    const btVector3 before = std::exchange(normal, at.getBasis() * shape.getPlaneNormal());
-    const btScalar far = std::exchange(distance, shape.getPlaneConstant() + normal.dot(at.getOrigin()));
-    return normal != before || distance != far;
+    const btTransform& pose = object().getWorldTransform();
+    const btVector3 before = std::exchange(normal, pose.getBasis() * shape.getPlaneNormal());
+    const btScalar distance_before = std::exchange(distance, shape.getPlaneConstant() + normal.dot(pose.getOrigin()));
+    return normal != before || distance != distance_before;
   }
-  // as a plane: is the other one so near to it that a contact can begin
-  bool reaches(const Proxy& other) const {
-    return normal.dot(other.box.Center()) - distance - normal.absolute().dot(other.box.Extents()) <= other.reach;
+  // for planes: true if the other object is within contact distance
+  bool near_plane(const Proxy& other) const {
+    return normal.dot(other.box.Center()) - distance - normal.absolute().dot(other.box.Extents()) <=
+           other.contact_distance;
   }
-  bool meets(const Proxy& other) const {
-    if (leaf == nullptr) return other.leaf != nullptr && reaches(other);
-    return other.leaf == nullptr ? other.reaches(*this) : Intersect(box, other.box);
+  bool overlaps(const Proxy& other) const {
+    if (leaf == nullptr) return other.leaf != nullptr && near_plane(other);
+    return other.leaf == nullptr ? other.near_plane(*this) : Intersect(box, other.box);
   }
 };
 
-// room for what is usual, so that nothing is allocated in a step
-struct Broadphase::Search {
-  Search() {
-    found.reserve(std::size_t{8} * kSearched);
+// memory is reserved for usual sizes, so that steps don't allocate
+struct Broadphase::SearchTask {
+  SearchTask() {
+    found.reserve(std::size_t{8} * kProxiesPerTask);
     stack.reserve(256);
   }
   std::vector<std::pair<Proxy*, Proxy*>> found;
@@ -74,9 +75,9 @@ struct Broadphase::Search {
 
 namespace {
 
-// all proxies in the tree whose boxes meet this one
+// Calls found() for all proxies in the tree whose boxes overlap this one.
 template <class Proxy, class Found>
-void meet(const btDbvt& tree, const btDbvtVolume& box, std::vector<const btDbvtNode*>& stack, Found&& found) {
+void query_tree(const btDbvt& tree, const btDbvtVolume& box, std::vector<const btDbvtNode*>& stack, Found&& found) {
   if (tree.m_root == nullptr) return;
   stack.assign(1, tree.m_root);
   while (!stack.empty()) {
@@ -84,7 +85,7 @@ void meet(const btDbvt& tree, const btDbvtVolume& box, std::vector<const btDbvtN
     stack.pop_back();
     if (!Intersect(node->volume, box)) continue;
     if (node->isinternal()) {
-      prefetch(node->childs[0], sizeof *node);  // the other one's turn comes first
+      prefetch(node->childs[0], sizeof *node);  // the other child is visited first
       stack.push_back(node->childs[0]);
       stack.push_back(node->childs[1]);
     } else {
@@ -102,37 +103,39 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   return first.checkCollideWith(&second) && second.checkCollideWith(&first);
 }
 
-// By as much of the way that the object moves in the step as is more than boxes reach ahead anyway: contacts that begin
-// within the step are found before it.
+// Extends an AABB by the part of the object's motion in the step that exceeds the contact distance, so that contacts
+// that begin within the step are found before it.
 void extend_along_motion(const btCollisionObject& object, btScalar h, btVector3& low, btVector3& high) {
   if (object.isStaticObject()) return;
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr) return;
-  const btVector3 way = body->getLinearVelocity() * h;
+  const btVector3 motion = body->getLinearVelocity() * h;
   for (int k = 0; k < 3; k++) {
-    if (way[k] > gContactBreakingThreshold) high[k] += std::min(way[k] - gContactBreakingThreshold, kFarthestAhead);
-    if (way[k] < -gContactBreakingThreshold) low[k] += std::max(way[k] + gContactBreakingThreshold, -kFarthestAhead);
+    if (motion[k] > gContactBreakingThreshold)
+      high[k] += std::min(motion[k] - gContactBreakingThreshold, kMaxExtension);
+    if (motion[k] < -gContactBreakingThreshold)
+      low[k] += std::max(motion[k] + gContactBreakingThreshold, -kMaxExtension);
   }
 }
 
 }  // namespace
 
-Broadphase::Broadphase(double margin, Team* team)
+Broadphase::Broadphase(double margin, ThreadPool* thread_pool)
     : margin_(to_scalar(margin)),
-      team_(team),
-      trees_(team == nullptr ? 1 : std::min(team->members(), kMostTrees)),
-      searches_(std::make_unique<std::vector<Search>>()) {}
+      thread_pool_(thread_pool),
+      tree_count_(thread_pool == nullptr ? 1 : std::min(thread_pool->thread_count(), kMaxTrees)),
+      searches_(std::make_unique<std::vector<SearchTask>>()) {}
 
 Broadphase::~Broadphase() = default;
 
 btDbvt& Broadphase::tree_of(const Proxy& proxy) {
-  return proxy.moves ? moving_[static_cast<std::size_t>(proxy.tree)] : standing_;
+  return proxy.moves ? moving_[static_cast<std::size_t>(proxy.tree)] : static_;
 }
 
-void Broadphase::mark(Proxy& proxy) {
-  if (proxy.marked != 0) return;
+void Broadphase::mark_for_search(Proxy& proxy) {
+  if (proxy.marked_index != 0) return;
   marked_.push_back(&proxy);
-  proxy.marked = marked_.size();
+  proxy.marked_index = marked_.size();
 }
 
 btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3& high, int shape, void* object,
@@ -141,76 +144,79 @@ btBroadphaseProxy* Broadphase::createProxy(const btVector3& low, const btVector3
   proxy->m_uniqueId = ++last_id_;
   if (shape == STATIC_PLANE_PROXYTYPE) {
     planes_.push_back(proxy);
-    proxy->look_at_plane();
+    proxy->update_plane();
   } else {
-    const btCollisionObject& of = proxy->object();
-    proxy->moves = !of.isStaticObject();
-    proxy->reach = of.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
+    const btCollisionObject& collision_object = proxy->object();
+    proxy->moves = !collision_object.isStaticObject();
+    proxy->contact_distance =
+        collision_object.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold);
     proxy->box = btDbvtVolume::FromMM(low, high);
-    if (proxy->moves) proxy->tree = last_id_ / kInTree % trees_;
+    if (proxy->moves) proxy->tree = last_id_ / kProxiesPerTree % tree_count_;
     proxy->leaf = tree_of(*proxy).insert(proxy->box, proxy);
   }
-  mark(*proxy);
-  make_room(++count_);
+  mark_for_search(*proxy);
+  reserve_searches(++count_);
   return proxy;
 }
 
-void Broadphase::make_room(int marked) {
-  const auto needed = static_cast<std::size_t>(ranges_of(marked, kSearched));
+void Broadphase::reserve_searches(int marked) {
+  const auto needed = static_cast<std::size_t>(range_count(marked, kProxiesPerTask));
   if (searches_->size() < needed) searches_->resize(needed);
 }
 
-void Broadphase::destroyProxy(btBroadphaseProxy* of, btDispatcher* dispatcher) {
-  auto* proxy = static_cast<Proxy*>(of);
+void Broadphase::destroyProxy(btBroadphaseProxy* handle, btDispatcher* dispatcher) {
+  auto* proxy = static_cast<Proxy*>(handle);
   pairs_.removeOverlappingPairsContainingProxy(proxy, dispatcher);
-  if (proxy->marked != 0) marked_[proxy->marked - 1] = nullptr;
+  if (proxy->marked_index != 0) marked_[proxy->marked_index - 1] = nullptr;
   if (proxy->leaf == nullptr) {
     planes_.remove(proxy);
   } else {
     btDbvt& tree = tree_of(*proxy);
     tree.remove(proxy->leaf);
-    // the node that a tree keeps for later, and would free when a leaf is moved: a team's members must free nothing
+    // frees the cached node, which would be freed when a leaf is moved: threads of the pool must not free memory
     btAlignedFree(std::exchange(tree.m_free, nullptr));
   }
   delete proxy;
   --count_;
 }
 
-void Broadphase::look_anew(btBroadphaseProxy* of) {
-  auto& proxy = *static_cast<Proxy*>(of);
-  proxy.anew = true;
-  mark(proxy);
+void Broadphase::update_pairs(btBroadphaseProxy* handle) {
+  auto& proxy = *static_cast<Proxy*>(handle);
+  proxy.filter_changed = true;
+  mark_for_search(proxy);
 }
 
-bool Broadphase::look(btCollisionObject& object, btScalar h) {
+bool Broadphase::left_aabb(btCollisionObject& object, btScalar h) {
   if (object.getBroadphaseHandle() == nullptr) return false;
   Proxy& proxy = *static_cast<Proxy*>(object.getBroadphaseHandle());
-  if (proxy.leaf == nullptr) return proxy.look_at_plane();
+  if (proxy.leaf == nullptr) return proxy.update_plane();
   btVector3 low;
   btVector3 high;
   object.getCollisionShape()->getAabb(object.getWorldTransform(), low, high);
-  const btVector3 ahead(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
+  const btVector3 contact_margin(gContactBreakingThreshold, gContactBreakingThreshold, gContactBreakingThreshold);
   extend_along_motion(object, h, low, high);
   const btVector3 before = proxy.m_aabbMin + proxy.m_aabbMax;
-  proxy.m_aabbMin = low - ahead;
-  proxy.m_aabbMax = high + ahead;
-  proxy.way = (proxy.m_aabbMin + proxy.m_aabbMax - before) / 2;
+  proxy.m_aabbMin = low - contact_margin;
+  proxy.m_aabbMax = high + contact_margin;
+  proxy.motion = (proxy.m_aabbMin + proxy.m_aabbMax - before) / 2;
   const btDbvtVolume box = btDbvtVolume::FromMM(proxy.m_aabbMin, proxy.m_aabbMax);
   return proxy.moves ? !proxy.box.Contain(box) : NotEqual(proxy.box, box);
 }
 
-void Broadphase::fetch(const btCollisionObject& object) { prefetch(object.getBroadphaseHandle(), sizeof(Proxy)); }
+void Broadphase::prefetch_proxy(const btCollisionObject& object) {
+  prefetch(object.getBroadphaseHandle(), sizeof(Proxy));
+}
 
-void Broadphase::leave(std::span<btBroadphaseProxy* const> proxies) {
+void Broadphase::update_aabbs(std::span<btBroadphaseProxy* const> proxies) {
   for (std::size_t i = 0; i < proxies.size(); i++) {
-    if (i + kAhead < proxies.size()) prefetch(proxies[i + kAhead], sizeof(Proxy));
-    mark(*static_cast<Proxy*>(proxies[i]));
+    if (i + kProxiesAhead < proxies.size()) prefetch(proxies[i + kProxiesAhead], sizeof(Proxy));
+    mark_for_search(*static_cast<Proxy*>(proxies[i]));
   }
-  share_out(team_, trees_, [&](int tree, int) {
+  parallel_for(thread_pool_, tree_count_, [&](int tree, int) {
     for (std::size_t i = 0; i < proxies.size(); i++) {
-      if (i + kAhead < proxies.size()) prefetch(proxies[i + kAhead], sizeof(Proxy));
-      if (i + kLeafAhead < proxies.size()) {
-        prefetch(static_cast<const Proxy*>(proxies[i + kLeafAhead])->leaf, sizeof(btDbvtNode));
+      if (i + kProxiesAhead < proxies.size()) prefetch(proxies[i + kProxiesAhead], sizeof(Proxy));
+      if (i + kLeavesAhead < proxies.size()) {
+        prefetch(static_cast<const Proxy*>(proxies[i + kLeavesAhead])->leaf, sizeof(btDbvtNode));
       }
       Proxy& proxy = *static_cast<Proxy*>(proxies[i]);
       if (proxy.tree == tree) move(proxy);
@@ -224,8 +230,8 @@ void Broadphase::move(Proxy& proxy) {
   if (proxy.moves) {
     const btVector3 size = box.Extents() * 2;
     box.Expand(btVector3(margin_, margin_, margin_));
-    const btVector3 left = size - proxy.way.absolute();
-    if (!proxy.near && left[left.minAxis()] >= 0) box.SignedExpand(proxy.way * kStepsAhead);
+    const btVector3 overlap = size - proxy.motion.absolute();
+    if (!proxy.has_neighbors && overlap[overlap.minAxis()] >= 0) box.SignedExpand(proxy.motion * kExtensionSteps);
   }
   tree_of(proxy).update(proxy.leaf, box);
   proxy.box = box;
@@ -234,7 +240,7 @@ void Broadphase::move(Proxy& proxy) {
 void Broadphase::setAabb(btBroadphaseProxy* proxy, const btVector3& low, const btVector3& high, btDispatcher*) {
   proxy->m_aabbMin = low;
   proxy->m_aabbMax = high;
-  mark(*static_cast<Proxy*>(proxy));
+  mark_for_search(*static_cast<Proxy*>(proxy));
   move(*static_cast<Proxy*>(proxy));
 }
 
@@ -243,44 +249,44 @@ void Broadphase::getAabb(btBroadphaseProxy* proxy, btVector3& low, btVector3& hi
   high = proxy->m_aabbMax;
 }
 
-void Broadphase::search_around(Proxy& proxy, Search& search) const {
+void Broadphase::search_around(Proxy& proxy, SearchTask& search) const {
   const auto found = [&](Proxy& other) {
-    // of two that are marked, the later one finds the other
-    if (&proxy == &other || other.marked > proxy.marked) return;
+    // of two marked objects, the later one finds the pair
+    if (&proxy == &other || other.marked_index > proxy.marked_index) return;
     if (may_collide(proxy, other)) search.found.emplace_back(&proxy, &other);
   };
   if (proxy.leaf == nullptr) {
     for (const btDbvt& tree : moving_) {
       if (tree.m_root == nullptr) continue;
-      meet<Proxy>(tree, tree.m_root->volume, search.stack, [&](Proxy& other) {
-        if (proxy.reaches(other)) found(other);
+      query_tree<Proxy>(tree, tree.m_root->volume, search.stack, [&](Proxy& other) {
+        if (proxy.near_plane(other)) found(other);
       });
     }
     return;
   }
-  for (const btDbvt& tree : moving_) meet<Proxy>(tree, proxy.box, search.stack, found);
+  for (const btDbvt& tree : moving_) query_tree<Proxy>(tree, proxy.box, search.stack, found);
   if (!proxy.moves) return;
-  meet<Proxy>(standing_, proxy.box, search.stack, found);
+  query_tree<Proxy>(static_, proxy.box, search.stack, found);
   for (int i = 0; i < planes_.size(); i++) {
-    if (planes_[i]->reaches(proxy)) found(*planes_[i]);
+    if (planes_[i]->near_plane(proxy)) found(*planes_[i]);
   }
 }
 
-void Broadphase::search(int first, int end, Search& search) const {
+void Broadphase::search(int first, int end, SearchTask& search) const {
   search.found.clear();
   for (int i = first; i < end; i++) {
     if (marked_[i] != nullptr) search_around(*marked_[i], search);
   }
 }
 
-void Broadphase::forget_parted(btDispatcher* dispatcher) {
+void Broadphase::remove_stale_pairs(btDispatcher* dispatcher) {
   btBroadphasePairArray& pairs = pairs_.getOverlappingPairArray();
   for (int i = 0; i < pairs.size();) {
     auto& a = *static_cast<Proxy*>(pairs[i].m_pProxy0);
     auto& b = *static_cast<Proxy*>(pairs[i].m_pProxy1);
-    const bool parted = (a.marked != 0 || b.marked != 0) && !a.meets(b);
-    if (parted || ((a.anew || b.anew) && !may_collide(a, b))) {
-      pairs_.removeOverlappingPair(&a, &b, dispatcher);  // the last one takes its place
+    const bool separated = (a.marked_index != 0 || b.marked_index != 0) && !a.overlaps(b);
+    if (separated || ((a.filter_changed || b.filter_changed) && !may_collide(a, b))) {
+      pairs_.removeOverlappingPair(&a, &b, dispatcher);  // the last pair moves to this index
     } else {
       i++;
     }
@@ -290,21 +296,22 @@ void Broadphase::forget_parted(btDispatcher* dispatcher) {
 void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
   for (btDbvt& tree : moving_) tree.optimizeIncremental(1);
   if (marked_.size() == 0) return;
-  forget_parted(dispatcher);
-  make_room(marked_.size());
-  share_out_places(
-      team_, marked_.size(),
+  remove_stale_pairs(dispatcher);
+  reserve_searches(marked_.size());
+  parallel_for_ranges(
+      thread_pool_, marked_.size(),
       [&](int range, int first, int end) { search(first, end, (*searches_)[static_cast<std::size_t>(range)]); },
-      kSearched);
+      kProxiesPerTask);
   for (int i = 0; i < marked_.size(); i++) {
-    if (i + static_cast<int>(kAhead) < marked_.size()) prefetch(marked_[i + static_cast<int>(kAhead)], sizeof(Proxy));
+    if (i + static_cast<int>(kProxiesAhead) < marked_.size())
+      prefetch(marked_[i + static_cast<int>(kProxiesAhead)], sizeof(Proxy));
     if (marked_[i] == nullptr) continue;
-    marked_[i]->marked = 0;
-    marked_[i]->anew = marked_[i]->near = false;
+    marked_[i]->marked_index = 0;
+    marked_[i]->filter_changed = marked_[i]->has_neighbors = false;
   }
-  for (int range = 0; range < ranges_of(marked_.size(), kSearched); range++) {
+  for (int range = 0; range < range_count(marked_.size(), kProxiesPerTask); range++) {
     for (const auto& [a, b] : (*searches_)[static_cast<std::size_t>(range)].found) {
-      a->near = b->near = true;
+      a->has_neighbors = b->has_neighbors = true;
       pairs_.addOverlappingPair(a, b);
     }
   }
@@ -315,25 +322,25 @@ void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadph
   const btDbvtVolume box = btDbvtVolume::FromMM(low, high);
   const auto found = [&](Proxy& proxy) { callback.process(&proxy); };
   std::vector<const btDbvtNode*> stack;
-  for (const btDbvt& tree : moving_) meet<Proxy>(tree, box, stack, found);
-  meet<Proxy>(standing_, box, stack, found);
+  for (const btDbvt& tree : moving_) query_tree<Proxy>(tree, box, stack, found);
+  query_tree<Proxy>(static_, box, stack, found);
   for (int i = 0; i < planes_.size(); i++) callback.process(planes_[i]);
 }
 
 void Broadphase::rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback,
                          const btVector3& low, const btVector3& high) {
-  btVector3 least = from;
-  btVector3 most = from;
-  least.setMin(to);
-  most.setMax(to);
-  aabbTest(least + low, most + high, callback);
+  btVector3 ray_low = from;
+  btVector3 ray_high = from;
+  ray_low.setMin(to);
+  ray_high.setMax(to);
+  aabbTest(ray_low + low, ray_high + high, callback);
 }
 
 void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
   low.setZero();
   high.setZero();
   bool first = true;
-  const auto reach = [&](const btDbvt& tree) {
+  const auto extend = [&](const btDbvt& tree) {
     if (tree.m_root == nullptr) return;
     const btDbvtVolume& box = tree.m_root->volume;
     if (std::exchange(first, false)) {
@@ -344,8 +351,8 @@ void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
       high.setMax(box.Maxs());
     }
   };
-  reach(standing_);
-  for (const btDbvt& tree : moving_) reach(tree);
+  extend(static_);
+  for (const btDbvt& tree : moving_) extend(tree);
 }
 
 }  // namespace limber

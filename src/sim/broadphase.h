@@ -1,4 +1,4 @@
-// Broadphase: which objects come so near to each other that contacts are looked for.
+// Broadphase: finds pairs of objects that are near enough for contacts.
 #pragma once
 
 #include <array>
@@ -14,34 +14,34 @@
 
 namespace limber {
 
-/// Bullet's trees of bounding boxes, one for what stands and one or, with a team, some for what moves, and Bullet's
-/// table of pairs. Which boxes meet does not depend on the trees. Only pairs that may collide are in the table: neither
-/// objects of one group, nor those that a joint keeps from colliding. A plane is in no tree, since its box is
-/// everything: it meets what comes as near to it as a contact can begin. Pairs are found once a step, in
-/// calculateOverlappingPairs, around what left its box or was looked at anew. All that it remembers lies in the memory
-/// of the BulletMemory::Scope that it is used in. [sim]
+/// Dynamic bounding volume trees of Bullet (btDbvt): one of static objects and one, or several with a thread pool, of
+/// moving objects; and Bullet's pair cache. The pairs found don't depend on the trees. The cache contains only pairs
+/// that may collide: not those excluded by filters or joints. A plane is in no tree, since its box is unbounded: it
+/// pairs with objects within contact distance. Pairs are updated once per step, in calculateOverlappingPairs(), around
+/// objects that left their fattened box or were marked by update_pairs(). Persistent data is allocated in the memory of
+/// the present BulletMemory::Scope. [sim]
 class Broadphase : public btBroadphaseInterface {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
 
-  /// Metres that the boxes of what moves are larger: so far it moves before its neighbours are looked for again;
-  /// those of what is alone reach ahead of it besides.
-  /// `team`, which may be null, looks for pairs side by side, and moves boxes: each member those of a tree.
-  Broadphase(double margin, Team* team);
+  /// `margin`: m by which boxes of moving objects are fattened; boxes without neighbors are also extended along the
+  /// motion. `thread_pool`: threads for searching pairs and updating trees, or null.
+  Broadphase(double margin, ThreadPool* thread_pool);
   ~Broadphase() override;
   Broadphase(const Broadphase&) = delete;
   Broadphase& operator=(const Broadphase&) = delete;
 
-  /// Who may collide with this one has changed: from the next step on its pairs are those that may.
-  void look_anew(btBroadphaseProxy* proxy);
+  /// Updates the pairs of an object in the next step, after its permission to collide with others has changed.
+  void update_pairs(btBroadphaseProxy* proxy);
 
-  /// Has this one left its box, or was it moved though it stands? Then leave() is to follow. `h`: the step's length, s;
-  /// a box reaches as far as its object will move in the step. [any thread, each another]
-  static bool look(btCollisionObject& object, btScalar h);
-  /// Soon look() will be asked about it.
-  static void fetch(const btCollisionObject& object);
-  /// These have.
-  void leave(std::span<btBroadphaseProxy* const> proxies);
+  /// True if the object left its fattened AABB, or is static and was moved; update_aabbs() must be called with it then.
+  /// `h`: the step's length, s; the AABB includes the object's motion in the step. [any thread, a different object
+  /// each]
+  static bool left_aabb(btCollisionObject& object, btScalar h);
+  /// Prefetches memory for left_aabb().
+  static void prefetch_proxy(const btCollisionObject& object);
+  /// Updates the fattened AABBs of objects for which left_aabb() returned true.
+  void update_aabbs(std::span<btBroadphaseProxy* const> proxies);
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,
                                  int mask, btDispatcher* dispatcher) override;
@@ -54,41 +54,41 @@ class Broadphase : public btBroadphaseInterface {
   btOverlappingPairCache* getOverlappingPairCache() override { return &pairs_; }
   const btOverlappingPairCache* getOverlappingPairCache() const override { return &pairs_; }
 
-  /// All whose boxes meet the ray's own box, and all planes.
+  /// Calls back for all objects whose boxes overlap the ray's AABB, and all planes.
   void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback, const btVector3& low,
                const btVector3& high) override;
   void aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) override;
-  /// Around everything but planes.
+  /// AABB of everything except planes.
   void getBroadphaseAabb(btVector3& low, btVector3& high) const override;
   void printStats() override {}
 
  private:
   struct Proxy;
 
-  static constexpr int kMostTrees = 8;
+  static constexpr int kMaxTrees = 8;
 
-  struct Search;  // what is found around some of those that are marked
+  struct SearchTask;  // pairs found around a range of marked_
 
   btDbvt& tree_of(const Proxy& proxy);
   void move(Proxy& proxy);
-  void make_room(int marked);
-  void mark(Proxy& proxy);
-  void search(int first, int end, Search& search) const;
-  void search_around(Proxy& proxy, Search& search) const;
-  void forget_parted(btDispatcher* dispatcher);
+  void reserve_searches(int marked);
+  void mark_for_search(Proxy& proxy);
+  void search(int first, int end, SearchTask& search) const;
+  void search_around(Proxy& proxy, SearchTask& search) const;
+  void remove_stale_pairs(btDispatcher* dispatcher);
 
   btScalar margin_;
-  std::array<btDbvt, kMostTrees> moving_;  // the first trees_ of them
-  btDbvt standing_;
+  std::array<btDbvt, kMaxTrees> moving_;  // the first tree_count_ of them are used
+  btDbvt static_;
   btAlignedObjectArray<Proxy*> planes_;
-  btAlignedObjectArray<Proxy*> marked_;  // whose neighbours are to be looked for; null: gone since
+  btAlignedObjectArray<Proxy*> marked_;  // objects whose pairs must be searched; null: removed since
   btHashedOverlappingPairCache pairs_;
   int last_id_ = 0;
   int count_ = 0;
-  Team* team_;
-  int trees_;
-  // on the heap, and nothing that outlives a step
-  std::unique_ptr<std::vector<Search>> searches_;
+  ThreadPool* thread_pool_;
+  int tree_count_;
+  // on the heap; its content lives for one step only
+  std::unique_ptr<std::vector<SearchTask>> searches_;
 };
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// The one place that includes Bullet: its headers with their warnings silenced, and the conversions between
-// Bullet's single-precision types and ours.
+// Includes Bullet's headers with their warnings disabled, and converts between Bullet's single-precision types and
+// ours. No other file includes Bullet directly.
 #pragma once
 
 #if defined(__GNUC__)

@@ -1,5 +1,5 @@
-// Bullet's two hooks. A word before each block tells whose it is: an arena, marked by its lowest bit, or the heap, by
-// the block's own address there, as Bullet's own allocator has it.
+// Bullet's two allocator hooks. A word before each block identifies its owner: an arena (lowest bit set), or the heap
+// (address of the malloc block, as in Bullet's own allocator).
 #include "sim/bullet_memory.h"
 
 #include <cstdint>
@@ -12,40 +12,40 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kLabel = 16;
+constexpr std::size_t kLabelSize = 16;
 
-thread_local BulletMemory* here = nullptr;
+thread_local BulletMemory* current_memory = nullptr;
 
-// addresses are kept as numbers: the lowest bit of a label tells an arena from the heap
+// labels are addresses stored as integers; the lowest bit is set for an arena
 // NOLINTBEGIN(performance-no-int-to-ptr)
 std::uintptr_t& label_of(void* block) { return static_cast<std::uintptr_t*>(block)[-1]; }
 
-void* take_from_heap(std::size_t size, std::size_t alignment) {
-  void* const got = std::malloc(size + sizeof(void*) + alignment - 1);
-  if (got == nullptr) return nullptr;
-  const std::uintptr_t least = reinterpret_cast<std::uintptr_t>(got) + sizeof(void*);
-  auto* const block = reinterpret_cast<void*>((least + alignment - 1) / alignment * alignment);
-  label_of(block) = reinterpret_cast<std::uintptr_t>(got);
+void* allocate_from_heap(std::size_t size, std::size_t alignment) {
+  void* const memory = std::malloc(size + sizeof(void*) + alignment - 1);
+  if (memory == nullptr) return nullptr;
+  const std::uintptr_t min_address = reinterpret_cast<std::uintptr_t>(memory) + sizeof(void*);
+  auto* const block = reinterpret_cast<void*>((min_address + alignment - 1) / alignment * alignment);
+  label_of(block) = reinterpret_cast<std::uintptr_t>(memory);
   return block;
 }
 
-void* take(std::size_t size, int alignment) {
+void* bullet_allocate(std::size_t size, int alignment) {
   const auto aligned = static_cast<std::size_t>(alignment);
-  if (here == nullptr || aligned > kLabel) return take_from_heap(size, aligned);
-  Arena& arena = here->arena();
-  auto* const got = static_cast<std::byte*>(arena.allocate(size + kLabel));
-  if (got == nullptr) return take_from_heap(size, aligned);
-  void* const block = got + kLabel;
+  if (current_memory == nullptr || aligned > kLabelSize) return allocate_from_heap(size, aligned);
+  Arena& arena = current_memory->arena();
+  auto* const memory = static_cast<std::byte*>(arena.allocate(size + kLabelSize));
+  if (memory == nullptr) return allocate_from_heap(size, aligned);
+  void* const block = memory + kLabelSize;
   mark_uninitialized(block, size);
   label_of(block) = reinterpret_cast<std::uintptr_t>(&arena) | 1u;
   return block;
 }
 
-void give_back(void* block) {
+void bullet_free(void* block) {
   if (block == nullptr) return;
   const std::uintptr_t label = label_of(block);
   if ((label & 1u) != 0) {
-    reinterpret_cast<Arena*>(label & ~std::uintptr_t{1})->free(static_cast<std::byte*>(block) - kLabel);
+    reinterpret_cast<Arena*>(label & ~std::uintptr_t{1})->free(static_cast<std::byte*>(block) - kLabelSize);
   } else {
     std::free(reinterpret_cast<void*>(label));
   }
@@ -55,15 +55,15 @@ void give_back(void* block) {
 }  // namespace
 
 BulletMemory::BulletMemory() {
-  [[maybe_unused]] static const bool asked = [] {
-    btAlignedAllocSetCustomAligned(&take, &give_back);
+  [[maybe_unused]] static const bool installed = [] {
+    btAlignedAllocSetCustomAligned(&bullet_allocate, &bullet_free);
     return true;
   }();
 }
 
-BulletMemory* BulletMemory::current() { return here; }
+BulletMemory* BulletMemory::current() { return current_memory; }
 
-BulletMemory::Scope::Scope(BulletMemory* memory) : before_(here) { here = memory; }
-BulletMemory::Scope::~Scope() { here = before_; }
+BulletMemory::Scope::Scope(BulletMemory* memory) : previous_(current_memory) { current_memory = memory; }
+BulletMemory::Scope::~Scope() { current_memory = previous_; }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// BulletMemory: where Bullet keeps what a world has (bodies, joints, pairs, contacts, trees), in one arena, so that a
-// key state is a copy of it and holds whatever Bullet remembers, in its order and at its addresses.
+// BulletMemory: one arena for all of Bullet's persistent data of a world (bodies, joints, pairs, contacts, trees), so
+// that a checkpoint is a copy of it, with the same order and addresses.
 #pragma once
 
 #include "base/arena.h"
@@ -8,14 +8,14 @@ namespace limber {
 
 class BulletMemory {
  public:
-  /// Bullet asks us for memory from the first one on.
+  /// Installs the allocator hooks of Bullet when first called.
   BulletMemory();
 
   Arena& arena() { return arena_; }
   const Arena& arena() const { return arena_; }
 
-  /// While one lives, what Bullet takes on this thread lies there; null: on the heap. Shapes, which worlds share, and
-  /// what a step leaves behind for nobody, do.
+  /// While it exists, Bullet's allocations on this thread come from that memory; null: from the heap, which is used for
+  /// shapes (shared by worlds) and data that doesn't outlive a step.
   class Scope {
    public:
     explicit Scope(BulletMemory* memory);
@@ -24,9 +24,9 @@ class BulletMemory {
     Scope& operator=(const Scope&) = delete;
 
    private:
-    BulletMemory* before_;
+    BulletMemory* previous_;
   };
-  /// Of the innermost Scope here; null: none.
+  /// Memory of the innermost Scope on this thread; null: none.
   static BulletMemory* current();
 
  private:

@@ -1,4 +1,4 @@
-// Bullet's profile zones as a handful of phases: the outermost zone that has a phase counts.
+// Maps Bullet's profile zones to phases: the outermost zone that has a phase counts.
 #include "sim/bullet_phases.h"
 
 #include <string_view>
@@ -22,40 +22,40 @@ constexpr Zone kZones[] = {{"updateAabbs", &BulletPhases::broadphase},
                            {"solveConstraints", &BulletPhases::solver},
                            {"solveGroup", &BulletPhases::solver}};
 
-// Bullet's hooks are bare functions
-struct Counting {
+// global, because Bullet's hooks are plain functions
+struct PhaseMeasurement {
   BulletPhases phases;
   int level = 0;
-  int from = 0;  // level of the zone that counts; 0: none
+  int zone_level = 0;  // level of the zone that is measured; 0: none
   double BulletPhases::*phase = nullptr;
   double start = 0;
 };
-Counting counting;
+PhaseMeasurement measurement;
 
 void enter(const char* name) {
-  counting.level++;
-  if (counting.from != 0) return;
+  measurement.level++;
+  if (measurement.zone_level != 0) return;
   for (const Zone& zone : kZones) {
     if (zone.name != name) continue;
-    counting.from = counting.level;
-    counting.phase = zone.phase;
-    counting.start = system::clock_seconds();
+    measurement.zone_level = measurement.level;
+    measurement.phase = zone.phase;
+    measurement.start = system::clock_seconds();
     return;
   }
 }
 
 void leave() {
-  if (counting.level == counting.from) {
-    counting.phases.*counting.phase += system::clock_seconds() - counting.start;
-    counting.from = 0;
+  if (measurement.level == measurement.zone_level) {
+    measurement.phases.*measurement.phase += system::clock_seconds() - measurement.start;
+    measurement.zone_level = 0;
   }
-  counting.level--;
+  measurement.level--;
 }
 
 }  // namespace
 
 BulletPhaseCounter::BulletPhaseCounter() {
-  counting = {};
+  measurement = {};
   btSetCustomEnterProfileZoneFunc(&enter);
   btSetCustomLeaveProfileZoneFunc(&leave);
 }
@@ -65,6 +65,6 @@ BulletPhaseCounter::~BulletPhaseCounter() {
   btSetCustomLeaveProfileZoneFunc([] {});
 }
 
-const BulletPhases& BulletPhaseCounter::phases() const { return counting.phases; }
+const BulletPhases& BulletPhaseCounter::phases() const { return measurement.phases; }
 
 }  // namespace limber

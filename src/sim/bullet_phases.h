@@ -1,4 +1,4 @@
-// What Bullet spends where in its step, told by the zones that Bullet itself marks. For the bench.
+// Time that Bullet spends in the phases of a step, from Bullet's own profile zones. For the benchmark.
 #pragma once
 
 namespace limber {
@@ -7,12 +7,12 @@ namespace limber {
 struct BulletPhases {
   double broadphase = 0;   ///< Bounding boxes and overlapping pairs.
   double narrowphase = 0;  ///< Contact points.
-  double islands = 0;      ///< Who is joined to whom.
-  double solver = 0;       ///< Joints and contacts, set-up and motion included.
+  double islands = 0;      ///< Finding islands.
+  double solver = 0;       ///< Joints and contacts, including set-up and motion.
 };
 
-/// Counts while it lives; one at a time. Zones are entered tens of times a step, so what it counts is a little more
-/// than what the step takes without. [sim]
+/// Measures while it exists; only one may exist at a time. Zones are entered tens of times per step, so the result is
+/// slightly larger than the time of a step without it. [sim]
 class BulletPhaseCounter {
  public:
   BulletPhaseCounter();

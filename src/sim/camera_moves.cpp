@@ -1,4 +1,4 @@
-// Views in between, and displacements.
+// CameraMoves: interpolation of views, and following.
 #include "sim/camera_moves.h"
 
 #include <algorithm>
@@ -11,35 +11,35 @@ namespace limber {
 
 namespace {
 
-constexpr double kSlack = 1e-9;  // s; a sum of time steps misses its end by a few bits
+constexpr double kTolerance = 1e-9;  // s; a sum of time steps misses the end by a few bits
 
-// an offset from the target as heading and elevation (rad) and length (m)
+// An offset from the target in spherical coordinates: heading and elevation (rad), length (m).
 struct Orbit {
   double heading = 0, elevation = 0, length = 0;
 };
 
 Orbit orbit_of(const Vec3& offset) {
-  const double flat = fixed::hypot(offset.x, offset.y);
-  return {fixed::atan2(offset.y, offset.x), fixed::atan2(offset.z, flat), fixed::hypot(flat, offset.z)};
+  const double horizontal = fixed::hypot(offset.x, offset.y);
+  return {fixed::atan2(offset.y, offset.x), fixed::atan2(offset.z, horizontal), fixed::hypot(horizontal, offset.z)};
 }
 
 Vec3 offset_of(const Orbit& orbit) {
-  const double flat = orbit.length * fixed::cos(orbit.elevation);
-  return {flat * fixed::cos(orbit.heading), flat * fixed::sin(orbit.heading),
+  const double horizontal = orbit.length * fixed::cos(orbit.elevation);
+  return {horizontal * fixed::cos(orbit.heading), horizontal * fixed::sin(orbit.heading),
           orbit.length * fixed::sin(orbit.elevation)};
 }
 
-// straight above or below there is no heading: it has the other's
-bool upright(const Vec3& offset) { return fixed::hypot(offset.x, offset.y) < 1e-9 * glm::length(offset); }
+// True if the offset is vertical, so that its heading is undefined: the other offset's is used then.
+bool is_vertical(const Vec3& offset) { return fixed::hypot(offset.x, offset.y) < 1e-9 * glm::length(offset); }
 
-Vec3 offset_between(const Vec3& from, const Vec3& to, double share) {
+Vec3 interpolate_offset(const Vec3& from, const Vec3& to, double fraction) {
   Orbit a = orbit_of(from);
   Orbit b = orbit_of(to);
-  if (upright(from)) a.heading = b.heading;
-  if (upright(to)) b.heading = a.heading;
-  const double turn = std::remainder(b.heading - a.heading, 2 * std::numbers::pi);
-  return offset_of(
-      {a.heading + share * turn, std::lerp(a.elevation, b.elevation, share), std::lerp(a.length, b.length, share)});
+  if (is_vertical(from)) a.heading = b.heading;
+  if (is_vertical(to)) b.heading = a.heading;
+  const double heading_change = std::remainder(b.heading - a.heading, 2 * std::numbers::pi);
+  return offset_of({a.heading + fraction * heading_change, std::lerp(a.elevation, b.elevation, fraction),
+                    std::lerp(a.length, b.length, fraction)});
 }
 
 }  // namespace
@@ -48,36 +48,36 @@ CameraMoves::View CameraMoves::view() const {
   View view{};
   double* out = view.data();
   for (const char* name : {"position", "rotation", "distance"}) {
-    const Row& row = Camera::table().at(name);
-    out = std::copy_n(world_.store().values(world_.visuals().camera().id(), row), row.width, out);
+    const Property& property = Camera::table().at(name);
+    out = std::copy_n(world_.store().values(world_.visuals().camera().id(), property), property.width, out);
   }
   return view;
 }
 
-std::optional<Vec3> CameraMoves::place_of(NodeId thing) const {
+std::optional<Vec3> CameraMoves::position_of(NodeId object) const {
   const Store& store = world_.store();
-  if (!store.alive(thing)) return {};
+  if (!store.alive(object)) return {};
   const Part* part = nullptr;
-  if (&store.table(thing) == &Part::table()) part = static_cast<const Part*>(store.thing(thing));
-  if (&store.table(thing) == &Body::table()) part = static_cast<const Body*>(store.thing(thing))->root();
+  if (&store.table(object) == &Part::table()) part = static_cast<const Part*>(store.object(object));
+  if (&store.table(object) == &Body::table()) part = static_cast<const Body*>(store.object(object))->root();
   if (part == nullptr) return {};
   return part->pose().position;
 }
 
 void CameraMoves::glide(const Vec3& eye, const Vec3& target, double seconds) {
-  world_.undo().keep(*this);
+  world_.transaction().save(*this);
   const Camera& camera = world_.visuals().camera();
   state_ = {};
   state_.glide = Glide{camera.eye(), camera.target(), eye, target, world_.time(), seconds, view()};
 }
 
-void CameraMoves::follow(NodeId thing) {
-  world_.undo().keep(*this);
+void CameraMoves::follow(NodeId object) {
+  world_.transaction().save(*this);
   state_ = {};
-  const std::optional<Vec3> at = place_of(thing);
+  const std::optional<Vec3> at = position_of(object);
   if (!at) return;
-  state_.followed = thing;
-  state_.at = *at;
+  state_.followed = object;
+  state_.last_position = *at;
   Camera& camera = world_.visuals().camera();
   camera.look_at(*at + camera.eye() - camera.target(), *at);
 }
@@ -89,25 +89,25 @@ void CameraMoves::step() {
 
 void CameraMoves::step_glide() {
   Glide& glide = *state_.glide;
-  if (view() != glide.left) return stop();  // another hand has it
-  const double since = world_.time() - glide.begin;
-  if (since + kSlack >= glide.seconds) {
+  if (view() != glide.last_view) return stop();  // something else has moved the camera
+  const double elapsed = world_.time() - glide.start_time;
+  if (elapsed + kTolerance >= glide.seconds) {
     world_.visuals().camera().look_at(glide.eye, glide.target);
     return stop();
   }
-  const double passed = std::max(since, 0.0) / glide.seconds;
-  const double share = passed * passed * (3 - 2 * passed);
-  const Vec3 target = glm::mix(glide.from_target, glide.target, share);
-  const Vec3 offset = offset_between(glide.from_eye - glide.from_target, glide.eye - glide.target, share);
+  const double progress = std::max(elapsed, 0.0) / glide.seconds;
+  const double fraction = progress * progress * (3 - 2 * progress);
+  const Vec3 target = glm::mix(glide.from_target, glide.target, fraction);
+  const Vec3 offset = interpolate_offset(glide.from_eye - glide.from_target, glide.eye - glide.target, fraction);
   world_.visuals().camera().look_at(target + offset, target);
-  glide.left = view();
+  glide.last_view = view();
 }
 
 void CameraMoves::step_follow() {
-  const std::optional<Vec3> at = place_of(state_.followed);
+  const std::optional<Vec3> at = position_of(state_.followed);
   if (!at) return stop();
-  const Vec3 moved = *at - state_.at;
-  state_.at = *at;
+  const Vec3 moved = *at - state_.last_position;
+  state_.last_position = *at;
   if (moved == Vec3(0)) return;
   Camera& camera = world_.visuals().camera();
   camera.look_at(camera.eye() + moved, camera.target() + moved);

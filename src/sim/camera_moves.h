@@ -1,4 +1,4 @@
-// CameraMoves: what moves the camera by itself: a glide from one view to another, a thing that it goes with. [sim]
+// CameraMoves: animations of the camera: a glide from one view to another, and following an object. [sim]
 #pragma once
 
 #include <array>
@@ -16,42 +16,42 @@ class CameraMoves {
  public:
   explicit CameraMoves(World& world) : world_(world) {}
 
-  /// From the view that it has to this one in so many seconds of simulation time (> 0), slow at both ends, around the
-  /// target rather than through it. Ends what moved it before; a hand on the camera ends it.
+  /// Moves the camera from its present view to the given one within `seconds` of simulation time (> 0), with ease-in
+  /// and ease-out, on an arc around the target. Replaces an earlier animation. Setting the camera's pose ends it.
   void glide(const Vec3& eye, const Vec3& target, double seconds);
-  /// Looks at this part, or at the root of this body, from now on and goes with it; distance and direction stay, a hand
-  /// may change them. Ends a glide; the null id: goes with nothing. A thing that is gone ends it.
-  void follow(NodeId thing);
-  bool moving() const { return state_.glide || !state_.followed.null(); }
-  /// Stands still from now on.
+  /// Looks at the given part, or root of the given body, and moves with it. Distance and direction are kept and may
+  /// be changed. Replaces a glide; the null id ends the following, as does the removal of the object.
+  void follow(NodeId object);
+  bool is_active() const { return state_.glide || !state_.followed.null(); }
+  /// Ends all animations.
   void stop() { state_ = {}; }
-  /// After each tick: the camera is where it is due.
+  /// Updates the camera; call after each tick.
   void step();
 
  private:
-  friend class WorldUndo;
-  friend class WorldKey;
+  friend class WorldTransaction;
+  friend class WorldCheckpoint;
 
-  using View = std::array<double, 7>;  // the rows that say where it is: position, rotation, distance
+  using View = std::array<double, 7>;  // the camera's pose: position, rotation, distance
   struct Glide {
     Vec3 from_eye, from_target, eye, target;
-    double begin = 0, seconds = 0;
-    View left{};  // how the last step left the rows
+    double start_time = 0, seconds = 0;
+    View last_view{};  // the pose as set in the last step
   };
   struct State {
     std::optional<Glide> glide;
     NodeId followed;
-    Vec3 at{};  // where the followed thing was
+    Vec3 last_position{};  // last position of the followed object
   };
 
   View view() const;
-  std::optional<Vec3> place_of(NodeId thing) const;
+  std::optional<Vec3> position_of(NodeId object) const;
   void step_glide();
   void step_follow();
 
   World& world_;
   State state_;
-  std::uint64_t kept_in_ = 0;  // the call that its undo has kept it for
+  std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 
 }  // namespace limber

@@ -1,6 +1,6 @@
-// A plane meets the lowest points of a shape. Two boxes meet along the axis of least overlap (separating axis test);
-// other convex shapes along the direction of their distance (GJK). Where a face of one of them has that direction, it
-// is the reference, and the other's feature is clipped against its sides.
+// Planes touch the lowest points of a shape. For two boxes the contact normal is the axis of least overlap (separating
+// axis test); for other convex shapes it is the direction of their distance (GJK). If a face of one of them has that
+// normal, it is the reference face, and the other's feature is clipped against its sides.
 #include "sim/contact_algorithms.h"
 
 #include <algorithm>
@@ -17,16 +17,16 @@
 namespace limber {
 namespace {
 
-/// A face is the reference if its normal is within 1.1 degrees of the direction of contact.
-constexpr btScalar kAligned = 0.9998F;
-/// Points this far outside of the reference face's sides still count, m.
+/// A face is the reference face if its normal is within 1.1 degrees of the contact normal.
+constexpr btScalar kMinAlignment = 0.9998F;
+/// Tolerance outside of the reference face's sides, m.
 constexpr btScalar kClipSlack = 1e-5F;
-/// Of two axes, one of an edge, or of the second box, is chosen only if it separates by this much more: as part of the
-/// separation, and m.
-constexpr btScalar kBetterPart = 0.02F;
-constexpr btScalar kBetter = 1e-4F;
+/// An axis of an edge pair or of the second box is preferred only if its separation is larger by this (relative, and in
+/// m), which keeps the choice stable from step to step.
+constexpr btScalar kMinRelativeGain = 0.02F;
+constexpr btScalar kMinGain = 1e-4F;
 
-/// Owns the manifold of a pair.
+/// Base class: owns the manifold of a pair.
 class PairAlgorithm : public btCollisionAlgorithm {
  public:
   PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
@@ -69,21 +69,21 @@ class PlaneAlgorithm : public PairAlgorithm {
     ContactManifold points(manifold(), info.m_timeStep);
     ContactFeature feature;
     const btScalar height = normal.dot(pose.getOrigin()) - constant;
-    find_points_on_plane(shape, -(normal * pose.getBasis()), height, points.reach(), feature);
+    find_points_on_plane(shape, -(normal * pose.getBasis()), height, points.max_distance(), feature);
     for (int i = 0; i < feature.count; ++i) {
       const btVector3 point = pose(feature[i]) - normal * feature.margin;
       const btScalar distance = normal.dot(point) - constant;
       points.add(point - normal * distance, normal, distance);
     }
-    points.finish();
+    points.write();
   }
 
  private:
   bool plane_first_;
 };
 
-// The part of a polygon, segment or point that is inside of the plane through `from` with this outward normal.
-void cut(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
+// Clips a polygon, segment or point to the inner side of the plane through `from` with the normal `outward`.
+void clip_by_plane(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
   part.count = 0;
   const int sides = whole.count > 2 ? whole.count : whole.count - 1;
   btScalar p_out = outward.dot(whole[0] - from) - kClipSlack;
@@ -111,13 +111,13 @@ const ContactFeature& clip(const ContactFeature& reference, ContactFeature& inci
     const btVector3 edge = reference[side + 1 < reference.count ? side + 1 : 0] - from;
     const btScalar length = edge.length();
     if (!(length > SIMD_EPSILON)) continue;
-    cut(*whole, from, edge.cross(reference.normal) / length, *part);
+    clip_by_plane(*whole, from, edge.cross(reference.normal) / length, *part);
     std::swap(whole, part);
   }
   return *whole;
 }
 
-// Points of the incident feature below, or close above, the reference face. `flipped`: the reference is body A's.
+// Adds the points of the incident feature near the reference face. `flipped`: the reference face is body A's.
 void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ContactManifold& points) {
   ContactFeature spare;
   const ContactFeature& clipped = clip(reference, incident, spare);
@@ -158,27 +158,27 @@ class BoxAlgorithm : public PairAlgorithm {
     const auto& shape_b = static_cast<const btBoxShape&>(*b->getCollisionShape());
     const Box box_a(shape_a, a->getWorldTransform());
     const Box box_b(shape_b, b->getWorldTransform());
-    if (apart_.separates(box_a, box_b, points)) {
-      points.finish();
+    if (separating_axis_.separates(box_a, box_b, points)) {
+      points.write();
       return;
     }
-    const Axis axis = find_axis(box_a, box_b, points, apart_);
+    const Axis axis = find_axis(box_a, box_b, points, separating_axis_);
     if (axis.kind == Axis::edges) {
       add_edges(box_a, box_b, axis, points);
     } else if (axis.kind != Axis::none) {
       const bool first = axis.kind == Axis::face_a;
       ContactFeature reference;
       ContactFeature incident;
-      const btTransform& of_reference = (first ? a : b)->getWorldTransform();
-      const btTransform& of_incident = (first ? b : a)->getWorldTransform();
+      const btTransform& reference_pose = (first ? a : b)->getWorldTransform();
+      const btTransform& incident_pose = (first ? b : a)->getWorldTransform();
       const btVector3 outward = first ? -axis.normal : axis.normal;
-      find_feature(first ? shape_a : shape_b, outward * of_reference.getBasis(), reference);
-      find_feature(first ? shape_b : shape_a, -outward * of_incident.getBasis(), incident);
-      reference.transform(of_reference);
-      incident.transform(of_incident);
+      find_feature(first ? shape_a : shape_b, outward * reference_pose.getBasis(), reference);
+      find_feature(first ? shape_b : shape_a, -outward * incident_pose.getBasis(), incident);
+      reference.transform(reference_pose);
+      incident.transform(incident_pose);
       add_points(reference, incident, first, points);
     }
-    points.finish();
+    points.write();
   }
 
  private:
@@ -190,86 +190,94 @@ class BoxAlgorithm : public PairAlgorithm {
     int edge_b = 0;
   };
 
-  // The axis that separated the boxes in the last step: it most likely does so in the next one, too.
-  struct Apart {
+  // The axis that separated the boxes in the last step; most likely it does so in the next one, too.
+  struct SeparatingAxis {
     int a = kNone;  // axis of the first box
-    int b = kNone;  // of the second; the cross product if both
+    int b = kNone;  // of the second one; both: the cross product
 
-    // Whether it separates them until the end of the step, by more than rounding errors: find_axis() would find none.
+    // True if it separates the boxes until the end of the step by more than rounding errors, so that find_axis() would
+    // return none.
     bool separates(const Box& first, const Box& second, const ContactManifold& points) const {
       if (a == kNone && b == kNone) return false;
-      const btVector3 along = b == kNone   ? first.axis(a)
-                              : a == kNone ? second.axis(b)
-                                           : first.axis(a).cross(second.axis(b));
+      const btVector3 direction = b == kNone   ? first.axis(a)
+                                  : a == kNone ? second.axis(b)
+                                               : first.axis(a).cross(second.axis(b));
       const btScalar radius =
-          (along * first.axes).absolute().dot(first.half) + (along * second.axes).absolute().dot(second.half);
-      const btScalar way = along.dot(second.center - first.center);
-      const btScalar length = a == kNone || b == kNone ? btScalar(1) : along.length();
-      return std::fabs(way) - radius - closing(way, along.dot(points.way())) > (points.turn_reach() + kBetter) * length;
+          (direction * first.axes).absolute().dot(first.half) + (direction * second.axes).absolute().dot(second.half);
+      const btScalar center_distance = direction.dot(second.center - first.center);
+      const btScalar length = a == kNone || b == kNone ? btScalar(1) : direction.length();
+      return std::fabs(center_distance) - radius -
+                 closing_distance(center_distance, direction.dot(points.relative_motion())) >
+             (points.max_rotation_distance() + kMinGain) * length;
     }
     static constexpr int kNone = -1;
   };
 
-  // By how much a distance `between` along an axis shrinks when the second box moves by `way` along it.
-  static btScalar closing(btScalar between, btScalar way) { return std::max(between > 0 ? -way : way, btScalar(0)); }
+  // Decrease of the signed `distance` along an axis if the second box moves by `motion` along it.
+  static btScalar closing_distance(btScalar distance, btScalar motion) {
+    return std::max(distance > 0 ? -motion : motion, btScalar(0));
+  }
 
-  // None, if an axis keeps the boxes apart until the end of the step: then `apart_along` is that axis.
-  static Axis find_axis(const Box& a, const Box& b, const ContactManifold& points, Apart& apart_along) {
-    const btScalar reach = points.turn_reach();
-    const btVector3 way_a = points.way() * a.axes;
-    const btVector3 way_b = points.way() * b.axes;
-    const btMatrix3x3 turn = a.axes.transposeTimes(b.axes);  // axes of b, seen from a
+  // Returns none if an axis separates the boxes until the end of the step; `apart_along` is that axis then.
+  static Axis find_axis(const Box& a, const Box& b, const ContactManifold& points, SeparatingAxis& separating_axis) {
+    const btScalar max_distance = points.max_rotation_distance();
+    const btVector3 motion_a = points.relative_motion() * a.axes;
+    const btVector3 motion_b = points.relative_motion() * b.axes;
+    const btMatrix3x3 rotation = a.axes.transposeTimes(b.axes);  // axes of b in the frame of a
     const btVector3 from_a = (b.center - a.center) * a.axes;
     const btVector3 from_b = (b.center - a.center) * b.axes;
-    btMatrix3x3 size;
-    for (int i = 0; i < 3; ++i) size[i] = turn[i].absolute();
+    btMatrix3x3 abs_rotation;
+    for (int i = 0; i < 3; ++i) abs_rotation[i] = rotation[i].absolute();
     Axis best;
     for (int i = 0; i < 3; ++i) {
-      const btScalar apart = std::fabs(from_a[i]) - a.half[i] - size[i].dot(b.half);
-      if (apart - closing(from_a[i], way_a[i]) > reach) return none_along(i, Apart::kNone, apart_along);
-      if (apart > best.separation + (best.kind == Axis::none ? 0 : kBetter)) {
-        best = {Axis::face_a, a.axis(i) * (from_a[i] > 0 ? btScalar(-1) : btScalar(1)), apart, 0, 0};
+      const btScalar separation = std::fabs(from_a[i]) - a.half[i] - abs_rotation[i].dot(b.half);
+      if (separation - closing_distance(from_a[i], motion_a[i]) > max_distance)
+        return separated_along(i, SeparatingAxis::kNone, separating_axis);
+      if (separation > best.separation + (best.kind == Axis::none ? 0 : kMinGain)) {
+        best = {Axis::face_a, a.axis(i) * (from_a[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
       }
     }
     for (int i = 0; i < 3; ++i) {
-      const btScalar apart = std::fabs(from_b[i]) - b.half[i] - size.getColumn(i).dot(a.half);
-      if (apart - closing(from_b[i], way_b[i]) > reach) return none_along(Apart::kNone, i, apart_along);
-      if (apart > best.separation + kBetter + kBetterPart * std::fabs(best.separation)) {
-        best = {Axis::face_b, b.axis(i) * (from_b[i] > 0 ? btScalar(-1) : btScalar(1)), apart, 0, 0};
+      const btScalar separation = std::fabs(from_b[i]) - b.half[i] - abs_rotation.getColumn(i).dot(a.half);
+      if (separation - closing_distance(from_b[i], motion_b[i]) > max_distance)
+        return separated_along(SeparatingAxis::kNone, i, separating_axis);
+      if (separation > best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation)) {
+        best = {Axis::face_b, b.axis(i) * (from_b[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
       }
     }
-    const btScalar least = best.separation + kBetter + kBetterPart * std::fabs(best.separation);
+    const btScalar min_separation = best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation);
     for (int i = 0; i < 3; ++i) {
       const int i1 = (i + 1) % 3;
       const int i2 = (i + 2) % 3;
       for (int k = 0; k < 3; ++k) {
         const int k1 = (k + 1) % 3;
         const int k2 = (k + 2) % 3;
-        // cross product of a's axis i and b's axis k, seen from a: its length is their sine
-        const btScalar sine2 = 1 - turn[i][k] * turn[i][k];
+        // axis: cross product of a's axis i and b's axis k, in the frame of a; its length is the sine of their angle
+        const btScalar sine2 = 1 - rotation[i][k] * rotation[i][k];
         if (sine2 < 1e-4F) continue;
-        const btScalar along = from_a[i2] * turn[i1][k] - from_a[i1] * turn[i2][k];
-        const btScalar radius_a = a.half[i1] * size[i2][k] + a.half[i2] * size[i1][k];
-        const btScalar radius_b = b.half[k1] * size[i][k2] + b.half[k2] * size[i][k1];
+        const btScalar along = from_a[i2] * rotation[i1][k] - from_a[i1] * rotation[i2][k];
+        const btScalar radius_a = a.half[i1] * abs_rotation[i2][k] + a.half[i2] * abs_rotation[i1][k];
+        const btScalar radius_b = b.half[k1] * abs_rotation[i][k2] + b.half[k2] * abs_rotation[i][k1];
         const btScalar scaled = std::fabs(along) - radius_a - radius_b;  // times the sine
-        const btScalar least_now = best.kind == Axis::edges ? std::max(least, best.separation + kBetter) : least;
-        if (scaled <= std::min(least_now, btScalar(0))) continue;
+        const btScalar threshold =
+            best.kind == Axis::edges ? std::max(min_separation, best.separation + kMinGain) : min_separation;
+        if (scaled <= std::min(threshold, btScalar(0))) continue;
         const btScalar inverse = 1 / std::sqrt(sine2);
-        const btScalar apart = scaled * inverse;
-        const btScalar way = (way_a[i2] * turn[i1][k] - way_a[i1] * turn[i2][k]) * inverse;
-        if (apart - closing(along, way) > reach) return none_along(i, k, apart_along);
-        if (apart > least_now) {
+        const btScalar separation = scaled * inverse;
+        const btScalar motion = (motion_a[i2] * rotation[i1][k] - motion_a[i1] * rotation[i2][k]) * inverse;
+        if (separation - closing_distance(along, motion) > max_distance) return separated_along(i, k, separating_axis);
+        if (separation > threshold) {
           btVector3 normal = a.axis(i).cross(b.axis(k)) * inverse;
           if (normal.dot(b.center - a.center) > 0) normal = -normal;
-          best = {Axis::edges, normal, apart, i, k};
+          best = {Axis::edges, normal, separation, i, k};
         }
       }
     }
     return best;
   }
 
-  static Axis none_along(int a, int b, Apart& apart) {
-    apart = {a, b};
+  static Axis separated_along(int a, int b, SeparatingAxis& separating_axis) {
+    separating_axis = {a, b};
     return {};
   }
 
@@ -282,30 +290,30 @@ class BoxAlgorithm : public PairAlgorithm {
     }
     const btVector3 u = a.axis(axis.edge_a);
     const btVector3 v = b.axis(axis.edge_b);
-    const btVector3 between = on_b - on_a;
+    const btVector3 offset = on_b - on_a;
     const btScalar uv = u.dot(v);
     const btScalar scale = 1 / (1 - uv * uv);
-    const btScalar along_a = (between.dot(u) - uv * between.dot(v)) * scale;
-    const btScalar along_b = (uv * between.dot(u) - between.dot(v)) * scale;
-    // edges that pass beside each other don't touch
-    const btScalar beyond =
+    const btScalar along_a = (offset.dot(u) - uv * offset.dot(v)) * scale;
+    const btScalar along_b = (uv * offset.dot(u) - offset.dot(v)) * scale;
+    // edges that pass each other don't touch
+    const btScalar overshoot =
         std::max(std::fabs(along_a) - a.half[axis.edge_a], std::fabs(along_b) - b.half[axis.edge_b]);
-    if (axis.separation > 0 && beyond > kClipSlack) return;
+    if (axis.separation > 0 && overshoot > kClipSlack) return;
     points.add(on_b + v * along_b, axis.normal, axis.separation);
   }
 
-  Apart apart_;
+  SeparatingAxis separating_axis_;
 };
 
-// The nearest points of two convex shapes.
-struct Nearest : btDiscreteCollisionDetectorInterface::Result {
+// Closest points of two convex shapes.
+struct ClosestPoints : btDiscreteCollisionDetectorInterface::Result {
   void setShapeIdentifiersA(int, int) override {}
   void setShapeIdentifiersB(int, int) override {}
-  void addContactPoint(const btVector3& normal_on_b, const btVector3& point_on_b, btScalar apart) override {
+  void addContactPoint(const btVector3& normal_on_b, const btVector3& point_on_b, btScalar signed_distance) override {
     found = true;
     normal = normal_on_b;
     point = point_on_b;
-    distance = apart;
+    distance = signed_distance;
   }
 
   bool found = false;
@@ -326,66 +334,67 @@ class ConvexAlgorithm : public PairAlgorithm {
     const auto& shape_a = static_cast<const btConvexShape&>(*a->getCollisionShape());
     const auto& shape_b = static_cast<const btConvexShape&>(*b->getCollisionShape());
     ContactManifold points(manifold(), info.m_timeStep);
-    Nearest nearest;
+    ClosestPoints nearest;
     const btScalar breaking = manifold().getContactBreakingThreshold();
-    find_nearest(*a, *b, std::max(points.reach(), breaking), nearest);
-    const bool alone =
+    find_nearest(*a, *b, std::max(points.max_distance(), breaking), nearest);
+    const bool has_sphere =
         shape_a.getShapeType() == SPHERE_SHAPE_PROXYTYPE || shape_b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
     if (!nearest.found) {
-      points.finish();
-    } else if (alone) {
-      // its one point, which is on the line from the center: GJK's is less exact
+      points.write();
+    } else if (has_sphere) {
+      // exactly one point, on the line from the center; more accurate than GJK's
       const bool first = shape_a.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
       const btVector3& center = (first ? a : b)->getWorldTransform().getOrigin();
       const btScalar radius = static_cast<const btSphereShape&>(first ? shape_a : shape_b).getRadius();
       const btVector3 point =
           first ? center - nearest.normal * (radius + nearest.distance) : center + nearest.normal * radius;
       points.add(point, nearest.normal, nearest.distance);
-      points.finish();
+      points.write();
     } else if (add_faces(*a, *b, nearest.normal, points)) {
-      points.finish();
+      points.write();
     } else {
-      // edges and round sides: a point a step, as Bullet has them
+      // edges and round sides: one point per step, as in Bullet
       if (nearest.distance <= breaking) out->addContactPoint(nearest.normal, nearest.point, nearest.distance);
       out->refreshContactPoints();
     }
   }
 
  private:
-  void find_nearest(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar reach,
-                    Nearest& nearest) {
+  void find_nearest(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar max_distance,
+                    ClosestPoints& nearest) {
     const auto& shape_a = static_cast<const btConvexShape&>(*a.getCollisionShape());
     const auto& shape_b = static_cast<const btConvexShape&>(*b.getCollisionShape());
     btVoronoiSimplexSolver simplex;
     btGjkPairDetector detector(&shape_a, &shape_b, &simplex, &depth_solver_);
     btGjkPairDetector::ClosestPointInput input;
-    const btScalar far = shape_a.getMargin() + shape_b.getMargin() + reach;
-    input.m_maximumDistanceSquared = far * far;
+    const btScalar max_core_distance = shape_a.getMargin() + shape_b.getMargin() + max_distance;
+    input.m_maximumDistanceSquared = max_core_distance * max_core_distance;
     input.m_transformA = a.getWorldTransform();
     input.m_transformB = b.getWorldTransform();
     detector.getClosestPoints(input, nearest, nullptr);
   }
 
-  // False, if no face of either shape has the direction of the contact.
+  // Returns false if no face of either shape has the contact normal.
   static bool add_faces(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btVector3& normal,
                         ContactManifold& points) {
-    ContactFeature of_a;
-    ContactFeature of_b;
-    find(a, -normal, of_a);
-    find(b, normal, of_b);
-    const btScalar aligned_a = of_a.count > 2 ? -normal.dot(of_a.normal) : btScalar(0);
-    const btScalar aligned_b = of_b.count > 2 ? normal.dot(of_b.normal) : btScalar(0);
-    if (std::max(aligned_a, aligned_b) < kAligned) return false;
-    const bool first = aligned_a > aligned_b + (1 - kAligned);
-    if (first || aligned_b < kAligned) {
-      add_points(of_a, of_b, true, points);
+    ContactFeature feature_a;
+    ContactFeature feature_b;
+    find_world_feature(a, -normal, feature_a);
+    find_world_feature(b, normal, feature_b);
+    const btScalar alignment_a = feature_a.count > 2 ? -normal.dot(feature_a.normal) : btScalar(0);
+    const btScalar alignment_b = feature_b.count > 2 ? normal.dot(feature_b.normal) : btScalar(0);
+    if (std::max(alignment_a, alignment_b) < kMinAlignment) return false;
+    const bool first = alignment_a > alignment_b + (1 - kMinAlignment);
+    if (first || alignment_b < kMinAlignment) {
+      add_points(feature_a, feature_b, true, points);
     } else {
-      add_points(of_b, of_a, false, points);
+      add_points(feature_b, feature_a, false, points);
     }
     return !points.empty();
   }
 
-  static void find(const btCollisionObjectWrapper& object, const btVector3& direction, ContactFeature& feature) {
+  static void find_world_feature(const btCollisionObjectWrapper& object, const btVector3& direction,
+                                 ContactFeature& feature) {
     const btTransform& pose = object.getWorldTransform();
     find_feature(static_cast<const btConvexShape&>(*object.getCollisionShape()), direction * pose.getBasis(), feature);
     feature.transform(pose);

@@ -1,5 +1,5 @@
-// Contact algorithms: convex shapes on planes, boxes on boxes, and other convex shapes on each other, with complete
-// contact manifolds in every step.
+// Contact algorithms with complete contact manifolds in every step: convex shapes with planes, boxes with boxes, and
+// other convex shapes with each other.
 #pragma once
 
 #include "sim/bullet.h"
@@ -8,12 +8,12 @@
 
 namespace limber {
 
-/// Bullet adds one point a step, and turns a shape about a little to find the next: a box that falls flat tilts, and
-/// one that slides sinks and turns while its points drift. Here, all points of a step are found at once, from the
-/// features of the shapes that face each other, also those that will touch by its end. [sim]
+/// Bullet adds one point per step, and perturbs the pose of a shape to find another: a box that falls flat tilts, and
+/// one that slides sinks and turns while its points drift. These algorithms find all points of a step at once, from the
+/// opposing features of the shapes, including points that will touch by the step's end. [sim]
 class ContactAlgorithms {
  public:
-  /// Registers them; must outlive `dispatcher`'s use of them.
+  /// Registers the algorithms. The object must outlive `dispatcher`'s use of them.
   void install(btCollisionDispatcher& dispatcher);
 
  private:

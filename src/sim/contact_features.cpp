@@ -8,13 +8,13 @@ namespace limber {
 namespace {
 
 constexpr int kCapCorners = 12;
-/// The lowest point of a cap's rim is added to its corners where it is at least this much deeper than they can be, m.
+/// The lowest point of a cap's rim is added if it can be at least this much deeper than the corners, m.
 constexpr btScalar kRimDepth = 1e-4F;
-/// (1 - cos(pi / kCapCorners)): how far a rim's side is inside of its circle, per radius.
+/// (1 - cos(pi / kCapCorners)): distance between the middle of a rim's side and the circle, per radius.
 constexpr btScalar kRimSag = 0.0341F;
 /// A cap is level if its rim is at most this much deeper than its center, m.
 constexpr btScalar kLevel = 1e-3F;
-/// Directions within this of a cap's axis have no lowest point on the rim.
+/// Directions nearer than this (sine) to a cap's axis have no unique lowest point on the rim.
 constexpr btScalar kFlat = 1e-6F;
 
 struct Corner {
@@ -34,14 +34,14 @@ const std::array<Corner, kCapCorners>& unit_circle() {
   return circle;
 }
 
-// Corners of a cap at height z that faces up (side 1) or down (-1).
+// Adds the corners of a cap at height z that faces up (side 1) or down (-1).
 void add_cap(ContactFeature& feature, btScalar radius, btScalar z, btScalar side) {
   for (const Corner& c : unit_circle()) feature.add({radius * c.x, side * radius * c.y, z});
 }
 
-struct Radial {  // part of a direction across the z axis
+struct Radial {  // part of a direction perpendicular to the z axis
   btScalar length;
-  btVector3 unit;  // x where the length is about 0
+  btVector3 unit;  // x if the length is about 0
 };
 
 Radial radial_of(const btVector3& direction) {
@@ -105,12 +105,12 @@ void find_capsule_feature(const btCapsuleShape& shape, const btVector3& directio
 void find_hull_feature(const btPolyhedralConvexShape& shape, const btVector3& direction, ContactFeature& feature) {
   const btConvexPolyhedron& polyhedron = *shape.getConvexPolyhedron();
   int best = -1;
-  btScalar most = -2;
+  btScalar largest = -2;
   for (int i = 0; i < polyhedron.m_faces.size(); ++i) {
     const btScalar* plane = polyhedron.m_faces[i].m_plane;
     const btScalar along = direction.x() * plane[0] + direction.y() * plane[1] + direction.z() * plane[2];
-    if (along > most) {
-      most = along;
+    if (along > largest) {
+      largest = along;
       best = i;
     }
   }
@@ -128,9 +128,9 @@ void find_support(const btConvexShape& shape, const btVector3& direction, Contac
   feature.add(shape.localGetSupportingVertex(direction));
 }
 
-// A rim that faces down, its lowest point `depth` below the plane: its cap, if that is nearly level, and its lowest
-// point, if the cap's corners miss it.
-void add_lowest_of_cap(const Radial& radial, btScalar radius, btScalar z, btScalar side, btScalar depth,
+// For a rim that faces down, with its lowest point `depth` below the plane: adds its cap if it is nearly level, and its
+// lowest point if the cap's corners miss that.
+void add_lowest_points(const Radial& radial, btScalar radius, btScalar z, btScalar side, btScalar depth,
                        ContactFeature& feature) {
   const bool level = radial.length * radius < kLevel + std::max(depth, btScalar(0));
   if (level) add_cap(feature, radius, z, side);
@@ -139,7 +139,7 @@ void add_lowest_of_cap(const Radial& radial, btScalar radius, btScalar z, btScal
   }
 }
 
-bool along_z(const btConvexShape& shape) {
+bool has_z_axis(const btConvexShape& shape) {
   switch (shape.getShapeType()) {
     case CYLINDER_SHAPE_PROXYTYPE:
       return static_cast<const btCylinderShape&>(shape).getUpAxis() == 2;
@@ -162,7 +162,7 @@ void ContactFeature::transform(const btTransform& pose) {
 void find_feature(const btConvexShape& shape, const btVector3& direction, ContactFeature& feature) {
   feature.count = 0;
   feature.margin = 0;
-  if (!along_z(shape)) return find_support(shape, direction, feature);
+  if (!has_z_axis(shape)) return find_support(shape, direction, feature);
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE:
       return add_box_face(static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin(), direction,
@@ -184,15 +184,15 @@ void find_feature(const btConvexShape& shape, const btVector3& direction, Contac
   if (feature.count == 0) find_support(shape, direction, feature);
 }
 
-void find_points_on_plane(const btConvexShape& shape, const btVector3& direction, btScalar plane, btScalar reach,
+void find_points_on_plane(const btConvexShape& shape, const btVector3& direction, btScalar plane, btScalar max_distance,
                           ContactFeature& feature) {
   feature.count = 0;
   feature.margin = 0;
   feature.normal = direction;
-  if (!along_z(shape)) return find_support(shape, direction, feature);
+  if (!has_z_axis(shape)) return find_support(shape, direction, feature);
   switch (shape.getShapeType()) {
     case BOX_SHAPE_PROXYTYPE: {
-      // its lowest face has the lowest corner, and the three whose height is next
+      // the lowest face contains the lowest corner and the three next ones
       const btVector3 half = static_cast<const btBoxShape&>(shape).getHalfExtentsWithMargin();
       return add_box_face(half, direction, (half * direction).absolute().maxAxis(), feature);
     }
@@ -201,7 +201,7 @@ void find_points_on_plane(const btConvexShape& shape, const btVector3& direction
       const Radial radial = radial_of(direction);
       const btScalar side = direction.z() < 0 ? btScalar(-1) : btScalar(1);
       const btScalar lowest = radial.length * half.x() + std::fabs(direction.z()) * half.z();
-      add_lowest_of_cap(radial, half.x(), side * half.z(), side, lowest - plane, feature);
+      add_lowest_points(radial, half.x(), side * half.z(), side, lowest - plane, feature);
       feature.add(radial.unit * half.x() - btVector3(0, 0, side * half.z()));
       return;
     }
@@ -211,7 +211,7 @@ void find_points_on_plane(const btConvexShape& shape, const btVector3& direction
       feature.margin = cone.getMargin();
       const btScalar lowest =
           radial.length * cone.getRadius() - direction.z() * cone.getHeight() / 2 + cone.getMargin();
-      add_lowest_of_cap(radial, cone.getRadius(), -cone.getHeight() / 2, -1, lowest - plane, feature);
+      add_lowest_points(radial, cone.getRadius(), -cone.getHeight() / 2, -1, lowest - plane, feature);
       feature.add({0, 0, cone.getHeight() / 2});
       return;
     }
@@ -227,18 +227,18 @@ void find_points_on_plane(const btConvexShape& shape, const btVector3& direction
       const auto& hull = static_cast<const btConvexHullShape&>(shape);
       const btVector3* points = hull.getUnscaledPoints();
       feature.margin = hull.getMargin();
-      btScalar most = -BT_LARGE_FLOAT;
+      btScalar largest = -BT_LARGE_FLOAT;
       int lowest = 0;
       for (int i = 0; i < hull.getNumPoints(); ++i) {
         const btScalar along = points[i].dot(direction);
-        if (along > most) {
-          most = along;
+        if (along > largest) {
+          largest = along;
           lowest = i;
         }
       }
       if (hull.getNumPoints() > 0) feature.add(points[lowest]);
       for (int i = 0; i < hull.getNumPoints(); ++i) {
-        if (i != lowest && points[i].dot(direction) + feature.margin >= plane - reach) feature.add(points[i]);
+        if (i != lowest && points[i].dot(direction) + feature.margin >= plane - max_distance) feature.add(points[i]);
       }
       return;
     }

@@ -1,4 +1,4 @@
-// ContactManifold: replaces all contact points of two objects by those of this step, at once.
+// ContactManifold: replaces all contact points of two objects by those of the present step.
 #pragma once
 
 #include <array>
@@ -7,29 +7,29 @@
 
 namespace limber {
 
-/// Flag of a contact point beside Bullet's own: it has touched and has taken the impulse of that; see contacts.h.
+/// Flag of a contact point, in addition to Bullet's: the surfaces have met and the impact is over; see contacts.h.
 inline constexpr int kContactClosed = 1 << 16;
 
-/// Collects the points of one step, keeps at most four of them (the deepest, and those that span the largest area),
-/// and writes them into Bullet's manifold. Points that were there keep their impulses, which solvers start from.
-/// Nothing stale stays: a body that slides has its full set of points in every step. [sim]
+/// Collects the points of one step, reduces them to at most four (the deepest, and those that span the largest area),
+/// and writes them to Bullet's manifold. Points that existed before retain their impulses for warm starting. A body
+/// that slides has its complete set of points in every step. [sim]
 class ContactManifold {
  public:
-  /// `h`: length of the step, s. Body A is the first of the manifold's.
+  /// `h`: length of the step, s. Body A is the first one of the manifold.
   ContactManifold(btPersistentManifold& manifold, btScalar h);
 
-  /// Upper bound of how far apart points can be that touch within the step, m.
-  btScalar reach() const { return reach_; }
-  /// The same, without the bodies' linear motion.
-  btScalar turn_reach() const { return turn_reach_; }
-  /// How far B moves in the step, seen from A, without turning, m; 0 if contacts begin only where surfaces touch.
-  const btVector3& way() const { return way_; }
-  /// A point on the surface of B, `distance` (negative: depth) below that of A along the normal of B. Ignored if the
-  /// two cannot meet within the step.
+  /// Upper bound of the distance of points that can touch within the step, m.
+  btScalar max_distance() const { return max_distance_; }
+  /// The same without the bodies' linear motion, m.
+  btScalar max_rotation_distance() const { return max_rotation_distance_; }
+  /// Linear motion of B relative to A in the step, m; 0 if contacts begin only where surfaces touch.
+  const btVector3& relative_motion() const { return relative_motion_; }
+  /// Adds a point on the surface of B, `distance` (negative: depth) below that of A along the normal of B. Ignored if
+  /// the surfaces can't touch there within the step.
   void add(const btVector3& point_on_b, const btVector3& normal, btScalar distance);
   bool empty() const { return count_ == 0; }
-  /// Writes the points into the manifold.
-  void finish();
+  /// Writes the points to the manifold.
+  void write();
 
  private:
   struct Point {
@@ -50,17 +50,17 @@ class ContactManifold {
   const btRigidBody* a_;
   const btRigidBody* b_;
   btScalar h_;
-  btScalar near_;  // points at most this far apart are contacts even where nothing approaches
-  btVector3 way_{0, 0, 0};
-  btScalar turn_reach_;
-  btScalar reach_;
-  bool ahead_;  // whether contacts may begin before the surfaces touch; see Part::effect_surface
+  btScalar contact_distance_;  // distance up to which points are contacts even without an approach
+  btVector3 relative_motion_{0, 0, 0};
+  btScalar max_rotation_distance_;
+  btScalar max_distance_;
+  bool speculative_;  // contacts may begin before the surfaces touch; see Part::apply_surface
   int count_ = 0;
   std::array<Point, kMaxPoints> points_;
 };
 
-/// What Bullet's own algorithms report, a point at a time; a point that replaces an older one keeps everything that the
-/// solvers remember of it. [sim]
+/// Result of Bullet's own algorithms, one point at a time; a point that replaces an older one retains its warm-start
+/// data. [sim]
 class ContactResult : public btManifoldResult {
  public:
   using btManifoldResult::btManifoldResult;

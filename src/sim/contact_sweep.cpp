@@ -1,5 +1,5 @@
-// A row waits for the one before it wherever both move the same body, so what counts is how soon a pair's velocities
-// are there: in registers from row to row, and asked for before it is the pair's turn.
+// Rows of the same body depend on each other, so latency matters: a pair's velocities stay in registers from row to row
+// and are prefetched.
 #include "sim/contact_sweep.h"
 
 #include <algorithm>
@@ -11,37 +11,37 @@
 namespace limber {
 namespace {
 
-/// So many pairs ahead their bodies are asked for.
+/// Prefetch distance, in pairs.
 constexpr int kPairsAhead = 3;
-/// N·s: Bullet bounds no contact by less.
+/// N·s: Bullet's upper bound of a contact's impulse.
 constexpr float kNoBound = 1e10f;
 
-Lanes with_fourth(const btVector3& v, float fourth) {
-  Lanes l = lanes(v);
-  l[3] = fourth;
+Float4 with_w(const btVector3& v, float w) {
+  Float4 l = to_float4(v);
+  l[3] = w;
   return l;
 }
 
-Lanes all(float x) { return Lanes{x, x, x, x}; }
+Float4 broadcast(float x) { return Float4{x, x, x, x}; }
 
 template <int kLane>
-Lanes all(Lanes l) {
+Float4 broadcast(Float4 l) {
   return __builtin_shufflevector(l, l, kLane, kLane, kLane, kLane);
 }
 
 }  // namespace
 
-// Bullet leaves the normal out of a body that does not move.
-void ContactSweep::take(const btSolverConstraint& from, bool a_moves, Row& row) {
-  row.normal = with_fourth(a_moves ? from.m_contactNormal1 : -from.m_contactNormal2, from.m_rhs);
-  row.turn_a = with_fourth(from.m_relpos1CrossNormal, from.m_jacDiagABInv);
-  row.turn_b = with_fourth(from.m_relpos2CrossNormal, from.m_cfm);
-  row.answer_a = lanes(from.m_angularComponentA);
-  row.answer_b = lanes(from.m_angularComponentB);
+// Bullet leaves out the normal of a static body.
+void ContactSweep::load_row(const btSolverConstraint& from, bool a_moves, Row& row) {
+  row.normal = with_w(a_moves ? from.m_contactNormal1 : -from.m_contactNormal2, from.m_rhs);
+  row.jacobian_a = with_w(from.m_relpos1CrossNormal, from.m_jacDiagABInv);
+  row.jacobian_b = with_w(from.m_relpos2CrossNormal, from.m_cfm);
+  row.response_a = to_float4(from.m_angularComponentA);
+  row.response_b = to_float4(from.m_angularComponentB);
   row.impulse = from.m_appliedImpulse;
   row.friction = from.m_friction;
-  row.push_wanted = from.m_rhsPenetration;
-  row.push = from.m_appliedPushImpulse;
+  row.push_target = from.m_rhsPenetration;
+  row.push_impulse = from.m_appliedPushImpulse;
 }
 
 void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btConstraintArray& contacts,
@@ -57,13 +57,13 @@ void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btCon
   for (int i = 0; i < count; ++i) {
     const btSolverConstraint& c = contacts[i];
     const bool a_moves = bodies[c.m_solverBodyIdA].m_originalBody != nullptr;
-    take(c, a_moves, contacts_[i]);
-    take(friction[2 * i], a_moves, friction_[2 * i]);
-    take(friction[2 * i + 1], a_moves, friction_[2 * i + 1]);
+    load_row(c, a_moves, contacts_[i]);
+    load_row(friction[2 * i], a_moves, friction_[2 * i]);
+    load_row(friction[2 * i + 1], a_moves, friction_[2 * i + 1]);
     const float step = std::min(friction[2 * i].m_jacDiagABInv, friction[2 * i + 1].m_jacDiagABInv);
     for (int k = 2 * i; k < 2 * i + 2; ++k) {
-      const float own = friction[k].m_jacDiagABInv;
-      friction_[k].push_wanted = own > 0 ? step / own : 1;
+      const float own_step = friction[k].m_jacDiagABInv;
+      friction_[k].push_target = own_step > 0 ? step / own_step : 1;
     }
     Pair* const last = pairs_.size() > 0 ? &pairs_[pairs_.size() - 1] : nullptr;
     if (last != nullptr && last->a == c.m_solverBodyIdA && last->b == c.m_solverBodyIdB) {
@@ -74,68 +74,69 @@ void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btCon
   }
 }
 
-// Bullet's own order of sums, so that they round as Bullet's do; no branches, whose outcome nothing foretells. Numbers
-// are in all lanes alike. Returns the squared change.
-inline float ContactSweep::solve(Row& row, float wanted, float& impulse, float lower, float upper, PairVelocity& v) {
-  const Lanes speeds = sums_of_three(row.normal * v.linear_a, row.turn_a * v.angular_a, row.normal * v.linear_b,
-                                     row.turn_b * v.angular_b);
-  const Lanes step = all<3>(row.turn_a);
-  const Lanes before = all(impulse);
-  const Lanes low = all(lower);
-  const Lanes high = all(upper);
-  const Lanes free = ((all(wanted) - before * all<3>(row.turn_b)) - (all<0>(speeds) + all<1>(speeds)) * step) -
-                     (all<3>(speeds) - all<2>(speeds)) * step;
-  const Lanes sum = before + free;
-  Lanes change = sum < low ? low - before : free;
+// Adds in Bullet's order, so that results round equally; without branches, since they are unpredictable. Scalars are
+// broadcast to all elements. Returns the squared change.
+inline float ContactSweep::solve(Row& row, float target, float& impulse, float lower, float upper, PairVelocity& v) {
+  const Float4 speeds = sum_xyz(row.normal * v.linear_a, row.jacobian_a * v.angular_a, row.normal * v.linear_b,
+                                row.jacobian_b * v.angular_b);
+  const Float4 step = broadcast<3>(row.jacobian_a);
+  const Float4 before = broadcast(impulse);
+  const Float4 low = broadcast(lower);
+  const Float4 high = broadcast(upper);
+  const Float4 free = ((broadcast(target) - before * broadcast<3>(row.jacobian_b)) -
+                       (broadcast<0>(speeds) + broadcast<1>(speeds)) * step) -
+                      (broadcast<3>(speeds) - broadcast<2>(speeds)) * step;
+  const Float4 sum = before + free;
+  Float4 change = sum < low ? low - before : free;
   change = sum > high ? high - before : change;
-  Lanes after = sum < low ? low : sum;
+  Float4 after = sum < low ? low : sum;
   after = sum > high ? high : after;
   impulse = after[0];
   v.linear_a += row.normal * v.mass_a * change;
-  v.angular_a += row.answer_a * change;
+  v.angular_a += row.response_a * change;
   v.linear_b -= row.normal * v.mass_b * change;
-  v.angular_b += row.answer_b * change;
+  v.angular_b += row.response_b * change;
   return change[0] * change[0];
 }
 
-// What the row would need beside the impulse that it has; its softness is the direct solver's.
-inline float ContactSweep::free_impulse(const Row& row, const PairVelocity& v) {
-  const Lanes speeds = sums_of_three(row.normal * v.linear_a, row.turn_a * v.angular_a, row.normal * v.linear_b,
-                                     row.turn_b * v.angular_b);
-  return row.normal[3] - ((speeds[0] + speeds[1]) + (speeds[3] - speeds[2])) * row.turn_a[3];
+// Impulse that the row needs in addition to its present one; its softness applies to the direct solver only.
+inline float ContactSweep::unclamped_change(const Row& row, const PairVelocity& v) {
+  const Float4 speeds = sum_xyz(row.normal * v.linear_a, row.jacobian_a * v.angular_a, row.normal * v.linear_b,
+                                row.jacobian_b * v.angular_b);
+  return row.normal[3] - ((speeds[0] + speeds[1]) + (speeds[3] - speeds[2])) * row.jacobian_a[3];
 }
 
-// Sticks where the disc has room for that. Where it slides, both rows take a step of one length against the slip and go
-// back onto the disc, so that friction ends up opposite to the slip. Returns the larger squared change.
-inline float ContactSweep::solve_friction(Row& first, Row& second, float pressing, PairVelocity& v) {
-  const float most = first.friction * pressing;
-  const float free_first = free_impulse(first, v);
-  const float free_second = free_impulse(second, v);
+// Sticks if the disc permits the impulse. Otherwise both rows take a step of the same length against the slip and are
+// projected onto the disc, so that friction becomes opposite to the slip. Returns the larger squared change.
+inline float ContactSweep::solve_friction(Row& first, Row& second, float normal_impulse, PairVelocity& v) {
+  const float max_impulse = first.friction * normal_impulse;
+  const float free_first = unclamped_change(first, v);
+  const float free_second = unclamped_change(second, v);
   float along = first.impulse + free_first;
   float across = second.impulse + free_second;
-  if (along * along + across * across > most * most) {
-    along = first.impulse + free_first * first.push_wanted;
-    across = second.impulse + free_second * second.push_wanted;
+  if (along * along + across * across > max_impulse * max_impulse) {
+    along = first.impulse + free_first * first.push_target;
+    across = second.impulse + free_second * second.push_target;
     const float length2 = along * along + across * across;
-    const float part = length2 > most * most ? most / std::sqrt(length2) : 1.0F;
-    along *= part;
-    across *= part;
+    const float fraction = length2 > max_impulse * max_impulse ? max_impulse / std::sqrt(length2) : 1.0F;
+    along *= fraction;
+    across *= fraction;
   }
   const float change_first = along - first.impulse;
   const float change_second = across - second.impulse;
   first.impulse = along;
   second.impulse = across;
   v.linear_a += (first.normal * change_first + second.normal * change_second) * v.mass_a;
-  v.angular_a += first.answer_a * change_first + second.answer_a * change_second;
+  v.angular_a += first.response_a * change_first + second.response_a * change_second;
   v.linear_b -= (first.normal * change_first + second.normal * change_second) * v.mass_b;
-  v.angular_b += first.answer_b * change_first + second.answer_b * change_second;
+  v.angular_b += first.response_b * change_first + second.response_b * change_second;
   return std::max(change_first * change_first, change_second * change_second);
 }
 
 // Calls work(contact, velocity) for each contact, with the velocity of its pair.
 template <class Velocity, class Work>
-void ContactSweep::each_pair(Work&& work) {
-  constexpr std::size_t kSpeeds = 7 * sizeof(btVector3);  // up to those that only push apart
+void ContactSweep::for_each_contact(Work&& work) {
+  constexpr std::size_t kSpeeds = 7 * sizeof(btVector3);  // up to and including the split-impulse velocities
   const int count = pairs_.size();
   for (int p = 0; p < count; ++p) {
     if (p + kPairsAhead < count) {
@@ -152,26 +153,26 @@ void ContactSweep::each_pair(Work&& work) {
   }
 }
 
-btScalar ContactSweep::push_apart() {
+btScalar ContactSweep::sweep_split_impulse() {
   float largest = 0;
-  each_pair<PairPush>([&](int i, PairPush& v) {
+  for_each_contact<PairPushVelocity>([&](int i, PairPushVelocity& v) {
     Row& row = contacts_[i];
-    if (row.push_wanted == 0) return;
-    largest = std::max(largest, solve(row, row.push_wanted, row.push, 0, kNoBound, v));
+    if (row.push_target == 0) return;
+    largest = std::max(largest, solve(row, row.push_target, row.push_impulse, 0, kNoBound, v));
   });
   return largest;
 }
 
 btScalar ContactSweep::sweep() {
   float largest = 0;
-  each_pair<PairVelocity>([&](int i, PairVelocity& v) {
+  for_each_contact<PairVelocity>([&](int i, PairVelocity& v) {
     Row& row = contacts_[i];
     largest = std::max(largest, solve(row, row.normal[3], row.impulse, 0, kNoBound, v));
   });
-  each_pair<PairVelocity>([&](int i, PairVelocity& v) {
-    const float pressing = contacts_[i].impulse;
-    if (!(pressing > 0)) return;
-    largest = std::max(largest, solve_friction(friction_[2 * i], friction_[2 * i + 1], pressing, v));
+  for_each_contact<PairVelocity>([&](int i, PairVelocity& v) {
+    const float normal_impulse = contacts_[i].impulse;
+    if (!(normal_impulse > 0)) return;
+    largest = std::max(largest, solve_friction(friction_[2 * i], friction_[2 * i + 1], normal_impulse, v));
   });
   return largest;
 }
@@ -179,7 +180,7 @@ btScalar ContactSweep::sweep() {
 void ContactSweep::finish() const {
   for (int i = 0; i < contacts_.size(); ++i) {
     (*bullet_contacts_)[i].m_appliedImpulse = contacts_[i].impulse;
-    (*bullet_contacts_)[i].m_appliedPushImpulse = contacts_[i].push;
+    (*bullet_contacts_)[i].m_appliedPushImpulse = contacts_[i].push_impulse;
   }
   for (int i = 0; i < friction_.size(); ++i) (*bullet_friction_)[i].m_appliedImpulse = friction_[i].impulse;
 }

@@ -1,4 +1,4 @@
-// Contacts: which reporting parts began to touch, gathered over a tick's internal steps. [sim]
+// Contacts: contact-begin events of parts that report contacts, collected over the internal steps of a tick. [sim]
 #pragma once
 
 #include <cstdint>
@@ -13,47 +13,48 @@ namespace limber {
 
 class Part;
 
-/// Two parts began to touch; `part` asked for reports.
+/// Two parts began to touch; `part` reports contacts.
 struct ContactEvent {
   NodeId part;
   NodeId other;
-  double impulse =
-      0;  ///< Of the impact, N·s: the sum over its points until each has closed, without what they carry then.
+  /// Of the impact, N·s: sum over the contact's points, each up to and including the step in which it closes. Impulses
+  /// that carry resting loads afterwards are not included.
+  double impulse = 0;
   Vec3 position{0};  ///< World, of the deepest point.
 };
 
 class Contacts {
  public:
-  void part_reports(bool on) { reporting_ += on ? 1 : -1; }
-  /// A part is about to go: forget its pairs.
-  void forget(const Part& part);
-  /// Before the tick's first internal step.
+  void set_reporting(bool on) { reporting_ += on ? 1 : -1; }
+  /// To be called before a part is removed: removes its pairs.
+  void remove_part(const Part& part);
+  /// To be called before the tick's first internal step.
   void begin_tick();
-  /// After each internal step: costs nothing while no part reports. A contact slows an approaching part down in the
-  /// step before it closes; an event waits for that, by a tick if the tick ends in between.
-  void gather(btDispatcher& dispatcher);
-  /// After the last: what began to touch.
+  /// To be called after each internal step; costs nothing while no part reports. A speculative contact decelerates an
+  /// approaching part before the surfaces meet; its event is delayed until it has closed, but at most to the next tick.
+  void collect(btDispatcher& dispatcher);
+  /// To be called after the last internal step: collects the events of the tick.
   void end_tick();
-  std::span<const ContactEvent> begun() const { return begun_; }
+  std::span<const ContactEvent> events() const { return events_; }
 
  private:
-  friend class WorldKey;
+  friend class WorldCheckpoint;
   struct Pair {
     Part* a;
     Part* b;
     double impulse;
-    double depth;
+    double distance;
     Vec3 position;
-    bool before;
-    bool now;
-    bool closing;  // after the last internal step: a point has begun to press but has not closed
-    bool waits;    // it was so when the tick before ended; its event comes with this one
+    bool touched_before;
+    bool touching;
+    bool closing;        // as of the last internal step: a point presses but has not closed
+    bool event_pending;  // it was closing when the previous tick ended: its event is reported in this tick
   };
   Pair& pair_of(Part* a, Part* b);
 
   int reporting_ = 0;
   std::vector<Pair> pairs_;  // in the order in which they first touched
-  std::vector<ContactEvent> begun_;
+  std::vector<ContactEvent> events_;
 };
 
 }  // namespace limber

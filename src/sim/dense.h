@@ -1,4 +1,4 @@
-// Dense: lines of numbers, as many at a time as the processor takes; the same on every one, to the bit. [any]
+// Dense vector kernels (SIMD). Results are identical to the bit on every processor, whatever its vector width. [any]
 #pragma once
 
 #include <cstddef>
@@ -7,52 +7,54 @@
 
 namespace limber {
 
-struct ScaledLine {
-  const double* numbers;
+struct ScaledVector {
+  const double* values;
   double scale;
 };
 
-/// Element by element, so lanes of any width say the same; a sum is of four parts, that of every fourth number each.
+/// One implementation of the kernels; the functions below describe them. Element-wise operations don't depend on the
+/// vector width; a dot product always adds four partial sums, each over every fourth element.
 struct DenseKernels {
   void (*subtract_scaled)(double* y, const double* a, double x, int count);
-  void (*subtract_lines)(double* y, std::span<const ScaledLine> lines, int count);
-  void (*subtract_in_turn)(double* y, const double* lines, int stride, std::span<const double> scales, int count);
-  double (*product)(const double* a, const double* b, int count);
+  void (*subtract_vectors)(double* y, std::span<const ScaledVector> vectors, int count);
+  void (*subtract_sequence)(double* y, const double* vectors, int stride, std::span<const double> scales, int count);
+  double (*dot_product)(const double* a, const double* b, int count);
 
-  static const DenseKernels& by_two();
-  /// By four where the processor can (AVX2).
+  /// Two elements at a time; runs on any processor.
+  static const DenseKernels& width_2();
+  /// Four elements at a time if the processor supports AVX2, else width_2().
   static const DenseKernels& widest();
 };
 
 namespace dense {
 
-/// Lines from this length on are worth a call.
-constexpr int kLong = 12;
+/// Shorter vectors are calculated inline, without a call through `kernels`.
+constexpr int kMinCallLength = 12;
 extern const DenseKernels& kernels;
 
-using Pair [[gnu::vector_size(16)]] = double;
+using Double2 [[gnu::vector_size(16)]] = double;
 
-inline Pair load_pair(const double* v) {
-  Pair pair;
+inline Double2 load2(const double* v) {
+  Double2 pair;
   std::memcpy(&pair, v, sizeof pair);
   return pair;
 }
 
-inline void subtract_by_two(double* y, const double* a, double x, int count) {
-  const Pair scale = {x, x};
+inline void subtract_scaled_width_2(double* y, const double* a, double x, int count) {
+  const Double2 scale = {x, x};
   for (int i = 0; i < count; i += 2) {
-    const Pair changed = load_pair(y + i) - load_pair(a + i) * scale;
+    const Double2 changed = load2(y + i) - load2(a + i) * scale;
     std::memcpy(y + i, &changed, sizeof changed);
   }
 }
 
-inline double product_by_two(const double* a, const double* b, int count) {
-  Pair first = {0, 0};
-  Pair second = {0, 0};
+inline double dot_product_width_2(const double* a, const double* b, int count) {
+  Double2 first = {0, 0};
+  Double2 second = {0, 0};
   int i = 0;
   for (; i + 3 < count; i += 4) {
-    first += load_pair(a + i) * load_pair(b + i);
-    second += load_pair(a + i + 2) * load_pair(b + i + 2);
+    first += load2(a + i) * load2(b + i);
+    second += load2(a + i + 2) * load2(b + i + 2);
   }
   first += second;
   double sum = first[0] + first[1];
@@ -62,26 +64,26 @@ inline double product_by_two(const double* a, const double* b, int count) {
 
 }  // namespace dense
 
-/// y -= a·x, over an even count.
+/// y -= x·a; `count` must be even.
 inline void subtract_scaled(double* y, const double* a, double x, int count) {
-  if (count < dense::kLong) return dense::subtract_by_two(y, a, x, count);
+  if (count < dense::kMinCallLength) return dense::subtract_scaled_width_2(y, a, x, count);
   dense::kernels.subtract_scaled(y, a, x, count);
 }
 
-/// y -= the sum of all lines, each times its scale, over an even count. Four lines are added up before.
-inline void subtract_scaled(double* y, std::span<const ScaledLine> lines, int count) {
-  dense::kernels.subtract_lines(y, lines, count);
+/// y -= sum of scale·vector over all vectors, four at a time; `count` must be even.
+inline void subtract_scaled(double* y, std::span<const ScaledVector> vectors, int count) {
+  dense::kernels.subtract_vectors(y, vectors, count);
 }
 
-/// y -= lines that begin `stride` after each other, each times its scale, one after the other, over any count.
-inline void subtract_in_turn(double* y, const double* lines, int stride, std::span<const double> scales, int count) {
-  dense::kernels.subtract_in_turn(y, lines, stride, scales, count);
+/// y -= scale·vector for each scale in order; the vectors begin `stride` elements apart, `count` is arbitrary.
+inline void subtract_sequence(double* y, const double* vectors, int stride, std::span<const double> scales, int count) {
+  dense::kernels.subtract_sequence(y, vectors, stride, scales, count);
 }
 
-/// The sum of a·b.
-inline double product(const double* a, const double* b, int count) {
-  if (count < dense::kLong) return dense::product_by_two(a, b, count);
-  return dense::kernels.product(a, b, count);
+/// Dot product.
+inline double dot_product(const double* a, const double* b, int count) {
+  if (count < dense::kMinCallLength) return dense::dot_product_width_2(a, b, count);
+  return dense::kernels.dot_product(a, b, count);
 }
 
 }  // namespace limber

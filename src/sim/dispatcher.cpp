@@ -1,5 +1,5 @@
-// Data of a pair is reached through chains of pointers, so it is prefetched in three stages, each when the one before
-// has arrived.
+// Data of a pair is reached through chains of pointers, so it is prefetched in three stages, each of which reads data
+// that the previous one fetched.
 #include "sim/dispatcher.h"
 
 #include "sim/contact_manifold.h"
@@ -7,23 +7,23 @@
 namespace limber {
 namespace {
 
-/// So many pairs ahead each go is made.
-constexpr int kHandles = 16;
-constexpr int kParts = 10;
-constexpr int kPoints = 5;
+/// Prefetch distances of the stages, in pairs.
+constexpr int kHandlesAhead = 16;
+constexpr int kBodiesAhead = 10;
+constexpr int kContactsAhead = 5;
 
 btCollisionObject& object(const btBroadphaseProxy& proxy) {
   return *static_cast<btCollisionObject*>(proxy.m_clientObject);
 }
 
-[[gnu::always_inline]] inline void ask_for_handles(const btBroadphasePair& pair) {
+[[gnu::always_inline]] inline void prefetch_handles(const btBroadphasePair& pair) {
   prefetch(pair.m_pProxy0, 1);
   prefetch(pair.m_pProxy1, 1);
   prefetch(pair.m_algorithm, sizeof(btCollisionAlgorithm) + 2 * sizeof(void*));
 }
 
-[[gnu::always_inline]] inline void ask_for_parts(const btBroadphasePair& pair, btManifoldArray& manifolds) {
-  constexpr std::size_t kUsed = 480;  // of a body: where it is, its shape, what it is like, its velocity
+[[gnu::always_inline]] inline void prefetch_bodies(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+  constexpr std::size_t kUsed = 480;  // of a body: pose, shape, properties, velocity
   prefetch(&object(*pair.m_pProxy0), kUsed);
   prefetch(&object(*pair.m_pProxy1), kUsed);
   manifolds.resizeNoInitialize(0);
@@ -31,7 +31,7 @@ btCollisionObject& object(const btBroadphaseProxy& proxy) {
   for (int i = 0; i < manifolds.size(); ++i) prefetch_end(*manifolds[i]);
 }
 
-[[gnu::always_inline]] inline void ask_for_points(const btBroadphasePair& pair, btManifoldArray& manifolds) {
+[[gnu::always_inline]] inline void prefetch_contact_data(const btBroadphasePair& pair, btManifoldArray& manifolds) {
   prefetch(object(*pair.m_pProxy0).getCollisionShape(), sizeof(btBoxShape));
   prefetch(object(*pair.m_pProxy1).getCollisionShape(), sizeof(btBoxShape));
   manifolds.resizeNoInitialize(0);
@@ -41,15 +41,15 @@ btCollisionObject& object(const btBroadphaseProxy& proxy) {
 
 }  // namespace
 
-// Pairs of which at least one object is awake. What sleeps or is static keeps the contacts that it has.
+// Collects pairs with at least one awake object. Other pairs retain their contacts.
 void Dispatcher::find_awake(btBroadphasePairArray& pairs) {
   awake_.resizeNoInitialize(0);
   for (int i = 0; i < pairs.size(); ++i) {
-    if (some_sleep_ && i + kHandles < pairs.size()) {
-      prefetch(pairs[i + kHandles].m_pProxy0, 1);
-      prefetch(pairs[i + kHandles].m_pProxy1, 1);
+    if (sleeping_ && i + kHandlesAhead < pairs.size()) {
+      prefetch(pairs[i + kHandlesAhead].m_pProxy0, 1);
+      prefetch(pairs[i + kHandlesAhead].m_pProxy1, 1);
     }
-    if (some_sleep_ && !object(*pairs[i].m_pProxy0).isActive() && !object(*pairs[i].m_pProxy1).isActive()) continue;
+    if (sleeping_ && !object(*pairs[i].m_pProxy0).isActive() && !object(*pairs[i].m_pProxy1).isActive()) continue;
     awake_.push_back(&pairs[i]);
   }
 }
@@ -72,11 +72,11 @@ void Dispatcher::find_contacts(btBroadphasePair& pair, const btDispatcherInfo& i
 void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info, btDispatcher*) {
   find_awake(cache->getOverlappingPairArray());
   const int count = awake_.size();
-  looked_at_ += static_cast<std::uint64_t>(count);
+  processed_pairs_ += static_cast<std::uint64_t>(count);
   for (int i = 0; i < count; ++i) {
-    if (i + kHandles < count) ask_for_handles(*awake_[i + kHandles]);
-    if (i + kParts < count) ask_for_parts(*awake_[i + kParts], manifolds_);
-    if (i + kPoints < count) ask_for_points(*awake_[i + kPoints], manifolds_);
+    if (i + kHandlesAhead < count) prefetch_handles(*awake_[i + kHandlesAhead]);
+    if (i + kBodiesAhead < count) prefetch_bodies(*awake_[i + kBodiesAhead], manifolds_);
+    if (i + kContactsAhead < count) prefetch_contact_data(*awake_[i + kContactsAhead], manifolds_);
     find_contacts(*awake_[i], info);
   }
 }

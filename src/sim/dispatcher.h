@@ -1,4 +1,4 @@
-// Dispatcher: goes through the pairs that may touch, and has their contact points found.
+// Dispatcher: finds the contact points of all overlapping pairs.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace limber {
 
-/// Asks for what a manifold says last: how many points it has, and of which parts.
+/// Prefetches the end of a manifold, which holds the number of points and the objects.
 [[gnu::always_inline]] inline void prefetch_end(const btPersistentManifold& manifold) {
   constexpr std::size_t kEnd = 64;
   prefetch(reinterpret_cast<const char*>(&manifold + 1) - kEnd, kEnd);
 }
 
-/// Asks for its points. Reads its end.
+/// Prefetches the points of a manifold. Reads its end.
 [[gnu::always_inline]] inline void prefetch_points(const btPersistentManifold& manifold) {
   prefetch(&manifold, static_cast<std::size_t>(manifold.getNumContacts()) * sizeof(btManifoldPoint));
 }
 
-/// Bullet's dispatcher with contact algorithms of our own. Pairs that exist may collide: filters apply when pairs are
-/// made. Prefetches the data of the next pairs while one is processed: a pair has two parts, two shapes and a kilobyte
-/// of contact points, which are no longer in the cache in a large scene. [sim]
+/// Bullet's dispatcher with our contact algorithms. All pairs in the cache may collide: filters are applied when pairs
+/// are created. Prefetches the data of the next pairs while one is processed: a pair has two parts, two shapes and a
+/// kilobyte of contact points, which are not in the cache in a large scene. [sim]
 class Dispatcher : public btCollisionDispatcher {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -33,18 +33,18 @@ class Dispatcher : public btCollisionDispatcher {
   void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                  btDispatcher* dispatcher) override;
 
-  /// Whether to look for what sleeps: pairs of which no object is awake are left out.
-  void set_some_sleep(bool some) { some_sleep_ = some; }
-  /// Pairs whose contacts were looked for, since the start.
-  std::uint64_t looked_at() const { return looked_at_; }
+  /// Sets whether some objects may be asleep; then pairs without an awake object are skipped.
+  void set_sleeping(bool some) { sleeping_ = some; }
+  /// Number of pairs whose contacts were searched since the start.
+  std::uint64_t processed_pairs() const { return processed_pairs_; }
 
  private:
   void find_awake(btBroadphasePairArray& pairs);
   void find_contacts(btBroadphasePair& pair, const btDispatcherInfo& info);
 
   ContactAlgorithms algorithms_;
-  bool some_sleep_ = false;
-  std::uint64_t looked_at_ = 0;
+  bool sleeping_ = false;
+  std::uint64_t processed_pairs_ = 0;
   btAlignedObjectArray<btBroadphasePair*> awake_;  // scratch
   btManifoldArray manifolds_;                      // of one pair
 };

@@ -1,31 +1,32 @@
-// Effort: what a step of an island has cost so far, and whether that is enough: then laws have to be met less exactly,
-// so that no step takes long. docs/solver.md. No Bullet.
+// WorkBudget: counts the work of a solver step on an island. Beyond its limit, rows are solved with a larger tolerance,
+// which bounds the time of a step. docs/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <algorithm>
 
 namespace limber {
 
-/// Counted in multiply-adds, not in time: the same on every machine. [sim]
-class Effort {
+/// Work is counted in multiply-adds instead of time, so that results are the same on every machine. [sim]
+class WorkBudget {
  public:
-  void begin() { spent_ = 0; }
-  /// About so much should do for the step.
-  void allow(double enough) { enough_ = enough; }
-  /// Lines of so many numbers each, multiplied and added to others.
-  void lines(double count, double numbers) { spent_ += count * (kLine + numbers); }
+  /// Starts a step.
+  void reset() { spent_ = 0; }
+  /// Sets the limit of the step, in multiply-adds.
+  void set_limit(double limit) { limit_ = limit; }
+  /// Counts `count` vector operations of `elements` elements each.
+  void charge(double count, double elements) { spent_ += count * (kVectorOverhead + elements); }
   double spent() const { return spent_; }
-  /// What a law may be missed by, m/s and rad/s, where `least` is asked for.
-  double tolerance(double least) const { return over() ? std::max(least, kMissed) : least; }
-  /// Whether it has cost enough, or would have after so much more work: from here on what is near has to do.
-  bool over(double more = 0) const { return spent_ + more > enough_; }
+  /// Tolerance of a row, m/s and rad/s: `requested`, or more if the limit is exceeded.
+  double tolerance(double requested) const { return exceeded() ? std::max(requested, kRelaxedTolerance) : requested; }
+  /// True if the work, plus `more`, exceeds the limit.
+  bool exceeded(double more = 0) const { return spent_ + more > limit_; }
 
  private:
-  /// What a line costs besides its numbers.
-  static constexpr double kLine = 8;
-  static constexpr double kMissed = 1e-2;
+  /// Fixed overhead per vector operation, in multiply-adds.
+  static constexpr double kVectorOverhead = 8;
+  static constexpr double kRelaxedTolerance = 1e-2;
 
-  double enough_ = 1e300;
+  double limit_ = 1e300;
   double spent_ = 0;
 };
 

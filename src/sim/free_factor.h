@@ -1,5 +1,5 @@
-// FreeFactor: the response of some rows to each other, factored (L·D·Lᵀ). What a choice of rows has in common with the
-// one before, from its beginning, is not factored again. No Bullet.
+// IncrementalLdlt: LDLᵀ factor of selected rows and columns of a symmetric matrix. Leading rows that a selection has in
+// common with the previous one are not factored again. Doesn't depend on Bullet.
 #pragma once
 
 #include <cstddef>
@@ -10,32 +10,35 @@
 
 namespace limber {
 
-/// Golub and Van Loan, Matrix Computations, 4.1: without exchanges, since what it factors is positive. [sim]
-class FreeFactor {
+/// Golub and Van Loan, Matrix Computations, section 4.1; without pivoting, since the matrix is positive definite. [sim]
+class IncrementalLdlt {
  public:
-  /// Matrices of up to `usual_rows` need no memory later.
-  explicit FreeFactor(Effort& effort, std::size_t usual_rows = 0);
-  /// Of a symmetric matrix, `stride` (even) numbers a line, which stays as it is while rows are chosen. None are.
-  void start(std::span<const double> matrix, int stride);
-  /// The rows that are to be free (not 0), one mark each; those that were free keep their order, and others come behind
-  /// them. False, and nothing can be solved: more than `most`, or no positive matrix.
-  bool choose(std::span<const unsigned char> free, int most);
+  /// Reserves memory for matrices of up to `usual_rows` rows.
+  explicit IncrementalLdlt(WorkBudget& budget, std::size_t usual_rows = 0);
+  /// Sets a symmetric matrix with `stride` (even) elements per line, which must not change while rows are selected. No
+  /// rows are selected at first.
+  void reset(std::span<const double> matrix, int stride);
+  /// Selects the rows with a nonzero element in `free` and factors them. Rows that were selected before keep their
+  /// order, new ones are appended. Returns false if there are more than `max_rows`, or the matrix is not positive
+  /// definite; solve() must not be called then.
+  bool select(std::span<const unsigned char> free, int max_rows);
+  /// The selected rows, in the order of the factor.
   std::span<const int> rows() const { return rows_; }
-  /// In place: what each of rows() misses becomes the impulse it needs.
-  void solve(std::span<double> missing) const;
+  /// Solves in place: the right-hand side of each of rows() becomes its solution.
+  void solve(std::span<double> rhs) const;
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  bool factor(int kept);
+  bool factor(int valid_rows);
 
-  Effort& effort_;
+  WorkBudget& budget_;
   std::span<const double> matrix_;
   int stride_ = 0;
   std::vector<int> rows_;
-  std::vector<unsigned char> chosen_;  // of each row of the matrix
-  std::vector<double> lines_;          // parts L below, D·Lᵀ above
-  std::vector<double> inverse_;        // of D
-  int factored_ = 0;                   // so many of rows_, from the first
+  std::vector<unsigned char> selected_;  // by row of the matrix
+  std::vector<double> factor_;           // L below the diagonal, D·Lᵀ on and above it
+  std::vector<double> inverse_;          // of D
+  int factored_count_ = 0;               // number of leading rows_ that are factored
 };
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Gear: couples the own axes of two joints of any bodies, both ways: position_b = ratio·position_a + offset. [sim]
+// Gear: couples the own axes of two joints of any bodies in both directions: position_b = ratio·position_a + offset.
+// [sim]
 #pragma once
 
 #include <memory>
@@ -15,7 +16,7 @@ class World;
 
 class Gear {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Gear(World& world, NodeId group, std::string name, Joint& joint_a, Joint& joint_b);
   ~Gear();
@@ -31,26 +32,28 @@ class Gear {
   double ratio() const;
   double offset() const;
   bool enabled() const;
+  /// True if one of its joints belongs to the body.
   bool couples(const Body& body) const;
 
-  /// Other joints of the same kind, as a body was rebuilt. The gear must not be in Bullet's world.
-  void attach(Joint& joint_a, Joint& joint_b);
-  /// Into Bullet's world when it is enabled, its joints are there and it is not redundant; else out of it.
-  void settle();
-  void leave();
-  /// Redundant: other gears determine the position already.
+  /// Replaces the joints by others of the same kind after a body was rebuilt. The gear must not be in Bullet's world.
+  void replace_joints(Joint& joint_a, Joint& joint_b);
+  /// Adds the constraint to Bullet's world if the gear is enabled, not redundant and its joints are in the world; else
+  /// removes it.
+  void update_constraint();
+  void remove_constraint();
+  /// Redundant: other gears determine the position already (or contradict this gear), so its constraint is not used.
   void set_redundant(bool redundant) { redundant_ = redundant; }
   bool redundant() const { return redundant_; }
 
-  // Called by the properties.
-  void effect_settings();
+  // Callbacks of the properties.
+  void apply_settings();
   void read_error(double* out) const;
   void read_force(double* out) const;
-  Result<void> refuse_ratio(const double* in) const;
+  Result<void> validate_ratio(const double* in) const;
   Result<void> act_remove(std::span<const double> args);
 
  private:
-  friend class WorldKey;
+  friend class WorldCheckpoint;
   void make_constraint();
 
   World& world_;
@@ -62,7 +65,7 @@ class Gear {
   bool redundant_ = false;
 };
 
-/// A joint whose own axis a gear can couple: it turns or slides about one axis. The error says why not.
+/// Checks that a gear can couple the joint: it must have one axis, revolute or prismatic. The error gives the reason.
 Result<void> check_gear_joint(const Joint& joint);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// GearConstraint: couples the own axes of two joints, with reaction: position_b = ratio·position_a + offset. One solver
+// GearConstraint: couples the own axes of two joints with reaction: position_b = ratio·position_a + offset. One solver
 // row that acts on up to four bodies.
 #pragma once
 
@@ -17,8 +17,8 @@ struct GearSettings {
   bool operator==(const GearSettings&) const = default;
 };
 
-/// Bullet's two bodies of it are a moving one of each joint, so that islands, and what sleeps, are found as for joints.
-/// Joints may belong to one tree, to different trees or to different bodies, and may turn or slide. The joints must be
+/// Its two bodies for Bullet are a dynamic one of each joint, so that islands and sleeping include it like a joint. The
+/// joints may be in one tree, in different trees or in different bodies, and may be revolute or prismatic. They must be
 /// in the world whenever the gear is, and outlive it. [sim]
 class GearConstraint : public btTypedConstraint {
  public:
@@ -33,20 +33,20 @@ class GearConstraint : public btTypedConstraint {
   int axis_a() const { return axis_a_; }
   int axis_b() const { return axis_b_; }
 
-  /// Distance of b from its position by the gear, rad or m.
+  /// Position error: ratio·position_a + offset - position_b, rad or m.
   double error() const;
-  /// Force or torque on b's axis, mean over the last tick; a's axis gets -ratio times this.
+  /// Mean force or torque on b's axis in the last tick; a's axis gets -ratio times this.
   double applied() const { return static_cast<double>(applied_); }
-  /// True when the joints have missed the gear by more than kMiss for kMissTime of simulated time.
-  bool slips() const { return missed_for_ > kMissTime; }
-  /// False after the first call: a gear that slips is reported once.
+  /// True if the position error has exceeded kSlipThreshold for more than kSlipTime of simulated time.
+  bool is_slipping() const { return slip_time_ > kSlipTime; }
+  /// Returns true on the first call only: slip is reported once.
   bool report_slip() { return !std::exchange(slip_reported_, true); }
-  static constexpr double kMiss = 0.01;
-  static constexpr float kMissTime = 0.5f;
+  static constexpr double kSlipThreshold = 0.01;  ///< rad or m
+  static constexpr float kSlipTime = 0.5f;        ///< s
 
-  // For IslandSolver, IslandDirect and IslandWorld.
-  /// Velocity of one body per rate of the row; also the impulse on the body per impulse of the row.
-  struct Side {
+  // For IslandSolver, DirectSolver and IslandWorld.
+  /// Jacobian with respect to one body: impulse on the body per impulse of the row.
+  struct BodyJacobian {
     btRigidBody* body = nullptr;
     btVector3 linear{0, 0, 0};
     btVector3 angular{0, 0, 0};
@@ -55,21 +55,24 @@ class GearConstraint : public btTypedConstraint {
   struct Row {
     double velocity = 0;
     double softness = 0;
-    double bound = 0;     ///< Largest impulse either way.
-    double mobility = 0;  ///< Rate per impulse of the moving bodies without joints.
+    double bound = 0;     ///< Largest impulse in either direction.
+    double mobility = 0;  ///< Inverse effective mass: rate per impulse of the dynamic bodies without joints.
   };
-  /// Plans the row of the coming internal step of length h; both joints must have been planned.
+  /// Plans the row of the next internal step of length h; both joints must have been planned.
   void plan(btScalar h);
   const Row& row() const { return row_; }
-  /// Bodies that move, each once.
-  std::span<const Side> sides() const { return {sides_.data(), static_cast<std::size_t>(side_count_)}; }
-  /// Impulse that the sweeps start from.
-  double warm_impulse() const { return static_cast<double>(warm_); }
-  void take_impulse(double impulse);
+  /// Dynamic bodies, each once.
+  std::span<const BodyJacobian> jacobians() const {
+    return {jacobians_.data(), static_cast<std::size_t>(jacobian_count_)};
+  }
+  /// Warm-start impulse of the sweeps.
+  double warm_impulse() const { return static_cast<double>(warm_impulse_); }
+  /// Stores the impulse of the step, for warm starting and the mean force.
+  void set_impulse(double impulse);
   void forget_impulses() { last_impulse_ = 0; }
-  /// Call after a part was moved by hand: forgets impulses and for how long the gear has slipped.
-  void reset() { last_impulse_ = applied_ = missed_for_ = 0; }
-  /// Ends a tick: averages the applied force, counts how long the gear has slipped.
+  /// To be called after a part was teleported: resets impulses and the slip time.
+  void reset() { last_impulse_ = applied_ = slip_time_ = 0; }
+  /// Ends a tick: averages the applied force, updates the slip time.
   void end_tick();
 
   void getInfo1(btConstraintInfo1* info) override;
@@ -80,8 +83,8 @@ class GearConstraint : public btTypedConstraint {
   static constexpr auto kType = static_cast<btTypedConstraintType>(MAX_CONSTRAINT_TYPE + 1);
 
  private:
-  void add_sides(JointConstraint& joint, int axis, double factor);
-  void add_side(btRigidBody& body, const btVector3& linear, const btVector3& angular);
+  void add_jacobians(JointConstraint& joint, int axis, double factor);
+  void add_jacobian(btRigidBody& body, const btVector3& linear, const btVector3& angular);
 
   JointConstraint* joint_a_;
   JointConstraint* joint_b_;
@@ -89,19 +92,19 @@ class GearConstraint : public btTypedConstraint {
   int axis_b_;
   GearSettings settings_;
   Row row_;
-  std::array<Side, 4> sides_;
-  int side_count_ = 0;
+  std::array<BodyJacobian, 4> jacobians_;
+  int jacobian_count_ = 0;
   btScalar h_ = 0;
   float last_impulse_ = 0;
-  float warm_ = 0;
+  float warm_impulse_ = 0;
   float tick_impulse_ = 0;
   float tick_time_ = 0;
   float applied_ = 0;
-  float missed_for_ = 0;
+  float slip_time_ = 0;
   bool slip_reported_ = false;
 };
 
-/// True for constraints that the direct solver knows.
+/// True if the constraint is a gear.
 inline bool is_gear(const btTypedConstraint& constraint) {
   return constraint.getConstraintType() == GearConstraint::kType;
 }

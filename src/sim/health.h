@@ -1,4 +1,4 @@
-// Health: bounds that a moving part stays within; beyond them the world restores its body. [sim]
+// Stability check: limits for the motion of parts. The world restores the body of a part that exceeds them. [sim]
 #pragma once
 
 #include <string>
@@ -10,11 +10,12 @@ namespace limber {
 class Body;
 class Part;
 
-/// What is wrong with a part after an internal step of `h` s, as a predicate for a message; null: nothing. Rotation
-/// about a driven joint's axis or a principal axis is not counted. [any thread, while nobody writes]
-const char* ailment(const btRigidBody& part, double h);
+/// Describes the instability of a part after an internal step of `h` s as a predicate for a message ("is faster than
+/// …"), or returns null if it is stable. Rotation about a driven joint's axis or a principal axis isn't counted. [any,
+/// while no thread writes]
+const char* find_instability(const btRigidBody& part, double h);
 
-/// The likely cause of an instability of a part, and what to try, as a clause for a message.
+/// Returns the likely cause of a part's instability and a remedy, as a clause for a message.
 std::string likely_cause(const Body& body, const Part& part, const btDispatcher& contacts, int substeps);
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Bends: the drift of joints within a step, predicted from the bodies' rotations and asked of the locks beforehand.
+// Joint drift: the position error that a step would cause in locks because bodies rotate is predicted and subtracted
+// from the locks' target rates. The idea of SHAKE (Ryckaert, Ciccotti and Berendsen 1977), in velocities.
 #include <algorithm>
 #include <cmath>
 
@@ -7,99 +8,101 @@
 namespace limber {
 namespace {
 
-/// Fastest bend, m/s: what flies apart is not pulled together in one step.
-constexpr double kFastestBend = 20;
-/// Partings below this are left alone, m.
-constexpr double kLeastBend = 1e-4;
-/// The same where bodies rotate fast: a top would lose energy.
-constexpr double kLeastFastBend = 1e-6;
+/// Largest correction, m/s, so that joints torn apart are not closed in one step.
+constexpr double kMaxDriftSpeed = 20;
+/// Drift below this is ignored, m.
+constexpr double kMinDrift = 1e-4;
+/// The same for bodies that rotate fast: a top would lose energy.
+constexpr double kMinFastDrift = 1e-6;
 
-// A lock along an axis.
-bool bends(const JointConstraint::Row& row) {
+// True for a hard lock of a linear axis.
+bool is_hard_linear_lock(const JointConstraint::Row& row) {
   return row.axis < 3 && row.softness == 0 && static_cast<double>(row.lower) <= -kTreeInfinity &&
          static_cast<double>(row.upper) >= kTreeInfinity;
 }
 
 }  // namespace
 
-// Locked rows hold rates at the start of the step; bodies go round. What the two sides will have parted by its end is
-// asked for beforehand, so that joints meet where bodies arrive. Returns the largest change, m; 0: nothing changed.
-double IslandDirect::bend_locks(const IslandPools& pools, double h) {
-  double most = 0;
-  predict_turns(pools, h);
+// Updates the drift correction of all joints: locks prescribe rates at the start of the step, but pivots move along
+// arcs. Returns the largest change, m; 0: nothing was changed.
+double DirectSolver::update_drift_correction(const IslandPools& pools, double h) {
+  double largest = 0;
+  predict_motions(pools, h);
   for (Link& link : links_) {
-    link.bend = bend_of(link, pools, h);
+    link.predicted_drift = predict_drift(link, pools, h);
     for (const JointConstraint::Row& row : link.joint->planned()) {
-      if (bends(row)) most = std::max(most, std::fabs(link.bend[row.axis] - link.bent[row.axis]));
+      if (is_hard_linear_lock(row))
+        largest = std::max(largest, std::fabs(link.predicted_drift[row.axis] - link.applied_drift[row.axis]));
     }
   }
-  if (most <= (gyros_.empty() ? kLeastBend : kLeastFastBend)) return 0;
-  for (Link& link : links_) ask_for_bend(link, h);
-  return most;
+  if (largest <= (gyroscopic_.empty() ? kMinDrift : kMinFastDrift)) return 0;
+  for (Link& link : links_) apply_drift_correction(link, h);
+  return largest;
 }
 
-// Takes all bends back.
-void IslandDirect::straighten(double h) {
+// Removes all drift corrections.
+void DirectSolver::remove_drift_correction(double h) {
   for (Link& link : links_) {
-    link.bend = Vec3(0);
-    ask_for_bend(link, h);
+    link.predicted_drift = Vec3(0);
+    apply_drift_correction(link, h);
   }
 }
 
-// Of the link's rows in a tree, or of those that close a loop.
-void IslandDirect::ask_for_bend(Link& link, double h) {
+// Applies the correction to the link's rows in a tree, or to its coupled rows if it closes a loop.
+void DirectSolver::apply_drift_correction(Link& link, double h) {
   const std::span<const JointConstraint::Row> rows = link.joint->planned();
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (!bends(rows[r])) continue;
-    const double change = (link.bend[rows[r].axis] - link.bent[rows[r].axis]) / h;
+    if (!is_hard_linear_lock(rows[r])) continue;
+    const double change = (link.predicted_drift[rows[r].axis] - link.applied_drift[rows[r].axis]) / h;
     if (link.node >= 0) {
-      system_.rows(link.node)[r].velocity -= change;
+      tree_rows_.rows(link.node)[r].velocity -= change;
     } else {
-      outer_[at(link.outer) + r].target -= change;
+      coupled_[at(link.coupled_row) + r].target -= change;
     }
   }
-  link.bent = link.bend;
+  link.applied_drift = link.predicted_drift;
 }
 
-// The motion of each body in the step, computed once, though most bodies have two joints.
-void IslandDirect::predict_turns(const IslandPools& pools, double h) {
-  way_.resize(body_of_.size());
-  for (std::size_t i = 0; i < body_of_.size(); ++i) way_[i] = way_of(body_of_[i], pools, h);
+// Predicts the motion of each body once, since most bodies have two joints.
+void DirectSolver::predict_motions(const IslandPools& pools, double h) {
+  motions_.resize(body_of_.size());
+  for (std::size_t i = 0; i < body_of_.size(); ++i) motions_[i] = predict_motion(body_of_[i], pools, h);
 }
 
-IslandDirect::Way IslandDirect::way_of(int body, const IslandPools& pools, double h) const {
+DirectSolver::BodyMotion DirectSolver::predict_motion(int body, const IslandPools& pools, double h) const {
   const Spatial v = solved_velocity(body, pools);
-  const Turn turn = turn_of(body, v.angular, pools, h);
-  return {v, turn.shift(v.linear, h), turn.rotation(h), turn.clamped(h) > 0};
+  const RotationStep turn = rotation_step(body, v.angular, pools, h);
+  return {v, turn.translation(v.linear, h), turn.rotation(h), turn.clamped(h) > 0};
 }
 
-// How far the two sides of a joint will part in this step, beyond what its rows know, along the parent-side axes, m.
-Vec3 IslandDirect::bend_of(const Link& link, const IslandPools& pools, double h) {
+// Predicts the position error that a joint gets in this step in addition to its rates, along the parent's axes, m.
+Vec3 DirectSolver::predict_drift(const Link& link, const IslandPools& pools, double h) {
   const JointConstraint& joint = *link.joint;
-  const auto way = [&](int body) {
+  const auto motion_of = [&](int body) {
     const int node = node_of_[at(body)];
-    return node < 0 ? way_of(body, pools, h) : way_[at(node)];
+    return node < 0 ? predict_motion(body, pools, h) : motions_[at(node)];
   };
-  const Way a = way(link.body_a);
-  const Way b = way(link.body_b);
+  const BodyMotion a = motion_of(link.body_a);
+  const BodyMotion b = motion_of(link.body_b);
   if (a.clamped || b.clamped) {
-    gapes_ = true;
-    return link.bent;
+    needs_closing_ = true;
+    return link.applied_drift;
   }
   const Vec3 arm_a = from_bt(joint.arm_a());
   const Vec3 arm_b = from_bt(joint.arm_b());
   Vec3 gap(0);
   for (int k = 0; k < 3; ++k) gap += from_bt(joint.linear_axis(k)) * joint.value(k);
-  const Vec3 own_arm = arm_a - gap;
-  const Vec3 parted = gap + b.shift - a.shift + (b.rotation * arm_b - arm_b) - (a.rotation * own_arm - own_arm);
-  const Vec3 drift = carried(b.velocity, arm_b).linear - carried(a.velocity, arm_a).linear;
-  Vec3 bend(0);
+  const Vec3 pivot_arm = arm_a - gap;
+  const Vec3 end_gap =
+      gap + b.translation - a.translation + (b.rotation * arm_b - arm_b) - (a.rotation * pivot_arm - pivot_arm);
+  const Vec3 pivot_velocity = translated(b.velocity, arm_b).linear - translated(a.velocity, arm_a).linear;
+  Vec3 drift(0);
   for (int k = 0; k < 3; ++k) {
     const Vec3 axis = from_bt(joint.linear_axis(k));
-    bend[k] = std::clamp(glm::dot(a.rotation * axis, parted) - glm::dot(axis, gap + drift * h), -kFastestBend * h,
-                         kFastestBend * h);
+    drift[k] = std::clamp(glm::dot(a.rotation * axis, end_gap) - glm::dot(axis, gap + pivot_velocity * h),
+                          -kMaxDriftSpeed * h, kMaxDriftSpeed * h);
   }
-  return bend;
+  return drift;
 }
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// IslandSolver: contact rows, with friction in the direction in which it acts, and the sweeps over rolling friction.
+// IslandSolver: contact rows with friction directions aligned to the slip, and sweeps over rolling friction.
 #include <algorithm>
 #include <cmath>
 
@@ -10,45 +10,46 @@
 namespace limber {
 namespace {
 
-/// So many manifolds ahead their ends are asked for, and then what those tell of.
+/// Prefetch distances, in manifolds: of their ends, then of the points and bodies that these refer to.
 constexpr int kEndsAhead = 12;
 constexpr int kPointsAhead = 6;
 
-/// Softness of normals, as part of the response of the two bodies. Points that share a load (two of each wheel of a
-/// cart, four of a box) could take it in any proportion, and friction would follow; with it they share evenly. A body
-/// at rest sinks by micrometers.
+/// Softness of normals, relative to the response of the two bodies. Points that share a load (two of each wheel of a
+/// cart, four of a box) could share it in any proportion, and friction with it; the softness makes them share it
+/// evenly. A body at rest sinks by micrometers.
 constexpr btScalar kNormalSoftness = 1e-4F;
 
 struct Motion {
   btVector3 linear;
   btVector3 angular;
-  btVector3 at(const btVector3& arm) const { return linear + angular.cross(arm); }
+  btVector3 velocity_at(const btVector3& arm) const { return linear + angular.cross(arm); }
 };
 
-Motion present(const btSolverBody& body) {
+Motion current_motion(const btSolverBody& body) {
   if (body.m_originalBody == nullptr) return {{0, 0, 0}, {0, 0, 0}};
   return {body.m_linearVelocity, body.m_angularVelocity};
 }
 
-Motion expected(const btSolverBody& body) {
+Motion expected_motion(const btSolverBody& body) {
   if (body.m_originalBody == nullptr) return {{0, 0, 0}, {0, 0, 0}};
   return {body.m_linearVelocity + body.m_externalForceImpulse, body.m_angularVelocity + body.m_externalTorqueImpulse};
 }
 
-// Bullet leaves the external torques out of the speed that friction has to stop.
+// Adds external torques to the speed that friction has to stop; Bullet omits them.
 void add_external_torque(btSolverConstraint& row, const btSolverBody& a, const btSolverBody& b) {
   const btScalar speed =
       row.m_relpos1CrossNormal.dot(a.m_externalTorqueImpulse) + row.m_relpos2CrossNormal.dot(b.m_externalTorqueImpulse);
   row.m_rhs -= speed * row.m_jacDiagABInv;
 }
 
-// Friction across the slip turns with it: a speed across needs friction·pressing/slip as much impulse. Contacts that
-// did not press in the step before don't know how much that is.
-void follow_slip(btSolverConstraint& across, const FrictionFrame& frame, btScalar pressing) {
+// Makes friction across the slip viscous, since it turns with the slip: the impulse per lateral speed is
+// friction·normal impulse/slip. If the contact did not press in the previous step, the normal impulse is unknown and
+// the row remains hard.
+void add_viscous_friction(btSolverConstraint& across, const FrictionFrame& frame, btScalar last_normal_impulse) {
   across.m_cfm = 0;
-  const btScalar most = frame.friction * pressing;
-  if (!(frame.speed > 0 && most > 0)) return;
-  across.m_cfm = frame.speed / most * across.m_jacDiagABInv;
+  const btScalar max_impulse = frame.friction * last_normal_impulse;
+  if (!(frame.speed > 0 && max_impulse > 0)) return;
+  across.m_cfm = frame.speed / max_impulse * across.m_jacDiagABInv;
   across.m_rhs += frame.speed_across * across.m_jacDiagABInv;
 }
 
@@ -67,7 +68,7 @@ void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, 
   }
 }
 
-// As Bullet's convertContact, but for the directions of friction.
+// Like Bullet's convertContact, except for the friction directions.
 void IslandSolver::convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info) {
   auto* const object_a = const_cast<btCollisionObject*>(manifold.getBody0());
   auto* const object_b = const_cast<btCollisionObject*>(manifold.getBody1());
@@ -81,7 +82,7 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
     if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
     const btVector3 arm_a = point.getPositionWorldOnA() - object_a->getWorldTransform().getOrigin();
     const btVector3 arm_b = point.getPositionWorldOnB() - object_b->getWorldTransform().getOrigin();
-    const btScalar pressing = point.m_appliedImpulse;
+    const btScalar last_normal_impulse = point.m_appliedImpulse;
     const int index = m_tmpSolverContactConstraintPool.size();
     btSolverConstraint& normal = m_tmpSolverContactConstraintPool.expandNonInitializing();
     normal.m_solverBodyIdA = id_a;
@@ -92,8 +93,9 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
     normal.m_cfm += kNormalSoftness;
     normal.m_frictionIndex = m_tmpSolverContactFrictionConstraintPool.size();
 
-    const FrictionFrame frame = sliding_frame(point, *object_a, *object_b, present(a).at(arm_a) - present(b).at(arm_b),
-                                              expected(a).at(arm_a) - expected(b).at(arm_b));
+    const FrictionFrame frame = sliding_frame(
+        point, *object_a, *object_b, current_motion(a).velocity_at(arm_a) - current_motion(b).velocity_at(arm_b),
+        expected_motion(a).velocity_at(arm_a) - expected_motion(b).velocity_at(arm_b));
     point.m_lateralFrictionDir1 = frame.along;
     point.m_lateralFrictionDir2 = frame.across;
     for (const btVector3* axis : {&point.m_lateralFrictionDir1, &point.m_lateralFrictionDir2}) {
@@ -104,13 +106,14 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
       row.m_upperLimit = frame.friction;
       add_external_torque(row, a, b);
       row.m_overrideNumSolverIterations = axis == &point.m_lateralFrictionDir1 ? friction_along : friction_across;
-      if (axis == &point.m_lateralFrictionDir2) follow_slip(row, frame, pressing);
+      if (axis == &point.m_lateralFrictionDir2) add_viscous_friction(row, frame, last_normal_impulse);
     }
-    convert_rolling(point, index, id_a, id_b, pressing);
+    convert_rolling(point, index, id_a, id_b, last_normal_impulse);
   }
 }
 
-void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b, btScalar pressing) {
+void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b,
+                                   btScalar last_normal_impulse) {
   const auto add = [&](const btVector3& axis, btScalar friction, FrictionRow kind) -> btSolverConstraint& {
     btSolverConstraint& row =
         addTorsionalFrictionConstraint(axis, id_a, id_b, contact, point, friction, axis, axis, nullptr, nullptr, 1);
@@ -124,22 +127,22 @@ void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a
   if (!(point.m_combinedRollingFriction > 0)) return;
   const btSolverBody& a = m_tmpSolverBodyPool[id_a];
   const btSolverBody& b = m_tmpSolverBodyPool[id_b];
-  const FrictionFrame frame =
-      rolling_frame(point, present(a).angular - present(b).angular, expected(a).angular - expected(b).angular);
+  const FrictionFrame frame = rolling_frame(point, current_motion(a).angular - current_motion(b).angular,
+                                            expected_motion(a).angular - expected_motion(b).angular);
   add(frame.along, frame.friction, friction_along);
-  follow_slip(add(frame.across, frame.friction, friction_across), frame, pressing);
+  add_viscous_friction(add(frame.across, frame.friction, friction_across), frame, last_normal_impulse);
 }
 
-// Rolling friction in two directions together, within a disc; friction against spinning by itself.
+// Sweeps rolling friction with both directions projected onto a disc; spinning friction separately.
 btScalar IslandSolver::sweep_rolling() {
   btScalar largest = 0;
-  const auto free_impulse = [this](const btSolverConstraint& row) {
+  const auto unclamped_change = [this](const btSolverConstraint& row) {
     const btScalar speed =
         row.m_relpos1CrossNormal.dot(m_tmpSolverBodyPool[row.m_solverBodyIdA].m_deltaAngularVelocity) +
         row.m_relpos2CrossNormal.dot(m_tmpSolverBodyPool[row.m_solverBodyIdB].m_deltaAngularVelocity);
     return row.m_rhs - speed * row.m_jacDiagABInv;
   };
-  const auto set = [this, &largest](btSolverConstraint& row, btScalar impulse) {
+  const auto set_impulse = [this, &largest](btSolverConstraint& row, btScalar impulse) {
     const btScalar change = impulse - row.m_appliedImpulse;
     row.m_appliedImpulse = impulse;
     btSolverBody& a = m_tmpSolverBodyPool[row.m_solverBodyIdA];
@@ -151,34 +154,34 @@ btScalar IslandSolver::sweep_rolling() {
   btConstraintArray& rows = m_tmpSolverContactRollingFrictionConstraintPool;
   for (int i = 0; i < rows.size(); ++i) {
     btSolverConstraint& row = rows[i];
-    const btScalar pressing = contacts_.impulse(row.m_frictionIndex);
-    if (!(pressing > 0)) continue;
-    const btScalar most = row.m_friction * pressing;
-    const btScalar first = row.m_appliedImpulse + free_impulse(row);
+    const btScalar normal_impulse = contacts_.impulse(row.m_frictionIndex);
+    if (!(normal_impulse > 0)) continue;
+    const btScalar max_impulse = row.m_friction * normal_impulse;
+    const btScalar first = row.m_appliedImpulse + unclamped_change(row);
     if (row.m_overrideNumSolverIterations == friction_spin) {
-      set(row, std::clamp(first, -most, most));
+      set_impulse(row, std::clamp(first, -max_impulse, max_impulse));
       continue;
     }
     if (row.m_overrideNumSolverIterations != friction_along) continue;
     btSolverConstraint& across = rows[i + 1];
-    const btScalar second = across.m_appliedImpulse + free_impulse(across);
+    const btScalar second = across.m_appliedImpulse + unclamped_change(across);
     const btScalar length = fixed::hypotf(first, second);
-    const btScalar part = length > most ? most / length : btScalar(1);
-    set(row, part * first);
-    set(across, part * second);
+    const btScalar fraction = length > max_impulse ? max_impulse / length : btScalar(1);
+    set_impulse(row, fraction * first);
+    set_impulse(across, fraction * second);
   }
   return largest;
 }
 
-// For the frames of the next step.
-void IslandSolver::remember_rolling_friction() {
+// Stores the rolling friction for the friction frames of the next step.
+void IslandSolver::save_rolling_friction() {
   const btConstraintArray& rows = m_tmpSolverContactRollingFrictionConstraintPool;
   for (int i = 0; i + 1 < rows.size(); ++i) {
     if (rows[i].m_overrideNumSolverIterations != friction_along) continue;
     auto* point =
         static_cast<btManifoldPoint*>(m_tmpSolverContactConstraintPool[rows[i].m_frictionIndex].m_originalContactPoint);
-    remember_rolling(*point, rows[i].m_relpos2CrossNormal * rows[i].m_appliedImpulse +
-                                 rows[i + 1].m_relpos2CrossNormal * rows[i + 1].m_appliedImpulse);
+    store_rolling_friction(*point, rows[i].m_relpos2CrossNormal * rows[i].m_appliedImpulse +
+                                       rows[i + 1].m_relpos2CrossNormal * rows[i + 1].m_appliedImpulse);
   }
 }
 

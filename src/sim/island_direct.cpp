@@ -1,4 +1,4 @@
-// The order of the work in one island, the guards, and what is written back.
+// DirectSolver: order of the stages of a step, corrections of the solution, and its output.
 #include "sim/island_direct.h"
 
 #include <algorithm>
@@ -8,36 +8,37 @@
 namespace limber {
 namespace {
 
-/// Exchanges of rows in force that a tree gets before its unsettled axes are swept instead.
-constexpr int kExchanges = 16;
-/// Rounds in which axes may still be given up once contacts are known.
-constexpr int kRounds = 8;
-/// Motors keep below this turn of a body in one step, rad; where they do not, they ask for this, since what else acts
-/// on the body does not become less with them.
-constexpr double kMostTurn = 0.5;
-constexpr double kTurnGoal = 0.44;
-/// So often friction outside of its cone is brought back.
-constexpr int kNarrowings = 2;
-/// So often bends are corrected.
-constexpr int kBends = 4;
-/// Bends are taken back when a correction is larger than this, m, and more than twice as large as an earlier one.
-constexpr double kDivergingBend = 1e-3;
-/// Passes in which gyroscopic torques are corrected; and what is left of them then, relative to the angular velocity
-/// perpendicular to the spin, and to all of it.
+/// Exchanges of the active set of a tree before axes that have not converged are deferred.
+constexpr int kMaxExchanges = 16;
+/// Rounds in which axes may still be deferred once contacts are known.
+constexpr int kMaxRounds = 8;
+/// Motors and limits must not rotate a body by more than this in one step, rad; otherwise their rates are scaled down
+/// to a rotation of kTurnGoal, which is less, since the other causes of the rotation don't scale with them.
+constexpr double kMaxRotation = 0.5;
+constexpr double kRotationGoal = 0.44;
+/// Passes that restore the friction cone.
+constexpr int kMaxConePasses = 2;
+/// Passes of the drift correction.
+constexpr int kMaxDriftPasses = 4;
+/// The drift correction is removed if a pass changes it by more than this, m, and by more than twice an earlier change.
+constexpr double kDivergingDrift = 1e-3;
+/// Passes of the gyroscopic correction, and its tolerances: relative to the angular velocity perpendicular to the spin,
+/// and to the whole angular velocity.
 constexpr int kGyroPasses = 10;
-constexpr double kGyroMiss = 1e-5;
-constexpr double kGyroMissOfSpin = 1e-7;
-/// Bends that made locks drive are eased so often, a little more than a straight line between the two would say.
-constexpr int kEasings = 2;
-constexpr double kEasing = 0.95;
-/// Part of what locks took that they may give back, and the most of it, J.
-constexpr double kGivenBack = 0.75;
-constexpr double kMostGivenBack = 1e6;
-/// Faster than this no impulse of ours may make a body: m/s, rad/s.
-constexpr double kFastest = 1e5;
+constexpr double kGyroTolerance = 1e-5;
+constexpr double kGyroSpinTolerance = 1e-7;
+/// Passes that scale down drift corrections that add energy, by a little more than linear interpolation yields.
+constexpr int kMaxEnergyPasses = 2;
+constexpr double kEnergySafety = 0.95;
+/// Fraction of the energy absorbed by locks that they may return, and the maximum of the stored energy, J.
+constexpr double kReturnedFraction = 0.75;
+constexpr double kMaxStoredEnergy = 1e6;
+/// Velocity changes above this count as divergence: m/s, rad/s.
+constexpr double kMaxVelocity = 1e5;
 
-// The sweeps begin without the impulses of the step before, which only ours could hold in balance.
-void start_contacts_anew(IslandPools& pools) {
+// Removes the warm-start impulses, which only the direct solver could have balanced, before the iterative solver
+// starts.
+void remove_warm_start(IslandPools& pools) {
   for (btConstraintArray* rows : {&pools.contacts, &pools.frictions, &pools.rollings}) {
     for (int i = 0; i < rows->size(); ++i) {
       btSolverConstraint& row = (*rows)[i];
@@ -52,112 +53,113 @@ void start_contacts_anew(IslandPools& pools) {
 
 }  // namespace
 
-void IslandDirect::start() {
+void DirectSolver::begin() {
   links_.clear();
   gears_.clear();
 }
 
-void IslandDirect::add_joint(JointConstraint& joint, int body_a, int body_b) {
+void DirectSolver::add_joint(JointConstraint& joint, int body_a, int body_b) {
   links_.push_back({&joint, body_a, body_b, -1, 0, Vec3(0), Vec3(0)});
 }
 
-int IslandDirect::give_up_broken() {
-  int broken = 0;
-  for (const Tree& t : trees_) broken += system_.give_up_broken(t.first, t.last);
-  return broken;
+int DirectSolver::defer_violated() {
+  int violated = 0;
+  for (const Tree& t : trees_) violated += tree_rows_.defer_violated(t.first, t.last);
+  return violated;
 }
 
-// Trees by themselves, contacts as they are; then what stands around them, until no law is broken.
-bool IslandDirect::settle() {
-  const double before = effort_.spent();
-  const bool settled = settle_trees() && (outer_.empty() || settle_outer()) && finite();
-  settle_cost_ = effort_.spent() - before;
-  return settled;
+// Solves the trees with the present contact impulses, then the coupled rows, until no condition is violated.
+bool DirectSolver::solve_velocities() {
+  const double before = budget_.spent();
+  const bool solved = solve_trees() && (coupled_.empty() || solve_coupled_rows()) && has_finite_velocities();
+  solve_cost_ = budget_.spent() - before;
+  return solved;
 }
 
-bool IslandDirect::settle_trees() {
+bool DirectSolver::solve_trees() {
   for (const Tree& t : trees_) {
-    if (!system_.settle(t.first, t.last, kExchanges)) return false;
-    const bool again = !outer_.empty() && system_.give_up_remembered(t.first, t.last) > 0;
-    if (again && !system_.refresh(t.first, t.last)) return false;
+    if (!tree_rows_.solve(t.first, t.last, kMaxExchanges)) return false;
+    const bool has_deferred = !coupled_.empty() && tree_rows_.defer_remembered(t.first, t.last) > 0;
+    if (has_deferred && !tree_rows_.factor_and_correct(t.first, t.last)) return false;
   }
-  collect_axes();
+  collect_deferred_axes();
   return true;
 }
 
-bool IslandDirect::settle_outer() {
-  system_.keep();
-  for (OuterRow& row : outer_) row.kept = row.impulse;
-  take_contacts();
-  for (int round = 0; round < kRounds; ++round) {
-    bool pinned = false;
-    double missed = 0;
+bool DirectSolver::solve_coupled_rows() {
+  tree_rows_.save();
+  for (CoupledRow& row : coupled_) row.saved_impulse = row.impulse;
+  activate_contacts();
+  for (int round = 0; round < kMaxRounds; ++round) {
+    bool gears_deferred = false;
+    double violation = 0;
     do {
-      if (!build_responses()) return false;
-      pinned = give_up_pinned_gears();
-      missed = pinned ? 0 : solve_outer(Solve::anew);
-    } while (!pinned && take_contacts() > 0);
-    int broken = pinned ? 1 : give_up_broken();
-    // too stiff to be solved: then every motor and limit that contacts feel gives way as far as its force says
-    if ((!(missed < kOuterMiss) || round == kRounds - 2) && give_up_touched() > 0) broken++;
-    if (broken == 0) {
-      if (!box_.agrees()) missed = solve_outer(Solve::polish);
-      return std::isfinite(missed);
+      if (!update_delassus()) return false;
+      gears_deferred = defer_ill_conditioned_gears();
+      violation = gears_deferred ? 0 : solve_lcp(LcpSolve::full);
+    } while (!gears_deferred && activate_contacts() > 0);
+    int violated = gears_deferred ? 1 : defer_violated();
+    // ill-conditioned: all motors and limits of trees with contacts are deferred, so that they yield within their force
+    if ((!(violation < kMaxCoupledViolation) || round == kMaxRounds - 2) && defer_touched_trees() > 0) violated++;
+    if (violated == 0) {
+      if (!lcp_.friction_converged()) violation = solve_lcp(LcpSolve::refine);
+      return std::isfinite(violation);
     }
-    // what was found with other rows in force must not stay
-    system_.go_back();
-    for (OuterRow& row : outer_) row.impulse = row.kept;
+    // impulses found with another active set must be discarded
+    tree_rows_.restore();
+    for (CoupledRow& row : coupled_) row.impulse = row.saved_impulse;
     for (const Tree& t : trees_) {
-      if (!system_.refresh(t.first, t.last)) return false;
+      if (!tree_rows_.factor_and_correct(t.first, t.last)) return false;
     }
-    collect_axes();
+    collect_deferred_axes();
   }
   return false;
 }
 
-Turn IslandDirect::turn_of(int body, const Vec3& w, const IslandPools& pools, double h) const {
+RotationStep DirectSolver::rotation_step(int body, const Vec3& w, const IslandPools& pools, double h) const {
   const btRigidBody* rigid = pools.bodies[body].m_originalBody;
-  if (rigid != nullptr) return split_turn(*rigid, w, h);
-  Turn turn;
-  turn.rest = w;
+  if (rigid != nullptr) return split_rotation(*rigid, w, h);
+  RotationStep turn;
+  turn.tumble = w;
   return turn;
 }
 
-// Velocity of a body as the step was solved.
-Spatial IslandDirect::solved_velocity(int body, const IslandPools& pools) const {
+// Velocity of a body after the solve.
+Spatial DirectSolver::solved_velocity(int body, const IslandPools& pools) const {
   const int node = node_of_[at(body)];
-  return node < 0 ? velocity(body, pools) : velocity(body, pools) + system_.change(node);
+  return node < 0 ? velocity(body, pools) : velocity(body, pools) + tree_rows_.change(node);
 }
 
-// Whether a motor on this axis of a joint makes one of its bodies spin.
-bool IslandDirect::drives_spin(const Link& link, int axis, const IslandPools& pools, double h) const {
+// True if a motor on this axis of a joint drives a spin of one of its bodies.
+bool DirectSolver::drives_spin(const Link& link, int axis, const IslandPools& pools, double h) const {
   if (axis < 3) return false;
-  const Vec3 along = from_bt(link.joint->linear_axis(axis - 3));
+  const Vec3 axis_direction = from_bt(link.joint->linear_axis(axis - 3));
   return std::ranges::any_of(std::array{link.body_a, link.body_b}, [&](int body) {
-    const Turn turn = turn_of(body, solved_velocity(body, pools).angular, pools, h);
-    return turn.spin != 0 && std::fabs(glm::dot(turn.axis, along)) > 0.99;
+    const RotationStep turn = rotation_step(body, solved_velocity(body, pools).angular, pools, h);
+    return turn.spin != 0 && std::fabs(glm::dot(turn.axis, axis_direction)) > 0.99;
   });
 }
 
-// A body that would turn far in one step, but for its spin, goes straight where it should go round: motors and limits
-// of its tree ask for less then. True when something changed.
-bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
+// Scales down the target rates of motors and limits in trees where a body would rotate too far in one step, spins
+// excluded. Returns true if something changed.
+bool DirectSolver::limit_rotation(const IslandPools& pools, double h) {
   bool changed = false;
   for (const Tree& t : trees_) {
     double fastest = 0;
     for (int i = t.first; i < t.last; ++i) {
-      const Spatial v = velocity(body_of_[at(i)], pools) + system_.change(i);
-      if (glm::dot(v.angular, v.angular) * h * h <= kMostTurn * kMostTurn) continue;
-      const double turn = glm::length(turn_of(body_of_[at(i)], v.angular, pools, h).rest);
-      if (t.last - t.first > 1 || link_of_[at(i)] >= 0) fastest = std::max(fastest, turn);
-      if (turn * h > kMostTurn) note_clamp(*pools.bodies[body_of_[at(i)]].m_originalBody, turn - kTurnGoal / h);
+      const Spatial v = velocity(body_of_[at(i)], pools) + tree_rows_.change(i);
+      if (glm::dot(v.angular, v.angular) * h * h <= kMaxRotation * kMaxRotation) continue;
+      const double tumble_speed = glm::length(rotation_step(body_of_[at(i)], v.angular, pools, h).tumble);
+      if (t.last - t.first > 1 || link_of_[at(i)] >= 0) fastest = std::max(fastest, tumble_speed);
+      if (tumble_speed * h > kMaxRotation)
+        record_clamp(*pools.bodies[body_of_[at(i)]].m_originalBody, tumble_speed - kRotationGoal / h);
     }
-    if (!(fastest * h > kMostTurn)) continue;
+    if (!(fastest * h > kMaxRotation)) continue;
     for (int i = t.first; i < t.last; ++i) {
-      for (TreeRow& row : system_.rows(i)) {
+      for (TreeRow& row : tree_rows_.rows(i)) {
         if (!row.bounded() || row.constant()) continue;
         if (link_of_[at(i)] >= 0 && drives_spin(links_[at(link_of_[at(i)])], row.axis, pools, h)) continue;
-        row.velocity *= kTurnGoal / (fastest * h);
+        row.velocity *= kRotationGoal / (fastest * h);
         changed = true;
       }
     }
@@ -165,9 +167,9 @@ bool IslandDirect::limit_turns(const IslandPools& pools, double h) {
   return changed;
 }
 
-// Bodies whose gyroscopic torque depends so much on the velocities after the step that joints have to be known for it.
-void IslandDirect::collect_gyroscopes(const IslandPools& pools, double h) {
-  gyros_.clear();
+// Collects bodies that rotate so fast that their gyroscopic torque depends on the joints' reactions.
+void DirectSolver::collect_gyroscopes(const IslandPools& pools, double h) {
+  gyroscopic_.clear();
   gyro_passes_ = 0;
   for (const Tree& t : trees_) {
     if (t.last - t.first == 1 && link_of_[at(t.first)] < 0) continue;
@@ -175,253 +177,259 @@ void IslandDirect::collect_gyroscopes(const IslandPools& pools, double h) {
       const btSolverBody& b = pools.bodies[body_of_[at(i)]];
       const double before = static_cast<double>(b.m_angularVelocity.length());
       const double after = glm::length(solved_velocity(body_of_[at(i)], pools).angular);
-      if (!(std::max(before, after) * h > kSlowTurn)) continue;
-      const Sym3& moment = system_.trees.node(i).inertia.moment;
+      if (!(std::max(before, after) * h > kSlowRotation)) continue;
+      const Sym3& moment = tree_rows_.forest.node(i).inertia.moment;
       const Vec3 applied = moment * gyroscopic_change(*b.m_originalBody, h);
-      gyros_.push_back({i, (moment.xx + moment.yy + moment.zz) / 3, applied, Vec3(0), {}, {}});
+      gyroscopic_.push_back({i, (moment.xx + moment.yy + moment.zz) / 3, applied, Vec3(0), {}, {}});
     }
   }
 }
 
-// Gyroscopic torques are those at the middle of the step, by the velocities that joints, motors and contacts allow: a
-// fixed point, approached by Anderson's mixing. True when loads changed: then all is solved anew.
-bool IslandDirect::correct_gyroscopes(const IslandPools& pools, double h) {
-  if (gyros_.empty() || gyro_passes_ >= kGyroPasses) return false;
-  bool missed = false;
-  for (Gyro& g : gyros_) {
+// Evaluates gyroscopic torques at the middle of the step, with the velocities found: a fixed point, accelerated by
+// Anderson mixing (1965). Returns true if loads have changed and everything must be solved again.
+bool DirectSolver::correct_gyroscopes(const IslandPools& pools, double h) {
+  if (gyroscopic_.empty() || gyro_passes_ >= kGyroPasses) return false;
+  bool pending = false;
+  for (GyroscopicImpulse& g : gyroscopic_) {
     const int body = body_of_[at(g.node)];
     const Vec3 before = from_bt(pools.bodies[body].m_angularVelocity);
     const Vec3 middle = (before + solved_velocity(body, pools).angular) / 2.0;
     const btRigidBody& rigid = *pools.bodies[body].m_originalBody;
-    const Vec3 miss = h * gyroscopic_torque(rigid, middle, h) - g.impulse;
-    g.miss_changes[1] = g.miss_changes[0];
-    g.miss_changes[0] = miss - g.miss;
-    g.miss = miss;
-    const double rest = glm::length(split_turn(rigid, middle, h).rest);
-    const double most = kGyroMiss * rest + kGyroMissOfSpin * glm::length(middle);
-    missed = missed || glm::length(miss) > most * g.scale;
+    const Vec3 residual = h * gyroscopic_torque(rigid, middle, h) - g.impulse;
+    g.residual_changes[1] = g.residual_changes[0];
+    g.residual_changes[0] = residual - g.residual;
+    g.residual = residual;
+    const double tumble_speed = glm::length(split_rotation(rigid, middle, h).tumble);
+    const double tolerance = kGyroTolerance * tumble_speed + kGyroSpinTolerance * glm::length(middle);
+    pending = pending || glm::length(residual) > tolerance * g.scale;
   }
-  if (!missed) return false;
-  // the least of |miss - sum of weight·change| over the last one or two passes
-  const int known = std::min(gyro_passes_++, 2);
+  if (!pending) return false;
+  // least squares: |residual - sum of weight·change| over the last one or two passes
+  const int history = std::min(gyro_passes_++, 2);
   double normal[2][2] = {};
-  double right[2] = {};
-  for (const Gyro& g : gyros_) {
+  double rhs[2] = {};
+  for (const GyroscopicImpulse& g : gyroscopic_) {
     const double scale = 1 / (g.scale * g.scale);
-    for (int i = 0; i < known; ++i) {
-      right[i] += scale * glm::dot(g.miss_changes[at(i)], g.miss);
-      for (int j = 0; j < known; ++j) normal[i][j] += scale * glm::dot(g.miss_changes[at(i)], g.miss_changes[at(j)]);
+    for (int i = 0; i < history; ++i) {
+      rhs[i] += scale * glm::dot(g.residual_changes[at(i)], g.residual);
+      for (int j = 0; j < history; ++j)
+        normal[i][j] += scale * glm::dot(g.residual_changes[at(i)], g.residual_changes[at(j)]);
     }
   }
   double weight[2] = {};
   const double determinant = normal[0][0] * normal[1][1] - normal[0][1] * normal[1][0];
-  if (known == 2 && determinant > 1e-9 * normal[0][0] * normal[1][1]) {
-    weight[0] = (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant;
-    weight[1] = (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant;
-  } else if (known > 0 && normal[0][0] > 0) {
-    weight[0] = right[0] / normal[0][0];
+  if (history == 2 && determinant > 1e-9 * normal[0][0] * normal[1][1]) {
+    weight[0] = (rhs[0] * normal[1][1] - rhs[1] * normal[0][1]) / determinant;
+    weight[1] = (rhs[1] * normal[0][0] - rhs[0] * normal[1][0]) / determinant;
+  } else if (history > 0 && normal[0][0] > 0) {
+    weight[0] = rhs[0] / normal[0][0];
   }
-  for (Gyro& g : gyros_) {
-    Vec3 change = g.miss;
-    for (int i = 0; i < known; ++i) change -= weight[i] * (g.impulse_changes[at(i)] + g.miss_changes[at(i)]);
+  for (GyroscopicImpulse& g : gyroscopic_) {
+    Vec3 change = g.residual;
+    for (int i = 0; i < history; ++i) change -= weight[i] * (g.impulse_changes[at(i)] + g.residual_changes[at(i)]);
     g.impulse_changes[1] = g.impulse_changes[0];
     g.impulse_changes[0] = change;
     g.impulse += change;
-    system_.trees.node(g.node).load.angular += change;
+    tree_rows_.forest.node(g.node).load.angular += change;
   }
   return true;
 }
 
-// What locks gave or took (J): each impulse times the mean of its rate before and after the step. Locks of a machine do
-// no work.
-double IslandDirect::work_of_locks(const Tree& tree, const IslandPools& pools) const {
+// Work of a tree's locks in the step, J: each impulse times the mean of its rate before and after the step. Ideal locks
+// do no work.
+double DirectSolver::work_of_locks(const Tree& tree, const IslandPools& pools) const {
   double work = 0;
   for (int i = tree.first; i < tree.last; ++i) {
     if (link_of_[at(i)] < 0) continue;
     const Link& link = links_[at(link_of_[at(i)])];
     const JointConstraint& joint = *link.joint;
-    const auto before = [&](int body) {
+    const auto velocity_before = [&](int body) {
       const btSolverBody& b = pools.bodies[body];
       return Spatial{from_bt(b.m_linearVelocity), from_bt(b.m_angularVelocity)};
     };
-    const Spatial a = before(link.body_a);
-    const Spatial b = before(link.body_b);
-    const Vec3 drift = carried(b, from_bt(joint.arm_b())).linear - carried(a, from_bt(joint.arm_a())).linear;
+    const Spatial a = velocity_before(link.body_a);
+    const Spatial b = velocity_before(link.body_b);
+    const Vec3 drift = translated(b, from_bt(joint.arm_b())).linear - translated(a, from_bt(joint.arm_a())).linear;
     const Vec3 spin = b.angular - a.angular;
-    for (const TreeRow& row : system_.rows(i)) {
+    for (const TreeRow& row : tree_rows_.rows(i)) {
       if (row.bounded() || !row.hard()) continue;
       const double rate = row.axis < 3 ? glm::dot(from_bt(joint.linear_axis(row.axis)), drift)
                                        : glm::dot(from_bt(joint.dual_axis(row.axis - 3)), spin);
-      work += row.impulse * (rate + system_.rate(i, row.axis)) / 2;
+      work += row.impulse * (rate + tree_rows_.rate(i, row.axis)) / 2;
     }
   }
   return work;
 }
 
-JointConstraint& IslandDirect::first_joint(const Tree& tree) const {
+// The tree's first joint, which stores the energy of all its locks.
+JointConstraint& DirectSolver::first_joint(const Tree& tree) const {
   const int root = link_of_[at(tree.first)] < 0 ? tree.first + 1 : tree.first;
   return *links_[at(link_of_[at(root)])].joint;
 }
 
-bool IslandDirect::passive(const Tree& tree) const {
+// True if the tree has joints, and no motor drives any of them.
+bool DirectSolver::is_passive(const Tree& tree) const {
   if (tree.last - tree.first == 1 && link_of_[at(tree.first)] < 0) return false;
-  return !driven(tree);
+  return !has_motors(tree);
 }
 
-bool IslandDirect::driven(const Tree& tree) const {
+bool DirectSolver::has_motors(const Tree& tree) const {
   for (int i = tree.first; i < tree.last; ++i) {
-    for (const TreeRow& row : system_.rows(i)) {
-      if (row.mark == TreeRow::motor && row.upper > row.lower) return true;
+    for (const TreeRow& row : tree_rows_.rows(i)) {
+      if (row.kind == TreeRow::motor && row.upper > row.lower) return true;
     }
   }
   return false;
 }
 
-// Where no motor drives, bends that would make locks drive become less. True when something changed.
-bool IslandDirect::ease_bends(const IslandPools& pools, double h) {
+// Scales down drift corrections of passive trees whose locks would add energy. Returns true if something changed.
+bool DirectSolver::limit_drift_energy(const IslandPools& pools, double h) {
   bool changed = false;
   for (std::size_t t = 0; t < trees_.size(); ++t) {
     const Tree& tree = trees_[t];
-    if (!passive(tree)) continue;
+    if (!is_passive(tree)) continue;
     const double work = work_of_locks(tree, pools);
-    const double budget = first_joint(tree).taken_by_locks();
-    if (!(work > budget)) continue;
-    const double unbent = unbent_work_[t];
-    const double part = unbent < budget ? kEasing * (budget - unbent) / (work - unbent) : 0;
+    const double allowed_work = first_joint(tree).lock_energy();
+    if (!(work > allowed_work)) continue;
+    const double uncorrected = uncorrected_work_[t];
+    const double fraction =
+        uncorrected < allowed_work ? kEnergySafety * (allowed_work - uncorrected) / (work - uncorrected) : 0;
     for (int i = tree.first; i < tree.last; ++i) {
       if (link_of_[at(i)] < 0) continue;
       Link& link = links_[at(link_of_[at(i)])];
-      changed = changed || link.bent != Vec3(0);
-      link.bend = link.bent * part;
-      ask_for_bend(link, h);
+      changed = changed || link.applied_drift != Vec3(0);
+      link.predicted_drift = link.applied_drift * fraction;
+      apply_drift_correction(link, h);
     }
   }
   return changed;
 }
 
-bool IslandDirect::finite() const {
+bool DirectSolver::has_finite_velocities() const {
   for (int i = 0; i < static_cast<int>(body_of_.size()); ++i) {
-    const Spatial& c = system_.change(i);
+    const Spatial& c = tree_rows_.change(i);
     for (int k = 0; k < 3; ++k) {
-      if (!(std::fabs(c.linear[k]) < kFastest) || !(std::fabs(c.angular[k]) < kFastest)) return false;
+      if (!(std::fabs(c.linear[k]) < kMaxVelocity) || !(std::fabs(c.angular[k]) < kMaxVelocity)) return false;
     }
   }
   return true;
 }
 
-// All but the bends.
-bool IslandDirect::settle_all(IslandPools& pools, double h) {
-  outer_.clear();
-  box_factors_ = 0;
-  known_names_.clear();
+// Solves everything except drift and gyroscopic corrections.
+bool DirectSolver::solve_without_corrections(IslandPools& pools, double h) {
+  coupled_.clear();
+  lcp_factor_version_ = 0;
+  known_row_ids_.clear();
   known_axes_.clear();
   collect_contacts(pools);
   collect_loops(pools);
   collect_gears(pools);
-  fixed_outer_ = outer_.size();
-  bool settled = settle();
-  for (int pass = 0; pass < kNarrowings && settled && narrow_friction(); ++pass) settled = settle();
-  for (int pass = 0; pass < 3 && settled && limit_turns(pools, h); ++pass) settled = settle();
-  return settled;
-}
-
-// Bends, until they fit, and of passive trees as far as they may.
-bool IslandDirect::bend_all(const IslandPools& pools, double h) {
-  gapes_ = false;
-  unbent_work_.clear();
-  for (const Tree& t : trees_) unbent_work_.push_back(passive(t) ? work_of_locks(t, pools) : 0);
-  bool solved = true;
-  bool bending = true;
-  bool turning = true;
-  double least = kFastest;
-  const auto time_left = [this] { return !effort_.over(settle_cost_); };
-  collect_gyroscopes(pools, h);
-  for (int pass = 0; solved && (bending || turning) && time_left(); ++pass) {
-    turning = correct_gyroscopes(pools, h);
-    if (pass < kBends && bending) {
-      const double bent = bend_locks(pools, h);
-      bending = bent > 0;
-      if (bent > kDivergingBend && bent > 2 * least) {
-        straighten(h);  // the gap that is left is closed afterwards, by moving the bodies
-        gapes_ = true;
-        return settle();
-      }
-      least = std::min(least, bent);
-    }
-    if (pass >= kBends && !turning) break;
-    if (bending || turning) solved = settle();
-  }
-  gapes_ = gapes_ || bending;
-  for (int pass = 0; pass < kEasings && solved && ease_bends(pools, h); ++pass) solved = settle();
+  fixed_coupled_ = coupled_.size();
+  bool solved = solve_velocities();
+  for (int pass = 0; pass < kMaxConePasses && solved && restore_friction_cone(); ++pass) solved = solve_velocities();
+  for (int pass = 0; pass < 3 && solved && limit_rotation(pools, h); ++pass) solved = solve_velocities();
   return solved;
 }
 
-bool IslandDirect::solve(IslandPools pools, const btContactSolverInfo& info) {
-  const int most = links_.empty() ? kMostRowsWithoutJoints : kMostContactRows;
-  if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > most) {
-    counts_.plain++;
+// Iterates the drift and gyroscopic corrections until they converge, then limits the energy that they add to passive
+// trees.
+bool DirectSolver::correct_drift(const IslandPools& pools, double h) {
+  needs_closing_ = false;
+  uncorrected_work_.clear();
+  for (const Tree& t : trees_) uncorrected_work_.push_back(is_passive(t) ? work_of_locks(t, pools) : 0);
+  bool solved = true;
+  bool drift_pending = true;
+  bool gyro_pending = true;
+  double smallest_change = kMaxVelocity;
+  const auto budget_left = [this] { return !budget_.exceeded(solve_cost_); };
+  collect_gyroscopes(pools, h);
+  for (int pass = 0; solved && (drift_pending || gyro_pending) && budget_left(); ++pass) {
+    gyro_pending = correct_gyroscopes(pools, h);
+    if (pass < kMaxDriftPasses && drift_pending) {
+      const double change = update_drift_correction(pools, h);
+      drift_pending = change > 0;
+      if (change > kDivergingDrift && change > 2 * smallest_change) {
+        remove_drift_correction(h);  // close_joints() corrects the position error afterwards
+        needs_closing_ = true;
+        return solve_velocities();
+      }
+      smallest_change = std::min(smallest_change, change);
+    }
+    if (pass >= kMaxDriftPasses && !gyro_pending) break;
+    if (drift_pending || gyro_pending) solved = solve_velocities();
+  }
+  needs_closing_ = needs_closing_ || drift_pending;
+  for (int pass = 0; pass < kMaxEnergyPasses && solved && limit_drift_energy(pools, h); ++pass)
+    solved = solve_velocities();
+  return solved;
+}
+
+bool DirectSolver::solve(IslandPools pools, const btContactSolverInfo& info) {
+  const int max_rows = links_.empty() ? kMaxRowsWithoutJoints : kMaxContactRows;
+  if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > max_rows) {
+    counts_.too_large++;
     return false;
   }
   const double h = static_cast<double>(info.m_timeStep);
   step_ = h;
-  before_calm_.clear();
-  effort_.begin();
+  before_clamp_.clear();
+  budget_.reset();
   bool solved = build_forest(pools);
-  if (solved && calm_whips(pools, h, Whips::before)) solved = build_forest(pools);
-  if (solved) solved = settle_all(pools, h);
-  // with no time left they wait for the next step
-  if (solved && !effort_.over() && calm_whips(pools, h, Whips::after)) {
-    solved = build_forest(pools) && settle_all(pools, h);
+  if (solved && clamp_spin(pools, h, ClampStage::before)) solved = build_forest(pools);
+  if (solved) solved = solve_without_corrections(pools, h);
+  // beyond the budget the clamp waits for the next step
+  if (solved && !budget_.exceeded() && clamp_spin(pools, h, ClampStage::after)) {
+    solved = build_forest(pools) && solve_without_corrections(pools, h);
   }
-  if (solved) solved = bend_all(pools, h);
+  if (solved) solved = correct_drift(pools, h);
   if (!solved) {
     counts_.fallbacks++;
-    forget_calm(pools);
-    start_contacts_anew(pools);
+    undo_spin_clamp(pools);
+    remove_warm_start(pools);
     for (const Link& link : links_) {
-      link.joint->forget_impulses();
-      link.joint->tree_memory().fill(0);
+      link.joint->reset_warm_start();
+      link.joint->active_set_memory().fill(0);
     }
     for (const GearLink& link : gears_) link.gear->forget_impulses();
     return false;
   }
   counts_.direct++;
   for (const Tree& t : trees_) {
-    if (!passive(t)) continue;
-    double& taken = first_joint(t).taken_by_locks();
+    if (!is_passive(t)) continue;
+    double& lock_energy = first_joint(t).lock_energy();
     const double work = work_of_locks(t, pools);
-    taken = std::clamp(taken - (work < 0 ? kGivenBack : 1.0) * work, 0.0, kMostGivenBack);
+    lock_energy = std::clamp(lock_energy - (work < 0 ? kReturnedFraction : 1.0) * work, 0.0, kMaxStoredEnergy);
   }
   write(pools);
-  push_apart(pools, info);
-  if (measured_) take_residuals(pools);
-  if (gapes_) close_joints(pools, info);
+  apply_split_impulse(pools, info);
+  if (measured_) measure_residuals(pools);
+  if (needs_closing_) close_joints(pools, info);
   return true;
 }
 
-void IslandDirect::write(IslandPools& pools) {
+void DirectSolver::write(IslandPools& pools) {
   for (std::size_t i = 0; i < body_of_.size(); ++i) {
     btSolverBody& body = pools.bodies[body_of_[i]];
-    const Spatial& change = system_.change(static_cast<int>(i));
+    const Spatial& change = tree_rows_.change(static_cast<int>(i));
     body.m_deltaLinearVelocity = to_bt(change.linear);
     body.m_deltaAngularVelocity = to_bt(change.angular);
   }
-  for (const OuterRow& row : outer_) {
+  for (const CoupledRow& row : coupled_) {
     if (row.contact != nullptr) row.contact->m_appliedImpulse = to_scalar(row.impulse);
   }
   for (const Link& link : links_) {
     impulses_.clear();
     if (link.node >= 0) {
-      for (const TreeRow& row : system_.rows(link.node)) impulses_.push_back(row.impulse);
-      link.joint->tree_memory() = system_.memory(link.node);
+      for (const TreeRow& row : tree_rows_.rows(link.node)) impulses_.push_back(row.impulse);
+      link.joint->active_set_memory() = tree_rows_.active_set(link.node);
     } else {
       for (int r = 0; r < static_cast<int>(link.joint->planned().size()); ++r) {
-        impulses_.push_back(outer_[at(link.outer + r)].impulse);
+        impulses_.push_back(coupled_[at(link.coupled_row + r)].impulse);
       }
     }
-    link.joint->take_impulses(impulses_);
+    link.joint->set_impulses(impulses_);
   }
-  for (const GearLink& link : gears_) link.gear->take_impulse(outer_[at(link.outer)].impulse);
+  for (const GearLink& link : gears_) link.gear->set_impulse(coupled_[at(link.coupled_row)].impulse);
 }
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// IslandSolver: turns what joints plan into Bullet's solver rows, and hands the impulses back.
+// IslandSolver: converts planned joint rows to Bullet's solver rows, sweeps them, and stores the impulses in the
+// joints.
 #include "sim/island_world.h"
 
 #include <algorithm>
@@ -19,11 +20,11 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
   }
 }
 
-// Joints know where their rows are, so these don't move until the step is solved.
-void IslandSolver::make_room(int joints) {
+// Joints hold pointers to their rows, which therefore must not move until the step is solved.
+void IslandSolver::reserve_rows(int joints) {
   planned_count_ = 0;
-  const std::size_t most = static_cast<std::size_t>(joints) * JointConstraint::kMostRows;
-  if (planned_.size() < most) planned_.resize(most);
+  const std::size_t max_rows = static_cast<std::size_t>(joints) * JointConstraint::kMaxRows;
+  if (planned_.size() < max_rows) planned_.resize(max_rows);
 }
 
 void IslandSolver::plan(JointConstraint& joint, const btContactSolverInfo& info) {
@@ -32,9 +33,9 @@ void IslandSolver::plan(JointConstraint& joint, const btContactSolverInfo& info)
 }
 
 void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
-  make_room(count);
-  direct_here_ = direct_wanted_ && plan_direct(constraints, count, info);
-  if (direct_here_) {
+  reserve_rows(count);
+  use_direct_ = direct_enabled_ && plan_direct(constraints, count, info);
+  if (use_direct_) {
     m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
     joints_.resizeNoInitialize(0);
     gears_swept_ = false;
@@ -45,15 +46,16 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
     plan(*static_cast<JointConstraint*>(constraints[i]), info);
   }
   plan_gears(constraints, count, info);
-  convert_all(constraints, count, info);
+  convert_constraints(constraints, count, info);
 }
 
-// False: nothing to solve directly, or joints of Bullet's own, which only the sweeps know.
+// Returns false if there is nothing to solve directly, or the island has one of Bullet's own constraints, which only
+// the iterative solver supports.
 bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   for (int i = 0; i < count; ++i) {
     if (constraints[i]->getConstraintType() != JointConstraint::kType && !is_gear(*constraints[i])) return false;
   }
-  direct_.start();
+  direct_.begin();
   for (int i = 0; i < count; ++i) {
     if (is_gear(*constraints[i])) continue;
     JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
@@ -67,7 +69,7 @@ bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const
   return direct_.joint_count() > 0 || contacts_direct_;
 }
 
-// Once all joints are planned. A gear that moves nothing has no row.
+// Plans the gears, after all joints. A gear that can't move anything has no row.
 void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   gears_.clear();
   for (int i = 0; i < count; ++i) {
@@ -77,9 +79,9 @@ void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const 
     if (!(gear.row().mobility > 0)) continue;
     GearRow& row = gears_.emplace_back();
     row.gear = &gear;
-    row.count = static_cast<int>(gear.sides().size());
-    for (std::size_t k = 0; k < gear.sides().size(); ++k) {
-      row.bodies[k] = getOrInitSolverBody(*gear.sides()[k].body, info.m_timeStep);
+    row.count = static_cast<int>(gear.jacobians().size());
+    for (std::size_t k = 0; k < gear.jacobians().size(); ++k) {
+      row.bodies[k] = getOrInitSolverBody(*gear.jacobians()[k].body, info.m_timeStep);
     }
   }
 }
@@ -88,30 +90,30 @@ btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bod
                                                          btPersistentManifold** manifolds, int manifold_count,
                                                          btTypedConstraint** constraints, int constraint_count,
                                                          const btContactSolverInfo& info, btIDebugDraw* drawer) {
-  // an island of one resting body comes here without having been set up
-  if (std::exchange(direct_here_, false)) {
+  // Bullet solves an island of one resting body without setting it up
+  if (std::exchange(use_direct_, false)) {
     const IslandPools pools{m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool,
                             m_tmpSolverContactFrictionConstraintPool, m_tmpSolverContactRollingFrictionConstraintPool};
     if (direct_.solve(pools, info)) return 0;
-    convert_all(constraints, constraint_count, info);
+    convert_constraints(constraints, constraint_count, info);
   }
   contacts_.begin(m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool, m_tmpSolverContactFrictionConstraintPool);
-  const btScalar rest = btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
+  const btScalar residual = btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyIterations(
       bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, drawer);
   contacts_.finish();
-  return rest;
+  return residual;
 }
 
 void IslandSolver::solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject**, int, btPersistentManifold**, int,
                                                                  btTypedConstraint**, int,
                                                                  const btContactSolverInfo& info, btIDebugDraw*) {
   for (int i = 0; i < info.m_numIterations; ++i) {
-    if (contacts_.push_apart() <= info.m_leastSquaresResidualThreshold) return;
+    if (contacts_.sweep_split_impulse() <= info.m_leastSquaresResidualThreshold) return;
   }
 }
 
-// Rows of joints that are planned already.
-void IslandSolver::convert_all(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+// Converts the rows of joints, which are planned already.
+void IslandSolver::convert_constraints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   m_tmpConstraintSizesPool.resizeNoInitialize(count);
   int rows = 0;
   for (int i = 0; i < count; ++i) {
@@ -136,7 +138,7 @@ void IslandSolver::convert_all(btTypedConstraint** constraints, int count, const
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
       convert_rows(static_cast<JointConstraint&>(*constraints[i]), first, size.m_numConstraintRows, info);
     } else {
-      // Bullet's own kinds: their rows are swept one by one
+      // Bullet's own constraints: rows are swept one by one
       const int a = getOrInitSolverBody(constraints[i]->getRigidBodyA(), info.m_timeStep);
       const int b = getOrInitSolverBody(constraints[i]->getRigidBodyB(), info.m_timeStep);
       convertJoint(first, constraints[i], size, a, b, info);
@@ -146,7 +148,7 @@ void IslandSolver::convert_all(btTypedConstraint** constraints, int count, const
   convert_gears(info);
 }
 
-// Rows of gears for the sweeps, after those of all joints.
+// Sets up the rows of gears for the sweeps, after those of all joints.
 void IslandSolver::convert_gears(const btContactSolverInfo& info) {
   gears_swept_ = true;
   for (GearRow& row : gears_) {
@@ -154,7 +156,7 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
     btScalar rate = 0;
     for (int k = 0; k < row.count; ++k) {
       GearSide& side = row.sides[at(k)];
-      const GearConstraint::Side& from = row.gear->sides()[at(k)];
+      const GearConstraint::BodyJacobian& from = row.gear->jacobians()[at(k)];
       const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
       side.linear = from.linear;
       side.angular = from.angular;
@@ -163,12 +165,12 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
       rate += side.linear.dot(body.m_linearVelocity + body.m_externalForceImpulse) +
               side.angular.dot(body.m_angularVelocity + body.m_externalTorqueImpulse);
     }
-    row.wanted = to_scalar(planned.velocity) - rate;
+    row.target_rate = to_scalar(planned.velocity) - rate;
     row.softness = to_scalar(planned.softness);
     row.step = to_scalar(1 / (planned.mobility + planned.softness));
     row.bound = to_scalar(std::min(planned.bound, static_cast<double>(SIMD_INFINITY)));
     row.impulse = std::clamp(to_scalar(row.gear->warm_impulse()), -row.bound, row.bound);
-    push_gear(row, row.impulse);
+    apply_gear_impulse(row, row.impulse);
     m_maxOverrideNumSolverIterations = std::max(info.m_numIterations, m_maxOverrideNumSolverIterations);
   }
 }
@@ -176,19 +178,19 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
 // Returns the squared change of the impulse.
 btScalar IslandSolver::sweep_gear(int gear) {
   GearRow& row = gears_[at(gear)];
-  btScalar missing = row.wanted - row.softness * row.impulse;
+  btScalar residual = row.target_rate - row.softness * row.impulse;
   for (int k = 0; k < row.count; ++k) {
     const GearSide& side = row.sides[at(k)];
     const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
-    missing -= side.linear.dot(body.m_deltaLinearVelocity) + side.angular.dot(body.m_deltaAngularVelocity);
+    residual -= side.linear.dot(body.m_deltaLinearVelocity) + side.angular.dot(body.m_deltaAngularVelocity);
   }
-  const btScalar after = std::clamp(row.impulse + missing * row.step, -row.bound, row.bound);
+  const btScalar after = std::clamp(row.impulse + residual * row.step, -row.bound, row.bound);
   const btScalar change = after - std::exchange(row.impulse, after);
-  push_gear(row, change);
+  apply_gear_impulse(row, change);
   return change * change;
 }
 
-void IslandSolver::push_gear(const GearRow& row, btScalar impulse) {
+void IslandSolver::apply_gear_impulse(const GearRow& row, btScalar impulse) {
   for (int k = 0; k < row.count; ++k) {
     btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
     body.m_deltaLinearVelocity += row.sides[at(k)].linear_per_impulse * impulse;
@@ -196,7 +198,7 @@ void IslandSolver::push_gear(const GearRow& row, btScalar impulse) {
   }
 }
 
-// Notes `count` rows for the sweeps; the last of them, a bounded one and `locked` ones, form the block.
+// Registers `count` rows for the sweeps; the last ones, one bounded row (if any) and `locked` ones, form the block.
 JointBlock& IslandSolver::add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked) {
   JointRows& entry = joints_.expandNonInitializing();
   entry.first = static_cast<int>(rows - &m_tmpSolverNonContactConstraintPool[0]);
@@ -214,19 +216,19 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
   const int id_b = getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep);
   std::memset(static_cast<void*>(rows), 0, sizeof(btSolverConstraint) * static_cast<std::size_t>(count));
 
-  // let the joint fill in Jacobians, bounds, wanted velocity (m_rhs) and softness (m_cfm)
-  btTypedConstraint::btConstraintInfo2 plan{};
-  plan.fps = 1 / info.m_timeStep;
-  plan.m_J1linearAxis = rows->m_contactNormal1;
-  plan.m_J1angularAxis = rows->m_relpos1CrossNormal;
-  plan.m_J2linearAxis = rows->m_contactNormal2;
-  plan.m_J2angularAxis = rows->m_relpos2CrossNormal;
-  plan.rowskip = static_cast<int>(sizeof(btSolverConstraint) / sizeof(btScalar));
-  plan.m_constraintError = &rows->m_rhs;
-  plan.cfm = &rows->m_cfm;
-  plan.m_lowerLimit = &rows->m_lowerLimit;
-  plan.m_upperLimit = &rows->m_upperLimit;
-  joint.getInfo2(&plan);
+  // getInfo2() writes Jacobians, bounds, target velocity (m_rhs) and softness (m_cfm)
+  btTypedConstraint::btConstraintInfo2 constraint_info{};
+  constraint_info.fps = 1 / info.m_timeStep;
+  constraint_info.m_J1linearAxis = rows->m_contactNormal1;
+  constraint_info.m_J1angularAxis = rows->m_relpos1CrossNormal;
+  constraint_info.m_J2linearAxis = rows->m_contactNormal2;
+  constraint_info.m_J2angularAxis = rows->m_relpos2CrossNormal;
+  constraint_info.rowskip = static_cast<int>(sizeof(btSolverConstraint) / sizeof(btScalar));
+  constraint_info.m_constraintError = &rows->m_rhs;
+  constraint_info.cfm = &rows->m_cfm;
+  constraint_info.m_lowerLimit = &rows->m_lowerLimit;
+  constraint_info.m_upperLimit = &rows->m_upperLimit;
+  joint.getInfo2(&constraint_info);
 
   const btRigidBody& a = joint.getRigidBodyA();
   const btRigidBody& b = joint.getRigidBodyB();
@@ -245,14 +247,14 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
     row.m_angularComponentA = a.getInvInertiaTensorWorld() * row.m_relpos1CrossNormal * a.getAngularFactor();
     row.m_angularComponentB = b.getInvInertiaTensorWorld() * row.m_relpos2CrossNormal * b.getAngularFactor();
 
-    // mobility J M^-1 J' plus softness: with both in the step, any softness converges
+    // inverse effective mass J M^-1 J' plus softness: with both in the step, any softness converges
     const btScalar mobility =
         row.m_contactNormal1.length2() * a.getInvMass() + row.m_contactNormal2.length2() * b.getInvMass() +
         row.m_relpos1CrossNormal.dot(row.m_angularComponentA) + row.m_relpos2CrossNormal.dot(row.m_angularComponentB);
     const btScalar step = mobility > SIMD_EPSILON ? 1 / (mobility + row.m_cfm) : btScalar(0);
     const btScalar rate = row.m_contactNormal1.dot(linear_a) + row.m_relpos1CrossNormal.dot(angular_a) +
                           row.m_contactNormal2.dot(linear_b) + row.m_relpos2CrossNormal.dot(angular_b);
-    row.m_rhsPenetration = row.m_rhs - rate;  // unused in joints otherwise: what the block wants
+    row.m_rhsPenetration = row.m_rhs - rate;  // unused in joints otherwise: input of the block
     row.m_rhs = row.m_rhsPenetration * step;
     row.m_jacDiagABInv = step;
     row.m_cfm *= step;
@@ -264,8 +266,8 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
 }
 
-// One sweep over gears, which give way to locks, then over all joints: their rows one by one, then their blocks.
-// Returns the largest squared change of an impulse, 0 when nothing moved.
+// One sweep over gears, then over all joints, so that locks take precedence: single rows first, then blocks. Returns
+// the largest squared change of an impulse.
 btScalar IslandSolver::sweep_joints() {
   btScalar largest = 0;
   for (int i = 0; i < static_cast<int>(gears_.size()); ++i) largest = std::max(largest, sweep_gear(i));
@@ -292,10 +294,10 @@ btScalar IslandSolver::solveSingleIteration(int iteration, btCollisionObject**, 
 
 btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                                      const btContactSolverInfo& info) {
-  remember_rolling_friction();
+  save_rolling_friction();
   for (int i = 0; i < joints_.size(); ++i) joints_[i].block.finish();
   for (GearRow& row : gears_) {
-    if (gears_swept_) row.gear->take_impulse(static_cast<double>(row.impulse));
+    if (gears_swept_) row.gear->set_impulse(static_cast<double>(row.impulse));
   }
   gears_.clear();
   const int count = m_tmpSolverNonContactConstraintPool.size();
@@ -303,7 +305,7 @@ btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
     auto* joint = static_cast<btTypedConstraint*>(m_tmpSolverNonContactConstraintPool[first].m_originalContactPoint);
     while (last < count && m_tmpSolverNonContactConstraintPool[last].m_originalContactPoint == joint) ++last;
     if (joint->getConstraintType() != JointConstraint::kType) continue;
-    static_cast<JointConstraint*>(joint)->take_impulses(&m_tmpSolverNonContactConstraintPool[first], last - first);
+    static_cast<JointConstraint*>(joint)->set_impulses(&m_tmpSolverNonContactConstraintPool[first], last - first);
   }
   return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
 }

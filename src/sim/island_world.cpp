@@ -1,4 +1,4 @@
-// Islands: found here, sorted by counting, solved batch by batch.
+// IslandWorld: finds islands, sorts their bodies, joints and contacts by counting, and solves them in batches.
 #include "sim/island_world.h"
 
 #include <algorithm>
@@ -12,29 +12,28 @@
 namespace limber {
 namespace {
 
-/// Islands are solved together until this many joints and contact pairs, or so many bodies, are in a batch; it changes
-/// no result.
-constexpr int kBatch = 16;
-constexpr int kBodies = 64;
-/// Joints, contact pairs and bodies of a step that are worth waking others for; it changes no result.
-constexpr int kTeamWork = 128;
-/// So many objects ahead their memory is asked for.
-constexpr int kAhead = 8;
-/// Contact pairs in Bullet's pool.
-constexpr int kPool = 64;
+/// A batch is complete with this many joints and contact pairs, or this many bodies; results don't depend on it.
+constexpr int kBatchConstraints = 16;
+constexpr int kBatchBodies = 64;
+/// Least number of joints, contact pairs and bodies in a step for which threads are woken; results don't depend on it.
+constexpr int kMinParallelWork = 128;
+/// Number of objects to prefetch ahead.
+constexpr int kObjectsAhead = 8;
+/// Contact pairs per block of Bullet's pool.
+constexpr int kManifoldPoolSize = 64;
 
-// Counts per island in start[1..] become starts, and cursor their copy.
-void accumulate(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cursor) {
+// Turns counts per island in start[1..] into start indices and copies them to cursor.
+void to_start_indices(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cursor) {
   for (int i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   cursor.copyFromArray(start);
 }
 
-void zero(btAlignedObjectArray<int>& a, int size) {
+void fill_with_zeros(btAlignedObjectArray<int>& a, int size) {
   a.resizeNoInitialize(size);
   for (int i = 0; i < size; ++i) a[i] = 0;
 }
 
-void leave_gyroscopic_torque_to_us(btRigidBody& body) {
+void disable_bullet_gyroscopic_torque(btRigidBody& body) {
   body.setFlags(body.getFlags() & ~(BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
                                     BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_BODY));
 }
@@ -44,7 +43,7 @@ void end_tick(btTypedConstraint& joint) {
   if (is_gear(joint)) static_cast<GearConstraint&>(joint).end_tick();
 }
 
-// The axes of fast parts' joints are read at each step's end: spin.h.
+// Advances the predicted angles of a joint with fast parts (spin.h); `refresh`: also reads the joint's pose.
 void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
   if (constraint.getConstraintType() != JointConstraint::kType) return;
   JointConstraint& joint = static_cast<JointConstraint&>(constraint);
@@ -54,16 +53,16 @@ void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
 
 }  // namespace
 
-WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), team(setup.team) {
-  // Bullet's own pools of 4096 contact pairs take 4 MB, which each key state would look through; more pairs than a
-  // pool holds cost no measurable time (arms-1000)
+WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), thread_pool(setup.thread_pool) {
+  // Bullet's default pools of 4096 contact pairs take 4 MB, which each checkpoint would have to compare; exceeding a
+  // smaller pool costs no measurable time (arms-1000)
   btDefaultCollisionConstructionInfo pools;
-  pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kPool;
+  pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kManifoldPoolSize;
   configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
   dispatcher = std::make_unique<Dispatcher>(configuration.get());
-  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin, setup.team.get());
+  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin, setup.thread_pool.get());
   const BulletMemory::Scope heap(nullptr);
-  for (int i = 0; i < (setup.team ? setup.team->members() : 1); ++i) {
+  for (int i = 0; i < (setup.thread_pool ? setup.thread_pool->thread_count() : 1); ++i) {
     solvers.push_back(std::make_unique<IslandSolver>());
   }
 }
@@ -76,19 +75,19 @@ IslandWorld::IslandWorld(const WorldSetup& setup)
   info.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
   info.m_splitImpulse = 1;
   info.m_splitImpulsePenetrationThreshold = 0;
-  info.m_minimumSolverBatchSize = kBatch;
+  info.m_minimumSolverBatchSize = kBatchConstraints;
   getDispatchInfo().m_useContinuous = false;
 }
 
 IslandWorld::~IslandWorld() = default;
 
-// Calls work(object) for each, side by side where there is a team; the work must be the same in any order.
+// Calls work(i, object) for each object, in parallel if there is a thread pool; the order must not matter.
 template <class Object, class Work>
 void IslandWorld::for_each(const btAlignedObjectArray<Object*>& objects, Work&& work) {
   const int count = objects.size();
-  share_out_places(team.get(), count, [&](int, int first, int end) {
+  parallel_for_ranges(thread_pool.get(), count, [&](int, int first, int end) {
     for (int i = first; i < end; ++i) {
-      if (i + kAhead < count) prefetch(objects[i + kAhead], sizeof *objects[i]);
+      if (i + kObjectsAhead < count) prefetch(objects[i + kObjectsAhead], sizeof *objects[i]);
       work(i, *objects[i]);
     }
   });
@@ -101,22 +100,22 @@ void IslandWorld::step(double h, int substeps) {
   if (std::exchange(step_length_, step_length) != step_length) wake_all();
   tick_length_ = to_scalar(h * substeps);
   for (int i = 0; i < substeps; ++i) {
-    first_ = i == 0;
-    last_ = i + 1 == substeps;
+    first_substep_ = i == 0;
+    last_substep_ = i + 1 == substeps;
     for (const auto& solver : solvers) solver->set_substep(substeps - i, substeps);
-    if (joints_known_ && awake_.size() == 0 && linked_.size() == 0 && !sleep_.any_waking()) {
-      rest_step();
+    if (structure_cached_ && awake_.size() == 0 && awake_joints_.size() == 0 && !sleep_.any_wake_requested()) {
+      sleeping_step();
     } else {
       internalSingleStepSimulation(step_length);
     }
   }
-  first_ = last_ = false;
-  if (joints_known_ && sleep_.end_tick({places_, awake_, linked_})) joints_known_ = false;
+  first_substep_ = last_substep_ = false;
+  if (structure_cached_ && sleep_.end_tick({awake_index_, awake_, awake_joints_})) structure_cached_ = false;
 }
 
-// An internal step in which everything sleeps.
-void IslandWorld::rest_step() {
-  ails_.store(false, std::memory_order_relaxed);
+// Internal step in which everything sleeps.
+void IslandWorld::sleeping_step() {
+  unstable_.store(false, std::memory_order_relaxed);
   if (m_internalTickCallback != nullptr) m_internalTickCallback(this, step_length_);
 }
 
@@ -128,24 +127,24 @@ void IslandWorld::refresh_joints() {
 
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
   const BulletMemory::Scope scope(memory);
-  joints_known_ = false;
+  structure_cached_ = false;
   sleep_.wake(constraint->getRigidBodyA());
   sleep_.wake(constraint->getRigidBodyB());
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
-  if (disable_collisions) look_anew(*constraint);
+  if (disable_collisions) update_pairs(*constraint);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body) {
   const BulletMemory::Scope scope(memory);
-  joints_known_ = false;
-  leave_gyroscopic_torque_to_us(*body);
+  structure_cached_ = false;
+  disable_bullet_gyroscopic_torque(*body);
   btDiscreteDynamicsWorld::addRigidBody(body);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
   const BulletMemory::Scope scope(memory);
-  joints_known_ = false;
-  leave_gyroscopic_torque_to_us(*body);
+  structure_cached_ = false;
+  disable_bullet_gyroscopic_torque(*body);
   btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
 }
 
@@ -155,47 +154,47 @@ void IslandWorld::addCollisionObject(btCollisionObject* object, int group, int m
 }
 
 void IslandWorld::removeRigidBody(btRigidBody* body) {
-  joints_known_ = false;
+  structure_cached_ = false;
   sleep_.remove(*body);
   btDiscreteDynamicsWorld::removeRigidBody(body);
 }
 
 void IslandWorld::wake_all() {
-  if (sleep_.sleeping() > 0) joints_known_ = false;
+  if (sleep_.sleeping() > 0) structure_cached_ = false;
   sleep_.wake_all();
 }
 
 void IslandWorld::setGravity(const btVector3& gravity) {
-  if (gravity != getGravity()) wake_all();  // Bullet leaves out what sleeps
+  if (gravity != getGravity()) wake_all();  // Bullet doesn't update sleeping bodies
   btDiscreteDynamicsWorld::setGravity(gravity);
 }
 
 void IslandWorld::set_filter(btCollisionObject& object, const CollisionFilter& filter) {
-  if (filter.store(object)) look_anew(object);
+  if (filter.store(object)) update_pairs(object);
 }
 
-// Bullet's lists may hold an object more than once: each entry counts, those of joints too.
+// Bullet's lists may contain an object more than once: each entry counts, including those of joints.
 void IslandWorld::exclude_pair(btCollisionObject& a, btCollisionObject& b) {
   const BulletMemory::Scope scope(memory);
   a.setIgnoreCollisionCheck(&b, true);
   b.setIgnoreCollisionCheck(&a, true);
-  look_anew(a);
-  look_anew(b);
+  update_pairs(a);
+  update_pairs(b);
 }
 
 void IslandWorld::include_pair(btCollisionObject& a, btCollisionObject& b) {
   const BulletMemory::Scope scope(memory);
   a.setIgnoreCollisionCheck(&b, false);
   b.setIgnoreCollisionCheck(&a, false);
-  look_anew(a);
-  look_anew(b);
+  update_pairs(a);
+  update_pairs(b);
 }
 
 void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   const int count = m_constraints.size();
   const int index = m_constraints.findLinearSearch(constraint);
   if (index == count) return;
-  joints_known_ = false;
+  structure_cached_ = false;
   for (int i = index; i + 1 < count; ++i) m_constraints[i] = m_constraints[i + 1];
   m_constraints.pop_back();
   const BulletMemory::Scope scope(memory);
@@ -203,28 +202,28 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   constraint->getRigidBodyB().removeConstraintRef(constraint);
   sleep_.wake(constraint->getRigidBodyA());
   sleep_.wake(constraint->getRigidBodyB());
-  look_anew(*constraint);
+  update_pairs(*constraint);
 }
 
-// whether its parts may collide has changed
-void IslandWorld::look_anew(btTypedConstraint& joint) {
-  look_anew(joint.getRigidBodyA());
-  look_anew(joint.getRigidBodyB());
+// Called when the parts' permission to collide has changed.
+void IslandWorld::update_pairs(btTypedConstraint& joint) {
+  update_pairs(joint.getRigidBodyA());
+  update_pairs(joint.getRigidBodyB());
 }
 
-void IslandWorld::look_anew(btCollisionObject& object) {
+void IslandWorld::update_pairs(btCollisionObject& object) {
   sleep_.wake(object);
   if (object.getBroadphaseHandle() == nullptr) return;
   const BulletMemory::Scope scope(memory);
-  broadphase->look_anew(object.getBroadphaseHandle());
+  broadphase->update_pairs(object.getBroadphaseHandle());
 }
 
-// Islands' own work, and that of what stands nobody's: solve_batch().
+// Prepares the step: wakes objects and updates the cached structure. Bodies are updated in solve_batch().
 void IslandWorld::predictUnconstraintMotion(btScalar) {
-  ails_.store(false, std::memory_order_relaxed);
-  if (sleep_.apply_wakes(!first_)) joints_known_ = false;
-  if (!joints_known_) learn_joints();
-  static_cast<Dispatcher&>(*dispatcher).set_some_sleep(sleep_.sleeping() > 0);
+  unstable_.store(false, std::memory_order_relaxed);
+  if (sleep_.execute_wakes(!first_substep_)) structure_cached_ = false;
+  if (!structure_cached_) cache_structure();
+  static_cast<Dispatcher&>(*dispatcher).set_sleeping(sleep_.sleeping() > 0);
 }
 void IslandWorld::integrateTransforms(btScalar) {}
 
@@ -232,21 +231,22 @@ void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collis
 
 void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
-  if (!joints_known_ || places_.size() != getNumCollisionObjects()) learn_joints();
-  const int count = looked_.size();
-  left_.resizeNoInitialize(count);
-  for_each(looked_, [&](int i, btCollisionObject& object) {
-    if (i + kAhead / 2 < count) Broadphase::fetch(*looked_[i + kAhead / 2]);
-    left_[i] = Broadphase::look(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
+  if (!structure_cached_ || awake_index_.size() != getNumCollisionObjects()) cache_structure();
+  const int count = with_aabb_.size();
+  left_aabb_.resizeNoInitialize(count);
+  for_each(with_aabb_, [&](int i, btCollisionObject& object) {
+    if (i + kObjectsAhead / 2 < count) Broadphase::prefetch_proxy(*with_aabb_[i + kObjectsAhead / 2]);
+    left_aabb_[i] =
+        Broadphase::left_aabb(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
   });
-  int left = 0;
+  int left_count = 0;
   for (int i = 0; i < count; ++i) {
-    if (left_[i] == nullptr) continue;
-    if (looked_[i]->isStaticObject()) sleep_.wake(*looked_[i]);
-    left_[left++] = left_[i];
+    if (left_aabb_[i] == nullptr) continue;
+    if (with_aabb_[i]->isStaticObject()) sleep_.wake(*with_aabb_[i]);
+    left_aabb_[left_count++] = left_aabb_[i];
   }
-  if (sleep_.apply_wakes(!first_)) joints_known_ = false;
-  if (left > 0) broadphase->leave({&left_[0], static_cast<std::size_t>(left)});
+  if (sleep_.execute_wakes(!first_substep_)) structure_cached_ = false;
+  if (left_count > 0) broadphase->update_aabbs({&left_aabb_[0], static_cast<std::size_t>(left_count)});
 }
 
 void IslandWorld::updateActivationState(btScalar) { sleep_.end_step(); }
@@ -257,152 +257,154 @@ void IslandWorld::solveConstraints(btContactSolverInfo& info) {
   solve_islands(info);
 }
 
-int IslandWorld::root_of(btAlignedObjectArray<int>& above, int place) {
-  while (above[place] != place) place = above[place] = above[above[place]];
-  return place;
+int IslandWorld::root_of(btAlignedObjectArray<int>& parent, int index) {
+  while (parent[index] != index) index = parent[index] = parent[parent[index]];
+  return index;
 }
 
-void IslandWorld::unite(btAlignedObjectArray<int>& above, int a, int b) {
-  if (a >= 0 && b >= 0) above[root_of(above, a)] = root_of(above, b);
+void IslandWorld::unite(btAlignedObjectArray<int>& parent, int a, int b) {
+  if (a >= 0 && b >= 0) parent[root_of(parent, a)] = root_of(parent, b);
 }
 
-// Once they stand, no step has to go through all of them for it.
-void IslandWorld::learn_joints() {
-  places_.resizeNoInitialize(getNumCollisionObjects());
-  for (int i = 0; i < places_.size(); ++i) places_[i] = -1;
+// Caches the structure of the world, so that steps don't iterate over all objects.
+void IslandWorld::cache_structure() {
+  awake_index_.resizeNoInitialize(getNumCollisionObjects());
+  for (int i = 0; i < awake_index_.size(); ++i) awake_index_[i] = -1;
   awake_.resizeNoInitialize(0);
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
     if (!body.isActive()) continue;
-    places_[body.getWorldArrayIndex()] = awake_.size();
+    awake_index_[body.getWorldArrayIndex()] = awake_.size();
     awake_.push_back(&body);
   }
-  const auto sleeps = [](const btCollisionObject& object) { return !object.isStaticObject() && !object.isActive(); };
-  looked_.resizeNoInitialize(0);
+  const auto is_asleep = [](const btCollisionObject& object) { return !object.isStaticObject() && !object.isActive(); };
+  with_aabb_.resizeNoInitialize(0);
   for (int i = 0; i < m_collisionObjects.size(); ++i) {
-    if (!sleeps(*m_collisionObjects[i])) looked_.push_back(m_collisionObjects[i]);
+    if (!is_asleep(*m_collisionObjects[i])) with_aabb_.push_back(m_collisionObjects[i]);
   }
-  joined_.resizeNoInitialize(awake_.size());
-  for (int i = 0; i < joined_.size(); ++i) joined_[i] = i;
-  ends_.resizeNoInitialize(0);
-  linked_.resizeNoInitialize(0);
+  joint_parent_.resizeNoInitialize(awake_.size());
+  for (int i = 0; i < joint_parent_.size(); ++i) joint_parent_[i] = i;
+  joint_bodies_.resizeNoInitialize(0);
+  awake_joints_.resizeNoInitialize(0);
   for (int i = 0; i < m_constraints.size(); ++i) {
     const btRigidBody& a = m_constraints[i]->getRigidBodyA();
     const btRigidBody& b = m_constraints[i]->getRigidBodyB();
-    if (sleeps(a) || sleeps(b)) continue;
-    ends_.push_back({place_of(a), place_of(b)});
-    linked_.push_back(m_constraints[i]);
-    unite(joined_, place_of(a), place_of(b));
+    if (is_asleep(a) || is_asleep(b)) continue;
+    joint_bodies_.push_back({awake_index(a), awake_index(b)});
+    awake_joints_.push_back(m_constraints[i]);
+    unite(joint_parent_, awake_index(a), awake_index(b));
   }
-  joints_known_ = true;
+  structure_cached_ = true;
 }
 
-// Who is joined, or may meet.
+// Unites bodies that are joined or whose boxes overlap.
 void IslandWorld::calculateSimulationIslands() {
   BT_PROFILE("calculateSimulationIslands");
-  if (sleep_.wake_touched(!first_)) joints_known_ = false;
-  if (!joints_known_ || places_.size() != getNumCollisionObjects()) learn_joints();
-  above_.copyFromArray(joined_);
+  if (sleep_.wake_touched(!first_substep_)) structure_cached_ = false;
+  if (!structure_cached_ || awake_index_.size() != getNumCollisionObjects()) cache_structure();
+  parent_.copyFromArray(joint_parent_);
   const btBroadphasePairArray& pairs = getPairCache()->getOverlappingPairArray();
   for (int i = 0; i < pairs.size(); ++i) {
-    const auto place = [&](const btBroadphaseProxy* proxy) {
-      return place_of(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
+    const auto index_of = [&](const btBroadphaseProxy* proxy) {
+      return awake_index(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
     };
-    unite(above_, place(pairs[i].m_pProxy0), place(pairs[i].m_pProxy1));
+    unite(parent_, index_of(pairs[i].m_pProxy0), index_of(pairs[i].m_pProxy1));
   }
   sort_bodies();
   sort_joints();
 }
 
 void IslandWorld::sort_bodies() {
-  // islands get numbers in the order of their first body
+  // islands are numbered in the order of their first body
   const int count = awake_.size();
   island_of_root_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) island_of_root_[i] = -1;
   island_.resizeNoInitialize(count);
   island_count_ = 0;
-  zero(body_start_, count + 1);
+  fill_with_zeros(body_start_, count + 1);
   for (int i = 0; i < count; ++i) {
-    int& island = island_of_root_[root_of(above_, i)];
+    int& island = island_of_root_[root_of(parent_, i)];
     if (island < 0) island = island_count_++;
     island_[i] = island;
     ++body_start_[island + 1];
   }
   body_start_.resizeNoInitialize(island_count_ + 1);
-  accumulate(body_start_, cursor_);
+  to_start_indices(body_start_, cursor_);
   bodies_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) bodies_[cursor_[island_[i]]++] = awake_[i];
 }
 
 void IslandWorld::sort_joints() {
-  const int count = linked_.size();
+  const int count = awake_joints_.size();
   const auto island = [&](int joint) {
-    const Ends& ends = ends_[joint];
-    return ends.a < 0 && ends.b < 0 ? -1 : island_[ends.a >= 0 ? ends.a : ends.b];
+    const JointBodies& bodies = joint_bodies_[joint];
+    return bodies.a < 0 && bodies.b < 0 ? -1 : island_[bodies.a >= 0 ? bodies.a : bodies.b];
   };
-  zero(joint_start_, island_count_ + 1);
+  fill_with_zeros(joint_start_, island_count_ + 1);
   for (int i = 0; i < count; ++i) {
     if (island(i) >= 0) ++joint_start_[island(i) + 1];
   }
-  accumulate(joint_start_, cursor_);
+  to_start_indices(joint_start_, cursor_);
   joints_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) {
     if (island(i) >= 0) {
-      joints_[cursor_[island(i)]++] = linked_[i];
-    } else if (last_) {
-      end_tick(*linked_[i]);
+      joints_[cursor_[island(i)]++] = awake_joints_[i];
+    } else if (last_substep_) {
+      end_tick(*awake_joints_[i]);
     }
   }
 }
 
 void IslandWorld::sort_contacts() {
   btDispatcher* dispatch = getDispatcher();
-  touches_.resizeNoInitialize(0);
+  ordered_manifolds_.resizeNoInitialize(0);
   const int manifolds = dispatch->getNumManifolds();
   for (int i = 0; i < manifolds; ++i) {
-    if (i + kAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kAhead));
+    if (i + kObjectsAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kObjectsAhead));
     btPersistentManifold* manifold = dispatch->getManifoldByIndexInternal(i);
     if (manifold->getNumContacts() == 0) continue;
     const btCollisionObject* a = manifold->getBody0();
     const btCollisionObject* b = manifold->getBody1();
-    const int place = std::max(place_of(*a), place_of(*b));
-    if (place < 0 || !dispatch->needsResponse(a, b)) continue;
-    touches_.push_back(
-        {island_[place], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
+    const int index = std::max(awake_index(*a), awake_index(*b));
+    if (index < 0 || !dispatch->needsResponse(a, b)) continue;
+    ordered_manifolds_.push_back(
+        {island_[index], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
   }
-  // Bullet keeps manifolds in an order that depends on all islands' history; the parts' age does not
-  const int count = touches_.size();
+  // Bullet's order of manifolds depends on the history of all islands; the age of the parts doesn't
+  const int count = ordered_manifolds_.size();
   if (count > 1) {
-    std::sort(&touches_[0], &touches_[0] + count, [](const Touch& x, const Touch& y) {
-      if (x.island != y.island) return x.island < y.island;
-      return x.first != y.first ? x.first < y.first : x.second < y.second;
-    });
+    std::sort(&ordered_manifolds_[0], &ordered_manifolds_[0] + count,
+              [](const OrderedManifold& x, const OrderedManifold& y) {
+                if (x.island != y.island) return x.island < y.island;
+                return x.first != y.first ? x.first < y.first : x.second < y.second;
+              });
   }
-  zero(contact_start_, island_count_ + 1);
+  fill_with_zeros(contact_start_, island_count_ + 1);
   contacts_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) {
-    contacts_[i] = touches_[i].manifold;
-    ++contact_start_[touches_[i].island + 1];
+    contacts_[i] = ordered_manifolds_[i].manifold;
+    ++contact_start_[ordered_manifolds_[i].island + 1];
   }
-  accumulate(contact_start_, cursor_);
+  to_start_indices(contact_start_, cursor_);
 }
 
-void IslandWorld::gather_batches(int least) {
+void IslandWorld::gather_batches(int min_work) {
   batches_.resizeNoInitialize(0);
   batches_.push_back(0);
   for (int last = 1; last <= island_count_; ++last) {
     const int first = batches_[batches_.size() - 1];
     const int joints = joint_start_[last] - joint_start_[first];
     const int contacts = contact_start_[last] - contact_start_[first];
-    // the direct solver counts and falls back island by island
-    const bool alone =
-        solvers.front()->direct_wanted() && (joints + contacts > 0 || (last < island_count_ && has_work(last)));
+    // the direct solver counts and falls back per island
+    const bool one_island =
+        solvers.front()->direct_enabled() && (joints + contacts > 0 || (last < island_count_ && has_work(last)));
     const int bodies = body_start_[last] - body_start_[first];
-    if (alone || joints + contacts >= least || bodies >= kBodies || last == island_count_) batches_.push_back(last);
+    if (one_island || joints + contacts >= min_work || bodies >= kBatchBodies || last == island_count_)
+      batches_.push_back(last);
   }
 }
 
-// All that a step does to an island's bodies and joints, one thing after the other while they are at hand.
+// Does all the work of a step on the bodies and joints of one batch while they are in the cache.
 void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info) {
   const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
   const int first = batches_[batch];
@@ -420,47 +422,49 @@ void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSo
 }
 
 void IslandWorld::load_bodies(int first, int last, btScalar h) {
-  const int ahead = body_start_[last] - body_start_[first];
+  const int batch_size = body_start_[last] - body_start_[first];
   for (int i = body_start_[first]; i < body_start_[last]; ++i) {
-    // those of the next batch, which come as long as this one takes
-    if (i + ahead < body_start_[island_count_]) prefetch(bodies_[i + ahead], sizeof(btRigidBody));
+    // prefetch for the next batch, which takes about as long as this one
+    if (i + batch_size < body_start_[island_count_]) prefetch(bodies_[i + batch_size], sizeof(btRigidBody));
     btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
-    if (first_) {
+    if (first_substep_) {
       body.applyGravity();
-      begin_clamps(body);
+      reset_clamp(body);
     }
     if (body.getLinearDamping() != 0 || body.getAngularDamping() != 0) body.applyDamping(h);
   }
 }
 
 void IslandWorld::move_bodies(int first, int last, btScalar h) {
-  bool fast = false;
+  bool any_fast = false;
   for (int i = body_start_[first]; i < body_start_[last]; ++i) {
     btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
     if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
     const double clamped = move_body(body, static_cast<double>(h));
-    if (clamped > 0) note_clamp(body, clamped / static_cast<double>(h));
-    if (last_) {
+    if (clamped > 0) record_clamp(body, clamped / static_cast<double>(h));
+    if (last_substep_) {
       body.clearForces();
       sleep_.observe(body, tick_length_);
     }
-    fast = fast || static_cast<double>(body.getAngularVelocity().length2() * h * h) > kSlowTurn * kSlowTurn;
-    if (ailment(body, static_cast<double>(h)) != nullptr) ails_.store(true, std::memory_order_relaxed);
+    any_fast =
+        any_fast || static_cast<double>(body.getAngularVelocity().length2() * h * h) > kSlowRotation * kSlowRotation;
+    if (find_instability(body, static_cast<double>(h)) != nullptr) unstable_.store(true, std::memory_order_relaxed);
   }
-  const int ahead = joint_start_[last] - joint_start_[first];
+  const int batch_size = joint_start_[last] - joint_start_[first];
   for (int i = joint_start_[first]; i < joint_start_[last]; ++i) {
-    if (i + ahead < joint_start_[island_count_]) prefetch(joints_[i + ahead], sizeof(JointConstraint));
-    if (fast) predict_angles(*joints_[i], h, !last_);
-    if (last_) end_tick(*joints_[i]);
+    if (i + batch_size < joint_start_[island_count_]) prefetch(joints_[i + batch_size], sizeof(JointConstraint));
+    if (any_fast) predict_angles(*joints_[i], h, !last_substep_);
+    if (last_substep_) end_tick(*joints_[i]);
   }
 }
 
-// Islands share bodies that don't move alone, which solvers only read (none is kinematic: those would be written to).
+// Islands share only static bodies, which solvers never write to (none is kinematic).
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
-  const BulletMemory::Scope heap(nullptr);  // the solvers' rows; helpers of a team have no other memory
-  Team* const helpers = joints_.size() + contacts_.size() + bodies_.size() >= kTeamWork ? team.get() : nullptr;
-  share_out(helpers, batches_.size() - 1,
-            [&](int batch, int member) { solve_batch(batch, *solvers[static_cast<std::size_t>(member)], info); });
+  const BulletMemory::Scope heap(nullptr);  // for the solvers' rows; threads of the pool have no other memory
+  ThreadPool* const pool =
+      joints_.size() + contacts_.size() + bodies_.size() >= kMinParallelWork ? thread_pool.get() : nullptr;
+  parallel_for(pool, batches_.size() - 1,
+               [&](int batch, int thread) { solve_batch(batch, *solvers[static_cast<std::size_t>(thread)], info); });
 }
 
 void IslandWorld::set_direct(bool on) {
@@ -473,7 +477,7 @@ DirectCounts IslandWorld::direct_counts() const {
     const DirectCounts& counts = solver->direct().counts();
     sum.islands += counts.islands;
     sum.direct += counts.direct;
-    sum.plain += counts.plain;
+    sum.too_large += counts.too_large;
     sum.fallbacks += counts.fallbacks;
   }
   return sum;

@@ -1,4 +1,4 @@
-// Joint: its rows, and the constraint behind them.
+// Joint: its properties, and their connection to Bullet's constraint.
 #include "sim/joint.h"
 
 #include <algorithm>
@@ -14,38 +14,39 @@ namespace limber {
 
 namespace {
 
-using namespace rows;
+using namespace properties;
 
-/// Smaller gaps are no instability, whatever the size of the parts, m.
-constexpr double kLeastGap = 0.01;
-/// Consecutive ticks with a gap larger than the parts that are an instability: a push of a moment is none.
-constexpr int kTornTicks = 15;
+/// Smaller gaps, m, never count as an instability, however small the parts are.
+constexpr double kMinGap = 0.01;
+/// Consecutive ticks with a gap larger than the parts that count as an instability; a short push doesn't.
+constexpr int kSeparatedTicks = 15;
 
-struct JointLiveRows {
-  const Row *value, *speed, *angles, *offsets, *relrot, *position, *rotation;
+struct JointReadouts {
+  const Property *value, *speed, *angles, *offsets, *relrot, *position, *rotation;
 };
 
-const JointLiveRows& joint_live_rows() {
+const JointReadouts& joint_readouts() {
   static const auto at = [](const char* name) { return &Joint::table().at(name); };
-  static const JointLiveRows found{at("value"),  at("speed"),    at("angles"),  at("offsets"),
+  static const JointReadouts found{at("value"),  at("speed"),    at("angles"),  at("offsets"),
                                    at("relrot"), at("position"), at("rotation")};
   return found;
 }
 
-struct LimitRows {
-  std::array<const Row*, 2> lower, upper, stop_erp, stop_cfm;  // linear, angular
+struct LimitProperties {
+  std::array<const Property*, 2> lower, upper, stop_erp, stop_cfm;  // linear, angular
 };
 
-const LimitRows& limit_rows() {
+const LimitProperties& limit_properties() {
   static const auto at = [](const char* name) { return &Joint::table().at(name); };
-  static const LimitRows found{{at("linear_lower_limit"), at("angular_lower_limit")},
-                               {at("linear_upper_limit"), at("angular_upper_limit")},
-                               {at("linear_stop_erp"), at("angular_stop_erp")},
-                               {at("linear_stop_cfm"), at("angular_stop_cfm")}};
+  static const LimitProperties found{{at("linear_lower_limit"), at("angular_lower_limit")},
+                                     {at("linear_upper_limit"), at("angular_upper_limit")},
+                                     {at("linear_stop_erp"), at("angular_stop_erp")},
+                                     {at("linear_stop_cfm"), at("angular_stop_cfm")}};
   return found;
 }
 
-// relrot(), which is costly, where the angles do not say it already: same order, one reading, no turns to count off
+// Returns relrot(), or the constraint's angles where both are the same (equal axis order, unambiguous, no full turns),
+// since relrot() is costly.
 Vec3 stream_angles(const JointConstraint& constraint) {
   const Vec3 angles = constraint.angles();
   const bool same = constraint.order() == std::array<int, 3>{2, 1, 0} && constraint.axis(4).locked() &&
@@ -53,8 +54,8 @@ Vec3 stream_angles(const JointConstraint& constraint) {
   return same ? angles : constraint.relrot();
 }
 
-// the axes that a type leaves free, before limits; 0..2 linear, 3..5 angular
-bool free_by_type(JointType type, int axis) {
+// True if a joint type leaves an axis free, apart from limits; axes 0..2 are linear, 3..5 angular.
+bool is_free_by_type(JointType type, int axis) {
   switch (type) {
     case JointType::revolute:
     case JointType::continuous:
@@ -73,45 +74,48 @@ bool free_by_type(JointType type, int axis) {
   return false;
 }
 
-Row limit(std::string name, const char* unit, double reach, std::string doc) {
-  return axes(effect<&Joint::effect_limits>(vec3(std::move(name), unit, {0, 0, 0}, -reach, reach, std::move(doc))));
+Property limit_property(std::string name, const char* unit, double range, std::string doc) {
+  return axes(on_change<&Joint::apply_limits>(vec3(std::move(name), unit, {0, 0, 0}, -range, range, std::move(doc))));
 }
 
-Row stop(std::string name, const char* unit, double initial, std::string doc) {
+Property stop_property(std::string name, const char* unit, double initial, std::string doc) {
   return axes(
-      effect<&Joint::effect_limits>(vec3(std::move(name), unit, {initial, initial, initial}, 0, 1, std::move(doc))));
+      on_change<&Joint::apply_limits>(vec3(std::move(name), unit, {initial, initial, initial}, 0, 1, std::move(doc))));
 }
 
 }  // namespace
 
-const Table& Joint::table() {
-  static const Table table(
+const PropertyTable& Joint::table() {
+  static const PropertyTable table(
       "joint", "/physics/body/<body>/joint/<joint>", "/physics/joint",
       {
-          limit("linear_lower_limit", "m", 1e4,
-                "Lower limit along each axis; equal to the upper: locked; above it: free."),
-          limit("linear_upper_limit", "m", 1e4, "Upper limit along each axis."),
-          limit("angular_lower_limit", "rad", 1e4,
-                "Lower limit about each axis; equal to the upper: locked; above it: free."),
-          limit("angular_upper_limit", "rad", 1e4, "Upper limit about each axis; limits may lie beyond ±π."),
-          stop("linear_stop_erp", "", 0.2, "Part of a lock's or limit's error that one internal step repairs, along."),
-          stop("linear_stop_cfm", "m/N", 0, "How far a lock or limit yields per load, along."),
-          stop("angular_stop_erp", "", 0.2, "Part of a lock's or limit's error that one internal step repairs, about."),
-          stop("angular_stop_cfm", "rad/(N·m)", 0, "How far a lock or limit yields per load, about."),
-          live(hashed(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Where the own axis stands.")))),
-          live(hashed(
-              readout(number("speed", "m/s | rad/s", 0, -kUnbounded, kUnbounded, "How fast the own axis moves.")))),
-          live(hashed(readout(vec3("angles", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
-                                   "Angles in the joint's own order, the one its limits and servos act in.")))),
-          live(hashed(readout(vec3("offsets", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
-                                   "Shift of the child along the parent's joint axes.")))),
-          live(hashed(readout(vec3("relrot", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
-                                   "Child's joint frame in the parent's, R = Rz·Ry·Rx, as the stream has it.")))),
-          live(hashed(readout(vec3("position", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
-                                   "The joint's point on the parent's side, world.")))),
-          live(
-              hashed(readout(quat("rotation", "The child's joint frame, world, its own rotation included: x y z w.")))),
-          view<&Joint::read_axis>(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "The own axis, world."))),
+          limit_property("linear_lower_limit", "m", 1e4,
+                         "Lower limit along each axis; equal to the upper: locked; above it: free."),
+          limit_property("linear_upper_limit", "m", 1e4, "Upper limit along each axis."),
+          limit_property("angular_lower_limit", "rad", 1e4,
+                         "Lower limit about each axis; equal to the upper: locked; above it: free."),
+          limit_property("angular_upper_limit", "rad", 1e4, "Upper limit about each axis; limits may lie beyond ±π."),
+          stop_property("linear_stop_erp", "", 0.2,
+                        "Share of the error of a lock or limit corrected per internal step, along the axis."),
+          stop_property("linear_stop_cfm", "m/N", 0, "Compliance of locks and limits along the axis."),
+          stop_property("angular_stop_erp", "", 0.2,
+                        "Share of the error of a lock or limit corrected per internal step, about the axis."),
+          stop_property("angular_stop_cfm", "rad/(N·m)", 0, "Compliance of locks and limits about the axis."),
+          transient(
+              hashed(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Position of the own axis.")))),
+          transient(
+              hashed(readout(number("speed", "m/s | rad/s", 0, -kUnbounded, kUnbounded, "Speed of the own axis.")))),
+          transient(hashed(readout(vec3("angles", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
+                                        "Angles in the joint's own order of axes, as used by limits and servos.")))),
+          transient(hashed(readout(vec3("offsets", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                                        "Offset of the child along the parent's joint axes.")))),
+          transient(
+              hashed(readout(vec3("relrot", "rad", {0, 0, 0}, -kUnbounded, kUnbounded,
+                                  "Rotation of the child's joint frame in the parent's, R = Rz·Ry·Rx, as streamed.")))),
+          transient(hashed(readout(vec3("position", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                                        "Position of the joint on the parent, world.")))),
+          transient(hashed(readout(quat("rotation", "Rotation of the child's joint frame, world: x y z w.")))),
+          computed<&Joint::read_axis>(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "Direction of the own axis, world."))),
       });
   return table;
 }
@@ -133,19 +137,19 @@ Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& chi
   Store& store = body_.store();
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
-    const bool limits_it = axis == own_axis() && spec.limited;
-    const bool is_free = free_by_type(spec.type, axis) && !limits_it;
-    store.tell(id_, *limit_rows().lower[half])[axis % 3] = limits_it ? spec.lower : is_free ? 1 : 0;
-    store.tell(id_, *limit_rows().upper[half])[axis % 3] = limits_it ? spec.upper : is_free ? -1 : 0;
+    const bool is_limited = axis == own_axis() && spec.limited;
+    const bool is_free = is_free_by_type(spec.type, axis) && !is_limited;
+    store.mutable_values(id_, *limit_properties().lower[half])[axis % 3] = is_limited ? spec.lower : is_free ? 1 : 0;
+    store.mutable_values(id_, *limit_properties().upper[half])[axis % 3] = is_limited ? spec.upper : is_free ? -1 : 0;
   }
 }
 
 Joint::~Joint() {
-  leave();
+  remove_from_world();
   body_.store().remove(id_);
 }
 
-void Joint::enter() {
+void Joint::add_to_world() {
   if (std::exchange(in_world_, true)) return;
   constraint_->restart_goals();
   body_.world().bullet().addConstraint(constraint_.get());
@@ -157,12 +161,12 @@ void Joint::couple_to(Joint& leader) {
   mimic_gear_->set({spec_.mimic->multiplier, spec_.mimic->offset, 0});
 }
 
-void Joint::enter_mimic_gear() {
+void Joint::add_mimic_gear() {
   if (mimic_gear_ == nullptr || std::exchange(gear_in_world_, true)) return;
   body_.world().bullet().addConstraint(mimic_gear_.get(), false);
 }
 
-void Joint::leave() {
+void Joint::remove_from_world() {
   if (std::exchange(gear_in_world_, false)) body_.world().bullet().removeConstraint(mimic_gear_.get());
   if (std::exchange(in_world_, false)) body_.world().bullet().removeConstraint(constraint_.get());
 }
@@ -183,60 +187,60 @@ int Joint::own_axis() const {
 
 double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own_axis()); }
 
-void Joint::effect_limits() {
+void Joint::apply_limits() {
   const Store& store = body_.store();
-  const unsigned before = open_;
+  const unsigned before = open_axes_;
   unsigned open = 0;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
-    const auto number = [&](const std::array<const Row*, 2>& rows) {
-      return static_cast<float>(store.values(id_, *rows[half])[axis % 3]);
+    const auto value_of = [&](const std::array<const Property*, 2>& properties) {
+      return static_cast<float>(store.values(id_, *properties[half])[axis % 3]);
     };
     AxisSettings settings = constraint_->axis(axis);
-    settings.lower = number(limit_rows().lower);
-    settings.upper = number(limit_rows().upper);
-    settings.stop_erp = number(limit_rows().stop_erp);
-    settings.stop_cfm = number(limit_rows().stop_cfm);
+    settings.lower = value_of(limit_properties().lower);
+    settings.upper = value_of(limit_properties().upper);
+    settings.stop_erp = value_of(limit_properties().stop_erp);
+    settings.stop_cfm = value_of(limit_properties().stop_cfm);
     settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
     if (!(settings == constraint_->axis(axis))) wake();
     constraint_->set_axis(axis, settings);
     if (!settings.locked()) open |= 1u << axis;
   }
-  open_ = static_cast<std::uint8_t>(open);
-  if ((open & ~before) != 0 && motor_ != nullptr) motor_->effect_axes();
+  open_axes_ = static_cast<std::uint8_t>(open);
+  if ((open & ~before) != 0 && motor_ != nullptr) motor_->apply_axes();
 }
 
-void Joint::read_anew() {
-  // told ones, since the constraint's may be no numbers after a blow-up
-  const double* told = body_.store().live_block(id_) + joint_live_rows().angles->offset;
-  constraint_->reset({told[0], told[1], told[2]});
+void Joint::update_from_parts() {
+  // the published angles, since the constraint's may be NaN after an instability
+  const double* published = body_.store().transient_block(id_) + joint_readouts().angles->offset;
+  constraint_->reset({published[0], published[1], published[2]});
   if (mimic_gear_ != nullptr) mimic_gear_->reset();
-  torn_ticks_ = 0;
-  tell();
+  separated_ticks_ = 0;
+  publish();
 }
 
-void Joint::take_start() { start_angles_ = constraint_->angles(); }
+void Joint::save_start() { start_angles_ = constraint_->angles(); }
 
-void Joint::go_to_start() {
+void Joint::restore_start() {
   Store& store = body_.store();
-  store.keep(id_, *joint_live_rows().angles);
-  put(store.live_block(id_) + joint_live_rows().angles->offset, start_angles_);
+  store.save_before_write(id_, *joint_readouts().angles);
+  put(store.transient_block(id_) + joint_readouts().angles->offset, start_angles_);
 }
 
-void Joint::tell() {
-  double* live = body_.store().live_block(id_);
-  const JointLiveRows& rows = joint_live_rows();
+void Joint::publish() {
+  double* transient = body_.store().transient_block(id_);
+  const JointReadouts& properties = joint_readouts();
   const btTransform& parent = parent_.rigid().getCenterOfMassTransform();
   const btTransform& frame = constraint_->frame_in_parent();
-  const int own = own_axis();
-  live[rows.value->offset] = own < 0 ? 0 : constraint_->value(own);
-  live[rows.speed->offset] = own < 0 ? 0 : constraint_->rate(own);
-  put(live + rows.angles->offset, constraint_->angles());
-  put(live + rows.offsets->offset, constraint_->offsets());
-  put(live + rows.relrot->offset, stream_angles(*constraint_));
-  put(live + rows.position->offset, from_bt(parent * frame.getOrigin()));
+  const int axis = own_axis();
+  transient[properties.value->offset] = axis < 0 ? 0 : constraint_->value(axis);
+  transient[properties.speed->offset] = axis < 0 ? 0 : constraint_->rate(axis);
+  put(transient + properties.angles->offset, constraint_->angles());
+  put(transient + properties.offsets->offset, constraint_->offsets());
+  put(transient + properties.relrot->offset, stream_angles(*constraint_));
+  put(transient + properties.position->offset, from_bt(parent * frame.getOrigin()));
   const Quat q = child_.pose().rotation * spec_.frame_in_child.rotation;
-  double* rotation = live + rows.rotation->offset;
+  double* rotation = transient + properties.rotation->offset;
   rotation[0] = q.x;
   rotation[1] = q.y;
   rotation[2] = q.z;
@@ -254,10 +258,10 @@ double Joint::gap() const {
   return std::sqrt(sum);
 }
 
-bool Joint::comes_apart() {
-  const double apart = gap();
-  if (!(apart > kLeastGap)) {
-    torn_ticks_ = 0;
+bool Joint::check_separation() {
+  const double distance = gap();
+  if (!(distance > kMinGap)) {
+    separated_ticks_ = 0;
     return false;
   }
   double size = 0;
@@ -268,8 +272,8 @@ bool Joint::comes_apart() {
     const btVector3 sides = high - low;
     size += static_cast<double>(sides[sides.maxAxis()]);
   }
-  torn_ticks_ = apart > size ? torn_ticks_ + 1 : 0;
-  return torn_ticks_ >= kTornTicks;
+  separated_ticks_ = distance > size ? separated_ticks_ + 1 : 0;
+  return separated_ticks_ >= kSeparatedTicks;
 }
 
 void Joint::read_axis(double* out) const {

@@ -1,5 +1,5 @@
-// Joint: how a child part hangs on its parent. Limits here, drives in its motor. Everything right-handed, child
-// relative to parent. [sim]
+// Joint: connects a child part to its parent. Limits are set here, drives in its motor. All quantities are
+// right-handed and describe the child relative to the parent. [sim]
 #pragma once
 
 #include <memory>
@@ -22,12 +22,12 @@ struct Mimic {
   double offset = 0;
 };
 
-/// What a joint is made of.
+/// Construction data of a joint.
 struct JointSpec {
   JointType type = JointType::revolute;
   Pose frame_in_parent;  ///< In the parent's link frame; z = the own axis.
   Pose frame_in_child;
-  bool limited = false;  ///< Limits of the own axis; else it is free.
+  bool limited = false;  ///< Whether the own axis has limits; else it is free.
   double lower = 0;
   double upper = 0;
   double friction = 0;  ///< Coulomb limit of the own axis, N·m or N (URDF <dynamics friction>).
@@ -36,7 +36,7 @@ struct JointSpec {
 
 class Joint {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec);
   ~Joint();
@@ -55,50 +55,53 @@ class Joint {
   JointConstraint& constraint() { return *constraint_; }
   const JointConstraint& constraint() const { return *constraint_; }
 
-  /// 0..2 linear x y z, 3..5 angular x y z; -1: a fixed joint has none.
+  /// Index of the joint's own axis, which `value`, `mode` and `target` refer to: 2 (linear z) for a prismatic joint, -1
+  /// for a fixed one, else 5 (angular z). Axes 0..2 are linear x y z, 3..5 angular x y z.
   int own_axis() const;
-  /// Whether an axis moves at all, by the limits in force.
-  bool is_open(int axis) const { return (open_ >> axis & 1) != 0; }
-  /// Own axis: rad or m.
+  /// True if the present limits of an axis don't lock it.
+  bool is_open(int axis) const { return (open_axes_ >> axis & 1) != 0; }
+  /// Position of the own axis, rad or m.
   double value() const;
 
-  /// After Bullet stepped, or poses were set: readouts into the live block.
-  void tell();
-  /// Once a tick, after tell(): true when the gap between the two sides of the joint has been larger than its parts for
-  /// some ticks. [any thread]
-  bool comes_apart();
-  /// Distance between the two sides of the joint along its locked axes, soft ones (stop_cfm) left out, m.
+  /// Publishes the readouts to the store's transient values. Call after Bullet's step, or after poses were set.
+  void publish();
+  /// Counts the ticks in which the gap between the two sides of the joint exceeds the size of its parts; returns true
+  /// when it has done so for several consecutive ticks. Call once per tick, after publish(). [any]
+  bool check_separation();
+  /// Distance between the two sides of the joint along its locked axes, without soft ones (stop_cfm), in m.
   double gap() const;
-  /// After poses were set by hand: reads them anew, turns as near as can be to those told.
-  void read_anew();
-  /// The angles told now, full turns included, are the start's; the next read_anew() comes back to them.
-  void take_start();
-  void take_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
-  void go_to_start();
-  /// Into Bullet's world and out of it, with the gear to its leader; the body says when.
-  void enter();
-  void leave();
-  /// Its parts are awake from the next step on. [any thread]
+  /// Reads the position from the parts' poses again, after these were set. Chooses the turns closest to the published
+  /// angles.
+  void update_from_parts();
+  /// Saves the published angles, with full turns, as those of the start pose, for restore_start().
+  void save_start();
+  void save_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
+  void restore_start();
+  /// Adds the constraint, and the gear to its leader, to Bullet's world or removes them; called by the body.
+  void add_to_world();
+  void remove_from_world();
+  /// Wakes its parts in the next step. [any]
   void wake();
   bool in_world() const { return in_world_; }
-  /// Couples this joint to its leader, as the spec's mimic says.
+  /// Couples this joint to its leader with the ratio and offset of its `mimic` spec.
   void couple_to(Joint& leader);
-  /// After both joints have entered.
-  void enter_mimic_gear();
-  /// The gear between this joint and its leader; null: it follows none.
+  /// Adds the gear to Bullet's world, after both joints were added.
+  void add_mimic_gear();
+  /// The gear between this joint and its leader, or null if it has none.
   GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
-  /// Limits, ERP and CFM of all axes into the constraint: the effect of their rows.
-  void effect_limits();
+  /// Writes limits, ERP and CFM of all axes to the constraint; the on-change callback of these properties.
+  void apply_limits();
+  /// Getter of the property `axis`: direction of the own axis, world.
   void read_axis(double* out) const;
 
  private:
-  friend class WorldKey;
+  friend class WorldCheckpoint;
   static std::unique_ptr<JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
 
-  // what every tick needs stands first
+  // fields that every tick reads come first
   Body& body_;
   NodeId id_;
-  std::uint8_t open_ = 0;  // the axes that are not locked, a bit each
+  std::uint8_t open_axes_ = 0;  // bit set of the axes that are not locked
   bool in_world_ = false;
   Motor* motor_ = nullptr;
   Part& parent_;
@@ -108,7 +111,7 @@ class Joint {
   bool gear_in_world_ = false;
   JointSpec spec_;
   Vec3 start_angles_{0};
-  int torn_ticks_ = 0;  // consecutive ticks with a gap larger than its parts
+  int separated_ticks_ = 0;  // consecutive ticks with a gap larger than its parts
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The joint's geometry: frames, order of angles, unwrapped angles, rates, and the inertia an axis works on.
+// JointConstraint: its geometry: frames, order of angles, unwrapped angles, rates, and effective inertia.
 #include "sim/joint_constraint.h"
 
 #include <algorithm>
@@ -8,33 +8,33 @@ namespace limber {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
-/// Change of an angle in one internal step from which on it is predicted before it is read, rad.
-constexpr double kPredicted = 0.5;
-/// Least squared cosine of the middle angle: nearer to the singular pose than 5.7 degrees, rates are understated.
-constexpr btScalar kLeastCosine2 = btScalar(0.01);
+/// Angles that change by more than this in one internal step are predicted before they are read, rad.
+constexpr double kPredictedTurn = 0.5;
+/// Least squared cosine of the middle angle: within 5.7 degrees of the singular pose, rates are underestimated.
+constexpr btScalar kMinCosine2 = btScalar(0.01);
 
-// -1 when outer, middle, inner is an odd permutation of x, y, z.
+// -1 if outer, middle, inner is an odd permutation of x, y, z.
 btScalar parity(int outer, int middle) { return btScalar((outer + 1) % 3 == middle ? 1 : -1); }
 
-// How far from 0 an axis may get: the middle angle should be the one with the least reach.
-double reach(const AxisSettings& s) {
+// Largest distance of an axis from 0; the axis with the smallest becomes the middle one.
+double max_deviation(const AxisSettings& s) {
   if (s.free()) return kTurn * 1e3;
   return std::max(std::fabs(static_cast<double>(s.lower)), std::fabs(static_cast<double>(s.upper)));
 }
 
-// Finite, and small enough that no square of it overflows.
+// Clamps to a range; NaN becomes the minimum.
 template <class T>
-T tamed(T v, T least, T most) {
-  return v >= least ? std::min(v, most) : least;
+T clamped(T v, T min_value, T max_value) {
+  return v >= min_value ? std::min(v, max_value) : min_value;
 }
 
-AxisSettings tamed(AxisSettings s) {
-  for (float* position : {&s.lower, &s.upper}) *position = tamed(*position, -1e6f, 1e6f);
-  for (double* position : {&s.target, &s.rest}) *position = tamed(*position, -1e6, 1e6);
-  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = tamed(*size, 0.0f, 1e12f);
-  s.velocity = tamed(s.velocity, -1e5f, 1e5f);
-  s.stop_erp = tamed(s.stop_erp, 0.0f, 1.0f);
-  s.stop_cfm = tamed(s.stop_cfm, 0.0f, 1e6f);
+AxisSettings clamped(AxisSettings s) {
+  for (float* position : {&s.lower, &s.upper}) *position = clamped(*position, -1e6f, 1e6f);
+  for (double* position : {&s.target, &s.rest}) *position = clamped(*position, -1e6, 1e6);
+  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = clamped(*size, 0.0f, 1e12f);
+  s.velocity = clamped(s.velocity, -1e5f, 1e5f);
+  s.stop_erp = clamped(s.stop_erp, 0.0f, 1.0f);
+  s.stop_cfm = clamped(s.stop_cfm, 0.0f, 1e6f);
   return s;
 }
 
@@ -47,32 +47,32 @@ JointConstraint::JointConstraint(btRigidBody& parent, btRigidBody& child, const 
 }
 
 void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
-  AxisSettings& mine = axes_[at(axis)];
-  const float lower = mine.lower;
-  const float upper = mine.upper;
-  const AxisDrive drive = mine.drive;
-  mine = tamed(settings);
-  if (mine.drive != drive || (lower == upper && !mine.locked())) goals_.restart(axis);
-  if (mine.lower == lower && mine.upper == upper) return;
+  AxisSettings& current = axes_[at(axis)];
+  const float lower = current.lower;
+  const float upper = current.upper;
+  const AxisDrive drive = current.drive;
+  current = clamped(settings);
+  if (current.drive != drive || (lower == upper && !current.locked())) goals_.restart(axis);
+  if (current.lower == lower && current.upper == upper) return;
   const int middle = middle_;
   choose_order();
   read_pose(middle != middle_);
 
-  // an axis that was free may have made many turns: don't unwind them to get into the range
-  if (axis < 3 || !mine.limited()) return;
+  // a free axis may have made many turns, which the new limits must not unwind: change its angle by full turns
+  if (axis < 3 || !current.limited()) return;
   double& angle = angle_[at(axis - 3)];
-  if (angle >= static_cast<double>(mine.lower) && angle <= static_cast<double>(mine.upper)) return;
-  const double center = 0.5 * (static_cast<double>(mine.lower) + static_cast<double>(mine.upper));
+  if (angle >= static_cast<double>(current.lower) && angle <= static_cast<double>(current.upper)) return;
+  const double center = 0.5 * (static_cast<double>(current.lower) + static_cast<double>(current.upper));
   angle -= kTurn * std::round((angle - center) / kTurn);
 }
 
 bool JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
-  AxisSettings& mine = axes_[at(axis)];
-  const AxisSettings before = mine;
-  mine.target = tamed(target, -1e6, 1e6);
-  mine.rest = tamed(rest, -1e6, 1e6);
-  mine.velocity = tamed(static_cast<float>(velocity), -1e5f, 1e5f);
-  return !(mine == before);
+  AxisSettings& current = axes_[at(axis)];
+  const AxisSettings before = current;
+  current.target = clamped(target, -1e6, 1e6);
+  current.rest = clamped(rest, -1e6, 1e6);
+  current.velocity = clamped(static_cast<float>(velocity), -1e5f, 1e5f);
+  return !(current == before);
 }
 
 void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child) {
@@ -81,21 +81,21 @@ void JointConstraint::set_frames(const btTransform& frame_in_parent, const btTra
   read_pose();
 }
 
-void JointConstraint::reset(const Vec3& near) {
-  angle_ = {near.x, near.y, near.z};
+void JointConstraint::reset(const Vec3& near_angles) {
+  angle_ = {near_angles.x, near_angles.y, near_angles.z};
   motor_impulse_.fill(0);
   repair_impulse_.fill(0);
   last_impulse_.fill(0);
-  pull_.fill(0);
-  tree_memory_.fill(0);
-  taken_by_locks_ = 0;
+  lock_impulse_.fill(0);
+  active_set_memory_.fill(0);
+  lock_energy_ = 0;
   tick_impulse_.fill(0);
   applied_.fill(0);
-  learnt_inertia_.fill(0);
+  inertia_estimate_.fill(0);
   pair_inertia_.fill(0);
   tick_time_ = 0;
   goals_.restart();
-  read_pose(near == Vec3(0));
+  read_pose(near_angles == Vec3(0));
   previous_rate_ = rate_;
 }
 
@@ -111,10 +111,10 @@ void JointConstraint::end_tick() {
 }
 
 void JointConstraint::choose_order() {
-  // least reach wins; ties: y before x before z
+  // smallest range wins; ties: y before x before z
   middle_ = 1;
-  if (reach(axes_[3]) < reach(axes_[at(3 + middle_)])) middle_ = 0;
-  if (reach(axes_[5]) < reach(axes_[at(3 + middle_)])) middle_ = 2;
+  if (max_deviation(axes_[3]) < max_deviation(axes_[at(3 + middle_)])) middle_ = 0;
+  if (max_deviation(axes_[5]) < max_deviation(axes_[at(3 + middle_)])) middle_ = 2;
   outer_ = middle_ == 2 ? 1 : 2;
   inner_ = 3 - middle_ - outer_;
 }
@@ -143,28 +143,28 @@ double JointConstraint::unwrapped(int axis, double raw) const {
 }
 
 void JointConstraint::predict_angles(btScalar h) {
-  const btVector3 spin = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
+  const btVector3 angular_velocity = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
   for (int i = 0; i < 3; ++i) {
     if (axes_[at(3 + i)].locked()) continue;
-    const double way = static_cast<double>(dual_[at(i)].dot(spin) * h);
-    if (std::fabs(way) > kPredicted) angle_[at(i)] += way;
+    const double change = static_cast<double>(dual_[at(i)].dot(angular_velocity) * h);
+    if (std::fabs(change) > kPredictedTurn) angle_[at(i)] += change;
   }
 }
 
 // R = R_outer(a)·R_middle(b)·R_inner(c), its element ij being axis_a[i] · axis_b[j].
 void JointConstraint::read_angles(const btVector3* axes_b, bool principal) {
-  const btScalar s = parity(outer_, middle_);
+  const btScalar sign = parity(outer_, middle_);
   const btVector3& a_outer = axis_a_[at(outer_)];
   const btVector3& a_middle = axis_a_[at(middle_)];
   const btVector3& a_inner = axis_a_[at(inner_)];
-  const btScalar sine = s * a_outer.dot(axes_b[inner_]);
+  const btScalar sine = sign * a_outer.dot(axes_b[inner_]);
   const btScalar middle_inner = a_middle.dot(axes_b[inner_]);
   const btScalar inner_inner = a_inner.dot(axes_b[inner_]);
   btScalar cosine = std::sqrt(middle_inner * middle_inner + inner_inner * inner_inner);
 
-  double outer = static_cast<double>(fixed::atan2f(-s * middle_inner, inner_inner));
+  double outer = static_cast<double>(fixed::atan2f(-sign * middle_inner, inner_inner));
   double middle = static_cast<double>(fixed::atan2f(sine, cosine));
-  double inner = static_cast<double>(fixed::atan2f(-s * a_outer.dot(axes_b[middle_]), a_outer.dot(axes_b[outer_])));
+  double inner = static_cast<double>(fixed::atan2f(-sign * a_outer.dot(axes_b[middle_]), a_outer.dot(axes_b[outer_])));
   const double outer_near = unwrapped(outer_, outer);
   const double middle_near = principal ? middle : unwrapped(middle_, middle);
   const double inner_near = unwrapped(inner_, inner);
@@ -175,7 +175,7 @@ void JointConstraint::read_angles(const btVector3* axes_b, bool principal) {
   middle = middle_near;
   inner = inner_near;
 
-  // three angles have a second reading, beyond the pole: take the one that continues the motion
+  // three angles have a second solution, beyond the singular pose: choose the one nearer to the last angles
   if (!principal && !axes_[at(3 + middle_)].locked()) {
     const double outer_far = unwrapped(outer_, outer_near + kPi);
     const double middle_far = unwrapped(middle_, kPi - middle_near);
@@ -194,21 +194,21 @@ void JointConstraint::read_angles(const btVector3* axes_b, bool principal) {
   // the angular velocity is rate_outer·e_outer + rate_middle·e_middle + rate_inner·e_inner; these are the dual axes
   const btVector3& e_outer = a_outer;
   const btVector3& e_inner = axes_b[inner_];
-  const btScalar cosine2 = std::max(cosine * cosine, kLeastCosine2);
-  const btScalar along = s * sine;
-  dual_[at(outer_)] = (e_outer - along * e_inner) / cosine2;
-  dual_[at(inner_)] = (e_inner - along * e_outer) / cosine2;
-  const btScalar scale = s / std::copysign(std::sqrt(cosine2), cosine);
+  const btScalar cosine2 = std::max(cosine * cosine, kMinCosine2);
+  const btScalar axes_product = sign * sine;
+  dual_[at(outer_)] = (e_outer - axes_product * e_inner) / cosine2;
+  dual_[at(inner_)] = (e_inner - axes_product * e_outer) / cosine2;
+  const btScalar scale = sign / std::copysign(std::sqrt(cosine2), cosine);
   dual_[at(middle_)] = scale * e_inner.cross(e_outer);
 }
 
 void JointConstraint::read_rates() {
-  const btVector3 spin = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
-  const btVector3 drift = m_rbB.getLinearVelocity() + m_rbB.getAngularVelocity().cross(arm_b_) -
-                          m_rbA.getLinearVelocity() - m_rbA.getAngularVelocity().cross(arm_a_);
+  const btVector3 angular_velocity = m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity();
+  const btVector3 linear_velocity = m_rbB.getLinearVelocity() + m_rbB.getAngularVelocity().cross(arm_b_) -
+                                    m_rbA.getLinearVelocity() - m_rbA.getAngularVelocity().cross(arm_a_);
   for (int i = 0; i < 3; ++i) {
-    rate_[at(i)] = axis_a_[at(i)].dot(drift);
-    rate_[at(3 + i)] = dual_[at(i)].dot(spin);
+    rate_[at(i)] = axis_a_[at(i)].dot(linear_velocity);
+    rate_[at(3 + i)] = dual_[at(i)].dot(angular_velocity);
   }
 }
 
@@ -220,7 +220,7 @@ Vec3 JointConstraint::relrot() const {
               fixed::atan2(-element(2, 0), fixed::hypot(element(2, 1), element(2, 2))),
               fixed::atan2(element(1, 0), element(0, 0)));
   const AxisSettings& own = axes_[5];
-  if (own.free() || reach(own) > kPi) angles.z = unwrapped(2, angles.z);
+  if (own.free() || max_deviation(own) > kPi) angles.z = unwrapped(2, angles.z);
   return angles;
 }
 
@@ -240,7 +240,7 @@ btScalar JointConstraint::mobility(const btRigidBody& a, const btRigidBody& b, c
 }
 
 double JointConstraint::effective_inertia(int axis) const {
-  // 1/m = j M^-1 j' - k' K^-1 k with K, k from the locked rows: a Cholesky factor grown row by row, j being the last
+  // 1/m = j M^-1 j' - k' K^-1 k with K, k of the locked rows: row-wise Cholesky factorization with j as the last row
   const Jacobian own = jacobian(axis);
   std::array<Jacobian, 6> rows;
   int n = 0;
@@ -249,7 +249,7 @@ double JointConstraint::effective_inertia(int axis) const {
   }
   rows[at(n)] = own;
   double factor[6][6] = {};
-  double rest = 0;
+  double remainder = 0;
   for (int i = 0; i <= n; ++i) {
     for (int j = 0; j <= i; ++j) {
       const double full = static_cast<double>(mobility(m_rbA, m_rbB, rows[at(i)], rows[at(j)]));
@@ -258,23 +258,24 @@ double JointConstraint::effective_inertia(int axis) const {
       if (j < i) {
         factor[i][j] = factor[j][j] > 0 ? sum / factor[j][j] : 0;
       } else {
-        rest = std::max(sum, 0.0);
-        // a row that the others already fix has no part of its own
-        factor[i][i] = rest > 1e-6 * full ? std::sqrt(rest) : 0;
+        remainder = std::max(sum, 0.0);
+        // a row that depends on the others adds nothing
+        factor[i][i] = remainder > 1e-6 * full ? std::sqrt(remainder) : 0;
       }
     }
   }
-  return rest > 0 ? 1 / rest : 0;
+  return remainder > 0 ? 1 / remainder : 0;
 }
 
 bool JointConstraint::commands_motion() const {
-  constexpr float kPart = 0.25f;  // of the speed limit: slower, the servo is held up, or there already
+  constexpr float kMinSpeedFraction = 0.25f;  // of the speed limit: a slower servo is blocked or has reached its target
   if (goals_.moving()) return true;
   for (int axis = 0; axis < 6; ++axis) {
     const AxisSettings& s = axes_[at(axis)];
     if (s.locked() || s.max_force <= 0 || s.velocity == 0) continue;
     if (s.drive == AxisDrive::spin) return true;
-    if (s.drive == AxisDrive::servo && std::fabs(rate_[at(axis)]) > kPart * std::fabs(s.velocity)) return true;
+    if (s.drive == AxisDrive::servo && std::fabs(rate_[at(axis)]) > kMinSpeedFraction * std::fabs(s.velocity))
+      return true;
   }
   return false;
 }

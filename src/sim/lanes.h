@@ -1,18 +1,18 @@
-// Lanes: four numbers that are added together, the same on every processor, whatever its vectors are. [any]
+// Float4: a SIMD vector of four floats. Results are the same on every processor, whatever its vector width. [any]
 #pragma once
 
 #include <cstring>
 
 namespace limber {
 
-using Lanes [[gnu::vector_size(16)]] = float;
+using Float4 [[gnu::vector_size(16)]] = float;
 
-inline Lanes load(const float* v) {
-  Lanes lanes;
-  std::memcpy(&lanes, v, sizeof lanes);
-  return lanes;
+inline Float4 load(const float* v) {
+  Float4 vector;
+  std::memcpy(&vector, v, sizeof vector);
+  return vector;
 }
 
-inline void store(float* v, Lanes lanes) { std::memcpy(v, &lanes, sizeof lanes); }
+inline void store(float* v, Float4 vector) { std::memcpy(v, &vector, sizeof vector); }
 
 }  // namespace limber

@@ -1,15 +1,15 @@
-// Look: how the picture is lit and what its stage is like, as rows. Nothing here draws. [sim]
+// Appearance: properties of the view's lighting and surroundings (/visuals/look); rendering is elsewhere. [sim]
 #pragma once
 
 #include "params/store.h"
 
 namespace limber {
 
-class Look {
+class Appearance {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
-  Look(Store& store, NodeId parent) : store_(store), id_(store.add(table(), parent, "look", this)) {}
+  Appearance(Store& store, NodeId parent) : store_(store), id_(store.add(table(), parent, "look", this)) {}
   NodeId id() const { return id_; }
 
  private:

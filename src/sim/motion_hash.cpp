@@ -1,4 +1,4 @@
-// Bodies one after the other, found anew when anything came or went.
+// MotionHash: hashes body by body, with indices that are cached until the structure changes.
 #include "sim/motion_hash.h"
 
 #include <array>
@@ -10,49 +10,51 @@ namespace limber {
 
 namespace {
 
-// places of the numbers that are motion, in a part's live block
-std::array<std::uint32_t, 13> motion_numbers() {
-  std::array<std::uint32_t, 13> places{};
+// Offsets of a part's pose and velocities in its transient values.
+std::array<std::uint32_t, 13> motion_offsets() {
+  std::array<std::uint32_t, 13> offsets{};
   std::size_t at = 0;
   for (const char* name : {"position", "rotation", "linear_velocity", "angular_velocity"}) {
-    const Row& row = Part::table().at(name);
-    for (std::uint32_t i = 0; i < row.width; i++) places.at(at++) = row.offset + i;
+    const Property& property = Part::table().at(name);
+    for (std::uint32_t i = 0; i < property.width; i++) offsets.at(at++) = property.offset + i;
   }
-  return places;
+  return offsets;
 }
 
 }  // namespace
 
-void MotionHash::find(const Store& store) {
-  structure_ = store.structure_version();
-  places_.clear();
-  parts_.clear();
-  const auto place = [&](NodeId id) { return static_cast<std::uint32_t>(store.live_block(id) - store.live().data()); };
+void MotionHash::update_indices(const Store& store) {
+  structure_version_ = store.structure_version();
+  body_indices_.clear();
+  part_indices_.clear();
+  const auto index_of = [&](NodeId id) {
+    return static_cast<std::uint32_t>(store.transient_block(id) - store.transient_values().data());
+  };
   for (const auto& body : world_.bodies()) {
-    for (const auto& part : body->parts()) parts_.push_back(place(part->id()));
-    places_.push_back({place(body->id()), static_cast<std::uint32_t>(parts_.size())});
+    for (const auto& part : body->parts()) part_indices_.push_back(index_of(part->id()));
+    body_indices_.push_back({index_of(body->id()), static_cast<std::uint32_t>(part_indices_.size())});
   }
 }
 
-std::uint64_t MotionHash::now() {
+std::uint64_t MotionHash::compute() {
   const Store& store = world_.store();
-  if (structure_ != store.structure_version()) find(store);
-  const double* const live = store.live().data();
-  static const std::array<std::uint32_t, 13> kNumbers = motion_numbers();
+  if (structure_version_ != store.structure_version()) update_indices(store);
+  const double* const transient = store.transient_values().data();
+  static const std::array<std::uint32_t, 13> kOffsets = motion_offsets();
   static const std::uint32_t kEnabled = Body::table().at("enabled").offset;
   std::array<double, 13> motion{};
-  bodies_.clear();
+  body_hashes_.clear();
   std::uint64_t hash = world_.tick();
   std::size_t part = 0;
-  for (const Place& place : places_) {
+  for (const BodyIndices& body : body_indices_) {
     NumberHash numbers(0);
-    numbers.add({live + place.body + kEnabled, 1});
-    for (; part < place.parts_end; part++) {
-      for (std::size_t i = 0; i < motion.size(); i++) motion[i] = live[parts_[part] + kNumbers[i]];
+    numbers.add({transient + body.body_index + kEnabled, 1});
+    for (; part < body.parts_end; part++) {
+      for (std::size_t i = 0; i < motion.size(); i++) motion[i] = transient[part_indices_[part] + kOffsets[i]];
       numbers.add(motion);
     }
-    bodies_.push_back(numbers.value());
-    hash ^= bodies_.back();
+    body_hashes_.push_back(numbers.value());
+    hash ^= body_hashes_.back();
     hash = splitmix64(hash);
   }
   return hash;

@@ -1,4 +1,4 @@
-// Motor: what drives a joint, axis by axis: off, spin, servo or spring. It carries the joint's name. [sim]
+// Motor: drives the axes of a joint, each in mode off, spin, servo or spring. It has the joint's name. [sim]
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@ enum class MotorMode : std::uint8_t { off, spin, servo, spring };
 
 class Motor {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
-  /// Made as a servo of the own axis that holds where the joint is.
+  /// Creates a servo on the own axis that holds the joint's present position.
   Motor(Joint& joint, NodeId group);
   ~Motor();
   Motor(const Motor&) = delete;
@@ -24,28 +24,28 @@ class Motor {
   NodeId id() const { return id_; }
   const std::string& name() const { return joint_.name(); }
   Joint& joint() const { return joint_; }
-  /// What is in force on an axis, from the three flags.
+  /// The mode of an axis, derived from its three flags.
   MotorMode mode(int axis) const;
-  /// Sets the flags of the own axis to a mode, through the door.
+  /// Sets the three flags of the own axis according to a mode.
   void set_mode(MotorMode mode);
-  /// Servo position and spring rest of the own axis, through the door.
+  /// Sets the servo position and the spring's rest position of the own axis, m or rad.
   void set_target(double target);
 
-  /// Sets each angular axis that is a servo or spring, through the door, on the way from where the joint is to `target`
-  /// (rad, the joint's own order), at most `most` ahead; on a free axis to the nearest angle that differs from `target`
-  /// by full turns.
-  void lead_to(const Vec3& target, double most);
+  /// Moves the targets of the angular axes that are servos or springs from the joint's present angles towards
+  /// `target` (rad, in the joint's own order), by at most `max_step` each. A free axis takes the shorter way: its
+  /// target may differ from `target` by full turns.
+  void step_towards(const Vec3& target, double max_step);
 
-  /// Where the joint is now is what a panic that holds motors holds.
-  void hold_here();
-  /// A spring of it was held below its stiffness: said once, with the cure.
-  void say_cap();
+  /// Stores the joint's present position as the one that a panic holds.
+  void save_held_position();
+  /// Warns once that a spring's stiffness is capped, and suggests more substeps.
+  void warn_capped();
   /// Warns once that the target of a servo is outside the joint's limits.
-  void warn_outside();
+  void warn_target_outside();
 
-  // What the rows do and read; public because the table, which is no member, names them.
-  void effect_axes();
-  void effect_goals();
+  // On-change callbacks, getters and setters of the properties; public for helper functions that build the table.
+  void apply_axes();
+  void apply_targets();
   void read_force(double* out) const;
   void read_torque(double* out) const;
   void read_linear_stiffness(double* out) const;
@@ -58,23 +58,23 @@ class Motor {
   void write_target(const double* in);
   void read_speed(double* out) const;
   void write_speed(const double* in);
-  Result<void> refuse_own_axis(const double* in) const;
+  Result<void> validate_own_axis(const double* in) const;
 
  private:
-  friend class WorldKey;
-  bool set_goals();
-  void set_own(const Row& linear_row, const Row& angular_row, double value);
-  void say_contradiction(int axis);
+  friend class WorldCheckpoint;
+  bool update_targets();
+  void set_own_axis(const Property& linear_property, const Property& angular_property, double value);
+  void warn_contradiction(int axis);
 
-  static void fetch(const void* thing);
+  static void prefetch_targets(const void* object);
 
   Joint& joint_;
-  JointConstraint& constraint_;  // the joint's
+  JointConstraint& constraint_;  // of the joint
   NodeId id_;
-  std::array<double, 6> hold_{};
-  bool said_contradiction_ = false;
-  bool said_cap_ = false;
-  bool warned_outside_ = false;
+  std::array<double, 6> held_position_{};
+  bool warned_contradiction_ = false;
+  bool warned_capped_ = false;
+  bool warned_target_outside_ = false;
 };
 
 }  // namespace limber

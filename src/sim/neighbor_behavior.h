@@ -1,5 +1,5 @@
-// NeighborBehavior: what behaviours that look at neighbours have in common: means over the neighbours of each own part,
-// taken once for all members of a group. [sim]
+// NeighborBehavior: base class of behaviors that react to neighbors. Computes the means over the neighbors of each
+// part once for all members of a group. [sim]
 #pragma once
 
 #include <span>
@@ -17,38 +17,38 @@ class NeighborBehavior : public Behavior {
   void step_group(std::span<Behavior* const> members, double dt) final;
 
  protected:
-  /// Its first two parameters, of every such type: neighbours are from the one to the other distance away. All
-  /// parameters are single numbers.
-  enum Range : std::uint32_t { min_dist, max_dist, first_own };
-  /// What of the means it wants (kWantVelocity, kWantPush).
-  virtual unsigned wants() const = 0;
-  /// A member with all that acting takes.
-  struct Share {
-    const double* values;  ///< Its parameters.
+  /// The first two parameters of each such type: neighbors are between these distances. All parameters must be single
+  /// numbers.
+  enum Range : std::uint32_t { min_dist, max_dist, first_specific };
+  /// Which means it needs: a combination of kWantVelocity and kWantPush.
+  virtual unsigned needed_means() const = 0;
+  /// The input for one member's apply().
+  struct MemberInput {
+    const double* values;  ///< values of its parameters
     std::span<Part* const> parts;
-    const NeighborMeans* means;  ///< One for each part, with a count of 0 where there is no neighbour.
+    const NeighborMeans* means;  ///< one per part; the count is 0 if there are no neighbors
     double dt;                   ///< s
-    PartLoads& loads;
-    const std::uint32_t* load_places;
-    const double* kept;
-    const std::uint32_t* mass_places;
-    const double* least_inertias;
+    ForceAccumulators& accumulators;
+    const std::uint32_t* wrench_indices;
+    const double* persistent;
+    const std::uint32_t* mass_indices;
+    const double* min_inertias;
 
-    /// Where forces and torques on the i-th part add up.
-    PartLoads::Load& load(std::size_t i) const { return loads.load(load_places[i]); }
-    double mass(std::size_t i) const { return kept[mass_places[i]]; }
-    /// Its least principal moment, kg·m².
-    double least_inertia(std::size_t i) const { return least_inertias[i] * mass(i); }
+    /// The force accumulator of the i-th part.
+    ForceAccumulators::Wrench& wrench(std::size_t i) const { return accumulators.wrench(wrench_indices[i]); }
+    double mass(std::size_t i) const { return persistent[mass_indices[i]]; }
+    /// Least principal moment of the i-th part, kg·m².
+    double min_inertia(std::size_t i) const { return min_inertias[i] * mass(i); }
   };
-  virtual void act(const Share& share) const = 0;
+  virtual void apply(const MemberInput& member) const = 0;
 
  private:
-  void step_members(std::span<const std::uint32_t> numbers, double dt);
-  void step_alike(std::span<const std::uint32_t> numbers, double dt);
+  void step_members(std::span<const std::uint32_t> indices, double dt);
+  void step_same_range(std::span<const std::uint32_t> indices, double dt);
 
-  // scratch of the member that speaks for all
+  // scratch buffers of the member that step_group() is called on
   std::vector<std::uint32_t> sorted_;
-  std::vector<Part*> asking_;
+  std::vector<Part*> queried_;
 };
 
 }  // namespace limber

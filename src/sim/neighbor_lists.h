@@ -1,6 +1,5 @@
-// NeighborLists: which parts of a set are near which, for those who ask one by one. Where most of them ask in every
-// tick (a group of behaviours in Lua), all lists are made at once, in the grid's order, at a fraction of the cost.
-// [sim]
+// NeighborLists: neighbor lists of the parts of a set, for queries part by part. If most parts are queried at every
+// tick (a Lua group behavior), all lists are built at once, in the grid's order, at a fraction of the cost. [sim]
 #pragma once
 
 #include <cstdint>
@@ -14,31 +13,31 @@ namespace limber {
 
 class NeighborLists {
  public:
-  /// What the lists are made of: points, their grid, and of which part each point is.
+  /// Input for the lists: points, their grid, and the part of each point.
   struct Source {
     const PointCloud& cloud;
     PointGrid& grid;
-    std::span<const std::uint32_t> parts;  ///< Of the cloud's points.
+    std::span<const std::uint32_t> parts;  ///< Indices of the parts of the cloud's points.
     std::size_t part_count;
   };
 
-  /// Another tick, or other points: nothing is known any more.
-  void begin();
-  /// The parts within `reach` of a part, ascending; nothing when it is to be looked for alone. Which of both, makes no
-  /// difference but in time.
-  std::optional<std::span<const std::uint32_t>> of(std::uint32_t part, float reach, const Source& source);
+  /// Invalidates all lists, because of a new tick or other points.
+  void invalidate();
+  /// Returns the parts within `radius` (m) of a part in ascending order, or nothing if the caller should query the grid
+  /// itself. The result is the same either way; only the cost differs.
+  std::optional<std::span<const std::uint32_t>> find(std::uint32_t part, float radius, const Source& source);
 
  private:
   struct Lists {
-    float reach = 0;
-    std::size_t asked = 0;         // in this tick
-    std::size_t asked_before = 0;  // and in the one before
-    bool made = false;
+    float radius = 0;
+    std::size_t queries = 0;           // number of queries in this tick
+    std::size_t previous_queries = 0;  // and in the previous tick
+    bool built = false;
     std::vector<std::uint32_t> first, count;  // by part
     std::vector<std::uint32_t> all;
   };
-  Lists& lists_for(float reach);
-  void make(Lists& lists, const Source& source);
+  Lists& lists_for(float radius);
+  void build(Lists& lists, const Source& source);
 
   std::vector<Lists> lists_;
   std::vector<std::uint32_t> found_, part_at_;  // scratch

@@ -1,4 +1,4 @@
-// A pair in lanes of four, or a whole motion at once.
+// Sums over pairs of points: implementations with vectors of 4 and of 16 floats.
 #include "sim/neighbor_sums.h"
 
 #include <algorithm>
@@ -14,63 +14,64 @@ namespace limber {
 namespace {
 
 template <bool Motions>
-void add_by_four(std::uint32_t place, std::span<const std::uint32_t> found, const NeighborMotion* motions,
+void add_pairs_4(std::uint32_t index, std::span<const std::uint32_t> found, const NeighborMotion* motions,
                  NeighborSum* sums) {
-  const Lanes one{0, 0, 0, 1}, two{0, 0, 0, 2};
-  const NeighborMotion& own = motions[place];
-  const Lanes at = load(own.position) - one;
-  const Lanes own_velocity = load(own.velocity), own_spin = load(own.spin);
-  NeighborSum& mine = sums[place];
-  Lanes offset = load(mine.offset), velocity = load(mine.velocity), spin = load(mine.spin);
+  const Float4 one{0, 0, 0, 1}, two{0, 0, 0, 2};
+  const NeighborMotion& own = motions[index];
+  const Float4 own_position = load(own.position) - one;
+  const Float4 own_velocity = load(own.velocity), own_spin = load(own.spin);
+  NeighborSum& own_sum = sums[index];
+  Float4 offset = load(own_sum.offset), velocity = load(own_sum.velocity), spin = load(own_sum.spin);
   for (const std::uint32_t other : found) {
-    const NeighborMotion& near = motions[other];
-    NeighborSum& its = sums[other];
-    const Lanes r = load(near.position) - at;
+    const NeighborMotion& neighbor = motions[other];
+    NeighborSum& other_sum = sums[other];
+    const Float4 r = load(neighbor.position) - own_position;
     offset += r;
-    store(its.offset, load(its.offset) - (r - two));
+    store(other_sum.offset, load(other_sum.offset) - (r - two));
     if constexpr (!Motions) continue;
-    velocity += load(near.velocity);
-    spin += load(near.spin);
-    store(its.velocity, load(its.velocity) + own_velocity);
-    store(its.spin, load(its.spin) + own_spin);
+    velocity += load(neighbor.velocity);
+    spin += load(neighbor.spin);
+    store(other_sum.velocity, load(other_sum.velocity) + own_velocity);
+    store(other_sum.spin, load(other_sum.spin) + own_spin);
   }
-  store(mine.offset, offset);
-  store(mine.velocity, velocity);
-  store(mine.spin, spin);
+  store(own_sum.offset, offset);
+  store(own_sum.velocity, velocity);
+  store(own_sum.spin, spin);
 }
 
 #if defined(__x86_64__)
 
-// as above: what is added to the lanes of motion is taken away negated
-[[gnu::target("avx512f")]] void add_by_sixteen(std::uint32_t place, std::span<const std::uint32_t> found,
-                                               const NeighborMotion* motions, NeighborSum* sums) {
+// The same with the whole struct in one vector. Velocities are negated first, so that one subtraction updates both
+// offsets and velocities.
+[[gnu::target("avx512f")]] void add_pairs_16(std::uint32_t index, std::span<const std::uint32_t> found,
+                                             const NeighborMotion* motions, NeighborSum* sums) {
   constexpr __mmask16 kOffset = 0x000f;
   const __m512 one = _mm512_maskz_mov_ps(0x0008, _mm512_set1_ps(1));
   const __m512 two = _mm512_maskz_mov_ps(0x0008, _mm512_set1_ps(2));
-  const __m512 own = _mm512_load_ps(&motions[place]);
-  const __m512 at = _mm512_maskz_sub_ps(kOffset, own, one);
-  const __m512 taken = _mm512_sub_ps(_mm512_set1_ps(-0.0f), own);
-  __m512 mine = _mm512_load_ps(&sums[place]);
+  const __m512 own = _mm512_load_ps(&motions[index]);
+  const __m512 own_position = _mm512_maskz_sub_ps(kOffset, own, one);
+  const __m512 negated = _mm512_sub_ps(_mm512_set1_ps(-0.0f), own);
+  __m512 own_sum = _mm512_load_ps(&sums[index]);
   for (const std::uint32_t other : found) {
-    const __m512 r = _mm512_sub_ps(_mm512_load_ps(&motions[other]), at);
-    mine = _mm512_add_ps(mine, r);
-    const __m512 its = _mm512_load_ps(&sums[other]);
-    _mm512_store_ps(&sums[other], _mm512_sub_ps(its, _mm512_mask_sub_ps(taken, kOffset, r, two)));
+    const __m512 r = _mm512_sub_ps(_mm512_load_ps(&motions[other]), own_position);
+    own_sum = _mm512_add_ps(own_sum, r);
+    const __m512 other_sum = _mm512_load_ps(&sums[other]);
+    _mm512_store_ps(&sums[other], _mm512_sub_ps(other_sum, _mm512_mask_sub_ps(negated, kOffset, r, two)));
   }
-  _mm512_store_ps(&sums[place], mine);
+  _mm512_store_ps(&sums[index], own_sum);
 }
 
 #endif
 
 }  // namespace
 
-AddPairs add_pairs_by(PointLanes lanes, bool motions) {
+AddPairs select_add_pairs(VectorWidth width, bool motions) {
 #if defined(__x86_64__)
-  if (std::min(lanes, PointFinder::widest()) == PointLanes::sixteen) return add_by_sixteen;
+  if (std::min(width, PointFinder::widest()) == VectorWidth::sixteen) return add_pairs_16;
 #else
-  (void)lanes;
+  (void)width;
 #endif
-  return motions ? add_by_four<true> : add_by_four<false>;
+  return motions ? add_pairs_4<true> : add_pairs_4<false>;
 }
 
 }  // namespace limber

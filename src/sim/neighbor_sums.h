@@ -1,5 +1,5 @@
-// Sums over pairs of points that are near each other: where they are, how they move. Each operation is rounded by
-// itself and in a fixed order, so that the widest vectors of a processor add up to what the narrowest do. [sim]
+// Sums of positions and velocities over pairs of neighboring points. All operations are rounded individually and in a
+// fixed order, so that the result doesn't depend on the vector width of the processor. [sim]
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,21 @@
 
 namespace limber {
 
-/// Of a point; the fourth lane of its position is 1.
+/// Position (m), velocity (m/s) and angular velocity (rad/s) of a point; the fourth component of its position is 1.
 struct alignas(64) NeighborMotion {
   float position[4], velocity[4], spin[4], unused[4];
 };
-/// Over a point's neighbours; the fourth lane of the offsets counts them.
+/// Sums over the neighbors of a point; the fourth component of the offset is their count.
 struct alignas(64) NeighborSum {
   float offset[4], velocity[4], spin[4], unused[4];
 };
 
-/// Adds each of the points `found` to the sum at `place`, and that point to theirs; `found` does not have `place`.
-using AddPairs = void (*)(std::uint32_t place, std::span<const std::uint32_t> found, const NeighborMotion* motions,
+/// Adds each of the points `found` to the sum of the point `index`, and that point to their sums. `found` must not
+/// contain `index`.
+using AddPairs = void (*)(std::uint32_t index, std::span<const std::uint32_t> found, const NeighborMotion* motions,
                           NeighborSum* sums);
-/// By as many lanes at most, and as this processor has. `motions`: velocities are added up too, else nothing is said of
-/// them.
-AddPairs add_pairs_by(PointLanes lanes, bool motions);
+/// Returns an implementation with at most the given vector width, if the processor supports it. `motions`: velocities
+/// are summed too; else their sums are undefined.
+AddPairs select_add_pairs(VectorWidth width, bool motions);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Gathered from joints, parts, loads, Bullet's manifolds and behaviours' rows.
+// Overlay: collects marks from joints, parts, force accumulators, Bullet's manifolds and behaviors.
 #include "sim/overlay.h"
 
 #include <algorithm>
@@ -13,37 +13,37 @@ namespace limber {
 
 namespace {
 
-constexpr double kGravity = 9.81;  // m/s²: a weight is one on Earth, whatever the scene's gravity
-constexpr double kMostReach = 1;   // m
-constexpr double kLeastReach = 0.005;
+constexpr double kGravity = 9.81;  // m/s²: forces are scaled by the weight on Earth, whatever the scene's gravity
+constexpr double kMaxSize = 1;     // m
+constexpr double kMinSize = 0.005;
 
 using Kind = OverlayMark::Kind;
 
-// of a box about half its diagonal
-double reach_of(const Part& part) {
+// Returns roughly half the diagonal of a part's box, m.
+double size_of_part(const Part& part) {
   const Vec3 i = part.geometry()->unit_inertia;
-  const double reach = std::sqrt(3 * std::max({i.x, i.y, i.z}));
-  return std::isfinite(reach) ? std::clamp(reach, kLeastReach, kMostReach) : kMostReach;
+  const double size = std::sqrt(3 * std::max({i.x, i.y, i.z}));
+  return std::isfinite(size) ? std::clamp(size, kMinSize, kMaxSize) : kMaxSize;
 }
 
-// an arrow at the small end of a large body is still seen
-double arrow_reach(const Part& part) {
-  double reach = reach_of(part);
+// Returns the size of arrows at a part, m; at a small part of a large body it is larger, so that they remain visible.
+double arrow_size(const Part& part) {
+  double size = size_of_part(part);
   for (const auto& other : part.body().parts()) {
-    if (!other->is_static()) reach = std::max(reach, 0.6 * reach_of(*other));
+    if (!other->is_static()) size = std::max(size, 0.6 * size_of_part(*other));
   }
-  return reach;
+  return size;
 }
 
-// a force in weights of a part
+// Returns a force as a multiple of a part's weight.
 Vec3 weights(const Vec3& force, double mass) { return force / (std::max(mass, 1e-9) * kGravity); }
 
-OverlayMark mark_of(Kind kind, NodeId id, double reach, const Vec3& at) {
+OverlayMark make_mark(Kind kind, NodeId id, double size, const Vec3& position) {
   OverlayMark mark;
   mark.kind = kind;
   mark.slot = id.slot;
-  mark.reach = reach;
-  mark.at = at;
+  mark.size = size;
+  mark.position = position;
   return mark;
 }
 
@@ -52,53 +52,54 @@ Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(objec
 }  // namespace
 
 bool Overlay::on() const {
-  static const Row& row = Look::table().at("overlay");
-  return world_.store().values(world_.visuals().look().id(), row)[0] != 0;
+  static const Property& property = Appearance::table().at("overlay");
+  return world_.store().values(world_.visuals().appearance().id(), property)[0] != 0;
 }
 
-void Overlay::take_loads(const PartLoads& loads) {
+void Overlay::capture_forces(const ForceAccumulators& accumulators) {
   forces_.clear();
   if (!on()) return;
   const double tick = world_.timestep();
-  loads.each_waiting([&](const PartLoads::Load& load, const PartLoads::Kick& kick) {
-    const Part& part = *load.part;
-    const Vec3 force = load.force + kick.impulse / tick;
-    if (part.is_static() || force == Vec3(0)) return;
-    OverlayMark& mark = forces_.emplace_back(mark_of(Kind::force, part.id(), arrow_reach(part), part.center()));
-    mark.vector = weights(force, part.mass());
-  });
-  // loads wait in the order in which they came, which is another one in each tick
+  accumulators.for_each_pending(
+      [&](const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse) {
+        const Part& part = *wrench.part;
+        const Vec3 force = wrench.force + impulse.linear / tick;
+        if (part.is_static() || force == Vec3(0)) return;
+        OverlayMark& mark = forces_.emplace_back(make_mark(Kind::force, part.id(), arrow_size(part), part.center()));
+        mark.vector = weights(force, part.mass());
+      });
+  // pending forces are in the order of their first call, which varies from tick to tick
   std::sort(forces_.begin(), forces_.end(), [](const OverlayMark& a, const OverlayMark& b) { return a.slot < b.slot; });
 }
 
 void Overlay::add_joint(const Joint& joint, std::vector<OverlayMark>& out) const {
-  static const Row* const rows[] = {&Joint::table().at("linear_lower_limit"),
-                                    &Joint::table().at("linear_upper_limit"),
-                                    &Joint::table().at("angular_lower_limit"),
-                                    &Joint::table().at("angular_upper_limit"),
-                                    &Joint::table().at("offsets"),
-                                    &Joint::table().at("angles")};
+  static const Property* const properties[] = {&Joint::table().at("linear_lower_limit"),
+                                               &Joint::table().at("linear_upper_limit"),
+                                               &Joint::table().at("angular_lower_limit"),
+                                               &Joint::table().at("angular_upper_limit"),
+                                               &Joint::table().at("offsets"),
+                                               &Joint::table().at("angles")};
   const Store& store = world_.store();
   const Pose frame = joint.parent().pose() * joint.spec().frame_in_parent;
-  const double reach =
-      std::min(joint.parent().is_static() ? kMostReach : reach_of(joint.parent()), reach_of(joint.child()));
+  const double size =
+      std::min(joint.parent().is_static() ? kMaxSize : size_of_part(joint.parent()), size_of_part(joint.child()));
   for (int axis = 0; axis < 6; axis++) {
     if (!joint.is_open(axis)) continue;
     const bool angular = axis >= 3;
     const std::size_t first = angular ? 2 : 0;
-    OverlayMark& mark =
-        out.emplace_back(mark_of(angular ? Kind::turn : Kind::shift, joint.id(), reach, frame.position));
+    OverlayMark& mark = out.emplace_back(
+        make_mark(angular ? Kind::rotation_axis : Kind::translation_axis, joint.id(), size, frame.position));
     mark.axis = static_cast<std::uint8_t>(axis % 3);
-    mark.turn = frame.rotation;
-    mark.low = store.values(joint.id(), *rows[first])[mark.axis];
-    mark.high = store.values(joint.id(), *rows[first + 1])[mark.axis];
-    mark.limited = mark.low <= mark.high;
-    mark.value = store.values(joint.id(), *rows[angular ? 5 : 4])[mark.axis];
+    mark.rotation = frame.rotation;
+    mark.lower = store.values(joint.id(), *properties[first])[mark.axis];
+    mark.upper = store.values(joint.id(), *properties[first + 1])[mark.axis];
+    mark.limited = mark.lower <= mark.upper;
+    mark.value = store.values(joint.id(), *properties[angular ? 5 : 4])[mark.axis];
   }
 }
 
 void Overlay::add_contacts(std::vector<OverlayMark>& out) const {
-  static const Row& substeps = World::table().at("substeps");
+  static const Property& substeps = World::table().at("substeps");
   const double step = world_.timestep() / world_.store().values(world_.id(), substeps)[0];
   btDispatcher& dispatcher = *world_.bullet().getDispatcher();
   for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
@@ -106,7 +107,7 @@ void Overlay::add_contacts(std::vector<OverlayMark>& out) const {
     Part* const a = part_of(manifold.getBody0());
     Part* const b = part_of(manifold.getBody1());
     if (a == nullptr || b == nullptr) continue;
-    // the normal points to the first; the arrow shows what the one that can move is pushed with
+    // the normal points to the first part; the arrow shows the force on a part that can move
     const bool first = !a->is_static();
     const Part& pushed = first ? *a : *b;
     for (int k = 0; k < manifold.getNumContacts(); k++) {
@@ -114,32 +115,32 @@ void Overlay::add_contacts(std::vector<OverlayMark>& out) const {
       if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
       const Vec3 normal = from_bt(point.m_normalWorldOnB) * (first ? 1.0 : -1.0);
       OverlayMark& mark = out.emplace_back(
-          mark_of(Kind::contact, pushed.id(), arrow_reach(pushed), from_bt(point.getPositionWorldOnB())));
+          make_mark(Kind::contact, pushed.id(), arrow_size(pushed), from_bt(point.getPositionWorldOnB())));
       mark.vector = weights(normal * static_cast<double>(point.getAppliedImpulse()) / step, pushed.mass());
     }
   }
 }
 
-// each of its points in the world: a row of three metres
+// Adds a mark for each parameter of the behavior that is a point: a property of type vec3 in meters.
 void Overlay::add_targets(const Behavior& behavior, std::vector<OverlayMark>& out) const {
   if (!behavior.runs()) return;
-  for (const Row& row : behavior.type().table->rows().subspan(kCommonBehaviorRows)) {
-    if (row.type != RowType::vec3 || row.unit != "m" || row.kind != RowKind::property) continue;
+  for (const Property& property : behavior.type().table->properties().subspan(kCommonBehaviorProperties)) {
+    if (property.type != PropertyType::vec3 || property.unit != "m" || property.kind != PropertyKind::setting) continue;
     const Part* const part = behavior.parts().empty() ? nullptr : behavior.parts().front();
-    out.push_back(mark_of(Kind::target, behavior.id(), part == nullptr ? 0.1 : reach_of(*part),
-                          vec3_at(world_.store().values(behavior.id(), row))));
+    out.push_back(make_mark(Kind::target, behavior.id(), part == nullptr ? 0.1 : size_of_part(*part),
+                            vec3_at(world_.store().values(behavior.id(), property))));
   }
 }
 
-void Overlay::gather(std::vector<OverlayMark>& out) const {
+void Overlay::collect(std::vector<OverlayMark>& out) const {
   out.clear();
   for (const auto& body : world_.bodies()) {
     if (!body->in_world()) continue;
     for (const auto& joint : body->joints()) add_joint(*joint, out);
     for (const auto& part : body->parts()) {
       if (part->is_static()) continue;
-      OverlayMark& mark = out.emplace_back(mark_of(Kind::center, part->id(), reach_of(*part), part->center()));
-      mark.turn = part->principal_axes();
+      OverlayMark& mark = out.emplace_back(make_mark(Kind::center, part->id(), size_of_part(*part), part->center()));
+      mark.rotation = part->principal_axes();
     }
     for (const Behavior* behavior : body->behaviors()) add_targets(*behavior, out);
   }

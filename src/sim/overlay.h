@@ -1,5 +1,5 @@
-// Overlay: what the debug picture shows of a world: joints with limits, centres of mass, forces of the last tick,
-// contacts, targets of behaviours. Nothing is gathered while /visuals/look/overlay is off. [sim]
+// Overlay: data of the debug overlay: joints with limits, centers of mass, forces of the last tick, contacts, targets
+// of behaviors. Forces are captured only while /visuals/look/overlay is on. [sim]
 #pragma once
 
 #include <cstdint>
@@ -13,42 +13,42 @@ class Behavior;
 class Body;
 class Joint;
 class Part;
-class PartLoads;
+class ForceAccumulators;
 class World;
 
-/// One thing that is shown, in world terms.
+/// An element of the overlay, in world coordinates.
 struct OverlayMark {
   enum class Kind : std::uint8_t {
-    turn,     ///< An axis that a joint turns about.
-    shift,    ///< An axis that a joint moves along.
-    center,   ///< A centre of mass.
-    contact,  ///< A point where parts touch.
-    force,    ///< What pushed a part in the last tick.
-    target,   ///< Where a behaviour wants something.
+    rotation_axis,     ///< rotation axis of a joint
+    translation_axis,  ///< translation axis of a joint
+    center,            ///< center of mass
+    contact,           ///< contact point
+    force,             ///< force on a part in the last tick
+    target,            ///< target point of a behavior
   };
   Kind kind = Kind::center;
-  std::uint8_t axis = 0;        ///< Of `turn` and `shift`: 0, 1, 2 of the joint's frame.
-  bool limited = false;         ///< `low` and `high` count.
-  std::uint32_t slot = 0;       ///< Of the joint, part or behaviour.
-  double reach = 0.1;           ///< About half the part's size, m.
-  Vec3 at{0};                   ///< m
-  Quat turn = quat_identity();  ///< The joint's frame on the parent; a part's principal axes.
-  Vec3 vector{0};               ///< Of `contact` and `force`, in weights of the part.
-  double low = 0, high = 0;     ///< rad or m
-  double value = 0;
+  std::uint8_t axis = 0;            ///< for the axes: 0, 1, 2 of the joint's frame
+  bool limited = false;             ///< `lower` and `upper` are valid
+  std::uint32_t slot = 0;           ///< of the joint, part or behavior
+  double size = 0.1;                ///< about half the part's size, m
+  Vec3 position{0};                 ///< m
+  Quat rotation = quat_identity();  ///< the joint's frame on the parent, or a part's principal axes
+  Vec3 vector{0};                   ///< for `contact` and `force`: multiple of the part's weight
+  double lower = 0, upper = 0;      ///< limits of an axis, rad or m
+  double value = 0;                 ///< position of an axis, rad or m
 };
 
 class Overlay {
  public:
   explicit Overlay(World& world) : world_(world) {}
 
-  /// Whether the row says so.
+  /// Value of the property /visuals/look/overlay.
   bool on() const;
-  /// The loads are about to be handed to Bullet: what they push with is kept.
-  void take_loads(const PartLoads& loads);
-  /// All marks of the world as it was told last, in a fixed order; `out` is emptied first and allocates only while it
-  /// grows.
-  void gather(std::vector<OverlayMark>& out) const;
+  /// Stores the pending forces of the tick; call before they are applied to Bullet. Does nothing while off.
+  void capture_forces(const ForceAccumulators& accumulators);
+  /// Returns all marks for the last published state of the world, in a deterministic order. `out` is cleared first
+  /// and allocates only while it grows.
+  void collect(std::vector<OverlayMark>& out) const;
 
  private:
   void add_joint(const Joint& joint, std::vector<OverlayMark>& out) const;

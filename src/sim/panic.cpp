@@ -1,4 +1,4 @@
-// What acts while a panic holds.
+// Panic: replaces gravity, motor drives and velocities while it is on.
 #include "sim/panic.h"
 
 #include <cmath>
@@ -8,37 +8,37 @@
 
 namespace limber {
 
-void Panic::begin() { turn(true); }
-void Panic::end() { turn(false); }
+void Panic::begin() { set_on(true); }
+void Panic::end() { set_on(false); }
 
-void Panic::turn(bool on) {
-  static const Row& told = World::table().at("panicked");
+void Panic::set_on(bool on) {
+  static const Property& panicked = World::table().at("panicked");
   if (on_ == on) return;
   on_ = on;
-  settled_ = false;
-  began_ = world_.tick();
-  world_.store().tell(world_.id(), told)[0] = on ? 1 : 0;
+  first_second_over_ = false;
+  start_tick_ = world_.tick();
+  world_.store().mutable_values(world_.id(), panicked)[0] = on ? 1 : 0;
   world_.bullet().wake_all();
-  world_.effect_gravity();
-  renew();
+  world_.apply_gravity();
+  update_motors();
 }
 
-void Panic::renew() {
+void Panic::update_motors() {
   for (const auto& body : world_.bodies()) {
     for (const auto& motor : body->motors()) {
-      motor->hold_here();
-      motor->effect_axes();
+      motor->save_held_position();
+      motor->apply_axes();
     }
   }
 }
 
-Vec3 Panic::weight(const Vec3& gravity) const {
+Vec3 Panic::limited_gravity(const Vec3& gravity) const {
   const double size = glm::length(gravity);
-  return on_ && size > kBrake * kSink ? gravity * (kBrake * kSink / size) : gravity;
+  return on_ && size > kDamping * kTerminalSpeed ? gravity * (kDamping * kTerminalSpeed / size) : gravity;
 }
 
 bool Panic::holds_motors() const {
-  static const Row& motors = World::table().at("panic_motors");
+  static const Property& motors = World::table().at("panic_motors");
   return world_.store().values(world_.id(), motors)[0] == 0;
 }
 
@@ -47,15 +47,15 @@ AxisDrive Panic::drive(MotorMode mode) const {
   return mode != MotorMode::off && holds_motors() ? AxisDrive::servo : AxisDrive::off;
 }
 
-void Panic::brake(double h) {
-  const auto left = static_cast<btScalar>(fixed::exp(-kBrake * h));
+void Panic::damp(double h) {
+  const auto factor = static_cast<btScalar>(fixed::exp(-kDamping * h));
   for (const auto& body : world_.bodies()) {
     if (!body->in_world()) continue;
     for (const auto& part : body->parts()) {
       btRigidBody& rigid = part->rigid();
       if (rigid.isStaticObject()) continue;
-      rigid.setLinearVelocity(rigid.getLinearVelocity() * left);
-      rigid.setAngularVelocity(rigid.getAngularVelocity() * left);
+      rigid.setLinearVelocity(rigid.getLinearVelocity() * factor);
+      rigid.setAngularVelocity(rigid.getAngularVelocity() * factor);
     }
   }
 }

@@ -1,5 +1,5 @@
-// Panic: the world comes to rest, whatever drives it, and stays so until this ends. Nothing that anybody has set is
-// changed: what acts otherwise meanwhile is Bullet's alone. [sim]
+// Panic: brings the world to rest, against all drives and forces, and keeps it there until end(). No property
+// changes: only the settings in Bullet differ meanwhile. [sim]
 #pragma once
 
 #include <cstdint>
@@ -14,50 +14,52 @@ class World;
 
 class Panic {
  public:
-  /// 1/s: all velocities fall by it alike, so that joints have nothing to say against it. After t seconds the kinetic
-  /// energy that was there is exp(-2·kBrake·t) of itself: 1 % after 0.4 s.
-  static constexpr double kBrake = 6;
-  /// m/s: what falls or sinks does so no faster, since gravity is at most kBrake·kSink. The kinetic energy of bodies of
-  /// mass m is never above (sqrt(E0)·exp(-kBrake·t) + kSink·sqrt(m/2))². Joints that were pushed away from where they
-  /// are held come back with so many rad/s or m/s.
-  static constexpr double kSink = 0.1;
+  /// Damping of all velocities, 1/s. It is the same for all, so it does no work against joints. After t seconds the
+  /// remaining share of the initial kinetic energy is exp(-2·kDamping·t): 1 % after 0.4 s.
+  static constexpr double kDamping = 6;
+  /// Terminal velocity of falling bodies, m/s: gravity is limited to kDamping·kTerminalSpeed. The kinetic
+  /// energy of bodies of mass m never exceeds (sqrt(E0)·exp(-kDamping·t) + kTerminalSpeed·sqrt(m/2))². Joints that were
+  /// pushed away from their held position return at this speed, in rad/s or m/s.
+  static constexpr double kTerminalSpeed = 0.1;
 
   static constexpr const char* kDoc =
-      "All comes to rest: behaviours, morphs, forces and the scene's callbacks stop. Once more, after the first "
-      "second: back to the newest good moment.";
+      "Brings everything to rest: behaviors, morphs, forces and the scene's callbacks stop. A second call, after the "
+      "first second, restores the newest good checkpoint.";
 
   explicit Panic(World& world) : world_(world) {}
 
   bool on() const { return on_; }
-  /// The world's tick when it began, while it holds.
-  std::uint64_t began() const { return began_; }
-  /// Whether its first second is over, in which another request is ignored.
-  bool settled() const { return settled_; }
-  void settle() { settled_ = true; }
-  /// Behaviours don't act and forces are lost until end(); motors do what `panic_motors` says.
+  /// The world's tick when the panic began, while it is on.
+  std::uint64_t start_tick() const { return start_tick_; }
+  /// True once its first second is over; before, further requests are ignored.
+  bool first_second_over() const { return first_second_over_; }
+  void end_first_second() { first_second_over_ = true; }
+  /// Starts a panic: until end(), behaviors are paused, forces are discarded, and motors act as set by
+  /// `panic_motors`.
   void begin();
-  /// Everything acts again as it is set.
+  /// Ends the panic: all drives and forces act as set.
   void end();
-  /// `panic_motors` is another one: what is held is held as it is now.
-  void renew();
+  /// Stores the present joint positions as the held ones, and applies `panic_motors`. Call when that has changed.
+  void update_motors();
 
-  /// Gravity in force, where `gravity` is set.
-  Vec3 weight(const Vec3& gravity) const;
-  /// What `panic_motors` says.
+  /// Returns the gravity in force for a value of the property `gravity`.
+  Vec3 limited_gravity(const Vec3& gravity) const;
+  /// True if `panic_motors` is set to hold the motors.
   bool holds_motors() const;
-  /// What an axis does whose motor is set to that: it stays where it is, with the strength that it has, or nothing.
+  /// Returns the drive of an axis with motor mode `mode`: during a panic, it holds its position with its own
+  /// strength, or is off.
   AxisDrive drive(MotorMode mode) const;
-  /// After each internal step of h seconds.
-  void brake(double h);
+  /// Damps all velocities; call after each internal step of h seconds.
+  void damp(double h);
 
  private:
-  friend class WorldKey;
-  void turn(bool on);
+  friend class WorldCheckpoint;
+  void set_on(bool on);
 
   World& world_;
   bool on_ = false;
-  bool settled_ = false;
-  std::uint64_t began_ = 0;
+  bool first_second_over_ = false;
+  std::uint64_t start_tick_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,5 @@
-// Part: one rigid piece of a body. Users see its link frame; Bullet moves its centre-of-mass frame. [sim]
+// Part: a rigid body of an articulated body. Its public pose is that of its link frame; Bullet uses the
+// center-of-mass frame. [sim]
 #pragma once
 
 #include <cstdint>
@@ -17,9 +18,9 @@ class World;
 
 class Part {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
-  /// `mass` 0: static, now and for ever. `pose`: the link frame, world.
+  /// `mass` 0: static, permanently. `pose`: link frame in world coordinates.
   Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geometry> geometry, double mass,
        const Pose& pose);
   ~Part();
@@ -31,99 +32,101 @@ class Part {
   Body& body() const { return body_; }
   bool is_static() const { return is_static_; }
   const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
-  /// The scene's shape that it was made of, or a null id (URDF).
+  /// The scene's shape that it was created from, or a null id (URDF).
   NodeId shape() const { return shape_; }
   void set_shape(NodeId shape) { shape_ = shape; }
   btRigidBody& rigid() { return *rigid_; }
   const btRigidBody& rigid() const { return *rigid_; }
 
-  /// Link frame as the store has it: as told after the last tick, or as set since.
+  /// Link frame from the store: as published after the last tick, or as set since.
   Pose pose() const;
+  /// Center of mass, world.
   Vec3 center() const;
-  /// kg; 0: static.
+  /// In kg; 0: static.
   double mass() const;
-  /// About which its principal moments (geometry's, times the mass) are, world.
+  /// Axes of its principal moments (the geometry's, times the mass), in world coordinates.
   Quat principal_axes() const { return pose().rotation * geometry_->frame.rotation; }
   Vec3 linear_velocity() const;
   Vec3 angular_velocity() const;
   void set_pose(const Pose& pose);
   void set_velocity(const Vec3& linear, const Vec3& angular);
-  /// Where it is and how it moves, to the bit: for another part that stands in its place.
-  struct Stance {
+  /// Pose and motion, in the store's and in Bullet's representation, for an exact transfer to another part.
+  struct State {
     Pose pose;
     Vec3 linear_velocity, angular_velocity;
     btTransform transform;
     btVector3 linear, angular;
   };
-  Stance stance() const;
-  void stand(const Stance& stance);
-  /// Where it was made: reset's goal.
+  State capture_state() const;
+  void set_state(const State& state);
+  /// The pose that reset() restores.
   const Pose& start_pose() const { return start_; }
   void set_start_pose(const Pose& pose) { start_ = pose; }
 
-  /// Forces act for the whole coming tick on each internal step, then end. `at`: a world point.
+  /// Forces (N) and torques (N·m) act in each internal step of the next tick, impulses (N·s) once at its start; then
+  /// they are cleared. All in world axes. `at`: point in world coordinates; without it, the center of mass.
   void apply_force(const Vec3& force);
   void apply_force_at(const Vec3& force, const Vec3& at);
   void apply_torque(const Vec3& torque);
   void apply_impulse(const Vec3& impulse);
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
-  /// Before the forces that wait are changed, or its speed by a guarded call: lets the world's undo know them.
-  void keep();
-  /// Brings what was set into Bullet now, ahead of the next step.
-  void settle();
+  /// Saves the pending forces in the world's undo log, before a guarded call changes them or the velocity.
+  void save_for_rollback();
+  /// Applies pending property changes to Bullet now, ahead of the next step.
+  void flush();
 
-  /// Into Bullet's world and out of it; the body says when.
-  void enter();
-  void leave();
-  /// Awake from the next step on; of a static part: what touches it. [any thread]
+  /// Adds it to Bullet's world or removes it; called by the body.
+  void add_to_world();
+  void remove_from_world();
+  /// Wakes it in the next step; if it is static, wakes the parts that touch it. [any]
   void wake();
-  /// At rest, left out of steps until something wakes it.
+  /// True if it is at rest and skipped by steps until something wakes it.
   bool asleep() const { return !is_static_ && !rigid_->isActive(); }
 
-  /// Before Bullet steps: takes what waited for it.
-  void push(const PartLoads::Load& load, const PartLoads::Kick& kick);
-  /// Its place in World::loads().
-  std::uint32_t load_place() const { return load_; }
-  /// After Bullet stepped: poses and velocities into the live block.
-  void tell();
+  /// Applies pending forces and impulses to Bullet; called by ForceAccumulators::apply().
+  void apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse);
+  /// Its index in World::force_accumulators().
+  std::uint32_t accumulator_index() const { return accumulator_; }
+  /// Publishes pose and velocity to the store's transient values. Call after Bullet's step.
+  void publish();
   bool reports_contacts() const;
 
-  /// Has the processor ask for what Bullet knows of a part: a step or more before it is wanted.
-  static void fetch(const void* thing);
+  /// Prefetches the btRigidBody of `object`, a Part.
+  static void prefetch_rigid_body(const void* object);
 
-  /// Pose and velocity of the store into Bullet: the effects of their rows, and of health.
-  void effect_pose();
-  void effect_velocity();
-  /// Its group, mask, and whether it collides with its own body.
-  void effect_collision();
+  /// Apply the pose and velocity in the store to Bullet: on-change callbacks, also used by the stability check.
+  void apply_pose();
+  void apply_velocity();
+  /// Applies its collision group, mask, and whether it collides with parts of its own body.
+  void apply_collision();
 
  private:
-  void effect_mass();
-  void effect_damping();
-  void effect_surface();
-  void effect_reports();
+  void apply_mass();
+  void apply_damping();
+  void apply_surface();
+  void apply_report_contacts();
   void read_center(double* out) const;
   void read_inertia(double* out) const;
   void read_principal_axes(double* out) const;
   void read_rotation_clamped(double* out) const;
-  Result<void> refuse_mass(const double* in) const;
+  Result<void> validate_mass(const double* in) const;
   Result<void> act_force(std::span<const double> args);
   Result<void> act_impulse(std::span<const double> args);
   Result<void> act_torque(std::span<const double> args);
 
-  friend class WorldUndo;
-  friend class WorldKey;
+  friend class WorldTransaction;
+  friend class WorldCheckpoint;
   Body& body_;
   NodeId id_;
   NodeId shape_;
-  std::uint32_t load_;  // its place among the world's loads
+  std::uint32_t accumulator_;  // its index in World::force_accumulators()
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<btRigidBody> rigid_;
   bool is_static_ = false;
-  bool reports_ = false;
+  bool report_contacts_ = false;
   Pose start_;
-  std::uint64_t kept_in_ = 0;  // the guarded call whose undo knows its forces
+  std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its forces
 };
 
 }  // namespace limber

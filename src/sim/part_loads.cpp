@@ -1,4 +1,4 @@
-// PartLoads: places, and handing over.
+// ForceAccumulators: allocation, and applying the accumulated forces.
 #include "sim/part_loads.h"
 
 #include "base/prefetch.h"
@@ -6,63 +6,64 @@
 
 namespace limber {
 
-std::uint32_t PartLoads::add(Part& part) {
-  if (spare_.empty()) {
-    spare_.push_back(static_cast<std::uint32_t>(loads_.size()));
-    loads_.emplace_back();
-    kicks_.emplace_back();
-    waiting_.reserve(loads_.capacity());
+std::uint32_t ForceAccumulators::add(Part& part) {
+  if (free_.empty()) {
+    free_.push_back(static_cast<std::uint32_t>(wrenches_.size()));
+    wrenches_.emplace_back();
+    impulses_.emplace_back();
+    pending_.reserve(wrenches_.capacity());
   }
-  const std::uint32_t place = spare_.back();
-  spare_.pop_back();
-  loads_[place].part = &part;
+  const std::uint32_t index = free_.back();
+  free_.pop_back();
+  wrenches_[index].part = &part;
   const std::uint32_t slot = part.id().slot;
-  if (slot >= places_.size()) places_.resize(slot + 1, kNone);
-  places_[slot] = place;
-  return place;
+  if (slot >= index_of_slot_.size()) index_of_slot_.resize(slot + 1, kNone);
+  index_of_slot_[slot] = index;
+  return index;
 }
 
-void PartLoads::remove(std::uint32_t place) {
-  clear(place);
-  places_[loads_[place].part->id().slot] = kNone;
-  loads_[place].part = nullptr;
-  spare_.push_back(place);
+void ForceAccumulators::remove(std::uint32_t index) {
+  clear(index);
+  index_of_slot_[wrenches_[index].part->id().slot] = kNone;
+  wrenches_[index].part = nullptr;
+  free_.push_back(index);
 }
 
-void PartLoads::clear(std::uint32_t place) {
-  loads_[place].force = loads_[place].torque = Vec3(0);
-  kicks_[place] = {};
+void ForceAccumulators::clear(std::uint32_t index) {
+  wrenches_[index].force = wrenches_[index].torque = Vec3(0);
+  impulses_[index] = {};
 }
 
-void PartLoads::drop() {
-  for (const std::uint32_t place : waiting_) {
-    loads_[place].waits = false;
-    clear(place);
+void ForceAccumulators::discard() {
+  for (const std::uint32_t index : pending_) {
+    wrenches_[index].pending = false;
+    clear(index);
   }
-  waiting_.clear();
+  pending_.clear();
 }
 
-// Many parts are far off by now. What one finds leads to the next: the load, its part, what Bullet has of that.
-void PartLoads::fetch_ahead(std::size_t at) const {
+// Prefetches in stages, since each stage finds the address of the next: accumulator, part, Bullet's rigid body. In
+// large scenes, most of them are no longer in the cache.
+void ForceAccumulators::prefetch_ahead(std::size_t index) const {
   constexpr std::size_t kAhead = 5;
   const auto part = [&](std::size_t far) -> const Part* {
-    return at + far < waiting_.size() ? loads_[waiting_[at + far]].part : nullptr;
+    return index + far < pending_.size() ? wrenches_[pending_[index + far]].part : nullptr;
   };
-  if (at + 3 * kAhead < waiting_.size()) fetch(waiting_[at + 3 * kAhead]);
+  if (index + 3 * kAhead < pending_.size()) prefetch_wrench(pending_[index + 3 * kAhead]);
   if (const Part* const far = part(2 * kAhead); far != nullptr) prefetch(far, sizeof(Part));
-  if (const Part* const near = part(kAhead); near != nullptr) Part::fetch(near);
+  if (const Part* const near = part(kAhead); near != nullptr) Part::prefetch_rigid_body(near);
 }
 
-void PartLoads::push() {
-  for (std::size_t i = 0; i < waiting_.size(); i++) {
-    fetch_ahead(i);
-    const std::uint32_t place = waiting_[i];
-    Load& load = loads_[place];
-    load.waits = false;
-    if (load.part != nullptr) load.part->push(load, kicks_[place]);
-    clear(place);
+void ForceAccumulators::apply() {
+  for (std::size_t i = 0; i < pending_.size(); i++) {
+    prefetch_ahead(i);
+    const std::uint32_t index = pending_[i];
+    Wrench& wrench = wrenches_[index];
+    wrench.pending = false;
+    if (wrench.part != nullptr) wrench.part->apply_accumulated(wrench, impulses_[index]);
+    clear(index);
   }
-  waiting_.clear();
+  pending_.clear();
 }
 
 }  // namespace limber

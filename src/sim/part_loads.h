@@ -1,5 +1,5 @@
-// PartLoads: forces and impulses that wait for the next step, of all parts side by side, so that a tick that pushes
-// thousands of them goes through memory in order. [sim]
+// ForceAccumulators: pending forces and impulses of all parts, applied in the next step. They are stored contiguously,
+// so that a tick that pushes thousands of parts accesses memory in order. [sim]
 #pragma once
 
 #include <cstdint>
@@ -11,69 +11,69 @@ namespace limber {
 
 class Part;
 
-class PartLoads {
+class ForceAccumulators {
  public:
-  /// What acts on a part for the whole coming tick, at its centre of mass.
-  struct alignas(64) Load {
+  /// Force and torque at the center of mass that act during the whole next tick.
+  struct alignas(64) Wrench {
     Vec3 force{0};   ///< N
     Vec3 torque{0};  ///< N·m
     Part* part = nullptr;
-    bool waits = false;
+    bool pending = false;
   };
-  /// What acts on it at once.
-  struct Kick {
-    Vec3 impulse{0};          ///< N·s
-    Vec3 angular_impulse{0};  ///< N·m·s
+  /// Impulses that act at once.
+  struct Impulse {
+    Vec3 linear{0};   ///< N·s
+    Vec3 angular{0};  ///< N·m·s
   };
 
-  /// A place for a part; those given back are used again.
+  /// Allocates an accumulator for a part, reusing released ones; returns its index.
   std::uint32_t add(Part& part);
-  void remove(std::uint32_t place);
+  void remove(std::uint32_t index);
 
-  /// To add a force or torque to; it is handed over before the next step.
-  Load& load(std::uint32_t place) {
-    Load& load = loads_[place];
-    if (!load.waits) wait(place);
-    return load;
+  /// The accumulator at `index`, to add a force or torque to; it is applied in the next step.
+  Wrench& wrench(std::uint32_t index) {
+    Wrench& wrench = wrenches_[index];
+    if (!wrench.pending) mark_pending(index);
+    return wrench;
   }
-  Kick& kick(std::uint32_t place) {
-    if (!loads_[place].waits) wait(place);
-    return kicks_[place];
+  Impulse& impulse(std::uint32_t index) {
+    if (!wrenches_[index].pending) mark_pending(index);
+    return impulses_[index];
   }
-  /// The same by the slot of the part's node; null where no part has it.
-  Load* load_of_slot(std::uint32_t slot) {
-    const std::uint32_t place = slot < places_.size() ? places_[slot] : kNone;
-    return place == kNone ? nullptr : &load(place);
+  /// The same by the slot of the part's node; null if no part has this slot.
+  Wrench* wrench_of_slot(std::uint32_t slot) {
+    const std::uint32_t index = slot < index_of_slot_.size() ? index_of_slot_[slot] : kNone;
+    return index == kNone ? nullptr : &wrench(index);
   }
-  /// Soon something will be added there.
-  [[gnu::always_inline]] void fetch(std::uint32_t place) const { __builtin_prefetch(&loads_[place], 1); }
-  void clear(std::uint32_t place);
-  /// What waits is lost.
-  void drop();
-  /// Calls f(load, kick) for each part that something waits for.
+  /// Prefetches an accumulator.
+  [[gnu::always_inline]] void prefetch_wrench(std::uint32_t index) const { __builtin_prefetch(&wrenches_[index], 1); }
+  void clear(std::uint32_t index);
+  /// Discards all pending forces and impulses.
+  void discard();
+  /// Calls f(wrench, impulse) for each part with a pending force or impulse.
   template <class F>
-  void each_waiting(F&& f) const {
-    for (const std::uint32_t place : waiting_) {
-      if (loads_[place].part != nullptr) f(loads_[place], kicks_[place]);
+  void for_each_pending(F&& f) const {
+    for (const std::uint32_t index : pending_) {
+      if (wrenches_[index].part != nullptr) f(wrenches_[index], impulses_[index]);
     }
   }
-  /// Before Bullet steps: hands over what waits. Nothing waits longer.
-  void push();
+  /// Before Bullet's step: applies and clears all pending forces and impulses.
+  void apply();
 
  private:
-  friend class WorldKey;
-  void fetch_ahead(std::size_t at) const;
+  friend class WorldCheckpoint;
+  void prefetch_ahead(std::size_t index) const;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-  void wait(std::uint32_t place) {
-    loads_[place].waits = true;
-    waiting_.push_back(place);
+  void mark_pending(std::uint32_t index) {
+    wrenches_[index].pending = true;
+    pending_.push_back(index);
   }
 
-  std::vector<Load> loads_;
-  std::vector<Kick> kicks_;
-  std::vector<std::uint32_t> waiting_;
-  std::vector<std::uint32_t> spare_;
-  std::vector<std::uint32_t> places_;  // by slot
+  std::vector<Wrench> wrenches_;
+  std::vector<Impulse> impulses_;
+  std::vector<std::uint32_t> pending_;
+  std::vector<std::uint32_t> free_;
+  std::vector<std::uint32_t> index_of_slot_;  // accumulator by the slot of the part's node; kNone: no part
 };
 
 }  // namespace limber

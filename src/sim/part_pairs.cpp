@@ -1,4 +1,4 @@
-// The list of pairs, and what a body does with it.
+// PartPairs: the list of pairs, and its use by Body and World.
 #include "sim/part_pairs.h"
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kPairBits = 30;  // of a place among the parts, in the value that an undo step carries
+constexpr int kPairBits = 30;  // of a part's index, in the packed value of an undo step
 
 bool pair_before(const PartPair& pair, const std::pair<std::size_t, std::size_t>& key) {
   return std::pair<std::size_t, std::size_t>(pair.a, pair.b) < key;
 }
 
-std::size_t place_of(const Body& body, const Part& part) {
+std::size_t index_of(const Body& body, const Part& part) {
   const auto parts = body.parts();
   const auto at = std::find_if(parts.begin(), parts.end(), [&](const auto& each) { return each.get() == &part; });
   return static_cast<std::size_t>(at - parts.begin());
@@ -59,7 +59,7 @@ bool PartPairs::set_overlaps(std::size_t a, std::size_t b) {
 }
 
 bool Body::excludes(const Part& a, const Part& b) const {
-  const PartPair* const pair = pairs_.find(place_of(*this, a), place_of(*this, b));
+  const PartPair* const pair = pairs_.find(index_of(*this, a), index_of(*this, b));
   return pair != nullptr && pair->excluded();
 }
 
@@ -70,24 +70,24 @@ Result<void> Body::edit_pair(const Part& a, const Part& b, PairEdit edit) {
   }
   if (&a == &b)
     return Error{fmt::format("body '{}': a pair needs two different parts, not '{}' twice", name(), a.name())};
-  set_pair(place_of(*this, a), place_of(*this, b), edit);
+  set_pair(index_of(*this, a), index_of(*this, b), edit);
   return {};
 }
 
 void Body::set_pair(std::size_t a, std::size_t b, PairEdit edit) {
   const PartPair* const pair = pairs_.find(a, b);
   const auto before = static_cast<std::size_t>(pair == nullptr ? PairEdit::none : pair->edit);
-  world_.undo().note(
+  world_.transaction().record(
       [](void* owner, std::size_t value) {
-        constexpr std::size_t kPlace = (std::size_t{1} << kPairBits) - 1;
-        static_cast<Body*>(owner)->set_pair(value & kPlace, value >> kPairBits & kPlace,
+        constexpr std::size_t kIndexMask = (std::size_t{1} << kPairBits) - 1;
+        static_cast<Body*>(owner)->set_pair(value & kIndexMask, value >> kPairBits & kIndexMask,
                                             static_cast<PairEdit>(value >> (2 * kPairBits)));
       },
       this, a | b << kPairBits | before << (2 * kPairBits));
   if (pairs_.set_edit(a, b, edit)) apply_pair(a, b);
 }
 
-// The pair is excluded now and was not before, or the other way round.
+// Applies a change of a pair's exclusion.
 void Body::apply_pair(std::size_t a, std::size_t b) {
   const PartPair* const pair = pairs_.find(a, b);
   IslandWorld& bullet = world_.bullet();
@@ -98,7 +98,7 @@ void Body::apply_pair(std::size_t a, std::size_t b) {
   }
 }
 
-// Of new parts, which Bullet keeps no pairs of yet.
+// Applies the exclusions of new parts, which Bullet has no pairs of yet.
 void Body::apply_pairs() {
   for (const PartPair& pair : pairs_.list) {
     if (pair.excluded()) apply_pair(pair.a, pair.b);
@@ -106,13 +106,13 @@ void Body::apply_pairs() {
 }
 
 void Body::find_overlaps() {
-  const std::size_t first_new = std::exchange(pairs_.checked, parts_.size());
+  const std::size_t first_new = std::exchange(pairs_.checked_count, parts_.size());
   if (parts_.size() < 2) return;
   std::vector<OverlapPart> shapes;
   std::vector<std::pair<std::size_t, std::size_t>> joined;
   for (const auto& part : parts_) shapes.push_back({part->geometry()->placed, part->pose()});
   for (const auto& joint : joints_) {
-    joined.push_back(std::minmax(place_of(*this, joint->parent()), place_of(*this, joint->child())));
+    joined.push_back(std::minmax(index_of(*this, joint->parent()), index_of(*this, joint->child())));
   }
   std::sort(joined.begin(), joined.end());
   const OverlapResult result = limber::find_overlaps(shapes, [&](std::size_t a, std::size_t b) {
@@ -129,15 +129,16 @@ void Body::find_overlaps() {
 }
 
 void World::report_overlap(const Body& body, const Part& a, const Part& b, double depth) {
-  if (overlaps_reported_++ > 0) return;
-  overlap_text_ = fmt::format("body '{}': '{}' and '{}' overlap at the first tick ({:.3g} mm); excluded from collision",
-                              body.name(), a.name(), b.name(), depth * 1000);
+  if (overlap_count_++ > 0) return;
+  first_overlap_ =
+      fmt::format("body '{}': '{}' and '{}' overlap at the first tick ({:.3g} mm); excluded from collision",
+                  body.name(), a.name(), b.name(), depth * 1000);
 }
 
 void World::log_overlaps() {
-  if (overlaps_reported_ == 0) return;
-  const std::size_t more = std::exchange(overlaps_reported_, 0) - 1;
-  log_warning("{}{}. Place the parts apart, or let them collide with body:include_pair(a, b).", overlap_text_,
+  if (overlap_count_ == 0) return;
+  const std::size_t more = std::exchange(overlap_count_, 0) - 1;
+  log_warning("{}{}. Move the parts apart, or let them collide with body:include_pair(a, b).", first_overlap_,
               more > 0 ? fmt::format(" … and {} more of this kind", more) : "");
 }
 

@@ -1,4 +1,4 @@
-// PartPairs: which pairs of parts of one body are excluded from collision.
+// PartPairs: pairs of parts of one body that are excluded from collision.
 #pragma once
 
 #include <cstddef>
@@ -7,10 +7,10 @@
 
 namespace limber {
 
-/// What a script decided for a pair.
+/// Setting of a pair by a script.
 enum class PairEdit : std::uint16_t { none, excluded, included };
 
-/// Two parts, by their places among the body's parts, a < b.
+/// Two parts, by their indices among the body's parts, a < b.
 struct PartPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
@@ -20,14 +20,15 @@ struct PartPair {
   bool excluded() const { return edit == PairEdit::none ? overlaps != 0 : edit == PairEdit::excluded; }
 };
 
-/// The pairs of a body that are not simply included. Joints, groups, masks and `self_collision` act independently.
+/// Pairs of a body that differ from the default (included). Joints, groups, masks and `self_collision` act
+/// independently.
 struct PartPairs {
-  std::vector<PartPair> list;  ///< Sorted by a, then b; no pair that overlaps not and was not edited.
-  std::size_t checked = 0;     ///< The first so many parts were checked for overlaps.
+  std::vector<PartPair> list;     ///< Sorted by a, then b; contains only pairs that overlap or were edited.
+  std::size_t checked_count = 0;  ///< Number of leading parts that were checked for overlaps.
 
-  /// Null where the pair is not in the list.
+  /// Returns null if the pair is not in the list.
   const PartPair* find(std::size_t a, std::size_t b) const;
-  /// Whether that changed whether the pair is excluded.
+  /// Returns true if the pair's exclusion changed.
   bool set_edit(std::size_t a, std::size_t b, PairEdit edit);
   bool set_overlaps(std::size_t a, std::size_t b);
 

@@ -1,27 +1,27 @@
-// PartSolids: gathering, and those who look.
+// MassTable: adds parts and updates the registered views.
 #include "sim/part_solids.h"
 
 #include "sim/part.h"
 
 namespace limber {
 
-void PartSolids::add(const Part& part) {
-  const std::size_t place = part.load_place();
+void MassTable::add(const Part& part) {
+  const std::size_t index = part.accumulator_index();
   const std::size_t slot = part.id().slot;
-  if (place >= list_.size()) list_.resize(place + 1);
-  if (slot >= places_.size()) places_.resize(slot + 1);
+  if (index >= entries_.size()) entries_.resize(index + 1);
+  if (slot >= index_of_slot_.size()) index_of_slot_.resize(slot + 1);
   const Vec3 center = part.geometry()->frame.position;
   const Vec3 inertia = part.geometry()->unit_inertia;
-  list_[place] = {{center.x, center.y, center.z}, {inertia.x, inertia.y, inertia.z}};
-  places_[slot] = static_cast<std::int32_t>(place);
-  for (View* const view : views_) *view = {list_.data(), places_.data()};
+  entries_[index] = {{center.x, center.y, center.z}, {inertia.x, inertia.y, inertia.z}};
+  index_of_slot_[slot] = static_cast<std::int32_t>(index);
+  for (View* const view : views_) *view = {entries_.data(), index_of_slot_.data()};
 }
 
-void PartSolids::show_view(View& copy) {
-  copy = {list_.data(), places_.data()};
+void MassTable::register_view(View& copy) {
+  copy = {entries_.data(), index_of_slot_.data()};
   views_.push_back(&copy);
 }
 
-void PartSolids::hide_view(View& copy) { std::erase(views_, &copy); }
+void MassTable::unregister_view(View& copy) { std::erase(views_, &copy); }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// PartSolids: what of each part never changes, side by side, for readers that make no calls: scripts work centres of
-// mass and inertias out by themselves. [sim]
+// MassTable: a table of the constant mass properties of all parts, in contiguous arrays that scripts read directly
+// to compute centers of mass and inertias. [sim]
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,30 @@ namespace limber {
 
 class Part;
 
-/// How a part's mass is spread.
-struct PartSolid {
-  double center[3];        ///< Centre of mass in the link's frame, m.
+/// The mass distribution of a part.
+struct MassProperties {
+  double center[3];        ///< Center of mass in the link's frame, m.
   double unit_inertia[3];  ///< Principal moments for a mass of 1 kg, m².
 };
 
-class PartSolids {
+class MassTable {
  public:
-  /// Layout known to script/c_api.inc. The arrays move when parts are added: ask again through the same pointer.
+  /// Layout known to script/c_api.inc. The arrays are reallocated when parts are added: read the pointers again from
+  /// the same View.
   struct View {
-    const PartSolid* list = nullptr;
-    const std::int32_t* places = nullptr;  ///< In the list, by the slot of a living part's node.
+    const MassProperties* list = nullptr;
+    const std::int32_t* index_of_slot = nullptr;  ///< Index in `list` by the slot of a living part's node.
   };
 
-  /// A part with its place among the world's loads, which is its place here.
+  /// Adds a part, at the same index as in the world's ForceAccumulators. A removed part's entry is reused.
   void add(const Part& part);
-  /// Keeps `copy` up to date until hide_view().
-  void show_view(View& copy);
-  void hide_view(View& copy);
+  /// Fills `copy`, and updates it when arrays are reallocated, until unregister_view().
+  void register_view(View& copy);
+  void unregister_view(View& copy);
 
  private:
-  std::vector<PartSolid> list_;
-  std::vector<std::int32_t> places_;
+  std::vector<MassProperties> entries_;
+  std::vector<std::int32_t> index_of_slot_;
   std::vector<View*> views_;
 };
 

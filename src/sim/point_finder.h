@@ -1,5 +1,6 @@
-// PointFinder: which of many points in arrays lie within two distances of a place. Single precision, each operation
-// rounded by itself and in a fixed order: the widest vectors of a processor find what the narrowest do. [sim]
+// PointFinder: finds the points of an array that are between two distances from a position. Single precision; all
+// operations are rounded individually and in a fixed order, so that the result doesn't depend on the vector width of
+// the processor. [sim]
 #pragma once
 
 #include <cstddef>
@@ -8,51 +9,50 @@
 
 namespace limber {
 
-/// What is looked for around a place.
+/// Position and body to find neighbors for.
 struct PointQuery {
   float x, y, z;
-  std::int32_t body;  ///< Points of this body are passed over.
+  std::int32_t body;  ///< points of this body are skipped
 };
 
-/// Points that may lie near. The arrays reach kPointRoom further than `count`; what stands there must lie nowhere
-/// (kNowhere in x).
+/// Candidate points. The arrays must have kPointPadding elements more than `count`, with kNowhere in x.
 struct PointArrays {
   const float* x;
   const float* y;
   const float* z;
   const std::int32_t* body;
-  const std::uint32_t* places;  ///< What is told of a point that is found.
+  const std::uint32_t* values;  ///< values to output for the points found
   std::size_t count;
 };
 
-/// Numbers behind the last that may be read, and behind what was found that may be written.
-inline constexpr std::size_t kPointRoom = 64;
-/// No point is that far: its distance from any other is beyond all that is looked for.
-inline constexpr float kNowhere = std::numeric_limits<float>::max();
+/// Number of elements that may be read past the end of the input, and written past the results.
+inline constexpr std::size_t kPointPadding = 64;
+/// Coordinate of padding points: their distance from any position exceeds all search distances.
+inline constexpr float kPaddingCoordinate = std::numeric_limits<float>::max();
 
-/// How many points are looked at together.
-enum class PointLanes : std::uint8_t { four, eight, sixteen };
+/// Number of points per vector operation.
+enum class VectorWidth : std::uint8_t { four, eight, sixteen };
 
 class PointFinder {
  public:
-  /// The most that this processor can.
-  static PointLanes widest();
-  /// `lanes` at most.
-  explicit PointFinder(PointLanes lanes = widest());
+  /// The widest that this processor supports.
+  static VectorWidth widest();
+  /// Uses at most `width`.
+  explicit PointFinder(VectorWidth width = widest());
 
-  /// Places of all points with least <= distance <= most, in their order; how many. `passes_over`: those of the query's
-  /// body are left out.
-  std::uint32_t find(const PointArrays& points, const PointQuery& query, float least, float most, bool passes_over,
-                     std::uint32_t* out) const {
-    return (passes_over ? least > 0 ? least_and_bodies_ : bodies_
-            : least > 0 ? least_
-                        : all_)(points, query, least, most, out);
+  /// Writes the `values` of all points with min_distance <= distance <= max_distance to `out`, in order; returns their
+  /// number. `out` must have kPointPadding elements more than that. `skip_body`: skips points of the query's body.
+  std::uint32_t find(const PointArrays& points, const PointQuery& query, float min_distance, float max_distance,
+                     bool skip_body, std::uint32_t* out) const {
+    return (skip_body          ? min_distance > 0 ? min_and_skip_body_ : skip_body_
+            : min_distance > 0 ? min_
+                               : all_)(points, query, min_distance, max_distance, out);
   }
 
  private:
-  using Find = std::uint32_t (*)(const PointArrays& points, const PointQuery& query, float least, float most,
-                                 std::uint32_t* out);
-  Find all_, least_, bodies_, least_and_bodies_;
+  using Find = std::uint32_t (*)(const PointArrays& points, const PointQuery& query, float min_distance,
+                                 float max_distance, std::uint32_t* out);
+  Find all_, min_, skip_body_, min_and_skip_body_;
 };
 
 }  // namespace limber

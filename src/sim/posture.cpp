@@ -1,4 +1,4 @@
-// Taking a body's stance and handing it to the one that replaces it.
+// BodyState: saves a body's state and transfers it to its replacement.
 #include "sim/posture.h"
 
 #include <algorithm>
@@ -9,63 +9,64 @@ namespace limber {
 
 namespace {
 
-// velocity of a point that goes along with a part
+// Velocity of a point that moves with a part.
 Vec3 velocity_at(const Part& part, const Vec3& point) {
   return part.linear_velocity() + glm::cross(part.angular_velocity(), point - part.center());
 }
 
 }  // namespace
 
-Posture::Posture(const Body& body) {
-  for (const auto& part : body.parts()) parts_.push_back({part->name(), part->geometry()->frame, part->stance()});
+BodyState::BodyState(const Body& body) {
+  for (const auto& part : body.parts())
+    parts_.push_back({part->name(), part->geometry()->frame, part->capture_state()});
   for (const auto& joint : body.joints()) {
     const Part& parent = joint->parent();
     const Part& child = joint->child();
     const Pose from = parent.pose() * joint->spec().frame_in_parent;
     const Pose to = child.pose() * joint->spec().frame_in_child;
-    const Quat back = glm::conjugate(from.rotation);
-    const double* const told = body.store().live_block(joint->id());
+    const Quat to_parent = glm::conjugate(from.rotation);
+    const double* const readouts = body.store().transient_block(joint->id());
     joints_.push_back({joint->name(),
                        parent.name(),
                        child.name(),
                        joint->spec(),
                        from.inverse() * to,
-                       back * (velocity_at(child, to.position) - velocity_at(parent, to.position)),
-                       back * (child.angular_velocity() - parent.angular_velocity()),
-                       {told, told + Joint::table().live_width()}});
+                       to_parent * (velocity_at(child, to.position) - velocity_at(parent, to.position)),
+                       to_parent * (child.angular_velocity() - parent.angular_velocity()),
+                       {readouts, readouts + Joint::table().transient_width()}});
   }
 }
 
-const Posture::PartStance* Posture::find(const std::vector<PartStance>& list, std::string_view name) {
-  const auto found = std::find_if(list.begin(), list.end(), [&](const PartStance& p) { return p.name == name; });
+const BodyState::PartState* BodyState::find(const std::vector<PartState>& list, std::string_view name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const PartState& p) { return p.name == name; });
   return found == list.end() ? nullptr : &*found;
 }
 
-const Posture::JointStance* Posture::joint_like(const Joint& joint) const {
-  const auto found = std::find_if(joints_.begin(), joints_.end(), [&](const JointStance& j) {
+const BodyState::JointState* BodyState::find_joint(const Joint& joint) const {
+  const auto found = std::find_if(joints_.begin(), joints_.end(), [&](const JointState& j) {
     return j.name == joint.name() && j.spec.type == joint.type();
   });
   return found == joints_.end() ? nullptr : &*found;
 }
 
-// one body's parts, each placed once, after the part that it hangs on
-class Posture::Giving {
+// Places each part of a body once, after its parent.
+class BodyState::StateTransfer {
  public:
-  Giving(const Posture& posture, Body& body, const std::vector<bool>& start_anew)
-      : posture_(posture), body_(body), start_anew_(start_anew), states_(body.parts().size()) {
-    // where each joint's child would hang if nothing but the making counted
+  StateTransfer(const BodyState& state, Body& body, const std::vector<bool>& joints_to_reset)
+      : state_(state), body_(body), joints_to_reset_(joints_to_reset), outcomes_(body.parts().size()) {
+    // relative poses of the joints as built
     for (const auto& joint : body.joints()) {
       const Pose from = joint->parent().pose() * joint->spec().frame_in_parent;
-      made_.push_back(from.inverse() * (joint->child().pose() * joint->spec().frame_in_child));
+      built_poses_.push_back(from.inverse() * (joint->child().pose() * joint->spec().frame_in_child));
     }
   }
 
   void place_all() {
-    for (std::size_t i = 0; i < states_.size(); i++) place(i);
+    for (std::size_t i = 0; i < outcomes_.size(); i++) place(i);
   }
 
  private:
-  enum class State : std::uint8_t { waits, begun, placed, as_before };
+  enum class Outcome : std::uint8_t { pending, in_progress, placed, unchanged };
 
   std::size_t index_of(const Part& part) const {
     const auto parts = body_.parts();
@@ -74,73 +75,75 @@ class Posture::Giving {
   }
 
   void place(std::size_t i) {
-    if (states_[i] != State::waits) return;
-    states_[i] = State::begun;  // a loop of joints comes back here
+    if (outcomes_[i] != Outcome::pending) return;
+    outcomes_[i] = Outcome::in_progress;  // ends the recursion in a loop of joints
     const Part& part = *body_.parts()[i];
     const auto joints = body_.joints();
     for (std::size_t j = 0; j < joints.size(); j++) {
       if (&joints[j]->child() != &part) continue;
       place(index_of(joints[j]->parent()));
-      states_[i] = hang(i, j);
+      outcomes_[i] = place_by_joint(i, j);
       return;
     }
-    states_[i] = State::placed;
-    const PartStance* before = posture_.find(posture_.parts_, part.name());
-    if (before == nullptr && i == 0 && !posture_.parts_.empty()) before = &posture_.parts_.front();
-    if (before != nullptr) states_[i] = stand(i, *before);
+    outcomes_[i] = Outcome::placed;
+    const PartState* saved = state_.find(state_.parts_, part.name());
+    if (saved == nullptr && i == 0 && !state_.parts_.empty()) saved = &state_.parts_.front();
+    if (saved != nullptr) outcomes_[i] = restore_part(i, *saved);
   }
 
-  // where the part of before stood; as_before when that is so to the bit
-  State stand(std::size_t i, const PartStance& before) {
+  // Moves a part to its saved pose; returns unchanged if this reproduces it exactly.
+  Outcome restore_part(std::size_t i, const PartState& saved) {
     Part& part = *body_.parts()[i];
-    if (nearly_same(part.geometry()->frame, before.frame)) {
-      part.stand(before.stance);
-      return part.name() == before.name ? State::as_before : State::placed;
+    if (nearly_same(part.geometry()->frame, saved.frame)) {
+      part.set_state(saved.state);
+      return part.name() == saved.name ? Outcome::unchanged : Outcome::placed;
     }
-    part.set_pose(before.stance.pose);
-    part.set_velocity(before.stance.linear_velocity, before.stance.angular_velocity);
-    return State::placed;
+    part.set_pose(saved.state.pose);
+    part.set_velocity(saved.state.linear_velocity, saved.state.angular_velocity);
+    return Outcome::placed;
   }
 
-  State hang(std::size_t i, std::size_t j) {
+  Outcome place_by_joint(std::size_t i, std::size_t j) {
     Part& part = *body_.parts()[i];
     const Joint& joint = *body_.joints()[j];
     const Part& parent = joint.parent();
-    const bool anew = j < start_anew_.size() && start_anew_[j];
-    const JointStance* const before = anew ? nullptr : posture_.joint_like(joint);
-    const PartStance* const stood = posture_.find(posture_.parts_, part.name());
-    const bool same = before != nullptr && stood != nullptr && before->parent == parent.name() &&
-                      before->child == part.name() && states_[index_of(parent)] == State::as_before &&
-                      nearly_same(before->spec.frame_in_parent, joint.spec().frame_in_parent) &&
-                      nearly_same(before->spec.frame_in_child, joint.spec().frame_in_child);
-    if (same) return stand(i, *stood);
+    const bool reset = j < joints_to_reset_.size() && joints_to_reset_[j];
+    const JointState* const saved = reset ? nullptr : state_.find_joint(joint);
+    const PartState* const saved_part = state_.find(state_.parts_, part.name());
+    const bool same = saved != nullptr && saved_part != nullptr && saved->parent == parent.name() &&
+                      saved->child == part.name() && outcomes_[index_of(parent)] == Outcome::unchanged &&
+                      nearly_same(saved->spec.frame_in_parent, joint.spec().frame_in_parent) &&
+                      nearly_same(saved->spec.frame_in_child, joint.spec().frame_in_child);
+    if (same) return restore_part(i, *saved_part);
     const Pose from = parent.pose() * joint.spec().frame_in_parent;
-    const Pose at = from * (before != nullptr ? before->motion : made_[j]);
-    part.set_pose(at * joint.spec().frame_in_child.inverse());
-    const Vec3 spin = parent.angular_velocity() + (before != nullptr ? from.rotation * before->angular : Vec3(0));
-    const Vec3 speed =
-        velocity_at(parent, at.position) + (before != nullptr ? from.rotation * before->linear : Vec3(0));
-    part.set_velocity(speed + glm::cross(spin, part.center() - at.position), spin);
-    return State::placed;
+    const Pose joint_pose = from * (saved != nullptr ? saved->motion : built_poses_[j]);
+    part.set_pose(joint_pose * joint.spec().frame_in_child.inverse());
+    const Vec3 angular_velocity =
+        parent.angular_velocity() + (saved != nullptr ? from.rotation * saved->angular : Vec3(0));
+    const Vec3 linear_velocity =
+        velocity_at(parent, joint_pose.position) + (saved != nullptr ? from.rotation * saved->linear : Vec3(0));
+    part.set_velocity(linear_velocity + glm::cross(angular_velocity, part.center() - joint_pose.position),
+                      angular_velocity);
+    return Outcome::placed;
   }
 
-  const Posture& posture_;
+  const BodyState& state_;
   Body& body_;
-  const std::vector<bool>& start_anew_;
-  std::vector<State> states_;
-  std::vector<Pose> made_;
+  const std::vector<bool>& joints_to_reset_;
+  std::vector<Outcome> outcomes_;
+  std::vector<Pose> built_poses_;
 };
 
-void Posture::give_to(Body& body, const std::vector<bool>& start_anew) const {
-  Giving(*this, body, start_anew).place_all();
-  // full turns are counted on
+void BodyState::apply_to(Body& body, const std::vector<bool>& joints_to_reset) const {
+  StateTransfer(*this, body, joints_to_reset).place_all();
+  // restores the counts of full turns
   for (std::size_t j = 0; j < body.joints().size(); j++) {
     const Joint& joint = *body.joints()[j];
-    const JointStance* const before = joint_like(joint);
-    if (before == nullptr || (j < start_anew.size() && start_anew[j])) continue;
-    std::copy(before->told.begin(), before->told.end(), body.store().live_block(joint.id()));
+    const JointState* const saved = find_joint(joint);
+    if (saved == nullptr || (j < joints_to_reset.size() && joints_to_reset[j])) continue;
+    std::copy(saved->readouts.begin(), saved->readouts.end(), body.store().transient_block(joint.id()));
   }
-  body.note_moved();
+  body.mark_joints_dirty();
 }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Posture: how a body stands and moves, by the names of its parts and joints, so that a body which is built anew can
-// take it over. [sim]
+// BodyState: poses and velocities of a body, indexed by the names of its parts and joints, for transfer to a rebuilt
+// body. [sim]
 #pragma once
 
 #include <string>
@@ -10,35 +10,35 @@
 
 namespace limber {
 
-class Posture {
+class BodyState {
  public:
-  explicit Posture(const Body& body);
+  explicit BodyState(const Body& body);
 
-  /// Gives it to a body that replaces the one it was taken from: the root's pose, every joint's position and speed
-  /// where the joint is still there with its type. Parts on a way of unchanged joints from the root stand to the bit.
-  /// `start_anew`: joints, by number, that stay as the body was made.
-  void give_to(Body& body, const std::vector<bool>& start_anew) const;
+  /// Transfers the state to a body that replaces the saved one: the root's pose, and position and velocity of every
+  /// joint that still exists with the same type. Parts that only unchanged joints connect to the root get their exact
+  /// previous state. `joints_to_reset`: flags, by index, of joints that keep their start position.
+  void apply_to(Body& body, const std::vector<bool>& joints_to_reset) const;
 
  private:
-  struct PartStance {
+  struct PartState {
     std::string name;
-    Pose frame;  ///< Of the centre of mass in the link's.
-    Part::Stance stance;
+    Pose frame;  ///< of the center of mass in the link's frame
+    Part::State state;
   };
-  struct JointStance {
+  struct JointState {
     std::string name, parent, child;
     JointSpec spec;
-    Pose motion;               ///< The child's joint frame in the parent's.
-    Vec3 linear, angular;      ///< Speed of the child's joint frame in the parent's.
-    std::vector<double> told;  ///< The joint's live numbers: angles with their turns.
+    Pose motion;                   ///< the child's joint frame in the parent's
+    Vec3 linear, angular;          ///< velocity of the child's joint frame in the parent's
+    std::vector<double> readouts;  ///< the joint's transient values, which contain the angles with full turns
   };
-  class Giving;
+  class StateTransfer;
 
-  static const PartStance* find(const std::vector<PartStance>& list, std::string_view name);
-  const JointStance* joint_like(const Joint& joint) const;
+  static const PartState* find(const std::vector<PartState>& list, std::string_view name);
+  const JointState* find_joint(const Joint& joint) const;
 
-  std::vector<PartStance> parts_;
-  std::vector<JointStance> joints_;
+  std::vector<PartState> parts_;
+  std::vector<JointState> joints_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The bare loop: build, drive, step.
+// RawLoop: building, driving and stepping the scene.
 #include "sim/raw_loop.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ double ArmScene::target(int joint, double time) {
 
 RawLoop::RawLoop(const ArmScene& scene) : scene_(scene), box_(to_bt(scene.size * 0.5)) {
   world_.setGravity(btVector3(0, 0, btScalar(-9.81)));
-  // the flags of our worlds: two friction directions, penetration repaired by split impulses
+  // the settings of our worlds: two friction directions, split impulses for penetration
   world_.getSolverInfo().m_numIterations = scene.solver_iterations;
   world_.getSolverInfo().m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
   world_.getSolverInfo().m_splitImpulse = 1;
@@ -62,12 +62,12 @@ void RawLoop::add_arm(int arm) {
     const btTransform in_above(btQuaternion::getIdentity(), to_joint);
     auto joint = std::make_unique<btGeneric6DofSpring2Constraint>(*below, *above, in_below, in_above);
     for (int axis = 0; axis < 6; axis++) joint->setLimit(axis, 0, 0);
-    const int own = 3 + ArmScene::axis(part);
-    joint->setLimit(own, to_scalar(-scene_.limit), to_scalar(scene_.limit));
-    joint->enableMotor(own, true);
-    joint->setServo(own, true);
-    joint->setTargetVelocity(own, to_scalar(scene_.speed));
-    joint->setMaxMotorForce(own, to_scalar(scene_.force));
+    const int driven_axis = 3 + ArmScene::axis(part);
+    joint->setLimit(driven_axis, to_scalar(-scene_.limit), to_scalar(scene_.limit));
+    joint->enableMotor(driven_axis, true);
+    joint->setServo(driven_axis, true);
+    joint->setTargetVelocity(driven_axis, to_scalar(scene_.speed));
+    joint->setMaxMotorForce(driven_axis, to_scalar(scene_.force));
     world_.addConstraint(joint.get(), true);
     joints_.push_back(std::move(joint));
     below = above;

@@ -1,5 +1,4 @@
-// RawLoop: the arms of the benchmarks in a plain Bullet world, written as anybody would with stock parts: what a tick
-// of ours is compared with.
+// RawLoop: the benchmark's arms in a stock Bullet world, programmed in the usual way, as the baseline for our tick.
 #pragma once
 
 #include <memory>
@@ -9,34 +8,34 @@
 
 namespace limber {
 
-/// Arms of boxes on fixed bases, standing on a floor; a limited, servo-driven joint between each two boxes.
+/// Arms of boxes on fixed bases, standing on a floor, with limited, servo-driven joints.
 struct ArmScene {
   int arms = 1;
-  int parts = 17;      ///< That move, of each arm; as many joints.
-  double spacing = 4;  ///< Between arms, m.
+  int parts = 17;      ///< moving parts per arm; also the number of joints
+  double spacing = 4;  ///< between arms, m
   Vec3 size{0.1, 0.1, 0.2};
-  double mass = 1;       ///< Of a part, kg.
-  double limit = 1.4;    ///< Of each joint, both ways, rad.
-  double speed = 10;     ///< Of each servo, rad/s.
-  double force = 10000;  ///< Of each servo, N·m.
+  double mass = 1;       ///< per part, kg
+  double limit = 1.4;    ///< of each joint in both directions, rad
+  double speed = 10;     ///< of each servo, rad/s
+  double force = 10000;  ///< of each servo, N·m
   int solver_iterations = 10;
-  double step = 1.0 / 240;  ///< Internal step, s.
-  int substeps = 4;         ///< Internal steps of a tick.
+  double step = 1.0 / 240;  ///< internal step, s
+  int substeps = 4;         ///< internal steps per tick
 
-  bool hanging = false;  ///< From bases above the floor, instead of standing on it.
-  bool direct = false;   ///< Ours: with the direct solver.
+  bool hanging = false;  ///< from bases above the floor, instead of standing on it
+  bool direct = false;   ///< our world: use the direct solver
 
-  /// A part's centre when the arm is straight; part -1 is the base, which does not move.
+  /// Center of a part while the arm is straight; part -1 is the base, which is fixed.
   Vec3 center(int arm, int part) const;
-  /// From a part's centre to the joint that it hangs on.
+  /// Vector from a part's center to the joint that connects it to its parent.
   Vec3 to_joint() const { return {0, 0, (hanging ? 0.5 : -0.5) * size.z}; }
-  /// A joint turns about x or y in turn: 0 or 1. It bears the part of its number.
+  /// Axis of a joint, alternating: 0 for x or 1 for y. The joint's child is the part of the same index.
   static int axis(int joint) { return joint & 1; }
-  /// Where the servo of a joint goes at a time: ±0.3 rad at 0.5 Hz, a wave along the arm.
+  /// Servo target of a joint at a time: ±0.3 rad at 0.5 Hz, as a wave along the arm.
   static double target(int joint, double time);
 };
 
-/// Stock Bullet on the scene: discrete dynamics world, sequential impulses, six-dof spring joints. [sim]
+/// Stock Bullet simulating the scene: discrete dynamics world, sequential impulses, six-dof spring joints. [sim]
 class RawLoop {
  public:
   explicit RawLoop(const ArmScene& scene);
@@ -44,14 +43,14 @@ class RawLoop {
   RawLoop(const RawLoop&) = delete;
   RawLoop& operator=(const RawLoop&) = delete;
 
-  /// Targets of all servos for this time.
+  /// Sets the targets of all servos for a time.
   void drive(double time);
-  /// One tick: the scene's internal steps.
+  /// Advances by one tick.
   void tick();
 
   /// Largest distance between the two sides of a joint, m.
   double joint_gap() const;
-  /// Largest distance of a joint from its servo's target at this time, rad.
+  /// Largest distance of a joint from its servo's target at a time, rad.
   double servo_error(double time) const;
   int contact_pairs() const;
 
@@ -69,7 +68,7 @@ class RawLoop {
   btBoxShape box_;
   btStaticPlaneShape plane_{btVector3(0, 0, 1), 0};
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
-  std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints_;  // arm by arm, from the base up
+  std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints_;  // arm by arm, from the base to the tip
 };
 
 }  // namespace limber

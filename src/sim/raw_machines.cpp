@@ -1,4 +1,4 @@
-// Arms, the predecessor's robot, trees, legs, a hand, creatures, a pile, and trees drawn at random from a seed.
+// Machines: arms, the robot of ofxDabPhysics, trees, legs, a gripper, creatures, a pile, and random trees.
 #include "sim/raw_machines.h"
 
 #include <cmath>
@@ -16,7 +16,7 @@ RawScene raw_arm(int parts, double ratio, double force, double amplitude, bool s
     RawJoint j;
     j.parent = i;
     j.child = i + 1;
-    j.place = {0, 0, 0.2 + 0.2 * i};
+    j.position = {0, 0, 0.2 + 0.2 * i};
     j.axis = i % 2 == 0 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
     j.force = force;
     j.amplitude = amplitude;
@@ -28,22 +28,22 @@ RawScene raw_arm(int parts, double ratio, double force, double amplitude, bool s
 }
 
 RawScene raw_robot(double force, double amplitude) {
-  constexpr double kGround = 0.2;  // where the first joint is
-  constexpr double kBend = 0.25;   // from a twist to the bend behind it
+  constexpr double kGround = 0.2;  // position of the first joint
+  constexpr double kBend = 0.25;   // from a twist joint to the following bend joint
   constexpr double kPitch = 0.325;
   constexpr int kPairs = 8;
   RawScene s;
   s.floor = true;
   s.parts.push_back({{0.2, 0.2, 0.025}, 0, {{0, 0, kGround - 0.0125}, quat_identity()}});
-  const auto add = [&](double height, const Vec3& axis, double reach, const RawPart& part) {
+  const auto add = [&](double height, const Vec3& axis, double limit, const RawPart& part) {
     RawJoint j;
     j.parent = static_cast<int>(s.joints.size());
     j.child = j.parent + 1;
-    j.place = {0, 0, height};
+    j.position = {0, 0, height};
     j.axis = axis;
-    if (reach > 0) {
-      j.lower = -reach;
-      j.upper = reach;
+    if (limit > 0) {
+      j.lower = -limit;
+      j.upper = limit;
     }
     j.force = force;
     j.amplitude = amplitude;
@@ -63,18 +63,18 @@ RawScene raw_robot(double force, double amplitude) {
   return s;
 }
 
-RawScene raw_limited(RawScene s, double reach, bool driven) {
+RawScene raw_limited(RawScene s, double limit, bool driven) {
   for (RawJoint& j : s.joints) {
-    j.lower = -reach;
-    j.upper = reach;
+    j.lower = -limit;
+    j.upper = limit;
     if (!driven) j.force = 0;
   }
   for (RawPart& p : s.parts) p.pose.position.z += 3;
-  for (RawJoint& j : s.joints) j.place.z += 3;
+  for (RawJoint& j : s.joints) j.position.z += 3;
   return s;
 }
 
-RawScene raw_at_step(RawScene s, double step) {
+RawScene raw_with_step(RawScene s, double step) {
   s.step = step;
   return s;
 }
@@ -92,7 +92,7 @@ RawScene raw_tree(bool floating) {
       RawJoint j;
       j.parent = last;
       j.child = last = static_cast<int>(s.parts.size()) - 1;
-      j.place = center + around * Vec3(0.15 + 0.2 * i, 0, 0);
+      j.position = center + around * Vec3(0.15 + 0.2 * i, 0, 0);
       j.axis = around * (i % 2 == 0 ? Vec3(0, 1, 0) : Vec3(0, 0, 1));
       j.force = 10000;
       j.amplitude = 0.3;
@@ -114,17 +114,17 @@ RawScene raw_legs(double trunk, double leg, bool walking) {
       RawJoint j;
       j.parent = last;
       j.child = last = static_cast<int>(s.parts.size());
-      j.place = hip - Vec3(0, 0, 0.17 * k);
+      j.position = hip - Vec3(0, 0, 0.17 * k);
       j.axis = {0, 1, 0};
       j.force = 10000;
       if (walking) {
-        // diagonal legs together; the ankle undoes what hip and knee turn
+        // diagonal legs move together; the ankle compensates hip and knee
         j.amplitude = k == 0 ? 0.25 : (k == 1 ? -0.3 : 0.05);
         j.frequency = 1;
         j.phase = i == 0 || i == 3 ? 0 : kPi;
       }
       const Vec3 size = k < 2 ? Vec3(0.06, 0.06, 0.17) : Vec3(0.1, 0.1, 0.04);
-      s.parts.push_back({size, leg, {j.place - Vec3(0, 0, k < 2 ? 0.085 : 0.02), quat_identity()}});
+      s.parts.push_back({size, leg, {j.position - Vec3(0, 0, k < 2 ? 0.085 : 0.02), quat_identity()}});
       s.joints.push_back(j);
     }
   }
@@ -151,14 +151,14 @@ RawScene raw_random_tree(unsigned seed, bool floor) {
   const double amplitude = draw(0.1, 1.2);
   for (int k = 1; k < count; ++k) {
     const int parent = generator() % 3 != 0 ? k - 1 : static_cast<int>(generator() % static_cast<unsigned>(k));
-    const Vec3 way = direction();
+    const Vec3 offset = direction();
     const Vec3 from = s.parts[static_cast<std::size_t>(parent)].pose.position;
     const Quat turned = quat_axis(direction(), draw(0, 3));
-    s.parts.push_back({{0.1, 0.1, 0.2}, fixed::pow(10, draw(-2, 2)), {from + way * 0.2, turned}});
+    s.parts.push_back({{0.1, 0.1, 0.2}, fixed::pow(10, draw(-2, 2)), {from + offset * 0.2, turned}});
     RawJoint j;
     j.parent = parent;
     j.child = k;
-    j.place = from + way * 0.1;
+    j.position = from + offset * 0.1;
     j.axis = direction();
     if (generator() % 3 == 0) {
       j.lower = -draw(0, 1.2);
@@ -178,9 +178,9 @@ RawScene raw_random_tree(unsigned seed, bool floor) {
   return s;
 }
 
-// Weight across it: it falls, and meets its limits.
-RawScene raw_lying_arm(double reach) {
-  RawScene s = raw_limited(raw_arm(17, 1, 0, 0, false), reach, false);
+// Gravity across it: the arm falls and hits its limits.
+RawScene raw_lying_arm(double limit) {
+  RawScene s = raw_limited(raw_arm(17, 1, 0, 0, false), limit, false);
   s.gravity = {6.9, 3.1, -6.2};
   return s;
 }
@@ -201,14 +201,14 @@ RawScene raw_arms(int count) {
     for (RawJoint j : one.joints) {
       j.parent += first;
       j.child += first;
-      j.place += shift;
+      j.position += shift;
       all.joints.push_back(j);
     }
   }
   return all;
 }
 
-RawScene raw_hand(double torque) {
+RawScene raw_gripper(double torque) {
   RawScene s;
   s.parts.push_back({{0.3, 0.3, 0.02}, 0, {{0, 0, 1.2}, quat_identity()}});
   const double radius = 0.06;
@@ -216,16 +216,16 @@ RawScene raw_hand(double torque) {
     const Quat around = quat_axis({0, 0, 1}, 2 * kPi / 3 * f);
     int last = 0;
     for (int k = 0; k < 2; ++k) {
-      // hanging straight down beside the ball, a millimetre away
+      // straight down beside the ball, one millimeter away
       const Vec3 top = Vec3(0, 0, 1.18 - 0.08 * k) + around * Vec3(radius + 0.011, 0, 0);
       RawJoint j;
       j.parent = last;
       j.child = last = static_cast<int>(s.parts.size());
-      j.place = top;
+      j.position = top;
       j.axis = around * Vec3(0, 1, 0);
       j.force = torque;
       j.speed = 2;
-      j.hold = k == 0 ? 0.15 : 0.25;  // inwards
+      j.offset = k == 0 ? 0.15 : 0.25;  // inwards
       s.parts.push_back({{0.02, 0.03, 0.08}, 0.05, {top - Vec3(0, 0, 0.04), around}});
       s.joints.push_back(j);
     }
@@ -238,7 +238,7 @@ RawScene raw_clump(int creatures) {
   RawScene s;
   s.gravity = Vec3(0);
   s.self_collision = true;
-  s.attract = 4;
+  s.attraction = 4;
   const int side = static_cast<int>(std::ceil(fixed::cbrt(creatures)));
   for (int c = 0; c < creatures; ++c) {
     const Vec3 from = 0.8 * Vec3(c % side, c / side % side, c / (side * side)) - Vec3(0.4 * side, 0.4 * side, 0);
@@ -250,7 +250,7 @@ RawScene raw_clump(int creatures) {
       RawJoint j;
       j.parent = first + k - 1;
       j.child = first + k;
-      j.place = from + turned * Vec3(0, 0, 0.2 * k - 0.1);
+      j.position = from + turned * Vec3(0, 0, 0.2 * k - 0.1);
       j.axis = turned * (k % 2 == 0 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
       j.stiffness = 4;
       j.damping = 0.05;
@@ -261,7 +261,7 @@ RawScene raw_clump(int creatures) {
 }
 
 RawScene raw_pile(int boxes) {
-  constexpr int kLayer = 12;  // boxes along a side
+  constexpr int kLayer = 12;  // boxes per side
   RawScene s;
   s.floor = true;
   s.self_collision = true;

@@ -1,4 +1,4 @@
-// The two players: stock Bullet with its six-axis spring joint, and an IslandWorld with our joints.
+// RawScene: two implementations, stock Bullet with its six-axis spring joint, and an IslandWorld with our joints.
 #include "sim/raw_scene.h"
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace {
 constexpr int kGround = 1;
 constexpr int kPart = 2;
 
-// What both kinds of world share: the parts.
+// The common part of both kinds of world: the rigid bodies.
 template <class World>
-class Player : public RawPlayer {
+class BasicSimulation : public RawSimulation {
  public:
-  explicit Player(const RawScene& raw) : scene(raw) {}
+  explicit BasicSimulation(const RawScene& raw) : scene(raw) {}
   Pose pose(int part) const override { return from_bt(bodies[static_cast<std::size_t>(part)]->getWorldTransform()); }
 
   RawEnergy energy() const override {
@@ -66,16 +66,16 @@ class Player : public RawPlayer {
     world.addRigidBody(bodies.back().get(), part.size.y > 0 ? kPart : kGround,
                        scene.self_collision || part.size.y == 0 ? -1 : kGround);
   }
-  void pull() {
-    if (scene.attract <= 0) return;
+  void apply_attraction() {
+    if (scene.attraction <= 0) return;
     for (const auto& body : bodies) {
       if (body->isStaticObject()) continue;
-      const Vec3 way = Vec3(0, 0, 1) - from_bt(body->getWorldTransform().getOrigin());
-      body->applyCentralForce(to_bt(way * scene.attract) - body->getLinearVelocity() * btScalar(0.3));
+      const Vec3 offset = Vec3(0, 0, 1) - from_bt(body->getWorldTransform().getOrigin());
+      body->applyCentralForce(to_bt(offset * scene.attraction) - body->getLinearVelocity() * btScalar(0.3));
     }
   }
   btRigidBody& body(int part) { return *bodies[static_cast<std::size_t>(part)]; }
-  // Frame of a joint in a part: `column` of its basis lies along the axis.
+  // Frame of a joint in a part, with `column` of its basis along the axis.
   btTransform frame(const RawJoint& joint, int part, int column) const {
     const Vec3 a = normalized(joint.axis);
     const Vec3 b = normalized(glm::cross(a, std::fabs(a.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
@@ -87,20 +87,21 @@ class Player : public RawPlayer {
       m[r][(column + 2) % 3] = to_scalar(c[r]);
     }
     const RawPart& p = scene.parts[static_cast<std::size_t>(part)];
-    return to_bt(p.pose).inverse() * btTransform(m, to_bt(joint.place));
+    return to_bt(p.pose).inverse() * btTransform(m, to_bt(joint.position));
   }
-  void look(RawFigures& f, const RawJoint& joint, const btTransform& a, const btTransform& b, double angle) const {
-    f.gap = std::max(f.gap, glm::length(from_bt(a.getOrigin() - b.getOrigin())));
-    if (joint.force > 0) f.servo_error = std::max(f.servo_error, std::fabs(angle - joint.target(time)));
+  void measure_joint(RawMeasurements& m, const RawJoint& joint, const btTransform& a, const btTransform& b,
+                     double angle) const {
+    m.gap = std::max(m.gap, glm::length(from_bt(a.getOrigin() - b.getOrigin())));
+    if (joint.force > 0) m.servo_error = std::max(m.servo_error, std::fabs(angle - joint.target(time)));
     if (joint.lower <= joint.upper) {
-      f.limit_passed = std::max({f.limit_passed, angle - joint.upper, joint.lower - angle});
+      m.limit_violation = std::max({m.limit_violation, angle - joint.upper, joint.lower - angle});
     }
   }
-  void look_at_parts(RawFigures& f) const {
+  void measure_parts(RawMeasurements& m) const {
     for (const auto& body : bodies) {
       const double speed = glm::length(from_bt(body->getLinearVelocity()));
-      f.finite = f.finite && speed < 1e5 && is_finite(from_bt(body->getWorldTransform().getOrigin()));
-      f.speed = std::max(f.speed, speed);
+      m.finite = m.finite && speed < 1e5 && is_finite(from_bt(body->getWorldTransform().getOrigin()));
+      m.speed = std::max(m.speed, speed);
     }
   }
 
@@ -112,15 +113,16 @@ class Player : public RawPlayer {
   btStaticPlaneShape plane{btVector3(0, 0, 1), 0};
 };
 
-class StockPlayer : public Player<btDiscreteDynamicsWorld> {
+class StockSimulation : public BasicSimulation<btDiscreteDynamicsWorld> {
  public:
-  // null: Bullet's own choice of solver
-  StockPlayer(const RawScene& raw, btConstraintSolver* solver)
-      : Player(raw), world_(&dispatcher_, &broadphase_, solver != nullptr ? solver : &solver_, &configuration_) {
+  // null: Bullet's default solver
+  StockSimulation(const RawScene& raw, btConstraintSolver* solver)
+      : BasicSimulation(raw),
+        world_(&dispatcher_, &broadphase_, solver != nullptr ? solver : &solver_, &configuration_) {
     build(world_);
     for (const RawJoint& joint : scene.joints) add_joint(joint);
   }
-  ~StockPlayer() override {
+  ~StockSimulation() override {
     for (const auto& joint : joints_) world_.removeConstraint(joint.get());
     for (const auto& body : bodies) world_.removeRigidBody(body.get());
     if (floor) world_.removeRigidBody(floor.get());
@@ -129,24 +131,24 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       if (scene.joints[i].force > 0) joints_[i]->setServoTarget(3, to_scalar(-scene.joints[i].target(time)));
     }
-    pull();
+    apply_attraction();
     world_.stepSimulation(to_scalar(scene.step), 0);
     time += scene.step;
   }
-  RawFigures figures() const override {
-    RawFigures f;
+  RawMeasurements measurements() const override {
+    RawMeasurements m;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       btGeneric6DofSpring2Constraint& j = *joints_[i];
       j.calculateTransforms();
-      look(f, scene.joints[i], j.getRigidBodyA().getWorldTransform() * j.getFrameOffsetA(),
-           j.getRigidBodyB().getWorldTransform() * j.getFrameOffsetB(), -static_cast<double>(j.getAngle(0)));
+      measure_joint(m, scene.joints[i], j.getRigidBodyA().getWorldTransform() * j.getFrameOffsetA(),
+                    j.getRigidBodyB().getWorldTransform() * j.getFrameOffsetB(), -static_cast<double>(j.getAngle(0)));
     }
-    look_at_parts(f);
-    return f;
+    measure_parts(m);
+    return m;
   }
 
  private:
-  // turns about x, the outermost of Bullet's order: its angles are the negative of ours
+  // rotates about x, the outermost axis in Bullet's order: its angles are the negative of ours
   void add_joint(const RawJoint& joint) {
     auto made = std::make_unique<btGeneric6DofSpring2Constraint>(
         body(joint.parent), body(joint.child), frame(joint, joint.parent, 0), frame(joint, joint.child, 0));
@@ -158,7 +160,7 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
       made->setServo(3, true);
       made->setTargetVelocity(3, to_scalar(joint.speed));
       made->setMaxMotorForce(3, to_scalar(joint.force));
-      if (scene.servo_share > 0) made->setParam(BT_CONSTRAINT_ERP, to_scalar(scene.servo_share), 3);
+      if (scene.servo_erp > 0) made->setParam(BT_CONSTRAINT_ERP, to_scalar(scene.servo_erp), 3);
     }
     if (joint.stiffness > 0) {
       made->enableSpring(3, true);
@@ -178,14 +180,14 @@ class StockPlayer : public Player<btDiscreteDynamicsWorld> {
   std::vector<std::unique_ptr<btGeneric6DofSpring2Constraint>> joints_;
 };
 
-// where World has it, too; outlives the parts
+// Allocated as in World; a base class, so that it outlives the parts.
 struct IslandMemory {
   BulletMemory memory;
 };
 
-class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
+class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorld> {
  public:
-  IslandPlayer(const RawScene& raw, bool direct) : Player(raw) {
+  IslandSimulation(const RawScene& raw, bool direct) : BasicSimulation(raw) {
     const BulletMemory::Scope scope(&memory);
     world_ = std::make_unique<IslandWorld>(WorldSetup{});
     world_->set_direct(direct);
@@ -193,7 +195,7 @@ class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
     build(*world_);
     for (const RawJoint& joint : scene.joints) add_joint(joint);
   }
-  ~IslandPlayer() override {
+  ~IslandSimulation() override {
     for (const auto& joint : joints_) world_->removeConstraint(joint.get());
     for (const auto& body : bodies) world_->removeRigidBody(body.get());
     if (floor) world_->removeRigidBody(floor.get());
@@ -201,36 +203,36 @@ class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
   void step() override {
     constexpr std::size_t kAhead = 8;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      // as the program's motors do
+      // as the motors do
       if (i + kAhead < joints_.size()) prefetch(&joints_[i + kAhead]->axis(5), sizeof(AxisSettings));
       const RawJoint& j = scene.joints[i];
       if (j.force > 0) joints_[i]->set_goal(5, j.target(time), 0, j.speed);
     }
-    pull();
+    apply_attraction();
     world_->step(scene.step, 1);
     time += scene.step;
     const DirectResiduals& r = world_->direct().residuals();
-    worst_ = {0,
-              0,
-              0,
-              std::max(worst_.locked, r.locked),
-              std::max(worst_.bounded, r.bounded),
-              std::max(worst_.contact, r.contact)};
+    max_residuals_ = {0,
+                      0,
+                      0,
+                      std::max(max_residuals_.locked, r.locked),
+                      std::max(max_residuals_.bounded, r.bounded),
+                      std::max(max_residuals_.contact, r.contact)};
   }
-  RawFigures figures() const override {
-    RawFigures f;
+  RawMeasurements measurements() const override {
+    RawMeasurements m;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const JointConstraint& j = *joints_[i];
-      look(f, scene.joints[i], to_bt(j.parent_frame()), to_bt(j.child_frame()), j.value(5));
+      measure_joint(m, scene.joints[i], to_bt(j.parent_frame()), to_bt(j.child_frame()), j.value(5));
     }
-    look_at_parts(f);
-    return f;
+    measure_parts(m);
+    return m;
   }
   Direct direct() const override {
-    Direct d = worst_;
+    Direct d = max_residuals_;
     const DirectCounts c = world_->direct_counts();
     d.direct = static_cast<double>(c.direct);
-    d.plain = static_cast<double>(c.plain);
+    d.plain = static_cast<double>(c.too_large);
     d.fallbacks = static_cast<double>(c.fallbacks);
     return d;
   }
@@ -254,37 +256,37 @@ class IslandPlayer : private IslandMemory, public Player<IslandWorld> {
   }
 
   std::unique_ptr<IslandWorld> world_;
-  Direct worst_;
+  Direct max_residuals_;
   std::vector<std::unique_ptr<JointConstraint>> joints_;
 };
 
 }  // namespace
 
 double RawJoint::target(double time) const {
-  if (square) return hold + ((static_cast<int>(time) & 1) != 0 ? amplitude : -amplitude);
-  return hold + std::min(1.0, 2 * time) * amplitude * fixed::sin(2 * kPi * frequency * time + phase);
+  if (square) return offset + ((static_cast<int>(time) & 1) != 0 ? amplitude : -amplitude);
+  return offset + std::min(1.0, 2 * time) * amplitude * fixed::sin(2 * kPi * frequency * time + phase);
 }
 
-void RawFigures::take(const RawFigures& o) {
-  gap = std::max(gap, o.gap);
-  servo_error = std::max(servo_error, o.servo_error);
-  limit_passed = std::max(limit_passed, o.limit_passed);
-  speed = std::max(speed, o.speed);
-  finite = finite && o.finite;
+void RawMeasurements::accumulate_max(const RawMeasurements& other) {
+  gap = std::max(gap, other.gap);
+  servo_error = std::max(servo_error, other.servo_error);
+  limit_violation = std::max(limit_violation, other.limit_violation);
+  speed = std::max(speed, other.speed);
+  finite = finite && other.finite;
 }
 
-double RawEnergyMeter::take() {
-  const RawEnergy before = std::exchange(way_, player_.energy());
-  return before.potential + (before.kinetic + way_.kinetic) / 2;
+double RawEnergyMeter::measure() {
+  const RawEnergy previous = std::exchange(last_energy_, simulation_.energy());
+  return previous.potential + (previous.kinetic + last_energy_.kinetic) / 2;
 }
 
-std::unique_ptr<RawPlayer> RawPlayer::make(const RawScene& scene, RawSolver solver) {
-  if (solver == RawSolver::stock) return std::make_unique<StockPlayer>(scene, nullptr);
-  return std::make_unique<IslandPlayer>(scene, solver == RawSolver::direct);
+std::unique_ptr<RawSimulation> RawSimulation::make(const RawScene& scene, RawSolver solver) {
+  if (solver == RawSolver::stock) return std::make_unique<StockSimulation>(scene, nullptr);
+  return std::make_unique<IslandSimulation>(scene, solver == RawSolver::direct);
 }
 
-std::unique_ptr<RawPlayer> RawPlayer::make_stock(const RawScene& scene, btConstraintSolver& solver) {
-  return std::make_unique<StockPlayer>(scene, &solver);
+std::unique_ptr<RawSimulation> RawSimulation::make_stock(const RawScene& scene, btConstraintSolver& solver) {
+  return std::make_unique<StockSimulation>(scene, &solver);
 }
 
 }  // namespace limber

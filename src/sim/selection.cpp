@@ -1,4 +1,4 @@
-// Selection: words against names.
+// Selection: matches names.
 #include "sim/selection.h"
 
 #include <algorithm>
@@ -12,16 +12,18 @@ constexpr std::string_view kAll = "all";
 bool is_name(std::string_view word) { return word != kAll && !is_pattern(word); }
 }  // namespace
 
-bool Selection::all() const { return left_out_ || std::find(words_.begin(), words_.end(), kAll) != words_.end(); }
+bool Selection::selects_all() const {
+  return is_default_ || std::find(words_.begin(), words_.end(), kAll) != words_.end();
+}
 
-bool Selection::means(std::string_view name, bool by_all) const {
-  if (by_all && all()) return true;
+bool Selection::selects(std::string_view name, bool by_all) const {
+  if (by_all && selects_all()) return true;
   return std::any_of(words_.begin(), words_.end(), [&](const std::string& word) {
     return word == name || (word != kAll && is_pattern(word) && pattern_match(word, name));
   });
 }
 
-std::string_view Selection::missing(const std::vector<std::string_view>& names) const {
+std::string_view Selection::first_missing(const std::vector<std::string_view>& names) const {
   for (const std::string& word : words_) {
     if (is_name(word) && std::find(names.begin(), names.end(), word) == names.end()) return word;
   }

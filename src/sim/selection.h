@@ -1,5 +1,4 @@
-// Selection: which of several things are meant, by name, pattern or "all"; and how a body's things are found by it.
-// [any]
+// Selection: a list of names, patterns or "all" that selects objects, such as the parts of a body. [any]
 #pragma once
 
 #include <string>
@@ -12,27 +11,27 @@ namespace limber {
 
 class Selection {
  public:
-  /// Left out: all are meant.
+  /// Unspecified: selects all.
   Selection() = default;
-  /// Names, OSC patterns, "all". An empty list means none.
-  explicit Selection(std::vector<std::string> words) : left_out_(false), words_(std::move(words)) {}
+  /// Names, OSC patterns, "all". An empty list selects nothing.
+  explicit Selection(std::vector<std::string> words) : is_default_(false), words_(std::move(words)) {}
 
-  bool left_out() const { return left_out_; }
-  /// Whether all are meant, by "all" or by leaving it out.
-  bool all() const;
+  bool is_default() const { return is_default_; }
+  /// True if all objects are selected, by "all" or because the selection is unspecified.
+  bool selects_all() const;
   const std::vector<std::string>& words() const { return words_; }
 
-  /// Whether a thing of that name is meant; `by_all` answers for "all".
-  bool means(std::string_view name, bool by_all = true) const;
-  /// A name of it that is none of `names`: "there is …" texts are the caller's. Empty: each name exists.
-  std::string_view missing(const std::vector<std::string_view>& names) const;
-  /// Whether a name stands in it as such, which then must exist; patterns and "all" may match nothing.
+  /// True if an object of this name is selected; `by_all`: whether "all" selects it.
+  bool selects(std::string_view name, bool by_all = true) const;
+  /// Returns the first literal name that is not in `names`, for the caller's error message; empty if there is none.
+  std::string_view first_missing(const std::vector<std::string_view>& names) const;
+  /// True if it contains a literal name, which has to exist; patterns and "all" may match nothing.
   bool has_names() const;
 
   bool operator==(const Selection&) const = default;
 
  private:
-  bool left_out_ = true;
+  bool is_default_ = true;
   std::vector<std::string> words_;
 };
 

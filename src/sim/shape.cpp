@@ -1,4 +1,4 @@
-// Shapes: what they need to be possible, compounds, their geometry.
+// Shape: validation, compounds, geometry.
 #include "sim/shape.h"
 
 #include <algorithm>
@@ -10,33 +10,33 @@
 
 namespace limber {
 
-const Table& Shape::table() {
-  using namespace rows;
-  static const Table table(
+const PropertyTable& Shape::table() {
+  using namespace properties;
+  static const PropertyTable table(
       "shape", "/visuals/shape/<shape>", "/visuals/shape",
       {
-          number("transparency", "", 0, 0, 1, "0: nothing shines through; 1: not to be seen."),
-          number("ambient_scale", "", 0.5, 0, 10, "How much light from everywhere counts."),
-          number("diffuse_scale", "", 0.5, 0, 10, "How much the lamps' light counts."),
-          number("specular_scale", "", 0.5, 0, 10, "How bright highlights are."),
-          number("specular_pow", "", 10, 0, 1000, "How small highlights are."),
-          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1, "In light from everywhere: hue, saturation, brightness."),
-          vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "In the lamps' light: hue, saturation, brightness."),
+          number("transparency", "", 0, 0, 1, "0: opaque; 1: invisible."),
+          number("ambient_scale", "", 0.5, 0, 10, "Factor on the ambient light."),
+          number("diffuse_scale", "", 0.5, 0, 10, "Factor on the lamps' light."),
+          number("specular_scale", "", 0.5, 0, 10, "Brightness of highlights."),
+          number("specular_pow", "", 10, 0, 1000, "Shininess: the higher, the smaller the highlights."),
+          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1, "Color in ambient light: hue, saturation, brightness."),
+          vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "Color in the lamps' light: hue, saturation, brightness."),
       });
   return table;
 }
 
 namespace {
 
-constexpr double kSmallest = 1e-4;
-constexpr double kLargest = 1e4;
+constexpr double kMinLength = 1e-4;
+constexpr double kMaxLength = 1e4;
 
-Result<void> check_length(double value, std::string_view shape, std::string_view what) {
-  if (value >= kSmallest && value <= kLargest) return {};
-  return Error{fmt::format("a {} needs a {} of {} .. {} m, not {}", shape, what, kSmallest, kLargest, value)};
+Result<void> check_length(double value, std::string_view shape, std::string_view dimension) {
+  if (value >= kMinLength && value <= kMaxLength) return {};
+  return Error{fmt::format("a {} needs a {} of {} .. {} m, not {}", shape, dimension, kMinLength, kMaxLength, value)};
 }
 
-Result<void> both(Result<void> a, Result<void> b) { return a ? b : a; }
+Result<void> first_error(Result<void> a, Result<void> b) { return a ? b : a; }
 
 }  // namespace
 
@@ -59,11 +59,11 @@ Result<void> check_shape(const ShapeModel& m) {
       }
       return {};
     case ShapeKind::cylinder:
-      return both(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
+      return first_error(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
     case ShapeKind::capsule:
-      return both(check_length(m.radius, "capsule", "radius"), check_length(m.height, "capsule", "height"));
+      return first_error(check_length(m.radius, "capsule", "radius"), check_length(m.height, "capsule", "height"));
     case ShapeKind::cone:
-      return both(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
+      return first_error(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
     case ShapeKind::mesh:
       if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
       return {};
@@ -82,25 +82,25 @@ Shape::~Shape() { store_.remove(id_); }
 
 Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
   if (model_.kind != ShapeKind::compound) {
-    return Error{fmt::format("shape '{}' is no compound; make one with sim:add_compound_shape", name())};
+    return Error{fmt::format("shape '{}' is not a compound; create one with sim:add_compound_shape", name())};
   }
-  if (&child == this) return Error{fmt::format("compound '{}' can't hold itself", name())};
-  if (child.model().kind == ShapeKind::plane) return Error{fmt::format("compound '{}' can't hold a plane", name())};
+  if (&child == this) return Error{fmt::format("compound '{}' can't contain itself", name())};
+  if (child.model().kind == ShapeKind::plane) return Error{fmt::format("compound '{}' can't contain a plane", name())};
   if (children_.size() + child.placed().size() > 1000)
-    return Error{fmt::format("compound '{}' may hold 1000 shapes", name())};
+    return Error{fmt::format("compound '{}' can contain at most 1000 shapes", name())};
   for (PlacedShape placed : child.placed()) {
     placed.origin = origin * placed.origin;
     children_.push_back(placed);
   }
   geometry_ = nullptr;
-  store_.note_structure();
+  store_.bump_structure_version();
   return {};
 }
 
-void Shape::keep_children(std::size_t count) {
+void Shape::truncate_children(std::size_t count) {
   children_.resize(std::min(count, children_.size()));
   geometry_ = nullptr;
-  store_.note_structure();
+  store_.bump_structure_version();
 }
 
 std::vector<PlacedShape> Shape::placed() const {
@@ -110,21 +110,21 @@ std::vector<PlacedShape> Shape::placed() const {
   return {self};
 }
 
-void Shape::become(const Shape& other) {
-  model_ = other.model_;
-  children_ = other.children_;
-  geometry_ = other.geometry_;
-  store_.note_structure();
+void Shape::assign_geometry(const Shape& source) {
+  model_ = source.model_;
+  children_ = source.children_;
+  geometry_ = source.geometry_;
+  store_.bump_structure_version();
 }
 
-void Shape::paint(const PlacedShape& visual) {
+void Shape::set_color(const PlacedShape& visual) {
   if (!visual.color) return;
   const Vec3 hsb = hsb_of(*visual.color);
-  for (const char* const row : {"ambient_color", "diffuse_color"}) {
-    double* const out = store_.tell(id_, table().at(row));
+  for (const char* const property : {"ambient_color", "diffuse_color"}) {
+    double* const out = store_.mutable_values(id_, table().at(property));
     for (int i = 0; i < 3; i++) out[i] = std::clamp(hsb[i], 0.0, 1.0);
   }
-  store_.tell(id_, table().at("transparency"))[0] = std::clamp(1 - visual.alpha, 0.0, 1.0);
+  store_.mutable_values(id_, table().at("transparency"))[0] = std::clamp(1 - visual.alpha, 0.0, 1.0);
 }
 
 std::shared_ptr<const Geometry> Shape::geometry() const {

@@ -14,7 +14,7 @@ struct Geometry;
 
 class Shape {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Shape(Store& store, NodeId group, std::string name, ShapeModel model);
   ~Shape();
@@ -25,19 +25,19 @@ class Shape {
   const std::string& name() const { return store_.name(id_); }
   const ShapeModel& model() const { return model_; }
 
-  /// Adds a child to a compound (else an error), placed in the compound's frame. Parts made before are not changed.
+  /// Adds a child to a compound (else an error), placed in the compound's frame. Existing parts don't change.
   Result<void> add_child(const Shape& child, const Pose& origin);
-  /// The shape's geometries in its own frame: itself, or a compound's children.
+  /// The shape's geometries in its own frame: the shape itself, or the children of a compound.
   std::vector<PlacedShape> placed() const;
   std::size_t child_count() const { return children_.size(); }
-  /// Takes the last children away again: what a guarded call that failed had added.
-  void keep_children(std::size_t count);
+  /// Removes children from the end so that `count` remain: rolls back the additions of a guarded call that failed.
+  void truncate_children(std::size_t count);
   const std::vector<PlacedShape>& children() const { return children_; }
-  /// Takes the geometry of another shape, of another world perhaps. Parts made before are not changed.
-  void become(const Shape& other);
-  /// Takes the colour that a file gives a visual, if it gives one; nothing counts as said by that.
-  void paint(const PlacedShape& visual);
-  /// As a part of that shape collides, mass spread over its volume. Built at first use.
+  /// Takes over the geometry of another shape, possibly of another world. Existing parts don't change.
+  void assign_geometry(const Shape& source);
+  /// Sets the color that a model file gives a visual, if any, without marking the properties as explicitly set.
+  void set_color(const PlacedShape& visual);
+  /// The collision geometry of a part of this shape, with the mass spread over its volume. Built at first use.
   std::shared_ptr<const Geometry> geometry() const;
 
  private:
@@ -48,10 +48,11 @@ class Shape {
   mutable std::shared_ptr<const Geometry> geometry_;
 };
 
-/// What the shape of a link's visual is called: `<robot>.<link>`, a second `<robot>.<link>.2`, and so on.
+/// Name of the shape of a link's visual: `<robot>.<link>` for the first, `<robot>.<link>.2` for the second, and so
+/// on.
 std::string visual_shape_name(const BodyModel& model, const LinkModel& link, std::size_t number);
 
-/// What is wrong with a shape's numbers ("a sphere needs a radius of 1e-4 .. 1e4 m, not -1"), or success.
+/// Validates a shape's numbers. The error names the fault ("a sphere needs a radius of 1e-4 .. 1e4 m, not -1").
 Result<void> check_shape(const ShapeModel& model);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// SleepTracker: decides which islands are at rest, so that steps skip them, and wakes them on any influence. [sim]
+// SleepTracker: detects islands at rest, which steps then skip, and wakes them on any influence. [sim]
 #pragma once
 
 #include <atomic>
@@ -8,90 +8,91 @@
 
 namespace limber {
 
-/// An island (parts that touch or are joined) falls asleep at the end of a tick when, for half of kRest, with joints
-/// for kRest, no part of it left its place, no force acted, no property changed, and no motor commands a motion. It has
-/// no velocity while it sleeps, its contacts keep their impulses and its joints their readouts. Islands that neither
-/// touch nor are joined to a static object sleep only when they do not move at all, since nothing brings them to rest.
+/// An island (parts that touch or are joined) is put to sleep at the end of a tick if for half of kRest, or kRest with
+/// joints, none of its parts left its pose, no force acted, no property changed, and no motor commanded a motion. A
+/// sleeping island has no velocity, its contacts retain their impulses and its joints their readouts. Islands that
+/// neither touch nor are joined to a static object sleep only if they don't move at all, since nothing brings them to
+/// rest.
 ///
-/// btCollisionObject::isActive() tells whether an object is awake; static objects are active only in a step in which
-/// they were moved. Objects are known by their index in the world's array. Decisions depend on an island's own history
-/// alone, never on threads. All that it remembers lies in the memory of the BulletMemory::Scope it is used in.
+/// btCollisionObject::isActive() is true for awake objects; static objects are active only in a step in which they were
+/// moved. Objects are identified by their index in the world's array. Decisions depend only on an island's own history,
+/// never on threads. Persistent data is allocated in the memory of the present BulletMemory::Scope.
 class SleepTracker {
  public:
-  /// s of simulated time for which an island must be at rest; half of it without joints.
+  /// Simulated time, s, for which an island must be at rest; half of it without joints.
   static constexpr double kRest = 1;
 
   explicit SleepTracker(btDiscreteDynamicsWorld& world) : world_(world) {}
 
-  /// An object was added to the world. It may not sleep until allow() says so.
+  /// Call after an object was added to the world. It can't sleep before allow() permits it.
   void add(btCollisionObject& object);
-  /// An object is about to be removed: its island and what touches it wake in the next step.
+  /// Call before an object is removed: its island and objects that touch it wake in the next step.
   void remove(const btCollisionObject& object);
-  /// Whether the object's island may sleep as far as this object is concerned.
+  /// Sets whether the object permits its island to sleep.
   void allow(btCollisionObject& object, bool may_sleep);
 
-  /// From the next internal step on, the object is awake with its island, and its time at rest starts over; of a static
-  /// object: what touches it or is joined to it. [any thread]
+  /// Wakes the object and its island in the next internal step and restarts its time at rest; of a static object: wakes
+  /// objects that touch it or are joined to it. [any thread]
   void wake(const btCollisionObject& object) {
     const int i = object.getWorldArrayIndex();
-    if (i < 0 || i >= wanted_.size()) return;
-    std::atomic_ref<std::uint8_t>(wanted_[i]).store(1, std::memory_order_relaxed);
-    any_wanted_.store(true, std::memory_order_relaxed);
+    if (i < 0 || i >= wake_requested_.size()) return;
+    std::atomic_ref<std::uint8_t>(wake_requested_[i]).store(1, std::memory_order_relaxed);
+    any_wake_requested_.store(true, std::memory_order_relaxed);
   }
-  /// Whether wake() was called for the object since the last internal step; cancel() takes that back.
-  bool waking(const btCollisionObject& object) const;
-  void cancel(const btCollisionObject& object);
-  bool any_waking() const { return any_wanted_.load(std::memory_order_relaxed); }
-  /// Everything is awake at once.
+  /// True if wake() was called for the object since the last internal step and not canceled.
+  bool wake_requested(const btCollisionObject& object) const;
+  void cancel_wake(const btCollisionObject& object);
+  bool any_wake_requested() const { return any_wake_requested_.load(std::memory_order_relaxed); }
+  /// Wakes everything at once.
   void wake_all();
 
-  /// Carries out wake(). `mid_tick`: gravity has been applied in this tick already. Returns whether something woke.
-  bool apply_wakes(bool mid_tick);
-  /// After contacts were found: wakes islands that something awake touches. Returns whether something woke.
+  /// Executes wake() calls. `mid_tick`: gravity has been applied in this tick already. Returns true if something woke.
+  bool execute_wakes(bool mid_tick);
+  /// Wakes islands that an awake object touches. Call after contacts were found. Returns true if something woke.
   bool wake_touched(bool mid_tick);
-  /// Ends an internal step.
+  /// Ends an internal step: static objects that were moved in it are inactive again.
   void end_step();
 
-  /// In a tick's last internal step, once the part has moved: compares its pose with where it came to rest. `seconds`:
-  /// of the tick. [any thread, each another part]
+  /// Compares the part's pose with its rest pose. Call in a tick's last internal step, after the part has moved.
+  /// `seconds`: length of the tick. [any thread, a different part each]
   void observe(const btRigidBody& body, btScalar seconds);
-  /// What is awake: by object its place among the parts, negative for all others; the parts; joints between them.
+  /// Awake objects: by object its index in `parts`, negative for all others; the parts; joints between them.
   struct Awake {
-    const btAlignedObjectArray<int>& places;
+    const btAlignedObjectArray<int>& part_index;
     const btAlignedObjectArray<btRigidBody*>& parts;
     const btAlignedObjectArray<btTypedConstraint*>& joints;
   };
-  /// Ends a tick: puts islands at rest to sleep. Returns whether one fell asleep.
+  /// Ends a tick: puts islands at rest to sleep. Returns true if one fell asleep.
   bool end_tick(const Awake& awake);
 
   int sleeping() const { return sleeping_; }
-  /// Changes whenever a part fell asleep, woke or was added.
+  /// Changes whenever a part falls asleep, wakes or is added.
   std::uint64_t version() const { return version_; }
 
  private:
-  struct Rest {
-    btTransform pose;  // where it came to rest
-    float seconds;     // for which it has been there
+  struct RestPose {
+    btTransform pose;  // pose at which it came to rest
+    float seconds;     // time at rest
   };
   struct Track {
-    Rest exact;           // what counts in islands with joints
-    Rest rough;           // what counts in the others
-    std::uint32_t group;  // of the island that it sleeps with
+    RestPose with_joints;     // tolerance for islands with joints
+    RestPose without_joints;  // tolerance for other islands
+    std::uint32_t group;      // identifies the island that it sleeps with
     bool may_sleep;
   };
-  static void restart(Track& track) { track.exact.seconds = track.rough.seconds = 0; }
+  static void restart(Track& track) { track.with_joints.seconds = track.without_joints.seconds = 0; }
   bool sleeps(const btCollisionObject& object) const { return !object.isActive() && !object.isStaticObject(); }
-  void want(const btCollisionObject& object) { groups_.push_back(tracks_[object.getWorldArrayIndex()].group); }
-  bool rouse_groups(bool mid_tick);
-  void rouse(int index, bool mid_tick);
-  int root_of(int place);
+  void queue_group(const btCollisionObject& object) { groups_.push_back(tracks_[object.getWorldArrayIndex()].group); }
+  bool wake_groups(bool mid_tick);
+  void wake_body(int index, bool mid_tick);
+  int root_of(int index);
   void unite(int a, int b);
   void find_islands(const Awake& awake);
 
   btDiscreteDynamicsWorld& world_;
-  btAlignedObjectArray<Track> tracks_;         // by object
-  btAlignedObjectArray<std::uint8_t> wanted_;  // by object: to be woken
-  std::atomic<bool> any_wanted_{false};
+  btAlignedObjectArray<Track> tracks_;                 // by object
+  btAlignedObjectArray<std::uint8_t> wake_requested_;  // by object: to be woken
+  std::atomic<bool> any_wake_requested_{false};
   std::atomic<bool> any_rested_{false};
   int sleeping_ = 0;
   std::uint32_t last_group_ = 0;
@@ -99,10 +100,10 @@ class SleepTracker {
   // scratch
   btAlignedObjectArray<std::uint32_t> groups_;  // to be woken
   btAlignedObjectArray<int> moved_;             // static objects that are active in this step
-  btAlignedObjectArray<int> above_;             // by place: union-find
+  btAlignedObjectArray<int> parent_;            // union-find over the awake parts
   btAlignedObjectArray<std::uint8_t> supported_;
   btAlignedObjectArray<std::uint8_t> jointed_;
-  btAlignedObjectArray<std::uint8_t> driven_;  // by root: something keeps it awake
+  btAlignedObjectArray<std::uint8_t> forced_awake_;  // by root: something keeps it awake
   btAlignedObjectArray<std::uint32_t> group_of_;
 };
 

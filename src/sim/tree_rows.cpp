@@ -1,4 +1,4 @@
-// Planning a node's rows, one exact solve, and what it does to them.
+// TreeRows: the choice of prescribed and free axes, one exact solve, and the update of impulses and rates.
 #include "sim/tree_rows.h"
 
 #include <algorithm>
@@ -6,57 +6,57 @@
 
 namespace limber {
 
-void TreeRows::clear(int room) {
-  trees.clear(room);
+void TreeRows::clear(int capacity) {
+  forest.clear(capacity);
   rows_.clear();
   pending_.clear();
   row_start_.assign(1, 0);
-  stairs_.clear();
-  stair_start_.assign(1, 0);
-  stair_rows_.clear();
+  ordered_bounds_.clear();
+  bounds_start_.assign(1, 0);
+  bound_rows_.clear();
   rates_.clear();
-  others_.clear();
+  known_impulses_.clear();
   changes_.clear();
   factored_.clear();
   exchanges_ = 0;
 }
 
-TreeRow& TreeRows::add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Mark mark) {
+TreeRow& TreeRows::add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Kind kind) {
   TreeRow& row = rows_.emplace_back();
   row.velocity = velocity;
   row.softness = softness;
   row.lower = lower;
   row.upper = upper;
-  row.node = trees.size() - 1;
+  row.node = forest.size() - 1;
   row.axis = static_cast<std::uint8_t>(axis);
-  row.mark = mark;
+  row.kind = kind;
   return row;
 }
 
-void TreeRows::end_node(const std::array<double, 6>& rates, const TreeMemory& before) {
-  const int node = trees.size() - 1;
+void TreeRows::end_node(const std::array<double, 6>& rates, const ActiveSetMemory& previous) {
+  const int node = forest.size() - 1;
   row_start_.push_back(static_cast<int>(rows_.size()));
   pending_.resize(rows_.size(), 0);
   rates_.push_back(rates);
-  others_.push_back({});
+  known_impulses_.push_back({});
   changes_.push_back({});
   factored_.push_back(0);
-  unsigned stairs = 0;
+  unsigned bounded_axes = 0;
   for (TreeRow& row : rows(node)) {
     if (!row.bounded()) continue;
     if (row.constant()) {
       row.status = TreeRow::at_lower;
     } else if (row.hard()) {
-      stairs |= 1u << row.axis;
+      bounded_axes |= 1u << row.axis;
     } else {
-      // a soft stop begins at rest: the bound nearest to no impulse
+      // a soft stop starts at rest: at the bound nearest to zero impulse
       row.status = std::fabs(row.lower) <= std::fabs(row.upper) ? TreeRow::at_lower : TreeRow::at_upper;
     }
   }
   for (int axis = 0; axis < 6; ++axis) {
-    if ((stairs >> axis & 1) != 0) build_stair(node, axis, before[at(axis)]);
+    if ((bounded_axes >> axis & 1) != 0) build_bounds(node, axis, previous[at(axis)]);
   }
-  stair_start_.push_back(static_cast<int>(stairs_.size()));
+  bounds_start_.push_back(static_cast<int>(ordered_bounds_.size()));
 }
 
 std::span<TreeRow> TreeRows::rows(int node) {
@@ -66,42 +66,42 @@ std::span<TreeRow> TreeRows::rows(int node) {
 
 bool TreeRows::factor(int first, int last) {
   for (int i = first; i < last; ++i) {
-    TreeNode& n = trees.node(i);
-    n.held = 0;
+    TreeNode& n = forest.node(i);
+    n.prescribed = 0;
     n.conductance.fill(0);
     for (const TreeRow& row : rows(i)) {
       if (row.status != TreeRow::active) continue;
       if (row.hard()) {
-        n.held |= 1u << row.axis;
+        n.prescribed |= 1u << row.axis;
       } else {
         n.conductance[row.axis] += 1 / row.softness;
       }
     }
   }
-  effort_.lines(kNodeLines * (last - first), 6);
+  budget_.charge(kNodeVectors * (last - first), 6);
   factored_[at(first)] = 1;
-  factors_++;
-  return trees.factor(first, last);
+  factor_version_++;
+  return forest.factor(first, last);
 }
 
-void TreeRows::plan_node(int i) {
-  TreeNode& n = trees.node(i);
+void TreeRows::prepare_node(int i) {
+  TreeNode& n = forest.node(i);
   const std::array<double, 6>& rate = rates_[at(i)];
-  std::array<double, 6>& others = others_[at(i)];
-  n.ask.fill(0);
-  others.fill(0);
+  std::array<double, 6>& known_impulses = known_impulses_[at(i)];
+  n.input.fill(0);
+  known_impulses.fill(0);
   const std::span<TreeRow> all = rows(i);
   for (const TreeRow& row : all) {
-    if (row.status == TreeRow::active && row.hard()) n.ask[row.axis] = row.velocity - rate[row.axis];
+    if (row.status == TreeRow::active && row.hard()) n.input[row.axis] = row.velocity - rate[row.axis];
   }
   for (TreeRow& row : all) {
-    const bool held = (n.held >> row.axis & 1) != 0;
+    const bool prescribed = (n.prescribed >> row.axis & 1) != 0;
     double change = 0;
     if (row.status == TreeRow::active) {
       if (row.hard()) continue;
-      const double after = rate[row.axis] + (held ? n.ask[row.axis] : 0);
+      const double after = rate[row.axis] + (prescribed ? n.input[row.axis] : 0);
       change = (row.velocity - after) / row.softness - row.impulse;
-    } else if (row.status == TreeRow::outer) {
+    } else if (row.status == TreeRow::deferred) {
       double& pending = pending_[at(static_cast<int>(&row - rows_.data()))];
       change = pending;
       pending = 0;
@@ -111,31 +111,31 @@ void TreeRows::plan_node(int i) {
       change = bound - row.impulse;
       row.impulse = bound;
     }
-    (held ? others : n.ask)[row.axis] += change;
+    (prescribed ? known_impulses : n.input)[row.axis] += change;
   }
 }
 
-void TreeRows::take_node(int i) {
-  TreeNode& n = trees.node(i);
+void TreeRows::accumulate_node(int i) {
+  TreeNode& n = forest.node(i);
   std::array<double, 6>& rate = rates_[at(i)];
   for (std::size_t k = 0; k < 6; ++k) rate[k] += n.rate[k];
   for (TreeRow& row : rows(i)) {
     if (row.status != TreeRow::active) continue;
     if (row.hard()) {
-      row.impulse += n.impulse[row.axis] - others_[at(i)][row.axis];
+      row.impulse += n.impulse[row.axis] - known_impulses_[at(i)][row.axis];
     } else {
       row.impulse = (row.velocity - rate[row.axis]) / row.softness;
     }
   }
-  changes_[at(i)] += n.change;
+  changes_[at(i)] += n.velocity_change;
   n.load = {};
 }
 
 void TreeRows::correct(int first, int last) {
-  effort_.lines(kNodeLines * (last - first), 6);
-  for (int i = first; i < last; ++i) plan_node(i);
-  trees.solve(first, last);
-  for (int i = first; i < last; ++i) take_node(i);
+  budget_.charge(kNodeVectors * (last - first), 6);
+  for (int i = first; i < last; ++i) prepare_node(i);
+  forest.solve(first, last);
+  for (int i = first; i < last; ++i) accumulate_node(i);
 }
 
 }  // namespace limber

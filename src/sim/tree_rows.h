@@ -1,5 +1,5 @@
-// TreeRows: the laws of a forest's axes (locks, motors, servos, limits, friction, springs), solved exactly with the
-// trees by pivoting. docs/solver.md. No Bullet.
+// TreeRows: constraint rows of the joint axes of a forest (locks, motors, servos, limits, friction, springs), solved
+// exactly together with the trees by block principal pivoting. docs/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,25 @@
 
 namespace limber {
 
-/// rate + softness·impulse = velocity, its impulse kept within [lower, upper]; at a bound the rate is what it will.
+/// A constraint row: rate + softness·impulse = velocity, with the impulse in [lower, upper]. The left side may be
+/// larger while the impulse is at its lower bound, and smaller while it is at its upper bound.
 struct TreeRow {
-  enum Mark : std::uint8_t { motor, friction, lower_limit, upper_limit, other };
-  enum Status : std::uint8_t { active, at_lower, at_upper, outer };
+  enum Kind : std::uint8_t { motor, friction, lower_limit, upper_limit, other };
+  enum Status : std::uint8_t { active, at_lower, at_upper, deferred };
 
   double velocity = 0;
   double softness = 0;  ///< >= 0; 0: a hard row.
-  double lower = 0;     ///< kTreeInfinity and beyond: no bound.
+  double lower = 0;     ///< Beyond ±kTreeInfinity: no bound.
   double upper = 0;
   double impulse = 0;
   int node = 0;
   std::uint8_t axis = 0;
-  Mark mark = other;  ///< Tells the rows of an axis apart, from step to step; at most one of each hard kind.
+  /// Identifies the row among those of its axis from step to step; an axis has at most one hard row of each kind.
+  Kind kind = other;
   Status status = active;
-  Status guess = outer;  ///< Of a row given up: where it may come to stand; outer: as its impulse says.
-  double likely = 0;     ///< Of a row given up: an impulse to search from.
+  /// Of a deferred row: status that the LCP solver starts with; `deferred`: derived from the impulse.
+  Status initial_status = deferred;
+  double initial_impulse = 0;  ///< Of a deferred row: impulse that the LCP solver starts with.
 
   bool hard() const { return softness == 0; }
   bool bounded() const;
@@ -35,23 +38,26 @@ struct TreeRow {
 inline constexpr double kTreeInfinity = 1e15;
 inline bool TreeRow::bounded() const { return lower > -kTreeInfinity || upper < kTreeInfinity; }
 
-/// Which row of each axis was in force, and whether contacts made it so: what the next step starts from. 0: unknown.
-using TreeMemory = std::array<std::uint8_t, 6>;
+/// Warm start of the active set of a joint: for each axis the row that was active, and whether contacts changed it. 0:
+/// unknown.
+using ActiveSetMemory = std::array<std::uint8_t, 6>;
 
-/// [sim]
+/// Constraint rows of a forest, their impulses and the bodies' velocity changes. Rows that contacts change are deferred
+/// to the coupled system, which applies impulses to them by add_pending(). [sim]
 class TreeRows {
  public:
-  explicit TreeRows(Effort& effort) : effort_(effort) {}
+  explicit TreeRows(WorkBudget& budget) : budget_(budget) {}
 
-  TreeSolver trees;
+  Forest forest;
 
-  /// No nodes; memory for so many is at hand.
-  void clear(int room = 0);
-  /// Rows of the node last added to `trees`, between two calls of end_node.
-  TreeRow& add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Mark mark);
-  /// `rates`: of the node's axes, as they are before the step's impulses; `before`: the state of the last step.
-  void end_node(const std::array<double, 6>& rates, const TreeMemory& before);
-  TreeMemory memory(int node) const;
+  /// Removes all nodes and rows and reserves memory for `capacity` nodes.
+  void clear(int capacity = 0);
+  /// Adds a row to the last node of `forest`. Call between two calls of end_node().
+  TreeRow& add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Kind kind);
+  /// Completes the last node. `rates`: of its axes before the step's impulses; `previous`: its active set in the last
+  /// step.
+  void end_node(const std::array<double, 6>& rates, const ActiveSetMemory& previous);
+  ActiveSetMemory active_set(int node) const;
 
   std::span<TreeRow> rows(int node);
   int index_of(const TreeRow& row) const { return static_cast<int>(&row - rows_.data()); }
@@ -61,93 +67,98 @@ class TreeRows {
   }
   std::span<TreeRow> rows() { return rows_; }
   double rate(int node, int axis) const { return rates_[at(node)][at(axis)]; }
-  /// Change of a node's velocity by all that was solved so far.
+  /// Change of a node's velocity by all solves so far.
   const Spatial& change(int node) const { return changes_[at(node)]; }
-  /// Counts what was already done to a body from outside: velocities and rates are as if it had been solved.
+  /// Sets a velocity change that was applied to the body from outside; rates must include it already.
   void set_change(int node, const Spatial& change) { changes_[at(node)] = change; }
 
-  /// Solves whole trees, first .. last - 1, until every row obeys its law; at most `budget` exchanges. Rows of axes
-  /// that did not settle are given up: their status is `outer`. False: an axis that moves no mass.
-  bool pivot(int first, int last, int budget);
-  /// The same where a factor is there already, and may still hold.
-  bool settle(int first, int last, int budget);
-  /// One exact solve with the loads of the nodes and the pending impulses of outer rows; loads are then cleared.
+  /// Solves the whole trees of nodes first .. last - 1 until no row is violated, in at most `max_exchanges` exchanges
+  /// of the active set. Rows of axes that have not converged by then are deferred. Returns false if an axis moves no
+  /// mass.
+  bool pivot(int first, int last, int max_exchanges);
+  /// Like pivot(), but first tries the existing factor, if there is one.
+  bool solve(int first, int last, int max_exchanges);
+  /// One exact solve with the loads of the nodes and the pending impulses of deferred rows; clears the loads.
   void correct(int first, int last);
-  /// Rows whose law is now broken are given up (`outer`); how many axes that were. factor() is due when not 0.
-  int give_up_broken(int first, int last);
-  /// Those that contacts brought elsewhere in the step before: likely they will again.
-  int give_up_remembered(int first, int last);
-  /// The bounded hard rows of one axis; 0 when it has none, or they were given up before.
-  int give_up_axis(int node, int axis);
-  /// All bounded rows that are in force, whether their law is broken or not.
-  int give_up_all(int first, int last);
-  /// Remembers impulses, rates and changes; goes back to them, rows that were given up since stay so.
-  void keep();
-  void go_back();
-  /// After that: a new factor, and one solve.
-  bool refresh(int first, int last);
+  /// Defers rows that are violated now. Returns the number of axes; if it isn't 0, call factor() next.
+  int defer_violated(int first, int last);
+  /// Defers the axes where contacts changed the active set in the previous step, since they probably will again.
+  /// Returns their number.
+  int defer_remembered(int first, int last);
+  /// Defers the bounded hard rows of one axis. Returns 0 if it has none or they were deferred before.
+  int defer_axis(int node, int axis);
+  /// Defers all bounded hard rows. Returns the number of axes.
+  int defer_all(int first, int last);
+  /// save() stores impulses, rates and changes; restore() restores them. Rows deferred in between stay deferred.
+  void save();
+  void restore();
+  /// Clears loads, then factors and solves once. Call after restore(). Returns false if an axis moves no mass.
+  bool factor_and_correct(int first, int last);
+  /// Factors the trees for the present status of the rows. Returns false if an axis moves no mass.
   bool factor(int first, int last);
-  /// An impulse of an outer row, to be applied by the next correct().
-  void push(TreeRow& row, double impulse) { pending_[static_cast<std::size_t>(&row - rows_.data())] += impulse; }
+  /// Adds an impulse of a deferred row that the next correct() applies.
+  void add_pending(TreeRow& row, double impulse) { pending_[static_cast<std::size_t>(&row - rows_.data())] += impulse; }
+  /// Violation of the row's equation: velocity - softness·impulse - rate.
   double residual(const TreeRow& row) const {
     return row.velocity - row.softness * row.impulse - rate(row.node, row.axis);
   }
 
   int exchanges() const { return exchanges_; }
-  /// Tells one set of factors from the next.
-  std::uint64_t factors() const { return factors_; }
+  /// Changes with each factorization.
+  std::uint64_t factor_version() const { return factor_version_; }
 
  private:
-  // The hard bounded rows of one axis, sorted by velocity: together a staircase. State 2i + 1: row i is active, those
-  // before it at their lower bounds, those after it at their upper ones. State 2i: none is active between i - 1 and i.
-  struct Stair {
+  // The bounded hard rows of one axis, sorted by velocity. At most one is active: in state 2i + 1 row i is active, rows
+  // before it are at their lower bounds and rows after it at their upper bounds; in state 2i none is active, and the
+  // boundary is between rows i - 1 and i.
+  struct OrderedBounds {
     int node = 0;
     int axis = 0;
-    int first = 0;  // in stair_rows_
+    int first = 0;  // in bound_rows_
     int count = 0;
     int state = 0;
-    int want = 0;
-    bool outer = false;
-    bool before = false;  // was brought elsewhere by contacts in the step before
+    int next_state = 0;
+    bool deferred = false;
+    bool deferred_before = false;  // contacts changed its state in the step before
   };
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  TreeRow& row_of(const Stair& s, int i) { return rows_[at(stair_rows_[at(s.first + i)])]; }
-  const TreeRow& row_of(const Stair& s, int i) const { return rows_[at(stair_rows_[at(s.first + i)])]; }
-  void build_stair(int node, int axis, std::uint8_t before);
-  bool admissible(const Stair& s, int state) const;
-  int remembered(const Stair& s, std::uint8_t code) const;
-  int guess(const Stair& s) const;
-  int reached(const Stair& s) const;
-  void take_state(Stair& s);
-  void give_up(Stair& s);
-  void hand_over(TreeRow& row);
-  int wanted(const Stair& s) const;
-  int look(int first, int last);
-  bool breaks(const TreeRow& row) const;
-  void move(int first, int last, bool only_last);
-  void plan_node(int i);
-  void take_node(int i);
-  std::span<Stair> stairs(int first, int last);
+  TreeRow& row_of(const OrderedBounds& s, int i) { return rows_[at(bound_rows_[at(s.first + i)])]; }
+  const TreeRow& row_of(const OrderedBounds& s, int i) const { return rows_[at(bound_rows_[at(s.first + i)])]; }
+  void build_bounds(int node, int axis, std::uint8_t remembered);
+  bool admissible(const OrderedBounds& s, int state) const;
+  int remembered_state(const OrderedBounds& s, std::uint8_t code) const;
+  int default_state(const OrderedBounds& s) const;
+  int final_state(const OrderedBounds& s) const;
+  void apply_state(OrderedBounds& s);
+  void defer(OrderedBounds& s);
+  void defer_row(TreeRow& row);
+  int required_state(const OrderedBounds& s) const;
+  int find_violations(int first, int last);
+  bool is_violated(const TreeRow& row) const;
+  void exchange(int first, int last, bool only_last);
+  void prepare_node(int i);
+  void accumulate_node(int i);
+  std::span<OrderedBounds> ordered_bounds(int first, int last);
 
-  /// What a factor, and what a solve costs, for each node: about so many lines of six.
-  static constexpr int kNodeLines = 28;
+  /// Cost of a factorization or of a solve per node, in vectors of six elements.
+  static constexpr int kNodeVectors = 28;
 
-  Effort& effort_;
+  WorkBudget& budget_;
   std::vector<TreeRow> rows_;
   std::vector<double> pending_;
-  std::vector<int> row_start_;  // of each node
-  std::vector<Stair> stairs_;
-  std::vector<int> stair_start_;  // of each node
-  std::vector<int> stair_rows_;
+  std::vector<int> row_start_;  // by node
+  std::vector<OrderedBounds> ordered_bounds_;
+  std::vector<int> bounds_start_;  // by node
+  std::vector<int> bound_rows_;
   std::vector<std::array<double, 6>> rates_;
-  std::vector<std::array<double, 6>> others_;  // impulse changes on held axes that are known beforehand
+  std::vector<std::array<double, 6>> known_impulses_;  // known impulse changes on prescribed axes
   std::vector<Spatial> changes_;
-  std::vector<double> kept_impulses_;
-  std::vector<std::array<double, 6>> kept_rates_;
-  std::vector<Spatial> kept_changes_;
-  std::vector<unsigned char> factored_;  // node: whether its tree's factor is that of the present states
+  std::vector<double> saved_impulses_;
+  std::vector<std::array<double, 6>> saved_rates_;
+  std::vector<Spatial> saved_changes_;
+  std::vector<unsigned char> factored_;  // by node: the factor of its tree is that of the present states
   int exchanges_ = 0;
-  std::uint64_t factors_ = 0;
+  std::uint64_t factor_version_ = 0;
 };
 
 }  // namespace limber

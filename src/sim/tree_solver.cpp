@@ -1,5 +1,6 @@
-// Leaves first, each free axis is eliminated as if it were a joint of its own (a rank-one step); held axes cost
-// nothing. Then impulses run up to the roots and velocities down to the leaves.
+// Articulated-body factorization: from the leaves to the roots, each free axis is eliminated like a joint of its own (a
+// rank-one update); prescribed axes cost nothing. A solve carries impulses up to the roots and velocities down to the
+// leaves.
 #include "sim/tree_solver.h"
 
 #include <bit>
@@ -11,106 +12,107 @@
 namespace limber {
 namespace {
 
-/// An axis must move at least this part of what it would with the body alone.
-constexpr double kLeastEase = 1e-9;
+/// Smallest inertia about an axis, relative to that of the body alone.
+constexpr double kMinRelativeInertia = 1e-9;
 
 }  // namespace
 
-void TreeSolver::clear(int room) { take_room(nodes_, static_cast<std::size_t>(room)); }
+void Forest::clear(int capacity) { clear_and_reserve(nodes_, static_cast<std::size_t>(capacity)); }
 
-TreeNode& TreeSolver::add(int parent) {
+TreeNode& Forest::add(int parent) {
   TreeNode& n = nodes_.emplace_back();
   n.parent = parent;
   return n;
 }
 
-bool TreeSolver::factor(int first, int last) {
+bool Forest::factor(int first, int last) {
   for (int i = first; i < last; ++i) {
-    node(i).rigid = node(i).inertia;
-    node(i).first_free = i > first ? free_axes(i - 1) : 0;
+    node(i).articulated_inertia = node(i).inertia;
+    node(i).first_free = i > first ? free_axis_count(i - 1) : 0;
   }
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
     for (std::size_t k = 0; k < 6; ++k) {
-      if ((n.held >> k & 1) != 0) continue;
-      n.lean[k] = n.rigid * n.axis[k];
-      const double resists = dot(n.axis[k], n.lean[k]) + n.conductance[k];
-      // written so that no number passes as one
-      if (!(resists > kLeastEase * dot(n.axis[k], n.inertia * n.axis[k]))) return false;
-      n.ease[k] = 1 / resists;
-      n.rigid.subtract_square(n.lean[k], n.ease[k]);
+      if ((n.prescribed >> k & 1) != 0) continue;
+      n.inertia_axis[k] = n.articulated_inertia * n.axis[k];
+      const double d = dot(n.axis[k], n.inertia_axis[k]) + n.conductance[k];
+      // written so that NaN fails the test
+      if (!(d > kMinRelativeInertia * dot(n.axis[k], n.inertia * n.axis[k]))) return false;
+      n.inverse_d[k] = 1 / d;
+      n.articulated_inertia.subtract_outer_product(n.inertia_axis[k], n.inverse_d[k]);
     }
-    if (n.parent >= 0) node(n.parent).rigid.add_carried(n.rigid, n.shift);
+    if (n.parent >= 0) node(n.parent).articulated_inertia.add_translated(n.articulated_inertia, n.offset);
   }
   return true;
 }
 
-void TreeSolver::solve(int first, int last) {
-  // `change` holds the impulse gathered so far on the way up, the velocity on the way down
-  for (int i = first; i < last; ++i) node(i).change = node(i).load;
+void Forest::solve(int first, int last) {
+  // velocity_change holds the accumulated impulse on the way up, and the velocity on the way down
+  for (int i = first; i < last; ++i) node(i).velocity_change = node(i).load;
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
-    Spatial& push = n.change;
-    n.carried_motion = {};
-    bool moves = false;
+    Spatial& bias_impulse = n.velocity_change;
+    n.prescribed_motion = {};
+    bool has_motion = false;
     for (std::size_t k = 0; k < 6; ++k) {
-      if ((n.held >> k & 1) != 0) {
-        if (n.ask[k] == 0) continue;
-        n.carried_motion += n.axis[k] * n.ask[k];
-        moves = true;
+      if ((n.prescribed >> k & 1) != 0) {
+        if (n.input[k] == 0) continue;
+        n.prescribed_motion += n.axis[k] * n.input[k];
+        has_motion = true;
         continue;
       }
-      n.left[k] = (n.ask[k] + dot(n.axis[k], push)) * n.ease[k];
-      push = push - n.lean[k] * n.left[k];
+      n.free_rate[k] = (n.input[k] + dot(n.axis[k], bias_impulse)) * n.inverse_d[k];
+      bias_impulse = bias_impulse - n.inertia_axis[k] * n.free_rate[k];
     }
     if (n.parent < 0) continue;
-    node(n.parent).change += brought_back(moves ? push - n.rigid * n.carried_motion : push, n.shift);
+    node(n.parent).velocity_change += translated_back(
+        has_motion ? bias_impulse - n.articulated_inertia * n.prescribed_motion : bias_impulse, n.offset);
   }
   for (int i = first; i < last; ++i) {
     TreeNode& n = node(i);
-    Spatial v = n.carried_motion;
-    if (n.parent >= 0) v += carried(node(n.parent).change, n.shift);
-    const Spatial through = n.held != 0 ? n.rigid * v - n.change : Spatial{};
+    Spatial v = n.prescribed_motion;
+    if (n.parent >= 0) v += translated(node(n.parent).velocity_change, n.offset);
+    const Spatial transmitted = n.prescribed != 0 ? n.articulated_inertia * v - n.velocity_change : Spatial{};
     for (std::size_t j = 6; j-- > 0;) {
-      if ((n.held >> j & 1) != 0) {
-        n.rate[j] = n.ask[j];
-        n.impulse[j] = dot(n.axis[j], through);
+      if ((n.prescribed >> j & 1) != 0) {
+        n.rate[j] = n.input[j];
+        n.impulse[j] = dot(n.axis[j], transmitted);
         continue;
       }
-      n.rate[j] = n.left[j] - dot(n.lean[j], v) * n.ease[j];
-      n.impulse[j] = n.ask[j] - n.conductance[j] * n.rate[j];
+      n.rate[j] = n.free_rate[j] - dot(n.inertia_axis[j], v) * n.inverse_d[j];
+      n.impulse[j] = n.input[j] - n.conductance[j] * n.rate[j];
       v += n.axis[j] * n.rate[j];
     }
-    n.change = v;
+    n.velocity_change = v;
   }
 }
 
-void TreeSolver::respond(int first, int last) {
-  for (int i = first; i < last; ++i) node(i).change = node(i).load;
+void Forest::respond(int first, int last) {
+  for (int i = first; i < last; ++i) node(i).velocity_change = node(i).load;
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
-    Spatial& push = n.change;
+    Spatial& bias_impulse = n.velocity_change;
     for (std::size_t k = 0; k < 6; ++k) {
-      if ((n.held >> k & 1) != 0) continue;
-      n.left[k] = (n.ask[k] + dot(n.axis[k], push)) * n.ease[k];
-      push = push - n.lean[k] * n.left[k];
+      if ((n.prescribed >> k & 1) != 0) continue;
+      n.free_rate[k] = (n.input[k] + dot(n.axis[k], bias_impulse)) * n.inverse_d[k];
+      bias_impulse = bias_impulse - n.inertia_axis[k] * n.free_rate[k];
     }
-    if (n.parent >= 0) node(n.parent).change += brought_back(push, n.shift);
+    if (n.parent >= 0) node(n.parent).velocity_change += translated_back(bias_impulse, n.offset);
   }
   for (int i = first; i < last; ++i) {
     TreeNode& n = node(i);
     Spatial v;
-    if (n.parent >= 0) v = carried(node(n.parent).change, n.shift);
+    if (n.parent >= 0) v = translated(node(n.parent).velocity_change, n.offset);
     for (std::size_t j = 6; j-- > 0;) {
-      if ((n.held >> j & 1) != 0) continue;
-      n.rate[j] = n.left[j] - dot(n.lean[j], v) * n.ease[j];
+      if ((n.prescribed >> j & 1) != 0) continue;
+      n.rate[j] = n.free_rate[j] - dot(n.inertia_axis[j], v) * n.inverse_d[j];
       v += n.axis[j] * n.rate[j];
     }
-    n.change = v;
+    n.velocity_change = v;
   }
 }
 
-void TreeSolver::feel(TreeLoad a, TreeLoad b, std::span<double> felt) const {
+void Forest::half_response(TreeLoad a, TreeLoad b, std::span<double> half) const {
   while (a.node >= 0 || b.node >= 0) {
     if (a.node < b.node) std::swap(a, b);
     if (a.node == b.node) {
@@ -118,17 +120,17 @@ void TreeSolver::feel(TreeLoad a, TreeLoad b, std::span<double> felt) const {
       b.node = -1;
     }
     const TreeNode& n = node(a.node);
-    auto number = static_cast<std::size_t>(n.first_free);
+    auto index = static_cast<std::size_t>(n.first_free);
     for (std::size_t k = 0; k < 6; ++k) {
-      if ((n.held >> k & 1) != 0) continue;
-      const double feels = n.ask[k] + dot(n.axis[k], a.impulse);
-      a.impulse = a.impulse - n.lean[k] * (feels * n.ease[k]);
-      felt[number++] = feels * std::sqrt(n.ease[k]);
+      if ((n.prescribed >> k & 1) != 0) continue;
+      const double axis_impulse = n.input[k] + dot(n.axis[k], a.impulse);
+      a.impulse = a.impulse - n.inertia_axis[k] * (axis_impulse * n.inverse_d[k]);
+      half[index++] = axis_impulse * std::sqrt(n.inverse_d[k]);
     }
-    a = {n.parent, brought_back(a.impulse, n.shift)};
+    a = {n.parent, translated_back(a.impulse, n.offset)};
   }
 }
 
-int TreeSolver::free_axes(int i) const { return node(i).first_free + 6 - std::popcount(node(i).held & 63U); }
+int Forest::free_axis_count(int i) const { return node(i).first_free + 6 - std::popcount(node(i).prescribed & 63U); }
 
 }  // namespace limber

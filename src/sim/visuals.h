@@ -1,5 +1,5 @@
-// Visuals: what the picture is drawn with beside the shapes' materials: the background, the camera, the look. Nothing
-// here draws. [sim]
+// Visuals: properties of the view besides the shapes' materials: background, camera, look; rendering is elsewhere.
+// [sim]
 #pragma once
 
 #include "base/vec.h"
@@ -8,23 +8,24 @@
 
 namespace limber {
 
-/// The camera, in the seed's terms: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are views of that.
+/// The camera, with the conventions of ofxDabPhysics: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are
+/// derived from it.
 class Camera {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   Camera(Store& store, NodeId parent);
   NodeId id() const { return id_; }
 
-  /// Where it is, and the point that it looks at, world.
+  /// Position of the eye, and the point that it looks at, in world coordinates.
   Vec3 eye() const;
   Vec3 target() const;
-  /// Looks from one point at another, upright. Two points in one place turn nothing.
+  /// Looks from one point at another, upright. Does nothing if the points coincide.
   void look_at(const Vec3& eye, const Vec3& target);
 
  private:
-  /// World axes to the eye's.
-  Mat3 turn() const;
+  /// Rotation from world axes to eye axes.
+  Mat3 rotation() const;
   void read_eye(double* out) const;
   void write_eye(const double* in);
   void read_target(double* out) const;
@@ -36,21 +37,21 @@ class Camera {
 
 class Visuals {
  public:
-  static const Table& table();
+  static const PropertyTable& table();
 
   explicit Visuals(Store& store);
   NodeId id() const { return id_; }
   Camera& camera() { return camera_; }
   const Camera& camera() const { return camera_; }
-  const Look& look() const { return look_; }
-  /// Back to the defaults.
+  const Appearance& appearance() const { return appearance_; }
+  /// Resets all properties to their defaults.
   void clear();
 
  private:
   Store& store_;
   NodeId id_;
   Camera camera_;
-  Look look_;
+  Appearance appearance_;
 };
 
 }  // namespace limber

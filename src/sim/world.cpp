@@ -1,4 +1,4 @@
-// World: its rows, its bodies and shapes, the physical half of a tick.
+// World: its properties, its bodies and shapes, and the physical part of a tick.
 #include "sim/world.h"
 
 #include <algorithm>
@@ -16,76 +16,80 @@ namespace limber {
 
 namespace {
 
-using namespace rows;
+using namespace properties;
 
-/// Bodies that are read out at a time; it changes no result.
-constexpr int kBodies = 4;
+/// Bodies per task of the parallel readout loop; has no influence on the result.
+constexpr int kBodiesPerTask = 4;
 
-struct WorldRows {
-  const Row *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks, *sleeping,
+struct WorldProperties {
+  const Property *gravity, *timestep, *substeps, *iterations, *seed, *time, *tick, *solver, *fallbacks, *sleeping,
       *islands_direct, *islands_iterative;
 };
 
-const WorldRows& world_rows() {
+const WorldProperties& world_properties() {
   static const auto at = [](const char* name) { return &World::table().at(name); };
-  static const WorldRows found{at("gravity"),
-                               at("timestep"),
-                               at("substeps"),
-                               at("solver_iterations"),
-                               at("seed"),
-                               at("time"),
-                               at("tick"),
-                               at("solver"),
-                               at("solver_fallbacks"),
-                               at("sleeping_parts"),
-                               at("islands_direct"),
-                               at("islands_iterative")};
+  static const WorldProperties found{at("gravity"),
+                                     at("timestep"),
+                                     at("substeps"),
+                                     at("solver_iterations"),
+                                     at("seed"),
+                                     at("time"),
+                                     at("tick"),
+                                     at("solver"),
+                                     at("solver_fallbacks"),
+                                     at("sleeping_parts"),
+                                     at("islands_direct"),
+                                     at("islands_iterative")};
   return found;
 }
 
 }  // namespace
 
-const Table& World::table() {
-  static const Table table(
+const PropertyTable& World::table() {
+  static const PropertyTable table(
       "sim", "/physics/sim", "/physics/sim",
       {
-          effect<&World::effect_gravity>(
-              vec3("gravity", "m/s²", {0, 0, -9.81}, -1e4, 1e4, "Acceleration of everything that moves.")),
-          number("timestep", "s", 1.0 / 60, 1e-5, 1, "What a tick advances the time by."),
-          integer("substeps", 4, 1, 1000, "Equal internal steps that a tick is made of."),
-          effect<&World::effect_solver>(integer("solver_iterations", 50, 1, 10000,
-                                                "Rounds of the contact and joint solver in each internal step.")),
-          effect<&World::effect_panic_motors>(
+          on_change<&World::apply_gravity>(
+              vec3("gravity", "m/s²", {0, 0, -9.81}, -1e4, 1e4, "Gravitational acceleration.")),
+          number("timestep", "s", 1.0 / 60, 1e-5, 1, "Simulated time per tick."),
+          integer("substeps", 4, 1, 1000, "Number of internal steps per tick."),
+          on_change<&World::apply_solver_settings>(integer(
+              "solver_iterations", 50, 1, 10000, "Iterations of the contact and joint solver per internal step.")),
+          on_change<&World::apply_panic_motors>(
               choice("panic_motors", {"held", "limp"}, 0,
-                     "What motors do while a panic holds: stay where they are, with their own strength, or nothing.")),
-          effect<&World::effect_solver>(
+                     "Motors during a panic: they hold their position with their own strength, or are off.")),
+          on_change<&World::apply_solver_settings>(
               choice("solver", {"iterative", "direct"}, 1,
-                     "How joints are solved: in rounds with the contacts, or exactly, as trees.")),
-          live(state(
+                     "Solver of joints: iterative, together with the contacts; or direct, "
+                     "which is exact for trees of joints.")),
+          transient(state(
               integer("seed", 1, 0, 9007199254740992,
-                      "What every random draw derives from: a behaviour's at once, a scene's from the next start."))),
-          live(state(boolean("paused", false, "Time stands still; commands and OSC are still answered."))),
-          live(state(number("speed", "× real time", 1, 0.01, 100, "How fast simulated time runs when it is paced."))),
-          live(state(number("history", "s", 30, 0, 30, "Of the past that is kept for /transport/rewind; 0: nothing."))),
-          live(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
-          live(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
-          live(readout(boolean("panicked", false, "A panic holds: everything comes to rest."))),
-          act<&World::act_panic>(action("panic", 0, 0, Panic::kDoc)),
-          live(readout(integer("solver_fallbacks", 0, 0, kUnbounded,
-                               "Steps of islands that the direct solver left to the iterative one, since the start."))),
-          live(readout(integer("sleeping_parts", 0, 0, kUnbounded, "Parts that are asleep, at rest."))),
-          live(readout(integer("islands_direct", 0, 0, kUnbounded,
-                               "Steps of islands (parts that joints or contacts connect) that the direct solver "
-                               "solved, since the start."))),
-          live(readout(integer("islands_iterative", 0, 0, kUnbounded,
-                               "Steps of islands that the iterative solver solved, by rule or as a fallback, since the "
-                               "start."))),
-          act<&World::act_reset>(action("reset", 0, 0, "The scene from its start, with the performer's values.")),
+                      "Seed of all random numbers; a change affects behaviors at once, scenes at their next start."))),
+          transient(state(boolean("paused", false, "Simulated time is stopped; commands and OSC still work."))),
+          transient(state(number("speed", "× real time", 1, 0.01, 100,
+                                 "Speed of simulated time relative to real time, when it is paced."))),
+          transient(state(number("history", "s", 30, 0, 30, "Length of the history for /transport/rewind; 0: none."))),
+          transient(readout(number("time", "s", 0, 0, kUnbounded, "Simulated time."))),
+          transient(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
+          transient(readout(boolean("panicked", false, "True during a panic, which brings everything to rest."))),
+          invokes<&World::act_panic>(action("panic", 0, 0, Panic::kDoc)),
+          transient(
+              readout(integer("solver_fallbacks", 0, 0, kUnbounded,
+                              "Island steps that the direct solver left to the iterative one, since the start."))),
+          transient(readout(integer("sleeping_parts", 0, 0, kUnbounded, "Number of sleeping parts."))),
+          transient(
+              readout(integer("islands_direct", 0, 0, kUnbounded,
+                              "Island steps (an island: parts connected by joints or contacts) solved by the direct "
+                              "solver, since the start."))),
+          transient(readout(
+              integer("islands_iterative", 0, 0, kUnbounded,
+                      "Island steps solved by the iterative solver, regularly or as a fallback, since the start."))),
+          invokes<&World::act_reset>(action("reset", 0, 0, "Restarts the scene; overridden values stay.")),
       });
   return table;
 }
 
-World::World(Store& store, const WorldSetup& setup) : store_(store), team_(setup.team) {
+World::World(Store& store, const WorldSetup& setup) : store_(store), thread_pool_(setup.thread_pool) {
   {
     const BulletMemory::Scope scope(&bullet_memory_);
     bullet_ = std::make_unique<IslandWorld>(setup);
@@ -109,8 +113,9 @@ void World::clear() {
   bodies_.clear();
   shapes_.clear();
   geometries_.clear();
-  for (const Row& row : table().rows()) {
-    if (row.kind == RowKind::property) (void)store_.set(id_, row, {row.initial.data(), row.width});
+  for (const Property& property : table().properties()) {
+    if (property.kind == PropertyKind::setting)
+      (void)store_.set(id_, property, {property.initial.data(), property.width});
   }
   visuals_->clear();
   camera_moves_.stop();
@@ -118,24 +123,26 @@ void World::clear() {
 
 void World::restart_time(std::uint64_t tick, double time) {
   tick_ = tick;
-  timestep_since_ = 0;
-  store_.tell(id_, *world_rows().time)[0] = time;
-  store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick);
-  for (const Row* row : {world_rows().fallbacks, world_rows().islands_direct, world_rows().islands_iterative}) {
-    store_.tell(id_, *row)[0] = 0;
+  last_timestep_ = 0;
+  store_.mutable_values(id_, *world_properties().time)[0] = time;
+  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(tick);
+  for (const Property* property :
+       {world_properties().fallbacks, world_properties().islands_direct, world_properties().islands_iterative}) {
+    store_.mutable_values(id_, *property)[0] = 0;
   }
 }
 
-Result<void> World::name_is_free(NodeId group, std::string_view kind, std::string_view name) const {
-  if (const auto fault = name_fault(name)) return Error{fmt::format("{}: {}", kind, *fault)};
+Result<void> World::check_new_name(NodeId group, std::string_view kind, std::string_view name) const {
+  if (const auto fault = name_error(name)) return Error{fmt::format("{}: {}", kind, *fault)};
   if (store_.child(group, name).null()) return {};
   return Error{fmt::format("there is a {} '{}' already; names are unique", kind, name)};
 }
 
 Result<Body*> World::add_body(std::string name) {
-  if (const Result<void> free = name_is_free(body_group_, "body", name); !free) return Error{free.error()};
+  if (const Result<void> available = check_new_name(body_group_, "body", name); !available)
+    return Error{available.error()};
   bodies_.push_back(std::make_unique<Body>(*this, body_group_, std::move(name)));
-  undo_.made_body();
+  transaction_.body_added();
   return bodies_.back().get();
 }
 
@@ -143,7 +150,7 @@ Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std
                               const BuildOptions& options) {
   Result<Body*> body = add_body(std::move(name));
   if (!body) return body;
-  add_shapes_of(*model);
+  add_shapes_for(*model);
   (*body)->build(model, options);
   return body;
 }
@@ -151,7 +158,7 @@ Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std
 Result<Body*> World::copy_body(const Body& source, std::string name) {
   Result<Body*> body = add_body(std::move(name));
   if (!body) return body;
-  if (source.model() != nullptr && &source.world() != this) add_shapes_of(*source.model());
+  if (source.model() != nullptr && &source.world() != this) add_shapes_for(*source.model());
   (*body)->build_copy(source);
   return body;
 }
@@ -162,14 +169,14 @@ void World::remove_body(Body& body) {
   for (std::size_t i = gears_.size(); i-- > 0;) {
     if (gears_[i]->couples(body)) remove_gear(*gears_[i]);
   }
-  gears_changed();  // its mimic relations no longer count
-  if (undo_.active()) undo_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
+  mark_gears_dirty();  // its mimic relations are removed with it
+  if (transaction_.active()) transaction_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
   bodies_.erase(at);
 }
 
 Body* World::find_body(std::string_view name) const {
   const NodeId id = store_.child(body_group_, name);
-  return id.null() ? nullptr : static_cast<Body*>(store_.thing(id));
+  return id.null() ? nullptr : static_cast<Body*>(store_.object(id));
 }
 
 std::vector<std::string_view> World::body_names() const {
@@ -179,164 +186,170 @@ std::vector<std::string_view> World::body_names() const {
 }
 
 Result<Shape*> World::add_shape(std::string name, ShapeModel model) {
-  if (const Result<void> free = name_is_free(shape_group_, "shape", name); !free) return Error{free.error()};
-  if (const Result<void> possible = check_shape(model); !possible) {
-    return Error{fmt::format("shape '{}': {}", name, possible.error())};
+  if (const Result<void> available = check_new_name(shape_group_, "shape", name); !available)
+    return Error{available.error()};
+  if (const Result<void> valid = check_shape(model); !valid) {
+    return Error{fmt::format("shape '{}': {}", name, valid.error())};
   }
   shapes_.push_back(std::make_unique<Shape>(store_, shape_group_, std::move(name), std::move(model)));
-  undo_.made_shape();
+  transaction_.shape_added();
   return shapes_.back().get();
 }
 
 Shape* World::find_shape(std::string_view name) const {
   const NodeId id = store_.child(shape_group_, name);
-  return id.null() ? nullptr : static_cast<Shape*>(store_.thing(id));
+  return id.null() ? nullptr : static_cast<Shape*>(store_.object(id));
 }
 
-const std::vector<std::shared_ptr<const Geometry>>& World::geometries_of(
+const std::vector<std::shared_ptr<const Geometry>>& World::geometries_for(
     const std::shared_ptr<const BodyModel>& model) {
-  ModelGeometry& known = geometries_[model.get()];
-  if (known.model == nullptr) {
-    known.model = model;
-    for (const LinkModel& link : model->links) known.links.push_back(make_geometry(link.collisions, link.inertial));
+  ModelGeometry& cached = geometries_[model.get()];
+  if (cached.model == nullptr) {
+    cached.model = model;
+    for (const LinkModel& link : model->links) cached.links.push_back(make_geometry(link.collisions, link.inertial));
   }
-  return known.links;
+  return cached.links;
 }
 
-double World::time() const { return store_.values(id_, *world_rows().time)[0]; }
-double World::timestep() const { return store_.values(id_, *world_rows().timestep)[0]; }
-int World::substeps() const { return static_cast<int>(store_.values(id_, *world_rows().substeps)[0]); }
-std::uint64_t World::seed() const { return static_cast<std::uint64_t>(store_.values(id_, *world_rows().seed)[0]); }
-
-void World::effect_gravity() {
-  const double* g = store_.values(id_, *world_rows().gravity);
-  bullet_->setGravity(to_bt(panic_.weight(Vec3(g[0], g[1], g[2]))));
+double World::time() const { return store_.values(id_, *world_properties().time)[0]; }
+double World::timestep() const { return store_.values(id_, *world_properties().timestep)[0]; }
+int World::substeps() const { return static_cast<int>(store_.values(id_, *world_properties().substeps)[0]); }
+std::uint64_t World::seed() const {
+  return static_cast<std::uint64_t>(store_.values(id_, *world_properties().seed)[0]);
 }
 
-void World::effect_solver() {
+void World::apply_gravity() {
+  const double* g = store_.values(id_, *world_properties().gravity);
+  bullet_->setGravity(to_bt(panic_.limited_gravity(Vec3(g[0], g[1], g[2]))));
+}
+
+void World::apply_solver_settings() {
   bullet_->wake_all();
-  bullet_->getSolverInfo().m_numIterations = static_cast<int>(store_.values(id_, *world_rows().iterations)[0]);
-  bullet_->set_direct(store_.values(id_, *world_rows().solver)[0] != 0);
+  bullet_->getSolverInfo().m_numIterations = static_cast<int>(store_.values(id_, *world_properties().iterations)[0]);
+  bullet_->set_direct(store_.values(id_, *world_properties().solver)[0] != 0);
 }
 
 Result<void> World::act_reset(std::span<const double>) {
-  reset_asked_ = true;
+  reset_requested_ = true;
   return {};
 }
 
 Result<void> World::act_panic(std::span<const double>) {
-  panic_asked_ = true;
+  panic_requested_ = true;
   return {};
 }
 
-void World::settle() {
-  store_.apply_marks(team_.get());
+void World::flush() {
+  store_.flush(thread_pool_.get());
   for (const auto& body : bodies_) {
-    body->enter();
-    if (!body->settle_joints()) continue;
+    body->add_to_world();
+    if (!body->update_moved_joints()) continue;
     for (const auto& gear : gears_) {
       if (gear->couples(*body)) gear->constraint().reset();
     }
   }
-  settle_gears();
+  update_gears();
 }
 
 void World::step() {
-  if (team_ != nullptr && bullet_->getNumCollisionObjects() > kPlaces) team_->rouse();
-  const double begin = system::clock_seconds();
+  if (thread_pool_ != nullptr && bullet_->getNumCollisionObjects() > kDefaultGrain) thread_pool_->wake();
+  const double start_time = system::clock_seconds();
   if (!panic_.on()) behaviors_->step(timestep());
-  const double start = system::clock_seconds();
-  settle();
+  const double flush_time = system::clock_seconds();
+  flush();
   for (const auto& body : bodies_) {
-    if (std::exchange(body->fresh_, false)) body->take_start_pose();
+    if (std::exchange(body->is_new_, false)) body->save_start_pose();
     if (body->has_unchecked_parts()) body->find_overlaps();
   }
   log_overlaps();
-  if (panic_.on()) loads_.drop();
-  overlay_.take_loads(loads_);
-  loads_.push();
+  if (panic_.on()) force_accumulators_.discard();
+  overlay_.capture_forces(force_accumulators_);
+  force_accumulators_.apply();
   contacts_.begin_tick();
-  const double before = system::clock_seconds();
-  const DirectCounts solved = bullet_->direct_counts();
+  const double physics_time = system::clock_seconds();
+  const DirectCounts previous_counts = bullet_->direct_counts();
   bullet_->step(timestep() / substeps(), substeps());
-  const double after = system::clock_seconds();
+  const double readout_time = system::clock_seconds();
   contacts_.end_tick();
   tick_++;
-  tell_time();
-  store_.tell(id_, *world_rows().tick)[0] = static_cast<double>(tick_);
-  tell_solved(solved);
-  store_.tell(id_, *world_rows().sleeping)[0] = bullet_->sleep().sleeping();
-  tell_bodies();
-  if (std::exchange(healed_, false)) settle_healed();
+  publish_time();
+  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(tick_);
+  publish_solver_counts(previous_counts);
+  store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
+  publish_bodies();
+  if (std::exchange(body_restored_, false)) flush_restored_bodies();
   camera_moves_.step();
-  times_ = {start - begin, before - start, after - before, system::clock_seconds() - after};
+  times_ = {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
+            system::clock_seconds() - readout_time};
 }
 
-// A sum of timesteps would drift from their product.
-void World::tell_time() {
-  if (timestep() != timestep_since_) {
-    timestep_since_ = timestep();
-    time_then_ = time();
-    tick_then_ = tick_ - 1;
+// Computes the time as a product, since a sum of timesteps would drift from it.
+void World::publish_time() {
+  if (timestep() != last_timestep_) {
+    last_timestep_ = timestep();
+    time_at_timestep_change_ = time();
+    tick_at_timestep_change_ = tick_ - 1;
   }
-  store_.tell(id_, *world_rows().time)[0] = time_then_ + static_cast<double>(tick_ - tick_then_) * timestep_since_;
+  store_.mutable_values(id_, *world_properties().time)[0] =
+      time_at_timestep_change_ + static_cast<double>(tick_ - tick_at_timestep_change_) * last_timestep_;
 }
 
-bool World::awake_bodies_known() const {
+bool World::awake_bodies_valid() const {
   return awake_version_ == bullet_->sleep().version() && awake_structure_ == store_.structure_version();
 }
 
-// Adds the islands of this tick to the readouts.
-void World::tell_solved(const DirectCounts& before) {
+// Adds the islands solved in this tick to the readouts.
+void World::publish_solver_counts(const DirectCounts& before) {
   const DirectCounts now = bullet_->direct_counts();
-  const auto add = [&](const Row* row, std::uint64_t count) {
-    store_.tell(id_, *row)[0] += static_cast<double>(count);
+  const auto add = [&](const Property* property, std::uint64_t count) {
+    store_.mutable_values(id_, *property)[0] += static_cast<double>(count);
   };
   const std::uint64_t direct = now.direct - before.direct;
-  add(world_rows().fallbacks, now.fallbacks - before.fallbacks);
-  add(world_rows().islands_direct, direct);
-  add(world_rows().islands_iterative, now.islands - before.islands - direct);
+  add(world_properties().fallbacks, now.fallbacks - before.fallbacks);
+  add(world_properties().islands_direct, direct);
+  add(world_properties().islands_iterative, now.islands - before.islands - direct);
 }
 
-// Bodies that sleep keep what was read of them when they fell asleep.
-void World::tell_bodies() {
-  const bool known = awake_bodies_known();
-  if (!known) {
+// Publishes the state of all awake bodies; a sleeping body's readouts don't change.
+void World::publish_bodies() {
+  const bool list_is_valid = awake_bodies_valid();
+  if (!list_is_valid) {
     awake_bodies_.clear();
     for (const auto& body : bodies_) awake_bodies_.push_back(body.get());
   }
-  const auto tell = [&](int, int first, int end) {
+  const auto publish = [&](int, int first, int end) {
     for (int i = first; i < end; i++) {
       Body& body = *awake_bodies_[static_cast<std::size_t>(i)];
       if (!body.in_world()) continue;
-      body.torn_ = nullptr;
-      body.tell();
-      if (!body.broken_ && body.torn_ == nullptr) body.take_good_pose();
+      body.separated_joint_ = nullptr;
+      body.publish();
+      if (!body.restored_this_tick_ && body.separated_joint_ == nullptr) body.save_good_pose();
     }
   };
-  share_out_places(team_.get(), static_cast<int>(awake_bodies_.size()), tell, kBodies);
+  parallel_for_ranges(thread_pool_.get(), static_cast<int>(awake_bodies_.size()), publish, kBodiesPerTask);
   for (Body* const body : awake_bodies_) {
-    body->say_caps();
-    body->report_slips();
-    Joint* const torn = std::exchange(body->torn_, nullptr);
-    if (torn == nullptr || body->broken_) continue;
-    heal(*body, torn->child(), fmt::format("joint '{}' has come apart by {:.3g} m", torn->name(), torn->gap()));
+    body->log_warnings();
+    body->warn_slipping_joints();
+    Joint* const separated = std::exchange(body->separated_joint_, nullptr);
+    if (separated == nullptr || body->restored_this_tick_) continue;
+    restore_body(*body, separated->child(),
+                 fmt::format("joint '{}' has come apart by {:.3g} m", separated->name(), separated->gap()));
   }
-  report_slips();
-  if (known) return;
+  warn_slipping_gears();
+  if (list_is_valid) return;
   std::erase_if(awake_bodies_, [](const Body* body) { return body->asleep(); });
   awake_version_ = bullet_->sleep().version();
   awake_structure_ = store_.structure_version();
 }
 
-// Of the world's own gears.
-void World::report_slips() {
+// Warns once about each gear that limits, locks or contacts keep from its position.
+void World::warn_slipping_gears() {
   for (const auto& gear : gears_) {
     GearConstraint& constraint = gear->constraint();
-    if (!constraint.slips() || !constraint.report_slip()) continue;
+    if (!constraint.is_slipping() || !constraint.report_slip()) continue;
     log_warning(
-        "gear '{}': joint '{}/{}' is {:.3g} away from its position by the gear: limits, locks or contacts hold it. "
-        "Widen the limits, or set max_force for a gear that slips",
+        "gear '{}': joint '{}/{}' is {:.3g} away from the position set by the gear: limits, locks or contacts prevent "
+        "it. Widen the limits, or set max_force to let the gear slip",
         gear->name(), gear->joint_b().body().name(), gear->joint_b().name(), std::abs(constraint.error()));
   }
 }
@@ -344,69 +357,71 @@ void World::report_slips() {
 void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
   World& world = *static_cast<World*>(bullet->getWorldUserInfo());
   if (world.panic_.on()) {
-    world.panic_.brake(static_cast<double>(h));
+    world.panic_.damp(static_cast<double>(h));
     world.bullet_->refresh_joints();
   }
-  world.contacts_.gather(*bullet->getDispatcher());
-  // what is no number must not reach the next internal step, where it would spread
-  if (!world.bullet_->ails()) return;
+  world.contacts_.collect(*bullet->getDispatcher());
+  // NaN and infinite values must not reach the next internal step, where they would spread
+  if (!world.bullet_->is_unstable()) return;
   for (const auto& body : world.bodies_) {
     if (!body->in_world()) continue;
     for (const auto& part : body->parts()) {
-      const char* const what = part->is_static() ? nullptr : ailment(part->rigid(), static_cast<double>(h));
-      if (what == nullptr) continue;
-      world.heal(*body, *part, fmt::format("part '{}' {}", part->name(), what));
+      const char* const instability =
+          part->is_static() ? nullptr : find_instability(part->rigid(), static_cast<double>(h));
+      if (instability == nullptr) continue;
+      world.restore_body(*body, *part, fmt::format("part '{}' {}", part->name(), instability));
       break;
     }
   }
 }
 
-void World::heal(Body& body, const Part& part, const std::string& what) {
-  const bool known = body.broken_;
-  const std::string cause = known ? "" : likely_cause(body, part, *bullet_->getDispatcher(), substeps());
+void World::restore_body(Body& body, const Part& part, const std::string& instability) {
+  const bool reported = body.restored_this_tick_;
+  const std::string cause = reported ? "" : likely_cause(body, part, *bullet_->getDispatcher(), substeps());
   for (std::size_t i = 0; i < body.parts_.size(); i++) {
-    Part& each = *body.parts_[i];
-    each.set_pose(i < body.good_poses_ ? body.last_good_[i] : each.start_pose());
-    each.set_velocity(Vec3(0), Vec3(0));
-    each.effect_pose();
-    each.effect_velocity();
-    each.wake();  // with what touches it: its contacts are forgotten below
-    // the force that did it would do it again in this tick's next internal step
-    each.rigid().clearForces();
-    each.rigid().applyGravity();
-    // and contacts start from the impulses that held them before
-    if (each.rigid().isInWorld()) {
-      bullet_->getPairCache()->cleanProxyFromPairs(each.rigid().getBroadphaseHandle(), bullet_->getDispatcher());
+    Part& member = *body.parts_[i];
+    member.set_pose(i < body.good_pose_count_ ? body.good_poses_[i] : member.start_pose());
+    member.set_velocity(Vec3(0), Vec3(0));
+    member.apply_pose();
+    member.apply_velocity();
+    member.wake();  // together with the parts that touch it, since its contacts are removed below
+    // the force that caused the instability would do so again in this tick's next internal step
+    member.rigid().clearForces();
+    member.rigid().applyGravity();
+    // without this, the contacts would warm-start from their previous impulses
+    if (member.rigid().isInWorld()) {
+      bullet_->getPairCache()->cleanProxyFromPairs(member.rigid().getBroadphaseHandle(), bullet_->getDispatcher());
     }
   }
-  for (const auto& joint : body.joints_) joint->read_anew();
-  healed_ = true;
-  if (std::exchange(body.broken_, true)) return;  // said in this tick
+  for (const auto& joint : body.joints_) joint->update_from_parts();
+  body_restored_ = true;
+  if (std::exchange(body.restored_this_tick_, true)) return;  // reported in this tick already
   health_events_++;
   if (std::exchange(body.restored_once_, true)) {
     body.set_enabled(false);
-    log_warning("body '{}': {} again; the body is switched off (reset or enabled = true brings it back); {}",
-                body.name(), what, cause);
+    log_warning("body '{}': {} again; the body is disabled (reset or enabled = true enables it); {}", body.name(),
+                instability, cause);
   } else {
-    log_warning("body '{}': {}; the body is put back to its last good pose, at rest; {}", body.name(), what, cause);
+    log_warning("body '{}': {}; the body is restored to its last good pose, at rest; {}", body.name(), instability,
+                cause);
   }
 }
 
-void World::settle_healed() {
-  settle();
+void World::flush_restored_bodies() {
+  flush();
   for (const auto& body : bodies_) {
-    if (!std::exchange(body->broken_, false)) continue;
-    for (const auto& part : body->parts()) part->rigid().clearForces();  // those for a next internal step
+    if (!std::exchange(body->restored_this_tick_, false)) continue;
+    for (const auto& part : body->parts()) part->rigid().clearForces();  // forces meant for a further internal step
   }
 }
 
 std::uint64_t World::state_hash() const {
   std::uint64_t fixed = 0;
-  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->look().id()})
+  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->appearance().id()})
     fixed += fixed_node_hash(store_, id);
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
-  for (const auto& shape : shapes_) numbers.add_word(kept_hash(store_, shape->id()));
-  for (const auto& gear : gears_) numbers.add_word(kept_hash(store_, gear->id()));
+  for (const auto& shape : shapes_) numbers.add_word(persistent_hash(store_, shape->id()));
+  for (const auto& gear : gears_) numbers.add_word(persistent_hash(store_, gear->id()));
   numbers.add(time(), static_cast<double>(tick_), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies_) hash = body->state_hash(hash);

@@ -1,4 +1,4 @@
-// What a world remembers: Bullet's memory and the store's numbers as they lie, and of each thing its own fields.
+// WorldCheckpoint: serializes Bullet's memory and the store's values as raw pages, and the fields of each object.
 #include "sim/world_key.h"
 
 #include "base/check.h"
@@ -11,97 +11,108 @@
 
 namespace limber {
 
-void WorldKey::take(World& world, PageStore& pages, const WorldKey* before, KeyBytes& scratch) {
-  const auto image_of = [&](PageStore::Image& image, std::span<const std::byte> memory, const PageStore::Image* known) {
-    image.clear();
-    pages.append(image, memory, known);
+void WorldCheckpoint::capture(World& world, PageStore& pages, const WorldCheckpoint* previous, Archive& scratch) {
+  const auto capture_pages = [&](PageStore::PageList& pages_of, std::span<const std::byte> memory,
+                                 const PageStore::PageList* shared) {
+    pages_of.clear();
+    pages.append(pages_of, memory, shared);
   };
   const Store& store = world.store();
-  world.bullet_memory().arena().copy(pages, before == nullptr ? nullptr : &before->bullet_, bullet_);
-  image_of(kept_, std::as_bytes(store.kept()), before == nullptr ? nullptr : &before->kept_);
-  image_of(live_, std::as_bytes(store.live()), before == nullptr ? nullptr : &before->live_);
-  scratch.begin_taking();
-  pass(scratch, world);
-  own_size_ = scratch.bytes().size();
-  image_of(own_, scratch.bytes(), before == nullptr ? nullptr : &before->own_);
+  world.bullet_memory().arena().capture(pages, previous == nullptr ? nullptr : &previous->bullet_, bullet_);
+  capture_pages(persistent_, std::as_bytes(store.persistent_values()),
+                previous == nullptr ? nullptr : &previous->persistent_);
+  capture_pages(transient_, std::as_bytes(store.transient_values()),
+                previous == nullptr ? nullptr : &previous->transient_);
+  scratch.begin_saving();
+  serialize(scratch, world);
+  objects_size_ = scratch.bytes().size();
+  capture_pages(objects_, scratch.bytes(), previous == nullptr ? nullptr : &previous->objects_);
 }
 
-void WorldKey::bring_back(World& world, const PageStore& pages, KeyBytes& scratch) const {
+void WorldCheckpoint::restore(World& world, const PageStore& pages, Archive& scratch) const {
   Store& store = world.store();
-  world.bullet_memory().arena().bring_back(pages, bullet_);
-  pages.copy_back(kept_, 0, std::as_writable_bytes(std::span(store.kept_)));
-  pages.copy_back(live_, 0, std::as_writable_bytes(std::span(store.live_)));
-  store.kept_version_++;
-  scratch.bytes().resize(own_size_);
-  pages.copy_back(own_, 0, scratch.bytes());
-  scratch.begin_bringing();
-  pass(scratch, world);
+  world.bullet_memory().arena().restore(pages, bullet_);
+  pages.restore(persistent_, 0, std::as_writable_bytes(std::span(store.persistent_)));
+  pages.restore(transient_, 0, std::as_writable_bytes(std::span(store.transient_)));
+  store.persistent_version_++;
+  scratch.bytes().resize(objects_size_);
+  pages.restore(objects_, 0, scratch.bytes());
+  scratch.begin_loading();
+  serialize(scratch, world);
   world.awake_version_ = 0;
 }
 
-void WorldKey::release(PageStore& pages) {
-  for (PageStore::Image* image : {&bullet_, &kept_, &live_, &own_}) pages.release(*image);
+void WorldCheckpoint::release(PageStore& pages) {
+  for (PageStore::PageList* list : {&bullet_, &persistent_, &transient_, &objects_}) pages.release(*list);
 }
 
-void WorldKey::pass(KeyBytes& key, World& world) {
-  key.pass_all(world.tick_, world.health_events_, world.reset_asked_, world.healed_, world.panic_.on_,
-               world.panic_.settled_, world.panic_.began_, world.panic_asked_, world.panic_end_asked_,
-               world.gears_changed_, world.timestep_since_, world.time_then_, world.tick_then_);
-  pass(key, world.store());
-  key.pass_all(world.contacts_.reporting_, world.contacts_.pairs_, world.contacts_.begun_, world.camera_moves_.state_);
-  pass_loads(key, world);
-  for (const auto& body : world.bodies_) pass(key, *body);
-  for (const auto& gear : world.gears_) key.pass_all(gear->in_world_, gear->redundant_);
-  pass(key, *world.behaviors_);
+void WorldCheckpoint::serialize(Archive& archive, World& world) {
+  archive.serialize_all(world.tick_, world.health_events_, world.reset_requested_, world.body_restored_,
+                        world.panic_.on_, world.panic_.first_second_over_, world.panic_.start_tick_,
+                        world.panic_requested_, world.panic_end_requested_, world.gears_dirty_, world.last_timestep_,
+                        world.time_at_timestep_change_, world.tick_at_timestep_change_);
+  serialize(archive, world.store());
+  archive.serialize_all(world.contacts_.reporting_, world.contacts_.pairs_, world.contacts_.events_,
+                        world.camera_moves_.state_);
+  serialize_forces(archive, world);
+  for (const auto& body : world.bodies_) serialize(archive, *body);
+  for (const auto& gear : world.gears_) archive.serialize_all(gear->in_world_, gear->redundant_);
+  serialize(archive, *world.behaviors_);
 }
 
-// rows that wait for their effects, in the order in which they will have them
-void WorldKey::pass(KeyBytes& key, Store& store) {
-  if (key.bringing()) {
-    for (const NodeId id : store.marked_) store.nodes_[id.slot].marks = 0;
+// Properties with pending on-change callbacks, in the order in which these will be called.
+void WorldCheckpoint::serialize(Archive& archive, Store& store) {
+  if (archive.loading()) {
+    for (const NodeId id : store.dirty_nodes_) store.nodes_[id.slot].dirty = 0;
   }
-  key.pass(store.marked_);
-  for (const NodeId id : store.marked_) key.pass(store.nodes_[id.slot].marks);
+  archive.serialize(store.dirty_nodes_);
+  for (const NodeId id : store.dirty_nodes_) archive.serialize(store.nodes_[id.slot].dirty);
 }
 
-// forces that wait for the next step
-void WorldKey::pass_loads(KeyBytes& key, World& world) {
-  PartLoads& loads = world.loads_;
-  if (key.bringing()) {
-    for (const std::uint32_t place : loads.waiting_) {
-      loads.clear(place);
-      loads.loads_[place].waits = false;
+// Forces that are pending for the next step.
+void WorldCheckpoint::serialize_forces(Archive& archive, World& world) {
+  ForceAccumulators& forces = world.force_accumulators_;
+  if (archive.loading()) {
+    for (const std::uint32_t index : forces.pending_) {
+      forces.clear(index);
+      forces.wrenches_[index].pending = false;
     }
   }
-  key.pass(loads.waiting_);
-  for (const std::uint32_t place : loads.waiting_) key.pass_all(loads.loads_[place], loads.kicks_[place]);
+  archive.serialize(forces.pending_);
+  for (const std::uint32_t index : forces.pending_)
+    archive.serialize_all(forces.wrenches_[index], forces.impulses_[index]);
 }
 
-void WorldKey::pass(KeyBytes& key, Body& body) {
-  key.pass_all(body.planned_, body.in_world_, body.entered_parts_, body.entered_joints_, body.moved_, body.fresh_);
-  key.pass_all(body.pairs_.list, body.pairs_.checked, body.reported_static_velocity_, body.said_clamp_);
-  key.pass_all(body.last_good_, body.good_poses_, body.restored_once_, body.broken_);
-  for (const auto& part : body.parts_) key.pass_all(part->start_, part->reports_);
+void WorldCheckpoint::serialize(Archive& archive, Body& body) {
+  archive.serialize_all(body.initial_pose_, body.in_world_, body.added_parts_, body.added_joints_, body.joints_dirty_,
+                        body.is_new_);
+  archive.serialize_all(body.pairs_.list, body.pairs_.checked_count, body.warned_static_velocity_,
+                        body.warned_clamped_);
+  archive.serialize_all(body.good_poses_, body.good_pose_count_, body.restored_once_, body.restored_this_tick_);
+  for (const auto& part : body.parts_) archive.serialize_all(part->start_, part->report_contacts_);
   for (const auto& joint : body.joints_) {
-    key.pass_all(joint->open_, joint->in_world_, joint->gear_in_world_, joint->start_angles_, joint->torn_ticks_);
+    archive.serialize_all(joint->open_axes_, joint->in_world_, joint->gear_in_world_, joint->start_angles_,
+                          joint->separated_ticks_);
   }
   for (const auto& motor : body.motors_)
-    key.pass_all(motor->said_contradiction_, motor->said_cap_, motor->warned_outside_, motor->hold_);
+    archive.serialize_all(motor->warned_contradiction_, motor->warned_capped_, motor->warned_target_outside_,
+                          motor->held_position_);
 }
 
-void WorldKey::pass(KeyBytes& key, Behavior& behavior) {
-  key.pass_all(behavior.beats_, behavior.random_, behavior.seeded_with_, behavior.resolved_at_, behavior.fresh_);
-  key.pass_all(behavior.fault_.text, behavior.fault_.file, behavior.fault_.line);
-  behavior.pass_memory(key);
+void WorldCheckpoint::serialize(Archive& archive, Behavior& behavior) {
+  archive.serialize_all(behavior.timers_, behavior.random_, behavior.seeded_with_, behavior.resolved_structure_,
+                        behavior.needs_start_);
+  archive.serialize_all(behavior.fault_.text, behavior.fault_.file, behavior.fault_.line);
+  behavior.serialize(archive);
 }
 
-void WorldKey::pass(KeyBytes& key, BehaviorList& behaviors) {
+void WorldCheckpoint::serialize(Archive& archive, BehaviorList& behaviors) {
   for (const BehaviorList::Entry& entry : behaviors.entries_) {
-    if (entry.single != nullptr) pass(key, *entry.single);
+    if (entry.single != nullptr) serialize(archive, *entry.single);
     if (entry.group == nullptr) continue;
-    for (const auto& member : entry.group->members_) pass(key, *member);
-    // what it has laid out of its members is worked out anew
-    if (key.bringing()) entry.group->laid_out_ = false;
+    for (const auto& member : entry.group->members_) serialize(archive, *member);
+    // the cached layout of its members is computed again
+    if (archive.loading()) entry.group->layout_valid_ = false;
   }
 }
 

@@ -1,5 +1,5 @@
-// WorldKey: a world between two ticks, with all that its next ticks depend on, to be brought back to the bit as long as
-// nothing has come or gone. [sim]
+// WorldCheckpoint: the complete state of a world between two ticks. Restoring it reproduces all further ticks bit for
+// bit, as long as nothing was added or removed in the meantime. [sim]
 #pragma once
 
 #include <cstdint>
@@ -15,27 +15,27 @@ class Body;
 class Store;
 class World;
 
-class WorldKey {
+class WorldCheckpoint {
  public:
-  /// Takes the world as it is, in pages that are shared with `before`, an older key of it, or null. `scratch` is used
-  /// again and again.
-  void take(World& world, PageStore& pages, const WorldKey* before, KeyBytes& scratch);
-  /// The world is as it was taken. Its structure must be: Store::structure_version() is the same, and shapes have as
-  /// many children. What is only counted (turns, versions, calls) goes on.
-  void bring_back(World& world, const PageStore& pages, KeyBytes& scratch) const;
-  /// Gives its pages back.
+  /// Captures the world in pages that are shared with `previous`, an older checkpoint of it, or null. `scratch` is a
+  /// reusable buffer.
+  void capture(World& world, PageStore& pages, const WorldCheckpoint* previous, Archive& scratch);
+  /// Restores the captured state. The structure must be the same as at the capture: equal Store::structure_version(),
+  /// and equal numbers of children in compound shapes. Pure counters (steps, versions, calls) are not restored.
+  void restore(World& world, const PageStore& pages, Archive& scratch) const;
+  /// Returns its pages to the page store.
   void release(PageStore& pages);
 
  private:
-  static void pass(KeyBytes& key, World& world);
-  static void pass(KeyBytes& key, Store& store);
-  static void pass(KeyBytes& key, Body& body);
-  static void pass(KeyBytes& key, Behavior& behavior);
-  static void pass(KeyBytes& key, BehaviorList& behaviors);
-  static void pass_loads(KeyBytes& key, World& world);
+  static void serialize(Archive& archive, World& world);
+  static void serialize(Archive& archive, Store& store);
+  static void serialize(Archive& archive, Body& body);
+  static void serialize(Archive& archive, Behavior& behavior);
+  static void serialize(Archive& archive, BehaviorList& behaviors);
+  static void serialize_forces(Archive& archive, World& world);
 
-  PageStore::Image bullet_, kept_, live_, own_;
-  std::size_t own_size_ = 0;
+  PageStore::PageList bullet_, persistent_, transient_, objects_;
+  std::size_t objects_size_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What a guarded call did to the world, newest last.
+// WorldTransaction: the log of a guarded call's changes, newest last.
 #include "sim/world_undo.h"
 
 #include <utility>
@@ -8,45 +8,45 @@
 
 namespace limber {
 
-struct WorldUndo::Forces {
+struct WorldTransaction::SavedForces {
   Part* part;
-  PartLoads::Load load;
-  PartLoads::Kick kick;
+  ForceAccumulators::Wrench wrench;
+  ForceAccumulators::Impulse impulse;
 };
 
-struct WorldUndo::BodyState {
+struct WorldTransaction::SavedBody {
   Body* body;
-  Pose planned;
-  std::size_t good_poses;
-  bool moved, restored_once;
+  Pose initial_pose;
+  std::size_t good_pose_count;
+  bool joints_dirty, restored_once;
 };
 
-struct WorldUndo::Motion {
+struct WorldTransaction::SavedMotion {
   Part* part;
-  btTransform pose, interpolated;
+  btTransform pose, interpolation_pose;
   btVector3 linear, angular;
-  bool waking;
+  bool wake_requested;
 };
 
-struct WorldUndo::Hidden {
+struct WorldTransaction::HiddenBody {
   std::unique_ptr<Body> body;
   NodeId id;
-  std::size_t place;          // among the bodies
-  std::size_t place_in_tree;  // among its node's siblings
+  std::size_t index;          // index among the bodies
+  std::size_t sibling_index;  // index among its node's siblings
 };
 
-struct WorldUndo::HiddenGear {
+struct WorldTransaction::HiddenGear {
   std::unique_ptr<Gear> gear;
   NodeId id;
-  std::size_t place;          // among the gears
-  std::size_t place_in_tree;  // among its node's siblings
+  std::size_t index;          // index among the gears
+  std::size_t sibling_index;  // index among its node's siblings
 };
 
-WorldUndo::WorldUndo(World& world) : world_(world) {}
+WorldTransaction::WorldTransaction(World& world) : world_(world) {}
 
-WorldUndo::~WorldUndo() = default;
+WorldTransaction::~WorldTransaction() = default;
 
-void WorldUndo::begin() {
+void WorldTransaction::begin() {
   LIMBER_CHECK(!active_);
   active_ = true;
   call_++;
@@ -54,179 +54,183 @@ void WorldUndo::begin() {
   forces_.clear();
   bodies_.clear();
   motions_.clear();
-  reset_asked_ = world_.reset_asked_;
-  panic_asked_ = world_.panic_asked_;
-  world_.behaviors_->undo().begin();
-  world_.store_.begin_undo();
+  reset_requested_ = world_.reset_requested_;
+  panic_requested_ = world_.panic_requested_;
+  world_.behaviors_->transaction().begin();
+  world_.store_.begin_transaction();
 }
 
-void WorldUndo::end() {
+void WorldTransaction::commit() {
   active_ = false;
-  world_.store_.end_undo();
-  world_.behaviors_->undo().end();
+  world_.store_.commit_transaction();
+  world_.behaviors_->transaction().commit();
   for (HiddenGear& hidden : hidden_gears_) {
     hidden.gear.reset();
-    world_.store_.drop_hidden(hidden.id);
+    world_.store_.remove_hidden(hidden.id);
   }
   hidden_gears_.clear();
-  for (Hidden& hidden : hidden_) {
+  for (HiddenBody& hidden : hidden_bodies_) {
     hidden.body.reset();
-    world_.store_.drop_hidden(hidden.id);
+    world_.store_.remove_hidden(hidden.id);
   }
-  hidden_.clear();
+  hidden_bodies_.clear();
 }
 
-void WorldUndo::take_back() {
-  // what is made or removed from here on is so for good
+void WorldTransaction::rollback() {
+  // from here on, additions and removals are final
   active_ = false;
-  // first what was made and removed, so that the store finds again the things whose values it kept
-  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) entry->step(entry->owner, entry->value);
-  world_.store_.take_back();
-  world_.reset_asked_ = reset_asked_;
-  world_.panic_asked_ = panic_asked_;
+  // restore the structure first, so that the store finds the objects that it saved values of
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) entry->undo(entry->owner, entry->value);
+  world_.store_.rollback();
+  world_.reset_requested_ = reset_requested_;
+  world_.panic_requested_ = panic_requested_;
 }
 
-bool WorldUndo::untouched() const {
-  return entries_.empty() && world_.store_.undo_untouched() && world_.reset_asked_ == reset_asked_ &&
-         world_.panic_asked_ == panic_asked_;
+bool WorldTransaction::is_empty() const {
+  return entries_.empty() && world_.store_.transaction_is_empty() && world_.reset_requested_ == reset_requested_ &&
+         world_.panic_requested_ == panic_requested_;
 }
 
-void WorldUndo::note(Step step, void* owner, std::size_t value) {
-  if (active_) entries_.push_back({step, owner, value});
+void WorldTransaction::record(UndoFunction undo, void* owner, std::size_t value) {
+  if (active_) entries_.push_back({undo, owner, value});
 }
 
-bool WorldUndo::first_time(std::uint64_t& kept_in) const { return std::exchange(kept_in, call_) != call_; }
+bool WorldTransaction::first_in_call(std::uint64_t& saved_in_call) const {
+  return std::exchange(saved_in_call, call_) != call_;
+}
 
-void WorldUndo::keep(Part& part) {
-  if (!first_time(part.kept_in_)) return;
-  forces_.push_back({&part, world_.loads().load(part.load_), world_.loads().kick(part.load_)});
-  note(
-      [](void* undo, std::size_t at) {
-        auto& self = *static_cast<WorldUndo*>(undo);
-        const Forces& kept = self.forces_[at];
-        self.world_.loads().load(kept.part->load_) = kept.load;
-        self.world_.loads().kick(kept.part->load_) = kept.kick;
+void WorldTransaction::save(Part& part) {
+  if (!first_in_call(part.saved_in_call_)) return;
+  forces_.push_back({&part, world_.force_accumulators().wrench(part.accumulator_),
+                     world_.force_accumulators().impulse(part.accumulator_)});
+  record(
+      [](void* transaction, std::size_t index) {
+        auto& self = *static_cast<WorldTransaction*>(transaction);
+        const SavedForces& saved = self.forces_[index];
+        self.world_.force_accumulators().wrench(saved.part->accumulator_) = saved.wrench;
+        self.world_.force_accumulators().impulse(saved.part->accumulator_) = saved.impulse;
       },
       this, forces_.size() - 1);
 }
 
-void WorldUndo::keep(Body& body) {
-  if (!first_time(body.kept_in_)) return;
-  bodies_.push_back({&body, body.planned_, body.good_poses_, body.moved_, body.restored_once_});
-  note(
-      [](void* undo, std::size_t at) {
-        const BodyState& kept = static_cast<WorldUndo*>(undo)->bodies_[at];
-        kept.body->planned_ = kept.planned;
-        kept.body->good_poses_ = kept.good_poses;
-        kept.body->moved_ = kept.moved;
-        kept.body->restored_once_ = kept.restored_once;
+void WorldTransaction::save(Body& body) {
+  if (!first_in_call(body.saved_in_call_)) return;
+  bodies_.push_back({&body, body.initial_pose_, body.good_pose_count_, body.joints_dirty_, body.restored_once_});
+  record(
+      [](void* transaction, std::size_t index) {
+        const SavedBody& saved = static_cast<WorldTransaction*>(transaction)->bodies_[index];
+        saved.body->initial_pose_ = saved.initial_pose;
+        saved.body->good_pose_count_ = saved.good_pose_count;
+        saved.body->joints_dirty_ = saved.joints_dirty;
+        saved.body->restored_once_ = saved.restored_once;
       },
       this, bodies_.size() - 1);
 }
 
-void WorldUndo::keep(CameraMoves& moves) {
-  if (!active_ || !first_time(moves.kept_in_)) return;
-  moves_ = moves.state_;
-  note(
-      [](void* undo, std::size_t) {
-        const auto& self = *static_cast<WorldUndo*>(undo);
-        self.world_.camera_moves_.state_ = self.moves_;
+void WorldTransaction::save(CameraMoves& camera_moves) {
+  if (!active_ || !first_in_call(camera_moves.saved_in_call_)) return;
+  camera_moves_ = camera_moves.state_;
+  record(
+      [](void* transaction, std::size_t) {
+        const auto& self = *static_cast<WorldTransaction*>(transaction);
+        self.world_.camera_moves_.state_ = self.camera_moves_;
       },
       this);
 }
 
-void WorldUndo::keep(Shape& shape) {
-  note([](void* owner, std::size_t count) { static_cast<Shape*>(owner)->keep_children(count); }, &shape,
-       shape.child_count());
+void WorldTransaction::save(Shape& shape) {
+  record([](void* owner, std::size_t count) { static_cast<Shape*>(owner)->truncate_children(count); }, &shape,
+         shape.child_count());
 }
 
-void WorldUndo::keep_motion(Part& part) {
+void WorldTransaction::save_motion(Part& part) {
   const btRigidBody& rigid = part.rigid();
   motions_.push_back({&part, rigid.getWorldTransform(), rigid.getInterpolationWorldTransform(),
-                      rigid.getLinearVelocity(), rigid.getAngularVelocity(), world_.bullet().sleep().waking(rigid)});
-  note(
-      [](void* undo, std::size_t at) {
-        auto& self = *static_cast<WorldUndo*>(undo);
-        const Motion& kept = self.motions_[at];
-        btRigidBody& rigid = kept.part->rigid();
-        rigid.setWorldTransform(kept.pose);
-        rigid.setInterpolationWorldTransform(kept.interpolated);
-        rigid.setLinearVelocity(kept.linear);
-        rigid.setAngularVelocity(kept.angular);
+                      rigid.getLinearVelocity(), rigid.getAngularVelocity(),
+                      world_.bullet().sleep().wake_requested(rigid)});
+  record(
+      [](void* transaction, std::size_t index) {
+        auto& self = *static_cast<WorldTransaction*>(transaction);
+        const SavedMotion& saved = self.motions_[index];
+        btRigidBody& rigid = saved.part->rigid();
+        rigid.setWorldTransform(saved.pose);
+        rigid.setInterpolationWorldTransform(saved.interpolation_pose);
+        rigid.setLinearVelocity(saved.linear);
+        rigid.setAngularVelocity(saved.angular);
         rigid.updateInertiaTensor();
-        if (!kept.waking) self.world_.bullet().sleep().cancel(rigid);
+        if (!saved.wake_requested) self.world_.bullet().sleep().cancel_wake(rigid);
       },
       this, motions_.size() - 1);
 }
 
-void WorldUndo::made_body() {
-  note([](void* world, std::size_t) { static_cast<World*>(world)->bodies_.pop_back(); }, &world_);
+void WorldTransaction::body_added() {
+  record([](void* world, std::size_t) { static_cast<World*>(world)->bodies_.pop_back(); }, &world_);
 }
 
-void WorldUndo::made_gear() {
-  note([](void* world, std::size_t) { static_cast<World*>(world)->gears_.pop_back(); }, &world_);
+void WorldTransaction::gear_added() {
+  record([](void* world, std::size_t) { static_cast<World*>(world)->gears_.pop_back(); }, &world_);
 }
 
-void WorldUndo::made_shape() {
-  note([](void* world, std::size_t) { static_cast<World*>(world)->shapes_.pop_back(); }, &world_);
+void WorldTransaction::shape_added() {
+  record([](void* world, std::size_t) { static_cast<World*>(world)->shapes_.pop_back(); }, &world_);
 }
 
-void WorldUndo::made_part(Body& body) {
-  note(
+void WorldTransaction::part_added(Body& body) {
+  record(
       [](void* owner, std::size_t) {
         auto& body = *static_cast<Body*>(owner);
         body.parts_.pop_back();
-        body.structure_++;
+        body.structure_version_++;
       },
       &body);
 }
 
-void WorldUndo::made_joint(Body& body) {
-  note(
+void WorldTransaction::joint_added(Body& body) {
+  record(
       [](void* owner, std::size_t) {
         auto& body = *static_cast<Body*>(owner);
         body.joints_.pop_back();
-        body.structure_++;
+        body.structure_version_++;
       },
       &body);
 }
 
-void WorldUndo::made_motor(Body& body) {
-  note(
+void WorldTransaction::motor_added(Body& body) {
+  record(
       [](void* owner, std::size_t) {
         auto& body = *static_cast<Body*>(owner);
         body.motors_.pop_back();
-        body.structure_++;
+        body.structure_version_++;
       },
       &body);
 }
 
-void WorldUndo::hide(std::unique_ptr<Gear> gear, std::size_t place) {
+void WorldTransaction::hide(std::unique_ptr<Gear> gear, std::size_t index) {
   const NodeId id = gear->id();
-  hidden_gears_.push_back({std::move(gear), id, place, world_.store_.hide(id)});
-  note(
+  hidden_gears_.push_back({std::move(gear), id, index, world_.store_.hide(id)});
+  record(
       [](void* owner, std::size_t) {
-        auto& undo = *static_cast<WorldUndo*>(owner);
-        HiddenGear& last = undo.hidden_gears_.back();
-        undo.world_.store_.show(last.id, last.place_in_tree);
-        auto& gears = undo.world_.gears_;
-        gears.insert(gears.begin() + static_cast<std::ptrdiff_t>(last.place), std::move(last.gear));
-        undo.hidden_gears_.pop_back();
+        auto& transaction = *static_cast<WorldTransaction*>(owner);
+        HiddenGear& last = transaction.hidden_gears_.back();
+        transaction.world_.store_.show(last.id, last.sibling_index);
+        auto& gears = transaction.world_.gears_;
+        gears.insert(gears.begin() + static_cast<std::ptrdiff_t>(last.index), std::move(last.gear));
+        transaction.hidden_gears_.pop_back();
       },
       this);
 }
 
-void WorldUndo::hide(std::unique_ptr<Body> body, std::size_t place) {
+void WorldTransaction::hide(std::unique_ptr<Body> body, std::size_t index) {
   const NodeId id = body->id();
-  hidden_.push_back({std::move(body), id, place, world_.store_.hide(id)});
-  note(
+  hidden_bodies_.push_back({std::move(body), id, index, world_.store_.hide(id)});
+  record(
       [](void* owner, std::size_t) {
-        auto& undo = *static_cast<WorldUndo*>(owner);
-        Hidden& last = undo.hidden_.back();
-        undo.world_.store_.show(last.id, last.place_in_tree);
-        auto& bodies = undo.world_.bodies_;
-        bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(last.place), std::move(last.body));
-        undo.hidden_.pop_back();
+        auto& transaction = *static_cast<WorldTransaction*>(owner);
+        HiddenBody& last = transaction.hidden_bodies_.back();
+        transaction.world_.store_.show(last.id, last.sibling_index);
+        auto& bodies = transaction.world_.bodies_;
+        bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(last.index), std::move(last.body));
+        transaction.hidden_bodies_.pop_back();
       },
       this);
 }

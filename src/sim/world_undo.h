@@ -1,5 +1,5 @@
-// WorldUndo: takes back what a guarded call of a script did to the world when the call fails. Values are kept by the
-// store; here are forces, what was made, what was removed. [sim]
+// WorldTransaction: the undo log of a guarded script call; rolls back the call's changes to the world if it fails. The
+// store logs property values; this class logs forces, and objects that were added or removed. [sim]
 #pragma once
 
 #include <cstddef>
@@ -18,72 +18,73 @@ class Part;
 class Shape;
 class World;
 
-class WorldUndo {
+class WorldTransaction {
  public:
-  explicit WorldUndo(World& world);
-  ~WorldUndo();
-  WorldUndo(const WorldUndo&) = delete;
-  WorldUndo& operator=(const WorldUndo&) = delete;
+  explicit WorldTransaction(World& world);
+  ~WorldTransaction();
+  WorldTransaction(const WorldTransaction&) = delete;
+  WorldTransaction& operator=(const WorldTransaction&) = delete;
 
-  /// From here on everything is kept, until end() or take_back(). Allocates only while the logs grow.
+  /// Starts logging, until commit() or rollback(). Allocates only while the logs grow.
   void begin();
-  /// The call ended well: what it did stays, and what it removed goes.
-  void end();
-  /// The call failed: the world is as it was at begin(), to the bit. What was made goes, newest first.
-  void take_back();
+  /// The call succeeded: keeps its changes and destroys the objects that it removed.
+  void commit();
+  /// The call failed: restores the world to its state at begin(), bit for bit. Added objects are removed, newest
+  /// first.
+  void rollback();
   bool active() const { return active_; }
-  /// Whether nothing was kept since begin(): there is nothing to take back.
-  bool untouched() const;
+  /// True if nothing was logged since begin(), so there is nothing to roll back.
+  bool is_empty() const;
 
-  /// The forces that wait in a part, and what a body knows beside its rows: before they are changed.
-  void keep(Part& part);
-  void keep(Body& body);
-  /// What moves the camera: before it is changed.
-  void keep(CameraMoves& moves);
-  /// How many children a compound has: before it gets one.
-  void keep(Shape& shape);
-  /// Bullet's pose and velocity of a part: before its effects run ahead of the next step.
-  void keep_motion(Part& part);
-  // the newest of its list was made
-  void made_body();
-  void made_gear();
-  void made_shape();
-  void made_part(Body& body);
-  void made_joint(Body& body);
-  void made_motor(Body& body);
-  /// Takes a removed body, which stood at `place`, out of sight.
-  void hide(std::unique_ptr<Body> body, std::size_t place);
-  void hide(std::unique_ptr<Gear> gear, std::size_t place);
+  /// Save the pending forces of a part, and the state of a body that isn't in its properties. Call before a change.
+  void save(Part& part);
+  void save(Body& body);
+  /// Saves the state of the camera moves. Call before a change.
+  void save(CameraMoves& camera_moves);
+  /// Saves the number of children of a compound. Call before adding one.
+  void save(Shape& shape);
+  /// Saves Bullet's pose and velocity of a part. Call before its pending changes are applied ahead of the next step.
+  void save_motion(Part& part);
+  // Log that the last element of the list was added.
+  void body_added();
+  void gear_added();
+  void shape_added();
+  void part_added(Body& body);
+  void joint_added(Body& body);
+  void motor_added(Body& body);
+  /// Hides a removed body or gear, which was at `index` of its list, until the call ends.
+  void hide(std::unique_ptr<Body> body, std::size_t index);
+  void hide(std::unique_ptr<Gear> gear, std::size_t index);
 
-  /// For what other rooms make and change: on failure `step` is called, newest first among all that is taken back.
-  using Step = void (*)(void* owner, std::size_t value);
-  void note(Step step, void* owner, std::size_t value = 0);
+  /// Logs a change made by another module. rollback() calls the logged functions from newest to oldest.
+  using UndoFunction = void (*)(void* owner, std::size_t value);
+  void record(UndoFunction undo, void* owner, std::size_t value = 0);
 
  private:
   struct Entry {
-    Step step;
+    UndoFunction undo;
     void* owner;
     std::size_t value;
   };
-  struct Forces;
-  struct BodyState;
-  struct Motion;
-  struct Hidden;
+  struct SavedForces;
+  struct SavedBody;
+  struct SavedMotion;
+  struct HiddenBody;
   struct HiddenGear;
-  bool first_time(std::uint64_t& kept_in) const;
+  bool first_in_call(std::uint64_t& saved_in_call) const;
 
   World& world_;
   bool active_ = false;
-  bool reset_asked_ = false;
-  bool panic_asked_ = false;
+  bool reset_requested_ = false;
+  bool panic_requested_ = false;
   std::uint64_t call_ = 0;
   std::vector<Entry> entries_;
-  std::vector<Forces> forces_;
-  std::vector<BodyState> bodies_;
-  CameraMoves::State moves_;
-  std::vector<Motion> motions_;
-  std::vector<Hidden> hidden_;
-  std::vector<HiddenGear> hidden_gears_;  // go before the bodies
+  std::vector<SavedForces> forces_;
+  std::vector<SavedBody> bodies_;
+  CameraMoves::State camera_moves_;
+  std::vector<SavedMotion> motions_;
+  std::vector<HiddenBody> hidden_bodies_;
+  std::vector<HiddenGear> hidden_gears_;  // destroyed before the bodies
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The kinds of OpenGL, and error messages about them.
+// Table of OpenGL versions, and error messages about missing drivers.
 #include "view/gl.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::string joined(const std::vector<std::string>& words, const char* last) {
   return text;
 }
 
-// of the libraries, without which no driver is asked
+// message about the first missing client library; empty if all can be loaded
 std::string missing_library() {
   constexpr std::array<std::array<const char*, 2>, 3> kPackages = {
       {{"libEGL.so.1", "libegl1"}, {"libGL.so.1", "libgl1"}, {"libGLESv2.so.2", "libgles2"}}};
@@ -59,7 +59,7 @@ bool gl_can_load(GlApi api) {
   return system::load_library("libOpenGL.so.0") || system::load_library("libGL.so.1");
 }
 
-std::string gl_fault(std::span<const GlApi> apis, const std::vector<std::string>& offered) {
+std::string gl_context_error(std::span<const GlApi> apis, const std::vector<std::string>& offered) {
   const std::string missing = missing_library();
   const bool loads = std::any_of(apis.begin(), apis.end(), gl_can_load);
   if (!missing.empty() && (offered.empty() || !loads)) return missing;

@@ -1,4 +1,4 @@
-// Lens: the camera's rows as matrices, and what a mouse makes of them.
+// ViewCamera: the matrices of a camera, computed from its properties. Orbit: camera control by mouse.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -7,33 +7,35 @@
 
 namespace limber {
 
-struct Lens {
+/// A camera: matrices and the vectors they were computed from.
+struct ViewCamera {
   glm::mat4 view;
   glm::mat4 projection;
   Vec3 eye{0};
   Vec3 forward{0, 1, 0};
   Vec3 up{0, 0, 1};
   Vec3 target{0};
-  double pixels = 0;  ///< What a metre takes at a metre's distance.
+  double focal_pixels = 0;  ///< Focal length in pixels: size of 1 m at a distance of 1 m.
 };
-/// The part of a picture that nothing lies over, from its top left corner, 0 .. 1.
-struct FreePart {
+/// The part of a view that is not covered by panels, relative to the view's size, from its top left corner, 0..1.
+struct FreeArea {
   double x = 0, y = 0, width = 1, height = 1;
 };
-/// For a picture of that size. What the camera sees from bottom to top fills the free part's height, about its middle;
-/// the picture goes on beyond it. [any]
-Lens lens_of(const CameraView& camera, int width, int height, const FreePart& free = {});
+/// Computes the camera for a view of that size, pixels. The field of view spans the height of `free_area`, centered
+/// in it; the view extends beyond it. [any]
+ViewCamera make_view_camera(const CameraView& camera, int width, int height, const FreeArea& free_area = {});
 
-/// Two points that a hand moves: where it looks from, and at. Angles in radians; the eye stays upright.
+/// An orbit camera with a target point. Angles in radians; the camera stays upright.
 struct Orbit {
   Vec3 eye{0};
   Vec3 target{0};
 
-  /// About the target: `right` turns the world to the right, `up` raises the eye, at most straight above or below.
-  void turn(double right, double up);
-  /// Both, in the picture's plane, as far as the target seems to move by these parts of the picture's height.
-  void shift(double right, double up, double fovy_degrees);
-  /// Nearer, for factors below 1; it never arrives.
+  /// Orbits around the target: `right` rotates the world to the right, `up` raises the eye, at most to almost straight
+  /// above or below.
+  void orbit(double right, double up);
+  /// Pans eye and target in the view plane, so that the target moves by these fractions of the view's height.
+  void pan(double right, double up, double fovy_degrees);
+  /// Multiplies the distance from the target by `factor`; it stays positive.
   void zoom(double factor);
 };
 

@@ -1,4 +1,5 @@
-// Lighting: what a look's rows and the scene's size make of one pass's numbers, as the shaders read them.
+// Lighting: computes the shaders' uniform block of a frame from the appearance properties, the camera and the scene's
+// bounds.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -9,7 +10,7 @@
 
 namespace limber {
 
-/// The block `Frame` of shaders/common.glsl, number for number.
+/// The uniform block `Frame` of shaders/common.glsl, with the same layout.
 struct FrameBlock {
   glm::mat4 view_proj;
   glm::mat4 clip_to_world;
@@ -30,22 +31,25 @@ struct FrameBlock {
   glm::vec4 soft;
 };
 
-/// What stands there: a ball in which nearly all of it is, and the floor's height.
-struct Stand {
+/// Bounds of the scene (a sphere around nearly all of it), floor height and shadow map size.
+struct SceneBounds {
   glm::vec3 center{0};
   float radius = 1;
-  float floor = 0;
-  int map = 1024;  ///< Pixels of the lamp's map, a side.
+  float floor_height = 0;
+  int shadow_map_size = 1024;  ///< Side of the lamp's shadow map, pixels.
 };
 
+/// Inputs of all passes of one frame.
 struct Lighting {
-  FrameBlock frame;        ///< Of the picture itself.
-  glm::mat4 lamp_clip;     ///< World to the lamp's map, as it is drawn.
-  glm::mat4 ground_clip;   ///< The same of what stands just above the floor.
-  bool casts = true;       ///< There is any shadow.
-  bool mirrors = false;    ///< The floor does.
-  float floor_reach = 10;  ///< Half the floor's width, m.
+  FrameBlock frame;       ///< Uniforms of the main pass.
+  glm::mat4 lamp_clip;    ///< World to clip space of the lamp's shadow map.
+  glm::mat4 ground_clip;  ///< World to clip space of the ground map, a depth map of the space just above the floor.
+  bool has_shadows = true;
+  bool has_mirror = false;      ///< The floor is reflective.
+  float floor_half_width = 10;  ///< Half the floor's width, m.
 };
-Lighting light(const LookView& look, const Lens& lens, double far, const Stand& stand);
+/// Computes the lighting of a frame. `far`: the camera's far plane, m. [any]
+Lighting compute_lighting(const AppearanceView& appearance, const ViewCamera& camera, double far,
+                          const SceneBounds& bounds);
 
 }  // namespace limber

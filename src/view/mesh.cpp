@@ -1,4 +1,4 @@
-// Surfaces of revolution, the box, and files' triangles with normals and coarser copies.
+// Meshes of primitives (surfaces of revolution and boxes), and meshes of files with normals and levels of detail.
 #include "view/mesh.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kCrease = 0.82;             // cosine of 35°: normals are shared below it
-constexpr std::size_t kMostNeighbours = 64;  // triangles at a vertex that are looked at one by one
+constexpr double kMinCreaseCosine = 0.82;  // cosine of 35°: normals are averaged across smaller angles
+constexpr std::size_t kMaxNeighbors = 64;  // vertices with more triangles are not smoothed, to bound the time
 
 struct Point {
   Vec3 corner;
@@ -32,15 +32,15 @@ void add_quad(MeshVertices& out, const Point& a, const Point& b, const Point& c,
   for (const Point* p : {&a, &b, &c, &a, &c, &d}) out.push_back(vertex_of(*p));
 }
 
-// one point of a profile: distance from the axis and height of the corner, and of the normal
-struct Rim {
+// one point of a profile: radius and height of the corner and of the normal
+struct ProfilePoint {
   double corner_r, corner_z, normal_r, normal_z;
 };
 
-// turns a profile, from top to bottom, about z
-MeshVertices turned(const std::vector<Rim>& profile, int around) {
+// revolves a profile, given from top to bottom, about z
+MeshVertices revolve(const std::vector<ProfilePoint>& profile, int around) {
   MeshVertices out;
-  const auto at = [&](const Rim& rim, int step) {
+  const auto at = [&](const ProfilePoint& rim, int step) {
     const double angle = 2 * std::numbers::pi * step / around;
     const double x = std::cos(angle);
     const double y = std::sin(angle);
@@ -49,16 +49,16 @@ MeshVertices turned(const std::vector<Rim>& profile, int around) {
   };
   for (std::size_t i = 0; i + 1 < profile.size(); i++) {
     for (int k = 0; k < around; k++) {
-      const Rim& up = profile[i];
-      const Rim& down = profile[i + 1];
+      const ProfilePoint& up = profile[i];
+      const ProfilePoint& down = profile[i + 1];
       add_quad(out, at(down, k), at(down, k + 1), at(up, k + 1), at(up, k));
     }
   }
   return out;
 }
 
-// a quarter circle of normals from straight up to straight out, or on from there down, about one corner
-void add_quarter(std::vector<Rim>& profile, double corner_r, double corner_z, bool lower, int steps) {
+// appends a quarter circle of normals around one corner: from up to outward, or from outward to down (`lower`)
+void add_quarter(std::vector<ProfilePoint>& profile, double corner_r, double corner_z, bool lower, int steps) {
   for (int i = 0; i <= steps; i++) {
     const double angle = std::numbers::pi / 2 * (static_cast<double>(i) / steps + (lower ? 1 : 0));
     profile.push_back({corner_r, corner_z, std::sin(angle), std::cos(angle)});
@@ -69,29 +69,29 @@ MeshVertices round_mesh(ShapeKind kind, int detail) {
   const int around = std::array{40, 20, 12, 8}[static_cast<std::size_t>(detail)];
   const int quarter = std::array{10, 5, 3, 3}[static_cast<std::size_t>(detail)];
   const int bevel = std::array{3, 2, 1, 1}[static_cast<std::size_t>(detail)];
-  std::vector<Rim> profile;
+  std::vector<ProfilePoint> profile;
   if (kind == ShapeKind::sphere || kind == ShapeKind::capsule) {
     const double end = kind == ShapeKind::capsule ? 1 : 0;
     add_quarter(profile, 0, end, false, quarter);
     add_quarter(profile, 0, -end, true, quarter);
-    return turned(profile, around);
+    return revolve(profile, around);
   }
   if (kind == ShapeKind::cylinder) {
     profile.push_back({0, 1, 0, 1});
     add_quarter(profile, 1, 1, false, bevel);
     add_quarter(profile, 1, -1, true, bevel);
     profile.push_back({0, -1, 0, -1});
-    return turned(profile, around);
+    return revolve(profile, around);
   }
-  // a cone: its tip has the normals of its sides; the shader turns them for its proportions
+  // a cone: the apex has the normals of the side; the shader adapts them to its proportions
   profile = {{0, 1, 1, 0.5}, {1, -1, 1, 0.5}};
-  MeshVertices out = turned(profile, around);
-  const MeshVertices bottom = turned({{1, -1, 0, -1}, {0, -1, 0, -1}}, around);
+  MeshVertices out = revolve(profile, around);
+  const MeshVertices bottom = revolve({{1, -1, 0, -1}, {0, -1, 0, -1}}, around);
   out.insert(out.end(), bottom.begin(), bottom.end());
   return out;
 }
 
-// a cube whose edges and corners are rounded: each face is a grid whose outer rows bend over the bevel
+// a cube with rounded edges and corners: each face is a grid, and its outer cells form the bevel
 MeshVertices box_mesh(int detail) {
   const int steps = std::array{3, 2, 1}[static_cast<std::size_t>(detail)];
   // along one axis of a face: corners at -1 and 1, the normal's tangent between -45° and 45°
@@ -132,10 +132,10 @@ MeshVertices box_mesh(int detail) {
   return out;
 }
 
-// the same with each bevel as one flat strip, each corner as a triangle
+// a cube with flat chamfers: a strip along each edge and a triangle at each corner
 MeshVertices chamfered_box() {
   MeshVertices out;
-  // the corner of a face across `axis`; `signs` are of all three axes
+  // a corner of the face perpendicular to `axis`; `signs` selects the corner of the cube
   const auto at = [](int axis, const std::array<int, 3>& signs) {
     Point p{{signs[0], signs[1], signs[2]}, Vec3(0)};
     p.normal[axis] = signs[static_cast<std::size_t>(axis)];
@@ -157,7 +157,7 @@ MeshVertices chamfered_box() {
       };
       add({at(axis, corner(-1, -1)), at(axis, corner(1, -1)), at(axis, corner(1, 1))}, side < 0);
       add({at(axis, corner(-1, -1)), at(axis, corner(1, 1)), at(axis, corner(-1, 1))}, side < 0);
-      // the strips to the neighbour across u: along v
+      // the strips along v to the neighboring faces in direction u
       for (const int a : {-1, 1}) {
         const MeshVertex low = at(axis, corner(a, -1)), high = at(axis, corner(a, 1));
         const MeshVertex beyond_low = at(static_cast<int>(u), corner(a, -1));
@@ -191,8 +191,8 @@ Soup soup_of(const MeshModel& model) {
   return soup;
 }
 
-// points of one cell become their mean; triangles that collapse go
-Soup gathered(const Soup& fine, int cells) {
+// vertex clustering: merges the points of each grid cell into their mean and removes collapsed triangles
+Soup cluster_vertices(const Soup& fine, int cells) {
   Vec3 low(1e300);
   Vec3 high(-1e300);
   for (const Vec3& p : fine.points) {
@@ -203,7 +203,7 @@ Soup gathered(const Soup& fine, int cells) {
   const double cell = std::max({size.x, size.y, size.z, 1e-12}) / cells;
   Soup out;
   std::map<std::tuple<int, int, int>, unsigned> cell_of;
-  std::vector<unsigned> now(fine.points.size());
+  std::vector<unsigned> cluster_of(fine.points.size());
   std::vector<double> count;
   for (std::size_t i = 0; i < fine.points.size(); i++) {
     const Vec3 q = (fine.points[i] - low) / cell + 0.5;
@@ -213,13 +213,13 @@ Soup gathered(const Soup& fine, int cells) {
       out.points.emplace_back(0);
       count.push_back(0);
     }
-    now[i] = found->second;
-    out.points[now[i]] += fine.points[i];
-    count[now[i]] += 1;
+    cluster_of[i] = found->second;
+    out.points[cluster_of[i]] += fine.points[i];
+    count[cluster_of[i]] += 1;
   }
   for (std::size_t i = 0; i < out.points.size(); i++) out.points[i] /= count[i];
   for (const auto& t : fine.triangles) {
-    const std::array<unsigned, 3> moved = {now[t[0]], now[t[1]], now[t[2]]};
+    const std::array<unsigned, 3> moved = {cluster_of[t[0]], cluster_of[t[1]], cluster_of[t[2]]};
     if (moved[0] != moved[1] && moved[1] != moved[2] && moved[0] != moved[2]) out.triangles.push_back(moved);
   }
   return out;
@@ -230,7 +230,7 @@ Soup gathered(const Soup& fine, int cells) {
 MeshVertices primitive_mesh(ShapeKind kind, int detail) {
   switch (kind) {
     case ShapeKind::box:
-      return detail == kDetails - 1 ? chamfered_box() : box_mesh(detail);
+      return detail == kDetailLevels - 1 ? chamfered_box() : box_mesh(detail);
     case ShapeKind::sphere:
     case ShapeKind::capsule:
     case ShapeKind::cylinder:
@@ -243,24 +243,26 @@ MeshVertices primitive_mesh(ShapeKind kind, int detail) {
 
 MeshVertices model_mesh(const MeshModel& model, int detail) {
   Soup soup = soup_of(model);
-  if (detail > 0 && soup.triangles.size() > 200) soup = gathered(soup, detail == 1 ? 16 : 8);
-  std::vector<Vec3> flat;
-  std::vector<std::vector<unsigned>> touching(soup.points.size());
-  flat.reserve(soup.triangles.size());
+  if (detail > 0 && soup.triangles.size() > 200) soup = cluster_vertices(soup, detail == 1 ? 16 : 8);
+  std::vector<Vec3> face_normals;
+  std::vector<std::vector<unsigned>> triangles_at(soup.points.size());
+  face_normals.reserve(soup.triangles.size());
   for (const auto& t : soup.triangles) {
     const Vec3 along = soup.points[t[1]] - soup.points[t[0]];
-    for (const unsigned corner : t) touching[corner].push_back(static_cast<unsigned>(flat.size()));
-    flat.push_back(glm::cross(along, soup.points[t[2]] - soup.points[t[0]]));  // its length: the area counts
+    for (const unsigned corner : t) triangles_at[corner].push_back(static_cast<unsigned>(face_normals.size()));
+    face_normals.push_back(
+        glm::cross(along, soup.points[t[2]] - soup.points[t[0]]));  // not normalized: weighted by area
   }
   MeshVertices out;
   out.reserve(3 * soup.triangles.size());
   for (std::size_t i = 0; i < soup.triangles.size(); i++) {
-    const Vec3 own = normalized(flat[i]);
+    const Vec3 face_normal = normalized(face_normals[i]);
     for (const unsigned corner : soup.triangles[i]) {
-      Vec3 sum = flat[i];
-      if (touching[corner].size() <= kMostNeighbours) {
-        for (const unsigned other : touching[corner]) {
-          if (other != i && glm::dot(own, normalized(flat[other])) > kCrease) sum += flat[other];
+      Vec3 sum = face_normals[i];
+      if (triangles_at[corner].size() <= kMaxNeighbors) {
+        for (const unsigned neighbor : triangles_at[corner]) {
+          if (neighbor != i && glm::dot(face_normal, normalized(face_normals[neighbor])) > kMinCreaseCosine)
+            sum += face_normals[neighbor];
         }
       }
       out.push_back(vertex_of({soup.points[corner], normalized(sum)}));
@@ -269,7 +271,7 @@ MeshVertices model_mesh(const MeshModel& model, int detail) {
   return out;
 }
 
-IndexedMesh indexed(const MeshVertices& triangles) {
+IndexedMesh with_shared_vertices(const MeshVertices& triangles) {
   IndexedMesh out;
   std::unordered_map<std::string_view, std::uint32_t> known;  // by the bytes of a vertex
   out.indices.reserve(triangles.size());
@@ -283,7 +285,7 @@ IndexedMesh indexed(const MeshVertices& triangles) {
       if (fresh) out.vertices.push_back(vertex);
       t[k] = found->second;
     }
-    // at a pole two of the three are one
+    // at a pole, two of the three vertices are equal
     if (t[0] != t[1] && t[1] != t[2] && t[0] != t[2]) out.indices.insert(out.indices.end(), t.begin(), t.end());
   }
   return out;
@@ -294,8 +296,8 @@ MeshSize mesh_size(const ShapeModel& shape) {
   const double half = shape.height / 2;
   switch (shape.kind) {
     case ShapeKind::box: {
-      const double least = std::min({shape.size.x, shape.size.y, shape.size.z});
-      const double round = std::min(0.08 * least, 0.02);
+      const double min_edge = std::min({shape.size.x, shape.size.y, shape.size.z});
+      const double round = std::min(0.08 * min_edge, 0.02);
       return {shape.size / 2.0 - Vec3(round), round};
     }
     case ShapeKind::sphere:

@@ -1,5 +1,5 @@
-// Mesh: triangles as one vertex formula draws them: place = corner·extent + normal·round. Boxes with bevels, capsules
-// and cylinders of any size come out of one mesh each with true radii.
+// Meshes for drawing. The vertex shader computes position = corner·extent + normal·radius, so that one mesh per
+// primitive gives beveled boxes, capsules and cylinders of any size with exact radii.
 #pragma once
 
 #include <cstdint>
@@ -15,28 +15,30 @@ struct MeshVertex {
   float normal[3];
 };
 
-/// Triangles, counter-clockwise seen from outside; three vertices each, none shared.
+/// Triangles, counter-clockwise seen from outside; three vertices each, not shared.
 using MeshVertices = std::vector<MeshVertex>;
 
-/// Levels of detail: 0 is the finest.
-inline constexpr int kDetails = 4;
+/// Number of levels of detail; level 0 is the finest.
+inline constexpr int kDetailLevels = 4;
 
-/// A primitive's; empty for planes, meshes, compounds. [any]
+/// The mesh of a primitive; empty for planes, meshes and compounds. [any]
 MeshVertices primitive_mesh(ShapeKind kind, int detail);
-/// A file's: normals are smooth over edges of less than 35°; coarser details gather what is near to each other. [any]
+/// The mesh of a file, with smooth normals across edges of less than 35°. Coarser levels of detail merge nearby
+/// vertices. [any]
 MeshVertices model_mesh(const MeshModel& model, int detail);
 
-/// The same triangles with each vertex once, so that a graphics card works each out once.
+/// Triangles with shared vertices, so that a GPU transforms each vertex once.
 struct IndexedMesh {
   MeshVertices vertices;
-  std::vector<std::uint32_t> indices;  ///< Three a triangle.
+  std::vector<std::uint32_t> indices;  ///< Three per triangle.
 };
-IndexedMesh indexed(const MeshVertices& triangles);
+/// Merges equal vertices and removes degenerate triangles. [any]
+IndexedMesh with_shared_vertices(const MeshVertices& triangles);
 
-/// The two numbers of the formula for a primitive: half its size without the rounding, and the radius of that.
+/// The inputs of the vertex formula for a primitive: half its size without the rounding, and the rounding's radius.
 struct MeshSize {
   Vec3 extent{1, 1, 1};
-  double round = 0;
+  double rounding_radius = 0;
 };
 MeshSize mesh_size(const ShapeModel& shape);
 

@@ -1,4 +1,4 @@
-// A graphics card's device first, then no surface at all, then whatever is the default.
+// Tries the EGL displays of graphics devices first, then Mesa's surfaceless platform, then the default display.
 #include "view/offscreen.h"
 
 #include <epoxy/egl.h>
@@ -37,10 +37,10 @@ struct Version {
   bool es;
 };
 
-// current when it was made
+// creates a context and makes it current
 EGLContext context_on(EGLDisplay display, const Version& version) {
   const EGLint kind = version.es ? version.major > 2 ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_ES2_BIT : EGL_OPENGL_BIT;
-  const std::array<EGLint, 5> wanted = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, kind, EGL_NONE};
+  const std::array<EGLint, 5> config_attributes = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, kind, EGL_NONE};
   std::vector<EGLint> attributes = {EGL_CONTEXT_MAJOR_VERSION, version.major, EGL_CONTEXT_MINOR_VERSION, version.minor};
   // older versions have no profiles
   if (!version.es && version.major == 3 && version.minor > 1)
@@ -48,7 +48,8 @@ EGLContext context_on(EGLDisplay display, const Version& version) {
   attributes.push_back(EGL_NONE);
   EGLConfig config = nullptr;
   EGLint count = 0;
-  if (eglChooseConfig(display, wanted.data(), &config, 1, &count) != EGL_TRUE || count == 0) return EGL_NO_CONTEXT;
+  if (eglChooseConfig(display, config_attributes.data(), &config, 1, &count) != EGL_TRUE || count == 0)
+    return EGL_NO_CONTEXT;
   if (eglBindAPI(version.es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) != EGL_TRUE) return EGL_NO_CONTEXT;
   const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes.data());
   if (context == EGL_NO_CONTEXT) return context;
@@ -57,7 +58,7 @@ EGLContext context_on(EGLDisplay display, const Version& version) {
   return EGL_NO_CONTEXT;
 }
 
-// the versions of any age that the driver has
+// the versions that the driver supports, including unsupported old ones, for the error message
 std::vector<std::string> offered_on(EGLDisplay display) {
   std::vector<std::string> names;
   for (const Version& version : {Version{1, 0, false}, Version{2, 0, true}}) {
@@ -74,35 +75,36 @@ std::vector<std::string> offered_on(EGLDisplay display) {
 
 }  // namespace
 
-Result<std::unique_ptr<Offscreen>> Offscreen::make(std::string_view choice) {
+Result<std::unique_ptr<OffscreenContext>> OffscreenContext::make(std::string_view choice) {
   const std::vector<GlApi> apis = gl_apis(choice);
   std::vector<std::string> offered;
-  // the function loader ends the program without it
-  if (!system::load_library("libEGL.so.1")) return Error{gl_fault(apis, offered)};
+  // checked first, because the function loader aborts the program if the library is missing
+  if (!system::load_library("libEGL.so.1")) return Error{gl_context_error(apis, offered)};
   for (const EGLDisplay display : displays()) {
     if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) continue;
     for (const GlApi api : apis) {
       if (!gl_can_load(api)) continue;
       const GlApiInfo& info = gl_api_info(api);
       const EGLContext context = context_on(display, {info.major, info.minor, api == GlApi::es});
-      if (context != EGL_NO_CONTEXT) return std::unique_ptr<Offscreen>(new Offscreen(display, context, api));
+      if (context != EGL_NO_CONTEXT)
+        return std::unique_ptr<OffscreenContext>(new OffscreenContext(display, context, api));
     }
     if (offered.empty()) offered = offered_on(display);
     eglTerminate(display);
   }
-  return Error{gl_fault(apis, offered)};
+  return Error{gl_context_error(apis, offered)};
 }
 
-void Offscreen::use() const {
+void OffscreenContext::make_current() const {
   eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
 }
 
-Offscreen::~Offscreen() {
+OffscreenContext::~OffscreenContext() {
   eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
-  // the display stays: drivers that are unloaded leave memory behind
+  // the display is not terminated, because drivers leak memory when they are unloaded
 }
 
 }  // namespace limber

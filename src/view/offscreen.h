@@ -1,4 +1,4 @@
-// Offscreen: an OpenGL context without any window or display, through EGL.
+// OffscreenContext: an OpenGL context without a window or display, created with EGL.
 #pragma once
 
 #include <memory>
@@ -9,21 +9,22 @@
 
 namespace limber {
 
-class Offscreen {
+/// Owns the context. [main]
+class OffscreenContext {
  public:
-  /// Current on this thread until it goes. `choice`: of the kinds of OpenGL, see gl_apis(). An error says what the
-  /// machine lacks. [main]
-  static Result<std::unique_ptr<Offscreen>> make(std::string_view choice = "auto");
-  ~Offscreen();
-  Offscreen(const Offscreen&) = delete;
-  Offscreen& operator=(const Offscreen&) = delete;
+  /// Creates a context and makes it current on this thread until it is destroyed. `choice`: see gl_apis(). The error
+  /// names the missing library or driver. [main]
+  static Result<std::unique_ptr<OffscreenContext>> make(std::string_view choice = "auto");
+  ~OffscreenContext();
+  OffscreenContext(const OffscreenContext&) = delete;
+  OffscreenContext& operator=(const OffscreenContext&) = delete;
 
   GlApi api() const { return api_; }
-  /// Makes it current again, after another one was. [main]
-  void use() const;
+  /// Makes the context current again after another one was. [main]
+  void make_current() const;
 
  private:
-  Offscreen(void* display, void* context, GlApi api) : display_(display), context_(context), api_(api) {}
+  OffscreenContext(void* display, void* context, GlApi api) : display_(display), context_(context), api_(api) {}
 
   void* display_;
   void* context_;

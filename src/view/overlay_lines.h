@@ -1,4 +1,4 @@
-// OverlayLines: the debug picture as lines: what stands in two snapshots' overlays, moved in between.
+// OverlayLines: the lines of the debug overlay, interpolated between two snapshots.
 #pragma once
 
 #include <span>
@@ -10,33 +10,34 @@
 
 namespace limber {
 
-/// As the shader reads it.
+/// One line, in the layout of shaders/overlay.vert.
 struct OverlayLine {
   float from[3];
   float width;  ///< Pixels.
   float to[3];
   float unused;
-  float paint[4];  ///< Linear.
+  float color[4];  ///< Linear.
 };
 
+/// [main]
 class OverlayLines {
  public:
-  /// `mix`: 0 is `before`, 1 is `now`; marks that are only in `now` stand as they are there. Allocates only while it
-  /// grows. `pixels`: what a symbol's line is wide. [main]
-  void gather(const Snapshot& before, const Snapshot& now, double mix, double pixels);
+  /// Rebuilds the lines. `mix`: interpolation from 0 (`before`) to 1 (`now`); marks that are only in `now` are not
+  /// interpolated. `pixels`: width of a symbol's lines. Allocates only when it grows. [main]
+  void update(const Snapshot& before, const Snapshot& now, double mix, double pixels);
   std::span<const OverlayLine> lines() const { return lines_; }
 
  private:
   void draw(const OverlayMark& mark);
-  void turn(const OverlayMark& mark);
-  void shift(const OverlayMark& mark);
-  void arrow(const Vec3& from, const Vec3& way, double head);
-  void cross(const Vec3& at, const Quat& turn, double half);
+  void hinge(const OverlayMark& mark);
+  void slider(const OverlayMark& mark);
+  void arrow(const Vec3& from, const Vec3& vector, double head);
+  void cross(const Vec3& at, const Quat& rotation, double half);
   void arc(const Vec3& at, const Vec3& x, const Vec3& y, double low, double high);
-  void line(const Vec3& from, const Vec3& to, double wide = 1);
+  void line(const Vec3& from, const Vec3& to, double width = 1);
 
   std::vector<OverlayLine> lines_;
-  glm::vec3 paint_{1};
+  glm::vec3 color_{1};
   double width_ = 1;
 };
 

@@ -1,4 +1,4 @@
-// Picking: which part lies under a place of the picture.
+// Picking: finds the part under a point of the view.
 #pragma once
 
 #include <cstdint>
@@ -9,20 +9,21 @@
 
 namespace limber {
 
+/// The part under a point of the view.
 struct Picked {
-  std::uint32_t part_at = 0;  ///< Where the part's block begins in Snapshot::live.
-  Vec3 point{0};              ///< Of its surface, world.
-  double distance = 0;        ///< From the eye, m.
+  std::uint32_t part_offset = 0;  ///< Offset of the part's values in Snapshot::transient.
+  Vec3 point{0};                  ///< Hit point on its surface, world.
+  double distance = 0;            ///< Distance from the eye, m.
 };
 
-/// The nearest at that place (-1 .. 1, right and up), seen as that lens sees it; planes and what is not drawn are none.
-/// By its true form: balls, boxes, and the triangles of all else. [any]
-std::optional<Picked> pick(const Snapshot& now, const Lens& lens, double x, double y);
+/// Returns the nearest part at a point of the view (-1..1, right and up). Ignores planes and disabled parts. Tests the
+/// exact shape of spheres and boxes, and the triangles of other shapes. [any]
+std::optional<Picked> pick(const Snapshot& now, const ViewCamera& camera, double x, double y);
 
-/// A direction from the eye through that place.
-Vec3 ray_through(const Lens& lens, double x, double y);
+/// Unit direction from the eye through a point of the view (-1..1, right and up). [any]
+Vec3 ray_through(const ViewCamera& camera, double x, double y);
 
-/// Where the part is. [any]
-Pose part_pose(const Snapshot& now, std::uint32_t part_at);
+/// World pose of a part. [any]
+Pose part_pose(const Snapshot& now, std::uint32_t part_offset);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// PNG by stb.
+// PNG encoding with stb_image_write.
 #include "view/pixels.h"
 
 #include <cerrno>
@@ -13,28 +13,28 @@
 namespace limber {
 
 Result<void> write_png(const Pixels& pixels, const std::string& file) {
-  const std::string beside = file + ".part";
-  std::FILE* const out = std::fopen(beside.c_str(), "wb");
+  const std::string temporary = file + ".part";
+  std::FILE* const out = std::fopen(temporary.c_str(), "wb");
   const auto fault = [&] {
     return Error{fmt::format("'{}' can't be written: {}", printable(file), std::strerror(errno))};
   };
   if (out == nullptr) return fault();
   struct Sink {
     std::FILE* out;
-    bool good = true;
+    bool ok = true;
   } sink{out};
   const auto write = [](void* to, void* data, int size) {
     auto& s = *static_cast<Sink*>(to);
     const auto count = static_cast<std::size_t>(size);
-    s.good = s.good && std::fwrite(data, 1, count, s.out) == count;
+    s.ok = s.ok && std::fwrite(data, 1, count, s.out) == count;
   };
-  const int made =
+  const int written =
       stbi_write_png_to_func(write, &sink, pixels.width, pixels.height, 4, pixels.bytes.data(), 4 * pixels.width);
   const bool closed = std::fclose(out) == 0;
-  if (made != 0 && sink.good && closed && std::rename(beside.c_str(), file.c_str()) == 0) return {};
-  const Error why = fault();
-  std::remove(beside.c_str());
-  return why;
+  if (written != 0 && sink.ok && closed && std::rename(temporary.c_str(), file.c_str()) == 0) return {};
+  const Error error = fault();
+  std::remove(temporary.c_str());
+  return error;
 }
 
 }  // namespace limber

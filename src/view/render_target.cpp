@@ -1,4 +1,4 @@
-// Framebuffers: with several samples a pixel, resolved, and finished.
+// Framebuffers: multisampled, resolved and finished.
 #include "view/render_target.h"
 
 #include <algorithm>
@@ -7,9 +7,9 @@
 
 namespace limber {
 
-void convert_srgb(const GlApiInfo& api, bool converts) {
+void set_srgb_conversion(const GlApiInfo& api, bool enabled) {
   if (!api.srgb_switch) return;
-  if (converts) {
+  if (enabled) {
     glEnable(GL_FRAMEBUFFER_SRGB);
   } else {
     glDisable(GL_FRAMEBUFFER_SRGB);
@@ -22,42 +22,42 @@ Result<void> RenderTarget::resize(int width, int height, int samples) {
     glBindRenderbuffer(GL_RENDERBUFFER, *buffer);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, width, height);
   };
-  // errors of others, such as the panel's renderer, which knows ES too little
+  // clears errors left by others, such as the panel's renderer, which makes calls that ES does not support
   for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; i++) continue;
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_SAMPLES, &most);
-  samples = std::min(samples, most);
-  // ES has a texture that is resolved into, or with one sample drawn into
+  GLint max_samples = 0;
+  glGetIntegerv(GL_MAX_SAMPLES, &max_samples);
+  samples = std::min(samples, max_samples);
+  // without srgb_switch, the resolve target is a texture; with one sample per pixel, it is drawn into directly
   multisampled_ = api_.srgb_switch || samples > 1;
   store(depth_, GL_DEPTH_COMPONENT24, samples);
   if (multisampled_) store(color_, GL_SRGB8_ALPHA8, samples);
-  store(picture_, api_.srgb_switch ? GL_SRGB8_ALPHA8 : GL_RGBA8, 0);
-  glBindFramebuffer(GL_FRAMEBUFFER, *samples_);
+  store(finished_color_, api_.srgb_switch ? GL_SRGB8_ALPHA8 : GL_RGBA8, 0);
+  glBindFramebuffer(GL_FRAMEBUFFER, *multisampled_framebuffer_);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, *depth_);
   if (multisampled_) glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *color_);
   if (!api_.srgb_switch) {
-    light_ = GlTexture::make();
+    resolved_color_ = GlTexture::make();
     glActiveTexture(GL_TEXTURE0);
-    glBindTexture(GL_TEXTURE_2D, *light_);
+    glBindTexture(GL_TEXTURE_2D, *resolved_color_);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glBindFramebuffer(GL_FRAMEBUFFER, multisampled_ ? *resolved_ : *samples_);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *light_, 0);
-    glBindFramebuffer(GL_FRAMEBUFFER, *samples_);
+    glBindFramebuffer(GL_FRAMEBUFFER, multisampled_ ? *resolved_ : *multisampled_framebuffer_);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, *resolved_color_, 0);
+    glBindFramebuffer(GL_FRAMEBUFFER, *multisampled_framebuffer_);
   }
-  const bool whole = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  const bool complete = glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
   glBindFramebuffer(GL_FRAMEBUFFER, *finished_);
-  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *picture_);
-  if (!whole || glGetError() == GL_OUT_OF_MEMORY)
-    return Error{fmt::format("OpenGL has no room for a picture of {} × {}", width, height)};
+  glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *finished_color_);
+  if (!complete || glGetError() == GL_OUT_OF_MEMORY)
+    return Error{fmt::format("OpenGL has too little memory for an image of {} × {}", width, height)};
   width_ = width;
   height_ = height;
   return {};
 }
 
 void RenderTarget::begin() const {
-  glBindFramebuffer(GL_FRAMEBUFFER, *samples_);
+  glBindFramebuffer(GL_FRAMEBUFFER, *multisampled_framebuffer_);
   glViewport(0, 0, width_, height_);
   glClearColor(0, 0, 0, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -65,17 +65,17 @@ void RenderTarget::begin() const {
 
 void RenderTarget::resolve(const Shaders& shaders) const {
   if (multisampled_) {
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, *samples_);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, *multisampled_framebuffer_);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, api_.srgb_switch ? *finished_ : *resolved_);
     glBlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   }
   if (api_.srgb_switch) return;
   glBindFramebuffer(GL_FRAMEBUFFER, *finished_);
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, *light_);
+  glBindTexture(GL_TEXTURE_2D, *resolved_color_);
   glDisable(GL_DEPTH_TEST);
   glUseProgram(shaders.program("encode"));
-  glBindVertexArray(*nothing_);
+  glBindVertexArray(*no_attributes_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
@@ -96,7 +96,7 @@ Pixels RenderTarget::read() const {
 }
 
 void RenderTarget::draw_over(const std::function<void()>& draw) const {
-  convert_srgb(api_, false);
+  set_srgb_conversion(api_, false);
   glBindFramebuffer(GL_FRAMEBUFFER, *finished_);
   glViewport(0, 0, width_, height_);
   draw();
@@ -104,19 +104,19 @@ void RenderTarget::draw_over(const std::function<void()>& draw) const {
 }
 
 void RenderTarget::copy_to_window(GLuint from, int width, int height) const {
-  convert_srgb(api_, false);  // the bytes as they are
+  set_srgb_conversion(api_, false);  // copy the bytes unchanged
   glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
   const bool fits = width == width_ && height == height_;
   glBlitFramebuffer(0, 0, width_, height_, 0, 0, width, height, GL_COLOR_BUFFER_BIT, fits ? GL_NEAREST : GL_LINEAR);
 }
 
-void RenderTarget::show(int width, int height) const { copy_to_window(*finished_, width, height); }
+void RenderTarget::present(int width, int height) const { copy_to_window(*finished_, width, height); }
 
-void RenderTarget::show_shared(const GlFramebuffer& frame, int width, int height) const {
+void RenderTarget::present_shared(const GlFramebuffer& frame, int width, int height) const {
   glBindFramebuffer(GL_READ_FRAMEBUFFER, *frame);
-  // each time: what another context has made of it since is seen here once it is attached
-  glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *picture_);
+  // attached each time: changes made in another context become visible when the object is attached
+  glFramebufferRenderbuffer(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, *finished_color_);
   copy_to_window(*frame, width, height);
 }
 

@@ -1,4 +1,4 @@
-// Renderer: draws a snapshot into a picture of its own, in whichever context is current: a window's or none's.
+// Renderer: draws snapshots into an offscreen image, in the current OpenGL context (a window's or an offscreen one).
 #pragma once
 
 #include <functional>
@@ -18,85 +18,89 @@
 
 namespace limber {
 
+/// Levels of rendering quality.
 enum class Quality : std::uint8_t { low, medium, high };
 
+/// [main]
 class Renderer {
  public:
-  /// `api`: of the current context, which outlives it. `shader_folder`: watched by renew_shaders(); empty: the shaders
-  /// inside the program. An error: what OpenGL can't do here. [main]
+  /// Creates a renderer. `api`: of the current context, which must outlive the renderer. `shader_folder`: watched by
+  /// reload_shaders(); empty: use the embedded shaders. Errors if the driver lacks a required feature. [main]
   static Result<std::unique_ptr<Renderer>> make(GlApi api, const std::string& shader_folder, Quality quality);
 
-  /// Draws between two snapshots (`mix` 0: before, 1: now). A picture is at least 1 × 1; an error: too large. [main]
-  /// `free`: where nothing will lie over it.
+  /// Draws the scene interpolated between two snapshots (`mix` 0: before, 1: now). Sizes below 1 are raised to 1;
+  /// errors if the size is above max_size() or memory is insufficient. `free_area`: the part not covered by
+  /// panels. [main]
   Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
-                    const FreePart& free = {});
+                    const FreeArea& free_area = {});
   Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
-  /// A second picture of the same, with nothing over it, beside the one that draw() makes. [main]
+  /// Draws a second image of the scene for the output window, without panels; independent of draw()'s image. [main]
   Result<void> draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
-  /// Calls what draws over the picture drawn last, which is bound, its colours as they are. [main]
+  /// Calls `draw` with draw()'s last image bound as the framebuffer, without sRGB conversion. [main]
   void draw_over(const std::function<void()>& draw) const { target_.draw_over(draw); }
-  /// The picture drawn last. [main]
+  /// Reads back draw()'s last image. [main]
   Pixels read() const { return target_.read(); }
-  /// Returns when the picture is drawn. [main]
+  /// Waits until the GPU has finished drawing. [main]
   static void finish();
-  /// Copies it into the window's own framebuffer, stretched to that size. [main]
-  void show(int width, int height) const { target_.show(width, height); }
-  /// The same of the second picture, in another context that shares objects with this one and is current there.
-  /// `frame` is a framebuffer of that context. [main]
-  void show_output(const GlFramebuffer& frame, int width, int height) const {
-    output_.show_shared(frame, width, height);
+  /// Copies draw()'s last image to the window's default framebuffer, scaled to that size. [main]
+  void present(int width, int height) const { target_.present(width, height); }
+  /// Copies draw_output()'s last image; called with another context current, which shares objects with the first.
+  /// `frame` is a framebuffer of that other context. [main]
+  void present_output(const GlFramebuffer& frame, int width, int height) const {
+    output_.present_shared(frame, width, height);
   }
 
-  /// Takes over shaders that were saved; true: the picture looks different now. [main]
-  bool renew_shaders() { return shaders_.renew(); }
-  const std::string& shader_fault() const { return shaders_.fault(); }
+  /// Reloads shaders from changed files; true if the view must be drawn again. [main]
+  bool reload_shaders() { return shaders_.reload(); }
+  /// The error of the last shader reload; empty if it succeeded. [main]
+  const std::string& shader_error() const { return shaders_.error(); }
   GlApi api() const { return api_.api; }
-  /// A side of the largest picture, pixels.
-  int largest() const { return largest_; }
+  /// Largest width and height of an image, pixels.
+  int max_size() const { return max_size_; }
 
  private:
-  struct Grade;
+  struct QualitySettings;
   struct GpuMesh {
     GlVertexArray array;
     GlBuffer vertices, indices;
     GLsizei count = 0;
   };
-  /// A depth texture to draw into.
+  // a depth texture with its framebuffer
   struct DepthMap {
     GlTexture texture;
     GlFramebuffer frame;
   };
-  Renderer(GlApi api, std::string shader_folder, const Grade& grade, std::string defines);
+  Renderer(GlApi api, std::string shader_folder, const QualitySettings& settings, std::string defines);
 
   DepthMap make_depth(int side, bool compares) const;
   Result<void> draw_into(RenderTarget& target, const Snapshot& before, const Snapshot& now, double mix, int width,
-                         int height, const FreePart& free);
+                         int height, const FreeArea& free_area);
   void draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);
-  void forget_meshes();
+  void release_unused_meshes();
   void upload(const FrameBlock& frame);
-  void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool through);
-  void draw_batches(const std::vector<Batch>& batches, int coarser, bool casting);
+  void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool clamp_depth);
+  void draw_batches(const std::vector<Batch>& batches, int detail_bias, bool shadow_casters_only);
   void draw_mirrored(const Lighting& lighting);
-  void draw_floors(const Lighting& lighting, const LookView& look);
+  void draw_floors(const Lighting& lighting, const AppearanceView& appearance);
   void draw_shadows(const Lighting& lighting);
-  void draw_floor(const PlaneView& plane, const Lighting& lighting, bool stage);
+  void draw_floor(const PlaneView& plane, const Lighting& lighting, bool is_floor);
   void draw_sky();
 
   const GlApiInfo& api_;
-  const Grade& grade_;
+  const QualitySettings& settings_;
   Shaders shaders_;
-  DrawList list_;
-  std::shared_ptr<const Drawing> meshes_of_;
+  DrawList draw_list_;
+  std::shared_ptr<const RenderScene> meshes_scene_;
   std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
   GlBuffer instances_, frame_;
-  GlVertexArray nothing_;  // for what makes its corners in the shader
+  GlVertexArray no_attributes_;  // without attributes, for shaders that generate their vertices
   DepthMap lamp_, ground_;
   RenderTarget target_, output_;
   OverlayLines overlay_;
   GlBuffer overlay_buffer_;
   GlVertexArray overlay_array_;
-  int largest_ = 0;
+  int max_size_ = 0;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Reading, compiling, linking; a driver's complaint with the file's name before the line.
+// Reads, compiles and links shaders; adds file names to the line numbers in the driver's messages.
 #include "view/shaders.h"
 
 #include <array>
@@ -14,20 +14,20 @@
 
 namespace limber {
 
-/// The files of shaders/, which the build puts inside the program.
+/// The files of shaders/, embedded by the build.
 std::span<const EmbeddedFile> shader_files();
 
 namespace {
 
 constexpr const char* kCommon = "common.glsl";
-constexpr int kOwnLines = 10000;  // before a file's own first line
+constexpr int kFileLineBase = 10000;  // added to a file's own line numbers, to distinguish them from those of kCommon
 
 struct ProgramFiles {
   const char* name;
   const char* vertex;
   const char* fragment;
   const char* defines = "";
-  bool GlApiInfo::*unless = nullptr;  // replaces this feature of OpenGL
+  bool GlApiInfo::*replaced_feature = nullptr;  // only built if the API lacks this feature
 };
 const std::array<ProgramFiles, 8> kPrograms = {
     {{"shape", "shape.vert", "shape.frag"},
@@ -39,7 +39,7 @@ const std::array<ProgramFiles, 8> kPrograms = {
      {"ground", "shape.vert", "ground.frag", "#define GROUND\n", &GlApiInfo::depth_clamp},
      {"encode", "encode.vert", "encode.frag", "", &GlApiInfo::srgb_switch}}};
 
-// in front of every shader: the version, and what that leaves open
+// the start of every shader: version, extensions, default precisions, CLIP_DISTANCE
 std::string header(const GlApiInfo& api) {
   std::string text = fmt::format("{}\n", api.glsl);
   if (!api.attribute_slot) text += "#extension GL_ARB_explicit_attrib_location : require\n";
@@ -60,8 +60,8 @@ std::string log_of(GLuint name, Get get) {
 
 }  // namespace
 
-std::string Shaders::text_of(const std::string& file, bool inside) const {
-  if (!inside) {
+std::string Shaders::source_of(const std::string& file, bool embedded) const {
+  if (!embedded) {
     std::ifstream in(folder_ + "/" + file, std::ios::binary);
     if (in) return {std::istreambuf_iterator<char>(in), {}};
   }
@@ -69,8 +69,8 @@ std::string Shaders::text_of(const std::string& file, bool inside) const {
   return found == nullptr ? std::string() : std::string(found->text);
 }
 
-// drivers say "0:12(5): error: …" or "0(12) : error …"; lines of the file itself count from kOwnLines
-std::string Shaders::placed(const std::string& log, const std::string& file, bool inside) const {
+// drivers report "0:12(5): error: …" or "0(12) : error …"; lines of the file itself start at kFileLineBase
+std::string Shaders::with_file_names(const std::string& log, const std::string& file, bool embedded) const {
   std::string out;
   for (std::string_view line : split(log, '\n')) {
     if (line.empty()) continue;
@@ -79,9 +79,9 @@ std::string Shaders::placed(const std::string& log, const std::string& file, boo
     const bool counted = line.size() > 2 && line[0] == '0' && (line[1] == ':' || line[1] == '(') && end > 2;
     const auto number = counted ? parse_number(line.substr(2, end - 2)) : std::nullopt;
     if (number) {
-      const bool own = *number > kOwnLines;
-      out += fmt::format("{}/{}:{}{}", inside ? "shaders" : folder_, own ? file : kCommon,
-                         *number - (own ? kOwnLines : 0), end < line.size() ? line.substr(end) : "");
+      const bool in_file = *number > kFileLineBase;
+      out += fmt::format("{}/{}:{}{}", embedded ? "shaders" : folder_, in_file ? file : kCommon,
+                         *number - (in_file ? kFileLineBase : 0), end < line.size() ? line.substr(end) : "");
     } else {
       out += line;
     }
@@ -89,26 +89,26 @@ std::string Shaders::placed(const std::string& log, const std::string& file, boo
   return printable(shortened(out, 1000));
 }
 
-Result<GLuint> Shaders::compile(GLenum kind, const std::string& file, const std::string& defines, bool inside) const {
+Result<GLuint> Shaders::compile(GLenum kind, const std::string& file, const std::string& defines, bool embedded) const {
   const int first = 1 - api_.line_offset;
   const std::string text = fmt::format("{}{}{}#line {}\n{}\n#line {}\n{}", header(api_), defines_, defines, first,
-                                       text_of(kCommon, inside), kOwnLines + first, text_of(file, inside));
+                                       source_of(kCommon, embedded), kFileLineBase + first, source_of(file, embedded));
   const char* const source = text.c_str();
   const GLuint shader = glCreateShader(kind);
   glShaderSource(shader, 1, &source, nullptr);
   glCompileShader(shader);
-  GLint good = GL_FALSE;
-  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-  if (good == GL_TRUE) return shader;
+  GLint ok = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &ok);
+  if (ok == GL_TRUE) return shader;
   const std::string log = log_of(shader, glGetShaderInfoLog);
   glDeleteShader(shader);
-  return Error{placed(log, file, inside)};
+  return Error{with_file_names(log, file, embedded)};
 }
 
-Result<GlProgram> Shaders::build(const Made& wanted, bool inside) const {
-  const Result<GLuint> vertex = compile(GL_VERTEX_SHADER, wanted.vertex, wanted.defines, inside);
+Result<GlProgram> Shaders::build(const Program& files, bool embedded) const {
+  const Result<GLuint> vertex = compile(GL_VERTEX_SHADER, files.vertex, files.defines, embedded);
   if (!vertex) return Error{vertex.error()};
-  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, wanted.fragment, wanted.defines, inside);
+  const Result<GLuint> fragment = compile(GL_FRAGMENT_SHADER, files.fragment, files.defines, embedded);
   if (!fragment) {
     glDeleteShader(*vertex);
     return Error{fragment.error()};
@@ -119,11 +119,11 @@ Result<GlProgram> Shaders::build(const Made& wanted, bool inside) const {
     glDeleteShader(shader);
   }
   glLinkProgram(*program);
-  GLint good = GL_FALSE;
-  glGetProgramiv(*program, GL_LINK_STATUS, &good);
-  if (good != GL_TRUE) {
-    return Error{fmt::format("shaders {} and {} don't fit: {}", wanted.vertex, wanted.fragment,
-                             placed(log_of(*program, glGetProgramInfoLog), wanted.fragment, inside))};
+  GLint ok = GL_FALSE;
+  glGetProgramiv(*program, GL_LINK_STATUS, &ok);
+  if (ok != GL_TRUE) {
+    return Error{fmt::format("shaders {} and {} can't be linked: {}", files.vertex, files.fragment,
+                             with_file_names(log_of(*program, glGetProgramInfoLog), files.fragment, embedded))};
   }
   if (const GLuint block = glGetUniformBlockIndex(*program, "Frame"); block != GL_INVALID_INDEX)
     glUniformBlockBinding(*program, block, 0);
@@ -134,60 +134,60 @@ Result<GlProgram> Shaders::build(const Made& wanted, bool inside) const {
   return program;
 }
 
-void Shaders::complain(const std::string& text) {
-  if (fault_ == text) return;
-  fault_ = text;
-  if (!text.empty()) log_error("{}\nthe picture is drawn as before", text);
+void Shaders::report_error(const std::string& text) {
+  if (error_ == text) return;
+  error_ = text;
+  if (!text.empty()) log_error("{}\nthe previous shaders stay in use", text);
 }
 
-Result<void> Shaders::start() {
+Result<void> Shaders::build_all() {
   std::string fault;
   for (const ProgramFiles& files : kPrograms) {
-    if (files.unless != nullptr && api_.*files.unless) continue;
-    Made& made = made_[files.name];
-    made = {files.vertex, files.fragment, files.defines, {}};
-    Result<GlProgram> program = build(made, folder_.empty());
+    if (files.replaced_feature != nullptr && api_.*files.replaced_feature) continue;
+    Program& entry = programs_[files.name];
+    entry = {files.vertex, files.fragment, files.defines, {}};
+    Result<GlProgram> program = build(entry, folder_.empty());
     if (!program && !folder_.empty()) {
       fault = program.error();
-      program = build(made, true);
+      program = build(entry, true);
     }
-    if (!program) return Error{fmt::format("OpenGL refuses the program's own shaders: {}", program.error())};
-    made.program = std::move(*program);
+    if (!program) return Error{fmt::format("OpenGL rejects the embedded shaders: {}", program.error())};
+    entry.program = std::move(*program);
   }
   if (!folder_.empty()) {
     for (const EmbeddedFile& file : shader_files())
       stamps_[std::string(file.name)] = FileStamp(folder_ + "/" + std::string(file.name));
   }
-  complain(fault);
+  report_error(fault);
   return {};
 }
 
-bool Shaders::renew() {
+bool Shaders::reload() {
   bool changed = false;
   for (auto& [file, stamp] : stamps_) {
     const std::string path = folder_ + "/" + file;
-    if (stamp.holds(path)) continue;
+    if (stamp.is_current(path)) continue;
     stamp = FileStamp(path);
     changed = true;
   }
   if (!changed) return false;
-  bool made_one = false;
+  bool any_rebuilt = false;
   std::string fault;
-  for (auto& [name, made] : made_) {
-    Result<GlProgram> program = build(made, false);
+  for (auto& [name, entry] : programs_) {
+    Result<GlProgram> program = build(entry, false);
     if (!program) {
       fault = program.error();
       continue;
     }
-    made.program = std::move(*program);
-    made_one = true;
+    entry.program = std::move(*program);
+    any_rebuilt = true;
   }
-  if (fault.empty()) log_info("shaders: read anew");
-  complain(fault);
-  return made_one;
+  if (fault.empty()) log_info("shaders: reloaded");
+  report_error(fault);
+  return any_rebuilt;
 }
 
-GLuint Shaders::program(std::string_view name) const { return *made_.find(name)->second.program; }
+GLuint Shaders::program(std::string_view name) const { return *programs_.find(name)->second.program; }
 
 GLint Shaders::uniform(std::string_view name, const char* uniform) const {
   return glGetUniformLocation(program(name), uniform);

@@ -1,5 +1,5 @@
-// Shaders: the programs of shaders/, from that folder where it is there, else from inside the program; made anew when a
-// file is saved. One that is broken says why, and the last good one draws on.
+// Shaders: the GLSL programs from the folder shaders/ or embedded in the binary, with hot reload. If a program fails to
+// compile, the error is logged and the last working one stays in use.
 #pragma once
 
 #include <map>
@@ -13,44 +13,45 @@
 
 namespace limber {
 
+/// [main]
 class Shaders {
  public:
-  /// `folder`: empty: only those inside the program are used. `defines`: lines in front of every file, such as
+  /// `folder`: folder of shader files; empty: use the embedded ones. `defines`: lines prepended to every file, such as
   /// "#define TAPS 4\n". [main]
   Shaders(GlApi api, std::string folder, std::string defines)
       : api_(gl_api_info(api)), folder_(std::move(folder)), defines_(std::move(defines)) {}
 
-  /// Makes all programs. An error: even those inside the program don't compile here. [main]
-  Result<void> start();
-  /// Makes those anew whose files were saved since; true when one has changed. Faults are logged. [main]
-  bool renew();
+  /// Builds all programs. Errors if even the embedded shaders don't compile on this driver. [main]
+  Result<void> build_all();
+  /// Rebuilds all programs if a file has changed; true if any was rebuilt. Logs errors. [main]
+  bool reload();
 
-  /// The program of `name`.vert and `name`.frag. [main]
+  /// The OpenGL name of a program, such as "shape". [main]
   GLuint program(std::string_view name) const;
-  /// Where a uniform is; -1: the program does not use it. [main]
+  /// Location of a uniform; -1 if the program does not use it. [main]
   GLint uniform(std::string_view name, const char* uniform) const;
-  /// What was wrong when a file was read last; empty: nothing. [main]
-  const std::string& fault() const { return fault_; }
+  /// The error of the last (re)build; empty if it succeeded. [main]
+  const std::string& error() const { return error_; }
 
  private:
-  struct Made {
-    std::string vertex;  // files' names
+  struct Program {
+    std::string vertex;  // file name
     std::string fragment;
     std::string defines;
     GlProgram program;
   };
-  std::string text_of(const std::string& file, bool inside) const;
-  Result<GlProgram> build(const Made& wanted, bool inside) const;
-  Result<GLuint> compile(GLenum kind, const std::string& file, const std::string& defines, bool inside) const;
-  std::string placed(const std::string& log, const std::string& file, bool inside) const;
-  void complain(const std::string& text);
+  std::string source_of(const std::string& file, bool embedded) const;
+  Result<GlProgram> build(const Program& files, bool embedded) const;
+  Result<GLuint> compile(GLenum kind, const std::string& file, const std::string& defines, bool embedded) const;
+  std::string with_file_names(const std::string& log, const std::string& file, bool embedded) const;
+  void report_error(const std::string& text);
 
   const GlApiInfo& api_;
   std::string folder_;
   std::string defines_;
-  std::map<std::string, Made, std::less<>> made_;
+  std::map<std::string, Program, std::less<>> programs_;
   std::map<std::string, FileStamp, std::less<>> stamps_;
-  std::string fault_;
+  std::string error_;
 };
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// The bench: it plays what it says, prints what it promises, and its two sides are the same arms.
+// The benchmark: results, output, and that both sides simulate the same arms.
 #include "app/bench.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Json figures_of(std::string_view name, const BenchOptions& options) {
   return {};
 }
 
-TEST(Bench, GivesTheFiguresOfAnArm) {
+TEST(Bench, MeasuresAnArm) {
   BenchOptions options;
   options.ticks = 6;
   options.compare_raw = true;
@@ -45,7 +45,7 @@ TEST(Bench, GivesTheFiguresOfAnArm) {
   EXPECT_GT(figures["ratio"]["median"], 0);
 }
 
-TEST(Bench, TheSameSceneHasTheSameHashWhateverRunsBeside) {
+TEST(Bench, HashIsIndependentOfTheComparison) {
   BenchOptions options;
   options.ticks = 5;
   const Json alone = figures_of("arms-1", options);
@@ -71,7 +71,7 @@ TEST(Bench, DrawsSmallAndLarge) {
   EXPECT_EQ(figures["large"]["parts"], 17000);
 }
 
-TEST(Bench, SolvesEachMachineTwice) {
+TEST(Bench, RunsBothSolvers) {
   BenchOptions options;
   options.ticks = 3;
   const Json figures = figures_of("solver", options);
@@ -85,7 +85,7 @@ TEST(Bench, SolvesEachMachineTwice) {
   EXPECT_EQ(figures["random trees over a floor, 1/60 s"]["no_number"], 0);
 }
 
-TEST(Bench, TwoThreadsComeToWhatOneComesTo) {
+TEST(Bench, TwoThreadsGiveTheSameState) {
   BenchOptions options;
   options.ticks = 1;
   const Json figures = figures_of("threads", options);
@@ -106,7 +106,7 @@ TEST(Bench, RecordsAndReplaysATake) {
   EXPECT_GT(figures["replayed_by_played"], 0);
 }
 
-TEST(Bench, PrintsJsonForMachines) {
+TEST(Bench, PrintsJson) {
   testing::internal::CaptureStdout();
   const int code = bench_command({{"arms-1", "arm-quality"}, false, true, 3});
   const Json all = Json::parse(testing::internal::GetCapturedStdout());
@@ -118,7 +118,7 @@ TEST(Bench, PrintsJsonForMachines) {
   EXPECT_TRUE(all.contains("commit") && all.contains("cpu"));
 }
 
-TEST(Bench, PrintsLinesForPeople) {
+TEST(Bench, PrintsText) {
   testing::internal::CaptureStdout();
   const int code = bench_command({{"ARMS-1"}, true, false, 3});
   const std::string text = testing::internal::GetCapturedStdout();
@@ -129,14 +129,14 @@ TEST(Bench, PrintsLinesForPeople) {
   }
 }
 
-TEST(Bench, AnUnknownSceneIsUsageAndNamesTheNearest) {
+TEST(Bench, UnknownSceneSuggestsTheNearest) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(bench_command({{"arms-10"}, false, false, 1}), 2);
   const std::string text = testing::internal::GetCapturedStderr();
   EXPECT_NE(text.find("'arms-10'; did you mean 'arms-1"), std::string::npos) << text;
 }
 
-TEST(Bench, TextOfFigures) {
+TEST(Bench, FormatsResults) {
   const Json figures = {{"parts", 18}, {"tick_us", {{"min", 1.5}, {"p99", 2}}}, {"raw", {{"tick_us", {{"min", 3}}}}}};
   EXPECT_EQ(bench_text(figures),
             "  parts                           18\n"
@@ -144,15 +144,15 @@ TEST(Bench, TextOfFigures) {
             "  raw tick us                     min 3\n");
 }
 
-TEST(Bench, EveryMessageOfTheOscSceneFindsItsRow) {
+TEST(Bench, OscSceneHasNoRejectedMessages) {
   const Json figures = figures_of("osc-in", {});
   EXPECT_EQ(figures["refused"], 0);
   EXPECT_EQ(figures["burst_on_loopback"]["sent"], 10000);
   EXPECT_GE(figures["burst_on_loopback"]["arrived"], 2000);
 }
 
-// a single hanging link is what both sides can hold: the servo arrives, the joint stays together
-TEST(Bench, BothSidesAreTheSameArm) {
+// a single hanging link, which both sides can hold: the servo reaches its target and the joint stays closed
+TEST(Bench, BothSidesSimulateTheSameArm) {
   ArmScene scene = bench_arm_scene(1);
   scene.parts = 1;
   scene.hanging = true;
@@ -165,7 +165,7 @@ TEST(Bench, BothSidesAreTheSameArm) {
     ours.tick();
     raw.tick();
   }
-  // the target moves at most 0.3·π rad/s; stock servos make good a fifth of their error a step: 5/240 s behind, and
+  // the target moves at most 0.3·π rad/s; stock servos correct a fifth of their error per step: 5/240 s behind, plus
   // the tick's 1/60 s
   const double behind = 0.3 * kPi * (5.0 / 240 + 1.0 / 60) + 0.002;
   EXPECT_LT(ours.servo_error(0.75), behind);

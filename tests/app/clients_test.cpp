@@ -1,4 +1,4 @@
-// Real clients play the running program and read its streams: liblo's oscsend and oscdump, and Pure Data.
+// Third-party clients control the running program and read its streams: liblo's oscsend and oscdump, and Pure Data.
 #include <netinet/in.h>
 #include <sys/socket.h>
 
@@ -7,7 +7,7 @@
 namespace limber::app_test {
 namespace {
 
-// an arm of one hanging joint that tells what it was sent
+// an arm with one hanging joint that prints the values it receives
 constexpr const char* kHangingArm = R"(
 local shape = sim:add_sphere_shape("ball", 0.1)
 local arm = sim:add_body("arm")
@@ -18,7 +18,7 @@ osc:on("/physics/part/friction", function() print("friction", arm:part("tip").fr
 osc:on("/physics/sim/gravity", function() print("gravity", sim.gravity.z) end)
 )";
 
-// a UDP port that is free now; the client takes it in a moment
+// returns a UDP port that is currently free; the client will open it
 std::string free_port() {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in at{};
@@ -31,42 +31,42 @@ std::string free_port() {
   return std::to_string(ntohs(at.sin_port));
 }
 
-// the program with ports of its own; `in` is where it listens
+// the program on its own ports; `in`: its OSC input port
 struct ArmPlayer {
-  Folder folder;
+  TempFolder folder;
   std::string out = free_port();
-  Running running{
-      limber({folder.file("s.lua", kHangingArm), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + out})};
+  Process running{
+      limber_command({folder.file("s.lua", kHangingArm), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + out})};
   std::string in;
 
   ArmPlayer() {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    in = running.behind("OSC in 127.0.0.1:");
+    in = running.text_after("OSC in 127.0.0.1:");
   }
 };
 
-TEST(Clients, OscsendPlays) {
+TEST(Clients, OscsendSetsValues) {
   ArmPlayer player;
   const std::string url = "osc.udp://127.0.0.1:" + player.in;
-  EXPECT_EQ(Running({"oscsend", url, "/physics/part/friction", "ssf", "arm", "tip", "0.25"}).finish().code, 0);
+  EXPECT_EQ(Process({"oscsend", url, "/physics/part/friction", "ssf", "arm", "tip", "0.25"}).finish().code, 0);
   EXPECT_TRUE(player.running.wait_for("friction\t0.25\n", true)) << player.running.out();
-  EXPECT_EQ(Running({"oscsend", url, "/physics/sim/gravity", "i", "-3"}).finish().code, 0);
+  EXPECT_EQ(Process({"oscsend", url, "/physics/sim/gravity", "i", "-3"}).finish().code, 0);
   EXPECT_TRUE(player.running.wait_for("gravity\t-3\n", true)) << player.running.out();
 }
 
 TEST(Clients, OscdumpReadsTheStreams) {
   ArmPlayer player;
-  Running dump({"stdbuf", "-oL", "oscdump", "-L", player.out});
-  // the joint's point is the base's centre, whatever moves
+  Process dump({"stdbuf", "-oL", "oscdump", "-L", player.out});
+  // the joint is at the base's center, which is fixed
   EXPECT_TRUE(dump.wait_for("/physics/joint/pos sfff \"arm\" 1.000000 2.000000 3.000000", true)) << dump.out();
   EXPECT_TRUE(dump.wait_for("/physics/joint/rot sffff \"arm\" ", true)) << dump.out();
   EXPECT_TRUE(dump.wait_for("/physics/joint/relrot sfff \"arm\" ", true)) << dump.out();
 }
 
-TEST(Clients, PureDataPlaysReadsAndIsAnswered) {
+TEST(Clients, PureDataSendsReadsAndReceivesReplies) {
   ArmPlayer player;
   const std::string patch = std::string(LIMBER_SOURCE_DIR) + "/tests/app/play.pd";
-  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
+  Process pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
               "ports " + player.in + " " + player.out});
   EXPECT_TRUE(player.running.wait_for("gravity\t-3\n", true)) << player.running.out() << pd.err();
   EXPECT_TRUE(player.running.wait_for("friction\t0.75\n", true)) << player.running.out() << pd.err();

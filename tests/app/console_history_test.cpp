@@ -1,4 +1,4 @@
-// The consoles' history: kept at once, bounded, and whatever is in its file, the lines that are whole are read.
+// The console history: saved at once, bounded, and robust against damaged files.
 #include "app/console_history.h"
 
 #include "app/program.h"
@@ -10,17 +10,17 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-TEST(ConsoleHistory, KeepsLinesOverConsoles) {
+TEST(ConsoleHistory, SavesLinesForLaterConsoles) {
   const PrivateFolder folder;
   const std::string file = folder / "state/limber/console_history";
   ConsoleHistory first(file);
   EXPECT_TRUE(first.lines().empty());
   for (const char* line : {"sim.time", "sim.time", "  ", "", "x = 'ä'", "two\nlines", "\x1b[31m", "sim.time"})
     first.add(line);
-  const Lines kept = {"sim.time", "x = 'ä'", "sim.time"};
-  EXPECT_EQ(first.lines(), kept) << "no blank ones, none twice in a row, nothing that a terminal would obey";
-  EXPECT_EQ(ConsoleHistory(file).lines(), kept);
-  // two consoles at a time
+  const Lines expected = {"sim.time", "x = 'ä'", "sim.time"};
+  EXPECT_EQ(first.lines(), expected) << "no blank lines, no repetitions, no control sequences";
+  EXPECT_EQ(ConsoleHistory(file).lines(), expected);
+  // two consoles at the same time
   ConsoleHistory other(file);
   first.add("one");
   other.add("another");
@@ -36,17 +36,17 @@ TEST(ConsoleHistory, IsBounded) {
   for (int i = 1; i <= 5000; i++) much += "line " + std::to_string(i) + "\n";
   std::ofstream(file) << much;
   ConsoleHistory history(file);
-  ASSERT_EQ(history.lines().size(), ConsoleHistory::kMostLines);
+  ASSERT_EQ(history.lines().size(), ConsoleHistory::kMaxLines);
   EXPECT_EQ(history.lines().front(), "line 4001");
   EXPECT_EQ(history.lines().back(), "line 5000");
-  EXPECT_EQ(content(file).size(), 1000 * std::string("line 4001\n").size()) << "what is too old leaves the file";
+  EXPECT_EQ(content(file).size(), 1000 * std::string("line 4001\n").size()) << "old lines are removed from the file";
   history.add("new");
-  EXPECT_EQ(history.lines().size(), ConsoleHistory::kMostLines);
-  history.add(std::string(ConsoleHistory::kMostBytes + 1, 'x'));
+  EXPECT_EQ(history.lines().size(), ConsoleHistory::kMaxLines);
+  history.add(std::string(ConsoleHistory::kMaxLineBytes + 1, 'x'));
   EXPECT_EQ(history.lines().back(), "new");
 }
 
-TEST(ConsoleHistory, ADamagedFileGivesWhatIsWhole) {
+TEST(ConsoleHistory, ReadsTheValidLinesOfADamagedFile) {
   const PrivateFolder folder;
   const std::string file = folder / "h";
   std::ofstream(file, std::ios::binary) << "good\n\xff\xfe\x80\n"
@@ -63,7 +63,7 @@ TEST(ConsoleHistory, ADamagedFileGivesWhatIsWhole) {
   }
 }
 
-TEST(ConsoleHistory, WithoutAPlaceItLivesForOneConsole) {
+TEST(ConsoleHistory, WorksWithoutAFile) {
   for (const std::string& file : {std::string(), std::string("/proc/nowhere/h"), std::string("/")}) {
     ConsoleHistory history(file);
     history.add("x");

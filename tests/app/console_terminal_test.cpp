@@ -1,4 +1,4 @@
-// `limber console` at a terminal: prompt, completion, history, several lines, what the show says meanwhile.
+// `limber console` at a terminal: prompt, completion, history, multiple lines, and messages of the show meanwhile.
 #include <pty.h>
 
 #include "app/playing.h"
@@ -6,10 +6,10 @@
 namespace limber::app_test {
 namespace {
 
-/// A console that believes that somebody sits there.
-class Typist {
+/// A console on a pseudo terminal.
+class ConsoleUser {
  public:
-  explicit Typist(const Playing& show) {
+  explicit ConsoleUser(const Playing& show) {
     const std::vector<std::string> words = show.words({"console"});
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
@@ -22,51 +22,51 @@ class Typist {
       _exit(127);
     }
   }
-  ~Typist() {
+  ~ConsoleUser() {
     if (pid_ > 0) {
       ::kill(pid_, SIGKILL);
       waitpid(pid_, nullptr, 0);
     }
     close(fd_);
   }
-  Typist(const Typist&) = delete;
-  Typist& operator=(const Typist&) = delete;
+  ConsoleUser(const ConsoleUser&) = delete;
+  ConsoleUser& operator=(const ConsoleUser&) = delete;
 
   void type(const std::string& keys) const {
     EXPECT_EQ(write(fd_, keys.data(), keys.size()), static_cast<ssize_t>(keys.size()));
   }
-  /// Reads until this has come; gives what came up to its end.
-  std::string until(const std::string& text) {
+  /// Reads until `text` appears; returns the output up to its end.
+  std::string read_until(const std::string& text) {
     while (true) {
       const std::size_t at = in_.find(text);
       if (at != std::string::npos) {
-        std::string came = in_.substr(0, at + text.size());
-        in_.erase(0, came.size());
-        return came;
+        std::string output = in_.substr(0, at + text.size());
+        in_.erase(0, output.size());
+        return output;
       }
       if (!read_some()) {
-        ADD_FAILURE() << "'" << text << "' never came, but:\n" << in_;
+        ADD_FAILURE() << "'" << text << "' not found in:\n" << in_;
         return in_;
       }
     }
   }
-  /// Reads until the prompt has come and the editor has the terminal, which it takes right after: what is typed before
-  /// is echoed twice, and Ctrl+C would drop it. Gives what came.
-  std::string prompted(const std::string& prompt = "limber> ") {
-    std::string came = until(prompt);
+  /// Reads until the prompt appears and the editor has switched the terminal to raw mode right after: earlier input is
+  /// echoed twice, and Ctrl+C would discard it. Returns the output.
+  std::string wait_for_prompt(const std::string& prompt = "limber> ") {
+    std::string output = read_until(prompt);
     termios mode{};
-    for (int left = kPatienceMs; left > 0 && tcgetattr(fd_, &mode) == 0 && (mode.c_lflag & ICANON) != 0; left--) {
+    for (int left = kTimeoutMs; left > 0 && tcgetattr(fd_, &mode) == 0 && (mode.c_lflag & ICANON) != 0; left--) {
       poll(nullptr, 0, 1);
     }
-    return came;
+    return output;
   }
-  /// Types a line and gives what is between it and the next prompt.
+  /// Types a line and returns the output between it and the next prompt.
   std::string line(const std::string& text, const std::string& prompt = "limber> ") {
     type(text + "\n");
-    until("\r\n");
-    std::string came = prompted(prompt);
-    came.resize(came.size() - prompt.size());
-    return came;
+    read_until("\r\n");
+    std::string output = wait_for_prompt(prompt);
+    output.resize(output.size() - prompt.size());
+    return output;
   }
   int finish() {
     while (read_some()) {
@@ -75,13 +75,13 @@ class Typist {
     waitpid(std::exchange(pid_, -1), &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
-  const std::string& left() const { return in_; }
+  const std::string& unread() const { return in_; }
 
  private:
   bool read_some() {
     pollfd polled{fd_, POLLIN, 0};
     char bytes[4096];
-    if (poll(&polled, 1, kPatienceMs) <= 0) return false;
+    if (poll(&polled, 1, kTimeoutMs) <= 0) return false;
     const ssize_t n = read(fd_, bytes, sizeof bytes);
     if (n <= 0) return false;
     in_.append(bytes, static_cast<std::size_t>(n));
@@ -100,105 +100,105 @@ osc:on("/never", print)
 function later(text) sim:after(0.05, function() print(text) end) end
 )";
 
-TEST(Terminal, EvaluatesAndKeepsAHistory) {
+TEST(Terminal, EvaluatesAndSavesHistory) {
   Playing show(kTypedScene);
   {
-    Typist typist(show);
-    EXPECT_NE(typist.prompted().find("plays " + show.file()), std::string::npos);
+    ConsoleUser typist(show);
+    EXPECT_NE(typist.wait_for_prompt().find("plays " + show.file()), std::string::npos);
     EXPECT_EQ(typist.line("apple + 1"), "4\r\n");
     EXPECT_EQ(typist.line("apple = 5"), "");
     EXPECT_TRUE(typist.line("aple").starts_with("console:1: there is no global 'aple'; did you mean 'apple'?\r\n"));
     // up twice: the line before the last
     typist.type("\x1b[A\x1b[A");
-    typist.until(" = 5");
+    typist.read_until(" = 5");
     typist.type("0\n");
-    typist.prompted();
+    typist.wait_for_prompt();
     EXPECT_EQ(typist.line("apple"), "50\r\n");
     typist.type("\x04");
     EXPECT_EQ(typist.finish(), 0);
   }
-  Typist again(show);
-  again.prompted();
+  ConsoleUser again(show);
+  again.wait_for_prompt();
   again.type("\x1b[A");
-  again.until("apple");
+  again.read_until("apple");
   again.type(" + 1\n");
-  EXPECT_NE(again.prompted().find("\r\n51\r\n"), std::string::npos);
+  EXPECT_NE(again.wait_for_prompt().find("\r\n51\r\n"), std::string::npos);
 }
 
-TEST(Terminal, SeveralLinesMakeAChunkAndCtrlCGivesItUp) {
+TEST(Terminal, JoinsIncompleteLinesAndCtrlCCancels) {
   Playing show(kTypedScene);
-  Typist typist(show);
-  typist.prompted();
+  ConsoleUser typist(show);
+  typist.wait_for_prompt();
   EXPECT_EQ(typist.line("for i = 1, 2 do", ".. "), "     ");
   EXPECT_EQ(typist.line("print(i)", ".. "), "     ");
   EXPECT_EQ(typist.line("end"), "1\r\n2\r\n");
   EXPECT_EQ(typist.line("if apple then", ".. "), "     ");
   typist.type("\x03");
-  typist.until("^C\r\n");
-  typist.prompted();
+  typist.read_until("^C\r\n");
+  typist.wait_for_prompt();
   EXPECT_EQ(typist.line("apple"), "3\r\n");
-  // and a line that is only begun
+  // also for an incomplete line
   typist.type("apple = 99");
-  typist.until("apple = 99");
+  typist.read_until("apple = 99");
   typist.type("\x03");
-  typist.prompted();
+  typist.wait_for_prompt();
   EXPECT_EQ(typist.line("apple"), "3\r\n");
 }
 
 TEST(Terminal, TabCompletes) {
   Playing show(kTypedScene);
-  Typist typist(show);
-  typist.prompted();
+  ConsoleUser typist(show);
+  typist.wait_for_prompt();
   typist.type("sim:body(\"a\t");
-  typist.until("rm");  // the editor draws what is new
+  typist.read_until("rm");  // the editor draws only the new characters
   typist.type("\"):part(1).restit\t");
-  typist.until("ution");
+  typist.read_until("ution");
   EXPECT_EQ(typist.line(""), "0\r\n");
-  // several: as far as they go, then all of them
+  // several candidates: their common prefix, then all of them
   typist.type("sim.time\t");
-  const std::string offered = typist.prompted();
+  const std::string offered = typist.wait_for_prompt();
   EXPECT_NE(offered.find("time      timestep"), std::string::npos) << offered;
-  typist.until("sim.time");
+  typist.read_until("sim.time");
   typist.type("s\t");
-  typist.until("tep");
+  typist.read_until("tep");
   EXPECT_NE(typist.line("").find("0.0166"), std::string::npos);
 }
 
-TEST(Terminal, WhatTheShowSaysComesAboveTheLineThatIsTyped) {
+TEST(Terminal, ShowsMessagesAboveTheEditedLine) {
   Playing show(kTypedScene);
-  Typist typist(show);
-  typist.prompted();
+  ConsoleUser typist(show);
+  typist.wait_for_prompt();
   EXPECT_EQ(typist.line("later('hello')"), "");
   typist.type("app");
-  typist.until("\r\x1b[Khello\r\n");
-  typist.until("limber> app");
+  typist.read_until("\r\x1b[Khello\r\n");
+  typist.read_until("limber> app");
   EXPECT_EQ(typist.line("le"), "3\r\n");
 }
 
-TEST(Terminal, TheEndOfTheShowIsSaid) {
+TEST(Terminal, ReportsTheEndOfTheShow) {
   Playing show(kTypedScene);
-  Typist typist(show);
-  typist.prompted();
+  ConsoleUser typist(show);
+  typist.wait_for_prompt();
   show.running().signal(SIGINT);
-  typist.until("limber has ended");
+  typist.read_until("limber has ended");
   EXPECT_EQ(typist.finish(), 0);
 }
 
-TEST(Terminal, AnAnswerThatNeverComesCanBeGivenUp) {
+TEST(Terminal, CtrlCCancelsTheWaitForAnAnswer) {
   Playing show(kTypedScene);
-  Typist typist(show);
-  typist.prompted();
-  // a program that does not go on
+  ConsoleUser typist(show);
+  typist.wait_for_prompt();
+  // a stopped program
   show.running().signal(SIGSTOP);
   typist.type("apple\n");
-  typist.until("\r\n");
+  typist.read_until("\r\n");
   typist.type("\x03");
-  typist.until("its answer is not awaited");
-  typist.prompted();
-  // it comes late, as anything that the program says
+  typist.read_until("the evaluation may still be running");
+  typist.wait_for_prompt();
+  // the answer arrives late and is printed like other messages
   show.running().signal(SIGCONT);
-  typist.until("3\r\n");
-  typist.prompted();
+  typist.read_until("3\r\n");
+  typist.wait_for_prompt();
   EXPECT_EQ(typist.line("apple + 1"), "4\r\n");
 }
 

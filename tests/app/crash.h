@@ -1,5 +1,5 @@
-// A show that is killed: messages, presets that are stored, a take, all by a seed, and SIGKILL behind so many answers.
-// Then what is on the disk, and the next start.
+// Kills a show with SIGKILL after a number of replies, while it receives random messages, stores presets and records a
+// take; then checks the files on disk and the next start.
 #pragma once
 
 #include <atomic>
@@ -28,49 +28,52 @@ sim:every(0.2, function() sim:body("ball1").parts[1]:apply_impulse(rng:direction
 
 class CrashRound {
  public:
-  /// Greatest age of the values that a recovery restores, in ticks: a copy is made every five seconds, and the one
-  /// before is still being written.
-  static constexpr double kSpareTicks = 600;
+  /// Maximal age of recovered values, in ticks: a copy is made every five seconds, and the previous one may still be
+  /// being written.
+  static constexpr double kMaxRecoveryAge = 600;
 
-  /// Killed behind about so many answers, each of which is a tick; with a `take` or without one.
+  /// Kills the show after about this many replies, each of which takes a tick; `take`: record a take meanwhile.
   CrashRound(std::uint64_t seed, int answers, bool take)
-      : random_(seed, "crash"), wanted_(answers), takes_(take), scene_(folder_.file("scripts/s.lua", kCrashScene)) {}
+      : random_(seed, "crash"),
+        replies_(answers),
+        records_take_(take),
+        scene_(folder_.file("scripts/s.lua", kCrashScene)) {}
 
   void run() {
-    const std::string at = fmt::format("killed behind {} answers{}", wanted_, takes_ ? " with a take" : "");
+    const std::string at = fmt::format("killed behind {} answers{}", replies_, records_take_ ? " with a take" : "");
     SCOPED_TRACE(at);
     play();
     check_presets();
-    if (takes_) check_take();
+    if (records_take_) check_take();
     check_recovery();
   }
 
  private:
-  // what the n-th step sets: two rows in one tick, so that what is half-written would show
-  struct Mark {
+  // values set by the n-th step: two properties in one tick, which reveals partial writes
+  struct Step {
     int value = 0;
     double tick = 0;
   };
 
-  std::vector<std::string> words(std::vector<std::string> more) const {
+  std::vector<std::string> arguments(std::vector<std::string> more) const {
     std::vector<std::string> args = {scene_,      "--headless", "--osc-in", "127.0.0.1:0",
                                      "--osc-out", "off",        "--query",  "off"};
     args.insert(args.end(), more.begin(), more.end());
-    return limber(std::move(args), {"env", "XDG_STATE_HOME=" + folder_.path() + "/state"});
+    return limber_command(std::move(args), {"env", "XDG_STATE_HOME=" + folder_.path() + "/state"});
   }
-  // false: the program does not play
-  bool begin(Running& running) {
+  // false: the program doesn't play
+  bool wait_until_playing(Process& running) {
     if (!running.wait_for("playing headless")) return false;
-    end_ = {0x7f000001, static_cast<std::uint16_t>(std::stoi(running.behind("OSC in 127.0.0.1:")))};
+    endpoint_ = {0x7f000001, static_cast<std::uint16_t>(std::stoi(running.text_after("OSC in 127.0.0.1:")))};
     return true;
   }
   void send(const Message& message) const {
     PacketBuffer buffer;
     const std::span<const char> bytes = encode_message(message, buffer);
-    client_.send(end_, {bytes.data(), bytes.size()});
+    client_.send(endpoint_, {bytes.data(), bytes.size()});
   }
-  // the first number of the next answer with that address
-  double answer(const std::string& address) const {
+  // returns the first number of the next reply with that address
+  double reply(const std::string& address) const {
     while (const auto bytes = client_.receive()) {
       const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
       for (const Message& message : decoded->messages) {
@@ -82,18 +85,18 @@ class CrashRound {
   }
   double get(const std::string& path) const {
     send({"/get", {Arg::of(path)}});
-    return answer(path);
+    return reply(path);
   }
 
   void play() {
-    Running running(words({}));
-    ASSERT_TRUE(begin(running)) << running.err();
-    if (takes_) {
+    Process running(arguments({}));
+    ASSERT_TRUE(wait_until_playing(running)) << running.err();
+    if (records_take_) {
       send({"/take/record", {Arg::of("crash")}});
-      answer("/take/recording");
+      reply("/take/recording");
     }
-    for (int n = 1; n <= wanted_; n++) {
-      marks_.push_back({n, tick_});
+    for (int n = 1; n <= replies_; n++) {
+      steps_.push_back({n, tick_});
       send({"/scene/mark", {Arg::of(static_cast<double>(n))}});
       send({"/physics/sim/gravity", {Arg::of(-n / kGravity)}});
       if (random_.uniform() < 0.4) {
@@ -101,10 +104,10 @@ class CrashRound {
         send({"/preset/store", {Arg::of(name)}});
         stored_[name] = n;
       }
-      // the last moment lies in the middle of a tick's writing, or before it
-      if (n == wanted_ && random_.uniform() < 0.5) break;
+      // the kill happens in the middle of writing a tick, or before it
+      if (n == replies_ && random_.uniform() < 0.5) break;
       tick_ = get("/physics/sim/tick");
-      if (random_.uniform() < 0.3 && get("/preset/saved") == 1) confirmed_ = stored_;
+      if (random_.uniform() < 0.3 && get("/preset/saved") == 1) saved_ = stored_;
     }
     running.signal(SIGKILL);
     running.finish();
@@ -112,96 +115,98 @@ class CrashRound {
 
   static constexpr double kGravity = 128;  // steps in 1 m/s²
 
-  // the two rows of a preset: both are of one step
-  static int mark_of(const Preset& preset) {
-    double mark = -1;
+  // checks that both values of a preset are of the same step, and returns it
+  static int step_of(const Preset& preset) {
+    double step = -1;
     double gravity = -1;
-    for (std::uint32_t i = 0; i < preset.shape->things().size(); i++) {
-      const PresetShape::Thing& thing = preset.shape->things()[i];
-      const PresetClass* const rows = preset.shape->rows(thing);
-      if (rows == nullptr) continue;
+    for (std::uint32_t i = 0; i < preset.schema->nodes().size(); i++) {
+      const PresetSchema::Node& thing = preset.schema->nodes()[i];
+      const PresetLayout* const layout = preset.schema->layout(thing);
+      if (layout == nullptr) continue;
       const auto number = [&](const char* name, std::uint32_t index) {
-        const int at = rows->find(name);
-        return at < 0 ? -1 : preset.values[thing.at + rows->offsets[static_cast<std::size_t>(at)] + index];
+        const int at = layout->find(name);
+        return at < 0 ? -1 : preset.values[thing.offset + layout->offsets[static_cast<std::size_t>(at)] + index];
       };
-      if (preset.shape->path(i) == "/scene") mark = number("mark", 0);
-      if (preset.shape->path(i) == "/physics/sim") gravity = -kGravity * number("gravity", 2);
+      if (preset.schema->path(i) == "/scene") step = number("mark", 0);
+      if (preset.schema->path(i) == "/physics/sim") gravity = -kGravity * number("gravity", 2);
     }
-    EXPECT_EQ(mark, gravity) << preset.name;
-    return static_cast<int>(mark);
+    EXPECT_EQ(step, gravity) << preset.name;
+    return static_cast<int>(step);
   }
 
   void check_presets() {
-    PresetFile file(PresetFile::beside(scene_));
-    const Result<PresetsRead> read = file.load();
+    PresetFile file(PresetFile::path_for(scene_));
+    const Result<ParsedPresets> read = file.load();
     ASSERT_TRUE(read.ok()) << read.error();
     EXPECT_TRUE(read->problems.empty());
     std::map<std::string, int> found;
-    for (const auto& preset : read->presets) found[preset->name] = mark_of(*preset);
-    for (const auto& [name, mark] : confirmed_) EXPECT_GE(found[name], mark) << name;
-    for (const auto& [name, mark] : found) EXPECT_LE(mark, stored_[name]) << name;
+    for (const auto& preset : read->presets) found[preset->name] = step_of(*preset);
+    for (const auto& [name, step] : saved_) EXPECT_GE(found[name], step) << name;
+    for (const auto& [name, step] : found) EXPECT_LE(step, stored_[name]) << name;
   }
 
   void check_take() {
     const std::string beside = folder_.path() + "/scripts/takes/crash.take";
     const std::string take = std::filesystem::exists(beside) ? beside : folder_.path() + "/takes/crash.take";
-    // one that was killed before its first tick is none
+    // a take that was killed before its first tick may be missing
     if (tick_ < 30 && !std::filesystem::exists(take)) return;
-    const Ran again = app_test::run({"--replay", take, "--fast"});
+    const RunResult again = app_test::run({"--replay", take, "--fast"});
     EXPECT_EQ(again.code, 0) << again.err;
     const std::size_t at = again.err.find("replayed ");
     ASSERT_NE(at, std::string::npos) << again.err;
-    EXPECT_NE(again.err.find("every hash is the take's; the take was cut off there\n"), std::string::npos) << again.err;
-    EXPECT_GE(std::stod(again.err.substr(at + 9)), tick_ - 60) << "a tenth of a second may be lost, here a whole one";
+    EXPECT_NE(again.err.find("all hashes match the take; the take was cut off there\n"), std::string::npos)
+        << again.err;
+    EXPECT_GE(std::stod(again.err.substr(at + 9)), tick_ - 60)
+        << "up to a tenth of a second may be lost; a second of tolerance";
   }
 
   void check_recovery() {
-    Running running(words({"--recover"}));
-    ASSERT_TRUE(begin(running)) << running.err();
-    const auto mark = static_cast<int>(get("/scene/mark"));
+    Process running(arguments({"--recover"}));
+    ASSERT_TRUE(wait_until_playing(running)) << running.err();
+    const auto step = static_cast<int>(get("/scene/mark"));
     EXPECT_EQ(get("/physics/sim/gravity"), 0) << "its x";
     int oldest = 0;
-    for (const Mark& each : marks_) {
-      if (each.tick <= tick_ - kSpareTicks) oldest = each.value;
+    for (const Step& each : steps_) {
+      if (each.tick <= tick_ - kMaxRecoveryAge) oldest = each.value;
     }
-    EXPECT_GE(mark, oldest);
-    EXPECT_LE(mark, marks_.back().value);
+    EXPECT_GE(step, oldest);
+    EXPECT_LE(step, steps_.back().value);
     const bool any = running.err().find("--recover: there is nothing to recover") == std::string::npos;
-    EXPECT_EQ(any, mark > 0) << running.err();
-    EXPECT_EQ(any, running.err().find(" back as they were at ") != std::string::npos) << running.err();
+    EXPECT_EQ(any, step > 0) << running.err();
+    EXPECT_EQ(any, running.err().find(" restored as of ") != std::string::npos) << running.err();
     running.signal(SIGTERM);
     EXPECT_EQ(running.finish().code, 0);
-    // that run has ended well, and has brought back what was lost
+    // the run exited cleanly and has restored the lost values
     EXPECT_TRUE(std::filesystem::is_empty(folder_.path() + "/state/limber/recovery"));
-    // what the killed one had begun to write is gone
+    // temporary files of the killed program are removed
     for (const auto& entry : std::filesystem::directory_iterator(folder_.path() + "/scripts"))
       EXPECT_NE(entry.path().extension(), ".new") << entry.path();
   }
 
   Random random_;
-  int wanted_;
-  bool takes_;
-  Folder folder_;
+  int replies_;
+  bool records_take_;
+  TempFolder folder_;
   std::string scene_;
   osc_test::Client client_;
-  Endpoint end_{};
-  double tick_ = 0;                       // seen last
-  std::vector<Mark> marks_;               // by the tick that was seen before each
-  std::map<std::string, int> stored_;     // sent
-  std::map<std::string, int> confirmed_;  // of these, told to be on the disk
+  Endpoint endpoint_{};
+  double tick_ = 0;                    // last known
+  std::vector<Step> steps_;            // with the last known tick before each
+  std::map<std::string, int> stored_;  // sent
+  std::map<std::string, int> saved_;   // of these, reported as saved
 };
 
-/// So many rounds, a number of them at a time. One in three lives long enough for its values to be kept.
-inline void crash(int rounds, int at_once) {
+/// Runs a number of rounds, several at a time. One in three plays long enough to save values for recovery.
+inline void crash(int rounds, int threads_count) {
   std::atomic<int> next{0};
   std::vector<std::thread> threads;
-  threads.reserve(static_cast<std::size_t>(at_once));
-  for (int i = 0; i < at_once; i++) {
+  threads.reserve(static_cast<std::size_t>(threads_count));
+  for (int i = 0; i < threads_count; i++) {
     threads.emplace_back([&] {
       for (int n = next.fetch_add(1); n < rounds; n = next.fetch_add(1)) {
         Random random(static_cast<std::uint64_t>(n + 1), "moments");
-        const bool kept = n % 3 == 0;
-        const double answers = kept ? random.uniform(340, 800) : random.uniform(2, 120);
+        const bool recovers = n % 3 == 0;
+        const double answers = recovers ? random.uniform(340, 800) : random.uniform(2, 120);
         CrashRound(static_cast<std::uint64_t>(n + 1), static_cast<int>(answers), n % 2 == 0).run();
       }
     });

@@ -1,4 +1,4 @@
-// The reference that `limber describe` prints: the golden file of every address, a scene's own, and JSON.
+// The reference printed by `limber describe`: the golden file of all addresses, a scene's own addresses, and JSON.
 #include "app/describe.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<std::string> columns(const std::string& line) {
   }
 }
 
-TEST(Describe, EveryAddressIsAPromise) {
+TEST(Describe, MatchesTheGoldenFile) {
   std::ifstream in(LIMBER_SOURCE_DIR "/tests/golden/addresses.txt");
   const std::vector<std::string> golden = lines_of({std::istreambuf_iterator<char>(in), {}});
   const std::vector<std::string> now = lines_of(describe_classes());
@@ -43,14 +43,14 @@ TEST(Describe, EveryAddressIsAPromise) {
   for (const std::string& line : now) {
     if (std::find(golden.begin(), golden.end(), line) == golden.end()) changes += "+ " + line + "\n";
   }
-  EXPECT_EQ(changes, "") << "addresses are promises to patches and presets. If the change is meant, renew the file:\n"
-                            "    build/limber describe > tests/golden/addresses.txt\nand let the review see it";
+  EXPECT_EQ(changes, "") << "patches and presets depend on addresses. If the change is intended, update the file:\n"
+                            "    build/limber describe > tests/golden/addresses.txt";
   EXPECT_EQ(golden, now) << "the same lines in another order";
 }
 
 TEST(Describe, EachLineHasEveryColumn) {
   const std::vector<std::string> lines = lines_of(describe_classes());
-  EXPECT_EQ(lines[0], "address\tseed's message\tkind\ttype\tunit\trange\tdefault\tmeaning");
+  EXPECT_EQ(lines[0], "address\tlegacy address\tkind\ttype\tunit\trange\tdefault\tmeaning");
   for (const std::string& line : lines) EXPECT_EQ(columns(line).size(), 8U) << line;
   const auto mass = std::find_if(lines.begin(), lines.end(), [](const std::string& l) {
     return l.starts_with("/physics/body/<body>/part/<part>/mass\t");
@@ -65,33 +65,34 @@ TEST(Describe, EachLineHasEveryColumn) {
   EXPECT_EQ(cells[6], "1");
 }
 
-TEST(Describe, TheProgramPrintsTheSame) {
-  const Ran ran = run({"describe"});
-  EXPECT_EQ(ran.code, 0);
-  EXPECT_EQ(ran.out, describe_classes());
-  EXPECT_EQ(ran.err, "");
+TEST(Describe, ProgramPrintsTheSame) {
+  const RunResult result = run({"describe"});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out, describe_classes());
+  EXPECT_EQ(result.err, "");
 }
 
-TEST(Describe, ASceneHasAllItsOwnAddresses) {
-  const Folder folder;
+TEST(Describe, ListsAddressesOfAScene) {
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", R"(
 print("this is not the answer")
 sim:add_body("left arm"):add_part("p/1", sim:add_sphere_shape("ball", 0.1))
 params { { "wind", 2, min = 0, max = 10, unit = "N", doc = "How hard it blows." } }
 )");
-  const Ran ran = run({"describe", scene});
-  EXPECT_EQ(ran.code, 0);
-  EXPECT_NE(ran.out.find("\n/physics/body/left%20arm/part/p%2F1/friction\t/physics/part/friction\t"),
+  const RunResult result = run({"describe", scene});
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.out.find("\n/physics/body/left%20arm/part/p%2F1/friction\t/physics/part/friction\t"),
             std::string::npos);
-  EXPECT_NE(ran.out.find("\n/scene/wind\t\tproperty\tnumber\tN\t0 .. 10\t2\tHow hard it blows.\n"), std::string::npos);
-  EXPECT_EQ(ran.out.find("not the answer"), std::string::npos);
-  EXPECT_NE(ran.err.find("not the answer"), std::string::npos);
+  EXPECT_NE(result.out.find("\n/scene/wind\t\tproperty\tnumber\tN\t0 .. 10\t2\tHow hard it blows.\n"),
+            std::string::npos);
+  EXPECT_EQ(result.out.find("not the answer"), std::string::npos);
+  EXPECT_NE(result.err.find("not the answer"), std::string::npos);
 }
 
-TEST(Describe, AsJson) {
-  const Ran ran = run({"describe", "--json"});
-  EXPECT_EQ(ran.code, 0);
-  const auto json = nlohmann::json::parse(ran.out);
+TEST(Describe, PrintsJson) {
+  const RunResult result = run({"describe", "--json"});
+  EXPECT_EQ(result.code, 0);
+  const auto json = nlohmann::json::parse(result.out);
   std::size_t found = 0;
   for (const auto& entry : json) {
     EXPECT_TRUE(entry.contains("path") && entry.contains("kind") && entry.contains("doc"));
@@ -105,15 +106,15 @@ TEST(Describe, AsJson) {
   EXPECT_EQ(json.size() + 1, lines_of(describe_classes()).size());
 }
 
-TEST(Describe, AScenesParametersHaveStepsAndRangesPerAxis) {
-  const Folder folder;
+TEST(Describe, ParametersHaveStepsAndRangesPerAxis) {
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", R"(
 params {
   { "wind", 2, min = 0, max = 10, step = 0.5 },
   { "where", vec3(1, 1, 1), min = vec3(0, 0, -1), max = vec3(1, 2, 3) },
 }
 )");
-  const Ran text = run({"describe", scene});
+  const RunResult text = run({"describe", scene});
   EXPECT_NE(text.out.find("\n/scene/where\t\tproperty\tvec3\t\t0 0 -1 .. 1 2 3\t1 1 1\t\n"), std::string::npos);
   const auto json = nlohmann::json::parse(run({"describe", "--json", scene}).out);
   std::size_t found = 0;
@@ -134,8 +135,8 @@ params {
   EXPECT_EQ(found, 2U);
 }
 
-// docs/osc.md names the messages; whoever adds or takes one away hears of it here
-TEST(Describe, TheOscReferenceNamesEverySeedMessage) {
+// docs/osc.md must name all messages
+TEST(Describe, OscReferenceNamesEveryMessage) {
   std::ifstream in(LIMBER_SOURCE_DIR "/docs/osc.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   ASSERT_FALSE(page.empty());
@@ -147,7 +148,7 @@ TEST(Describe, TheOscReferenceNamesEverySeedMessage) {
     known.push_back(address);
     EXPECT_NE(page.find("`" + address + "`"), std::string::npos) << "docs/osc.md does not name " << address;
   }
-  // and the other way: what stands in a table's first cell exists
+  // and every address in the first column of a table must exist
   for (const std::string& line : lines_of(page)) {
     if (!line.starts_with("| `/physics/") || line.find('<') != std::string::npos) continue;
     const std::string address = line.substr(3, line.find('`', 3) - 3);

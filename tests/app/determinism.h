@@ -1,4 +1,4 @@
-// A scene for proofs of determinism, and ways to run it that must not matter.
+// A scene for determinism tests, and ways to run it that must not change its result.
 #pragma once
 
 #include "app/program.h"
@@ -6,7 +6,7 @@
 
 namespace limber::app_test {
 
-/// Draws from math.random and rng, walks tables with pairs (things and functions as keys, too), lets bodies collide.
+/// Uses math.random and rng, iterates tables with pairs (objects and functions as keys, too), and lets bodies collide.
 inline constexpr const char* kWildScene = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local shape = sim:add_box_shape("box", vec3(0.2, 0.2, 0.2))
@@ -28,35 +28,35 @@ end)
 sim:at(1, function() sim:body("box3"):copy("twin", { position = vec3(0.1, 0, 3) }) end)
 )";
 
-/// Words in front of the program that must change nothing, as far as this machine allows them.
-inline std::vector<std::vector<std::string>> surroundings() {
-  std::vector<std::vector<std::string>> ways = {{}, {"env", "LIMBER_TEST_FILLER=" + std::string(5000, 'x')}};
-  for (const std::vector<std::string>& way : {std::vector<std::string>{"taskset", "-c", "0"}, {"setarch", "-R"}}) {
-    std::vector<std::string> probe = way;
+/// Command prefixes that must not change the result, as far as this machine supports them.
+inline std::vector<std::vector<std::string>> environments() {
+  std::vector<std::vector<std::string>> commands = {{}, {"env", "LIMBER_TEST_FILLER=" + std::string(5000, 'x')}};
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"taskset", "-c", "0"}, {"setarch", "-R"}}) {
+    std::vector<std::string> probe = command;
     probe.emplace_back("true");
-    if (Running(probe).finish().code == 0) ways.push_back(way);
+    if (Process(probe).finish().code == 0) commands.push_back(command);
   }
-  return ways;
+  return commands;
 }
 
-/// Ways to play that must change nothing: as fast as can be, in time with the clock, with streams.
-inline std::vector<std::vector<std::string>> ways_to_play() {
-  static const TakenPort sink(SOCK_DGRAM);
-  const std::string streams = "127.0.0.1:" + sink.number() + ",rate=1000";
+/// Options of `play` that must not change the result: full speed, real time, streams.
+inline std::vector<std::vector<std::string>> play_options() {
+  static const PortInUse sink(SOCK_DGRAM);
+  const std::string streams = "127.0.0.1:" + sink.port() + ",rate=1000";
   return {{"--fast"},
           {"--osc-in", "off", "--osc-out", "off", "--query", "off", "--set", "/physics/sim/speed=100"},
           {"--fast", "--osc-in", "127.0.0.1:0", "--osc-out", streams},
           {"--osc-in", "127.0.0.1:0", "--osc-out", streams, "--set", "/physics/sim/speed=50"}};
 }
 
-/// "hash … tick …" of one run, or what went wrong.
-inline std::string hash_of(const std::string& scene, const std::vector<std::string>& how,
-                           const std::vector<std::string>& before, const std::string& ticks = "200") {
+/// Returns "hash … tick …" of one run, or its output if it failed.
+inline std::string hash_of(const std::string& scene, const std::vector<std::string>& options,
+                           const std::vector<std::string>& prefix, const std::string& ticks = "200") {
   std::vector<std::string> args = {scene, "--ticks", ticks, "--hash"};
-  args.insert(args.end(), how.begin(), how.end());
-  const Ran ran = Running(limber(args, before)).finish();
-  const std::size_t at = ran.out.rfind("hash ");
-  return ran.code == 0 && at != std::string::npos ? ran.out.substr(at) : ran.out + ran.err;
+  args.insert(args.end(), options.begin(), options.end());
+  const RunResult result = Process(limber_command(args, prefix)).finish();
+  const std::size_t at = result.out.rfind("hash ");
+  return result.code == 0 && at != std::string::npos ? result.out.substr(at) : result.out + result.err;
 }
 
 }  // namespace limber::app_test

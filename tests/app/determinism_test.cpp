@@ -1,4 +1,4 @@
-// The same scene and seed give the same hash in every new process, however it is played.
+// The same scene and seed give the same hash in every new process, for all ways to play.
 #include <fmt/ranges.h>
 
 #include "app/determinism.h"
@@ -6,19 +6,19 @@
 namespace limber::app_test {
 namespace {
 
-TEST(Determinism, HoweverItIsPlayed) {
-  const Folder folder;
+TEST(Determinism, HashIsIndependentOfTheWayToPlay) {
+  const TempFolder folder;
   const std::string scene = folder.file("wild.lua", kWildScene);
   const std::string first = hash_of(scene, {"--fast"}, {});
   ASSERT_TRUE(first.starts_with("hash ") && first.ends_with(" tick 200\n")) << first;
-  for (const auto& how : ways_to_play())
+  for (const auto& how : play_options())
     EXPECT_EQ(hash_of(scene, how, {}), first) << fmt::format("{}", fmt::join(how, " "));
-  for (const auto& before : surroundings())
+  for (const auto& before : environments())
     EXPECT_EQ(hash_of(scene, {"--fast"}, before), first) << fmt::format("{}", fmt::join(before, " "));
 }
 
-TEST(Determinism, AnotherSeedAndOneTickMoreAreOtherHashes) {
-  const Folder folder;
+TEST(Determinism, HashDependsOnSeedAndTick) {
+  const TempFolder folder;
   const std::string scene = folder.file("wild.lua", kWildScene);
   const auto hash = [](const std::string& line) { return line.substr(0, line.find(" tick")); };
   const std::string first = hash(hash_of(scene, {"--fast"}, {}));

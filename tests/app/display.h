@@ -1,4 +1,4 @@
-// A display of the test's own, with hands and eyes.
+// A private X display with simulated input and readable pixels.
 #pragma once
 
 #include <memory>
@@ -7,39 +7,40 @@
 
 namespace limber::app_test {
 
-/// An X server without a screen; it chooses its number itself.
+/// An X server without a screen, on a free display number.
 class Display {
  public:
   /// `more`: further arguments of the server.
   explicit Display(const std::string& screen = "320x240x24", const std::vector<std::string>& more = {})
       : words_(with({"-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()}, more)),
-        server_(std::make_unique<Running>(with({"Xvfb"}, words_))) {
+        server_(std::make_unique<Process>(with({"Xvfb"}, words_))) {
     EXPECT_TRUE(server_->wait_for("\n", true)) << "apt-get install xvfb\n" << server_->err();
     name_ = ":" + server_->out().substr(0, server_->out().find('\n'));
   }
-  void end() { server_->signal(SIGKILL); }
-  /// Another server with the same number, once the one before is gone.
-  void begin_again() {
+  void kill() { server_->signal(SIGKILL); }
+  /// Starts another server with the same number after the last one was stopped.
+  void restart() {
     server_.reset();
-    server_ = std::make_unique<Running>(with({"Xvfb", name_}, words_));
+    server_ = std::make_unique<Process>(with({"Xvfb", name_}, words_));
     EXPECT_TRUE(server_->wait_for("\n", true)) << server_->err();
   }
   std::vector<std::string> environment() const {
-    std::vector<std::string> all = without_leak_search();
+    std::vector<std::string> all = without_leak_check();
     all.insert(all.end(),
                {"DISPLAY=" + name_, "LIBGL_ALWAYS_SOFTWARE=1", "XDG_CONFIG_HOME=" + (folder_.path() + "/config"),
                 "XDG_STATE_HOME=" + (folder_.path() + "/state")});
     return all;
   }
-  /// Hands of somebody at this display. Keys go to the window under the pointer.
+  /// Simulates input with xdotool. Keys go to the window under the pointer.
   void xdotool(std::vector<std::string> words) const {
     words.insert(words.begin(), "xdotool");
     std::vector<std::string> all = environment();
     all.insert(all.end(), words.begin(), words.end());
-    const Ran ran = Running(all).finish();
-    EXPECT_EQ(ran.code, 0) << "apt-get install xdotool\n" << ran.err;
+    const RunResult result = Process(all).finish();
+    EXPECT_EQ(result.code, 0) << "apt-get install xdotool\n" << result.err;
   }
-  /// The colour of a pixel of the screen, 0xrrggbb, as the server's file of it has it (XWD: 25 numbers, colours, rows).
+  /// Returns the color of a pixel of the screen, 0xrrggbb, from the server's frame buffer file (XWD: 25 numbers,
+  /// colors, rows).
   unsigned pixel(std::size_t x, std::size_t y) const {
     const std::string screen = content(folder_.path() + "/Xvfb_screen0");
     const auto number = [&](std::size_t i) {
@@ -62,13 +63,13 @@ class Display {
     return words;
   }
 
-  Folder folder_;
+  TempFolder folder_;
   std::vector<std::string> words_;
-  std::unique_ptr<Running> server_;
+  std::unique_ptr<Process> server_;
   std::string name_;
 };
 
-/// Arguments for a small window without a network.
+/// Arguments for a small window without network.
 inline std::vector<std::string> quiet(const std::string& scene, std::vector<std::string> more = {}) {
   std::vector<std::string> args = {scene, "--osc-in", "off", "--osc-out", "off", "--query", "off", "--size", "64x36"};
   args.insert(args.end(), more.begin(), more.end());

@@ -1,5 +1,4 @@
-// docs/from-ofxDabPhysics.md: every name of Limber's in its tables exists, and every message of the predecessor's is
-// there.
+// docs/from-ofxDabPhysics.md: every Limber name in its tables exists, and every message of ofxDabPhysics is listed.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -21,13 +20,13 @@ std::vector<std::string> cells_of(const std::string& line) {
     const std::size_t begin = std::min(cell.find_first_not_of(' '), cell.size());
     cells.emplace_back(cell.substr(begin, cell.find_last_not_of(' ') + 1 - begin));
   }
-  // before the first bar and behind the last there is nothing
+  // before the first bar and after the last are no cells
   cells.erase(cells.begin());
   cells.pop_back();
   return cells;
 }
 
-// what stands between backticks
+// the texts between backticks
 std::vector<std::string> names_in(const std::string& text) {
   std::vector<std::string> names;
   std::size_t at = text.find('`');
@@ -40,51 +39,51 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-struct Page : testing::Test {
-  Page() {
+struct LegacyPage : testing::Test {
+  LegacyPage() {
     std::ifstream in(LIMBER_SOURCE_DIR "/docs/from-ofxDabPhysics.md");
     std::string section;
     for (std::string line; std::getline(in, line);) {
       if (line.starts_with("## ")) section = line.substr(3);
       if (!line.starts_with("| `") && !line.starts_with("| all ")) continue;
-      rows.emplace_back(section, cells_of(line));
+      entries.emplace_back(section, cells_of(line));
     }
   }
   std::vector<std::vector<std::string>> in(const std::string& section) const {
     std::vector<std::vector<std::string>> found;
-    for (const auto& [of, cells] : rows) {
+    for (const auto& [of, cells] : entries) {
       if (of == section) found.push_back(cells);
     }
     EXPECT_FALSE(found.empty()) << section;
     return found;
   }
-  std::vector<std::pair<std::string, std::vector<std::string>>> rows;
+  std::vector<std::pair<std::string, std::vector<std::string>>> entries;
 };
 
 // "body:copy", "sim.gravity", "visuals.camera", "sim"
 bool exists(const luacats::Reader& lua, std::string name) {
   if (name.starts_with("rgb(")) name = "rgb";
-  const std::size_t mark = name.find_first_of(".:");
-  std::string owner = name.substr(0, mark);
+  const std::size_t separator = name.find_first_of(".:");
+  std::string owner = name.substr(0, separator);
   if (owner == "group") owner = "behavior_group";
-  if (mark == std::string::npos) return lua.classes.contains(owner) || lua.functions.contains(owner);
+  if (separator == std::string::npos) return lua.classes.contains(owner) || lua.functions.contains(owner);
   const auto found = lua.classes.find(owner);
   if (found == lua.classes.end()) return false;
-  const std::string member = name.substr(mark + 1);
-  return name[mark] == ':' ? found->second.functions.contains(member) : found->second.fields.contains(member);
+  const std::string member = name.substr(separator + 1);
+  return name[separator] == ':' ? found->second.functions.contains(member) : found->second.fields.contains(member);
 }
 
-TEST_F(Page, EveryNameInLuaExists) {
-  const Ran ran = run({"annotate"});
-  ASSERT_EQ(ran.code, 0);
-  const luacats::Reader lua{ran.out};
+TEST_F(LegacyPage, LuaNamesExist) {
+  const RunResult result = run({"annotate"});
+  ASSERT_EQ(result.code, 0);
+  const luacats::Reader lua{result.out};
   for (const char* section : {"Classes", "Messages in"}) {
     for (const auto& cells : in(section)) {
       ASSERT_EQ(cells.size(), 3u) << cells[0];
       for (const std::string& name : names_in(cells[1])) EXPECT_TRUE(exists(lua, name)) << name;
     }
   }
-  // in remarks only what is written as a member
+  // in remarks check only names written as members
   for (const auto& cells : in("Classes")) {
     for (const std::string& name : names_in(cells[2])) {
       const bool member = name.find_first_of(".:") != std::string::npos && name.find(' ') == std::string::npos;
@@ -93,38 +92,38 @@ TEST_F(Page, EveryNameInLuaExists) {
   }
 }
 
-TEST_F(Page, EveryMessageIsThereAndAnswered) {
-  std::set<std::string> told;
-  for (const auto& cells : in("Messages in")) told.insert(names_in(cells[0]).at(0));
+TEST_F(LegacyPage, ListsEveryLegacyMessage) {
+  std::set<std::string> listed;
+  for (const auto& cells : in("Messages in")) listed.insert(names_in(cells[0]).at(0));
   std::set<std::string> seeds;
-  for (const auto& a : engine_test::kByName) seeds.insert(engine_test::seed_address(a));
-  for (const auto& a : engine_test::kOfShapes) seeds.insert(engine_test::seed_address(a));
-  seeds.insert(std::begin(engine_test::kOfOne), std::end(engine_test::kOfOne));
-  seeds.insert(std::begin(engine_test::kOther), std::end(engine_test::kOther));
+  for (const auto& a : engine_test::kElementAddresses) seeds.insert(engine_test::legacy_address(a));
+  for (const auto& a : engine_test::kShapeAddresses) seeds.insert(engine_test::legacy_address(a));
+  seeds.insert(std::begin(engine_test::kSingletonAddresses), std::end(engine_test::kSingletonAddresses));
+  seeds.insert(std::begin(engine_test::kOtherAddresses), std::end(engine_test::kOtherAddresses));
   EXPECT_EQ(seeds.size(), 52u);
-  EXPECT_EQ(told, seeds);
+  EXPECT_EQ(listed, seeds);
   std::set<std::string> out;
   for (const auto& cells : in("Messages out")) out.insert(names_in(cells[0]).at(0));
   EXPECT_EQ(out, (std::set<std::string>{"/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot"}));
 }
 
-TEST_F(Page, EveryBehaviourHasItsParameters) {
+TEST_F(LegacyPage, BehaviorsHaveTheirParameters) {
   const BehaviorTypes types;
-  std::set<std::string> told;
-  for (const auto& cells : in("Behaviours")) {
+  std::set<std::string> listed;
+  for (const auto& cells : in("Behaviors")) {
     ASSERT_EQ(cells.size(), 3u);
     if (cells[0] == "all") continue;
     const std::string theirs = names_in(cells[0]).at(0);
     const std::string ours = names_in(cells[1]).at(0);
     const auto type = types.find(ours);
     ASSERT_NE(type, nullptr) << ours;
-    EXPECT_EQ(types.find(theirs), type) << theirs << " is found by its own name too";
+    EXPECT_EQ(types.find(theirs), type) << theirs << " is also found by its legacy name";
     for (const std::string& name : names_in(cells[2]))
       EXPECT_NE(type->table->find(name), nullptr) << ours << " " << name;
-    told.insert(ours);
+    listed.insert(ours);
   }
   for (const auto& type : types.all()) {
-    EXPECT_TRUE(told.contains(type->name) || type->name == "separation") << type->name;
+    EXPECT_TRUE(listed.contains(type->name) || type->name == "separation") << type->name;
   }
 }
 

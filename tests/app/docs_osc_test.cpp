@@ -1,5 +1,5 @@
-// What docs/osc.md, docs/presets.md and docs/examples show works: each message of theirs is sent to a scene that has
-// what they name.
+// The examples in docs/osc.md, docs/presets.md and docs/examples work: each message is sent to a scene that has the
+// named objects.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -34,43 +34,45 @@ std::string text_of(const std::string& file) {
   return text;
 }
 
-// the engine that plays it, in this process: what is sent acts with the next tick
-class Desk {
+// an engine in this process; messages take effect in the next tick
+class LocalEngine {
  public:
-  Desk() {
+  LocalEngine() {
     EngineOptions options;
     options.scene = folder_.file("scene.lua", kPageScene);
     options.scene_options.data_dir = LIMBER_SOURCE_DIR;
     options.fast = true;
-    link_.ask_scenes = [](const Message&, const Origin&) {};  // scenes and takes are another test's
+    link_.on_scene_request = [](const Message&, const CommandOrigin&) {
+    };  // scenes and takes are covered by another test
     engine_ = std::make_unique<Engine>(link_, options);
     const Result<void> started = engine_->start();
     EXPECT_TRUE(started.ok()) << started.error();
     outbox();
   }
 
-  /// Plays it and expects that it was neither refused nor unknown.
-  void expect_taken(const Message& message) {
-    link_.inbox.push({{message}, {Hand::osc, 0x7f000001, 4000}});
+  /// Sends the message and expects that it is neither rejected nor unknown.
+  void expect_accepted(const Message& message) {
+    link_.command_queue.push({{message}, {CommandSource::osc, 0x7f000001, 4000}});
     engine_->tick();
     for (const Outgoing& out : outbox())
-      EXPECT_NE(out.to, Outgoing::To::error) << message_text(message) << ": " << message_text(out.message);
+      EXPECT_NE(out.destination, Outgoing::Destination::error)
+          << message_text(message) << ": " << message_text(out.message);
     EXPECT_EQ(link_.counters.clamped.load(), 0u) << message_text(message) << " is out of range";
   }
 
  private:
   std::vector<Outgoing> outbox() {
     std::vector<Outgoing> out;
-    link_.outbox.drain(out);
+    link_.output_queue.drain(out);
     return out;
   }
 
-  Folder folder_;
+  TempFolder folder_;
   EngineLink link_;
   std::unique_ptr<Engine> engine_;
 };
 
-// words as a shell parts them; two blanks end a line of the page, what follows explains
+// splits words like a shell; two spaces end the command on the page, an explanation follows
 std::vector<std::string> shell_words(const std::string& line) {
   std::vector<std::string> words;
   std::string word;
@@ -91,14 +93,14 @@ std::vector<std::string> shell_words(const std::string& line) {
 
 Message message_of(const std::vector<std::string>& words) {
   Message message{words.at(0), {}};
-  for (std::size_t i = 1; i < words.size(); i++) message.args.push_back(arg_of(words[i]));
+  for (std::size_t i = 1; i < words.size(); i++) message.args.push_back(parse_arg(words[i]));
   return message;
 }
 
-TEST(DocsOsc, EveryExampleOfThePagesIsTaken) {
-  for (const auto& [page_name, least] : {std::pair("osc.md", 25u), std::pair("presets.md", 12u),
-                                         std::pair("takes.md", 4u), std::pair("recovery.md", 2u)}) {
-    Desk desk;
+TEST(DocsOsc, ExamplesOfThePagesAreAccepted) {
+  for (const auto& [page_name, min_count] : {std::pair("osc.md", 25u), std::pair("presets.md", 12u),
+                                             std::pair("takes.md", 4u), std::pair("recovery.md", 2u)}) {
+    LocalEngine engine;
     std::istringstream page(text_of(page_name));
     std::size_t sent = 0;
     for (std::string line; std::getline(page, line);) {
@@ -107,24 +109,24 @@ TEST(DocsOsc, EveryExampleOfThePagesIsTaken) {
       if (words.size() > 2 && words[0] == "limber" && words[1] == "send") words.erase(words.begin(), words.begin() + 2);
       if (words.empty() || !words[0].starts_with("/")) continue;
       SCOPED_TRACE(line);
-      desk.expect_taken(message_of(words));
+      engine.expect_accepted(message_of(words));
       sent++;
     }
-    EXPECT_GE(sent, least) << page_name;
+    EXPECT_GE(sent, min_count) << page_name;
   }
 }
 
-TEST(DocsOsc, TheReferenceIsTodays) {
+TEST(DocsOsc, ReferenceIsUpToDate) {
   const std::string page = text_of("osc.md");
-  const std::string mark = "<!-- reference -->\n";
-  const std::size_t at = page.find(mark);
+  const std::string marker = "<!-- reference -->\n";
+  const std::size_t at = page.find(marker);
   ASSERT_NE(at, std::string::npos);
-  EXPECT_EQ(page.substr(at + mark.size()), describe_page())
-      << "renew it: put `build/limber describe --markdown` behind the mark";
+  EXPECT_EQ(page.substr(at + marker.size()), describe_page())
+      << "update it: insert the output of `build/limber describe --markdown` after the mark";
 }
 
-TEST(DocsOsc, TheLayoutForOpenStageControl) {
-  Desk desk;
+TEST(DocsOsc, OpenStageControlLayoutIsAccepted) {
+  LocalEngine engine;
   const auto layout = nlohmann::json::parse(text_of("examples/open-stage-control.json"));
   std::size_t sent = 0;
   for (const auto& widget : layout["content"]["widgets"]) {
@@ -133,7 +135,7 @@ TEST(DocsOsc, TheLayoutForOpenStageControl) {
     Message message{widget["address"], {}};
     const auto add = [&](const nlohmann::json& value) {
       if (value.is_array()) {
-        for (const auto& v : value) message.args.push_back(v.is_string() ? arg_of(v) : Arg::of(v.get<double>()));
+        for (const auto& v : value) message.args.push_back(v.is_string() ? parse_arg(v) : Arg::of(v.get<double>()));
       } else if (value.is_number()) {
         message.args.push_back(Arg::of(value.get<double>()));
       }
@@ -141,15 +143,15 @@ TEST(DocsOsc, TheLayoutForOpenStageControl) {
     add(widget["preArgs"]);
     add(widget.contains("default") ? widget["default"] : widget["on"]);
     EXPECT_EQ(widget["typeTags"].get<std::string>().size(), message.args.size());
-    desk.expect_taken(message);
+    engine.expect_accepted(message);
     sent++;
   }
   EXPECT_EQ(sent, layout["content"]["widgets"].size());
   EXPECT_GE(sent, 10u);
 }
 
-TEST(DocsOsc, SuperCollidersMessages) {
-  Desk desk;
+TEST(DocsOsc, SuperColliderMessagesAreAccepted) {
+  LocalEngine engine;
   const std::string text = text_of("examples/limber.scd");
   const std::regex message(R"re((?:sendMsg\(|\[)("/[^)\]]*)[)\]])re");
   std::size_t sent = 0;
@@ -158,67 +160,67 @@ TEST(DocsOsc, SuperCollidersMessages) {
     std::ranges::replace(list, ',', ' ');
     list = std::regex_replace(list, std::regex(" +"), " ");
     const Message m = message_of(shell_words(list));
-    // the network answers these by itself
+    // the network answers this itself
     if (m.address == "/subscribe") continue;
-    desk.expect_taken(m);
+    engine.expect_accepted(m);
     sent++;
   }
   EXPECT_GE(sent, 12u);
 }
 
-// a program with that scene, and where it listens and streams to
+// the program with that scene; `in`: its OSC input port
 struct PagePlayer {
   explicit PagePlayer(const std::string& out = "off")
-      : running(limber({folder.file("scripts/scene.lua", kPageScene), "--osc-in", "127.0.0.1:0", "--osc-out", out,
-                        "--query", "off"})) {
+      : running(limber_command({folder.file("scripts/scene.lua", kPageScene), "--osc-in", "127.0.0.1:0", "--osc-out",
+                                out, "--query", "off"})) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    in = running.behind("OSC in 127.0.0.1:");
+    in = running.text_after("OSC in 127.0.0.1:");
   }
-  Folder folder;
-  Running running;
+  TempFolder folder;
+  Process running;
   std::string in;
 };
 
-TEST(DocsOsc, ThePythonProgramPlaysAndReads) {
+TEST(DocsOsc, PythonExampleSendsAndReceives) {
   PagePlayer player;
   const std::string file = LIMBER_SOURCE_DIR "/docs/examples/limber.py";
-  Ran ran;
+  RunResult result;
   int frames = 0;
-  // on a busy machine none may come in half a second
+  // on a busy machine no frame may arrive in half a second
   for (const char* seconds : {"0.5", "5", "50"}) {
-    ran = Running({"python3", "-B", file, "--port", player.in, "--seconds", seconds}).finish();
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    const std::size_t at = ran.out.find("frames: ");
-    ASSERT_NE(at, std::string::npos) << ran.out;
-    frames = std::stoi(ran.out.substr(at + 8));
+    result = Process({"python3", "-B", file, "--port", player.in, "--seconds", seconds}).finish();
+    EXPECT_EQ(result.code, 0) << result.err;
+    const std::size_t at = result.out.find("frames: ");
+    ASSERT_NE(at, std::string::npos) << result.out;
+    frames = std::stoi(result.out.substr(at + 8));
     if (frames > 0) break;
   }
   EXPECT_GT(frames, 0);
-  EXPECT_NE(ran.out.find("gravity is [0.0, 0.0, -9.8"), std::string::npos) << ran.out;
-  EXPECT_NE(ran.out.find("bodies: arm1 arm2\n"), std::string::npos) << ran.out;
-  EXPECT_EQ(ran.out.find("/physics/"), std::string::npos) << "nothing was refused: " << ran.out;
+  EXPECT_NE(result.out.find("gravity is [0.0, 0.0, -9.8"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("bodies: arm1 arm2\n"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find("/physics/"), std::string::npos) << "no message was rejected: " << result.out;
 }
 
-TEST(DocsOsc, ThePdPatchPlaysAndIsAnswered) {
+TEST(DocsOsc, PdPatchSendsAndReceives) {
   PagePlayer player;
   const std::string patch = LIMBER_SOURCE_DIR "/docs/examples/limber.pd";
-  Running pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
+  Process pd({"pd", "-nogui", "-nosound", "-noprefs", "-stderr", "-open", patch, "-send",
               fmt::format("ports {} {}", player.in, 9), "-send", "gravity -3", "-send", "target 0.5", "-send", "wind 4",
               "-send", "ask bang"});
   EXPECT_TRUE(pd.wait_for("gravity 0 0 -3")) << pd.err();
   EXPECT_EQ(pd.err().find("/error"), std::string::npos) << pd.err();
 }
 
-TEST(DocsOsc, ThePdPatchOfPresetsStoresRecallsAndGlides) {
+TEST(DocsOsc, PdPresetPatchStoresRecallsAndMorphs) {
   PagePlayer player;
   const std::string patch = LIMBER_SOURCE_DIR "/docs/examples/presets.pd";
-  // each time a Pure Data of its own; it has done all when the names are answered
+  // runs a new Pure Data each time; it has finished when the names are printed
   const auto play = [&](const std::vector<std::string>& sends, const std::string& names) {
     std::vector<std::string> words{"pd",    "-nogui", "-nosound", "-noprefs",          "-stderr",
                                    "-open", patch,    "-send",    "ports " + player.in};
     for (const std::string& send : sends) words.insert(words.end(), {"-send", send});
     words.insert(words.end(), {"-send", "ask bang"});
-    Running pd(words);
+    Process pd(words);
     EXPECT_TRUE(pd.wait_for("presets " + names + "\n")) << pd.err();
     EXPECT_EQ(pd.err().find("error"), std::string::npos) << pd.err();
   };

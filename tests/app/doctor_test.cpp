@@ -1,28 +1,29 @@
-// `limber doctor`: a line for each finding, and 3 when what playing needs is missing.
+// `limber doctor`: one line per check, and exit code 3 if a requirement is missing.
 #include "app/program.h"
 #include "app/taken_port.h"
 
 namespace limber::app_test {
 namespace {
 
-TEST(Doctor, SaysWhatIsThere) {
-  const Folder folder;
-  const Ran ran = Running({install_copy(folder), "doctor", "--osc-in", "0", "--query", "0"}, "/").finish();
-  for (const char* what : {"limber ", "system ", "data ", "ports ", "buffer ", "display "})
-    EXPECT_NE(ran.out.find(what), std::string::npos) << what << "\n" << ran.out;
-  EXPECT_NE(ran.out.find("ok   data       " + folder.path() + "/share/limber\n"), std::string::npos) << ran.out;
-  EXPECT_EQ(ran.code, 0) << ran.out;
-  EXPECT_EQ(ran.err, "");
+TEST(Doctor, PrintsEveryCheck) {
+  const TempFolder folder;
+  const RunResult result = Process({install_copy(folder), "doctor", "--osc-in", "0", "--query", "0"}, "/").finish();
+  for (const char* prefix : {"limber ", "system ", "data ", "ports ", "buffer ", "display "})
+    EXPECT_NE(result.out.find(prefix), std::string::npos) << prefix << "\n" << result.out;
+  EXPECT_NE(result.out.find("ok   data       " + folder.path() + "/share/limber\n"), std::string::npos) << result.out;
+  EXPECT_EQ(result.code, 0) << result.out;
+  EXPECT_EQ(result.err, "");
 }
 
-TEST(Doctor, ATakenPortIsTheMachinesFault) {
+TEST(Doctor, PortInUseIsExitCode3) {
   for (const auto& [kind, cure] : {std::pair(SOCK_DGRAM, "--osc-in"), std::pair(SOCK_STREAM, "--query")}) {
-    const TakenPort taken(kind);
+    const PortInUse port_in_use(kind);
     const bool osc = kind == SOCK_DGRAM;
-    const Ran ran = run({"doctor", "--osc-in", osc ? taken.number() : "0", "--query", osc ? "0" : taken.number()});
-    EXPECT_EQ(ran.code, 3);
-    EXPECT_NE(ran.out.find("no   ports"), std::string::npos) << ran.out;
-    EXPECT_NE(ran.out.find(cure), std::string::npos) << "the cure: " << ran.out;
+    const RunResult result =
+        run({"doctor", "--osc-in", osc ? port_in_use.port() : "0", "--query", osc ? "0" : port_in_use.port()});
+    EXPECT_EQ(result.code, 3);
+    EXPECT_NE(result.out.find("fail ports"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find(cure), std::string::npos) << "the fix: " << result.out;
   }
 }
 

@@ -1,5 +1,5 @@
-// Every refusal of the program: tests/errors.tsv lists its input, exact text, exit code and cure; this walks it, and
-// looks through the sources for a refusal that is not in it.
+// Every error of the program: tests/errors.tsv lists its input, exact text, exit code and fix. This test runs each line
+// and searches the sources for errors that are not in the table.
 #include <algorithm>
 #include <iterator>
 #include <regex>
@@ -11,12 +11,12 @@
 namespace limber::app_test {
 namespace {
 
-struct Refusal {
+struct ErrorCase {
   int line = 0;
   std::string input;
   int code = 0;
   std::string text;
-  std::string cure;
+  std::string fix;
 };
 
 std::string read_file(const std::filesystem::path& path) {
@@ -24,26 +24,26 @@ std::string read_file(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-void replace_all(std::string& text, const std::string& what, const std::string& with) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
-    text.replace(at, what.size(), with);
+void replace_all(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
 }
 
-std::vector<Refusal> refusals() {
+std::vector<ErrorCase> error_cases() {
   std::istringstream in(read_file(LIMBER_SOURCE_DIR "/tests/errors.tsv"));
-  std::vector<Refusal> list;
+  std::vector<ErrorCase> list;
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     number++;
     if (line.empty() || line[0] == '#') continue;
-    Refusal r;
+    ErrorCase r;
     r.line = number;
     std::istringstream cells(line);
     std::string code;
     std::getline(cells, r.input, '\t');
     std::getline(cells, code, '\t');
     std::getline(cells, r.text, '\t');
-    std::getline(cells, r.cure, '\t');
+    std::getline(cells, r.fix, '\t');
     r.code = std::atoi(code.c_str());
     replace_all(r.text, "\\n", "\n");
     list.push_back(r);
@@ -51,8 +51,8 @@ std::vector<Refusal> refusals() {
   return list;
 }
 
-// the files that inputs name as <dir>/…
-void write_inputs(const Folder& folder) {
+// creates the files that the inputs refer to as <dir>/…
+void write_inputs(const TempFolder& folder) {
   folder.file("good.lua", "sim:add_body('arm'):add_part('tip', sim:add_sphere_shape('ball', 0.1))\n");
   folder.file("syntax.lua", "local x =\n");
   folder.file("typo.lua", "sim.gravty = vec3(0, 0, 0)\n");
@@ -76,7 +76,7 @@ void write_inputs(const Folder& folder) {
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
 }
 
-// arguments parted by blanks, '…' keeping some together
+// splits arguments at spaces, '…' groups words
 std::vector<std::string> quoted_words(const std::string& input) {
   std::vector<std::string> words;
   bool inside = false;
@@ -97,56 +97,57 @@ std::vector<std::string> quoted_words(const std::string& input) {
   return words;
 }
 
-Ran run_input(const std::string& input) {
-  // "in FOLDER ARGUMENTS" is called there
+RunResult run_input(const std::string& input) {
+  // "in FOLDER ARGUMENTS" runs in that folder
   if (input.starts_with("in ")) {
     const std::size_t blank = input.find(' ', 3);
     return run(quoted_words(input.substr(blank + 1)), input.substr(3, blank - 3));
   }
-  // "^C when TEXT: ARGUMENTS" is somebody's Ctrl+C, twice, once that text was said
+  // "^C when TEXT: ARGUMENTS" presses Ctrl+C twice after that text was printed
   if (!input.starts_with("^C when ")) return run(quoted_words(input));
   const std::size_t colon = input.find(": ");
-  Running running(limber(quoted_words(input.substr(colon + 2))));
+  Process running(limber_command(quoted_words(input.substr(colon + 2))));
   running.wait_for(input.substr(8, colon - 8));
   running.signal(SIGINT);
-  if (running.wait_for("\nlimber: ended ")) return running.finish();
+  if (running.wait_for("\nlimber: interrupted ")) return running.finish();
   running.signal(SIGINT);
   return running.finish();
 }
 
-TEST(Errors, EachRefusalIsAsTheTableSays) {
-  const Folder folder;
+TEST(Errors, MatchTheTable) {
+  const TempFolder folder;
   write_inputs(folder);
-  const TakenPort taken(SOCK_DGRAM);
-  const TakenPort taken_tcp(SOCK_STREAM);
-  const std::vector<Refusal> list = refusals();
+  const PortInUse port_in_use(SOCK_DGRAM);
+  const PortInUse taken_tcp(SOCK_STREAM);
+  const std::vector<ErrorCase> list = error_cases();
   EXPECT_GT(list.size(), 20U);
-  for (const Refusal& r : list) {
+  for (const ErrorCase& r : list) {
     std::string input = r.input;
     std::string text = r.text;
     for (std::string* s : {&input, &text}) {
       replace_all(*s, "<dir>", folder.path());
-      replace_all(*s, "<port>", taken.number());
-      replace_all(*s, "<tcp>", taken_tcp.number());
+      replace_all(*s, "<port>", port_in_use.port());
+      replace_all(*s, "<tcp>", taken_tcp.port());
       replace_all(*s, "<source>", LIMBER_SOURCE_DIR);
     }
-    const Ran ran = run_input(input);
-    EXPECT_EQ(ran.code, r.code) << "errors.tsv:" << r.line << ": " << input << "\n" << ran.err;
-    // inspect's begin with the file, as a compiler's do
-    const std::string said = "\n" + ran.err;
-    const bool as_listed = said.find("\nlimber: " + text + "\n") != std::string::npos ||
-                           (input.starts_with("inspect") && said.find("\n" + text + "\n") != std::string::npos);
+    const RunResult result = run_input(input);
+    EXPECT_EQ(result.code, r.code) << "errors.tsv:" << r.line << ": " << input << "\n" << result.err;
+    // errors of `inspect` begin with the file name, like a compiler's
+    const std::string output = "\n" + result.err;
+    const bool as_listed = output.find("\nlimber: " + text + "\n") != std::string::npos ||
+                           (input.starts_with("inspect") && output.find("\n" + text + "\n") != std::string::npos);
     EXPECT_TRUE(as_listed) << "errors.tsv:" << r.line << ": " << input << "\nexpected: " << text
-                           << "\nsaid: " << ran.err;
-    EXPECT_NE(r.text.find(r.cure), std::string::npos) << "errors.tsv:" << r.line << ": its text does not hold the cure";
-    EXPECT_FALSE(r.cure.empty()) << "errors.tsv:" << r.line;
+                           << "\ngot: " << result.err;
+    EXPECT_NE(r.text.find(r.fix), std::string::npos)
+        << "errors.tsv:" << r.line << ": its text does not contain the fix";
+    EXPECT_FALSE(r.fix.empty()) << "errors.tsv:" << r.line;
   }
 }
 
-// the constant pieces of the texts that a source file refuses with
-std::vector<std::string> refusal_texts(const std::string& source) {
+// the constant parts of a source file's error messages
+std::vector<std::string> error_literals(const std::string& source) {
   std::vector<std::string> texts;
-  // a text may hold a semicolon: a statement ends with the line
+  // a text may contain a semicolon: a statement ends at the end of a line
   static const std::regex refusal(R"re((Error\{|fail\(k|leave\(|return fmt::format\(|return ")[\s\S]*?;\n)re");
   static const std::regex literal(R"re("((?:[^"\\]|\\.)*)")re");
   for (std::sregex_iterator at(source.begin(), source.end(), refusal), end; at != end; ++at) {
@@ -155,7 +156,7 @@ std::vector<std::string> refusal_texts(const std::string& source) {
       std::string text = (*l)[1];
       replace_all(text, "limber: ", "");
       replace_all(text, "\\n", "");
-      // longest piece between two placeholders
+      // longest part between two placeholders
       std::string longest;
       for (std::size_t from = 0; from <= text.size();) {
         const std::size_t open = std::min(text.find('{', from), text.size());
@@ -168,35 +169,35 @@ std::vector<std::string> refusal_texts(const std::string& source) {
   return texts;
 }
 
-TEST(Errors, NoRefusalIsMissingInTheTable) {
+TEST(Errors, TableIsComplete) {
   std::string all;
-  for (const Refusal& r : refusals()) all += r.text + "\n";
+  for (const ErrorCase& r : error_cases()) all += r.text + "\n";
   std::size_t found = 0;
   for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/app")) {
     if (entry.path().extension() != ".cpp") continue;
-    // what these write is their answer, what they refuse with comes from others; these two need a program that runs
-    // (console_test.cpp, monitor_test.cpp), these a display and a machine without ffmpeg (window_test.cpp,
-    // render_test.cpp), this one an output that fails (output_test.cpp), these a folder of units (service_test.cpp),
-    // and show a machine without memory (tests/environment)
+    // excluded: files with results only, or with errors of other files; console and monitor need a running
+    // program (console_test.cpp, monitor_test.cpp); window and film_file need a display or a machine without ffmpeg
+    // (window_test.cpp, render_test.cpp); exit_code a failing output (output_test.cpp); service a folder of units
+    // (service_test.cpp); show a machine without memory (tests/environment)
     const std::string name = entry.path().stem().string();
     if (name == "console" || name == "monitor" || name.starts_with("describe") || name == "doctor" ||
         name == "exit_code" || name == "window" || name == "film_file" || name == "inspect" || name == "man_page" ||
         name.starts_with("service") || name == "show" || name.starts_with("bench_") || name.starts_with("completion_"))
       continue;
-    for (const std::string& text : refusal_texts(read_file(entry.path()))) {
+    for (const std::string& text : error_literals(read_file(entry.path()))) {
       found++;
       EXPECT_NE(all.find(text), std::string::npos)
-          << entry.path().filename().string() << " refuses with \"" << text << "\", which is not in tests/errors.tsv";
+          << entry.path().filename().string() << " has the error \"" << text << "\", which is not in tests/errors.tsv";
     }
   }
-  EXPECT_GT(found, 8U) << "the search finds nothing any more";
+  EXPECT_GT(found, 8U) << "the search pattern is out of date";
 }
 
-TEST(Errors, APlantedRefusalIsFound) {
-  EXPECT_EQ(refusal_texts(R"(if (x) return fail(kInput, fmt::format("the {} is far; too blue for {}", a, b));
+TEST(Errors, SearchFindsAnError) {
+  EXPECT_EQ(error_literals(R"(if (x) return fail(kInput, fmt::format("the {} is far; too blue for {}", a, b));
 )"),
             std::vector<std::string>{" is far; too blue for "});
-  EXPECT_TRUE(refusal_texts(R"(finding("ok", "limber", "everything is all right");
+  EXPECT_TRUE(error_literals(R"(finding("ok", "limber", "everything is all right");
 )")
                   .empty());
 }

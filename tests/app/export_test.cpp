@@ -1,4 +1,4 @@
-// `limber export`: what other programs read of a take is where the engine that replays it has its bodies.
+// `limber export`: the poses in exported files are those of the engine that replays the take.
 #include "app/export.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace limber::app_test {
 namespace {
 
+using motion_test::angle_between;
 using motion_test::Loaded;
-using motion_test::turn_between;
 
-// an arm that swings, a drifting ball, one that comes after half a second and goes half a second later; 80 ticks
+// a swinging arm, a ball, and a body that exists from 0.5 s to 1 s; 80 ticks
 constexpr const char* kShow = R"(
 local box = sim:add_box_shape("box", vec3(0.1, 0.1, 0.4))
 local ball = sim:add_sphere_shape("ball", 0.1)
@@ -31,11 +31,11 @@ sim:at(0.5, function() sim:add_body("guest"):add_part("ball", ball, { position =
 sim:at(1.0, function() sim:body("guest"):remove() end)
 )";
 
-std::string record(const Folder& folder, const std::string& scene, const std::string& ticks,
+std::string record(const TempFolder& folder, const std::string& scene, const std::string& ticks,
                    const std::string& name = "show") {
   std::string take = folder.path() + "/" + name + ".take";
-  const Ran ran = run({folder.file(name + ".lua", scene), "--fast", "--ticks", ticks, "--record", take});
-  EXPECT_EQ(ran.code, 0) << ran.err;
+  const RunResult result = run({folder.file(name + ".lua", scene), "--fast", "--ticks", ticks, "--record", take});
+  EXPECT_EQ(result.code, 0) << result.err;
   return take;
 }
 
@@ -46,7 +46,7 @@ std::vector<std::string> files_in(const std::string& folder) {
   return all;
 }
 
-// where the parts are after so many ticks of the replay
+// poses of the parts after a number of ticks of the replay
 std::map<std::string, Pose> poses_at(const std::string& take, std::uint64_t tick) {
   EngineOptions options;
   options.replay = take;
@@ -55,7 +55,7 @@ std::map<std::string, Pose> poses_at(const std::string& take, std::uint64_t tick
   Engine engine(link, options);
   const Result<void> started = engine.start();
   EXPECT_TRUE(started) << started.error();
-  while (engine.world().tick() < tick && !engine.replay_over()) engine.tick();
+  while (engine.world().tick() < tick && !engine.replay_finished()) engine.tick();
   std::map<std::string, Pose> poses;
   for (const auto& body : engine.world().bodies()) {
     for (const auto& part : body->parts()) poses[body->name() + "." + part->name()] = part->pose();
@@ -63,7 +63,7 @@ std::map<std::string, Pose> poses_at(const std::string& take, std::uint64_t tick
   return poses;
 }
 
-// columns by name; an empty cell is no number
+// columns by name; an empty cell becomes NaN
 std::map<std::string, std::vector<double>> table_of(const std::string& file) {
   std::map<std::string, std::vector<double>> table;
   std::istringstream in(content(file));
@@ -82,15 +82,15 @@ std::map<std::string, std::vector<double>> table_of(const std::string& file) {
   return table;
 }
 
-TEST(Export, EachFormatHasTheEnginesPoses) {
-  const Folder folder;
+TEST(Export, EachFormatHasThePosesOfTheEngine) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "80");
   for (const char* format : {"csv", "bvh", "gltf"}) {
-    const Ran ran = run({"export", take, "--format", format});
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    EXPECT_NE(ran.err.find("81 frames of 3 bodies, 60 a second\n"), std::string::npos) << ran.err;
-    EXPECT_NE(ran.err.find("replayed 80 ticks: every hash is the take's\n"), std::string::npos) << ran.err;
-    EXPECT_EQ(ran.out, "");
+    const RunResult result = run({"export", take, "--format", format});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("81 frames of 3 bodies, 60 a second\n"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("replayed 80 ticks: all hashes match the take\n"), std::string::npos) << result.err;
+    EXPECT_EQ(result.out, "");
   }
   EXPECT_EQ(files_in(folder.path()),
             (std::vector<std::string>{"show.csv", "show.glb", "show.lua", "show.take", "show_bvh"}));
@@ -100,36 +100,36 @@ TEST(Export, EachFormatHasTheEnginesPoses) {
   const auto table = table_of(folder.path() + "/show.csv");
   EXPECT_EQ(Loaded::count(gltf.scene().mRootNode), 1u + 3 + 5) << "scene, bodies, parts";
   const std::vector<double>& guest = table.at("guest/part/ball/x");
-  const auto came = static_cast<unsigned>(
+  const auto first_frame = static_cast<unsigned>(
       std::find_if(guest.begin(), guest.end(), [](double x) { return !std::isnan(x); }) - guest.begin());
-  EXPECT_EQ(came, 31u) << "in the first tick after half a second";
+  EXPECT_EQ(first_frame, 31u) << "in the first tick after half a second";
   for (const unsigned tick : {0u, 41u, 80u}) {
     for (const auto& [name, pose] : poses_at(take, tick)) {
       const std::string body = name.substr(0, name.find('.'));
       const std::string part = name.substr(name.find('.') + 1);
-      const unsigned first = body == "guest" ? came : 0;  // its keys begin there
+      const unsigned first = body == "guest" ? first_frame : 0;  // index of its first keyframe
       const Pose in_gltf = gltf.z_up(name, tick - first);
       EXPECT_LT(glm::length(in_gltf.position - pose.position), 1e-4) << name << tick;
-      EXPECT_LT(turn_between(in_gltf.rotation, pose.rotation), 2e-3) << name << tick;
+      EXPECT_LT(angle_between(in_gltf.rotation, pose.rotation), 2e-3) << name << tick;
       const auto column = [&](const char* value) {
         return table.at((body == "my arm" ? "my%20arm" : body) + "/part/" + part + "/" + value)[tick];
       };
       EXPECT_LT(glm::length(Vec3(column("x"), column("y"), column("z")) - pose.position), 1e-4) << name << tick;
-      EXPECT_LT(turn_between(quat_xyzw(column("qx"), column("qy"), column("qz"), column("qw")), pose.rotation), 1e-3);
+      EXPECT_LT(angle_between(quat_xyzw(column("qx"), column("qy"), column("qz"), column("qw")), pose.rotation), 1e-3);
       if (body == "my arm") {
         EXPECT_LT(glm::length(bvh.z_up(part, tick).position - pose.position), 1e-4) << name << tick;
       }
     }
   }
-  EXPECT_EQ(gltf.channel("my arm.base"), nullptr) << "what stands still has no keys";
+  EXPECT_EQ(gltf.channel("my arm.base"), nullptr) << "a static part has no keyframes";
   ASSERT_NE(gltf.channel("my arm.swing"), nullptr);
   EXPECT_EQ(gltf.channel("my arm.swing")->mNumRotationKeys, 81u);
   EXPECT_EQ(gltf.channel("guest.ball")->mNumPositionKeys, 30u);
-  EXPECT_EQ(gltf.channel("guest")->mNumScalingKeys, 3u) << "not yet, there, gone";
+  EXPECT_EQ(gltf.channel("guest")->mNumScalingKeys, 3u) << "hidden, visible, hidden";
 }
 
-TEST(Export, JointsTellTheirAngles) {
-  const Folder folder;
+TEST(Export, ContainsJointAngles) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "80");
   ASSERT_EQ(run({"export", take, "--format", "csv"}).code, 0);
   auto table = table_of(folder.path() + "/show.csv");
@@ -137,21 +137,21 @@ TEST(Export, JointsTellTheirAngles) {
     const auto at = [&](const char* value) { return table.at("my%20arm/part/" + part + "/" + value)[i]; };
     return quat_xyzw(at("qx"), at("qy"), at("qz"), at("qw"));
   };
-  double most = 0;
+  double peak = 0;
   for (const std::size_t i : {10u, 40u, 80u}) {
     const double angle = table.at("my%20arm/joint/shoulder/angle")[i];
-    most = std::max(most, std::abs(angle));
-    EXPECT_LT(turn_between(rotation("base", i) * quat_axis({1, 0, 0}, angle) * glm::conjugate(rotation("base", 0)),
-                           rotation("swing", i) * glm::conjugate(rotation("swing", 0))),
+    peak = std::max(peak, std::abs(angle));
+    EXPECT_LT(angle_between(rotation("base", i) * quat_axis({1, 0, 0}, angle) * glm::conjugate(rotation("base", 0)),
+                            rotation("swing", i) * glm::conjugate(rotation("swing", 0))),
               5e-3);
   }
-  EXPECT_GT(most, 0.3) << "it swings";
+  EXPECT_GT(peak, 0.3) << "it swings";
   for (const char* value : {"angle_x", "angle_y", "angle_z"})
     EXPECT_EQ(table.count(std::string("my%20arm/joint/wrist/") + value), 1u) << value;
 }
 
-TEST(Export, FramesLieBetweenTicksToo) {
-  const Folder folder;
+TEST(Export, InterpolatesBetweenTicks) {
+  const TempFolder folder;
   const std::string take = record(folder, R"(
 sim.gravity = vec3(0, 0, 0)
 local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1))
@@ -180,9 +180,8 @@ ball.angular_velocity = vec3(0, 0, 2)
   EXPECT_NEAR(table.at("ball/part/p/x").back(), 1.5 * 0.75, 2e-5);
 }
 
-// time begins anew in the show, and goes on in the file; the bodies are the same
-// a ball that flies at 1 m/s, and a message from outside in mid-way
-std::string record_ball(const Folder& folder, int before, const Message& message, int after) {
+// a ball that moves at 1 m/s, and a message from outside at mid-time
+std::string record_ball(const TempFolder& folder, int before, const Message& message, int after) {
   std::string take = folder.path() + "/show.take";
   EngineOptions options;
   options.scene = folder.file("show.lua", R"(
@@ -195,36 +194,36 @@ sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_vel
   Engine engine(link, options);
   EXPECT_TRUE(engine.start());
   for (int i = 0; i < before; i++) engine.tick();
-  link.inbox.push({{message}, {Hand::osc, 0x7f000001, 4000}});
+  link.command_queue.push({{message}, {CommandSource::osc, 0x7f000001, 4000}});
   for (int i = 0; i < after; i++) engine.tick();
   engine.end_take();
   return take;
 }
 
-TEST(Export, AResetGoesOn) {
-  const Folder folder;
+TEST(Export, ContinuesAfterAReset) {
+  const TempFolder folder;
   const std::string take = record_ball(folder, 30, {"/transport/reset", {}}, 20);
-  const Ran ran = run({"export", take, "--format", "csv", "--rate", "40"});
-  EXPECT_EQ(ran.code, 0) << ran.err;
+  const RunResult result = run({"export", take, "--format", "csv", "--rate", "40"});
+  EXPECT_EQ(result.code, 0) << result.err;
   const auto table = table_of(folder.path() + "/show.csv");
   EXPECT_EQ(table.size(), 8u) << "one body";
   const std::vector<double>& x = table.at("ball/part/p/x");
-  double most = 0;
+  double peak = 0;
   for (std::size_t i = 0; i < x.size(); i++) {
     EXPECT_NEAR(table.at("time")[i], static_cast<double>(i) / 40, 1e-9);
-    most = std::max(most, x[i]);
+    peak = std::max(peak, x[i]);
     if (i == 0) continue;
-    const bool goes_on = std::abs(x[i] - x[i - 1] - 1.0 / 40) < 1e-4;
-    EXPECT_TRUE(goes_on || x[i] < 0.026) << "nothing lies between the end and the beginning: " << x[i];
+    const bool continues = std::abs(x[i] - x[i - 1] - 1.0 / 40) < 1e-4;
+    EXPECT_TRUE(continues || x[i] < 0.026) << "no interpolation across the reset: " << x[i];
   }
-  EXPECT_NEAR(most, 0.5, 0.03);
+  EXPECT_NEAR(peak, 0.5, 0.03);
 }
 
-TEST(Export, TimeThatGoesBackIsOneFrame) {
-  const Folder folder;
+TEST(Export, RewindTakesOneFrame) {
+  const TempFolder folder;
   const std::string take = record_ball(folder, 90, {"/transport/rewind", {Arg::of(0.25)}}, 30);
-  const Ran ran = run({"export", take, "--format", "csv", "--rate", "60"});
-  EXPECT_EQ(ran.code, 0) << ran.err;
+  const RunResult result = run({"export", take, "--format", "csv", "--rate", "60"});
+  EXPECT_EQ(result.code, 0) << result.err;
   const auto table = table_of(folder.path() + "/show.csv");
   const std::vector<double>& x = table.at("ball/part/p/x");
   ASSERT_EQ(x.size(), 121U) << "the start, and each tick that was played";
@@ -233,8 +232,8 @@ TEST(Export, TimeThatGoesBackIsOneFrame) {
   EXPECT_NEAR(x[120], 1.75, 1e-3);
 }
 
-TEST(Export, BodiesAreChosen) {
-  const Folder folder;
+TEST(Export, SelectsBodies) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "40");
   const std::string one = folder.path() + "/one.bvh";
   EXPECT_EQ(run({"export", take, "-o", one, "--body", "my arm"}).code, 0);
@@ -242,36 +241,36 @@ TEST(Export, BodiesAreChosen) {
   const std::string two = folder.path() + "/two.csv";
   EXPECT_EQ(run({"export", take, "-o", two, "--body", "b*", "--body", "guest"}).code, 0);
   EXPECT_EQ(table_of(two).size(), 15u);
-  const Ran none = run({"export", take, "-o", folder.path() + "/none.csv", "--body", "bal"});
+  const RunResult none = run({"export", take, "-o", folder.path() + "/none.csv", "--body", "bal"});
   EXPECT_EQ(none.code, 1);
-  EXPECT_NE(none.err.find("no body of the take is called 'bal'; did you mean 'ball'?"), std::string::npos) << none.err;
-  const Ran many = run({"export", take, "-o", folder.path() + "/many.bvh"});
-  EXPECT_NE(many.err.find("choose one by --body"), std::string::npos) << many.err;
+  EXPECT_NE(none.err.find("no body 'bal' in the take; did you mean 'ball'?"), std::string::npos) << none.err;
+  const RunResult many = run({"export", take, "-o", folder.path() + "/many.bvh"});
+  EXPECT_NE(many.err.find("Choose one with --body"), std::string::npos) << many.err;
   EXPECT_NE(many.code, 0);
   EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"one.bvh", "show.lua", "show.take", "two.csv"}));
 }
 
-TEST(Export, NothingIsWrittenOverUnasked) {
-  const Folder folder;
+TEST(Export, DoesNotOverwriteByDefault) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "5");
   const std::string bin = folder.file("a.bin", "mine");
   const std::string csv = folder.file("a.csv", "mine");
   folder.file("a_bvh/note", "mine");
-  for (const auto& [output, said] : {std::pair("a.csv", "write over it by --overwrite"),
-                                     {"a.gltf", "a.bin is there already"},
-                                     {"a_bvh", "none is written over"}}) {
-    const Ran ran =
+  for (const auto& [output, message] : {std::pair("a.csv", "overwrite it with --overwrite"),
+                                        {"a.gltf", "a.bin already exists"},
+                                        {"a_bvh", "which is never overwritten"}}) {
+    const RunResult result =
         run({"export", take, "--format", std::string(output).substr(2), "-o", folder.path() + "/" + output});
-    EXPECT_EQ(ran.code, 1) << ran.err;
-    EXPECT_NE(ran.err.find(said), std::string::npos) << ran.err;
+    EXPECT_EQ(result.code, 1) << result.err;
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
   }
   EXPECT_EQ(content(bin) + content(csv) + content(folder.path() + "/a_bvh/note"), "mineminemine");
   EXPECT_EQ(run({"export", take, "-o", csv, "--overwrite"}).code, 0);
   EXPECT_TRUE(content(csv).starts_with("time,"));
 }
 
-TEST(Export, CancelledItLeavesNothing) {
-  const Folder folder;
+TEST(Export, CancellationLeavesNoFile) {
+  const TempFolder folder;
   ExportCommand command;
   command.take = record(folder, kShow, "40");
   for (const char* name : {"a.csv", "a.glb", "a.gltf", "a_bvh"}) {
@@ -284,48 +283,48 @@ TEST(Export, CancelledItLeavesNothing) {
   }
 }
 
-TEST(Export, AFullDiskIsTheMachinesFault) {
-  const Folder folder;
+TEST(Export, FullDiskIsExitCode3) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "80");
   const std::string command =
       fmt::format("ulimit -f 8; exec {} export {} --format csv --rate 1000", LIMBER_PROGRAM, take);
-  const Ran ran = Running({"/bin/sh", "-c", command}).finish();
-  EXPECT_EQ(ran.code, 3) << ran.err;
-  EXPECT_NE(ran.err.find("show.csv can't be written: File too large"), std::string::npos) << ran.err;
+  const RunResult result = Process({"/bin/sh", "-c", command}).finish();
+  EXPECT_EQ(result.code, 3) << result.err;
+  EXPECT_NE(result.err.find("show.csv can't be written: File too large"), std::string::npos) << result.err;
   EXPECT_EQ(files_in(folder.path()), (std::vector<std::string>{"show.lua", "show.take"}));
 }
 
-TEST(Export, ATakeThatWasCutOffGoesToItsLastTick) {
-  const Folder folder;
+TEST(Export, ExportsATruncatedTakeToItsLastTick) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "80");
   const std::string cut = folder.file("cut.take", content(take).substr(0, content(take).size() - 200));
-  const Ran ran = run({"export", cut, "--format", "csv"});
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_NE(ran.err.find("the take was cut off there"), std::string::npos) << ran.err;
+  const RunResult result = run({"export", cut, "--format", "csv"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.err.find("the take was cut off there"), std::string::npos) << result.err;
   const std::size_t frames = table_of(folder.path() + "/cut.csv").at("time").size();
   EXPECT_GT(frames, 10u);
   EXPECT_LT(frames, 81u);
-  EXPECT_NE(ran.err.find(fmt::format("replayed {} ticks", frames - 1)), std::string::npos) << ran.err;
+  EXPECT_NE(result.err.find(fmt::format("replayed {} ticks", frames - 1)), std::string::npos) << result.err;
 }
 
-TEST(Export, AnEmptySceneIsAnEmptyFile) {
-  const Folder folder;
+TEST(Export, EmptySceneGivesAnEmptyFile) {
+  const TempFolder folder;
   const std::string take = record(folder, "", "3");
   EXPECT_EQ(run({"export", take, "--format", "csv", "--rate", "20"}).code, 0);
   EXPECT_EQ(content(folder.path() + "/show.csv"), "time\n0\n0.05\n");
   EXPECT_EQ(run({"export", take, "--format", "gltf"}).code, 0);
-  const Ran bvh = run({"export", take, "--format", "bvh"});
+  const RunResult bvh = run({"export", take, "--format", "bvh"});
   EXPECT_NE(bvh.code, 0);
   EXPECT_NE(bvh.err.find("there is no body to write"), std::string::npos) << bvh.err;
 }
 
-TEST(Export, WrongUsageNamesTheCure) {
-  const Folder folder;
+TEST(Export, ErrorsNameTheFix) {
+  const TempFolder folder;
   const std::string take = record(folder, kShow, "5");
   struct Case {
     std::vector<std::string> args;
     int code;
-    const char* said;
+    const char* message;
   };
   const Case cases[] = {
       {{"/nowhere.take", "--format", "csv"}, 1, "/nowhere.take"},
@@ -335,9 +334,9 @@ TEST(Export, WrongUsageNamesTheCure) {
   for (const Case& c : cases) {
     std::vector<std::string> args = {"export"};
     args.insert(args.end(), c.args.begin(), c.args.end());
-    const Ran ran = run(args);
-    EXPECT_EQ(ran.code, c.code) << ran.err;
-    EXPECT_NE(ran.err.find(c.said), std::string::npos) << ran.err;
+    const RunResult result = run(args);
+    EXPECT_EQ(result.code, c.code) << result.err;
+    EXPECT_NE(result.err.find(c.message), std::string::npos) << result.err;
   }
   const std::string help = run({"export", "--help"}).out;
   for (const char* taught : {"--rate", "--body", "--from", "--overwrite", "Y up", "docs/export.md", "evening.glb"})

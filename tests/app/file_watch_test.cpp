@@ -1,4 +1,4 @@
-// Every editor's way of saving, on a folder of its own; the clock is the test's, so nobody waits.
+// All ways in which editors save, in a temporary folder; the test provides the clock, so it never waits.
 #include "app/file_watch.h"
 
 #include <sys/stat.h>
@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 using Names = std::vector<std::string>;
 
-struct Watched : testing::TestWithParam<FileWatch::Way> {
-  Folder folder;
+struct FileWatchModes : testing::TestWithParam<FileWatch::Mode> {
+  TempFolder folder;
   FileWatch watch{GetParam()};
   FileWatch::Time now{};
 
@@ -27,8 +27,8 @@ struct Watched : testing::TestWithParam<FileWatch::Way> {
     for (const std::string& name : names) files.push_back({path(name), {}});
     watch.watch(files, now);
   }
-  /// Called as its owner would, until all is quiet: what was told, by file name, each with how often.
-  Names told() {
+  /// Polls like the owner until all is quiet; returns every reported file name.
+  Names reported() {
     Names names;
     for (int i = 0; i < 60; i++) {
       now += std::chrono::milliseconds(20);
@@ -36,8 +36,8 @@ struct Watched : testing::TestWithParam<FileWatch::Way> {
     }
     return names;
   }
-  /// Whether something is told within so many milliseconds.
-  bool told_within(int ms) {
+  /// True if a change is reported within `ms` milliseconds.
+  bool reported_within(int ms) {
     const FileWatch::Time end = now + std::chrono::milliseconds(ms);
     for (; now < end; now += std::chrono::milliseconds(5)) {
       if (!watch.poll(now).empty()) return true;
@@ -48,47 +48,47 @@ struct Watched : testing::TestWithParam<FileWatch::Way> {
 };
 
 // POSIX has no events
-std::vector<FileWatch::Way> ways() {
-  if (system::is_portable()) return {FileWatch::Way::polling};
-  return {FileWatch::Way::events, FileWatch::Way::polling};
+std::vector<FileWatch::Mode> modes() {
+  if (system::is_portable()) return {FileWatch::Mode::polling};
+  return {FileWatch::Mode::events, FileWatch::Mode::polling};
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Watched, testing::ValuesIn(ways()),
-                         [](const auto& way) { return way.param == FileWatch::Way::events ? "Events" : "Polling"; });
+INSTANTIATE_TEST_SUITE_P(Ways, FileWatchModes, testing::ValuesIn(modes()),
+                         [](const auto& way) { return way.param == FileWatch::Mode::events ? "Events" : "Polling"; });
 
-TEST_P(Watched, EveryWayOfSaving) {
+TEST_P(FileWatchModes, DetectsEveryWayOfSaving) {
   put("a.lua", "0");
   put("other.txt", "0");
   follow({"a.lua"});
-  EXPECT_EQ(told(), Names{}) << "nothing happened yet";
+  EXPECT_EQ(reported(), Names{}) << "nothing happened yet";
 
   put("a.lua", "1");
-  EXPECT_EQ(told(), Names{"a.lua"}) << "in place";
+  EXPECT_EQ(reported(), Names{"a.lua"}) << "in place";
 
   put("a.lua.tmp", "2");
   fs::rename(path("a.lua.tmp"), path("a.lua"));
-  EXPECT_EQ(told(), Names{"a.lua"}) << "a temporary file renamed";
+  EXPECT_EQ(reported(), Names{"a.lua"}) << "a temporary file renamed";
 
   fs::rename(path("a.lua"), path("a.lua~"));
   put("a.lua", "3");
   fs::remove(path("a.lua~"));
-  EXPECT_EQ(told(), Names{"a.lua"}) << "the old one renamed, a new one made";
+  EXPECT_EQ(reported(), Names{"a.lua"}) << "the old file renamed, a new one created";
 
   fs::remove(path("a.lua"));
   put("a.lua", "4");
-  EXPECT_EQ(told(), Names{"a.lua"}) << "unlinked and made again";
+  EXPECT_EQ(reported(), Names{"a.lua"}) << "removed and created";
 
   put("b.lua", "5");
   fs::remove(path("a.lua"));
   fs::create_hard_link(path("b.lua"), path("a.lua"));
-  EXPECT_EQ(told(), Names{"a.lua"}) << "linked in place";
+  EXPECT_EQ(reported(), Names{"a.lua"}) << "linked in place";
 
   put("other.txt", "1");
   put(".a.lua.swp", "x");
-  EXPECT_EQ(told(), Names{}) << "what else lies there";
+  EXPECT_EQ(reported(), Names{}) << "other files";
 }
 
-TEST_P(Watched, ABurstIsOneTelling) {
+TEST_P(FileWatchModes, ReportsABurstOnce) {
   put("a.lua", "0");
   put("b.lua", "0");
   follow({"a.lua", "b.lua"});
@@ -98,217 +98,217 @@ TEST_P(Watched, ABurstIsOneTelling) {
     now += std::chrono::milliseconds(10);
     EXPECT_EQ(watch.poll(now), Names{});
   }
-  EXPECT_EQ(told(), (Names{"a.lua", "b.lua"}));
+  EXPECT_EQ(reported(), (Names{"a.lua", "b.lua"}));
 }
 
-TEST_P(Watched, TheContentDecides) {
+TEST_P(FileWatchModes, ComparesContent) {
   put("a.lua", "same");
   follow({"a.lua"});
   put("a.lua", "same");
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   put("a.lua", "else");
   put("a.lua", "same");
-  EXPECT_EQ(told(), Names{});
-  // old times on a new content, as cp -p leaves them
+  EXPECT_EQ(reported(), Names{});
+  // old times with new content, as after cp -p
   struct stat before {};
   stat(path("a.lua").c_str(), &before);
   put("a.lua", "emas");
   const timespec times[2] = {before.st_atim, before.st_mtim};
   utimensat(AT_FDCWD, path("a.lua").c_str(), times, 0);
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
 }
 
-TEST_P(Watched, ADeletedFileIsToldWhenItIsBackWithAnotherContent) {
+TEST_P(FileWatchModes, ReportsADeletedFileWhenItReturnsChanged) {
   put("a.lua", "0");
   put("b.lua", "0");
   follow({"a.lua", "b.lua"});
   fs::remove(path("a.lua"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   put("a.lua", "0");
-  EXPECT_EQ(told(), Names{}) << "as it was";
+  EXPECT_EQ(reported(), Names{}) << "as it was";
   fs::remove(path("a.lua"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   put("a.lua", "1");
-  EXPECT_EQ(told(), Names{"a.lua"});
-  // somebody has looked while it was gone: its return is news
+  EXPECT_EQ(reported(), Names{"a.lua"});
+  // another report while it was missing: its return is a change
   fs::remove(path("a.lua"));
   put("b.lua", "1");
-  EXPECT_EQ(told(), Names{"b.lua"});
+  EXPECT_EQ(reported(), Names{"b.lua"});
   put("a.lua", "1");
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
 }
 
-TEST_P(Watched, AWriterInTwoChunks) {
+TEST_P(FileWatchModes, WaitsForTheWriterToClose) {
   put("a.lua", "0");
   follow({"a.lua"});
   std::ofstream out(path("a.lua"), std::ios::binary);
   out << "first" << std::flush;
-  if (GetParam() == FileWatch::Way::events) {
-    EXPECT_FALSE(told_within(400)) << "nobody has closed it yet";
+  if (GetParam() == FileWatch::Mode::events) {
+    EXPECT_FALSE(reported_within(400)) << "still open";
   }
   out << "second" << std::flush;
   out.close();
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
 }
 
-TEST_P(Watched, AFileThatIsMadeAndNotClosedYetIsWaitedForAWhile) {
+TEST_P(FileWatchModes, WaitsForANewFileForALimitedTime) {
   follow({"a.lua"});
   std::ofstream out(path("a.lua"), std::ios::binary);
   out << "first" << std::flush;
-  if (GetParam() == FileWatch::Way::events) {
-    EXPECT_FALSE(told_within(400));
-    EXPECT_TRUE(told_within(200)) << "it may stay open for ever";
+  if (GetParam() == FileWatch::Mode::events) {
+    EXPECT_FALSE(reported_within(400));
+    EXPECT_TRUE(reported_within(200)) << "it may stay open forever";
   }
   out << "second" << std::flush;
   out.close();
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
 }
 
-TEST_P(Watched, FoldersThatComeAndGo) {
+TEST_P(FileWatchModes, FollowsFoldersThatAreCreatedAndRemoved) {
   fs::create_directories(path("scripts"));
   put("scripts/a.lua", "0");
   follow({"scripts/a.lua", "scripts/lib/deep/b.lua"});
   fs::create_directories(path("scripts/lib/deep"));
   put("scripts/lib/deep/b.lua", "0");
-  EXPECT_EQ(told(), Names{"scripts/lib/deep/b.lua"});
+  EXPECT_EQ(reported(), Names{"scripts/lib/deep/b.lua"});
   put("scripts/lib/deep/b.lua", "1");
-  EXPECT_EQ(told(), Names{"scripts/lib/deep/b.lua"});
+  EXPECT_EQ(reported(), Names{"scripts/lib/deep/b.lua"});
   fs::remove_all(path("scripts/lib"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   fs::create_directories(path("scripts/lib/deep"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   put("scripts/lib/deep/b.lua", "2");
-  EXPECT_EQ(told(), Names{"scripts/lib/deep/b.lua"});
-  // the whole folder is put in the place of the old one
+  EXPECT_EQ(reported(), Names{"scripts/lib/deep/b.lua"});
+  // another folder replaces the whole folder
   fs::create_directories(path("next"));
   put("next/a.lua", "1");
   fs::rename(path("scripts"), path("gone"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   fs::rename(path("next"), path("scripts"));
-  EXPECT_EQ(told(), Names{"scripts/a.lua"});
+  EXPECT_EQ(reported(), Names{"scripts/a.lua"});
   put("scripts/a.lua", "2");
-  EXPECT_EQ(told(), Names{"scripts/a.lua"});
+  EXPECT_EQ(reported(), Names{"scripts/a.lua"});
 }
 
-TEST_P(Watched, ALinksTargetCounts) {
+TEST_P(FileWatchModes, FollowsLinks) {
   fs::create_directories(path("real"));
   put("real/a.lua", "0");
   fs::create_symlink(path("real/a.lua"), path("a.lua"));
   follow({"a.lua"});
   put("real/a.lua", "1");
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
   fs::create_directories(path("new"));
   put("new/a.lua", "2");
   fs::remove(path("a.lua"));
   fs::create_symlink(path("new/a.lua"), path("a.lua"));
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
   put("new/a.lua", "3");
-  EXPECT_EQ(told(), Names{"a.lua"});
+  EXPECT_EQ(reported(), Names{"a.lua"});
 }
 
-// as git checkout, rsync and Syncthing replace folders: one far above the file
-TEST_P(Watched, AFolderAboveIsReplaced) {
+// git checkout, rsync and Syncthing replace folders like this, here far above the file
+TEST_P(FileWatchModes, DetectsAReplacedParentFolder) {
   fs::create_directories(path("show/scripts/lib"));
   put("show/scripts/lib/a.lua", "0");
   follow({"show/scripts/lib/a.lua"});
   for (const char* text : {"1", "2"}) {
     fs::create_directories(path("next/scripts/lib"));
     put("next/scripts/lib/a.lua", text);
-    EXPECT_EQ(told(), Names{});
+    EXPECT_EQ(reported(), Names{});
     fs::rename(path("show"), path("old"));
     fs::rename(path("next"), path("show"));
-    EXPECT_EQ(told(), Names{"show/scripts/lib/a.lua"});
+    EXPECT_EQ(reported(), Names{"show/scripts/lib/a.lua"});
     put("show/scripts/lib/a.lua", text + std::string("+"));
-    EXPECT_EQ(told(), Names{"show/scripts/lib/a.lua"});
+    EXPECT_EQ(reported(), Names{"show/scripts/lib/a.lua"});
     put("old/scripts/lib/a.lua", "no longer it");
-    EXPECT_EQ(told(), Names{});
+    EXPECT_EQ(reported(), Names{});
     fs::remove_all(path("old"));
   }
   fs::remove_all(path("show"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   fs::create_directories(path("show/scripts/lib"));
   put("show/scripts/lib/a.lua", "3");
-  EXPECT_EQ(told(), Names{"show/scripts/lib/a.lua"});
+  EXPECT_EQ(reported(), Names{"show/scripts/lib/a.lua"});
 }
 
-// as releases are deployed: `current` leads to one of them, over another link
-TEST_P(Watched, ALinkOnTheWayIsSwitched) {
+// deployments do this: `current` links to a release through another link
+TEST_P(FileWatchModes, DetectsASwitchedLink) {
   for (const char* release : {"releases/1/show", "releases/2/show"}) fs::create_directories(path(release));
   put("releases/1/show/a.lua", "1");
   put("releases/2/show/a.lua", "2");
-  const auto lead = [this](const std::string& link, const std::string& to) {
+  const auto link_to = [this](const std::string& link, const std::string& to) {
     fs::create_symlink(to, path("link.new"));
     fs::rename(path("link.new"), path(link));
   };
-  lead("newest", "releases/1");
-  lead("current", "newest");
+  link_to("newest", "releases/1");
+  link_to("current", "newest");
   follow({"current/show/a.lua"});
-  EXPECT_EQ(told(), Names{});
-  lead("newest", path("releases/2"));
-  EXPECT_EQ(told(), Names{"current/show/a.lua"});
+  EXPECT_EQ(reported(), Names{});
+  link_to("newest", path("releases/2"));
+  EXPECT_EQ(reported(), Names{"current/show/a.lua"});
   put("releases/2/show/a.lua", "3");
-  EXPECT_EQ(told(), Names{"current/show/a.lua"});
-  lead("current", "releases/1");
-  EXPECT_EQ(told(), Names{"current/show/a.lua"});
+  EXPECT_EQ(reported(), Names{"current/show/a.lua"});
+  link_to("current", "releases/1");
+  EXPECT_EQ(reported(), Names{"current/show/a.lua"});
   put("releases/1/show/a.lua", "4");
-  EXPECT_EQ(told(), Names{"current/show/a.lua"});
+  EXPECT_EQ(reported(), Names{"current/show/a.lua"});
   fs::rename(path("releases"), path("old"));
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   fs::create_directories(path("releases/1/show"));
   put("releases/1/show/a.lua", "5");
-  EXPECT_EQ(told(), Names{"current/show/a.lua"});
+  EXPECT_EQ(reported(), Names{"current/show/a.lua"});
 }
 
-TEST_P(Watched, LinksInACircleEnd) {
+TEST_P(FileWatchModes, HandlesLinkCycles) {
   fs::create_symlink("b", path("a"));
   fs::create_symlink("a", path("b"));
   fs::create_symlink(".", path("self"));
   put("c.lua", "0");
   follow({"a/x.lua", "self/self/self/c.lua"});
   put("c.lua", "1");
-  EXPECT_EQ(told(), Names{"self/self/self/c.lua"});
+  EXPECT_EQ(reported(), Names{"self/self/self/c.lua"});
 }
 
-TEST_P(Watched, WhatWasReadMayBeOldAlready) {
+TEST_P(FileWatchModes, ReportsFilesChangedSinceTheyWereRead) {
   put("a.lua", "new");
   put("b.lua", "b");
   watch.watch({{path("a.lua"), hash_bytes("old")}, {path("b.lua"), hash_bytes("b")}}, now);
-  EXPECT_EQ(told(), Names{"a.lua"});
-  // files that go on to count keep what was told of them
+  EXPECT_EQ(reported(), Names{"a.lua"});
+  // files that stay in the set keep their last reported state
   follow({"a.lua", "b.lua", "c.lua"});
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
   follow({"b.lua"});
   put("a.lua", "1");
-  EXPECT_EQ(told(), Names{});
+  EXPECT_EQ(reported(), Names{});
 }
 
-TEST(FileWatch, SleepsUntilSomethingHappens) {
-  const Folder folder;
+TEST(FileWatch, SleepsUntilAnEvent) {
+  const TempFolder folder;
   folder.file("a.lua", "0");
   FileWatch watch;
   const FileWatch::Time now{};
   watch.watch({{folder.path() + "/a.lua", {}}}, now);
   if (system::is_portable()) {
-    EXPECT_EQ(watch.way(), FileWatch::Way::polling);
+    EXPECT_EQ(watch.mode(), FileWatch::Mode::polling);
     EXPECT_EQ(watch.fd(), -1);
-    EXPECT_EQ(watch.due(), now + FileWatch::kLook);
+    EXPECT_EQ(watch.next_poll(), now + FileWatch::kPollInterval);
     return;
   }
-  EXPECT_EQ(watch.way(), FileWatch::Way::events);
-  EXPECT_EQ(watch.due(), std::nullopt) << "no time at which it must be called";
+  EXPECT_EQ(watch.mode(), FileWatch::Mode::events);
+  EXPECT_EQ(watch.next_poll(), std::nullopt) << "no scheduled poll";
   pollfd call{watch.fd(), POLLIN, 0};
   EXPECT_EQ(watch.poll(now), Names{}) << "other programs may do something in the folders above";
-  EXPECT_EQ(watch.due(), std::nullopt);
+  EXPECT_EQ(watch.next_poll(), std::nullopt);
   folder.file("a.lua", "1");
   EXPECT_EQ(::poll(&call, 1, 0), 1);
   EXPECT_EQ(watch.poll(now), Names{});
-  EXPECT_EQ(watch.due(), now + FileWatch::kQuiet);
-  EXPECT_EQ(watch.poll(now + FileWatch::kQuiet).size(), 1u);
-  EXPECT_EQ(watch.due(), std::nullopt);
-  FileWatch polling(FileWatch::Way::polling);
+  EXPECT_EQ(watch.next_poll(), now + FileWatch::kQuietPeriod);
+  EXPECT_EQ(watch.poll(now + FileWatch::kQuietPeriod).size(), 1u);
+  EXPECT_EQ(watch.next_poll(), std::nullopt);
+  FileWatch polling(FileWatch::Mode::polling);
   polling.watch({{folder.path() + "/a.lua", {}}}, now);
   EXPECT_EQ(polling.fd(), -1);
-  EXPECT_EQ(polling.due(), now + FileWatch::kLook);
+  EXPECT_EQ(polling.next_poll(), now + FileWatch::kPollInterval);
 }
 
 }  // namespace

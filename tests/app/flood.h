@@ -1,5 +1,5 @@
-// A flood of datagrams: good, bad and mutated ones from several senders, the same ones each time, and the scene that
-// counts what it hears of them.
+// A reproducible flood of valid, invalid and mutated datagrams from several senders, and a scene that counts those it
+// receives.
 #pragma once
 
 #include <array>
@@ -27,25 +27,25 @@ osc:on("/mut", function() mutants = mutants + 1 end)
 osc:on("/count", function() osc:reply("/count", hits, mutants) end)
 )";
 
-/// The n-th datagram of a flood is always the same one. One in ten is a value, one a value by pattern, two are for a
-/// handler of the scene, one has no such address, one is refused, two are no OSC and two are mutants. Each that is
-/// whole is one message. [one thread]
+/// Generates datagrams; the n-th one is always the same. Of ten, one is a value, one a value by pattern, two are for a
+/// handler of the scene, one has an unknown address, one is rejected, two are invalid OSC and two are mutants. Each
+/// valid datagram contains one message. [one thread]
 class Flood {
  public:
-  enum class Kind { hit, value, unknown, refused, malformed, mutant };
-  static constexpr std::array<Kind, 10> kKinds = {Kind::hit,     Kind::value,    Kind::mutant, Kind::malformed,
-                                                  Kind::refused, Kind::hit,      Kind::value,  Kind::unknown,
-                                                  Kind::mutant,  Kind::malformed};
+  enum class Kind { hit, value, unknown, rejected, malformed, mutant };
+  static constexpr std::array<Kind, 10> kKinds = {Kind::hit,      Kind::value,    Kind::mutant, Kind::malformed,
+                                                  Kind::rejected, Kind::hit,      Kind::value,  Kind::unknown,
+                                                  Kind::mutant,   Kind::malformed};
 
   explicit Flood(std::uint64_t seed) : random_(seed) {
     for (const osc_test::BadPacket& bad : osc_test::bad_packets()) {
-      // large ones fill the kernel's buffer, which is another test
+      // large ones fill the kernel's buffer, which another test covers
       if (bad.bytes.size() < 2048) bad_.push_back(bad.bytes);
     }
   }
 
   static Kind kind(std::size_t n) { return kKinds[n % kKinds.size()]; }
-  /// How many of the first `count` are of that kind.
+  /// Returns the number of datagrams of that kind among the first `count`.
   static std::size_t count_of(Kind kind, std::size_t count) {
     std::size_t found = 0;
     for (std::size_t n = 0; n < count; n++) found += Flood::kind(n) == kind ? 1 : 0;
@@ -70,8 +70,8 @@ class Flood {
             .str();
       case Kind::unknown:
         return osc_test::one_float("/physics/motor/angularservopositoin", number);
-      case Kind::refused:
-        return Bytes().text("/physics/part/mass").text(",ssf").text("nobody").text("tip").f(number).str();
+      case Kind::rejected:
+        return Bytes().text("/physics/part/mass").text(",ssf").text("missing").text("tip").f(number).str();
       case Kind::malformed:
         return bad_[n / 5 % bad_.size()];
       case Kind::mutant:
@@ -83,12 +83,13 @@ class Flood {
  private:
   std::size_t below(std::size_t limit) { return static_cast<std::size_t>(random_.next() % limit); }
 
-  // a message for the handler with some bytes changed, cut off or added; its address stays one that no row has
+  // a message for the handler with some bytes changed, removed or added; its address never matches a property
   std::string mutant() {
     std::string bytes = osc_test::Bytes().text("/mut").text(",ifsT").u32(7).f(0.5F).text("word").str();
     for (std::size_t i = below(4); i > 0; i--) {
       const std::size_t at = below(bytes.size());
-      const bool in_address = at >= 1 && at <= 6;  // and where it could grow: letters, so that it is no pattern
+      // letters only, also in the padding, so that the address is no pattern
+      const bool in_address = at >= 1 && at <= 6;
       bytes[at] = static_cast<char>(in_address ? 'k' + below(16) : below(256));
     }
     if (below(4) == 0) bytes.resize(below(bytes.size() + 1));
@@ -101,20 +102,20 @@ class Flood {
   std::size_t n_ = 0;
 };
 
-/// What became of datagrams of which each whole one is a message; `hits` and `mutants` as the scene's handlers count.
+/// Where the datagrams went; `hits` and `mutants` are counted by the scene's handlers.
 struct FloodSum {
   std::uint64_t sent = 0;
   std::uint64_t values = 0;
   std::uint64_t hits = 0;
   std::uint64_t mutants = 0;
   std::uint64_t unknown = 0;
-  std::uint64_t refused = 0;
+  std::uint64_t rejected = 0;
   std::uint64_t malformed = 0;
   std::uint64_t dropped = 0;
   std::uint64_t dropped_kernel = 0;
 
-  std::uint64_t accounted() const {
-    return values + hits + mutants + unknown + refused + malformed + dropped + dropped_kernel;
+  std::uint64_t total() const {
+    return values + hits + mutants + unknown + rejected + malformed + dropped + dropped_kernel;
   }
 };
 

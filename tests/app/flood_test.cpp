@@ -1,5 +1,6 @@
-// Twenty thousand datagrams a second of stage time, good, bad and mutated, by four senders, while subscribers are dead
-// and WebSockets never read: everything is counted, nothing grows, every tick happens, who behaves is served.
+// Twenty thousand datagrams per simulated second, valid, invalid and mutated, from four senders, while subscribers are
+// dead and WebSocket clients don't read: all are counted, memory doesn't grow, no tick is lost, and well-behaved
+// clients are served.
 #include <malloc.h>
 
 #include <chrono>
@@ -18,11 +19,11 @@ namespace {
 using namespace osc_test;
 using query_test::WebClient;
 
-constexpr int kTicks = 180;           // 3 s of stage time
-constexpr int kWarmUp = 60;           // ticks before memory is looked at
-constexpr int kEachTick = 334;        // 20 040 a second
-constexpr int kAtATime = 100;         // datagrams that every kernel keeps for us
-constexpr double kMostGrown = 1.5e6;  // bytes; a client that never reads may have 1 MiB waiting for it
+constexpr int kTicks = 180;           // 3 s of simulated time
+constexpr int kWarmUp = 60;           // ticks before memory is measured
+constexpr int kPerTick = 334;         // 20 040 a second
+constexpr int kBatch = 100;           // datagrams that every kernel buffers
+constexpr double kMaxGrowth = 1.5e6;  // bytes; up to 1 MiB may be queued for a client that doesn't read
 
 OscOptions only_in() {
   OscOptions options;
@@ -36,23 +37,23 @@ double heap() {
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-// the whole program but its window, ticked by hand
-struct FloodedStage {
+// the whole program except its window; the test runs the ticks
+struct FloodFixture {
   engine_test::SceneFile file{kFloodScene};
   EngineLink link;
   Engine engine{link, engine_test::fast_options(file.path())};
-  Network network{link, only_in(), live_offsets()};
-  QueryServer query{link, query_doors(network, {})};
-  Endpoint end;
+  Network network{link, only_in(), transient_offsets()};
+  QueryServer query{link, query_host(network, {})};
+  Endpoint endpoint;
   int ticks = 0;
 
-  FloodedStage() {
+  FloodFixture() {
     EXPECT_TRUE(engine.start().ok());
     EXPECT_TRUE(network.start().ok());
     EXPECT_TRUE(query.start({"127.0.0.1", 0}).ok());
-    end = network.bound().at(0);
+    endpoint = network.bound().at(0);
   }
-  ~FloodedStage() {
+  ~FloodFixture() {
     query.stop();
     network.stop();
   }
@@ -61,22 +62,22 @@ struct FloodedStage {
     engine.tick();
     ticks++;
   }
-  // datagrams of which the network thread knows what they were
-  std::uint64_t taken() const {
+  // datagrams that the network thread has processed
+  std::uint64_t processed() const {
     const Counters& c = link.counters;
     return c.received + c.malformed + c.denied + c.dropped_kernel;
   }
-  bool until_taken(std::uint64_t count) const {
-    const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
-    while (taken() < count) {
+  bool wait_until_processed(std::uint64_t count) const {
+    const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
+    while (processed() < count) {
       if (std::chrono::steady_clock::now() > late) return false;
       std::this_thread::yield();
     }
     return true;
   }
-  // ticks until the client has heard a message of that address
-  std::optional<Message> answer(const Client& client, std::string_view address) {
-    const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+  // runs ticks until the client has received a message with that address
+  std::optional<Message> wait_for_reply(const Client& client, std::string_view address) {
+    const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
     while (std::chrono::steady_clock::now() < late) {
       tick();
       for (auto bytes = client.receive(1); bytes; bytes = client.receive(0)) {
@@ -88,67 +89,67 @@ struct FloodedStage {
   }
 };
 
-// subscribed and gone: what is sent to them comes back as refused
+// clients that subscribe and close their socket: packets to them are refused
 std::uint64_t dead_subscribers(const Endpoint& end) {
   std::uint64_t sent = 0;
   for (int i = 0; i < 8; i++) {
-    const Client gone;
-    for (const char* what : {"pos", "rot", "/scene/wind", "//*"}) {
-      gone.send(end, Bytes().text("/subscribe").text(",sf").text(what).f(500).str());
+    const Client closed;
+    for (const char* path : {"pos", "rot", "/scene/wind", "//*"}) {
+      closed.send(end, Bytes().text("/subscribe").text(",sf").text(path).f(500).str());
       sent++;
     }
   }
   return sent;
 }
 
-std::vector<WebClient> deaf_listeners(std::uint16_t port) {
-  std::vector<WebClient> deaf;
+std::vector<WebClient> unread_clients(std::uint16_t port) {
+  std::vector<WebClient> unread;
   for (const char* path : {"//*", "/scene/wind", "/physics/body/arm/part/tip/position", "/osc/received"}) {
-    deaf.emplace_back(port, 4096);
-    EXPECT_EQ(deaf.back().upgrade().status, 101);
-    deaf.back().listen(path);
+    unread.emplace_back(port, 4096);
+    EXPECT_EQ(unread.back().upgrade().status, 101);
+    unread.back().listen(path);
   }
-  return deaf;
+  return unread;
 }
 
-// one who plays and asks amid the flood: each value is set, each question answered, in order
-class Asker {
+// a client that sets and queries a value during the flood: each value is set, each query answered, in order
+class Requester {
  public:
-  explicit Asker(FloodedStage& stage) : stage_(stage) {}
+  explicit Requester(FloodFixture& fixture) : fixture_(fixture) {}
 
-  std::uint64_t turn() {
+  std::uint64_t send() {
     value_++;
-    client_.send(stage_.end, one_float("/scene/wind", value_));
-    client_.send(stage_.end, Bytes().text("/get").text(",s").text("/scene/wind").str());
-    client_.send(stage_.end, Bytes().text("/ping").str());
+    client_.send(fixture_.endpoint, one_float("/scene/wind", value_));
+    client_.send(fixture_.endpoint, Bytes().text("/get").text(",s").text("/scene/wind").str());
+    client_.send(fixture_.endpoint, Bytes().text("/ping").str());
     return 3;
   }
-  void hear() {
-    const std::optional<Message> said = stage_.answer(client_, "/scene/wind");
-    ASSERT_TRUE(said) << "value " << value_ << " was not answered";
-    EXPECT_EQ(said->args.at(0).number, value_);
+  void expect_reply() {
+    const std::optional<Message> reply = fixture_.wait_for_reply(client_, "/scene/wind");
+    ASSERT_TRUE(reply) << "value " << value_ << " was not answered";
+    EXPECT_EQ(reply->args.at(0).number, value_);
   }
 
  private:
-  FloodedStage& stage_;
+  FloodFixture& fixture_;
   Client client_;
   float value_ = 0;
 };
 
-// all that a flood of datagrams was, when all of it has been carried out
-FloodSum sum_of(FloodedStage& stage, std::uint64_t sent, std::uint64_t others) {
+// the totals after all datagrams have been processed
+FloodSum sum_of(FloodFixture& fixture, std::uint64_t sent, std::uint64_t others) {
   const Client client;
-  client.send(stage.end, Bytes().text("/count").str());
-  const std::optional<Message> count = stage.answer(client, "/count");
+  client.send(fixture.endpoint, Bytes().text("/count").str());
+  const std::optional<Message> count = fixture.wait_for_reply(client, "/count");
   EXPECT_TRUE(count);
-  const Counters& c = stage.link.counters;
+  const Counters& c = fixture.link.counters;
   FloodSum sum;
   sum.sent = sent;
   sum.values = Flood::count_of(Flood::Kind::value, sent);
   sum.hits = count ? static_cast<std::uint64_t>(count->args.at(0).number) : 0;
   sum.mutants = count ? static_cast<std::uint64_t>(count->args.at(1).number) : 0;
   sum.unknown = c.unknown;
-  sum.refused = c.refused;
+  sum.rejected = c.refused;
   sum.malformed = c.malformed;
   sum.dropped = c.dropped;
   sum.dropped_kernel = c.dropped_kernel;
@@ -156,54 +157,54 @@ FloodSum sum_of(FloodedStage& stage, std::uint64_t sent, std::uint64_t others) {
   return sum;
 }
 
-TEST(Flood, TwentyThousandASecondOfEveryKind) {
+TEST(Flood, CountsEveryDatagram) {
   log_to_stderr(false);
-  FloodedStage stage;
-  const double none = 0;  // history keeps what comes in, within bounds of its own
-  ASSERT_TRUE(stage.engine.store().set(stage.engine.world().id(), "history", {&none, 1}).ok());
-  std::uint64_t others = dead_subscribers(stage.end);
-  const std::vector<WebClient> deaf = deaf_listeners(stage.query.port());
-  WebClient listener(stage.query.port());
+  FloodFixture fixture;
+  const double none = 0;  // the history stores incoming messages, within its own limit
+  ASSERT_TRUE(fixture.engine.store().set(fixture.engine.world().id(), "history", {&none, 1}).ok());
+  std::uint64_t others = dead_subscribers(fixture.endpoint);
+  const std::vector<WebClient> unread = unread_clients(fixture.query.port());
+  WebClient listener(fixture.query.port());
   ASSERT_EQ(listener.upgrade().status, 101);
   listener.listen("/scene/wind");
   const std::array<Client, 4> senders;
-  Asker asker(stage);
+  Requester asker(fixture);
   Flood flood(1);
   std::uint64_t sent = 0;
   double heap_then = 0;
   for (int i = 0; i < kWarmUp + kTicks; i++) {
     if (i == kWarmUp) heap_then = heap();
-    for (int n = 0; n < kEachTick; n++) {
-      senders[sent % senders.size()].send(stage.end, flood.next());
+    for (int n = 0; n < kPerTick; n++) {
+      senders[sent % senders.size()].send(fixture.endpoint, flood.next());
       sent++;
-      if (n == kEachTick / 2) others += asker.turn();
-      if (n % kAtATime == kAtATime - 1) {
-        ASSERT_TRUE(stage.until_taken(sent + others));
+      if (n == kPerTick / 2) others += asker.send();
+      if (n % kBatch == kBatch - 1) {
+        ASSERT_TRUE(fixture.wait_until_processed(sent + others));
       }
     }
-    ASSERT_TRUE(stage.until_taken(sent + others));
-    asker.hear();
+    ASSERT_TRUE(fixture.wait_until_processed(sent + others));
+    asker.expect_reply();
     if (HasFatalFailure()) return;
   }
-  EXPECT_LT(heap(), heap_then + kMostGrown);
+  EXPECT_LT(heap(), heap_then + kMaxGrowth);
 
-  const FloodSum sum = sum_of(stage, sent, others);
-  EXPECT_EQ(sum.accounted(), sent);
+  const FloodSum sum = sum_of(fixture, sent, others);
+  EXPECT_EQ(sum.total(), sent);
   EXPECT_EQ(sum.hits, Flood::count_of(Flood::Kind::hit, sent));
   EXPECT_EQ(sum.dropped + sum.dropped_kernel, 0u) << "paced, nothing is lost";
   EXPECT_GT(sum.mutants, 0u);
   EXPECT_GT(sum.malformed, Flood::count_of(Flood::Kind::malformed, sent)) << "some mutants are no OSC";
   EXPECT_GE(sum.unknown, Flood::count_of(Flood::Kind::unknown, sent));
-  EXPECT_GE(sum.refused, Flood::count_of(Flood::Kind::refused, sent));
-  // every tick was one, and time went on with them
-  EXPECT_EQ(stage.engine.world().tick(), static_cast<std::uint64_t>(stage.ticks));
-  EXPECT_NEAR(stage.engine.world().time(), stage.ticks / 60.0, 1e-9);
-  EXPECT_EQ(stage.engine.world().health_events(), 0u);
-  // who listens by WebSocket hears the newest
+  EXPECT_GE(sum.rejected, Flood::count_of(Flood::Kind::rejected, sent));
+  // no tick is lost, and time advances with the ticks
+  EXPECT_EQ(fixture.engine.world().tick(), static_cast<std::uint64_t>(fixture.ticks));
+  EXPECT_NEAR(fixture.engine.world().time(), fixture.ticks / 60.0, 1e-9);
+  EXPECT_EQ(fixture.engine.world().health_events(), 0u);
+  // the WebSocket client receives the latest value
   const std::string newest = one_float("/scene/wind", kWarmUp + kTicks);
   std::string heard;
-  for (int tries = 0; tries < kPatienceMs && heard != newest; tries++) {
-    stage.tick();
+  for (int tries = 0; tries < kTimeoutMs && heard != newest; tries++) {
+    fixture.tick();
     const query_test::Frame frame = listener.receive(1);
     if (frame.opcode == 2) heard = frame.payload;
   }

@@ -1,4 +1,4 @@
-// `limber inspect`: the JSON that product.md promises, the table, the exit codes.
+// `limber inspect`: the JSON, the table, the exit codes.
 #include "app/inspect.h"
 
 #include <filesystem>
@@ -41,7 +41,7 @@ TEST(Inspect, JsonHasEveryLinkAndJointOfTheFile) {
   EXPECT_EQ(arm.at("collisions"), 0);
   EXPECT_EQ(arm.at("home").at("position"), json({0.0, 0.0, 1.0}));
   EXPECT_EQ(arm.at("home").at("rotation"), json({0.0, 0.0, 0.0, 1.0}));
-  // the joint's zero lies below its limits: it starts at 0.5 about y
+  // 0 is below the joint's limits: it starts at 0.5 about y
   EXPECT_NEAR(arm.at("start").at("rotation").at(1).get<double>(), std::sin(0.25), 1e-12);
   const json& mark = j["links"][2];
   EXPECT_EQ(mark.at("home").at("position"), json({1.0, 0.0, 1.0}));
@@ -117,9 +117,9 @@ TEST(Inspect, ExitCodeIsOneOnlyWithoutABody) {
   EXPECT_EQ(good, 0);
   EXPECT_EQ(bad, 1);
   EXPECT_EQ(missing, 1);
-  EXPECT_EQ(json::parse(out).at("robot"), "r") << "only the good file's answer goes to stdout";
+  EXPECT_EQ(json::parse(out).at("robot"), "r") << "only the result of the valid file goes to stdout";
   EXPECT_NE(err.find(file.string() + ":1: "), std::string::npos) << err;
-  EXPECT_NE(err.find("no such file"), std::string::npos) << err;
+  EXPECT_NE(err.find("file not found"), std::string::npos) << err;
 }
 
 }  // namespace

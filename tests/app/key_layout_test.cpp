@@ -1,4 +1,4 @@
-// Keys by the letters that layouts print, as X11's layouts us, fr, de, dvorak and ru print them.
+// Keys by their printed letters, for the X11 layouts us, fr, de, dvorak and ru.
 #include "app/key_layout.h"
 
 #include <GLFW/glfw3.h>
@@ -13,7 +13,7 @@ namespace {
 constexpr const char* kPlaces =
     "1 2 3 4 5 6 7 8 9 0 - = Q W E R T Y U I O P [ ] A S D F G H J K L ; ' Z X C V B N M , . /";
 
-// what is printed at these places; "_" nothing, as on dead keys
+// the texts printed at these positions; "_": none, as on dead keys
 KeyLayout layout(const std::string& printed) {
   std::map<int, std::string> names;
   std::istringstream places(kPlaces);
@@ -28,7 +28,7 @@ const char* const kDe = "1 2 3 4 5 6 7 8 9 0 ß _ q w e r t z u i o p ü + a s d
 const char* const kDvorak = "1 2 3 4 5 6 7 8 9 0 [ ] ' , . p y f g c r l / = a o e u i d h t n s - ; q j k x b m w v z";
 const char* const kRu = "1 2 3 4 5 6 7 8 9 0 - = й ц у к е н г ш щ з х ъ ф ы в а п р о л д ж э я ч с м и т ь б ю .";
 
-TEST(KeyLayout, UsIsByPlace) {
+TEST(KeyLayout, UsKeysKeepTheirPositions) {
   const KeyLayout us = layout(kUs);
   for (int i = 0; i < 26; i++) EXPECT_EQ(us.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
   for (int i = 0; i < 10; i++)
@@ -42,7 +42,7 @@ TEST(KeyLayout, UsIsByPlace) {
   EXPECT_TRUE(us.labels().empty());
 }
 
-TEST(KeyLayout, AzertyFollowsItsLettersAndKeepsItsDigits) {
+TEST(KeyLayout, AzertyFollowsLettersAndKeepsDigits) {
   const KeyLayout fr = layout(kFr);
   EXPECT_EQ(fr.key(GLFW_KEY_Q), GuiKey::a);
   EXPECT_EQ(fr.key(GLFW_KEY_W), GuiKey::z);
@@ -58,7 +58,7 @@ TEST(KeyLayout, AzertyFollowsItsLettersAndKeepsItsDigits) {
   EXPECT_FALSE(fr.labels().contains(GuiKey::z));
 }
 
-TEST(KeyLayout, QwertzAndDvorak) {
+TEST(KeyLayout, FollowsQwertzAndDvorak) {
   const KeyLayout de = layout(kDe);
   EXPECT_EQ(de.key(GLFW_KEY_Y), GuiKey::z);
   EXPECT_EQ(de.key(GLFW_KEY_Z), GuiKey::y);
@@ -72,7 +72,7 @@ TEST(KeyLayout, QwertzAndDvorak) {
   EXPECT_EQ(dvorak.key(GLFW_KEY_Q), GuiKey::none);
 }
 
-TEST(KeyLayout, CyrillicStaysAtItsPlace) {
+TEST(KeyLayout, CyrillicKeysKeepTheirPositions) {
   const KeyLayout ru = layout(kRu);
   for (int i = 0; i < 26; i++) EXPECT_EQ(ru.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
   EXPECT_EQ(ru.labels().at(GuiKey::z), "я");

@@ -1,4 +1,4 @@
-// A scene that plays in real time, with a runtime folder of its own, for tests of what talks to it.
+// A scene that plays in real time with its own runtime folder, for tests of other programs that talk to it.
 #pragma once
 
 #include <string>
@@ -16,11 +16,11 @@ class Playing {
     EXPECT_TRUE(running_.wait_for("playing headless")) << running_.err();
   }
 
-  /// Another program beside it, in the same runtime folder.
+  /// Returns the command line of another program in the same runtime folder.
   std::vector<std::string> words(std::vector<std::string> args) const {
     if (!args.empty() && args[0] == "play")
       args.insert(args.end(), {"--osc-in", "off", "--osc-out", "off", "--query", "off"});
-    return limber(std::move(args), environment());
+    return limber_command(std::move(args), environment());
   }
   std::vector<std::string> environment() const {
     return {"env",
@@ -30,31 +30,31 @@ class Playing {
             "TERM=xterm",
             "LC_ALL=C.UTF-8"};
   }
-  Ran console(std::vector<std::string> args) const {
+  RunResult console(std::vector<std::string> args) const {
     args.insert(args.begin(), "console");
-    return Running(words(std::move(args))).finish();
+    return Process(words(std::move(args))).finish();
   }
-  /// The console with these lines on its stdin.
-  Ran pipe(const std::string& lines) const {
+  /// Runs the console with these lines on stdin.
+  RunResult pipe(const std::string& lines) const {
     std::vector<std::string> all = environment();
     all.insert(all.end(), {"sh", "-c", "printf %s \"$1\" | \"$0\" console", LIMBER_PROGRAM, lines});
-    return Running(all).finish();
+    return Process(all).finish();
   }
   const std::string& file() const { return file_; }
   const PrivateFolder& runtime() const { return runtime_; }
-  Running& running() { return running_; }
-  /// Its process, as the name of its socket tells.
+  Process& running() { return running_; }
+  /// Process id, from the name of the socket.
   std::string pid() const {
-    const std::string& said = running_.err();
-    const std::size_t at = said.find("/limber-", said.find("limber: console ")) + 8;
-    return said.substr(at, said.find(".sock", at) - at);
+    const std::string& stderr_text = running_.err();
+    const std::size_t at = stderr_text.find("/limber-", stderr_text.find("limber: console ")) + 8;
+    return stderr_text.substr(at, stderr_text.find(".sock", at) - at);
   }
 
  private:
-  Folder folder_;
+  TempFolder folder_;
   PrivateFolder runtime_;
   std::string file_;
-  Running running_;
+  Process running_;
 };
 
 }  // namespace limber::app_test

@@ -1,4 +1,4 @@
-// Runs the program itself, as somebody at a terminal would: arguments in, output, errors and exit code out.
+// Runs the program as a child process and captures its output and exit code.
 #pragma once
 
 #include <fcntl.h>
@@ -21,36 +21,36 @@
 
 namespace limber::app_test {
 
-/// Only a failing test waits as long.
-inline constexpr int kPatienceMs = 120000;
+/// Timeout that only failing tests reach.
+inline constexpr int kTimeoutMs = 120000;
 
-struct Ran {
-  int code = -1;  ///< Exit code; 128 + signal when one ended it.
+struct RunResult {
+  int code = -1;  ///< Exit code; 128 + signal number if a signal ended it.
   std::string out;
   std::string err;
 };
 
-/// The bytes of a file; none where it can't be read.
+/// Returns the bytes of a file; empty if it can't be read.
 inline std::string content(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A folder that goes when the test is over.
-class Folder {
+/// A temporary folder, deleted by the destructor.
+class TempFolder {
  public:
-  Folder() {
+  TempFolder() {
     static std::atomic<int> count{0};
     path_ =
         std::filesystem::path(::testing::TempDir()) / fmt::format("limber_app_{}_{}", ::getpid(), count.fetch_add(1));
     std::filesystem::create_directories(path_);
   }
-  ~Folder() {
+  ~TempFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
 
   std::string path() const { return path_.string(); }
   std::string file(const std::string& name, const std::string& text) const {
@@ -64,17 +64,17 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// What programs of these tests remember of themselves goes there, unless a test says otherwise.
+/// Default state folder of the programs in these tests.
 inline std::string state_folder() {
-  static const Folder folder;
+  static const TempFolder folder;
   return folder.path();
 }
 
-/// A program that runs in a folder (the checkout), with its output read as it comes. What still runs at the end is
-/// ended, by its id.
-class Running {
+/// A program that runs in a folder (default: the checkout), with its output captured. The destructor kills it if it
+/// still runs.
+class Process {
  public:
-  explicit Running(const std::vector<std::string>& words, const std::string& folder = LIMBER_SOURCE_DIR) {
+  explicit Process(const std::vector<std::string>& words, const std::string& folder = LIMBER_SOURCE_DIR) {
     int out[2];
     int err[2];
     if (pipe2(out, O_CLOEXEC) != 0 || pipe2(err, O_CLOEXEC) != 0) std::abort();
@@ -98,7 +98,7 @@ class Running {
     pipes_[0] = out[0];
     pipes_[1] = err[0];
   }
-  ~Running() {
+  ~Process() {
     if (pid_ > 0) {
       ::kill(pid_, SIGKILL);
       waitpid(pid_, nullptr, 0);
@@ -107,13 +107,13 @@ class Running {
       if (fd >= 0) close(fd);
     }
   }
-  Running(const Running&) = delete;
-  Running& operator=(const Running&) = delete;
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
   pid_t pid() const { return pid_; }
 
-  /// Reads until `text` has come on stderr (or stdout); false when the output ended before.
+  /// Reads until `text` appears on stderr (or stdout); false if the output ended before.
   bool wait_for(const std::string& text, bool on_stdout = false) {
     const std::string& where = on_stdout ? out_ : err_;
     while (where.find(text) == std::string::npos) {
@@ -122,16 +122,16 @@ class Running {
     return true;
   }
 
-  /// Reads what has come so far, without waiting.
-  void look() {
+  /// Reads the available output without waiting.
+  void read_available() {
     while (true) {
       pollfd polled[2] = {{pipes_[0], POLLIN, 0}, {pipes_[1], POLLIN, 0}};
       if (poll(polled, 2, 0) <= 0 || !read_some()) return;
     }
   }
 
-  /// Reads to the end and gives what it was.
-  Ran finish() {
+  /// Reads to the end and returns the result.
+  RunResult finish() {
     while (read_some()) {
     }
     int status = 0;
@@ -139,11 +139,11 @@ class Running {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_, err_};
   }
   const std::string& err() const { return err_; }
-  /// What came on stderr behind `mark`, to the end of its line; empty when it did not come.
-  std::string behind(const std::string& mark) const {
-    const std::size_t at = err_.find(mark);
+  /// Returns the text after `prefix` on stderr, to the end of the line; empty if not found.
+  std::string text_after(const std::string& prefix) const {
+    const std::size_t at = err_.find(prefix);
     if (at == std::string::npos) return {};
-    const std::size_t begin = at + mark.size();
+    const std::size_t begin = at + prefix.size();
     return err_.substr(begin, err_.find('\n', begin) - begin);
   }
   const std::string& out() const { return out_; }
@@ -152,8 +152,8 @@ class Running {
   bool read_some() {
     pollfd polled[2] = {{pipes_[0], POLLIN, 0}, {pipes_[1], POLLIN, 0}};
     if (pipes_[0] < 0 && pipes_[1] < 0) return false;
-    if (poll(polled, 2, kPatienceMs) <= 0) {
-      ADD_FAILURE() << "nothing came for two minutes; so far:\n" << err_;
+    if (poll(polled, 2, kTimeoutMs) <= 0) {
+      ADD_FAILURE() << "no output for two minutes; so far:\n" << err_;
       return false;
     }
     for (int i = 0; i < 2; i++) {
@@ -175,26 +175,26 @@ class Running {
   std::string err_;
 };
 
-/// The program with these arguments; `before` are words in front of it (taskset, setarch).
-inline std::vector<std::string> limber(std::vector<std::string> args, std::vector<std::string> before = {}) {
+/// Returns the command line of the program; `before`: words in front of it (taskset, setarch).
+inline std::vector<std::string> limber_command(std::vector<std::string> args, std::vector<std::string> before = {}) {
   before.emplace_back(LIMBER_PROGRAM);
   before.insert(before.end(), args.begin(), args.end());
   return before;
 }
 
-/// Before a program that draws: the leak sanitizer stops a process's threads to look at them, and crashes now and then
-/// where they are a software driver's.
-inline std::vector<std::string> without_leak_search() {
+/// Prefix for programs that draw: the leak sanitizer stops all threads of a process, and sometimes crashes on those of
+/// a software driver.
+inline std::vector<std::string> without_leak_check() {
   const char* const options = std::getenv("ASAN_OPTIONS");
   return {"env", fmt::format("ASAN_OPTIONS={}:detect_leaks=0", options == nullptr ? "" : options)};
 }
 
-inline Ran run(std::vector<std::string> args, const std::string& folder = LIMBER_SOURCE_DIR) {
-  return Running(limber(std::move(args)), folder).finish();
+inline RunResult run(std::vector<std::string> args, const std::string& folder = LIMBER_SOURCE_DIR) {
+  return Process(limber_command(std::move(args)), folder).finish();
 }
 
-/// The program as it is installed: in bin, with a scene and an (empty) urdf folder in share/limber.
-inline std::string install_copy(const Folder& folder) {
+/// Creates an installation: the program in bin, a scene and an empty urdf folder in share/limber.
+inline std::string install_copy(const TempFolder& folder) {
   folder.file("share/limber/scripts/far.lua", "print('far')\n");
   folder.file("share/limber/urdf/readme", "");
   std::string program = folder.file("bin/limber", "");

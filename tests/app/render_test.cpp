@@ -1,4 +1,4 @@
-// Stills and films: without any display, at exact times, as the headless run goes; stopped halfway they are whole.
+// Still images and films: without a display, at exact times, equal to a headless run, and complete after cancellation.
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace limber::app_test {
 namespace {
 
-// a ball that falls past the camera, and says when it has begun
+// a ball that falls past the camera; prints a line at tick 20
 constexpr const char* kFall = R"(
 local ball = sim:add_body("ball")
 ball:add_part("ball", sim:add_sphere_shape("ball", 0.3), { position = vec3(0, 0, 3) })
@@ -24,73 +24,75 @@ std::vector<std::string> names(const std::string& folder) {
 
 std::vector<std::string> small(std::vector<std::string> args, const std::vector<std::string>& variables = {}) {
   args.insert(args.end(), {"--size", "32x18", "--quality", "low"});
-  std::vector<std::string> before = without_leak_search();
+  std::vector<std::string> before = without_leak_check();
   before.insert(before.end(), variables.begin(), variables.end());
-  return limber(std::move(args), std::move(before));
+  return limber_command(std::move(args), std::move(before));
 }
 
-bool has_ffmpeg() { return Running({"sh", "-c", "command -v ffmpeg && command -v ffprobe"}).finish().code == 0; }
+bool has_ffmpeg() { return Process({"sh", "-c", "command -v ffmpeg && command -v ffprobe"}).finish().code == 0; }
 
 TEST(Render, FrameKShowsTheTimeKByFps) {
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string shots = folder.file("shots/note", "");
   const std::string pattern = folder.path() + "/shots/shot_%03d.png";
-  const Ran film = Running(small({scene, "--render", pattern, "--fps", "25", "--duration", "0.4", "--hash"})).finish();
+  const RunResult film =
+      Process(small({scene, "--render", pattern, "--fps", "25", "--duration", "0.4", "--hash"})).finish();
   EXPECT_EQ(film.code, 0) << film.err;
   EXPECT_EQ(names(folder.path() + "/shots").size(), 11u) << "ten frames and the note";
   EXPECT_EQ(film.out.substr(film.out.find("hash")),
             run({scene, "--fast", "--duration", "0.4", "--hash"}).out.substr(film.out.find("hash")))
       << "the world is that of a headless run";
-  for (const int frame : {0, 3, 7}) {  // 7/25 s lies between two ticks
+  for (const int frame : {0, 3, 7}) {  // 7/25 s is between two ticks
     const std::string still = fmt::format("{}/still_{}.png", folder.path(), frame);
-    const Ran shot = Running(small({scene, "--screenshot", still, "--at", fmt::format("{}", frame / 25.0)})).finish();
+    const RunResult shot =
+        Process(small({scene, "--screenshot", still, "--at", fmt::format("{}", frame / 25.0)})).finish();
     EXPECT_EQ(shot.code, 0) << shot.err;
     EXPECT_EQ(content(still), content(fmt::format("{}/shots/shot_{:03}.png", folder.path(), frame))) << frame;
   }
   EXPECT_NE(content(folder.path() + "/shots/shot_003.png"), content(folder.path() + "/shots/shot_007.png"));
 }
 
-TEST(Render, AVideoHasItsFrames) {
-  const Folder folder;
+TEST(Render, VideoHasAllFrames) {
+  const TempFolder folder;
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string video = folder.path() + "/fall.mp4";
-  const Ran film = Running(small({scene, "--render", video, "--fps", "60", "--seconds", "0.5"})).finish();
+  const RunResult film = Process(small({scene, "--render", video, "--fps", "60", "--seconds", "0.5"})).finish();
   if (!has_ffmpeg()) {
     EXPECT_EQ(film.code, 3);
     EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
     return;
   }
   EXPECT_EQ(film.code, 0) << film.err;
-  const Ran probe = Running({"ffprobe", "-v", "error", "-count_frames", "-show_entries",
-                             "stream=nb_read_frames,width,height,r_frame_rate", "-of", "csv=p=0", video})
-                        .finish();
+  const RunResult probe = Process({"ffprobe", "-v", "error", "-count_frames", "-show_entries",
+                                   "stream=nb_read_frames,width,height,r_frame_rate", "-of", "csv=p=0", video})
+                              .finish();
   EXPECT_EQ(probe.out, "32,18,60/1,30\n") << probe.err;
   EXPECT_EQ(names(folder.path()), (std::vector<std::string>{"fall.lua", "fall.mp4"})) << "nothing else is left";
 }
 
-TEST(Render, WithoutFfmpegItSaysHowToGetIt) {
-  const Folder folder;
+TEST(Render, ReportsMissingFfmpeg) {
+  const TempFolder folder;
   const std::string scene = folder.file("fall.lua", kFall);
   const std::string video = folder.path() + "/fall.mp4";
-  const Ran film = Running(small({scene, "--render", video, "--duration", "0.1"}, {"PATH=/nowhere"})).finish();
+  const RunResult film = Process(small({scene, "--render", video, "--duration", "0.1"}, {"PATH=/nowhere"})).finish();
   EXPECT_EQ(film.code, 3);
   EXPECT_NE(film.err.find("apt-get install ffmpeg"), std::string::npos) << film.err;
   EXPECT_EQ(names(folder.path()), std::vector<std::string>{"fall.lua"});
 }
 
-TEST(Render, CtrlCLeavesAWholeShorterFilm) {
+TEST(Render, CtrlCLeavesAValidFilm) {
   for (const bool video : {true, false}) {
     if (video && !has_ffmpeg()) continue;
-    const Folder folder;
+    const TempFolder folder;
     const std::string scene = folder.file("fall.lua", kFall);
     const std::string name = folder.path() + (video ? "/fall.mp4" : "/shot_%05d.png");
-    Running running(small({scene, "--render", name, "--duration", "1000"}));
+    Process running(small({scene, "--render", name, "--duration", "1000"}));
     ASSERT_TRUE(running.wait_for("begun", true)) << running.err();
     running.signal(SIGINT);
-    const Ran ran = running.finish();
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    EXPECT_NE(ran.err.find("cancelled"), std::string::npos) << ran.err;
+    const RunResult result = running.finish();
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_NE(result.err.find("cancelled"), std::string::npos) << result.err;
     for (const std::string& file : names(folder.path())) {
       EXPECT_EQ(file.find(".part"), std::string::npos) << file;
       if (file.ends_with(".png")) {
@@ -98,38 +100,39 @@ TEST(Render, CtrlCLeavesAWholeShorterFilm) {
       }
     }
     if (video) {
-      EXPECT_EQ(Running({"ffprobe", "-v", "error", name}).finish().code, 0);
+      EXPECT_EQ(Process({"ffprobe", "-v", "error", name}).finish().code, 0);
     }
   }
 }
 
-TEST(Render, SaysThatItHearsNobody) {
-  const Folder folder;
+TEST(Render, ReportsIgnoredNetworkOptions) {
+  const TempFolder folder;
   const std::string scene = folder.file("fall.lua", kFall);
-  const auto said = [&](std::vector<std::string> more) {
+  const auto stderr_of = [&](std::vector<std::string> more) {
     more.insert(more.begin(), {scene, "--screenshot", folder.path() + "/still.png"});
-    const Ran ran = Running(small(more)).finish();
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    return ran.err;
+    const RunResult result = Process(small(more)).finish();
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
   };
-  EXPECT_NE(said({"--osc-in", "9100", "--query", "9101"}).find("--osc-in, --query are left aside"), std::string::npos);
-  EXPECT_EQ(said({"--osc-in", "off", "--osc-out", "off"}).find("left aside"), std::string::npos);
+  EXPECT_NE(stderr_of({"--osc-in", "9100", "--query", "9101"}).find("--osc-in, --query are ignored"),
+            std::string::npos);
+  EXPECT_EQ(stderr_of({"--osc-in", "off", "--osc-out", "off"}).find("ignored"), std::string::npos);
 }
 
-TEST(Render, TimeThatStandsStillIsSaid) {
-  const Folder folder;
+TEST(Render, ReportsAPausedSimulation) {
+  const TempFolder folder;
   const std::string scene = folder.file("fall.lua", kFall);
-  const Ran ran = Running(small({scene, "--screenshot", folder.path() + "/a.png", "--at", "1", "--set",
-                                 "/physics/sim/paused=true"}))
-                      .finish();
-  EXPECT_EQ(ran.code, 1);
-  EXPECT_NE(ran.err.find("time stands still"), std::string::npos) << ran.err;
+  const RunResult result = Process(small({scene, "--screenshot", folder.path() + "/a.png", "--at", "1", "--set",
+                                          "/physics/sim/paused=true"}))
+                               .finish();
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.err.find("the simulation is paused"), std::string::npos) << result.err;
 }
 
-TEST(Render, WrongUsageNamesTheCure) {
+TEST(Render, ErrorsNameTheFix) {
   struct Case {
     std::vector<std::string> args;
-    const char* said;
+    const char* message;
   };
   const Case cases[] = {
       {{"--render", "a.mp4"}, "--duration"},
@@ -141,18 +144,18 @@ TEST(Render, WrongUsageNamesTheCure) {
       {{"--screenshot", "a.png", "--size", "0x9"}, "1280x720"},
       {{"--screenshot", "a.png", "--size", "10x20x30"}, "1280x720"},
       {{"--screenshot", "a.png", "--size", "99999x9"}, "16384"},
-      {{"--screenshot", "a.png", "--render", "a.mp4", "--duration", "1"}, "don't go together"},
+      {{"--screenshot", "a.png", "--render", "a.mp4", "--duration", "1"}, "exclude each other"},
       {{"--at", "2"}, "--screenshot"},
       {{"--fps", "2"}, "--render"},
       {{"--quality", "best"}, "low"},
   };
   for (const Case& c : cases) {
-    const Ran ran = run(c.args);
-    EXPECT_EQ(ran.code, 2) << c.args[0] << " " << ran.err;
-    EXPECT_NE(ran.err.find(c.said), std::string::npos) << ran.err;
+    const RunResult result = run(c.args);
+    EXPECT_EQ(result.code, 2) << c.args[0] << " " << result.err;
+    EXPECT_NE(result.err.find(c.message), std::string::npos) << result.err;
   }
-  const Folder folder;
-  const Ran nowhere = Running(small({folder.file("s.lua", kFall), "--screenshot", "/nowhere/a.png"})).finish();
+  const TempFolder folder;
+  const RunResult nowhere = Process(small({folder.file("s.lua", kFall), "--screenshot", "/nowhere/a.png"})).finish();
   EXPECT_EQ(nowhere.code, 1);
   EXPECT_NE(nowhere.err.find("'/nowhere/a.png'"), std::string::npos) << nowhere.err;
 }

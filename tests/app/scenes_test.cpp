@@ -1,4 +1,4 @@
-// Another scene of the folder plays when OSC asks for it.
+// Loading another scene of the folder through OSC.
 #include <fstream>
 #include <iterator>
 
@@ -10,20 +10,20 @@
 namespace limber::app_test {
 namespace {
 
-// a show of several scenes; the first plays, with an OSC port that the system chooses
-struct Evening {
-  Evening()
-      : running(limber({first, "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", "off"},
-                       {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()})) {
+// a folder of several scenes; plays the first, with an OSC port chosen by the system
+struct SceneFolderShow {
+  SceneFolderShow()
+      : running(limber_command({first, "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", "off"},
+                               {"env", "XDG_RUNTIME_DIR=" + runtime.path(), "TMPDIR=" + runtime.path()})) {
     EXPECT_TRUE(running.wait_for("playing headless")) << running.err();
-    in = running.behind("OSC in ");
+    in = running.text_after("OSC in ");
   }
-  Ran send(std::vector<std::string> words) const {
+  RunResult send(std::vector<std::string> words) const {
     words.insert(words.begin(), "send");
     words.insert(words.end(), {"--to", in});
     return run(std::move(words));
   }
-  Folder folder;
+  TempFolder folder;
   PrivateFolder runtime;
   std::string first = folder.file("scripts/first.lua",
                                   "params { { 'wind', 1, max = 9 } }\n"
@@ -36,31 +36,32 @@ struct Evening {
                                    "osc:on('/who', function() osc:reply('/i/am', 'second', sim.tick) end)\n");
   std::string broken = folder.file("scripts/broken.lua", "sim:add_body('half')\nsim.gravty = 1\n");
   std::string library = folder.file("scripts/lib/no_scene.lua", "");
-  Running running;
+  Process running;
   std::string in;
 };
 
-TEST(Scenes, AnotherOnePlaysFromItsStart) {
-  Evening show;
+TEST(Scenes, LoadsAnotherScene) {
+  SceneFolderShow show;
   EXPECT_EQ(show.send({"/list/scenes", "--wait", "30"}).out, "/list/scenes broken first second\n");
   EXPECT_EQ(show.send({"/physics/sim/speed", "2"}).code, 0);
   EXPECT_EQ(show.send({"/physics/sim/substeps", "7"}).code, 0);
-  const Ran changed = show.send({"/transport/scene", "second", "--wait", "30"});
+  const RunResult changed = show.send({"/transport/scene", "second", "--wait", "30"});
   EXPECT_EQ(changed.out, "/transport/playing second\n") << changed.err;
-  ASSERT_TRUE(show.running.wait_for("second begins\tnil\n", true)) << "it has a state of its own";
+  ASSERT_TRUE(show.running.wait_for("second begins\tnil\n", true)) << "it has its own state";
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies a b\n");
   EXPECT_TRUE(show.send({"/who"}).out.starts_with("/i/am second "));
   EXPECT_EQ(show.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3\n");
-  EXPECT_EQ(show.send({"/get", "/physics/sim/substeps"}).out, "/physics/sim/substeps 4\n") << "the hand's values go";
-  EXPECT_EQ(show.send({"/get", "/physics/sim/speed"}).out, "/physics/sim/speed 2\n") << "the hour's stay";
-  EXPECT_EQ(show.send({"/scene/wind", "3"}).code, 1) << "nothing of the first one is left";
-  // it is the one that is watched now, and that a reset starts again
+  EXPECT_EQ(show.send({"/get", "/physics/sim/substeps"}).out, "/physics/sim/substeps 4\n")
+      << "values set by clients are reset";
+  EXPECT_EQ(show.send({"/get", "/physics/sim/speed"}).out, "/physics/sim/speed 2\n") << "session state is preserved";
+  EXPECT_EQ(show.send({"/scene/wind", "3"}).code, 1) << "nothing of the first scene remains";
+  // its files are watched now, and a reset runs it
   show.folder.file("scripts/second.lua", "sim:add_body('c')\nprint('second again')\n");
   EXPECT_TRUE(show.running.wait_for("second again\n", true));
   EXPECT_EQ(show.send({"/transport/reset"}).code, 0);
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies c\n");
   EXPECT_EQ(show.send({"/get", "/physics/sim/substeps"}).out, "/physics/sim/substeps 4\n");
-  // and back, by the name of its file
+  // back to the first, by its file name
   EXPECT_EQ(show.send({"/transport/scene", "first.lua", "--wait", "30"}).out, "/transport/playing first\n");
   ASSERT_TRUE(show.running.wait_for("first plays from its start"));
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
@@ -68,60 +69,60 @@ TEST(Scenes, AnotherOnePlaysFromItsStart) {
   EXPECT_EQ(show.running.finish().code, 0);
 }
 
-TEST(Scenes, AWrongOneChangesNothing) {
-  Evening show;
-  const auto refused = [&](const std::string& name, const std::string& why) {
-    const Ran ran = show.send({"/transport/scene", name, "--wait", "30"});
-    EXPECT_EQ(ran.code, 1) << name;
-    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+TEST(Scenes, InvalidSceneChangesNothing) {
+  SceneFolderShow show;
+  const auto expect_rejected = [&](const std::string& name, const std::string& why) {
+    const RunResult result = show.send({"/transport/scene", name, "--wait", "30"});
+    EXPECT_EQ(result.code, 1) << name;
+    EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
     EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
   };
-  refused("secnd", "there is no scene 'secnd'");
-  refused("secnd", "did you mean 'second'?");
-  refused("broken", "scripts/broken.lua:2: sim has no property 'gravty'; did you mean 'gravity'?");
+  expect_rejected("secnd", "scene 'secnd' not found");
+  expect_rejected("secnd", "did you mean 'second'?");
+  expect_rejected("broken", "scripts/broken.lua:2: sim has no property 'gravty'; did you mean 'gravity'?");
   // nothing outside the folder
-  refused("../scripts/second", "there is no scene '../scripts/second'");
-  refused("lib/no_scene", "there is no scene 'lib/no_scene'");
-  refused(show.second, "there is no scene");
-  refused("", "there is no scene ''");
-  refused("7", "takes the name of a scene");
+  expect_rejected("../scripts/second", "scene '../scripts/second' not found");
+  expect_rejected("lib/no_scene", "scene 'lib/no_scene' not found");
+  expect_rejected(show.second, "not found in scripts/");
+  expect_rejected("", "scene '' not found");
+  expect_rejected("7", "takes the name of a scene");
   EXPECT_EQ(show.send({"/list/scenes", "x"}).code, 1);
-  // the first one is still the one that is watched
+  // the files of the first are still watched
   show.folder.file("scripts/first.lua", "sim:add_body('only_here')\nprint('first again')\n");
   EXPECT_TRUE(show.running.wait_for("first again\n", true));
 }
 
-TEST(Scenes, ATakeOfTheFolderPlaysInThePlaceOfTheShow) {
-  Evening show;
-  const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+TEST(Scenes, PlaysATakeOfTheFolder) {
+  SceneFolderShow show;
+  const auto expect_rejected = [&](std::vector<std::string> words, const std::string& why) {
     words.insert(words.end(), {"--wait", "30"});
-    const Ran ran = show.send(std::move(words));
-    EXPECT_EQ(ran.code, 1);
-    EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+    const RunResult result = show.send(std::move(words));
+    EXPECT_EQ(result.code, 1);
+    EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
   };
-  refused({"/take/play"}, "there is no take in takes/ of the show's folder; /take/record makes one");
+  expect_rejected({"/take/play"}, "no take in takes/ of the show's folder; record one with /take/record");
   EXPECT_EQ(show.send({"/take/record", "dusk", "--wait", "30"}).out, "/take/recording dusk\n");
   EXPECT_EQ(show.send({"/scene/wind", "8"}).code, 0);
-  refused({"/take/play", "dusk"}, "a take is being recorded already");
+  expect_rejected({"/take/play", "dusk"}, "a take is being recorded already");
   EXPECT_EQ(show.send({"/take/stop"}).out, "/take/stopped\n");
   EXPECT_EQ(show.send({"/transport/scene", "second", "--wait", "30"}).out, "/transport/playing second\n");
-  refused({"/take/play", "dsk"}, "did you mean 'dusk'?");
-  refused({"/take/play", "../dusk"}, "there is no take '../dusk'");
+  expect_rejected({"/take/play", "dsk"}, "did you mean 'dusk'?");
+  expect_rejected({"/take/play", "../dusk"}, "take '../dusk' not found");
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies a b\n");
   EXPECT_EQ(show.send({"/take/play", "--wait", "30"}).out, "/take/playing dusk\n");
-  ASSERT_TRUE(show.running.wait_for("every hash is the take's; the show goes on in your hands"));
+  ASSERT_TRUE(show.running.wait_for("all hashes match the take; live input resumed"));
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies only_here\n");
   EXPECT_EQ(show.send({"/get", "/scene/wind"}).out, "/scene/wind 8\n");
   EXPECT_EQ(show.send({"/scene/wind", "2"}).code, 0);
-  // its scene is the one that is watched now
+  // the files of its scene are watched now
   show.folder.file("scripts/first.lua", "sim:add_body('new')\nprint('first again')\n");
   EXPECT_TRUE(show.running.wait_for("first again\n", true));
   show.running.signal(SIGTERM);
   EXPECT_EQ(show.running.finish().code, 0);
 }
 
-TEST(Scenes, EachHasPresetsOfItsOwn) {
-  Evening show;
+TEST(Scenes, EachHasItsOwnPresets) {
+  SceneFolderShow show;
   const auto change = [&](const std::string& name) {
     EXPECT_EQ(show.send({"/transport/scene", name, "--wait", "30"}).out, "/transport/playing " + name + "\n");
   };
@@ -137,8 +138,9 @@ TEST(Scenes, EachHasPresetsOfItsOwn) {
   EXPECT_EQ(show.send({"/preset/store", "low"}).code, 0);
   EXPECT_EQ(show.send({"/physics/sim/gravity", "-1"}).code, 0);
   EXPECT_EQ(show.send({"/preset/recall", "script"}).code, 0);
-  EXPECT_EQ(show.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3\n") << "as the second says";
-  // back and to itself: what was stored is there, on the disk too
+  EXPECT_EQ(show.send({"/get", "/physics/sim/gravity"}).out, "/physics/sim/gravity 0 0 -3\n")
+      << "the value of the second scene";
+  // back, and from the scene to itself: the presets are there, also on disk
   for (int i = 0; i < 2; i++) {
     change("first");
     EXPECT_EQ(show.send({"/list/presets"}).out, "/list/presets dusk\n");
@@ -158,12 +160,12 @@ TEST(Scenes, EachHasPresetsOfItsOwn) {
   EXPECT_EQ(stored("second.presets.json").find("dusk"), std::string::npos);
 }
 
-TEST(Scenes, AFastRunPlaysOne) {
-  const Folder folder;
+TEST(Scenes, FastRunPlaysOneScene) {
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", "osc:on('/x', function() end)\n");
-  const Ran ran = run({scene, "--fast", "--ticks", "2", "--set", "/transport/scene=other"});
-  EXPECT_EQ(ran.code, 1);
-  EXPECT_NE(ran.err.find("--set /transport/scene"), std::string::npos) << ran.err;
+  const RunResult result = run({scene, "--fast", "--ticks", "2", "--set", "/transport/scene=other"});
+  EXPECT_EQ(result.code, 1);
+  EXPECT_NE(result.err.find("--set /transport/scene"), std::string::npos) << result.err;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// `limber service`, and what a service manager is told while a show plays.
+// `limber service`, and the messages to the service manager while a show plays.
 #include <sys/ptrace.h>
 #include <sys/socket.h>
 #include <sys/un.h>
@@ -16,13 +16,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kServedScene = "sim:on_step(function() end)\n";
 
-std::string unit_path(const Folder& home, const std::string& name) {
+std::string unit_path(const TempFolder& home, const std::string& name) {
   return home.path() + "/systemd/user/limber-" + name + ".service";
 }
 
-Ran run_service(const Folder& home, std::vector<std::string> args, const std::string& folder) {
+RunResult run_service(const TempFolder& home, std::vector<std::string> args, const std::string& folder) {
   args.insert(args.begin(), "service");
-  return Running(limber(std::move(args), {"env", "XDG_CONFIG_HOME=" + home.path()}), folder).finish();
+  return Process(limber_command(std::move(args), {"env", "XDG_CONFIG_HOME=" + home.path()}), folder).finish();
 }
 
 TEST(ServiceUnit, QuotesWhatSystemdWouldExpand) {
@@ -39,18 +39,18 @@ TEST(ServiceUnit, QuotesWhatSystemdWouldExpand) {
 }
 
 TEST(Service, InstallWritesTheUnitAndPrintsIt) {
-  const Folder home;
-  const Folder show;
+  const TempFolder home;
+  const TempFolder show;
   show.file("evening show.lua", kServedScene);
   const std::vector<std::string> args = {
       "install", "evening show.lua", "--headless", "--set", "/scene/text=$HOME 50% x", "--name", "evening"};
-  const Ran ran = run_service(home, args, show.path());
-  ASSERT_EQ(ran.code, 0) << ran.err;
+  const RunResult result = run_service(home, args, show.path());
+  ASSERT_EQ(result.code, 0) << result.err;
   const std::string unit = content(unit_path(home, "evening"));
-  EXPECT_EQ(ran.out, unit);
-  EXPECT_NE(ran.err.find("systemctl --user daemon-reload && systemctl --user enable --now limber-evening"),
+  EXPECT_EQ(result.out, unit);
+  EXPECT_NE(result.err.find("systemctl --user daemon-reload && systemctl --user enable --now limber-evening"),
             std::string::npos)
-      << ran.err;
+      << result.err;
   EXPECT_NE(unit.find(" play \"evening show.lua\" --headless --set \"/scene/text=$$HOME 50%% x\" --osc-optional\n"),
             std::string::npos)
       << unit;
@@ -58,37 +58,37 @@ TEST(Service, InstallWritesTheUnitAndPrintsIt) {
   for (const char* line :
        {"Type=notify", "Restart=on-failure", "RestartSec=2", "WatchdogSec=30", "WantedBy=default.target"})
     EXPECT_NE(unit.find(std::string("\n") + line + "\n"), std::string::npos) << line;
-  const Ran window = run_service(home, {"install", "evening show.lua", "--print"}, show.path());
+  const RunResult window = run_service(home, {"install", "evening show.lua", "--print"}, show.path());
   EXPECT_NE(window.out.find("WantedBy=graphical-session.target"), std::string::npos) << window.out;
   EXPECT_FALSE(fs::exists(unit_path(home, "evening-show"))) << "only printed";
 }
 
 TEST(Service, SystemdAcceptsTheUnit) {
-  if (Running({"sh", "-c", "command -v systemd-analyze"}).finish().code != 0) GTEST_SKIP() << "no systemd here";
-  const Folder home;
-  const Folder show;
+  if (Process({"sh", "-c", "command -v systemd-analyze"}).finish().code != 0) GTEST_SKIP() << "no systemd here";
+  const TempFolder home;
+  const TempFolder show;
   show.file("s.lua", kServedScene);
   ASSERT_EQ(run_service(home, {"install", "s.lua", "--set", "/a=\"q\\ %h;"}, show.path()).code, 0);
-  const Ran ran =
-      Running({"env", "XDG_RUNTIME_DIR=" + home.path(), "systemd-analyze", "verify", "--user", unit_path(home, "s")})
+  const RunResult result =
+      Process({"env", "XDG_RUNTIME_DIR=" + home.path(), "systemd-analyze", "verify", "--user", unit_path(home, "s")})
           .finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(ran.err.find("limber-s.service"), std::string::npos) << ran.err;
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err.find("limber-s.service"), std::string::npos) << result.err;
 }
 
 TEST(Service, ReplacesAndRemovesOnlyItsOwnUnits) {
-  const Folder home;
-  const Folder show;
+  const TempFolder home;
+  const TempFolder show;
   show.file("s.lua", kServedScene);
   const std::string foreign = "[Service]\nExecStart=/bin/true\n";
   home.file("systemd/user/limber-s.service", foreign);
-  const Ran refused = run_service(home, {"install", "s.lua"}, show.path());
-  EXPECT_EQ(refused.code, 1);
-  EXPECT_NE(refused.err.find("limber-s.service was not written by `limber service install`"), std::string::npos)
-      << refused.err;
+  const RunResult rejected = run_service(home, {"install", "s.lua"}, show.path());
+  EXPECT_EQ(rejected.code, 1);
+  EXPECT_NE(rejected.err.find("limber-s.service was not written by `limber service install`"), std::string::npos)
+      << rejected.err;
   EXPECT_EQ(run_service(home, {"remove", "s"}, show.path()).code, 1);
   EXPECT_EQ(content(unit_path(home, "s")), foreign);
-  const std::string elsewhere = home.file("elsewhere", std::string(kServiceMark) + "\n");
+  const std::string elsewhere = home.file("elsewhere", std::string(kServiceHeader) + "\n");
   fs::create_symlink(elsewhere, unit_path(home, "link"));
   EXPECT_EQ(run_service(home, {"install", "s.lua", "--name", "link"}, show.path()).code, 1) << "a link is not ours";
 
@@ -106,11 +106,11 @@ TEST(Service, ReplacesAndRemovesOnlyItsOwnUnits) {
 }
 
 TEST(Service, InstallChecksItsOptions) {
-  const Folder home;
-  const Folder show;
+  const TempFolder home;
+  const TempFolder show;
   show.file("s.lua", kServedScene);
   EXPECT_EQ(run_service(home, {"install", "nowhere.lua"}, show.path()).code, 1);
-  const Ran mistyped = run_service(home, {"install", "s.lua", "--fulscreen"}, show.path());
+  const RunResult mistyped = run_service(home, {"install", "s.lua", "--fulscreen"}, show.path());
   EXPECT_EQ(mistyped.code, 2);
   EXPECT_NE(mistyped.err.find("did you mean '--fullscreen'"), std::string::npos) << mistyped.err;
   EXPECT_EQ(run_service(home, {"install", "s.lua", "--fast"}, show.path()).code, 2);
@@ -120,13 +120,13 @@ TEST(Service, InstallChecksItsOptions) {
 }
 
 TEST(Service, ErrorsNameTheFix) {
-  const Folder home;
-  const Folder show;
+  const TempFolder home;
+  const TempFolder show;
   show.file("s.lua", kServedScene);
   const auto error = [&](std::vector<std::string> args, int code, const std::string& folder) {
-    const Ran ran = run_service(home, std::move(args), folder);
-    EXPECT_EQ(ran.code, code) << ran.err;
-    return ran.err;
+    const RunResult result = run_service(home, std::move(args), folder);
+    EXPECT_EQ(result.code, code) << result.err;
+    return result.err;
   };
   const auto expect = [&](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
@@ -135,25 +135,27 @@ TEST(Service, ErrorsNameTheFix) {
   ASSERT_EQ(run_service(home, {"install", "s.lua", "--name", "a"}, show.path()).code, 0);
   ASSERT_EQ(run_service(home, {"install", "s.lua", "--name", "b"}, show.path()).code, 0);
   expect(error({"remove"}, 1, show.path()), "several services are installed: a, b. Write limber service remove NAME");
-  expect(error({"remove", "c"}, 1, show.path()), "limber-c.service; there are: a, b");
-  expect(error({"remove", "../c"}, 2, show.path()), "'../c' is no name of a service: letters, digits, _ and - only");
+  expect(error({"remove", "c"}, 1, show.path()), "limber-c.service not found; installed: a, b");
+  expect(error({"remove", "../c"}, 2, show.path()),
+         "'../c' is not a valid service name: use only letters, digits, _ and -");
   expect(error({"install", "s.lua", "--render", "f.mp4", "--duration", "1"}, 2, show.path()),
-         "--render and --screenshot are for batches; a service plays in real time");
+         "--render and --screenshot are for batch runs; a service plays in real time");
   show.file("blank /s.lua", kServedScene);
   expect(error({"install", "s.lua"}, 1, show.path() + "/blank "),
-         "ends with a blank or a backslash. Start the show from another folder");
-  const Ran homeless = Running(limber({"service", "install"}, {"env", "-u", "HOME", "-u", "XDG_CONFIG_HOME"})).finish();
+         "ends with a space or a backslash. Start the show from another folder");
+  const RunResult homeless =
+      Process(limber_command({"service", "install"}, {"env", "-u", "HOME", "-u", "XDG_CONFIG_HOME"})).finish();
   EXPECT_EQ(homeless.code, 3);
   expect(homeless.err, "HOME is not set: there is no folder for units");
   fs::create_directories(home.path() + "/file");
   home.file("file/systemd", "");
-  const Ran unwritable =
-      Running(limber({"service", "install"}, {"env", "XDG_CONFIG_HOME=" + home.path() + "/file"})).finish();
+  const RunResult unwritable =
+      Process(limber_command({"service", "install"}, {"env", "XDG_CONFIG_HOME=" + home.path() + "/file"})).finish();
   EXPECT_EQ(unwritable.code, 3);
   expect(unwritable.err, "limber-arms.service can't be written: ");
 }
 
-// a service manager's end
+// the service manager's side of the socket
 class Manager {
  public:
   explicit Manager(bool abstract) : socket_(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
@@ -170,10 +172,10 @@ class Manager {
   Manager& operator=(const Manager&) = delete;
 
   const std::string& name() const { return name_; }
-  /// The next message.
+  /// Returns the next message.
   std::string next() {
     pollfd polled{socket_, POLLIN, 0};
-    if (poll(&polled, 1, kPatienceMs) != 1) {
+    if (poll(&polled, 1, kTimeoutMs) != 1) {
       ADD_FAILURE() << "no message for two minutes";
       return "";
     }
@@ -181,7 +183,7 @@ class Manager {
     const ssize_t n = recv(socket_, buffer, sizeof buffer, 0);
     return {buffer, static_cast<std::size_t>(std::max<ssize_t>(n, 0))};
   }
-  /// Messages up to and with the first one that has this line.
+  /// Returns the messages up to the first one that contains this line.
   std::vector<std::string> until(const std::string& line) {
     std::vector<std::string> all;
     do {
@@ -196,25 +198,25 @@ class Manager {
   }
 
  private:
-  Folder folder_;
+  TempFolder folder_;
   int socket_;
   std::string name_;
 };
 
 std::vector<std::string> managed(const Manager& manager, const std::string& scene) {
-  return limber({"play", scene, "--headless", "--osc-in", "off", "--osc-out", "off", "--query", "off"},
-                {"env", "NOTIFY_SOCKET=" + manager.name(), "WATCHDOG_USEC=80000"});
+  return limber_command({"play", scene, "--headless", "--osc-in", "off", "--osc-out", "off", "--query", "off"},
+                        {"env", "NOTIFY_SOCKET=" + manager.name(), "WATCHDOG_USEC=80000"});
 }
 
 bool has_watchdog(const std::vector<std::string>& messages) {
   return std::ranges::any_of(messages, [](const std::string& m) { return m == "WATCHDOG=1"; });
 }
 
-TEST(Service, TheManagerHearsOfStartLoopAndEnd) {
+TEST(Service, NotifiesStartWatchdogAndEnd) {
   for (const bool abstract : {false, true}) {
     Manager manager(abstract);
-    const Folder folder;
-    Running running(managed(manager, folder.file("s.lua", "sim:after(0.2, function() sim.paused = true end)\n")));
+    const TempFolder folder;
+    Process running(managed(manager, folder.file("s.lua", "sim:after(0.2, function() sim.paused = true end)\n")));
     const std::vector<std::string> start = manager.until("READY=1");
     ASSERT_EQ(start.back().find("READY=1"), 0U) << start.back();
     EXPECT_FALSE(has_watchdog(start)) << "nothing before";
@@ -229,7 +231,7 @@ TEST(Service, TheManagerHearsOfStartLoopAndEnd) {
   }
 }
 
-// the number of the thread with this name; 0: there is none
+// returns the id of the thread with this name; 0: none
 pid_t thread_of(pid_t process, const std::string& name) {
   for (const fs::directory_entry& entry : fs::directory_iterator(fmt::format("/proc/{}/task", process))) {
     if (content(entry.path() / "comm") == name + "\n") return std::stoi(entry.path().filename().string());
@@ -237,11 +239,11 @@ pid_t thread_of(pid_t process, const std::string& name) {
   return 0;
 }
 
-// the simulation's thread alone is stopped: the main thread still reports its status
-TEST(Service, AStoppedSimulationFeedsNoWatchdog) {
+// only the simulation's thread is stopped: the main thread still reports its status
+TEST(Service, StoppedSimulationDoesNotFeedTheWatchdog) {
   Manager manager(false);
-  const Folder folder;
-  const Running running(managed(manager, folder.file("s.lua", kServedScene)));
+  const TempFolder folder;
+  const Process running(managed(manager, folder.file("s.lua", kServedScene)));
   manager.until("WATCHDOG=1");
   const pid_t thread = thread_of(running.pid(), "limber-sim");
   ASSERT_GT(thread, 0);
@@ -256,23 +258,23 @@ TEST(Service, AStoppedSimulationFeedsNoWatchdog) {
   EXPECT_EQ(manager.until("WATCHDOG=1").back(), "WATCHDOG=1");
 }
 
-TEST(Service, ALongLoadExtendsTheStart) {
+TEST(Service, LongLoadExtendsTheStartTimeout) {
   Manager manager(false);
-  const Folder folder;
-  Running running(managed(manager, folder.file("s.lua", "local n = 0\nwhile n < 1e8 do n = n + 1 end\n")));
+  const TempFolder folder;
+  Process running(managed(manager, folder.file("s.lua", "local n = 0\nwhile n < 1e8 do n = n + 1 end\n")));
   const std::vector<std::string> start = manager.until("READY=1");
   EXPECT_EQ(start.front().find("EXTEND_TIMEOUT_USEC=15000000\n"), 0U) << start.front();
 }
 
-TEST(Service, TheJournalGetsLevelsInsteadOfAPrefix) {
-  const Folder folder;
+TEST(Service, JournalGetsLevelsInsteadOfAPrefix) {
+  const TempFolder folder;
   const std::string log = folder.file("journal", "");
   const std::string scene = folder.file("s.lua", "sim:after(0.1, function() error('lost') end)\n");
   const std::string command =
       "JOURNAL_STREAM=$(stat -c %d:%i \"$1\") exec \"$2\" \"$3\" --headless --osc-in off --osc-out off --query off "
       "--ticks 30 2>\"$1\"";
   const std::vector<std::string> words = {"sh", "-c", command, "sh", log, LIMBER_PROGRAM, scene};
-  EXPECT_EQ(Running(words).finish().code, 0);
+  EXPECT_EQ(Process(words).finish().code, 0);
   const std::string text = content(log);
   EXPECT_NE(text.find("<6>playing headless"), std::string::npos) << text;
   EXPECT_NE(text.find("<3>error: "), std::string::npos) << text;

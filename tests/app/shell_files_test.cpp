@@ -1,4 +1,4 @@
-// The manual page and the completions: each command and option of the help is in them, and completion works in bash.
+// The manual page and the completions contain each command and option of the help, and completion works in bash.
 #include <algorithm>
 #include <cctype>
 #include <iterator>
@@ -10,13 +10,13 @@
 namespace limber::app_test {
 namespace {
 
-/// A command with the options that its help lists.
-struct Helped {
+/// A command with the options listed in its help.
+struct CommandHelp {
   std::string path;  ///< "limber take info"; "limber" for the program itself.
   std::vector<std::string> options;
 };
 
-/// The names at the start of a line of help: "  -e,--evaluate LUA   ...".
+/// Returns the option names at the start of a line of help: "  -e,--evaluate LUA   ...".
 std::vector<std::string> option_names(const std::string& line) {
   static const std::regex name(R"(^[ ,]*(-[a-zA-Z]|--[a-z][a-z-]*)(?=[ ,]|$))");
   std::vector<std::string> names;
@@ -29,12 +29,12 @@ std::vector<std::string> option_names(const std::string& line) {
   return names;
 }
 
-/// Reads the help of a command and of the commands within it.
-void read_help(const std::vector<std::string>& words, std::vector<Helped>& found) {
+/// Reads the help of a command and its subcommands.
+void read_help(const std::vector<std::string>& words, std::vector<CommandHelp>& found) {
   std::vector<std::string> args = words;
   args.emplace_back("--help");
   std::istringstream help(run(args).out);
-  Helped command{"limber", {}};
+  CommandHelp command{"limber", {}};
   for (const std::string& word : words) command.path += " " + word;
   std::vector<std::string> inner;
   bool in_commands = false;
@@ -54,9 +54,9 @@ void read_help(const std::vector<std::string>& words, std::vector<Helped>& found
   }
 }
 
-const std::vector<Helped>& helped() {
-  static const std::vector<Helped> all = [] {
-    std::vector<Helped> found;
+const std::vector<CommandHelp>& all_help() {
+  static const std::vector<CommandHelp> all = [] {
+    std::vector<CommandHelp> found;
     read_help({}, found);
     return found;
   }();
@@ -65,22 +65,22 @@ const std::vector<Helped>& helped() {
 
 std::string roff(const std::string& text) { return std::regex_replace(text, std::regex("-"), "\\-"); }
 
-/// The part of a text between a mark and the next line that begins with `end`.
-std::string section(const std::string& text, const std::string& mark, const std::string& end) {
-  const std::size_t at = text.find(mark);
+/// Returns the text from `mark` to the next line that begins with `end`.
+std::string section(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t at = text.find(begin);
   if (at == std::string::npos) return {};
   return text.substr(at, text.find("\n" + end, at) - at);
 }
 
-TEST(ShellFiles, HelpIsRead) {
-  EXPECT_GE(helped().size(), 20U);
-  EXPECT_EQ(helped().front().options, (std::vector<std::string>{"-h", "--help", "--version"}));
+TEST(ShellFiles, ReadsTheHelp) {
+  EXPECT_GE(all_help().size(), 20U);
+  EXPECT_EQ(all_help().front().options, (std::vector<std::string>{"-h", "--help", "--version"}));
 }
 
 TEST(ManPage, NamesEveryCommandAndOption) {
-  const Ran page = run({"man"});
+  const RunResult page = run({"man"});
   ASSERT_EQ(page.code, 0);
-  for (const Helped& command : helped()) {
+  for (const CommandHelp& command : all_help()) {
     const bool program = command.path == "limber";
     const std::string text =
         program ? section(page.out, ".SH OPTIONS", ".SH") : section(page.out, ".SS \\fB" + command.path + "\\fR", ".S");
@@ -92,7 +92,7 @@ TEST(ManPage, NamesEveryCommandAndOption) {
   }
 }
 
-TEST(ManPage, HasTheValuesTheTextsAndTheExamples) {
+TEST(ManPage, HasValuesTextsAndExamples) {
   const std::string page = run({"man"}).out;
   const std::string play = section(page, ".SS \\fBlimber play\\fR", ".S");
   EXPECT_NE(play.find(".TP\n\\fB\\-\\-fps\\fR \\fIN\\fR\n"), std::string::npos) << play;
@@ -105,7 +105,7 @@ TEST(ManPage, HasTheValuesTheTextsAndTheExamples) {
 }
 
 TEST(ManPage, NoTextIsAMacro) {
-  // a line that begins with a period or an apostrophe is a request: only those that the page uses may occur
+  // a line that begins with a period or an apostrophe is a request: only requests used by the page may occur
   std::istringstream page(run({"man"}).out);
   const std::regex known(R"(\.(\\"|TH|SH|SS|TP|PP|B|I|BR|IR|br|ad|nh)( .*)?)");
   for (std::string line; std::getline(page, line);) {
@@ -114,29 +114,30 @@ TEST(ManPage, NoTextIsAMacro) {
   }
 }
 
-/// The words that bash offers for a command line; its last word is the one at the cursor.
-std::string offered(const Folder& folder, const std::string& line) {
+/// Returns the words that bash offers for a command line; the cursor is at the last word.
+std::string offered(const TempFolder& folder, const std::string& line) {
   folder.file("limber.bash", run({"completion", "bash"}).out);
-  const Ran ran = Running({"bash", "--norc", "-c",
-                           ". ./limber.bash && COMP_WORDS=(" + line +
-                               ") && COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) && _limber && echo \"${COMPREPLY[*]}\""},
-                          folder.path())
-                      .finish();
-  EXPECT_EQ(ran.code, 0) << line << ": " << ran.err;
-  EXPECT_EQ(ran.err, "") << line;
-  return ran.out.substr(0, ran.out.find('\n'));
+  const RunResult result =
+      Process({"bash", "--norc", "-c",
+               ". ./limber.bash && COMP_WORDS=(" + line +
+                   ") && COMP_CWORD=$((${#COMP_WORDS[@]} - 1)) && _limber && echo \"${COMPREPLY[*]}\""},
+              folder.path())
+          .finish();
+  EXPECT_EQ(result.code, 0) << line << ": " << result.err;
+  EXPECT_EQ(result.err, "") << line;
+  return result.out.substr(0, result.out.find('\n'));
 }
 
 TEST(BashCompletion, OffersEveryOptionOfEachCommand) {
-  const Folder folder;
-  for (const Helped& command : helped()) {
+  const TempFolder folder;
+  for (const CommandHelp& command : all_help()) {
     const std::string words = " " + offered(folder, command.path + " -") + " ";
     for (const std::string& option : command.options)
       EXPECT_NE(words.find(" " + option + " "), std::string::npos) << command.path << " " << option << ":" << words;
   }
 }
 
-// bash sorts what it shows itself
+// bash sorts completions itself
 std::vector<std::string> sorted_words(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> words{std::istream_iterator<std::string>(in), {}};
@@ -149,8 +150,8 @@ struct Offer {
   const char* words;
 };
 
-TEST(BashCompletion, OffersWhatFits) {
-  const Folder folder;
+TEST(BashCompletion, OffersMatchingWords) {
+  const TempFolder folder;
   for (const char* name : {"show/a.lua", "show/b.lua", "show/c.take", "show/d.urdf", "show/e.json", "show/f.txt"})
     folder.file(name, "");
   for (const Offer& offer : {Offer{"limber pl", "play"},
@@ -185,24 +186,24 @@ TEST(BashCompletion, OffersWhatFits) {
 TEST(ZshCompletion, HasEveryCommandAndOption) {
   const std::string text = run({"completion", "zsh"}).out;
   EXPECT_TRUE(text.starts_with("#compdef limber\n")) << "zsh finds it by this line";
-  for (const Helped& command : helped()) {
+  for (const CommandHelp& command : all_help()) {
     std::string function = "_" + command.path;
     for (char& c : function) c = c == ' ' ? '_' : c;
     const std::string body = section(text, "\n" + function + "() {\n", "}\n");
     EXPECT_NE(body, "") << function;
     const bool inner = text.find("\n" + function + "_") != std::string::npos;
     for (const std::string& option : command.options) {
-      if (inner) continue;  // its words are commands
+      if (inner) continue;  // it takes subcommands instead of options
       const std::regex listed("['{,(*]" + option + "[=\\[,}' )]");
       EXPECT_TRUE(std::regex_search(body, listed)) << function << " " << option << "\n" << body;
     }
   }
 }
 
-TEST(ShellFiles, AShellThatIsNotKnownIsRejected) {
-  const Ran ran = run({"completion", "fish"});
-  EXPECT_EQ(ran.code, 2);
-  EXPECT_NE(ran.err.find("fish"), std::string::npos) << ran.err;
+TEST(ShellFiles, RejectsAnUnknownShell) {
+  const RunResult result = run({"completion", "fish"});
+  EXPECT_EQ(result.code, 2);
+  EXPECT_NE(result.err.find("fish"), std::string::npos) << result.err;
 }
 
 }  // namespace

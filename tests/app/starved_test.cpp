@@ -1,38 +1,38 @@
-// Limits of the system: the program plays, or says what is missing, with exit code 3.
+// Resource limits of the system: the program plays, or reports the missing resource with exit code 3.
 #include "app/program.h"
 
 namespace limber::app_test {
 namespace {
 
-Ran play_with(const std::string& limit) {
-  const Folder folder;
+RunResult play_with(const std::string& limit) {
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", "sim:add_body('b')\n");
-  return Running({"prlimit", limit, LIMBER_PROGRAM, scene, "--headless", "--osc-in", "127.0.0.1:0", "--query",
+  return Process({"prlimit", limit, LIMBER_PROGRAM, scene, "--headless", "--osc-in", "127.0.0.1:0", "--query",
                   "127.0.0.1:0", "--osc-out", "off", "--ticks", "3", "--hash"},
                  "/")
       .finish();
 }
 
-TEST(Starved, AnyNumberOfDescriptorsPlaysOrIsNamed) {
+TEST(Starved, PlaysOrReportsTheDescriptorLimit) {
   bool played = false;
-  for (int most = 5; most < 64; most += most < 40 ? 3 : 12) {
-    const Ran ran = play_with("--nofile=" + std::to_string(most));
-    if (ran.code == 0) {
+  for (int limit = 5; limit < 64; limit += limit < 40 ? 3 : 12) {
+    const RunResult result = play_with("--nofile=" + std::to_string(limit));
+    if (result.code == 0) {
       played = true;
-      EXPECT_NE(ran.out.find(" tick 3\n"), std::string::npos) << most << ran.out;
+      EXPECT_NE(result.out.find(" tick 3\n"), std::string::npos) << limit << result.out;
     } else {
-      EXPECT_FALSE(played) << "with fewer it did";
-      EXPECT_EQ(ran.code, 3) << most << ran.err;
-      EXPECT_NE(ran.err.find("more files and sockets can be opened"), std::string::npos) << most << ran.err;
+      EXPECT_FALSE(played) << "it plays with fewer";
+      EXPECT_EQ(result.code, 3) << limit << result.err;
+      EXPECT_NE(result.err.find("more files and sockets can be opened"), std::string::npos) << limit << result.err;
     }
   }
   EXPECT_TRUE(played);
 }
 
-TEST(Starved, AStackThatIsTooSmallIsNamed) {
-  const Ran ran = play_with("--stack=65536");
-  EXPECT_EQ(ran.code, 3);
-  EXPECT_NE(ran.err.find("the stack is limited to 64 KiB"), std::string::npos) << ran.err;
+TEST(Starved, ReportsATooSmallStack) {
+  const RunResult result = play_with("--stack=65536");
+  EXPECT_EQ(result.code, 3);
+  EXPECT_NE(result.err.find("the stack is limited to 64 KiB"), std::string::npos) << result.err;
 }
 
 }  // namespace

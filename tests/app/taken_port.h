@@ -1,4 +1,4 @@
-// A port of this machine, chosen by the system, that is in use.
+// A local port, chosen by the system, that is in use.
 #pragma once
 
 #include <netinet/in.h>
@@ -10,10 +10,10 @@
 
 namespace limber::app_test {
 
-class TakenPort {
+class PortInUse {
  public:
   /// SOCK_DGRAM or SOCK_STREAM.
-  explicit TakenPort(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
+  explicit PortInUse(int kind) : fd_(socket(AF_INET, kind | SOCK_CLOEXEC, 0)) {
     sockaddr_in at{};
     at.sin_family = AF_INET;
     at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -23,10 +23,10 @@ class TakenPort {
     if (kind == SOCK_STREAM) listen(fd_, 1);
     number_ = ntohs(at.sin_port);
   }
-  ~TakenPort() { close(fd_); }
-  TakenPort(const TakenPort&) = delete;
-  TakenPort& operator=(const TakenPort&) = delete;
-  std::string number() const { return std::to_string(number_); }
+  ~PortInUse() { close(fd_); }
+  PortInUse(const PortInUse&) = delete;
+  PortInUse& operator=(const PortInUse&) = delete;
+  std::string port() const { return std::to_string(number_); }
 
  private:
   int fd_;

@@ -1,4 +1,4 @@
-// Real windows, on a display of the test's own: it opens, and the show outlives the display.
+// Real windows on a private display: opening, and a show that outlives its display.
 #include <atomic>
 #include <cstdlib>
 #include <thread>
@@ -18,38 +18,40 @@ ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0,
 sim:on_step(function() if sim.tick % 60 == 0 then print("tick") end end)
 )";
 
-TEST(Window, OpensWhereThereIsADisplayAndEndsCleanly) {
+TEST(Window, OpensOnADisplayAndEndsCleanly) {
   Display display;
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
-  Running running(limber(quiet(scene, {"--hash"}), display.environment()));
+  Process running(limber_command(quiet(scene, {"--hash"}), display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 64 × 36, drawn by ")) << running.err();
   ASSERT_TRUE(running.wait_for("--quality high looks better")) << "software picks low by itself";
   ASSERT_TRUE(running.wait_for("tick", true));
   running.signal(SIGINT);
-  const Ran ran = running.finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(ran.err.find("playing headless"), std::string::npos) << ran.err;
-  EXPECT_NE(ran.out.find("hash "), std::string::npos);
-  EXPECT_NE(
-      Running(limber(quiet(scene, {"--ticks", "5", "--hash"}), display.environment())).finish().out.find("tick 5\n"),
-      std::string::npos)
+  const RunResult result = running.finish();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err.find("playing headless"), std::string::npos) << result.err;
+  EXPECT_NE(result.out.find("hash "), std::string::npos);
+  EXPECT_NE(Process(limber_command(quiet(scene, {"--ticks", "5", "--hash"}), display.environment()))
+                .finish()
+                .out.find("tick 5\n"),
+            std::string::npos)
       << "and by itself";
 }
 
-TEST(Window, ATakeThatIsNotThereIsNotWaitedFor) {
+TEST(Window, DoesNotWaitForAMissingTake) {
   const Display display;
-  const Ran ran = Running(limber({"--replay", "/nowhere/evening.take", "--osc-in", "off", "--osc-out", "off"},
-                                 display.environment()))
-                      .finish();
-  EXPECT_EQ(ran.code, 1) << ran.err;
-  EXPECT_NE(ran.err.find("/nowhere/evening.take: there is no such take"), std::string::npos) << ran.err;
+  const RunResult result =
+      Process(limber_command({"--replay", "/nowhere/evening.take", "--osc-in", "off", "--osc-out", "off"},
+                             display.environment()))
+          .finish();
+  EXPECT_EQ(result.code, 1) << result.err;
+  EXPECT_NE(result.err.find("/nowhere/evening.take: take not found"), std::string::npos) << result.err;
 }
 
-// what the panel's hands do arrives in the scene, which says so
-TEST(Window, ThePanelIsPlayedByMouseAndKeys) {
+// input in the panel reaches the scene, which prints it
+TEST(Window, PanelHandlesMouseAndKeys) {
   const Display display("1280x720x24");
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", R"(
 params { { "rate", 0, min = 0, max = 1 } }
 local rate = 0
@@ -61,75 +63,78 @@ end)
 )");
   std::vector<std::string> args = {scene,     "--osc-in", "off",    "--osc-out", "off",
                                    "--query", "off",      "--size", "1280x720"};
-  Running running(limber(args, display.environment()));
+  Process running(limber_command(args, display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 1280 × 720")) << running.err();
   ASSERT_TRUE(running.wait_for("begun", true));
-  // the first bar of the parameters, from its middle to its end
-  // again, until the panel is there to be played; slowly, as each takes pictures of its own and none is left out
+  // drags the first slider of the parameters from its middle to its end; repeated until the panel is ready, slowly, as
+  // each event needs its own frame
   const auto dragged = [&] { return running.out().find("rate 1.0") != std::string::npos; };
   for (int i = 0; i < 200 && !dragged(); i++) {
     display.xdotool(
         {"mousemove", "1100", "182", "mousedown", "1", "mousemove", "1260", "182", "mouseup", "1", "sleep", "0.5"});
-    running.look();
+    running.read_available();
   }
   ASSERT_TRUE(dragged()) << running.out();
-  // a key that is pressed and released between two pictures
+  // a key pressed and released between two frames
   display.xdotool({"mousemove", "600", "300", "key", "F1"});
   display.xdotool({"key", "Escape"});
   display.xdotool({"key", "ctrl+equal"});
   display.xdotool({"key", "ctrl+equal"});
   display.xdotool({"key", "space", "key", "period"});
-  ASSERT_TRUE(running.wait_for("one step", true)) << "Escape ends nothing; keys come in their order";
+  ASSERT_TRUE(running.wait_for("one step", true)) << "Escape doesn't end the program; keys arrive in order";
   running.signal(SIGINT);
-  const Ran ran = running.finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
+  const RunResult result = running.finish();
+  EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_NE(display.settings().find("\"hidden\": true"), std::string::npos) << display.settings();
   EXPECT_NE(display.settings().find("\"text_size\": 18"), std::string::npos) << display.settings();
 }
 
 TEST(Window, FillsTheScreenAndRemembersIt) {
   const Display display("320x240x24");
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
   const auto play = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--ticks", "30"});
-    const Ran ran = Running(limber(quiet(scene, more), display.environment())).finish();
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    return ran.err;
+    const RunResult result = Process(limber_command(quiet(scene, more), display.environment())).finish();
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
   };
-  const auto remembers = [&](const std::string& what) { return display.settings().find(what) != std::string::npos; };
+  const auto remembers = [&](const std::string& setting) {
+    return display.settings().find(setting) != std::string::npos;
+  };
   play({});
   EXPECT_FALSE(remembers("\"fullscreen\": true"));
   play({"--fullscreen", "--monitor", "1", "--hide-pointer"});
-  for (const char* what : {"\"fullscreen\": true", "\"hide_pointer\": true", "\"monitor\": \"1\""})
-    EXPECT_TRUE(remembers(what)) << display.settings();
+  for (const char* setting : {"\"fullscreen\": true", "\"hide_pointer\": true", "\"monitor\": \"1\""})
+    EXPECT_TRUE(remembers(setting)) << display.settings();
   play({});
   EXPECT_TRUE(remembers("\"fullscreen\": true"));
   EXPECT_NE(play({"--windowed", "--show-pointer", "--monitor", "nowhere"})
-                .find("there is no monitor 'nowhere'; there are: 1 ("),
+                .find("monitor 'nowhere' not found; available: 1 ("),
             std::string::npos);
   EXPECT_FALSE(remembers("\"fullscreen\": true") || remembers("\"hide_pointer\": true"));
 }
 
-// on Dvorak the period is where E is on a US keyboard; AZERTY prints it with Shift only, so it stays at its place
-TEST(Window, KeysAreThoseThatTheLayoutPrints) {
+// on Dvorak the period is at the position of E on a US keyboard; AZERTY prints it with Shift only, so it keeps its
+// position
+TEST(Window, KeysFollowTheLayout) {
   for (const std::string layout : {"dvorak", "fr"}) {
-    const Display display("320x240x24", {"-noreset"});  // else the layout goes with the program that set it
+    const Display display("320x240x24", {"-noreset"});  // otherwise the layout is reset with the program that set it
     std::vector<std::string> words = display.environment();
     words.insert(words.end(), {"setxkbmap", layout});
-    ASSERT_EQ(Running(words).finish().code, 0) << "apt-get install x11-xkb-utils";
-    const Folder folder;
+    ASSERT_EQ(Process(words).finish().code, 0) << "apt-get install x11-xkb-utils";
+    const TempFolder folder;
     const std::string scene = folder.file(
         "s.lua", "sim:on_step(function() print(sim.paused and 'one step' or sim.tick == 30 and 'begun' or '') end)\n");
-    Running running(limber(quiet(scene), display.environment()));
+    Process running(limber_command(quiet(scene), display.environment()));
     ASSERT_TRUE(running.wait_for("limber: window")) << running.err();
     ASSERT_TRUE(running.wait_for("begun", true));
     display.xdotool({"mousemove", "30", "20"});
     const auto stepped = [&] { return running.out().find("one step") != std::string::npos; };
-    // again, until the window is there to hear them
+    // repeated until the window accepts input
     for (int i = 0; i < 200 && !stepped(); i++) {
       display.xdotool({"key", layout == "fr" ? "colon" : "period", "key", "space", "sleep", "0.3"});
-      running.look();
+      running.read_available();
     }
     EXPECT_TRUE(stepped()) << layout << running.err();
     running.signal(SIGINT);
@@ -137,10 +142,10 @@ TEST(Window, KeysAreThoseThatTheLayoutPrints) {
   }
 }
 
-// F10 opens it, it has the picture and no panel, may be sized, filled, closed, and the show goes on
-TEST(Window, ASecondOneHasThePictureAlone) {
+// F10 opens it; it shows the scene without the panel; it may be resized, maximized and closed while the show plays
+TEST(Window, OutputWindowShowsTheSceneAlone) {
   const Display display("1280x720x24");
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", R"(
 visuals.background = vec3(1 / 3, 1, 1)
 visuals.look.floor = false
@@ -148,7 +153,7 @@ sim:on_step(function() if sim.tick % 30 == 0 then print("tick") end end)
 )");
   std::vector<std::string> args = {scene,     "--osc-in", "off",    "--osc-out", "off",
                                    "--query", "off",      "--size", "1280x720"};
-  Running running(limber(args, display.environment()));
+  Process running(limber_command(args, display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 1280 × 720")) << running.err();
   ASSERT_TRUE(running.wait_for("tick", true));
   const auto waits_for = [&](auto&& is) {
@@ -165,34 +170,34 @@ sim:on_step(function() if sim.tick % 30 == 0 then print("tick") end end)
     display.xdotool(words);
   };
   ASSERT_TRUE(waits_for([&] { return green(640, 300); })) << std::hex << display.pixel(640, 300);
-  ASSERT_TRUE(waits_for([&] { return !green(1240, 545); })) << "the panel lies there";
+  ASSERT_TRUE(waits_for([&] { return !green(1240, 545); })) << "covered by the panel";
   display.xdotool({"mousemove", "640", "300", "key", "F10"});
   ASSERT_TRUE(running.wait_for("limber: output window 960 × 540")) << running.err();
-  // over the first one's panel there is the second's background
+  // the second window's background covers the first window's panel
   with_output({"windowmove", "320", "180"});
   EXPECT_TRUE(waits_for([&] { return green(1240, 545); })) << std::hex << display.pixel(1240, 545);
   with_output({"windowsize", "300", "200"});
-  EXPECT_TRUE(waits_for([&] { return !green(1240, 545) && green(610, 370); })) << "the panel is seen again";
-  // keys that are pressed in it act, too
+  EXPECT_TRUE(waits_for([&] { return !green(1240, 545) && green(610, 370); })) << "the panel is visible again";
+  // its keys are handled, too
   with_output({"windowmove", "0", "0", "mousemove", "100", "100", "key", "F11"});
   EXPECT_TRUE(waits_for([&] { return green(1240, 545) && green(100, 100); }));
   display.xdotool({"key", "F11"});
   EXPECT_TRUE(waits_for([&] { return !green(1240, 545); }));
   display.xdotool({"key", "F10"});
-  EXPECT_TRUE(waits_for([&] { return !green(100, 100); })) << "away with it: the first one's panel is there";
-  // the show ends well while it is open again
+  EXPECT_TRUE(waits_for([&] { return !green(100, 100); })) << "closed: the panel of the first window is visible";
+  // the show ends cleanly while it is open
   display.xdotool({"mousemove", "640", "300", "key", "F10"});
   EXPECT_TRUE(waits_for([&] { return green(100, 100); }));
   running.signal(SIGINT);
-  const Ran ran = running.finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(ran.err.find("headless"), std::string::npos) << ran.err;
+  const RunResult result = running.finish();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err.find("headless"), std::string::npos) << result.err;
 }
 
-// everything at once: what the thread sanitizer looks at
-TEST(Window, AFloodReloadsAndHandsTogether) {
+// everything at once, for the thread sanitizer
+TEST(Window, HandlesFloodReloadsAndInputTogether) {
   const Display display("640x480x24");
-  const Folder folder;
+  const TempFolder folder;
   const auto save = [&](int number) {
     return folder.file("s.lua", fmt::format(R"(
 local ball = sim:add_body("ball")
@@ -202,14 +207,14 @@ sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.t
 )",
                                             number));
   };
-  const TakenPort sink(SOCK_DGRAM);
-  Running running(limber({save(1), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + sink.number(), "--query",
-                          "off", "--size", "640x480", "--quality", "low"},
-                         display.environment()));
+  const PortInUse sink(SOCK_DGRAM);
+  Process running(limber_command({save(1), "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:" + sink.port(),
+                                  "--query", "off", "--size", "640x480", "--quality", "low"},
+                                 display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window 640 × 480")) << running.err();
   ASSERT_TRUE(running.wait_for("OSC in 127.0.0.1:"));
   ASSERT_TRUE(running.wait_for("run 1 tick 60", true)) << "by then its files are watched";
-  const Endpoint in{0x7f000001, static_cast<std::uint16_t>(std::atoi(running.behind("OSC in 127.0.0.1:").c_str()))};
+  const Endpoint in{0x7f000001, static_cast<std::uint16_t>(std::atoi(running.text_after("OSC in 127.0.0.1:").c_str()))};
   ASSERT_NE(in.port, 0);
   const osc_test::Client client;
   std::atomic<bool> floods{true};
@@ -230,80 +235,80 @@ sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.t
   floods = false;
   flood.join();
   running.signal(SIGINT);
-  const Ran ran = running.finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_EQ(ran.err.find("ThreadSanitizer"), std::string::npos) << ran.err;
+  const RunResult result = running.finish();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_EQ(result.err.find("ThreadSanitizer"), std::string::npos) << result.err;
 }
 
-TEST(Window, TheShowOutlivesTheDisplay) {
+TEST(Window, ShowOutlivesTheDisplay) {
   Display display;
-  const Folder folder;
-  Running running(limber(quiet(folder.file("s.lua", kFallingBall), {"--hash"}), display.environment()));
+  const TempFolder folder;
+  Process running(limber_command(quiet(folder.file("s.lua", kFallingBall), {"--hash"}), display.environment()));
   ASSERT_TRUE(running.wait_for("limber: window ")) << running.err();
   ASSERT_TRUE(running.wait_for("tick", true));
-  display.end();
+  display.kill();
   ASSERT_TRUE(running.wait_for("the display is lost")) << running.err();
-  ASSERT_TRUE(running.wait_for(" real time")) << "the status line of those without a window\n" << running.err();
+  ASSERT_TRUE(running.wait_for(" real time")) << "the status line without a window\n" << running.err();
   running.signal(SIGINT);
-  const Ran ran = running.finish();
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  EXPECT_NE(ran.out.find("hash "), std::string::npos) << ran.out;
+  const RunResult result = running.finish();
+  EXPECT_EQ(result.code, 0) << result.err;
+  EXPECT_NE(result.out.find("hash "), std::string::npos) << result.out;
 }
 
-TEST(Window, ARequestedOneWaitsForItsDisplay) {
+TEST(Window, RequestedWindowWaitsForItsDisplay) {
   Display display;
-  display.end();
-  const Folder folder;
+  display.kill();
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
-  Running running(limber(quiet(scene, {"--windowed"}), display.environment()));
+  Process running(limber_command(quiet(scene, {"--windowed"}), display.environment()));
   ASSERT_TRUE(running.wait_for("the window opens as soon as there is a display")) << running.err();
   ASSERT_TRUE(running.wait_for(" real time")) << running.err();
-  display.begin_again();
+  display.restart();
   ASSERT_TRUE(running.wait_for("limber: window ")) << running.err();
   running.signal(SIGINT);
   EXPECT_EQ(running.finish().code, 0);
 }
 
-TEST(Window, WithoutOneItSaysWhy) {
-  const Folder folder;
+TEST(Window, ReportsWhyThereIsNone) {
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
-  const auto said = [&](const std::vector<std::string>& before, std::vector<std::string> more) {
+  const auto stderr_of = [&](const std::vector<std::string>& before, std::vector<std::string> more) {
     more.insert(more.end(), {"--ticks", "2"});
-    const Ran ran = Running(limber(quiet(scene, more), before)).finish();
-    EXPECT_EQ(ran.code, 0) << ran.err;
-    return ran.err;
+    const RunResult result = Process(limber_command(quiet(scene, more), before)).finish();
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
   };
-  EXPECT_NE(said({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}, {})
+  EXPECT_NE(stderr_of({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY"}, {})
                 .find("headless (no display: DISPLAY and WAYLAND_DISPLAY are not set; "),
             std::string::npos);
-  // libX11 1.8 keeps memory of a display that it could not open
-  std::vector<std::string> no_display = without_leak_search();
+  // libX11 1.8 leaks memory if a display can't be opened
+  std::vector<std::string> no_display = without_leak_check();
   no_display.emplace_back("DISPLAY=:77777");
-  EXPECT_NE(said(no_display, {}).find("headless (no window can be opened: X11: "), std::string::npos);
-  EXPECT_NE(said({"env", "DISPLAY=:77777"}, {"--headless"}).find("headless; Ctrl+C"), std::string::npos);
+  EXPECT_NE(stderr_of(no_display, {}).find("headless (no window can be opened: X11: "), std::string::npos);
+  EXPECT_NE(stderr_of({"env", "DISPLAY=:77777"}, {"--headless"}).find("headless; Ctrl+C"), std::string::npos);
 }
 
-TEST(Window, AFaultySceneLeavesAnEmptyStageThatWaits) {
+TEST(Window, FaultySceneWaitsForAFix) {
   Display display;
-  const Folder folder;
+  const TempFolder folder;
   const std::string scene = folder.file("s.lua", "oh no\n");
-  Running running(limber(quiet(scene), display.environment()));
-  ASSERT_TRUE(running.wait_for("waits for the mended file")) << running.err();
+  Process running(limber_command(quiet(scene), display.environment()));
+  ASSERT_TRUE(running.wait_for("until the file is fixed")) << running.err();
   folder.file("s.lua", kFallingBall);
   ASSERT_TRUE(running.wait_for("tick", true)) << running.err();
   running.signal(SIGINT);
   EXPECT_EQ(running.finish().code, 0);
-  // one of its files is mended while the window opens: nobody watches them yet
+  // a file is fixed while the window opens, before the files are watched
   const std::string other = folder.file("other.lua", "require 'part'\n");
   folder.file("scripts/lib/part.lua", "oh no\n");
-  Running second(limber(quiet(other), display.environment()));
+  Process second(limber_command(quiet(other), display.environment()));
   ASSERT_TRUE(second.wait_for("OSC in off")) << second.err();
   folder.file("scripts/lib/part.lua", kFallingBall);
   ASSERT_TRUE(second.wait_for("tick", true)) << second.err();
   second.signal(SIGINT);
   EXPECT_EQ(second.finish().code, 0);
-  const Ran headless =
-      Running(limber(quiet(folder.file("bad.lua", "oh no\n"), {"--headless"}), display.environment())).finish();
+  const RunResult headless =
+      Process(limber_command(quiet(folder.file("bad.lua", "oh no\n"), {"--headless"}), display.environment())).finish();
   EXPECT_EQ(headless.code, 1) << headless.err;
 }
 

@@ -1,4 +1,4 @@
-// See source_rules.h. The tables at the top are the rules; what follows reads text.
+// Implements the project rules. The tables at the top define them.
 #include "architecture/source_rules.h"
 
 #include <algorithm>
@@ -13,34 +13,34 @@
 namespace limber::rules {
 namespace {
 
-/// A room and the rooms it sees beside itself and base.
-struct Room {
+/// A module and the modules that it may include besides itself and base.
+struct Module {
   std::string_view name;
-  std::string_view sees;
+  std::string_view may_include;
 };
-constexpr std::array kRooms{
-    Room{"base", ""},
-    Room{"params", ""},
-    Room{"model", ""},
-    Room{"sim", "params model"},
-    Room{"behaviors", "params model sim"},
-    Room{"script", "params model sim"},
-    Room{"engine", "params model sim behaviors script"},
-    // the outside sees commands, snapshots and the catalog, nothing live
-    Room{"osc", "params model engine"},
-    Room{"console", "params model engine"},
-    Room{"query", "params model engine"},
-    Room{"view", "params model engine"},
-    Room{"gui", "params model engine"},
-    // files of motion: whoever fills them sees the rest
-    Room{"motion", ""},
-    Room{"app", "params model sim behaviors script engine osc console query view gui motion"},
+constexpr std::array kModules{
+    Module{"base", ""},
+    Module{"params", ""},
+    Module{"model", ""},
+    Module{"sim", "params model"},
+    Module{"behaviors", "params model sim"},
+    Module{"script", "params model sim"},
+    Module{"engine", "params model sim behaviors script"},
+    // Modules outside the simulation thread see commands, snapshots and the catalog, but no simulation objects.
+    Module{"osc", "params model engine"},
+    Module{"console", "params model engine"},
+    Module{"query", "params model engine"},
+    Module{"view", "params model engine"},
+    Module{"gui", "params model engine"},
+    // motion files, without access to the scene
+    Module{"motion", ""},
+    Module{"app", "params model sim behaviors script engine osc console query view gui motion"},
 };
 
-/// An outside library, by how its headers begin, and the room that may include it ("" : every room).
+/// The start of an external library's header names, and the module that may include it ("": all modules).
 struct Library {
   std::string_view header;
-  std::string_view room;
+  std::string_view module;
 };
 constexpr std::array kLibraries{
     Library{"bt", "sim"},
@@ -74,13 +74,14 @@ constexpr std::array kLibraries{
     Library{"nlohmann/", ""},
 };
 
-/// Headers of the operating system: for src/base/system alone.
-constexpr std::array kSystem{"sys/",       "netinet/", "arpa/",     "net/",    "linux/",    "unistd.h",  "poll.h",
-                             "fcntl.h",    "signal.h", "pthread.h", "sched.h", "netdb.h",   "ifaddrs.h", "dirent.h",
-                             "execinfo.h", "dlfcn.h",  "glob.h",    "spawn.h", "termios.h", "malloc.h",  "alloca.h",
-                             "ucontext.h", "pwd.h",    "grp.h",     "ftw.h",   "mach/",     "mach-o/",   "link.h"};
+/// Headers of the operating system, allowed in src/base/system only.
+constexpr std::array kSystemHeaders{"sys/",      "netinet/", "arpa/",      "net/",       "linux/",  "unistd.h",
+                                    "poll.h",    "fcntl.h",  "signal.h",   "pthread.h",  "sched.h", "netdb.h",
+                                    "ifaddrs.h", "dirent.h", "execinfo.h", "dlfcn.h",    "glob.h",  "spawn.h",
+                                    "termios.h", "malloc.h", "alloca.h",   "ucontext.h", "pwd.h",   "grp.h",
+                                    "ftw.h",     "mach/",    "mach-o/",    "link.h"};
 constexpr std::string_view kSystemFolder = "src/base/system/";
-/// Its calls, which headers of C++ bring along too, and its files.
+/// Calls and types of the operating system, which C++ headers also declare, and its files.
 constexpr std::array kSystemCalls{
     "getpid(",     "getuid(",     "geteuid(",       "isatty(",      "ioctl(",     "fileno(",       "mmap(",
     "munmap(",     "mprotect(",   "madvise(",       "ppoll(",       "pselect(",   "eventfd(",      "epoll_",
@@ -91,26 +92,27 @@ constexpr std::array kSystemCalls{
     "prctl(",      "sysconf(",    "setpriority(",   "gethostname(", "uname(",     "nanosleep(",    "usleep(",
     "ssize_t",     "pid_t",       "clockid_t",      "mallinfo",     "\"/proc/",   "\"/sys/",       "\"/dev/"};
 /// Headers of the compiler and the processor.
-constexpr std::array kCompiler{"immintrin.h", "emmintrin.h", "xmmintrin.h", "arm_neon.h", "cxxabi.h"};
+constexpr std::array kCompilerHeaders{"immintrin.h", "emmintrin.h", "xmmintrin.h", "arm_neon.h", "cxxabi.h"};
 
 bool has_word(std::string_view words, std::string_view word) {
   std::istringstream in{std::string(words)};
   return std::find(std::istream_iterator<std::string>(in), {}, word) != std::istream_iterator<std::string>();
 }
 
-/// "src/sim/world.cpp" is of sim; what lies in src/ itself belongs to app.
-std::string room_of(std::string_view path) {
+/// Returns the module of a path: "sim" for "src/sim/world.cpp"; files in src/ itself belong to app.
+std::string module_of(std::string_view path) {
   path.remove_prefix(std::string_view("src/").size());
   const auto slash = path.find('/');
   return slash == std::string_view::npos ? "app" : std::string(path.substr(0, slash));
 }
 
-const Room* find_room(std::string_view name) {
-  const auto* found = std::find_if(kRooms.begin(), kRooms.end(), [&](const Room& r) { return r.name == name; });
-  return found == kRooms.end() ? nullptr : found;
+const Module* find_module(std::string_view name) {
+  const auto* found =
+      std::find_if(kModules.begin(), kModules.end(), [&](const Module& module) { return module.name == name; });
+  return found == kModules.end() ? nullptr : found;
 }
 
-/// What one line includes: the delimiter '<' or '"' and the name; delimiter 0 when it includes nothing.
+/// The include of a line: the delimiter '<' or '"' and the name; delimiter 0 if there is none.
 struct Include {
   char delimiter = 0;
   std::string_view name;
@@ -130,45 +132,46 @@ Include include_of(std::string_view line) {
   return {delimiter, line.substr(0, line.find(delimiter == '<' ? '>' : '"'))};
 }
 
-/// Why `room` may not include our own file `name`; empty: it may.
-std::string own_complaint(const Room& room, std::string_view name) {
+/// Returns the reason why the module may not include the project's file `name`; empty if it may.
+std::string project_complaint(const Module& module, std::string_view name) {
   const auto slash = name.find('/');
-  if (slash == std::string_view::npos || name.starts_with('.')) return "is not written from src/, like \"base/vec.h\"";
+  if (slash == std::string_view::npos || name.starts_with('.')) return "must be relative to src/, like \"base/vec.h\"";
   const std::string_view target = name.substr(0, slash);
-  if (find_room(target) == nullptr) return "names no room of src/";
-  if (target == room.name || target == "base" || has_word(room.sees, target)) return {};
-  return "looks up or sideways: " + std::string(room.name) + " sees base " + std::string(room.sees);
+  if (find_module(target) == nullptr) return "is in no module of src/";
+  if (target == module.name || target == "base" || has_word(module.may_include, target)) return {};
+  return "is not in a lower module: " + std::string(module.name) + " may include base " +
+         std::string(module.may_include);
 }
 
-/// The same for an outside header.
-std::string library_complaint(const Room& room, std::string_view path, std::string_view name) {
-  for (const char* system : kSystem) {
+/// Returns the reason why the file may not include an external header; empty if it may.
+std::string library_complaint(const Module& module, std::string_view path, std::string_view name) {
+  for (const char* system : kSystemHeaders) {
     if (!name.starts_with(system) || path.starts_with(kSystemFolder)) continue;
-    return "is a header of the operating system: put what needs it into src/base/system/";
+    return "is a header of the operating system: include it in src/base/system/ only";
   }
   for (const Library& library : kLibraries) {
     if (!name.starts_with(library.header)) continue;
-    if (library.room.empty() || library.room == room.name) return {};
-    return "belongs to the room " + std::string(library.room) + " alone";
+    if (library.module.empty() || library.module == module.name) return {};
+    return "may be included by the module " + std::string(library.module) + " only";
   }
   if (name.find_first_of("./") == std::string_view::npos) return {};
   const auto known = [name](const char* header) { return name.starts_with(header); };
-  if (std::ranges::any_of(kSystem, known) || std::ranges::any_of(kCompiler, known)) return {};
-  return "is of no known library: give it a room in tests/architecture/source_rules.cpp";
+  if (std::ranges::any_of(kSystemHeaders, known) || std::ranges::any_of(kCompilerHeaders, known)) return {};
+  return "belongs to no known library: add it to tests/architecture/source_rules.cpp";
 }
 
 }  // namespace
 
-std::vector<std::string> rooms() {
+std::vector<std::string> modules() {
   std::vector<std::string> names;
-  names.reserve(kRooms.size());
-  for (const Room& room : kRooms) names.emplace_back(room.name);
+  names.reserve(kModules.size());
+  for (const Module& module : kModules) names.emplace_back(module.name);
   return names;
 }
 
 std::vector<std::string> include_complaints(std::string_view path, std::string_view text) {
-  const Room* room = find_room(room_of(path));
-  if (room == nullptr) return {std::string(path) + ": src/ has no such room; give it a row in source_rules.cpp"};
+  const Module* module = find_module(module_of(path));
+  if (module == nullptr) return {std::string(path) + ": unknown module; add it to source_rules.cpp"};
   std::vector<std::string> complaints;
   std::istringstream lines{std::string(text)};
   std::string line;
@@ -176,7 +179,8 @@ std::vector<std::string> include_complaints(std::string_view path, std::string_v
     const Include include = include_of(line);
     if (include.delimiter == 0) continue;
     const bool own = include.delimiter == '"';
-    const std::string why = own ? own_complaint(*room, include.name) : library_complaint(*room, path, include.name);
+    const std::string why =
+        own ? project_complaint(*module, include.name) : library_complaint(*module, path, include.name);
     if (!why.empty()) {
       complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(include.name) + "' " +
                            why);
@@ -195,27 +199,27 @@ std::vector<std::string> system_complaints(std::string_view path, std::string_vi
     for (const std::string_view call : kSystemCalls) {
       const std::size_t at = code.find(call);
       if (at == std::string_view::npos) continue;
-      // a longer name of our own
+      // part of a longer name
       if (at > 0 && (std::isalnum(static_cast<unsigned char>(code[at - 1])) != 0 || code[at - 1] == '_')) continue;
       complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(call) +
-                           "' is the operating system's: call it in src/base/system/");
+                           "' belongs to the operating system: call it in src/base/system/");
     }
   }
   return complaints;
 }
 
 std::vector<std::string> shape_complaints(std::string_view path, std::string_view text) {
-  constexpr int kMostLines = 500;
+  constexpr int kMaxLines = 500;
   std::vector<std::string> complaints;
-  const std::string_view mark = path.ends_with(".lua")                               ? "--"
-                                : path.ends_with(".cmake") || path.ends_with(".txt") ? "#"
-                                                                                     : "//";
-  if (!text.starts_with(mark)) {
-    complaints.push_back(std::string(path) + ": does not open with a comment that says what it is");
+  const std::string_view comment = path.ends_with(".lua")                               ? "--"
+                                   : path.ends_with(".cmake") || path.ends_with(".txt") ? "#"
+                                                                                        : "//";
+  if (!text.starts_with(comment)) {
+    complaints.push_back(std::string(path) + ": must begin with a comment that describes the file");
   }
   const auto lines = std::count(text.begin(), text.end(), '\n');
-  if (lines > kMostLines) {
-    complaints.push_back(std::string(path) + ": has " + std::to_string(lines) + " lines, 500 are allowed");
+  if (lines > kMaxLines) {
+    complaints.push_back(std::string(path) + ": has " + std::to_string(lines) + " lines; at most 500 are allowed");
   }
   return complaints;
 }
@@ -248,7 +252,7 @@ std::vector<std::string> output_complaints(std::string_view path, std::string_vi
     std::smatch found;
     if (!std::regex_search(code, found, use)) continue;
     complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + found.str() +
-                         "' throws or blocks: write by base/output.h");
+                         "' may throw or block: use base/output.h");
   }
   return complaints;
 }

@@ -1,4 +1,5 @@
-// The models in urdf/: what they weigh and how they stand, predicted from the construction set (docs/models.md).
+// The models in urdf/: masses, inertias, poses and collision shapes, compared with the construction set
+// (docs/models.md).
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -32,15 +33,15 @@ constexpr double kBallDensity = 1000;
 
 struct Expected {
   std::size_t links;   // after fixed ones are merged
-  std::size_t joints;  // that move
+  std::size_t joints;  // movable ones
   std::size_t merged;
   int continuous;
   int prismatic;
   bool fixed_root;
 };
 const std::map<std::string, Expected> kModels = {
-    {"arm6", {7, 6, 0, 3, 0, true}},          // twist and bend in turn
-    {"arm17", {18, 17, 0, 9, 0, true}},       // 8 stages of two, and a twisting tip
+    {"arm6", {7, 6, 0, 3, 0, true}},          // alternately twist and bend
+    {"arm17", {18, 17, 0, 9, 0, true}},       // 8 sections of two joints, and a twisting tip
     {"quadruped", {13, 12, 4, 0, 0, false}},  // trunk, 4 legs of 3; the feet are fixed to the shins
     {"worm", {12, 11, 0, 0, 0, false}},
     {"hand", {19, 18, 0, 1, 1, true}},  // post, lift, turn, 4 fingers of 3, a thumb of 4
@@ -74,15 +75,15 @@ const JointModel& joint_named(const BodyModel& model, std::string_view name) {
   return model.joints.front();
 }
 
-// how a point that rides behind the joint begins to move, at home, when the joint's value grows: axis × arm
+// Direction in which a point behind the joint starts to move from the rest pose when the joint's value increases.
 Vec3 motion_of(const BodyModel& model, const std::string& joint_name, const Vec3& point) {
   const JointModel& joint = joint_named(model, joint_name);
   const Pose frame = model.links[static_cast<std::size_t>(joint.parent)].home * joint.frame_in_parent;
   return glm::cross(frame.rotation * Vec3(0, 0, 1), point - frame.position);
 }
 
-// mass properties that the seen shapes of a link should have, from their geometry and density
-Moments predicted(const LinkModel& link) {
+// Mass properties of a link's visual shapes, from their geometry and density.
+Moments predicted_moments(const LinkModel& link) {
   Moments sum;
   for (const PlacedShape& visual : link.visuals) {
     if (visual.shape.mesh) {
@@ -106,10 +107,10 @@ TEST(Models, AreExactlyTheOnesInTheTable) {
   }
   std::set<std::string> known;
   for (const auto& [name, expected] : kModels) known.insert(name);
-  EXPECT_EQ(found, known) << "a model that comes or goes needs its row in kModels and its section in docs/models.md";
+  EXPECT_EQ(found, known) << "update kModels and docs/models.md when a model is added or removed";
 }
 
-TEST(Models, ImportWithoutComplaintsAndWithAllTheirJoints) {
+TEST(Models, ImportWithoutWarningsAndWithAllJoints) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
     for (const Problem& problem : model->problems) {
@@ -129,18 +130,18 @@ TEST(Models, ImportWithoutComplaintsAndWithAllTheirJoints) {
       EXPECT_EQ(joint.limited, joint.type != JointType::continuous) << name << " " << joint.name;
       EXPECT_TRUE(joint.effort >= 5 && joint.effort <= 200) << name << " " << joint.name << " " << joint.effort;
       EXPECT_TRUE(joint.velocity > 0 && joint.velocity <= 12) << name << " " << joint.name << " " << joint.velocity;
-      EXPECT_EQ(joint.start, 0) << name << " " << joint.name << ": home lies within the limits";
+      EXPECT_EQ(joint.start, 0) << name << " " << joint.name << ": the limits must include the home position";
     }
   }
 }
 
-TEST(Models, WeighWhatTheirPartsWeigh) {
+TEST(Models, MassesMatchTheirParts) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
     for (std::size_t i = 0; i < model->links.size(); ++i) {
       const LinkModel& link = model->links[i];
       const std::string where = name + " " + link.name;
-      const Moments parts = predicted(link);
+      const Moments parts = predicted_moments(link);
       if (i == 0 && expected.fixed_root) {
         EXPECT_EQ(link.inertial.mass, 0) << where;
         continue;
@@ -149,7 +150,7 @@ TEST(Models, WeighWhatTheirPartsWeigh) {
       EXPECT_NEAR(link.inertial.mass, parts.volume, 1e-3 * parts.volume) << where;
       const Vec3 center = parts.first / parts.volume;
       EXPECT_LT(glm::length(link.inertial.center - center), 1e-5) << where;
-      // tensor about the centre: trace(S) 1 - S, S the second moment there
+      // Inertia tensor about the center: trace(S) 1 - S, with the second moment S.
       const Mat3 spread = parts.second - parts.volume * glm::outerProduct(center, center);
       const Mat3 tensor = Mat3(spread[0][0] + spread[1][1] + spread[2][2]) - spread;
       const double largest = principal_moments(tensor).z;
@@ -160,7 +161,7 @@ TEST(Models, WeighWhatTheirPartsWeigh) {
   }
 }
 
-TEST(Models, HaveTensorsThatABodyCanHave) {
+TEST(Models, HavePhysicalInertias) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
     for (const LinkModel& link : model->links) {
@@ -172,8 +173,8 @@ TEST(Models, HaveTensorsThatABodyCanHave) {
   }
 }
 
-// an iterative solver has trouble with a feather that carries a stone
-TEST(Models, HaveNeighboursOfLikeMass) {
+// Iterative solvers converge slowly if a light body carries a heavy one.
+TEST(Models, NeighborsHaveSimilarMass) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
     for (const JointModel& joint : model->joints) {
@@ -185,11 +186,12 @@ TEST(Models, HaveNeighboursOfLikeMass) {
   }
 }
 
-// a stage of scale s is (tube + 0.02 + 0.06) s high: the gap below the pivot, half a block above it
+// A section of scale s has the height (tube + 0.02 + 0.06) s: 0.02 is the gap below the pivot, 0.06 half a block above
+// it.
 TEST(Models, ArmsStandUpright) {
   const ModelPtr arm6 = load("arm6");
-  const double bends = 0.06 + 0.47 * (1 + 0.85 + 0.722) + 0.06 * (1 + 0.85);
-  EXPECT_LT(glm::length(link_named(*arm6, "tip").home.position - Vec3(0, 0, bends)), 1e-5);
+  const double arm6_height = 0.06 + 0.47 * (1 + 0.85 + 0.722) + 0.06 * (1 + 0.85);
+  EXPECT_LT(glm::length(link_named(*arm6, "tip").home.position - Vec3(0, 0, arm6_height)), 1e-5);
 
   const ModelPtr arm17 = load("arm17");
   double height = 0.06;
@@ -208,7 +210,7 @@ TEST(Models, ArmsStandUpright) {
   }
 }
 
-// two legs of 0.22 m, each 0.6 rad off the vertical, and a ball of 0.032 m: the trunk is 0.3951 m above the floor
+// Leg segments of 0.22 m, each 0.6 rad off the vertical, and a ball of 0.032 m: the trunk is 0.3951 m above the floor.
 TEST(Models, QuadrupedStandsWithItsWeightAboveItsFeet) {
   const ModelPtr dog = load("quadruped");
   double mass = 0;
@@ -246,10 +248,10 @@ TEST(Models, QuadrupedMovesMirroredForEqualValues) {
   }
 }
 
-TEST(Models, WormTurnsSidewaysAndUpInTurn) {
+TEST(Models, WormJointsAlternateSidewaysAndUp) {
   const ModelPtr worm = load("worm");
   const Vec3 tail = link_named(*worm, "tail").home * Vec3(-0.13, 0, 0);
-  // eleven pitches of 0.13 m to the tail's middle, which is half a pitch behind its joint; then half a pitch more
+  // Eleven pitches of 0.13 m to the middle of the tail, which is half a pitch behind its joint; then half a pitch more.
   EXPECT_LT(glm::length(tail - Vec3(-0.13 * 11.5, 0, 0)), 1e-5);
   for (int k = 1; k <= 11; ++k) {
     const Vec3 motion = motion_of(*worm, "joint_" + std::to_string(k), tail);
@@ -268,7 +270,7 @@ TEST(Models, HandClosesWithPositiveAnglesAndItsLittleFingerFollows) {
   for (const std::string finger : {"index", "middle", "ring", "little"}) {
     const Vec3 end = link_named(*hand, finger + "_tip").home * Vec3(0, 0, 0.05);
     for (const char* joint : {"_1", "_2", "_3"}) {
-      // the palm looks along +x
+      // The palm faces +x.
       EXPECT_GT(motion_of(*hand, finger + joint, end).x, 0.04) << finger << joint;
     }
   }
@@ -284,7 +286,8 @@ TEST(Models, HandClosesWithPositiveAnglesAndItsLittleFingerFollows) {
   EXPECT_EQ(mimics, 1);
 }
 
-// what should roll and slide smoothly is recognised as a capsule: dimensions of the construction set, times the scale
+// Segments must be recognized as capsules with the scaled dimensions of the construction set, since they roll and
+// slide.
 TEST(Models, SegmentsAndFingersCollideAsCapsules) {
   const ModelPtr worm = load("worm");
   const ModelPtr hand = load("hand");

@@ -1,4 +1,4 @@
-// Mass properties of solids, computed for the tests from triangles and formulas alone.
+// Mass properties of solids, computed for the tests from triangles and formulas.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-/// Integrals over a solid for density 1: volume, first and second moments about the frame's origin.
+/// Integrals over a solid of density 1: volume, first and second moments about the origin.
 struct Moments {
   double volume = 0;
   Vec3 first{0};
@@ -25,7 +25,7 @@ struct Moments {
   }
 };
 
-/// The same for a closed mesh: a triangle a b c spans a tetrahedron with the origin, whose second moment is
+/// Computes the integrals of a closed mesh: a triangle a b c and the origin form a tetrahedron with the second moment
 /// det/120 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c.
 inline Moments moments_of_mesh(const MeshModel& mesh, const Pose& origin) {
   Moments sum;
@@ -43,13 +43,13 @@ inline Moments moments_of_mesh(const MeshModel& mesh, const Pose& origin) {
   return sum;
 }
 
-/// The same for a ball: about its own centre each diagonal second moment is V r²/5.
+/// Computes the integrals of a ball; about its center, each diagonal second moment is V r²/5.
 inline Moments moments_of_ball(double radius, const Vec3& center) {
   const double volume = 4.0 / 3 * kPi * radius * radius * radius;
   return {volume, volume * center, volume * (Mat3(radius * radius / 5) + glm::outerProduct(center, center))};
 }
 
-/// Directed edges: in a closed, consistently wound surface each occurs once, and once the other way.
+/// True if each directed edge occurs once and its reverse once, as in a closed, consistently oriented surface.
 inline bool is_closed(const MeshModel& mesh) {
   std::set<std::pair<unsigned, unsigned>> edges;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
@@ -62,15 +62,15 @@ inline bool is_closed(const MeshModel& mesh) {
   });
 }
 
-/// The eigenvalues of a symmetric matrix in rising order, by turning one off-diagonal element to zero after another.
+/// Returns the eigenvalues of a symmetric matrix in ascending order (Jacobi method).
 inline Vec3 principal_moments(Mat3 m) {
   for (int round = 0; round < 60; ++round) {
     const int p = round % 3;
     const int q = (p + 1) % 3;
     if (m[q][p] == 0) continue;
-    // the smaller of the two angles that do it: the larger one swaps axes and may never end
-    const double apart = m[q][q] - m[p][p];
-    const double angle = 0.5 * std::atan2(std::copysign(2 * m[q][p], m[q][p] * apart), std::abs(apart));
+    // The smaller of the two possible angles; the larger one swaps axes and may not converge.
+    const double difference = m[q][q] - m[p][p];
+    const double angle = 0.5 * std::atan2(std::copysign(2 * m[q][p], m[q][p] * difference), std::abs(difference));
     Mat3 turn(1);
     turn[p][p] = turn[q][q] = std::cos(angle);
     turn[q][p] = std::sin(angle);

@@ -1,4 +1,4 @@
-// Addresses against patterns.
+// OSC addresses matched against patterns.
 #include "base/address.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace limber {
 namespace {
 
-TEST(Address, NamesMatchOneByOne) {
+TEST(Address, ComponentsMatchSeparately) {
   EXPECT_TRUE(address_matches("/a/b", "/a/b"));
   EXPECT_TRUE(address_matches("/a/*", "/a/b"));
   EXPECT_TRUE(address_matches("/?/[a-c]", "/a/b"));
@@ -19,14 +19,14 @@ TEST(Address, NamesMatchOneByOne) {
   EXPECT_FALSE(address_matches("/a", ""));
 }
 
-TEST(Address, TwoSlashesStandForAnyDepth) {
+TEST(Address, TwoSlashesMatchAnyDepth) {
   for (const char* address : {"/mass", "/a/mass", "/a/b/c/mass"}) EXPECT_TRUE(address_matches("//mass", address));
   EXPECT_TRUE(address_matches("/a//z", "/a/b/c/z"));
   EXPECT_TRUE(address_matches("/a//z", "/a/z"));
   EXPECT_FALSE(address_matches("/a//z", "/b/z"));
 }
 
-TEST(Address, TooManyTriesMatchNothing) {
+TEST(Address, TooManyAttemptsMatchNothing) {
   std::string pattern;
   std::string address;
   for (int i = 0; i < 12; i++) pattern += "//*";

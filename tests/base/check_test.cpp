@@ -1,4 +1,5 @@
-// LIMBER_CHECK: a hook hears every failure; without one each place is logged once and the program goes on.
+// LIMBER_CHECK: a hook is called for every failure; without one, each location is logged once and the program
+// continues.
 #include "base/check.h"
 
 #include <gtest/gtest.h>
@@ -9,12 +10,12 @@ namespace limber {
 namespace {
 
 int failures = 0;
-std::string last;
+std::string last_condition;
 int last_line = 0;
 
-void heard(const char* condition, const char* /*file*/, int line) {
+void record_failure(const char* condition, const char* /*file*/, int line) {
   failures++;
-  last = condition;
+  last_condition = condition;
   last_line = line;
 }
 
@@ -29,25 +30,25 @@ struct Check : testing::Test {
   }
 };
 
-TEST_F(Check, TheHookHearsEachFailure) {
-  set_check_hook(heard);
+TEST_F(Check, HookIsCalledForEachFailure) {
+  set_check_hook(record_failure);
   int line = 0;
   for (int i = 0; i < 3; i++) {
     line = __LINE__ + 1;
     LIMBER_CHECK(i < 1);
   }
   EXPECT_EQ(failures, 2);
-  EXPECT_EQ(last, "i < 1");
+  EXPECT_EQ(last_condition, "i < 1");
   EXPECT_EQ(last_line, line);
 }
 
-TEST_F(Check, WithoutAHookEachPlaceIsLoggedOnce) {
+TEST_F(Check, LogsEachLocationOnceWithoutAHook) {
   const std::uint64_t errors = log_count(LogLevel::error);
   for (int i = 0; i < 3; i++) LIMBER_CHECK(i < 0);
   EXPECT_EQ(log_count(LogLevel::error), errors + 1);
   LIMBER_CHECK(errors == errors + 1);
   EXPECT_EQ(log_count(LogLevel::error), errors + 2);
-  EXPECT_NE(log_since(0).back().text.find("'errors == errors + 1' does not hold"), std::string::npos);
+  EXPECT_NE(log_since(0).back().text.find("the check 'errors == errors + 1' failed"), std::string::npos);
   EXPECT_NE(log_since(0).back().text.find("check_test.cpp:"), std::string::npos);
 }
 

@@ -122,7 +122,7 @@ class MathArguments {
   }
   double next_to(double x) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) + random_.next() % 9 - 4); }
   double special() {
-    // thresholds between methods, and arguments whose results overflow or become subnormal
+    // Thresholds between methods, and arguments with results that overflow or become subnormal.
     constexpr double kSpecial[] = {0.0625, 0.25,    0.3,     0.35,   0.5,     0.6875,   0.75,     1.375,     2,
                                    20,     22,      40,      708.4,  709.782, 710.475,  745.133,  1022,      1023.99,
                                    1074.5, 0x1p-27, 0x1p-54, 0x1p17, 0x1p500, 0x1p-500, 0x1p1023, 0x1p-1022, 0x1p-1070};

@@ -1,4 +1,4 @@
-// Hashes: the published algorithms, and that no number of many can change unseen.
+// Hashes: agreement with the published algorithms; every changed number changes the hash.
 #include "base/hash.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 // Vigna's splitmix64.c started at 1234567.
-TEST(Hash, SplitmixIsTheReference) {
+TEST(Hash, SplitmixMatchesTheReference) {
   std::uint64_t state = 1234567;
   EXPECT_EQ(splitmix64(state), 6457827717110365317u);
   EXPECT_EQ(splitmix64(state), 3203168211198807973u);
@@ -37,21 +37,21 @@ std::uint64_t hash_of(const std::vector<double>& numbers, std::uint64_t start = 
   return hash.value();
 }
 
-// Lane by lane, as the header tells it, by another hand.
-TEST(Hash, NumbersGoThroughFourLanesByTurns) {
+// An independent implementation of the header's description.
+TEST(Hash, NumbersUseFourStatesInTurn) {
   const std::vector<double> numbers{1, -2.5, 0, 1e300, 7, -0.0};
-  std::array<std::uint64_t, 4> lanes{};
+  std::array<std::uint64_t, 4> states{};
   std::uint64_t seed = 42;
-  for (auto& lane : lanes) lane = splitmix64(seed);
+  for (auto& state : states) state = splitmix64(seed);
   for (std::size_t i = 0; i < numbers.size(); i++) {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &numbers[i], sizeof bits);
-    const std::uint64_t product = (lanes[i & 3u] ^ bits) * 11507291218515648293u;
-    lanes[i & 3u] = product ^ (product / 0x100000000u);
+    const std::uint64_t product = (states[i & 3u] ^ bits) * 11507291218515648293u;
+    states[i & 3u] = product ^ (product / 0x100000000u);
   }
   std::uint64_t expected = 0;
-  for (const auto lane : lanes) {
-    expected ^= lane;
+  for (const auto state : states) {
+    expected ^= state;
     expected = splitmix64(expected);
   }
   EXPECT_EQ(hash_of(numbers, 42), expected);
@@ -66,8 +66,8 @@ TEST(Hash, NumbersGoThroughFourLanesByTurns) {
   EXPECT_EQ(words.value(), same.value());
 }
 
-// Each bit of each number, its place, its sign where it is 0, how many there are, what came before.
-TEST(Hash, NoNumberChangesUnseen) {
+// The hash depends on each bit of each number, the order, the sign of zero, the count, and the previous hash.
+TEST(Hash, EveryChangeChangesTheHash) {
   Random random(3, "numbers");
   std::vector<double> numbers(18);
   for (double& number : numbers) number = random.normal();

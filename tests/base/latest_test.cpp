@@ -1,4 +1,4 @@
-// Latest: finished values change hands whole, and their memory is used again. Meant for the thread sanitizer too.
+// Latest: readers see complete values, and memory is reused. Intended for the thread sanitizer too.
 #include "base/latest.h"
 
 #include <gtest/gtest.h>
@@ -11,48 +11,48 @@
 namespace limber {
 namespace {
 
-// All numbers of a finished value are the same.
+// All numbers of a published value are equal.
 using Block = std::array<int, 64>;
 
 TEST(Latest, IsNullBeforeTheFirstAndTheNewestAfter) {
   Latest<Block> latest;
   EXPECT_EQ(latest.read(), nullptr);
   for (int i = 0; i < 3; i++) {
-    const auto block = latest.spare();
+    const auto block = latest.acquire_buffer();
     block->fill(i);
     latest.publish(block);
     EXPECT_EQ((*latest.read())[63], i);
   }
 }
 
-TEST(Latest, WhatAReaderHoldsIsNeverWrittenAgain) {
+TEST(Latest, ValuesOfReadersAreNotReused) {
   Latest<Block> latest;
-  auto block = latest.spare();
+  auto block = latest.acquire_buffer();
   block->fill(1);
   latest.publish(std::move(block));
-  const auto held = latest.read();
+  const auto value = latest.read();
   for (int i = 2; i < 10; i++) {
-    auto next = latest.spare();
-    EXPECT_NE(next.get(), held.get());
+    auto next = latest.acquire_buffer();
+    EXPECT_NE(next.get(), value.get());
     EXPECT_NE(next.get(), latest.read().get());
     next->fill(i);
     latest.publish(std::move(next));
   }
-  EXPECT_EQ((*held)[0], 1);
+  EXPECT_EQ((*value)[0], 1);
 }
 
-TEST(Latest, UsesAsManyValuesAsAreHeldPlusTwo) {
+TEST(Latest, AllocatesTwoValuesMoreThanReadersKeep) {
   Latest<Block> latest;
   std::set<const Block*> seen;
   for (int i = 0; i < 100; i++) {
-    auto block = latest.spare();
+    auto block = latest.acquire_buffer();
     seen.insert(block.get());
     latest.publish(std::move(block));
   }
   EXPECT_EQ(seen.size(), 2u);
 }
 
-TEST(Latest, ReadersSeeWholeValuesInOrderWhileTheWriterGoesOn) {
+TEST(Latest, ConcurrentReadersSeeWholeValuesInOrder) {
   constexpr int kValues = 20000;
   Latest<Block> latest;
   std::atomic<bool> ended{false};
@@ -62,20 +62,20 @@ TEST(Latest, ReadersSeeWholeValuesInOrderWhileTheWriterGoesOn) {
   for (int r = 0; r < 3; r++) {
     readers.emplace_back([&, r] {
       int last = 0;
-      std::shared_ptr<const Block> kept;
+      std::shared_ptr<const Block> retained;
       while (!ended.load()) {
         const std::shared_ptr<const Block> block = latest.read();
         if (block == nullptr) continue;
         for (const int v : *block) torn += v == block->front() ? 0 : 1;
         backwards += block->front() < last ? 1 : 0;
         last = block->front();
-        if (r == 0) kept = block;  // one reader holds on to what it read
+        if (r == 0) retained = block;  // one reader keeps its value
       }
-      if (kept != nullptr) torn += kept->front() == kept->back() ? 0 : 1;
+      if (retained != nullptr) torn += retained->front() == retained->back() ? 0 : 1;
     });
   }
   for (int i = 1; i <= kValues; i++) {
-    auto block = latest.spare();
+    auto block = latest.acquire_buffer();
     block->fill(i);
     latest.publish(std::move(block));
   }

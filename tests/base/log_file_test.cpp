@@ -1,4 +1,4 @@
-// LogFile: rotation by size, files that are removed or renamed, places that can't be written.
+// LogFile: rotation by size, files that are removed or renamed, paths that can't be written.
 #include "base/log_file.h"
 
 #include <sys/resource.h>
@@ -38,7 +38,7 @@ class LogFileTest : public ::testing::Test {
     EXPECT_TRUE(log) << log.error();
     return log ? std::move(*log) : nullptr;
   }
-  /// Writes in as many pieces as the file takes; the first error ends it.
+  /// Writes in as many pieces as the file accepts, until the first error.
   static int write(LogFile& log, std::string_view bytes) {
     while (!bytes.empty()) {
       const system::Written written = log.write(bytes, 1s);
@@ -53,8 +53,8 @@ class LogFileTest : public ::testing::Test {
 
 TEST_F(LogFileTest, RotatesBySizeAndKeepsWholeLines) {
   Random random(7);
-  const std::unique_ptr<LogFile> log = open({.bytes = 20000, .kept = 3});
-  std::vector<std::string> files{""};  // the newest is the last
+  const std::unique_ptr<LogFile> log = open({.bytes = 20000, .old_files = 3});
+  std::vector<std::string> files{""};  // the newest is last
   for (int i = 0; i < 100; i++) {
     const std::string line = fmt::format("{} {}\n", i, std::string(random.next() % 9000, 'x'));
     if (!files.back().empty() && files.back().size() + line.size() > 20000) files.emplace_back();
@@ -71,19 +71,19 @@ TEST_F(LogFileTest, AppendsToTheFileOfAnEarlierRun) {
   write(*open({}), "before\n");
   write(*open({}), "now\n");
   EXPECT_EQ(text(), "before\nnow\n");
-  EXPECT_EQ(write(*open({.bytes = 12, .kept = 1}), "full\n"), 0);
+  EXPECT_EQ(write(*open({.bytes = 12, .old_files = 1}), "full\n"), 0);
   EXPECT_EQ(text(1), "before\nnow\n");
   EXPECT_EQ(text(), "full\n");
 }
 
 TEST_F(LogFileTest, KeepsNoOldFileIfNoneIsWanted) {
-  const std::unique_ptr<LogFile> log = open({.bytes = 6, .kept = 0});
+  const std::unique_ptr<LogFile> log = open({.bytes = 6, .old_files = 0});
   for (const char* line : {"one\n", "two\n", "three is long\n", "four\n"}) EXPECT_EQ(write(*log, line), 0);
   EXPECT_EQ(text(), "four\n");
   EXPECT_FALSE(fs::exists(path(1)));
 }
 
-TEST_F(LogFileTest, BeginsANewFileWhenItsOwnIsRemovedOrRenamed) {
+TEST_F(LogFileTest, ReopensAfterRemovalOrRename) {
   const std::unique_ptr<LogFile> log = open({});
   write(*log, "one\n");
   fs::rename(path(), folder / "moved");
@@ -99,8 +99,8 @@ TEST_F(LogFileTest, BeginsANewFileWhenItsOwnIsRemovedOrRenamed) {
   EXPECT_EQ(text(), "four\n");
 }
 
-TEST_F(LogFileTest, WritesNothingWhereRotationFails) {
-  const std::unique_ptr<LogFile> log = open({.bytes = 8, .kept = 2});
+TEST_F(LogFileTest, WritesNothingIfRotationFails) {
+  const std::unique_ptr<LogFile> log = open({.bytes = 8, .old_files = 2});
   write(*log, "one\n");
   write(*log, "two\n");
   fs::create_directories(path(2) + "/folder");
@@ -113,8 +113,8 @@ TEST_F(LogFileTest, WritesNothingWhereRotationFails) {
   EXPECT_EQ(text(1) + text(), "one\ntwo\nthree\n");
 }
 
-// a limit of the process stands for a full disk
-TEST_F(LogFileTest, GoesOnAfterAFullDisk) {
+// a file size limit of the process simulates a full disk
+TEST_F(LogFileTest, ContinuesAfterAFullDisk) {
   const std::unique_ptr<LogFile> log = open({});
   const auto before = std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
@@ -126,12 +126,12 @@ TEST_F(LogFileTest, GoesOnAfterAFullDisk) {
   EXPECT_EQ(write(*log, "two\n"), EFBIG);
   setrlimit(RLIMIT_FSIZE, &limit);
   std::signal(SIGXFSZ, before);
-  EXPECT_EQ(text(), "one\ntw") << "what fits";
+  EXPECT_EQ(text(), "one\ntw") << "the part that fits";
   EXPECT_EQ(write(*log, "\nthree\n"), 0);
   EXPECT_EQ(text(), "one\ntw\nthree\n");
 }
 
-TEST_F(LogFileTest, NamesWhyAFileCannotBeWritten) {
+TEST_F(LogFileTest, ReportsWhyAFileCannotBeWritten) {
   const auto missing = LogFile::open((folder / "none/show.log").string(), {});
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().find("No such file or directory. Create its folder first"), std::string::npos)

@@ -1,4 +1,4 @@
-// The log's ring: numbered lines, the last thousand kept, counts per level, and nothing that a terminal would obey.
+// The log's ring: numbered lines, the last 1000 lines, counts per level, escaped control characters.
 #include "base/log.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Log : testing::Test {
   }
 };
 
-TEST_F(Log, GivesTheLinesAfterTheOneSeen) {
+TEST_F(Log, ReturnsNewerLines) {
   const std::uint64_t seen = newest();
   log_info("one {}", 1);
   log_warning("two");
@@ -61,7 +61,7 @@ TEST_F(Log, EscapesControlCharacters) {
   EXPECT_EQ(log_since(0).back().text, "\\x1b[31mred\\x07");
 }
 
-TEST_F(Log, SaysTheLevelOnStderrUnlessSilenced) {
+TEST_F(Log, WritesTheLevelToStderrUnlessSilenced) {
   testing::internal::CaptureStderr();
   log_error("not shown");
   log_to_stderr(true);
@@ -71,7 +71,7 @@ TEST_F(Log, SaysTheLevelOnStderrUnlessSilenced) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "limber: plain\nlimber: warning: careful\nlimber: error: broken\n");
 }
 
-TEST_F(Log, KeepsWhatScriptsPrintButSaysItNowhere) {
+TEST_F(Log, StoresPrintedLinesInTheRingOnly) {
   const std::uint64_t seen = log_newest();
   EXPECT_EQ(seen, newest());
   log_to_stderr(true);
@@ -83,11 +83,11 @@ TEST_F(Log, KeepsWhatScriptsPrintButSaysItNowhere) {
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0].text, "a script's");
   EXPECT_EQ(lines[0].level, LogLevel::print);
-  EXPECT_EQ(lines[1].text.size(), 4096u) << "a thousand long ones must not fill the memory";
+  EXPECT_EQ(lines[1].text.size(), 4096u) << "long lines are shortened";
   EXPECT_EQ(log_newest(), seen + 2);
 }
 
-TEST_F(Log, TakesLinesFromAnyThread) {
+TEST_F(Log, AcceptsLinesFromAnyThread) {
   const std::uint64_t seen = newest();
   std::vector<std::thread> threads;
   for (int t = 0; t < 4; t++) {

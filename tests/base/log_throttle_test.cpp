@@ -1,4 +1,4 @@
-// What a source that repeats itself gets of the log.
+// Rate limits of the log.
 #include "base/log_throttle.h"
 
 #include <gtest/gtest.h>
@@ -17,67 +17,67 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-TEST(TokenBucket, AllowsABurstAndThenOneEachInterval) {
+TEST(TokenBucket, AllowsABurstThenOnePerInterval) {
   TokenBucket bucket(3, 10);
-  EXPECT_TRUE(bucket.spend(1000));
-  EXPECT_TRUE(bucket.spend(1000));
-  EXPECT_TRUE(bucket.spend(1001));
-  EXPECT_FALSE(bucket.spend(1009));
-  EXPECT_TRUE(bucket.spend(1010));
-  EXPECT_FALSE(bucket.spend(1019));
-  EXPECT_TRUE(bucket.spend(1020));
-  EXPECT_FALSE(bucket.spend(1015)) << "a clock that steps back gives nothing";
-  for (int i = 0; i < 3; i++) EXPECT_TRUE(bucket.spend(5000)) << "a pause gives the burst again";
-  EXPECT_FALSE(bucket.spend(5000));
+  EXPECT_TRUE(bucket.try_consume(1000));
+  EXPECT_TRUE(bucket.try_consume(1000));
+  EXPECT_TRUE(bucket.try_consume(1001));
+  EXPECT_FALSE(bucket.try_consume(1009));
+  EXPECT_TRUE(bucket.try_consume(1010));
+  EXPECT_FALSE(bucket.try_consume(1019));
+  EXPECT_TRUE(bucket.try_consume(1020));
+  EXPECT_FALSE(bucket.try_consume(1015)) << "no token if the clock steps back";
+  for (int i = 0; i < 3; i++) EXPECT_TRUE(bucket.try_consume(5000)) << "the bucket refills in a pause";
+  EXPECT_FALSE(bucket.try_consume(5000));
 }
 
-TEST(LogThrottle, GivesASourceTenLinesAndThenOneAMinute) {
+TEST(LogThrottle, AllowsASourceTenLinesThenOneAMinute) {
   LogThrottle throttle;
   const std::uint64_t source = log_source("scene.lua:3: fails");
   int written = 0;
   std::uint64_t reported = 0;
   const int day = 86400;
   for (int i = 0; i < day * 100; i++) {  // at 100 Hz
-    const auto more = throttle.ask(source, i * kSecond / 100);
+    const auto more = throttle.admit(source, i * kSecond / 100);
     if (!more) continue;
     written++;
     reported += *more;
   }
   EXPECT_EQ(written, LogThrottle::kBurst + day / 60 - 1);
-  EXPECT_EQ(written + throttle.left_out(), day * 100U);
-  EXPECT_LE(throttle.left_out() - reported, 6000U) << "each line tells how many were left out before it";
+  EXPECT_EQ(written + throttle.suppressed(), day * 100U);
+  EXPECT_LE(throttle.suppressed() - reported, 6000U) << "each line reports the number suppressed before it";
 }
 
-TEST(LogThrottle, SourcesDoNotTakeLinesOfEachOther) {
+TEST(LogThrottle, SourcesAreIndependent) {
   LogThrottle throttle;
-  for (int i = 0; i < 1000; i++) (void)throttle.ask(1, i);
-  for (int i = 0; i < LogThrottle::kBurst; i++) EXPECT_EQ(throttle.ask(2, 1000), 0U);
-  EXPECT_EQ(throttle.ask(2, 1000), std::nullopt);
-  EXPECT_EQ(throttle.ask(1, 61 * kSecond), 990U);
-  EXPECT_EQ(throttle.ask(2, 61 * kSecond), 1U);
+  for (int i = 0; i < 1000; i++) (void)throttle.admit(1, i);
+  for (int i = 0; i < LogThrottle::kBurst; i++) EXPECT_EQ(throttle.admit(2, 1000), 0U);
+  EXPECT_EQ(throttle.admit(2, 1000), std::nullopt);
+  EXPECT_EQ(throttle.admit(1, 61 * kSecond), 990U);
+  EXPECT_EQ(throttle.admit(2, 61 * kSecond), 1U);
 }
 
-TEST(LogThrottle, ForgetsSourcesButNotTheLimitOfAll) {
+TEST(LogThrottle, ResetsSourcesButNotTheTotalLimit) {
   LogThrottle throttle;
   int written = 0;
   for (int i = 0; i < 1000; i++) {
-    for (int k = 0; k < 20; k++) written += throttle.ask(7, 5) ? 1 : 0;
+    for (int k = 0; k < 20; k++) written += throttle.admit(7, 5) ? 1 : 0;
     throttle.forget_sources();
   }
-  EXPECT_EQ(written, LogThrottle::kBurstOfAll);
+  EXPECT_EQ(written, LogThrottle::kTotalBurst);
 }
 
 TEST(LogThrottle, LimitsAllSourcesTogether) {
   LogThrottle throttle;
   std::uint64_t written = 0;
   const int seconds = 3600;
-  for (int i = 0; i < seconds * 100; i++) {  // each line is a source of its own
-    if (throttle.ask(static_cast<std::uint64_t>(i), i * kSecond / 100)) written++;
+  for (int i = 0; i < seconds * 100; i++) {  // each line has a different source
+    if (throttle.admit(static_cast<std::uint64_t>(i), i * kSecond / 100)) written++;
   }
-  EXPECT_NEAR(static_cast<double>(written), LogThrottle::kBurstOfAll + seconds * 2, 2);
+  EXPECT_NEAR(static_cast<double>(written), LogThrottle::kTotalBurst + seconds * 2, 2);
 }
 
-TEST(LogSource, ForgetsMeasuredValuesAndKeepsNames) {
+TEST(LogSource, IgnoresMeasuredValuesButNotNames) {
   const auto same = [](std::string_view a, std::string_view b) { return log_source(a) == log_source(b); };
   EXPECT_TRUE(same("target 1.25 is outside -3..4.5", "target 0.1 is outside -17..1e9"));
   EXPECT_TRUE(same("limited to 5 m/s (12 times)", "limited to 6 m/s (9 times)"));
@@ -89,7 +89,7 @@ TEST(LogSource, ForgetsMeasuredValuesAndKeepsNames) {
   EXPECT_FALSE(same("one thing", "another"));
 }
 
-// what the log wrote to standard error
+// Returns the log's output on standard error.
 template <class Function>
 std::vector<std::string> lines_on_stderr(Function function) {
   testing::internal::CaptureStderr();
@@ -102,7 +102,7 @@ std::vector<std::string> lines_on_stderr(Function function) {
   return lines;
 }
 
-TEST(LogLimit, HoldsForEachLevelAndForMeasuredValues) {
+TEST(LogLimit, AppliesPerLevelAndIgnoresMeasuredValues) {
   const std::uint64_t before = log_newest();
   const auto lines = lines_on_stderr([] {
     for (int i = 0; i < 500; i++) {
@@ -114,17 +114,17 @@ TEST(LogLimit, HoldsForEachLevelAndForMeasuredValues) {
   EXPECT_EQ(lines.size(), 30U);
   EXPECT_EQ(lines.back(), "limber: error: throttle test: -10 error");
   EXPECT_EQ(log_newest(), before + 1500) << "the panel gets every line";
-  EXPECT_GE(log_left_out(), 1470U);
+  EXPECT_GE(log_suppressed(), 1470U);
 }
 
-TEST(LogLimit, HoldsForAPlaceWhateverItsTextIs) {
+TEST(LogLimit, AppliesToAPlaceWithAnyText) {
   const auto lines = lines_on_stderr([] {
     for (int i = 0; i < 500; i++) log_line(LogLevel::error, std::string(1 + i % 100, 'q'), "throttle.lua:7");
   });
   EXPECT_EQ(lines.size(), 10U);
 }
 
-TEST(LogLimit, PrintIsNotLimitedOutsideAShow) {
+TEST(LogLimit, PrintIsNotLimitedInBatchMode) {
   testing::internal::CaptureStdout();
   for (int i = 0; i < 5000; i++) log_print("line", OutputTo::out);
   EXPECT_EQ(testing::internal::GetCapturedStdout().size(), 25000U);

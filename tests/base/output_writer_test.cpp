@@ -1,5 +1,5 @@
-// OutputWriter with devices that are full, not ready, closed, slow or stuck: callers never wait for them, nothing is
-// lost without being counted, and lines stay whole.
+// OutputWriter with devices that are full, not ready, closed, slow or stuck: callers are not blocked, lost lines are
+// counted, and lines stay complete.
 #include "base/output_writer.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// a device whose state the test sets
+// A device with a state that the test controls.
 class Device {
  public:
   enum class State { ready, not_ready, stuck };
@@ -29,26 +29,26 @@ class Device {
     state_ = state;
     changed_.notify_all();
   }
-  /// From this number of bytes on; 0: no error.
+  /// Fails after this number of bytes; 0: never.
   void fail(int error, std::size_t from = 0) {
     const std::scoped_lock lock(mutex_);
     error_ = error;
     fails_from_ = from;
   }
-  /// Takes at most this much at once.
-  void set_most(std::size_t bytes) { most_ = bytes; }
-  std::string got() const {
+  /// Accepts at most this many bytes per call.
+  void set_max_bytes(std::size_t bytes) { max_bytes_ = bytes; }
+  std::string received() const {
     const std::scoped_lock lock(mutex_);
-    return got_;
+    return received_;
   }
   system::Written write(std::string_view bytes) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return state_ != State::stuck; });
     if (state_ == State::not_ready) return {0, EAGAIN};
-    if (error_ != 0 && got_.size() >= fails_from_) return {0, error_};
-    const std::string_view taken = bytes.substr(0, most_);
-    got_ += taken;
-    return {taken.size(), 0};
+    if (error_ != 0 && received_.size() >= fails_from_) return {0, error_};
+    const std::string_view accepted = bytes.substr(0, max_bytes_);
+    received_ += accepted;
+    return {accepted.size(), 0};
   }
 
  private:
@@ -57,32 +57,32 @@ class Device {
   State state_ = State::ready;
   int error_ = 0;
   std::size_t fails_from_ = 0;
-  std::size_t most_ = 4096;
-  std::string got_;
+  std::size_t max_bytes_ = 4096;
+  std::string received_;
 };
 
-struct Sink : OutputDevice {
-  explicit Sink(Device& of) : device(of) {}
+struct DeviceAdapter : OutputDevice {
+  explicit DeviceAdapter(Device& adapted) : device(adapted) {}
   system::Written write(std::string_view bytes, std::chrono::nanoseconds) override { return device.write(bytes); }
   Device& device;
 };
 
 OutputStream stream(Device& device, OutputStream::Full full = OutputStream::Full::drop) {
-  OutputStream made;
-  made.device = std::make_unique<Sink>(device);
-  made.full = full;
-  return made;
+  OutputStream result;
+  result.device = std::make_unique<DeviceAdapter>(device);
+  result.full = full;
+  return result;
 }
 
-std::vector<OutputStream> one(OutputStream made) {
+std::vector<OutputStream> single_stream(OutputStream output) {
   std::vector<OutputStream> list;
-  list.push_back(std::move(made));
+  list.push_back(std::move(output));
   return list;
 }
 
 constexpr auto kForever = std::nullopt;
 
-// "a\nb\n" as {"a", "b"}; a line that is not complete is a failure
+// Splits "a\nb\n" into {"a", "b"}. An incomplete line is a failure.
 std::vector<std::string> lines_of(const std::string& text) {
   EXPECT_TRUE(text.empty() || text.ends_with('\n'))
       << text.substr(text.size() - std::min<std::size_t>(80, text.size()));
@@ -92,22 +92,22 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// the numbers that the notices among these lines tell, and the other lines
-struct Counted {
+// The numbers in the notices about missing lines, and the other lines.
+struct ParsedOutput {
   std::uint64_t missing = 0;
   std::vector<std::string> lines;
 };
-Counted counted(const std::string& text) {
-  Counted all;
+ParsedOutput parse_output(const std::string& text) {
+  ParsedOutput result;
   for (const std::string& line : lines_of(text)) {
-    constexpr std::string_view kMark = "limber: warning: ";
-    if (line.starts_with(kMark)) {
-      all.missing += std::stoull(line.substr(kMark.size()));
+    constexpr std::string_view kPrefix = "limber: warning: ";
+    if (line.starts_with(kPrefix)) {
+      result.missing += std::stoull(line.substr(kPrefix.size()));
     } else {
-      all.lines.push_back(line);
+      result.lines.push_back(line);
     }
   }
-  return all;
+  return result;
 }
 
 TEST(TextQueue, ReturnsTextsInOrderAcrossTheEndOfItsBlock) {
@@ -152,12 +152,12 @@ TEST(OutputWriter, WritesEverythingInOrder) {
   }
   ASSERT_TRUE(writer.drain(0, kForever));
   ASSERT_TRUE(writer.drain(1, kForever));
-  EXPECT_EQ(a.got(), expected);
-  EXPECT_EQ(lines_of(b.got()).back(), "other 999");
+  EXPECT_EQ(a.received(), expected);
+  EXPECT_EQ(lines_of(b.received()).back(), "other 999");
   EXPECT_EQ(writer.lost(0) + writer.lost(1), 0U);
 }
 
-TEST(OutputWriter, KeepsTheOrderBetweenDevicesThatAreReady) {
+TEST(OutputWriter, KeepsTheOrderBetweenReadyDevices) {
   Device both;  // as `2>&1`
   std::vector<OutputStream> streams;
   streams.push_back(stream(both));
@@ -172,16 +172,16 @@ TEST(OutputWriter, KeepsTheOrderBetweenDevicesThatAreReady) {
   ASSERT_TRUE(writer.start());
   ASSERT_TRUE(writer.drain(0, kForever));
   ASSERT_TRUE(writer.drain(1, kForever));
-  EXPECT_EQ(both.got(), expected);
+  EXPECT_EQ(both.received(), expected);
 }
 
-TEST(OutputWriter, DropsAndCountsWhatADeviceThatIsNotReadyCannotTake) {
+TEST(OutputWriter, DropsAndCountsLinesOfABlockedDevice) {
   for (const Device::State state : {Device::State::not_ready, Device::State::stuck}) {
     Device device;
     device.set(state);
-    OutputWriter writer(one(stream(device)), 10000, 100);
+    OutputWriter writer(single_stream(stream(device)), 10000, 100);
     ASSERT_TRUE(writer.start());
-    for (int i = 0; i < 5000; i++) writer.write(0, fmt::format("line {}\n", i));  // a hang here is the failure
+    for (int i = 0; i < 5000; i++) writer.write(0, fmt::format("line {}\n", i));  // the test fails if this blocks
     EXPECT_FALSE(writer.drain(0, 1ms));
     const std::uint64_t lost = writer.lost(0);
     EXPECT_GE(lost, 4899U);
@@ -190,92 +190,91 @@ TEST(OutputWriter, DropsAndCountsWhatADeviceThatIsNotReadyCannotTake) {
     ASSERT_TRUE(writer.drain(0, kForever));
     writer.write(0, "end\n");
     ASSERT_TRUE(writer.drain(0, kForever));
-    const Counted got = counted(device.got());
-    EXPECT_EQ(got.missing, lost);
-    ASSERT_EQ(got.lines.size(), 5001 - lost);
-    for (std::size_t i = 0; i + 1 < got.lines.size(); i++) EXPECT_EQ(got.lines[i], fmt::format("line {}", i));
-    EXPECT_EQ(got.lines.back(), "end");
+    const ParsedOutput parsed = parse_output(device.received());
+    EXPECT_EQ(parsed.missing, lost);
+    ASSERT_EQ(parsed.lines.size(), 5001 - lost);
+    for (std::size_t i = 0; i + 1 < parsed.lines.size(); i++) EXPECT_EQ(parsed.lines[i], fmt::format("line {}", i));
+    EXPECT_EQ(parsed.lines.back(), "end");
   }
 }
 
-TEST(OutputWriter, BoundsTheBytesThatWait) {
+TEST(OutputWriter, LimitsQueuedBytes) {
   Device device;
   device.set(Device::State::not_ready);
-  OutputWriter writer(one(stream(device)), 10000, 1000);
+  OutputWriter writer(single_stream(stream(device)), 10000, 1000);
   ASSERT_TRUE(writer.start());
   for (int i = 0; i < 50; i++) writer.write(0, std::string(999, 'x') + "\n");
   EXPECT_GE(writer.lost(0), 39U);
   device.set(Device::State::ready);
   ASSERT_TRUE(writer.drain(0, kForever));
-  EXPECT_EQ(counted(device.got()).missing, writer.lost(0));
+  EXPECT_EQ(parse_output(device.received()).missing, writer.lost(0));
 }
 
-TEST(OutputWriter, CountsWhatADeviceRefuses) {
+TEST(OutputWriter, CountsLinesOfAFailingDevice) {
   for (const int error : {ENOSPC, EPIPE, EBADF, EIO}) {
     Device device;
     std::atomic<int> reported = 0, reports = 0;
     std::atomic<std::uint64_t> gap = 0;
-    OutputStream made = stream(device);
-    made.on_loss = [&](int e) { reported = e, reports++; };
-    made.on_gap = [&](std::uint64_t lines) { gap += lines; };
-    OutputWriter writer(one(std::move(made)));
+    OutputStream output = stream(device);
+    output.on_loss = [&](int e) { reported = e, reports++; };
+    output.on_gap = [&](std::uint64_t lines) { gap += lines; };
+    OutputWriter writer(single_stream(std::move(output)));
     ASSERT_TRUE(writer.start());
     writer.write(0, "first\n");
     ASSERT_TRUE(writer.drain(0, kForever));
     device.fail(error);
     for (int i = 0; i < 20; i++) writer.write(0, "lost\n");
-    ASSERT_TRUE(writer.drain(0, kForever)) << "a failure is no reason to wait";
+    ASSERT_TRUE(writer.drain(0, kForever)) << "does not wait after a failure";
     EXPECT_EQ(writer.lost(0), 20U);
     EXPECT_EQ(reported, error);
     EXPECT_EQ(reports, 1) << "once, not for every line";
     device.fail(0);
     writer.write(0, "again\n");
     ASSERT_TRUE(writer.drain(0, kForever));
-    EXPECT_EQ(device.got(),
-              "first\nlimber: warning: 20 lines are missing here: nothing took text at that time\nagain\n");
+    EXPECT_EQ(device.received(), "first\nlimber: warning: 20 lines are missing here: the output was blocked\nagain\n");
     EXPECT_EQ(gap, 20U);
   }
 }
 
-TEST(OutputWriter, EndsALineThatWasCutOffBeforeTheNextOne) {
+TEST(OutputWriter, EndsAnInterruptedLine) {
   Device device;
-  device.set_most(3);
+  device.set_max_bytes(3);
   device.fail(ENOSPC, 3);
-  OutputWriter writer(one(stream(device)));
+  OutputWriter writer(single_stream(stream(device)));
   ASSERT_TRUE(writer.start());
   writer.write(0, "abcdef\n");
   ASSERT_TRUE(writer.drain(0, kForever));
   device.fail(0);
   writer.write(0, "next\n");
   ASSERT_TRUE(writer.drain(0, kForever));
-  EXPECT_EQ(device.got(), "abc\nlimber: warning: 1 line is missing here: nothing took text at that time\nnext\n");
+  EXPECT_EQ(device.received(), "abc\nlimber: warning: 1 line is missing here: the output was blocked\nnext\n");
 }
 
-TEST(OutputWriter, ADeviceThatIsNotReadyDoesNotDelayTheOther) {
-  Device dead, live;
-  dead.set(Device::State::not_ready);
+TEST(OutputWriter, BlockedDeviceDoesNotDelayOthers) {
+  Device blocked, ready;
+  blocked.set(Device::State::not_ready);
   std::vector<OutputStream> streams;
-  streams.push_back(stream(dead));
-  streams.push_back(stream(live));
+  streams.push_back(stream(blocked));
+  streams.push_back(stream(ready));
   OutputWriter writer(std::move(streams));
   ASSERT_TRUE(writer.start());
   for (int i = 0; i < 300; i++) {
-    writer.write(0, "for the dead one\n");
+    writer.write(0, "for the blocked device\n");
     writer.write(1, fmt::format("{}\n", i));
   }
   ASSERT_TRUE(writer.drain(1, kForever));
-  EXPECT_EQ(lines_of(live.got()).size(), 300U);
-  EXPECT_EQ(dead.got(), "");
+  EXPECT_EQ(lines_of(ready.received()).size(), 300U);
+  EXPECT_EQ(blocked.received(), "");
 }
 
 TEST(OutputWriter, ASlowDeviceGetsWholeLines) {
   Device device;
-  device.set_most(1);
-  OutputWriter writer(one(stream(device)));
+  device.set_max_bytes(1);
+  OutputWriter writer(single_stream(stream(device)));
   ASSERT_TRUE(writer.start());
   for (int i = 0; i < 100; i++) writer.write(0, fmt::format("line number {}\n", i));
   ASSERT_TRUE(writer.drain(0, kForever));
-  const std::vector<std::string> lines = lines_of(device.got());
+  const std::vector<std::string> lines = lines_of(device.received());
   ASSERT_EQ(lines.size(), 100U);
   EXPECT_EQ(lines[99], "line number 99");
 }
@@ -283,7 +282,7 @@ TEST(OutputWriter, ASlowDeviceGetsWholeLines) {
 TEST(OutputWriter, WaitingLosesNothing) {
   for (const auto full : {OutputStream::Full::wait, OutputStream::Full::wait_while}) {
     Device device;
-    OutputWriter writer(one(stream(device, full)), 256 << 10, 8);
+    OutputWriter writer(single_stream(stream(device, full)), 256 << 10, 8);
     ASSERT_TRUE(writer.start());
     std::vector<std::thread> threads;
     threads.reserve(3);
@@ -297,22 +296,22 @@ TEST(OutputWriter, WaitingLosesNothing) {
     writer.write(0, large + "\n");
     ASSERT_TRUE(writer.drain(0, kForever));
     EXPECT_EQ(writer.lost(0), 0U);
-    std::vector<std::string> lines = lines_of(device.got());
+    std::vector<std::string> lines = lines_of(device.received());
     ASSERT_EQ(lines.size(), 901U);
     EXPECT_EQ(lines.back(), large);
     int next[3] = {};
     lines.pop_back();
     for (const std::string& line : lines) {
       const int thread = line[0] - '0';
-      ASSERT_EQ(line, fmt::format("{} {}", thread, next[thread]++)) << "each thread's lines in their order";
+      ASSERT_EQ(line, fmt::format("{} {}", thread, next[thread]++)) << "lines of a thread are in order";
     }
   }
 }
 
-TEST(OutputWriter, WaitingEndsWhenTheProgramHurries) {
+TEST(OutputWriter, WaitingEndsOnShutdown) {
   Device device;
   device.set(Device::State::not_ready);
-  OutputWriter writer(one(stream(device, OutputStream::Full::wait)), 1000, 4);
+  OutputWriter writer(single_stream(stream(device, OutputStream::Full::wait)), 1000, 4);
   ASSERT_TRUE(writer.start());
   std::atomic<int> done = 0;
   std::thread caller([&] {
@@ -322,48 +321,48 @@ TEST(OutputWriter, WaitingEndsWhenTheProgramHurries) {
     }
   });
   while (done < 4) std::this_thread::yield();
-  EXPECT_LE(done, 5) << "it waits";
-  writer.hurry();
+  EXPECT_LE(done, 5) << "write() blocks";
+  writer.begin_shutdown();
   caller.join();
-  EXPECT_FALSE(writer.drain(0, kForever)) << "nor does the end wait for long";
+  EXPECT_FALSE(writer.drain(0, kForever)) << "drain() stops waiting, too";
   EXPECT_GE(writer.lost(0), 95U);
 }
 
-TEST(OutputWriter, WaitingEndsWhereADeviceTakesNothing) {
+TEST(OutputWriter, WaitingEndsIfADeviceStalls) {
   Device device;
   device.set(Device::State::not_ready);
-  OutputWriter writer(one(stream(device, OutputStream::Full::wait_while)), 1000, 4);
+  OutputWriter writer(single_stream(stream(device, OutputStream::Full::wait_while)), 1000, 4);
   ASSERT_TRUE(writer.start());
-  for (int i = 0; i < 1000; i++) writer.write(0, "line\n");  // waits once, not a thousand times
+  for (int i = 0; i < 1000; i++) writer.write(0, "line\n");  // waits once, not 1000 times
   EXPECT_GE(writer.lost(0), 995U);
   device.set(Device::State::ready);
   ASSERT_TRUE(writer.drain(0, kForever));
   writer.write(0, "end\n");
   ASSERT_TRUE(writer.drain(0, kForever));
-  EXPECT_EQ(counted(device.got()).missing, writer.lost(0));
+  EXPECT_EQ(parse_output(device.received()).missing, writer.lost(0));
 }
 
-TEST(OutputWriter, ShortensALineThatIsTooLong) {
+TEST(OutputWriter, ShortensLongLines) {
   Device device;
-  OutputWriter writer(one(stream(device)));
+  OutputWriter writer(single_stream(stream(device)));
   ASSERT_TRUE(writer.start());
   writer.write(0, "begin" + std::string(1000000, 'z') + "end\n");
   ASSERT_TRUE(writer.drain(0, kForever));
-  const std::vector<std::string> lines = lines_of(device.got());
+  const std::vector<std::string> lines = lines_of(device.received());
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_LT(lines[0].size(), OutputWriter::kLongest);
+  EXPECT_LT(lines[0].size(), OutputWriter::kMaxTextBytes);
   EXPECT_TRUE(lines[0].starts_with("beginz") && lines[0].ends_with("zend"));
   EXPECT_EQ(writer.lost(0), 0U);
 }
 
-TEST(OutputWriter, ItsReportsMayBeWrittenByItself) {
+TEST(OutputWriter, CallbacksMayWriteToTheSameWriter) {
   Device device;
   OutputWriter* self = nullptr;
-  OutputStream made = stream(device, OutputStream::Full::wait);
-  made.counts = false;
-  made.on_loss = [&](int) { self->write(0, "report\n"); };
-  made.on_gap = [&](std::uint64_t lines) { self->write(0, fmt::format("{} lost\n", lines)); };
-  OutputWriter writer(one(std::move(made)), 1000, 2);
+  OutputStream output = stream(device, OutputStream::Full::wait);
+  output.inserts_notice = false;
+  output.on_loss = [&](int) { self->write(0, "report\n"); };
+  output.on_gap = [&](std::uint64_t lines) { self->write(0, fmt::format("{} lost\n", lines)); };
+  OutputWriter writer(single_stream(std::move(output)), 1000, 2);
   self = &writer;
   ASSERT_TRUE(writer.start());
   device.fail(ENOSPC);
@@ -372,7 +371,7 @@ TEST(OutputWriter, ItsReportsMayBeWrittenByItself) {
   device.fail(0);
   writer.write(0, "again\n");
   ASSERT_TRUE(writer.drain(0, kForever));
-  EXPECT_EQ(device.got(), fmt::format("again\n{} lost\n", writer.lost(0)));
+  EXPECT_EQ(device.received(), fmt::format("again\n{} lost\n", writer.lost(0)));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Pages: what they hold, what they share, what they take.
+// PageStore: contents, sharing, and memory use of copies.
 #include "base/page_store.h"
 
 #include <gtest/gtest.h>
@@ -19,59 +19,59 @@ std::vector<std::byte> noise(std::size_t size, std::uint64_t seed) {
   return memory;
 }
 
-TEST(PageStore, GivesBackToTheByte) {
+TEST(PageStore, RestoresExactly) {
   PageStore pages;
   for (const std::size_t size : {std::size_t{1}, kPage - 1, kPage, kPage + 1, 10 * kPage + 17}) {
     const std::vector<std::byte> memory = noise(size, size);
-    PageStore::Image image;
+    PageStore::PageList image;
     pages.append(image, memory, nullptr);
     std::vector<std::byte> back(size);
-    EXPECT_EQ(pages.copy_back(image, 0, back), (size + kPage - 1) / kPage);
+    EXPECT_EQ(pages.restore(image, 0, back), (size + kPage - 1) / kPage);
     EXPECT_EQ(back, memory);
     pages.release(image);
   }
   EXPECT_EQ(pages.bytes(), 0u);
 }
 
-TEST(PageStore, SharesWhatIsTheSame) {
+TEST(PageStore, SharesEqualPages) {
   PageStore pages;
   std::vector<std::byte> memory = noise(100 * kPage, 3);
-  PageStore::Image first, second;
+  PageStore::PageList first, second;
   pages.append(first, memory, nullptr);
   EXPECT_EQ(pages.bytes(), 100 * kPage);
   memory[50 * kPage] ^= std::byte{1};
   memory[71 * kPage - 1] ^= std::byte{1};
   pages.append(second, memory, &first);
   EXPECT_EQ(pages.bytes(), 102 * kPage);
-  // either may go first
+  // The copies can be released in any order.
   pages.release(first);
   EXPECT_EQ(pages.bytes(), 100 * kPage);
   std::vector<std::byte> back(memory.size());
-  pages.copy_back(second, 0, back);
+  pages.restore(second, 0, back);
   EXPECT_EQ(back, memory);
 }
 
-TEST(PageStore, ZerosTakeNothing) {
+TEST(PageStore, ZeroPagesNeedNoMemory) {
   PageStore pages;
   const std::vector<std::byte> zeros(20 * kPage);
-  PageStore::Image image;
+  PageStore::PageList image;
   pages.append(image, zeros, nullptr);
   EXPECT_EQ(pages.bytes(), 0u);
   std::vector<std::byte> back = noise(20 * kPage, 4);
-  pages.copy_back(image, 0, back);
+  pages.restore(image, 0, back);
   EXPECT_EQ(back, zeros);
 }
 
-TEST(PageStore, LeavesWhatItHasNot) {
+TEST(PageStore, LeavesPlaceholdersUnchanged) {
   PageStore pages;
   const std::vector<std::byte> memory = noise(3 * kPage, 5);
-  PageStore::Image image;
-  pages.append_none(image, 2 * kPage);
+  PageStore::PageList image;
+  pages.append_placeholders(image, 2 * kPage);
   pages.append(image, std::span(memory).last(kPage), nullptr);
   std::vector<std::byte> back = noise(3 * kPage, 6);
   std::vector<std::byte> expected = back;
   std::copy(memory.end() - kPage, memory.end(), expected.end() - kPage);
-  pages.copy_back(image, 0, back);
+  pages.restore(image, 0, back);
   EXPECT_EQ(back, expected);
 }
 

@@ -1,4 +1,4 @@
-// Seeded generators: the first values of the published algorithms, and that draws are spread as they should be.
+// Random: the first values of the published algorithm, and the distributions of its results.
 #include "base/random.h"
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 namespace limber {
 namespace {
 
-// Computed apart with xoshiro256starstar.c's steps, its state filled by splitmix64 from seed ^ FNV(name).
-TEST(Random, FirstValuesOfASeedAndAName) {
+// Computed separately with xoshiro256starstar.c, with a state from splitmix64(seed ^ FNV(name)).
+TEST(Random, FirstValuesMatchTheReference) {
   Random plain(1);
   for (const std::uint64_t v :
        {2312103631333294758u, 8577403155483897535u, 7773481203680439003u, 7839922785415594646u}) {
@@ -22,7 +22,7 @@ TEST(Random, FirstValuesOfASeedAndAName) {
   }
 }
 
-TEST(Random, ASeedRepeatsAndNamesDiffer) {
+TEST(Random, EqualSeedsRepeatAndNamesDiffer) {
   Random a(7, "arm1");
   Random b(7, "arm1");
   Random c(7, "arm2");
@@ -44,7 +44,7 @@ double chi_square(const std::vector<int>& counts, double expected) {
   return sum;
 }
 
-// 99 degrees of freedom: 99.9 % of samples lie between 60 and 149.
+// 99 degrees of freedom: 99.9 % of samples are between 60 and 149.
 TEST(Random, UniformDrawsFillTheRangeEvenly) {
   Random random(3);
   std::vector<int> low(100);
@@ -54,7 +54,7 @@ TEST(Random, UniformDrawsFillTheRangeEvenly) {
     ASSERT_GE(v, -2);
     ASSERT_LT(v, 3);
     low[static_cast<std::size_t>((v + 2) * 20)]++;
-    // the digits behind the first must be even too
+    // The lower digits must be uniform too.
     const double fine = random.uniform() * 1000;
     high[static_cast<std::size_t>((fine - std::floor(fine)) * 100)]++;
   }

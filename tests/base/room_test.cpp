@@ -1,4 +1,4 @@
-// Room that grows in steps.
+// Growth of reserved capacity.
 #include "base/room.h"
 
 #include <gtest/gtest.h>
@@ -6,17 +6,17 @@
 namespace limber {
 namespace {
 
-TEST(Room, SizesThatCreepUpDoNotAllocateEachTime) {
+TEST(Reserve, SlowGrowthDoesNotAllocateEachTime) {
   std::vector<double> numbers;
   int moves = 0;
   for (std::size_t count = 1; count <= 1000; ++count) {
     const std::size_t before = numbers.capacity();
-    make_room(numbers, count);
+    reserve(numbers, count);
     EXPECT_GE(numbers.capacity(), count);
     moves += numbers.capacity() != before ? 1 : 0;
   }
   EXPECT_LE(moves, 11);
-  take_room(numbers, 5000);
+  clear_and_reserve(numbers, 5000);
   EXPECT_GE(numbers.capacity(), 5000u);
   EXPECT_TRUE(numbers.empty());
 }

@@ -1,4 +1,4 @@
-// Writes to descriptors that are full, closed, not read, or not ready: limited in time, and errors instead of signals.
+// Writes to descriptors that are full, closed, not read, or not ready have a time limit and fail without signals.
 #include "base/system/standard_output.h"
 
 #include <fcntl.h>
@@ -24,7 +24,7 @@ struct Pipe {
   int ends[2] = {-1, -1};
 };
 
-TEST(StandardOutput, APipeThatIsNotReadTakesItsSizeAndNothingMore) {
+TEST(StandardOutput, FullPipeTimesOut) {
   const Pipe pipe;
   std::size_t all = 0;
   const std::string bytes(100000, 'x');
@@ -42,15 +42,15 @@ TEST(StandardOutput, APipeThatIsNotReadTakesItsSizeAndNothingMore) {
   EXPECT_EQ(fcntl(pipe.ends[1], F_GETFL) & O_NONBLOCK, 0) << "other programs share the description";
 }
 
-TEST(StandardOutput, ErrorsAreOfTheCallAlone) {
+TEST(StandardOutput, ErrorsRaiseNoSignal) {
   std::thread([] {
-    block_every_signal();  // else SIGPIPE would end the program
+    block_all_signals();  // otherwise SIGPIPE would end the program
     const Pipe pipe;
     const int closed = dup(pipe.ends[1]);
     close(closed);
     EXPECT_EQ(write_within(closed, "x", 0ns).error, EBADF);
     const int read_end = pipe.ends[0];
-    dup2(pipe.ends[1], read_end);  // nothing reads it any more
+    dup2(pipe.ends[1], read_end);  // nothing reads it anymore
     EXPECT_EQ(write_within(pipe.ends[1], "x", 0ns).error, EPIPE);
     const int full = open("/dev/full", O_WRONLY | O_CLOEXEC);
     EXPECT_EQ(write_within(full, "x", 0ns).error, ENOSPC);
@@ -58,7 +58,7 @@ TEST(StandardOutput, ErrorsAreOfTheCallAlone) {
   }).join();
 }
 
-TEST(StandardOutput, ClosedDescriptorsAreNotGivenToFiles) {
+TEST(StandardOutput, ClosedDescriptorsGetPlaceholders) {
   const pid_t child = fork();
   if (child == 0) {
     for (int fd = 0; fd <= 2; fd++) close(fd);
@@ -74,16 +74,16 @@ TEST(StandardOutput, ClosedDescriptorsAreNotGivenToFiles) {
   EXPECT_EQ(status, 0);
 }
 
-TEST(StandardOutput, SeesASignalThatIsBlockedAndLeavesIt) {
+TEST(StandardOutput, ReportsAPendingSignalWithoutConsumingIt) {
   const pid_t child = fork();
   if (child == 0) {
     sigset_t set;
     sigemptyset(&set);
     sigaddset(&set, SIGTERM);
     sigprocmask(SIG_BLOCK, &set, nullptr);
-    const bool before = end_is_pending();
+    const bool before = termination_is_pending();
     kill(getpid(), SIGTERM);
-    const bool after = end_is_pending() && end_is_pending();
+    const bool after = termination_is_pending() && termination_is_pending();
     _exit(!before && after ? 0 : 1);
   }
   int status = -1;

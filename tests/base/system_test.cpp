@@ -1,4 +1,4 @@
-// The operating system layer: what each part promises, in the Linux build and in the portable one.
+// The operating system layer, in the Linux build and in the portable build.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr seconds kPatience(20);  // only a failing test waits as long
+constexpr seconds kTimeout(20);  // only a failing test waits this long
 
 struct Folder {
   Folder() : path(fs::temp_directory_path() / ("limber_system_" + std::to_string(process_id()))) {
@@ -49,7 +49,7 @@ std::string text_of(const std::string& file) {
 }
 
 bool readable(int fd, std::chrono::nanoseconds limit = {}) {
-  Waiting waiting{.fd = fd};
+  PollEntry waiting{.fd = fd};
   return wait_ready({&waiting, 1}, limit);
 }
 
@@ -64,7 +64,7 @@ TEST(File, ReadsRegularFilesOfALimitedSizeOnly) {
   EXPECT_EQ(read_file(folder.path.string(), 5).error(), none);
   EXPECT_EQ(read_file("/dev/zero", 5).error(), none);
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
-  EXPECT_EQ(read_file(folder.file("pipe"), 5).error(), none) << "nobody writes to it";
+  EXPECT_EQ(read_file(folder.file("pipe"), 5).error(), none) << "a pipe without a writer";
   EXPECT_EQ(read_file(folder.file("missing"), 5).error(), "No such file or directory");
 }
 
@@ -81,27 +81,27 @@ TEST(Wake, IsReadableFromNotifyToClear) {
 
 TEST(Wake, LosesNoNotification) {
   Wake wake;
-  std::atomic<int> given{0};
+  std::atomic<int> sent{0};
   std::thread other([&] {
     for (int i = 0; i < 20000; i++) {
-      given++;
+      sent++;
       wake.notify();
     }
   });
   int seen = 0;
-  while (seen < 20000 && readable(wake.fd(), kPatience)) {
+  while (seen < 20000 && readable(wake.fd(), kTimeout)) {
     wake.clear();
-    seen = given.load();
+    seen = sent.load();
   }
   other.join();
   EXPECT_EQ(seen, 20000);
 }
 
-TEST(Wait, ReportsTheReadyOnesAlone) {
+TEST(Wait, ReportsReadyDescriptorsOnly) {
   Wake first, second;
   second.notify();
-  std::array<Waiting, 3> list{{{.fd = first.fd()}, {.fd = second.fd()}, {.fd = -1}}};
-  EXPECT_TRUE(wait_ready(list, kPatience));
+  std::array<PollEntry, 3> list{{{.fd = first.fd()}, {.fd = second.fd()}, {.fd = -1}}};
+  EXPECT_TRUE(wait_ready(list, kTimeout));
   EXPECT_FALSE(list[0].ready);
   EXPECT_TRUE(list[1].ready);
   EXPECT_FALSE(list[2].ready);
@@ -110,53 +110,53 @@ TEST(Wait, ReportsTheReadyOnesAlone) {
   EXPECT_FALSE(list[1].ready);
 }
 
-TEST(Wait, LastsForItsLimit) {
+TEST(Wait, WaitsForTheLimit) {
   const double begin = clock_seconds();
   Wake wake;
-  std::array<Waiting, 1> list{{{.fd = wake.fd()}}};
+  std::array<PollEntry, 1> list{{{.fd = wake.fd()}}};
   EXPECT_FALSE(wait_ready(list, milliseconds(30)));
   EXPECT_GE(clock_seconds() - begin, 0.03);
 }
 
-TEST(Wait, MoreThanAFewDescriptors) {
+TEST(Wait, HandlesManyDescriptors) {
   std::vector<Wake> wakes(40);
-  std::vector<Waiting> list;
+  std::vector<PollEntry> list;
   list.reserve(wakes.size());
   for (const Wake& wake : wakes) list.push_back({.fd = wake.fd()});
   wakes[37].notify();
-  EXPECT_TRUE(wait_ready(list, kPatience));
+  EXPECT_TRUE(wait_ready(list, kTimeout));
   for (std::size_t i = 0; i < list.size(); i++) EXPECT_EQ(list[i].ready, i == 37) << i;
 }
 
-TEST(Wait, ABlockedSignalComesInDuringTheWaitAlone) {
-  static volatile std::sig_atomic_t came = 0;
+TEST(Wait, BlockedSignalArrivesDuringTheWaitOnly) {
+  static volatile std::sig_atomic_t received = 0;
   std::thread([] {
     block_signal(SIGUSR2);
-    handle_signal(SIGUSR2, [](int) { came = 1; });
+    handle_signal(SIGUSR2, [](int) { received = 1; });
     signal_thread(this_thread(), SIGUSR2);
-    EXPECT_EQ(came, 0);
+    EXPECT_EQ(received, 0);
     Wake wake;
-    std::array<Waiting, 1> list{{{.fd = wake.fd()}}};
-    EXPECT_FALSE(wait_ready_or_signal(list, kPatience));
-    EXPECT_EQ(came, 1);
+    std::array<PollEntry, 1> list{{{.fd = wake.fd()}}};
+    EXPECT_FALSE(wait_ready_or_signal(list, kTimeout));
+    EXPECT_EQ(received, 1);
   }).join();
 }
 
-TEST(Signals, ACallEndsTheWaitOfAThread) {
+TEST(Signals, WakeThreadEndsAWait) {
   std::thread([] {
     block_signals();
     EXPECT_EQ(wait_for_signal(milliseconds(0)), Signal::none);
     const std::uint64_t waiter = this_thread();
-    std::thread other([&] { call_thread(waiter); });
-    EXPECT_EQ(wait_for_signal(kPatience), Signal::call);
+    std::thread other([&] { wake_thread(waiter); });
+    EXPECT_EQ(wait_for_signal(kTimeout), Signal::wake);
     other.join();
-    EXPECT_FALSE(signal_came());
+    EXPECT_FALSE(signal_arrived());
     signal_thread(waiter, SIGTERM);
-    EXPECT_EQ(wait_for_signal(kPatience), Signal::end);
+    EXPECT_EQ(wait_for_signal(kTimeout), Signal::terminate);
   }).join();
 }
 
-TEST(Thread, ItsClockCountsItsComputingAlone) {
+TEST(Thread, ClockCountsProcessorTimeOnly) {
   const std::int64_t here = this_thread_clock();
   const std::int64_t before = cpu_nanoseconds(here);
   std::thread([&] {
@@ -167,16 +167,16 @@ TEST(Thread, ItsClockCountsItsComputingAlone) {
   EXPECT_LT(cpu_nanoseconds(here) - before, 20'000'000);
 }
 
-TEST(Process, KnowsItselfAndItsFile) {
+TEST(Process, ReportsIdAndExecutable) {
   EXPECT_EQ(process_id(), getpid());
-  EXPECT_TRUE(process_runs(process_id()));
-  EXPECT_FALSE(process_runs(4194304 + 7));  // above the largest
+  EXPECT_TRUE(is_process_running(process_id()));
+  EXPECT_FALSE(is_process_running(4194304 + 7));  // above the largest possible id
   EXPECT_EQ(executable_path(), fs::read_symlink("/proc/self/exe").string());
   EXPECT_EQ(find_symbol("no_such_function_at_all"), nullptr);
   EXPECT_NE(find_symbol("strlen"), nullptr);
 }
 
-TEST(ChildProcess, ReadsWhatIsWrittenAndItsEndIsKnown) {
+TEST(ChildProcess, ReceivesInputAndReportsItsExit) {
   const Folder folder;
   ChildProcess child;
   ASSERT_EQ(child.start({"sh", "-c", "cat > " + folder.file("copy")}), 0);
@@ -200,35 +200,35 @@ TEST(ChildProcess, IsKilledWithItsOwner) {
     const double late = clock_seconds() + 20;
     while (text_of(folder.file("pid")).find('\n') == std::string::npos && clock_seconds() < late) continue;
   }
-  EXPECT_FALSE(process_runs(std::stoi(text_of(folder.file("pid")))));
+  EXPECT_FALSE(is_process_running(std::stoi(text_of(folder.file("pid")))));
 }
 
-TEST(File, ModesAreThoseTheyAreCalled) {
+TEST(File, OpenModesCreateAppendOrReplace) {
   const Folder folder;
   const std::string file = folder.file("a");
-  EXPECT_FALSE(open_file(file, OpenMode::append).open());
+  EXPECT_FALSE(open_file(file, OpenMode::append).is_open());
   EXPECT_EQ(errno, ENOENT);
   EXPECT_TRUE(write_all(open_file(file, OpenMode::create_new, 0640).fd(), "one"));
-  EXPECT_FALSE(open_file(file, OpenMode::create_new).open());
+  EXPECT_FALSE(open_file(file, OpenMode::create_new).is_open());
   EXPECT_EQ(errno, EEXIST);
   EXPECT_TRUE(write_all(open_file(file, OpenMode::append).fd(), "two"));
   EXPECT_EQ(text_of(file), "onetwo");
   const Descriptor patch = open_file(file, OpenMode::write);
   EXPECT_TRUE(seek_to(patch.fd(), 3) && write_all(patch.fd(), "2"));
   EXPECT_EQ(text_of(file), "one2wo");
-  EXPECT_TRUE(write_whole(file, "whole", 0600).ok());
+  EXPECT_TRUE(replace_file(file, "whole", 0600).ok());
   EXPECT_EQ(text_of(file), "whole");
   EXPECT_EQ(file_status(file)->permissions, 0600u);
   fs::create_symlink(file, folder.file("link"));
-  EXPECT_FALSE(open_file(folder.file("link"), OpenMode::replace).open()) << "a link is not followed";
+  EXPECT_FALSE(open_file(folder.file("link"), OpenMode::replace).is_open()) << "a link is not followed";
   EXPECT_EQ(text_of(file), "whole");
 }
 
-TEST(File, StatusIsTheFileSystems) {
+TEST(File, ReportsStatus) {
   const Folder folder;
   const std::string file = folder.file("a");
   const std::int64_t before = file_clock_nanoseconds();
-  ASSERT_TRUE(write_whole(file, "12345", 0644).ok());
+  ASSERT_TRUE(replace_file(file, "12345", 0644).ok());
   fs::create_symlink(file, folder.file("link"));
   struct stat info {};
   ASSERT_EQ(stat(file.c_str(), &info), 0);
@@ -249,17 +249,17 @@ TEST(File, ALockHasOneOwner) {
   const std::string file = folder.file("lock");
   {
     const Result<Descriptor> first = lock_file(file);
-    ASSERT_TRUE(first.ok() && first->open());
+    ASSERT_TRUE(first.ok() && first->is_open());
     const Result<Descriptor> second = lock_file(file);
     ASSERT_TRUE(second.ok());
-    EXPECT_FALSE(second->open());
+    EXPECT_FALSE(second->is_open());
   }
   const Result<Descriptor> third = lock_file(file);
-  EXPECT_TRUE(third.ok() && third->open()) << "it is free with its owner's end";
+  EXPECT_TRUE(third.ok() && third->is_open()) << "free after its owner has closed it";
   EXPECT_FALSE(lock_file(folder.file("no/folder")).ok());
 }
 
-TEST(VirtualMemory, APartMayBeWritten) {
+TEST(VirtualMemory, CommittedPartIsWritable) {
   constexpr std::size_t kSize = std::size_t{1} << 30;
   std::byte* const range = reserve_memory(kSize);
   ASSERT_NE(range, nullptr);
@@ -272,19 +272,19 @@ TEST(VirtualMemory, APartMayBeWritten) {
   release_memory(range, kSize);
 }
 
-TEST(LocalSocket, BytesGoBothWaysWithoutWaiting) {
+TEST(LocalSocket, TransfersBytesBothWaysWithoutBlocking) {
   const Folder folder;
   const std::string path = folder.file("s");
   EXPECT_EQ(find_listener(path), Listener::unknown);
   const Result<Descriptor> listener = listen_local(path);
   ASSERT_TRUE(listener.ok()) << listener.error();
   EXPECT_EQ(find_listener(path), Listener::present);
-  EXPECT_FALSE(accept_connection(-1).open());
-  Descriptor probe = accept_connection(listener->fd());  // find_listener's
+  EXPECT_FALSE(accept_connection(-1).is_open());
+  Descriptor probe = accept_connection(listener->fd());  // the connection of find_listener()
   const Result<Descriptor> near = connect_local(path, 1);
   ASSERT_TRUE(near.ok()) << near.error();
   const Descriptor far = accept_connection(listener->fd());
-  ASSERT_TRUE(far.open());
+  ASSERT_TRUE(far.is_open());
   EXPECT_EQ(peer_user(far), user_id());
   std::array<char, 16> bytes{};
   EXPECT_EQ(receive_bytes(far.fd(), bytes.data(), bytes.size()), -1);
@@ -295,7 +295,7 @@ TEST(LocalSocket, BytesGoBothWaysWithoutWaiting) {
   EXPECT_EQ(errno, EAGAIN);
 }
 
-TEST(Udp, DatagramsAreReadInBatches) {
+TEST(Udp, ReadsBatches) {
   const Result<UdpSocket> in = open_udp({0x7f000001, 0});
   ASSERT_TRUE(in.ok());
   UdpSender out;
@@ -305,41 +305,41 @@ TEST(Udp, DatagramsAreReadInBatches) {
   DatagramReader reader;
   int next = 0;
   for (std::span<const Datagram> got = reader.read(in->fd()); !got.empty(); got = reader.read(in->fd())) {
-    EXPECT_LE(got.size(), DatagramReader::kMost);
+    EXPECT_LE(got.size(), DatagramReader::kMaxBatch);
     for (const Datagram& d : got) EXPECT_EQ(std::string(d.data, d.size), std::to_string(next++));
   }
   EXPECT_EQ(next, 20);
 }
 
-// Linux reports it when it came back, POSIX at the next send to the same target
-TEST(Udp, ADatagramThatCameBackIsReportedAndTheNextOneIsSent) {
-  Endpoint gone;
+// Linux reports it when the ICMP error arrives, POSIX at the next send to the same target.
+TEST(Udp, ReportsUndeliveredDatagramAndSendsTheNext) {
+  Endpoint closed_port;
   {
     const Result<UdpSocket> closes = open_udp({0x7f000001, 0});
     ASSERT_TRUE(closes.ok());
-    gone = closes->local();
+    closed_port = closes->local();
   }
   const Result<UdpSocket> other = open_udp({0x7f000001, 0});
   UdpSender out;
   ASSERT_TRUE(out.open().ok());
   EXPECT_FALSE(out.next_failure());
   for (int i = 0; i < 3; i++) {
-    EXPECT_EQ(out.send(gone, std::string("a")), 0);
+    EXPECT_EQ(out.send(closed_port, std::string("a")), 0);
     EXPECT_EQ(out.send(other->local(), std::string("b")), 0);
   }
   int failures = 0;
   while (const std::optional<SendFailure> failure = out.next_failure()) {
-    EXPECT_EQ(failure->to, gone);
+    EXPECT_EQ(failure->to, closed_port);
     EXPECT_EQ(failure->error, ECONNREFUSED);
     failures++;
   }
   EXPECT_EQ(failures, is_portable() ? 2 : 3);
   DatagramReader reader;
   EXPECT_EQ(reader.read(other->fd()).size(), 3u);
-  // a program that listens again gets the next one
-  const Result<UdpSocket> back = open_udp(gone);
+  // A program that listens again receives the next datagram.
+  const Result<UdpSocket> back = open_udp(closed_port);
   ASSERT_TRUE(back.ok()) << back.error();
-  EXPECT_EQ(out.send(gone, std::string("c")), 0);
+  EXPECT_EQ(out.send(closed_port, std::string("c")), 0);
   EXPECT_EQ(reader.read(back->fd()).size(), 1u);
 }
 
@@ -356,7 +356,7 @@ TEST(Udp, ManyTargetsNeedFewDescriptors) {
   EXPECT_EQ(reader.read(in->fd()).size(), 1u);
 }
 
-TEST(FolderEvents, TellWhatHappened) {
+TEST(FolderEvents, ReportChanges) {
   const Folder folder;
   FolderEvents events;
   EXPECT_EQ(events.available(), !is_portable());
@@ -366,7 +366,7 @@ TEST(FolderEvents, TellWhatHappened) {
   std::ofstream(folder.file("a")) << "1";
   if (is_portable()) {
     EXPECT_EQ(events.fd(), -1);
-    EXPECT_TRUE(events.read().empty()) << "files must be looked at";
+    EXPECT_TRUE(events.read().empty()) << "the caller must poll";
     return;
   }
   EXPECT_TRUE(readable(events.fd()));
@@ -375,7 +375,7 @@ TEST(FolderEvents, TellWhatHappened) {
   for (const FolderEvent& event : list) {
     EXPECT_EQ(event.folder, number);
     EXPECT_EQ(event.name, "a");
-    EXPECT_FALSE(event.folder_gone || event.entry_is_folder);
+    EXPECT_FALSE(event.folder_removed || event.entry_is_folder);
   }
   EXPECT_TRUE(list[0].may_be_open);
   EXPECT_FALSE(list[1].may_be_open);

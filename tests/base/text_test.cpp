@@ -1,4 +1,4 @@
-// Names, patterns, near names, printable text, numbers: what comes from outside, against tables.
+// Name comparison, patterns, suggestions, escaping and numbers, checked against tables.
 #include "base/text.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ TEST(Text, ShortenedKeepsBothEnds) {
   EXPECT_EQ(shortened("short", 16), "short");
   EXPECT_EQ(shortened("0123456789abcdef", 16), "0123456789abcdef");
   EXPECT_EQ(shortened("0123456789abcdefg", 16), "01234 … bcdefg");
-  // nothing of a character of several bytes is cut: ä is two, and the middle falls into one
+  // Multi-byte characters are not cut: ä has two bytes, and the middle is within one.
   const std::string umlauts = "äääääääääää";
   EXPECT_EQ(shortened(umlauts, 16), "ää … äää");
   EXPECT_LE(shortened(std::string(5000, 'x'), 1000).size(), 1000u);
@@ -28,7 +28,7 @@ TEST(Text, NamesAreComparedWithoutCaseAndUnderscores) {
   EXPECT_FALSE(same_name("app_interval", "app_intervals"));
   EXPECT_FALSE(same_name("app", "apq"));
   EXPECT_FALSE(same_name("a", ""));
-  // letters of the alphabet alone have a case: bytes beyond ASCII are themselves
+  // Only ASCII letters are compared without case.
   EXPECT_FALSE(same_name("\xc3\xa4", "\xc3\x84"));
 }
 
@@ -94,13 +94,13 @@ TEST(Text, AMalformedPatternMatchesOnlyItself) {
   }
 }
 
-TEST(Text, IsPatternKnowsOscsCharacters) {
+TEST(Text, IsPatternDetectsOscPatternCharacters) {
   for (const char* pattern : {"a*", "?", "[a]", "{a}"}) EXPECT_TRUE(is_pattern(pattern)) << pattern;
   for (const char* name : {"", "arm", "a]", "a}", "a,b", "a-b"}) EXPECT_FALSE(is_pattern(name)) << name;
 }
 
-// Without a bound these need 2^n steps or a stack of megabytes; bounded they match nothing, and the test ends.
-TEST(Text, PatternsOfAnyShapeEnd) {
+// Without a bound these need 2^n steps or megabytes of stack; with it they match nothing, and the test ends.
+TEST(Text, PatternMatchingIsBounded) {
   std::string stars;
   std::string braces;
   std::string choices = "{";
@@ -118,28 +118,28 @@ TEST(Text, PatternsOfAnyShapeEnd) {
   for (int i = 0; i < 64; i++) chain += choices.substr(0, 2000) + "}";
   EXPECT_FALSE(pattern_match(chain + "b", name));
   EXPECT_FALSE(pattern_match("[" + std::string(60000, 'b') + "]", "a"));
-  // a long run of stars is one star, and a name full of wildcards is no reason to give up
+  // A run of stars equals one star, and a name that consists of wildcards still matches itself.
   EXPECT_TRUE(pattern_match(std::string(60000, '*') + "a", name));
   EXPECT_TRUE(pattern_match(std::string(128, '?'), name));
   EXPECT_TRUE(pattern_match("*a*a*a*a*a*a*", name));
 }
 
-TEST(Text, NearNamesAreWithinAThird) {
+TEST(Text, SuggestionsDifferByAtMostAThird) {
   const std::array<std::string_view, 4> names = {"angular_servo_position", "angular_velocity", "mass", "bounce"};
   EXPECT_EQ(nearest_name("angular_sevro_position", names), "angular_servo_position");
   EXPECT_EQ(nearest_name("MASS", names), "mass");
   EXPECT_EQ(nearest_name("mas", names), "mass");
-  EXPECT_EQ(nearest_name("msas", names), "mass") << "neighbours that changed places are one edit";
+  EXPECT_EQ(nearest_name("msas", names), "mass") << "swapped neighbors are one edit";
   EXPECT_EQ(nearest_name("amss", names), "mass");
-  EXPECT_EQ(nearest_name("smsa", names), "") << "twice is two";
+  EXPECT_EQ(nearest_name("smsa", names), "") << "two swaps are two edits";
   EXPECT_EQ(nearest_name("bouncy", names), "bounce");
-  // 'xyss' is two of four letters away, more than a third
+  // 'xyss' has distance 2 of 4 letters, more than a third.
   EXPECT_EQ(nearest_name("xyss", names), "");
   EXPECT_EQ(nearest_name("", names), "");
   EXPECT_EQ(nearest_name(std::string(300, 'm'), names), "");
 }
 
-TEST(Text, HintsSayWhatThereIs) {
+TEST(Text, HintsListAvailableNames) {
   const std::vector<std::string> none;
   EXPECT_EQ(name_hint("x", none), "; none exist");
   const std::vector<std::string> arms = {"arm1", "arm2"};
@@ -151,14 +151,14 @@ TEST(Text, HintsSayWhatThereIs) {
   EXPECT_EQ(name_hint("floor", many), "; there are: leg_0, leg_1, leg_2, leg_3, leg_4, leg_5, leg_6, leg_7 …");
 }
 
-TEST(Text, PrintableShowsWhatATerminalWouldObey) {
+TEST(Text, PrintableEscapesControlCharacters) {
   EXPECT_EQ(printable("a\tb\nc"), "a\tb\nc");
   EXPECT_EQ(printable("\x1b[2J"), "\\x1b[2J");
   EXPECT_EQ(printable(std::string_view("\0", 1)), "\\x00");
   EXPECT_EQ(printable("\x7f"), "\\x7f");
   EXPECT_EQ(printable("höhe 1½ 😀"), "höhe 1½ 😀");
-  EXPECT_EQ(printable("\xc2\x9b"), "\\xc2\\x9b");                    // a control character of two bytes (CSI)
-  EXPECT_EQ(printable("\xc3("), "\\xc3(");                           // cut off
+  EXPECT_EQ(printable("\xc2\x9b"), "\\xc2\\x9b");                    // a two-byte control character (CSI)
+  EXPECT_EQ(printable("\xc3("), "\\xc3(");                           // truncated
   EXPECT_EQ(printable("\xc0\xaf"), "\\xc0\\xaf");                    // overlong
   EXPECT_EQ(printable("\xe0\x80\xaf"), "\\xe0\\x80\\xaf");           // overlong
   EXPECT_EQ(printable("\xed\xa0\x80"), "\\xed\\xa0\\x80");           // a surrogate
@@ -166,7 +166,7 @@ TEST(Text, PrintableShowsWhatATerminalWouldObey) {
   EXPECT_EQ(printable("\xf0\x9f\x98"), "\\xf0\\x9f\\x98");
 }
 
-TEST(Text, NumbersAreReadWholeOrNotAtAll) {
+TEST(Text, NumbersMustFillTheText) {
   const std::pair<const char*, double> good[] = {{"0", 0},  {"-9.81", -9.81},       {" 1.5 ", 1.5},
                                                  {"+2", 2}, {"1e3", 1000},          {".5", 0.5},
                                                  {"5.", 5}, {"\t-1E-2\r\n", -0.01}, {"1e308", 1e308}};
@@ -181,7 +181,7 @@ TEST(Text, NumbersAreReadWholeOrNotAtAll) {
   EXPECT_FALSE(parse_number(std::string_view("1\0", 2)));
 }
 
-TEST(Text, NumbersAreWrittenAsShortAsTheyReadBack) {
+TEST(Text, NumbersRoundTripInShortestForm) {
   for (const double v : {0.0, 0.1, -9.81, 1.0 / 3, 1e20, 5e-324, std::numeric_limits<double>::max(), 123456789.0}) {
     EXPECT_EQ(parse_number(number_text(v)).value_or(-1), v) << number_text(v);
   }
@@ -191,9 +191,9 @@ TEST(Text, NumbersAreWrittenAsShortAsTheyReadBack) {
   EXPECT_EQ(number_text(3), "3");
 }
 
-TEST(Text, NumbersKeepTheirPointWhateverTheLocale) {
+TEST(Text, NumbersIgnoreTheLocale) {
   const std::string before = std::setlocale(LC_NUMERIC, nullptr);
-  // any that there is with a comma; without one the loop shows the same for the plain one
+  // Uses an installed locale with a decimal comma; without one, tests the C locale only.
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "C"}) {
     if (std::setlocale(LC_NUMERIC, name) == nullptr) continue;
     EXPECT_EQ(parse_number("1.5").value_or(0), 1.5);
@@ -202,25 +202,25 @@ TEST(Text, NumbersKeepTheirPointWhateverTheLocale) {
   std::setlocale(LC_NUMERIC, before.c_str());
 }
 
-TEST(Text, EscapedNamesComeBack) {
+TEST(Text, EscapedNamesRoundTrip) {
   EXPECT_EQ(escape_name("left leg"), "left%20leg");
   EXPECT_EQ(escape_name("a/b#c*d,e?f[g]h{i}j%k"), "a%2Fb%23c%2Ad%2Ce%3Ff%5Bg%5Dh%7Bi%7Dj%25k");
   EXPECT_EQ(unescape_name("%2f%2F"), "//");
   for (const char* name : {"plain", "100%", "%20", "a b/c", "%%", "höhe", ""}) {
     EXPECT_EQ(unescape_name(escape_name(name)), name);
   }
-  // what is no escape stays as it is
+  // Invalid escapes remain unchanged.
   for (const char* part : {"%", "%2", "%zz", "100%", "%2g"}) EXPECT_EQ(unescape_name(part), part);
 }
 
-TEST(Text, NamesOfThings) {
-  EXPECT_FALSE(name_fault("arm"));
-  EXPECT_FALSE(name_fault("left leg / 2 höhe"));
-  EXPECT_FALSE(name_fault(std::string(128, 'a')));
-  EXPECT_EQ(name_fault("").value_or(""), "a name must not be empty");
-  EXPECT_EQ(name_fault(std::string(129, 'a')).value_or(""), "a name may be 128 bytes long, this one has 129");
+TEST(Text, ChecksNames) {
+  EXPECT_FALSE(name_error("arm"));
+  EXPECT_FALSE(name_error("left leg / 2 höhe"));
+  EXPECT_FALSE(name_error(std::string(128, 'a')));
+  EXPECT_EQ(name_error("").value_or(""), "a name must not be empty");
+  EXPECT_EQ(name_error(std::string(129, 'a')).value_or(""), "a name may have at most 128 bytes, not 129");
   for (const char* name : {"a\nb", "a\tb", "\x1b[0m", "\xff", "a\x7f"})
-    EXPECT_TRUE(name_fault(name)) << printable(name);
+    EXPECT_TRUE(name_error(name)) << printable(name);
 }
 
 TEST(Text, SplitKeepsEmptyPieces) {

@@ -1,5 +1,5 @@
-// alignment: s = clamp(1 − (|m| − min)/(max − min), 0, 1); F = amount · linear · s · (mean v_j − v); τ likewise with ω;
-// neither more than brings the part to the mean within a tick.
+// alignment: s = clamp(1 − (|m| − min)/(max − min), 0, 1); F = amount · linear · s · (mean v_j − v); τ likewise with
+// ω; both are limited to the value that reaches the mean within one tick.
 #include "behaviors/flock_rig.h"
 
 namespace limber {
@@ -7,10 +7,10 @@ namespace {
 
 using namespace test;
 
-TEST(Alignment, DrivesTowardsTheNeighboursMotion) {
+TEST(Alignment, AcceleratesTowardsTheNeighborsMotion) {
   Rig s;
-  Part& one = s.lone(sphere_model(0.5), 10);
-  Part& two = s.lone(sphere_model(0.5), 10, {{2, 0, 0}, quat_identity()});
+  Part& one = s.add_single_part(sphere_model(0.5), 10);
+  Part& two = s.add_single_part(sphere_model(0.5), 10, {{2, 0, 0}, quat_identity()});
   one.set_velocity({1, 0, 0}, {0, 0, 1});
   two.set_velocity({0, 3, 0}, {0, 2, 0});
   BehaviorGroup& group = s.add_group("alignment");
@@ -18,41 +18,43 @@ TEST(Alignment, DrivesTowardsTheNeighboursMotion) {
   s.set(group.id(), "linear_amount", {2});
   s.set(group.id(), "angular_amount", {4});
   s.set(group.id(), "amount", {0.5});
-  s.act();
+  s.step_behaviors();
   // s = 1 − 2/8
   expect_near(s.force(one), 0.75 * 0.5 * 2 * Vec3(-1, 3, 0), 1e-6);
   expect_near(s.torque(one), 0.75 * 0.5 * 4 * Vec3(0, 2, -1), 1e-6);
   expect_near(s.force(two), 0.75 * 0.5 * 2 * Vec3(1, -3, 0), 1e-6);
 }
 
-TEST(Alignment, IsWhatLookingAtEveryPartGives) {
+TEST(Alignment, EqualsBruteForce) {
   FlockRig s;
   s.fill(120, 3, 6);
   BehaviorGroup& group = s.add_group("alignment");
-  // small enough that no bound is met: the balls of 0.5 kg and 1 cm have 2e-5 kg·m²
+  // small enough that the limit isn't reached: the balls of 0.5 kg and 1 cm have 2e-5 kg·m²
   s.set(group.id(), "linear_amount", {3});
   s.set(group.id(), "angular_amount", {5e-4});
-  for (const auto& [least, most] : std::vector<std::pair<double, double>>{
+  for (const auto& [min_distance, max_distance] : std::vector<std::pair<double, double>>{
            {0, 0.3}, {0, 1}, {0, 2.5}, {0.5, 1.5}, {1, 1.2}, {0, 7}, {2, 9}, {0, 10.4}, {0, 1000}, {3, 1000}}) {
-    s.set(group.id(), "min_dist", {least});
-    s.set(group.id(), "max_dist", {most});
+    s.set(group.id(), "min_dist", {min_distance});
+    s.set(group.id(), "max_dist", {max_distance});
     for (Part* part : s.parts) s.clear(*part);
-    s.act();
+    s.step_behaviors();
     for (const Part* part : s.parts) {
-      const SlowMeans m = s.slow_means(*part, least, most);
-      const double scale = clamped(1 - (length_of(m.offset) - least) / (most - least), 0, 1);
-      const double on = m.count == 0 ? 0 : scale;
-      expect_near(s.force(*part), 3 * on * (m.velocity - part->linear_velocity()), 1e-4, std::to_string(most));
-      expect_near(s.torque(*part), 5e-4 * on * (m.spin - part->angular_velocity()), 1e-8, std::to_string(most));
+      const BruteForceMeans m = s.brute_force_means(*part, min_distance, max_distance);
+      const double scale = clamped(1 - (length_of(m.offset) - min_distance) / (max_distance - min_distance), 0, 1);
+      const double active_scale = m.count == 0 ? 0 : scale;
+      expect_near(s.force(*part), 3 * active_scale * (m.velocity - part->linear_velocity()), 1e-4,
+                  std::to_string(max_distance));
+      expect_near(s.torque(*part), 5e-4 * active_scale * (m.spin - part->angular_velocity()), 1e-8,
+                  std::to_string(max_distance));
     }
   }
 }
 
-// the bound: whatever the amount, a tick ends at the neighbours' motion, not beyond
-TEST(Alignment, AHugeAmountEndsTheDifferenceAndNoMore) {
+// With any amount, the part doesn't exceed its neighbors' motion in one tick.
+TEST(Alignment, HugeAmountRemovesTheDifferenceWithoutOvershoot) {
   Rig s;
-  Part& light = s.lone(box_model({0.02, 0.3, 0.05}), 0.01, {{0, 0, 0}, quat_axis(unit({1, 2, 3}), 0.7)});
-  Part& leader = s.lone(sphere_model(0.1), 1e6, {{1, 0, 0}, quat_identity()});
+  Part& light = s.add_single_part(box_model({0.02, 0.3, 0.05}), 0.01, {{0, 0, 0}, quat_axis(unit({1, 2, 3}), 0.7)});
+  Part& leader = s.add_single_part(sphere_model(0.1), 1e6, {{1, 0, 0}, quat_identity()});
   light.set_velocity({-3, 1, 0}, {20, -10, 5});
   leader.set_velocity({0, 2, 0}, {0, 0, 4});
   BehaviorGroup& group = s.add_group("alignment");
@@ -61,7 +63,7 @@ TEST(Alignment, AHugeAmountEndsTheDifferenceAndNoMore) {
   s.set(group.id(), "amount", {1e6});
   const Vec3 velocity = light.linear_velocity();
   const Vec3 spin = light.angular_velocity();
-  s.act();
+  s.step_behaviors();
   const double dt = s.world.timestep();
   // F·dt = m·(V − v)
   expect_near(s.force(light) * dt / 0.01, Vec3(0, 2, 0) - velocity, 1e-5);
@@ -71,7 +73,7 @@ TEST(Alignment, AHugeAmountEndsTheDifferenceAndNoMore) {
   expect_near(axes * turned, Vec3(0, 0, 4) - spin, 1e-4);
 }
 
-TEST(Alignment, HundredLightPartsWithHugeAmountsStayAtRestWhereTheyMove) {
+TEST(Alignment, HugeAmountsKeepLightPartsStable) {
   FlockRig s;
   s.fill(100, 1, 3);
   BehaviorGroup& group = s.add_group("alignment");

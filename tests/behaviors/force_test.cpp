@@ -6,7 +6,7 @@ namespace {
 
 using namespace test;
 
-TEST(Force, PushesEveryPartAlongDirWhateverItsLength) {
+TEST(Force, AppliesTheForceAlongDirOfAnyLength) {
   Rig s;
   Body& body = s.body("b");
   Part& one = s.ball(body, {0, 0, 0});
@@ -14,40 +14,40 @@ TEST(Force, PushesEveryPartAlongDirWhateverItsLength) {
   Behavior& b = s.add(body, "force");
   s.set(b.id(), "dir", {0, 30, 40});
   s.set(b.id(), "amp", {10});
-  s.act();
+  s.step_behaviors();
   for (const Part* part : {&one, &two}) {
     expect_near(s.force(*part), {0, 6, 8}, 1e-12);
     expect_near(s.torque(*part), {0, 0, 0}, 0);
   }
 }
 
-TEST(Force, IsHeldBelowMaxAmpEitherWay) {
+TEST(Force, IsLimitedToMaxAmpInBothDirections) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "force");
   s.set(b.id(), "max_amp", {5});
   for (const double amp : {4.0, 7.0, -3.0, -8.0}) {
     s.set(b.id(), "amp", {amp});
     s.clear(part);
-    s.act();
+    s.step_behaviors();
     expect_near(s.force(part), {amp > 5 ? 5 : amp < -5 ? -5 : amp, 0, 0}, 1e-12);
   }
 }
 
-TEST(Force, ADirectionOfZeroPushesNowhere) {
+TEST(Force, ZeroDirectionAppliesNoForce) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "force");
   s.set(b.id(), "dir", {0, 0, 0});
   s.set(b.id(), "amp", {10});
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(part), {0, 0, 0}, 0);
 }
 
-// a push of F for a tick of dt changes the velocity by F·dt/m, on however many internal steps
-TEST(Force, ActsForTheWholeTickOnEveryInternalStep) {
+// A force F for one tick of dt changes the velocity by F·dt/m, with any number of internal steps.
+TEST(Force, ActsOnEveryInternalStepOfTheTick) {
   Rig s;
-  Part& part = s.loose({0, 0, 0}, 2);
+  Part& part = s.single_ball({0, 0, 0}, 2);
   Behavior& b = s.add(part.body(), "force");
   s.set(b.id(), "amp", {12});
   s.substeps(7);
@@ -57,10 +57,10 @@ TEST(Force, ActsForTheWholeTickOnEveryInternalStep) {
   EXPECT_NEAR(part.linear_velocity().x, 2 * 12.0 / 2 / 60, 1e-6);
 }
 
-// an interval of 10 ms at a tick of 4 ms: at 0, 12, 20, 32, 40 … ms, 100 times a simulated second
-TEST(Force, KeepsThePhaseOfItsInterval) {
+// An interval of 10 ms with ticks of 4 ms: at 0, 12, 20, 32, 40 … ms, 100 times per simulated second.
+TEST(Force, IntervalDoesNotDrift) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "force");
   s.set(s.world.id(), "timestep", {0.004});
   s.set(b.id(), "amp", {1});

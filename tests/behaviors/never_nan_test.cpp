@@ -1,5 +1,5 @@
-// No value of any parameter makes a behaviour ask for what is no number: all the ends of all ranges, on parts that lie
-// on each other, stand still, race, or are far out.
+// Behaviors never produce NaN, at the ends of all parameter ranges, for parts that coincide, rest, move fast or are far
+// away.
 #include <cmath>
 
 #include "behaviors/rig.h"
@@ -9,10 +9,10 @@ namespace {
 
 using namespace test;
 
-// two bodies of four balls each, with joints and motors, in places that make trouble
-struct Trouble : Rig {
+// Two bodies of four balls each, with joints and motors, at critical positions.
+struct CriticalScene : Rig {
   std::vector<Part*> parts;
-  Trouble() {
+  CriticalScene() {
     for (const char* name : {"one", "two"}) {
       Body& b = body(name);
       for (int i = 0; i < 4; i++) {
@@ -29,38 +29,38 @@ struct Trouble : Rig {
       }
     }
   }
-  void place(int how) {
-    const Vec3 at[] = {{0, 0, 0}, {1e6, -1e6, 1e6}, {1e-30, 0, 0}, {0, 0, 1e-3}};
-    const Vec3 moves[] = {{0, 0, 0}, {1e4, 1e4, -1e4}, {1e-300, 0, 0}, {0, 1e-5, 0}};
+  void place(int arrangement) {
+    const Vec3 positions[] = {{0, 0, 0}, {1e6, -1e6, 1e6}, {1e-30, 0, 0}, {0, 0, 1e-3}};
+    const Vec3 velocities[] = {{0, 0, 0}, {1e4, 1e4, -1e4}, {1e-300, 0, 0}, {0, 1e-5, 0}};
     for (std::size_t i = 0; i < parts.size(); i++) {
-      const std::size_t k = (i * static_cast<std::size_t>(how)) % 4;
-      parts[i]->set_pose({at[k], quat_identity()});
-      parts[i]->set_velocity(moves[k], moves[(k + 1) % 4]);
+      const std::size_t k = (i * static_cast<std::size_t>(arrangement)) % 4;
+      parts[i]->set_pose({positions[k], quat_identity()});
+      parts[i]->set_velocity(velocities[k], velocities[(k + 1) % 4]);
     }
   }
-  void expect_numbers(const std::string& what) {
+  void expect_numbers(const std::string& label) {
     for (Part* part : parts) {
       const Vec3 f = force(*part);
       const Vec3 t = torque(*part);
-      EXPECT_TRUE(is_finite(f) && is_finite(t)) << what << " force " << f.x << " " << f.y << " " << f.z;
+      EXPECT_TRUE(is_finite(f) && is_finite(t)) << label << " force " << f.x << " " << f.y << " " << f.z;
       clear(*part);
     }
     for (const auto& b : world.bodies()) {
       for (const auto& motor : b->motors()) {
-        EXPECT_TRUE(is_finite(vec(motor->id(), "angular_servo_position"))) << what;
-        EXPECT_TRUE(is_finite(vec(motor->id(), "angular_spring_rest_length"))) << what;
+        EXPECT_TRUE(is_finite(vec(motor->id(), "angular_servo_position"))) << label;
+        EXPECT_TRUE(is_finite(vec(motor->id(), "angular_spring_rest_length"))) << label;
       }
     }
   }
 };
 
-double extreme(const Row& row, int which) {
-  if (row.type == RowType::boolean) return 1;
+double extreme(const Property& property, int which) {
+  if (property.type == PropertyType::boolean) return 1;
   switch (which) {
     case 0:
-      return row.min;
+      return property.min;
     case 1:
-      return row.max;
+      return property.max;
     case 2:
       return 0;
     case 3:
@@ -70,9 +70,9 @@ double extreme(const Row& row, int which) {
   }
 }
 
-TEST(NeverNan, AtTheEndsOfAllRanges) {
-  Trouble s;
-  std::mt19937 dice(3);
+TEST(NeverNan, HoldsAtTheEndsOfAllRanges) {
+  CriticalScene s;
+  std::mt19937 generator(3);
   for (const auto& type : s.world.behaviors().types().all()) {
     Body& body = *s.world.find_body("one");
     NodeId id;
@@ -85,19 +85,20 @@ TEST(NeverNan, AtTheEndsOfAllRanges) {
       single = &s.add(body, type->name);
       id = single->id();
     }
-    const Table& table = s.store.table(id);
+    const PropertyTable& table = s.store.table(id);
     for (int round = 0; round < 400; round++) {
-      std::string what = type->name;
-      for (const Row& row : table.rows()) {
-        if (row.kind != RowKind::property) continue;
+      std::string label = type->name;
+      for (const Property& property : table.properties()) {
+        if (property.kind != PropertyKind::setting) continue;
         std::vector<double> values;
-        for (std::uint32_t i = 0; i < row.width; i++) values.push_back(extreme(row, static_cast<int>(dice() % 5)));
-        s.set(id, row.name, values);
-        what += " " + row.name + " " + std::to_string(values[0]);
+        for (std::uint32_t i = 0; i < property.width; i++)
+          values.push_back(extreme(property, static_cast<int>(generator() % 5)));
+        s.set(id, property.name, values);
+        label += " " + property.name + " " + std::to_string(values[0]);
       }
-      s.place(static_cast<int>(dice() % 4));
-      s.act();
-      s.expect_numbers(what);
+      s.place(static_cast<int>(generator() % 4));
+      s.step_behaviors();
+      s.expect_numbers(label);
     }
     if (single != nullptr) s.world.behaviors().remove(*single);
     if (group != nullptr) s.world.behaviors().remove_group(*group);

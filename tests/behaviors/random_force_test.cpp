@@ -1,4 +1,4 @@
-// random_force: d = min_dir + U⊙(max_dir − min_dir), a = min_amp + U·(max_amp − min_amp), F = a·d̂, drawn for each part.
+// random_force: d = min_dir + U⊙(max_dir − min_dir), a = min_amp + U·(max_amp − min_amp), F = a·d̂, for each part.
 #include <cmath>
 
 #include "base/random.h"
@@ -9,8 +9,8 @@ namespace {
 
 using namespace test;
 
-// the draws, made again from the generator's own definition: of the seed and the path, x y z and the amplitude
-Vec3 drawn(Random& random, const Vec3& low, const Vec3& high, double least, double most) {
+// The expected draws according to the generator's definition: seeded with seed and path; x, y, z, then the amplitude.
+Vec3 draw_force(Random& random, const Vec3& low, const Vec3& high, double least, double most) {
   const double u = random.uniform();
   const double v = random.uniform();
   const double w = random.uniform();
@@ -19,7 +19,7 @@ Vec3 drawn(Random& random, const Vec3& low, const Vec3& high, double least, doub
   return d / std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z) * a;
 }
 
-TEST(RandomForce, DrawsForEachPartFromItsSeedAndPath) {
+TEST(RandomForce, DrawsPerPartFromSeedAndPath) {
   Rig s;
   s.set(s.world.id(), "seed", {42});
   Body& body = s.body("b");
@@ -29,16 +29,16 @@ TEST(RandomForce, DrawsForEachPartFromItsSeedAndPath) {
   s.set(b.id(), "min_dir", {-1, 0, 2});
   s.set(b.id(), "max_dir", {3, 1, 2});
   s.set(b.id(), "min_amp", {5});
-  s.set(b.id(), "max_amp", {-5});  // either may be the larger
-  s.act();
+  s.set(b.id(), "max_amp", {-5});  // the bounds may be in either order
+  s.step_behaviors();
   Random random(42, "/physics/body/b/behavior/wind");
-  expect_near(s.force(one), drawn(random, {-1, 0, 2}, {3, 1, 2}, 5, -5), 1e-12);
-  expect_near(s.force(two), drawn(random, {-1, 0, 2}, {3, 1, 2}, 5, -5), 1e-12);
+  expect_near(s.force(one), draw_force(random, {-1, 0, 2}, {3, 1, 2}, 5, -5), 1e-12);
+  expect_near(s.force(two), draw_force(random, {-1, 0, 2}, {3, 1, 2}, 5, -5), 1e-12);
 }
 
-TEST(RandomForce, DrawsAtTheFirstActiveTickAndThenInItsInterval) {
+TEST(RandomForce, DrawsAtTheFirstActiveTickAndAfterEachInterval) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "random_force");
   s.set(b.id(), "rand_interval", {100});  // six ticks
   s.set(b.id(), "active", {0});
@@ -52,41 +52,41 @@ TEST(RandomForce, DrawsAtTheFirstActiveTickAndThenInItsInterval) {
     forces.push_back(part.linear_velocity() - before);
   }
   for (int i = 1; i < 13; i++) {
-    const bool anew = i % 6 == 0;
-    EXPECT_EQ(glm::length(forces[i] - forces[i - 1]) > 1e-4, anew) << "tick " << i;
+    const bool redrawn = i % 6 == 0;
+    EXPECT_EQ(glm::length(forces[i] - forces[i - 1]) > 1e-4, redrawn) << "tick " << i;
   }
 }
 
-TEST(RandomForce, EqualCornersOfZeroPushNowhere) {
+TEST(RandomForce, ZeroDirectionAppliesNoForce) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "random_force");
   s.set(b.id(), "min_dir", {0, 0, 0});
   s.set(b.id(), "max_dir", {0, 0, 0});
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(part), {0, 0, 0}, 0);
 }
 
-// mean of |F| over many draws: amplitudes are uniform in 0 .. 10
+// The mean of |F| over many draws: amplitudes are uniform in 0 .. 10.
 TEST(RandomForce, AmplitudesAreUniform) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "random_force");
   s.set(b.id(), "rand_interval", {0});
   double sum = 0;
-  double most = 0;
+  double max_amplitude = 0;
   constexpr int kDraws = 4000;
   for (int i = 0; i < kDraws; i++) {
     s.clear(part);
-    s.act();
+    s.step_behaviors();
     const double force = glm::length(s.force(part));
     sum += force;
-    most = std::max(most, force);
+    max_amplitude = std::max(max_amplitude, force);
   }
   // standard error of the mean: 10/sqrt(12)/sqrt(4000) = 0.046
   EXPECT_NEAR(sum / kDraws, 5, 0.2);
-  EXPECT_LE(most, 10);
-  EXPECT_GT(most, 9.9);
+  EXPECT_LE(max_amplitude, 10);
+  EXPECT_GT(max_amplitude, 9.9);
 }
 
 }  // namespace

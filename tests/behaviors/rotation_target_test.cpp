@@ -1,5 +1,5 @@
-// rotation_target: set = θ + clamp(wrap(target − θ), −speed, speed), on each axis that is a servo or a spring, wrapped
-// on free axes only.
+// rotation_target: target = θ + clamp(wrap(target − θ), −speed, speed) on each servo or spring axis, wrapped on free
+// axes only.
 #include "behaviors/rig.h"
 
 namespace limber {
@@ -9,79 +9,79 @@ using namespace test;
 
 constexpr double kServo = 2, kSpring = 3, kOff = 0;
 
-/// A hinge about z at an angle, its motor in a mode, and the behaviour on it.
-struct Hinge : OneAxis {
-  explicit Hinge(double angle, double mode = kServo) : OneAxis(5) {
+/// A hinge about z at an angle, with its motor in a given mode and a behavior.
+struct Hinge : OneAxisFixture {
+  explicit Hinge(double angle, double mode = kServo) : OneAxisFixture(5) {
     set(motor.id(), "mode", {mode});
-    put(angle);
-    world.settle();
+    set_value(angle);
+    world.flush();
     behavior = *world.behaviors().add(robot, "RotationTargetBehavior", "lead");
   }
   double servo() const { return vec(motor.id(), "angular_servo_position").z; }
   double rest() const { return vec(motor.id(), "angular_spring_rest_length").z; }
-  void aim(double target) {
+  void set_target(double target) {
     set(behavior->id(), "target", {0, 0, target});
     world.behaviors().step(world.timestep());
   }
   Behavior* behavior = nullptr;
 };
 
-TEST(RotationTarget, SetsAServoAStepAheadOfTheJoint) {
+TEST(RotationTarget, SetsTheServoOneStepAheadOfTheJoint) {
   Hinge hinge(0.5);
-  hinge.aim(2);
+  hinge.set_target(2);
   EXPECT_NEAR(hinge.servo(), 0.6, 1e-6);
-  hinge.aim(-2);
+  hinge.set_target(-2);
   EXPECT_NEAR(hinge.servo(), 0.4, 1e-6);
-  hinge.aim(0.53);
+  hinge.set_target(0.53);
   EXPECT_NEAR(hinge.servo(), 0.53, 1e-6);
   hinge.set(hinge.behavior->id(), "speed", {0.25});
-  hinge.aim(2);
+  hinge.set_target(2);
   EXPECT_NEAR(hinge.servo(), 0.75, 1e-6);
 }
 
-TEST(RotationTarget, TakesTheShorterWayOnAFreeAxisOnly) {
+TEST(RotationTarget, TakesTheShorterWayOnlyOnFreeAxes) {
   Hinge turning(3);
   turning.limits(1, -1);  // free
-  turning.world.settle();
-  turning.aim(-3);
+  turning.world.flush();
+  turning.set_target(-3);
   EXPECT_NEAR(turning.servo(), 3.1, 1e-6);
   Hinge limited(3);
   limited.limits(-3.5, 3.5);
-  limited.world.settle();
-  limited.aim(-3);
+  limited.world.flush();
+  limited.set_target(-3);
   EXPECT_NEAR(limited.servo(), 2.9, 1e-6);
 }
 
-TEST(RotationTarget, HalfATurnAwayIsGonePositively) {
+TEST(RotationTarget, HalfATurnRotatesPositively) {
   Hinge hinge(0);
   hinge.limits(1, -1);
-  hinge.world.settle();
+  hinge.world.flush();
   hinge.set(hinge.behavior->id(), "speed", {10});
-  hinge.aim(-kPi);
+  hinge.set_target(-kPi);
   EXPECT_NEAR(hinge.servo(), kPi, 1e-6);
 }
 
-TEST(RotationTarget, LeadsASpringByItsRest) {
+TEST(RotationTarget, MovesTheRestPositionOfASpring) {
   Hinge hinge(0.5, kSpring);
   const double servo = hinge.servo();
-  hinge.aim(2);
+  hinge.set_target(2);
   EXPECT_NEAR(hinge.rest(), 0.6, 1e-6);
   EXPECT_EQ(hinge.servo(), servo);
 }
 
-TEST(RotationTarget, LeavesWhatIsOffOrSpins) {
+TEST(RotationTarget, IgnoresAxesInModeOffOrSpin) {
   for (const double mode : {kOff, 1.0}) {
     Hinge hinge(0.5, mode);
     const double servo = hinge.servo();
     const double rest = hinge.rest();
-    hinge.aim(2);
+    hinge.set_target(2);
     EXPECT_EQ(hinge.servo(), servo) << mode;
     EXPECT_EQ(hinge.rest(), rest) << mode;
   }
 }
 
-TEST(RotationTarget, EachAxisByItsOwnMode) {
-  Stage s;
+TEST(RotationTarget, HandlesEachAxisByItsMode) {
+  WorldFixture s;
   Body& body = s.body("b");
   Part& base = s.part(body, sphere_model(0.1), 0);
   Part& tip = s.part(body, sphere_model(0.1), 1);
@@ -100,8 +100,8 @@ TEST(RotationTarget, EachAxisByItsOwnMode) {
   expect_near(s.vec(motor.id(), "angular_spring_rest_length"), {8, -0.1, 8}, 1e-6);
 }
 
-TEST(RotationTarget, JointsMeanTheirMotors) {
-  Stage s;
+TEST(RotationTarget, SelectedJointsMeanTheirMotors) {
+  WorldFixture s;
   Body& body = s.body("b");
   std::vector<Part*> parts = {&s.part(body, sphere_model(0.1), 0)};
   for (const char* name : {"one", "two", "three", "bare"}) {
@@ -128,12 +128,12 @@ TEST(RotationTarget, JointsMeanTheirMotors) {
   EXPECT_EQ(names(Words{"three", "one"}, {}), "one three ");
   EXPECT_EQ(names({}, Words{"t*"}), "two three ");
   EXPECT_EQ(names(Words{"one"}, Words{"three"}), "one three ");
-  EXPECT_EQ(names(Words{"bare"}, {}), "joint 'b/bare' has no motor; add_motor makes one");
+  EXPECT_EQ(names(Words{"bare"}, {}), "joint 'b/bare' has no motor; add one with add_motor");
   EXPECT_EQ(names(Words{"b*"}, {}), "");
 }
 
-// a lag never lets the servo run away: the joint arrives and stays
-TEST(RotationTarget, TheJointArrives) {
+// The lag of the servo doesn't accumulate: the joint arrives and stays.
+TEST(RotationTarget, JointReachesTheTarget) {
   Hinge hinge(0);
   hinge.limits(-3, 3);
   hinge.set(hinge.behavior->id(), "target", {0, 0, 1.2});

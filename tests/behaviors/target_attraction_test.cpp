@@ -6,21 +6,21 @@ namespace {
 
 using namespace test;
 
-TEST(TargetAttraction, GrowsFromMinAmpCloseToMaxAmpFar) {
+TEST(TargetAttraction, GrowsFromMinAmpToMaxAmpWithDistance) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "target_attraction");
   s.set(b.id(), "target_pos", {4, 0, 3});
   s.set(b.id(), "min_amp", {2});
   s.set(b.id(), "max_amp", {12});
-  s.act();
+  s.step_behaviors();
   // d = 5 of 10: halfway
   expect_near(s.force(part), {7 * 0.8, 0, 7 * 0.6}, 1e-12);
 }
 
-TEST(TargetAttraction, NothingActsOutsideItsDistances) {
+TEST(TargetAttraction, DoesNotActOutsideItsDistances) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "target_attraction");
   s.set(b.id(), "min_dist", {1});
   s.set(b.id(), "max_dist", {2});
@@ -28,14 +28,14 @@ TEST(TargetAttraction, NothingActsOutsideItsDistances) {
            {0.5, false}, {0.999, false}, {1, true}, {1.5, true}, {2, true}, {2.001, false}, {1e4, false}}) {
     s.set(b.id(), "target_pos", {x, 0, 0});
     s.clear(part);
-    s.act();
+    s.step_behaviors();
     EXPECT_EQ(s.force(part).x, acts ? 10 * x / 2 : 0) << x;
   }
 }
 
-TEST(TargetAttraction, RandomCases) {
+TEST(TargetAttraction, MatchesTheFormulaInRandomCases) {
   Rig s;
-  Part& part = s.loose({0, 0, 0});
+  Part& part = s.single_ball({0, 0, 0});
   Behavior& b = s.add(part.body(), "target_attraction");
   for (int i = 0; i < 50; i++) {
     const Vec3 at = s.draw3(-4, 4), target = s.draw3(-4, 4);
@@ -46,7 +46,7 @@ TEST(TargetAttraction, RandomCases) {
     s.set(b.id(), "min_amp", {low});
     s.set(b.id(), "max_amp", {high});
     s.clear(part);
-    s.act();
+    s.step_behaviors();
     const Vec3 r = target - at;
     const double d = std::sqrt(r.x * r.x + r.y * r.y + r.z * r.z);
     const double amp = d > far ? 0 : low + (high - low) * d / far;
@@ -54,7 +54,7 @@ TEST(TargetAttraction, RandomCases) {
   }
 }
 
-TEST(TargetAttraction, ActsOnTheCentreOfMass) {
+TEST(TargetAttraction, ActsOnTheCenterOfMass) {
   Rig s;
   ShapeModel two;
   two.kind = ShapeKind::compound;
@@ -65,7 +65,7 @@ TEST(TargetAttraction, ActsOnTheCentreOfMass) {
   ASSERT_NEAR(part.center().z, 1, 1e-6);
   Behavior& b = s.add(part.body(), "target_attraction");
   s.set(b.id(), "target_pos", {0, 0, 3});
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(part), {0, 0, 10 * 2.0 / 10}, 1e-6);
 }
 

@@ -6,20 +6,20 @@ namespace {
 
 using namespace test;
 
-TEST(Torque, IsScaledAndAboutTheWorldsAxes) {
+TEST(Torque, IsScaledAndInWorldAxes) {
   Rig s;
-  Part& part = s.lone(box_model({0.1, 0.2, 0.3}), 1, {{0, 0, 0}, quat_axis({0, 0, 1}, 1)});
+  Part& part = s.add_single_part(box_model({0.1, 0.2, 0.3}), 1, {{0, 0, 0}, quat_axis({0, 0, 1}, 1)});
   Behavior& b = s.add(part.body(), "torque");
   s.set(b.id(), "torque", {1, -2, 3});
   s.set(b.id(), "scale", {-0.5});
-  s.act();
+  s.step_behaviors();
   expect_near(s.torque(part), {-0.5, 1, -1.5}, 1e-12);
   expect_near(s.force(part), {0, 0, 0}, 0);
 }
 
-TEST(Torque, TurnsABallAsItsInertiaSays) {
+TEST(Torque, AcceleratesABallByItsInertia) {
   Rig s;
-  Part& part = s.lone(sphere_model(0.5), 2);
+  Part& part = s.add_single_part(sphere_model(0.5), 2);
   Behavior& b = s.add(part.body(), "torque");
   s.set(b.id(), "torque", {0, 0, 3});
   s.ticks(6);
@@ -27,9 +27,9 @@ TEST(Torque, TurnsABallAsItsInertiaSays) {
   EXPECT_NEAR(part.angular_velocity().z, 3 / inertia * 6 / 60, 1e-4);
 }
 
-TEST(Torque, AppliesInItsInterval) {
+TEST(Torque, AppliesAfterEachInterval) {
   Rig s;
-  Part& part = s.lone(sphere_model(0.5), 2);
+  Part& part = s.add_single_part(sphere_model(0.5), 2);
   Behavior& b = s.add(part.body(), "torque");
   s.set(b.id(), "torque", {0, 0, 3});
   s.set(b.id(), "app_interval", {100});  // six ticks

@@ -12,7 +12,7 @@ BehaviorSetup of_parts(std::vector<std::string> words) {
   return setup;
 }
 
-TEST(Volume, PushesAPairApartEquallyAndOppositely) {
+TEST(Volume, PushesAPairApartWithOppositeForces) {
   Rig s;
   Body& body = s.body("b");
   Part& one = s.ball(body, {0, 0, 0});
@@ -21,13 +21,13 @@ TEST(Volume, PushesAPairApartEquallyAndOppositely) {
   Behavior& b = s.add(body, "volume");
   s.set(b.id(), "min_amp", {2});
   s.set(b.id(), "max_amp", {10});
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(one), {0, -8, 0}, 1e-12);
   expect_near(s.force(two), {0, 8, 0}, 1e-12);
   expect_near(s.force(odd), {0, 0, 0}, 0);
 }
 
-TEST(Volume, PairsAreInTheOrderInWhichTheyAreNamed) {
+TEST(Volume, PairsFollowTheOrderOfNames) {
   Rig s;
   Body& body = s.body("b");
   Shape& shape = s.shape(sphere_model(0.01));
@@ -37,14 +37,14 @@ TEST(Volume, PairsAreInTheOrderInWhichTheyAreNamed) {
     parts.push_back(*body.add_part(name, shape, 1, {{x, name[1] == '1' ? 0.0 : 5.0, 0}, quat_identity()}));
   }
   s.add(body, "volume", of_parts({"l1", "r1", "l2", "r2"}));
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(*parts[0]), {-5, 0, 0}, 1e-12, "l1");
   expect_near(s.force(*parts[1]), {-5, 0, 0}, 1e-12, "l2");
   expect_near(s.force(*parts[2]), {5, 0, 0}, 1e-12, "r1");
   expect_near(s.force(*parts[3]), {5, 0, 0}, 1e-12, "r2");
 }
 
-TEST(Volume, APartMayBeInSeveralPairs) {
+TEST(Volume, SupportsPartsInSeveralPairs) {
   Rig s;
   Body& body = s.body("b");
   Shape& shape = s.shape(sphere_model(0.01));
@@ -52,20 +52,20 @@ TEST(Volume, APartMayBeInSeveralPairs) {
   ASSERT_TRUE(body.add_part("x", shape, 1, {{0.5, 0, 0}, quat_identity()}).ok());
   ASSERT_TRUE(body.add_part("y", shape, 1, {{0, 0.5, 0}, quat_identity()}).ok());
   s.add(body, "volume", of_parts({"tip", "x", "tip", "y"}));
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(tip), {-5, -5, 0}, 1e-12);
 }
 
-TEST(Volume, NothingActsBeyondMaxDistOrBetweenCoincidentParts) {
+TEST(Volume, DoesNotActBeyondMaxDistOrBetweenCoincidentParts) {
   Rig s;
   Body& body = s.body("b");
   Part& one = s.ball(body, {0, 0, 0});
   Part& two = s.ball(body, {0, 0, 0});
   s.add(body, "volume");
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(one), {0, 0, 0}, 0);
   two.set_pose({{1.0001, 0, 0}, quat_identity()});
-  s.act();
+  s.step_behaviors();
   expect_near(s.force(two), {0, 0, 0}, 0);
 }
 

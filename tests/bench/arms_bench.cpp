@@ -1,4 +1,4 @@
-// The arms of `limber bench` under Google Benchmark: a whole tick of ours, a tick of the bare loop, a snapshot.
+// The arms of `limber bench` with Google Benchmark: a tick of Limber, a tick of the plain Bullet loop, a snapshot.
 #include <benchmark/benchmark.h>
 
 #include "app/bench_arms.h"

@@ -1,6 +1,6 @@
-// limber_compare: the same machines in stock Bullet, with our direct solver and in other engines, in turn in one
-// process. Everything is measured from the poses of the parts, by one formula for all. First it is checked that each
-// engine plays what it was given: a passive chain falls alike in all, a slow servo gets where it is sent.
+// limber_compare: runs the same mechanisms in stock Bullet, with the direct solver and in other engines, alternating in
+// one process. All measurements use the poses of the parts and the same formulas. First it checks that each engine
+// simulates the scene: a passive chain falls equally in all, and a slow servo reaches its targets.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -16,22 +16,22 @@
 namespace limber {
 namespace {
 
-constexpr int kRounds = 5;  // of each scene; the motion is the same in all, times are those of all
-constexpr int kTurn = 10;   // steps before the next one has its turn, so that each finds its own caches again
-// not the very least: a thread's clock on a virtual machine now and then tells far too little of a single step
-constexpr double kLeast = 0.05;
+constexpr int kRounds = 5;             // per scene; the motion is identical in all rounds, times are collected over all
+constexpr int kConsecutiveSteps = 10;  // consecutive steps of one engine, so that its caches are warm
+// quantile of the fastest steps; not the minimum, because the thread clock of a virtual machine is sometimes far off
+constexpr double kFastQuantile = 0.05;
 
-// How far the joints' sides are apart, m, and their angles, as the parts' poses say.
-class Look {
+// Measures joint gaps (m) and angles from the poses of the parts.
+class SceneMeasures {
  public:
-  explicit Look(const RawScene& scene) : scene_(scene) {}
+  explicit SceneMeasures(const RawScene& scene) : scene_(scene) {}
   double gap(const Contender& contender) const {
-    double most = 0;
+    double largest = 0;
     for (const RawJoint& j : scene_.joints) {
-      const auto place = [&](int part) { return contender.pose(part) * (start(part).inverse() * j.place); };
-      most = std::max(most, distance(place(j.parent), place(j.child)));
+      const auto place = [&](int part) { return contender.pose(part) * (start(part).inverse() * j.position); };
+      largest = std::max(largest, distance(place(j.parent), place(j.child)));
     }
-    return most;
+    return largest;
   }
   double angle(const Contender& contender, const RawJoint& j) const {
     const Quat now = glm::conjugate(contender.pose(j.parent).rotation) * contender.pose(j.child).rotation;
@@ -41,13 +41,13 @@ class Look {
     return 2 * std::atan2(glm::dot(Vec3(turned.x, turned.y, turned.z), axis), turned.w);
   }
   double servo_error(const Contender& contender, double time) const {
-    double most = 0;
+    double largest = 0;
     for (const RawJoint& j : scene_.joints) {
       if (j.force <= 0) continue;
       const double error = std::fabs(std::remainder(angle(contender, j) - j.target(time), 2 * kPi));
-      most = std::max(most, std::isnan(error) ? INFINITY : error);
+      largest = std::max(largest, std::isnan(error) ? INFINITY : error);
     }
-    return most;
+    return largest;
   }
 
  private:
@@ -59,55 +59,57 @@ class Look {
   const RawScene& scene_;
 };
 
-std::vector<Entrant> all_entrants() {
-  std::vector<Entrant> all = bullet_entrants();
-  for (Entrant& e : ode_entrants()) all.push_back(std::move(e));
-  for (Entrant& e : mujoco_entrants()) all.push_back(std::move(e));
+std::vector<ContenderFactory> all_factories() {
+  std::vector<ContenderFactory> all = bullet_contenders();
+  for (ContenderFactory& e : ode_contenders()) all.push_back(std::move(e));
+  for (ContenderFactory& e : mujoco_contenders()) all.push_back(std::move(e));
   return all;
 }
 
-// Three parts swing 0.4 s without servos, weight across them: where the last one is. They are heavy, since Bullet
-// leaves out the gyroscopic torque of light ones: its 3x3 solver takes a determinant under 1.2e-7 for none.
-Vec3 fallen(const Entrant& entrant) {
-  RawScene s = raw_at_step(raw_arm(3, 13, 0, 0, false), 2.5e-4);
+// Position of the last of three parts after swinging 0.4 s without servos, with gravity across them. The parts are
+// heavy because Bullet leaves out the gyroscopic torque of light ones: its 3x3 solver treats a determinant below 1.2e-7
+// as zero.
+Vec3 position_after_fall(const ContenderFactory& factory) {
+  RawScene s = raw_with_step(raw_arm(3, 13, 0, 0, false), 2.5e-4);
   for (RawPart& part : s.parts) part.mass *= 100;
   s.gravity = {6.9, 3.1, -6.2};
   s.floor = false;
-  const auto contender = entrant.make(s);
+  const auto contender = factory.make(s);
   for (int i = 0; i < 1600; ++i) contender->step();
   return contender->pose(3).position;
 }
 
-// Two parts follow a sine of 20 s for one period, once it has begun: the worst error, and the least part of the
-// amplitude reached.
-std::pair<double, double> slow_motion(const Entrant& entrant) {
+// Two parts follow a sine with a period of 20 s for one period: the maximal error after 1 s, and the smallest fraction
+// of the amplitude that a joint reaches.
+std::pair<double, double> slow_motion(const ContenderFactory& factory) {
   RawScene s = raw_arm(2, 1, 10000, 0.3, false);
   for (RawJoint& j : s.joints) j.frequency = 0.05;
-  const Look look(s);
-  const auto contender = entrant.make(s);
+  const SceneMeasures measures(s);
+  const auto contender = factory.make(s);
   double worst = 0;
-  std::vector<double> reached(s.joints.size(), 0);
+  std::vector<double> amplitudes(s.joints.size(), 0);
   for (int i = 1; i <= 1200; ++i) {
     contender->step();
-    if (i * s.step > 1) worst = std::max(worst, look.servo_error(*contender, i * s.step));
-    for (std::size_t k = 0; k < reached.size(); ++k) {
-      reached[k] = std::max(reached[k], std::fabs(look.angle(*contender, s.joints[k])));
+    if (i * s.step > 1) worst = std::max(worst, measures.servo_error(*contender, i * s.step));
+    for (std::size_t k = 0; k < amplitudes.size(); ++k) {
+      amplitudes[k] = std::max(amplitudes[k], std::fabs(measures.angle(*contender, s.joints[k])));
     }
   }
-  return {worst, *std::min_element(reached.begin(), reached.end()) / 0.3};
+  return {worst, *std::min_element(amplitudes.begin(), amplitudes.end()) / 0.3};
 }
 
-bool check(const std::vector<Entrant>& entrants) {
-  const Vec3 ours = fallen(
-      *std::find_if(entrants.begin(), entrants.end(), [](const Entrant& e) { return e.name.starts_with("Limber"); }));
+bool check(const std::vector<ContenderFactory>& factories) {
+  const Vec3 ours = position_after_fall(*std::find_if(
+      factories.begin(), factories.end(), [](const ContenderFactory& e) { return e.name.starts_with("Limber"); }));
   bool good = true;
   fmt::print(
-      "| checked | slow servo's error, rad | amplitude reached | fallen chain beside ours, mm |\n|---|---|---|---|\n");
-  for (const Entrant& e : entrants) {
-    const auto [error, reached] = slow_motion(e);
-    const double away = glm::length(fallen(e) - ours);
-    fmt::print("| {} | {:.4f} | {:.3f} | {:.2f} |\n", e.name, error, reached, 1e3 * away);
-    good = good && error < 0.02 && reached > 0.98 && away < 2e-3;
+      "| checked | slow servo's error, rad | amplitude reached | fallen chain, distance to Limber's, mm "
+      "|\n|---|---|---|---|\n");
+  for (const ContenderFactory& e : factories) {
+    const auto [error, amplitudes] = slow_motion(e);
+    const double distance = glm::length(position_after_fall(e) - ours);
+    fmt::print("| {} | {:.4f} | {:.3f} | {:.2f} |\n", e.name, error, amplitudes, 1e3 * distance);
+    good = good && error < 0.02 && amplitudes > 0.98 && distance < 2e-3;
   }
   return good;
 }
@@ -115,42 +117,46 @@ bool check(const std::vector<Entrant>& entrants) {
 struct Result {
   double gap = 0;
   double servo_error = 0;
-  Samples times;
+  TimeSamples times;
   std::string note;
 };
 
-void play(const RawScene& scene, const std::vector<Entrant>& entrants, std::vector<Result>& results) {
-  const Look look(scene);
+void play(const RawScene& scene, const std::vector<ContenderFactory>& factories, std::vector<Result>& results) {
+  const SceneMeasures measures(scene);
   std::vector<std::unique_ptr<Contender>> contenders;
-  contenders.reserve(entrants.size());
-  for (const Entrant& e : entrants) contenders.push_back(e.make(scene));
+  contenders.reserve(factories.size());
+  for (const ContenderFactory& e : factories) contenders.push_back(e.make(scene));
   const int steps = static_cast<int>(6 / scene.step);
-  for (int from = 0; from < steps; from += kTurn) {
+  for (int from = 0; from < steps; from += kConsecutiveSteps) {
     for (std::size_t k = 0; k < contenders.size(); ++k) {
       Contender& contender = *contenders[k];
-      for (int i = from; i < std::min(steps, from + kTurn); ++i) {
+      for (int i = from; i < std::min(steps, from + kConsecutiveSteps); ++i) {
         const double start = system::thread_seconds();
         contender.step();
         results[k].times.add(system::thread_seconds() - start);
-        results[k].gap = std::max(results[k].gap, look.gap(contender));
-        results[k].servo_error = std::max(results[k].servo_error, look.servo_error(contender, (i + 1) * scene.step));
+        results[k].gap = std::max(results[k].gap, measures.gap(contender));
+        results[k].servo_error =
+            std::max(results[k].servo_error, measures.servo_error(contender, (i + 1) * scene.step));
       }
       results[k].note = contender.note();
     }
   }
 }
 
-void compare(const char* name, const RawScene& scene, const std::vector<Entrant>& entrants) {
-  std::vector<Result> results(entrants.size());
-  for (int i = 0; i < kRounds; ++i) play(scene, entrants, results);
-  fmt::print("\n| {} | gap, mm | servo error, rad | step, us: p5 | median | beside stock: p5 | median | notes |\n",
+void compare(const char* name, const RawScene& scene, const std::vector<ContenderFactory>& factories) {
+  std::vector<Result> results(factories.size());
+  for (int i = 0; i < kRounds; ++i) play(scene, factories, results);
+  fmt::print("\n| {} | gap, mm | servo error, rad | step, us: p5 | median | relative to stock: p5 | median | notes |\n",
              name);
   fmt::print("|---|---|---|---|---|---|---|---|\n");
   for (std::size_t k = 0; k < results.size(); ++k) {
     const Result& r = results[k];
-    const auto beside = [&](double part) { return r.times.at(part) / results[0].times.at(part); };
-    fmt::print("| {} | {:.3g} | {:.3g} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", entrants[k].name, 1e3 * r.gap,
-               r.servo_error, 1e6 * r.times.at(kLeast), 1e6 * r.times.at(0.5), beside(kLeast), beside(0.5), r.note);
+    const auto relative_to_stock = [&](double part) {
+      return r.times.quantile(part) / results[0].times.quantile(part);
+    };
+    fmt::print("| {} | {:.3g} | {:.3g} | {:.1f} | {:.1f} | {:.2f} | {:.2f} | {} |\n", factories[k].name, 1e3 * r.gap,
+               r.servo_error, 1e6 * r.times.quantile(kFastQuantile), 1e6 * r.times.quantile(0.5),
+               relative_to_stock(kFastQuantile), relative_to_stock(0.5), r.note);
   }
 }
 
@@ -159,13 +165,13 @@ void compare(const char* name, const RawScene& scene, const std::vector<Entrant>
 
 int main() {
   using namespace limber;
-  const std::vector<Entrant> entrants = all_entrants();
-  if (!check(entrants)) {
-    fmt::print("an engine does not play what it was given\n");
+  const std::vector<ContenderFactory> factories = all_factories();
+  if (!check(factories)) {
+    fmt::print("an engine simulates the scenes wrongly\n");
     return EXIT_FAILURE;
   }
-  compare("arm of 17", raw_arm(17, 1, 10000, 0.3, false), entrants);
-  compare("the predecessor's robot", raw_robot(10000, 0.3), entrants);
-  compare("square wave, 10000 N·m", raw_arm(17, 1, 10000, 0.6, true), entrants);
+  compare("arm of 17", raw_arm(17, 1, 10000, 0.3, false), factories);
+  compare("the predecessor's robot", raw_robot(10000, 0.3), factories);
+  compare("square wave, 10000 N·m", raw_arm(17, 1, 10000, 0.6, true), factories);
   return EXIT_SUCCESS;
 }

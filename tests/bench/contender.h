@@ -1,4 +1,4 @@
-// Contender: one engine that plays a RawScene, so that engines can be compared on the same machine.
+// Contender: one engine that simulates a RawScene, so that engines can be compared on the same scene.
 #pragma once
 
 #include <functional>
@@ -13,26 +13,26 @@ namespace limber {
 class Contender {
  public:
   virtual ~Contender() = default;
-  /// One step of the scene's; servos go where they should be at the present time.
+  /// Runs one step of the scene with the servo targets of the current time.
   virtual void step() = 0;
-  /// Where a part's centre of mass is, and how it is turned.
+  /// Returns the position of a part's center of mass and its rotation.
   virtual Pose pose(int part) const = 0;
-  /// What else there is to say about the steps so far.
+  /// Remarks on the steps so far, for the table.
   virtual std::string note() const { return {}; }
 };
 
-/// The law of our servo, for engines that have none: a motor turns at this share of what would end the error within
-/// the step, but no faster than the joint's speed.
+/// Law of Limber's servo, for engines without servos: the motor speed is this fraction of the speed that would
+/// eliminate the error within the step, limited to the joint's speed.
 constexpr double kServoShare = 0.9;
 
-struct Entrant {
+struct ContenderFactory {
   std::string name;
   std::function<std::unique_ptr<Contender>(const RawScene& scene)> make;
 };
 
-std::vector<Entrant>
-bullet_entrants();  ///< Stock, our direct solver, Dantzig; those of Bullet's with its own servo and with our law.
-std::vector<Entrant> ode_entrants();
-std::vector<Entrant> mujoco_entrants();
+std::vector<ContenderFactory>
+bullet_contenders();  ///< Stock, direct and Dantzig solvers; Bullet's with its own servo and with the law above.
+std::vector<ContenderFactory> ode_contenders();
+std::vector<ContenderFactory> mujoco_contenders();
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Bullet as it comes, with the direct solver, and with its exact one (Dantzig's), which gives up silently.
+// Stock Bullet, the direct solver, and Bullet's exact solver (Dantzig), which falls back silently.
 #include <utility>
 
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
@@ -12,21 +12,21 @@ namespace {
 
 class BulletContender : public Contender {
  public:
-  explicit BulletContender(std::unique_ptr<RawPlayer> player) : player_(std::move(player)) {}
+  explicit BulletContender(std::unique_ptr<RawSimulation> player) : player_(std::move(player)) {}
   void step() override { player_->step(); }
   Pose pose(int part) const override { return player_->pose(part); }
   std::string note() const override {
-    const RawPlayer::Direct d = player_->direct();
+    const RawSimulation::Direct d = player_->direct();
     return d.direct + d.plain > 0 ? fmt::format("{} fall-backs", d.fallbacks) : std::string();
   }
 
  private:
-  std::unique_ptr<RawPlayer> player_;
+  std::unique_ptr<RawSimulation> player_;
 };
 
 class DantzigContender : public Contender {
  public:
-  explicit DantzigContender(const RawScene& scene) : player_(RawPlayer::make_stock(scene, solver_)) {
+  explicit DantzigContender(const RawScene& scene) : player_(RawSimulation::make_stock(scene, solver_)) {
     solver_.setNumFallbacks(0);
   }
   void step() override {
@@ -41,22 +41,22 @@ class DantzigContender : public Contender {
  private:
   btDantzigSolver dantzig_;
   btMLCPSolver solver_{&dantzig_};
-  std::unique_ptr<RawPlayer> player_;
+  std::unique_ptr<RawSimulation> player_;
   int steps_ = 0;
 };
 
 }  // namespace
 
-std::vector<Entrant> bullet_entrants() {
+std::vector<ContenderFactory> bullet_contenders() {
   const auto raw = [](RawSolver solver, double share) {
     return [=](RawScene scene) {
-      scene.servo_share = share;
-      return std::make_unique<BulletContender>(RawPlayer::make(scene, solver));
+      scene.servo_erp = share;
+      return std::make_unique<BulletContender>(RawSimulation::make(scene, solver));
     };
   };
   const auto dantzig = [](double share) {
     return [=](RawScene scene) {
-      scene.servo_share = share;
+      scene.servo_erp = share;
       return std::make_unique<DantzigContender>(scene);
     };
   };

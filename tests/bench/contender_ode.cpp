@@ -1,5 +1,5 @@
-// ODE: boxes on hinges with a motor each, which follows the law of Bullet's servo; its own error reduction, softness
-// and iterations. World step: one dense matrix, solved exactly; quick step: twenty sweeps.
+// ODE: boxes on hinges with motors that follow the law of Bullet's servo; default error reduction, softness and
+// iterations. World step: one dense matrix, solved exactly; quick step: twenty sweeps.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -41,7 +41,7 @@ class OdeContender : public Contender {
       const double rate = kServoShare * (joint.target(time_) - dJointGetHingeAngle(joints_[i])) / scene_.step;
       dJointSetHingeParam(joints_[i], dParamVel, std::clamp(rate, -joint.speed, joint.speed));
     }
-    dSpaceCollide(space_, this, &OdeContender::touch);
+    dSpaceCollide(space_, this, &OdeContender::on_near_pair);
     if (quick_) {
       dWorldQuickStep(world_, scene_.step);
     } else {
@@ -61,7 +61,7 @@ class OdeContender : public Contender {
  private:
   void add_part(const RawPart& part) {
     bodies_.push_back(nullptr);
-    // what does not move holds others and meets nothing
+    // static parts carry others and don't collide
     if (part.mass <= 0) return;
     dBodyID body = bodies_.back() = dBodyCreate(world_);
     dMass mass;
@@ -78,10 +78,10 @@ class OdeContender : public Contender {
   }
   void add_joint(const RawJoint& joint) {
     dJointID hinge = dJointCreateHinge(world_, nullptr);
-    // its angle is the first one's, seen from the second
+    // the angle is of the first part relative to the second
     dJointAttach(hinge, bodies_[static_cast<std::size_t>(joint.child)],
                  bodies_[static_cast<std::size_t>(joint.parent)]);
-    dJointSetHingeAnchor(hinge, joint.place.x, joint.place.y, joint.place.z);
+    dJointSetHingeAnchor(hinge, joint.position.x, joint.position.y, joint.position.z);
     dJointSetHingeAxis(hinge, joint.axis.x, joint.axis.y, joint.axis.z);
     if (joint.lower <= joint.upper) {
       dJointSetHingeParam(hinge, dParamLoStop, joint.lower);
@@ -90,7 +90,7 @@ class OdeContender : public Contender {
     dJointSetHingeParam(hinge, dParamFMax, joint.force);
     joints_.push_back(hinge);
   }
-  static void touch(void* self, dGeomID a, dGeomID b) {
+  static void on_near_pair(void* self, dGeomID a, dGeomID b) {
     const auto& me = *static_cast<OdeContender*>(self);
     std::array<dContact, 8> contacts{};
     const int count = dCollide(a, b, static_cast<int>(contacts.size()), &contacts[0].geom, sizeof(dContact));
@@ -114,7 +114,7 @@ class OdeContender : public Contender {
 
 }  // namespace
 
-std::vector<Entrant> ode_entrants() {
+std::vector<ContenderFactory> ode_contenders() {
   static const int started = dInitODE2(0);
   if (started == 0) return {};
   const auto ode = [](bool quick) {

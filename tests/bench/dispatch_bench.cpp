@@ -1,4 +1,4 @@
-// How many messages a second the dispatch carries out, by the ways that a thing can be named.
+// Messages per second through the dispatcher, for the different ways to address an object.
 #include <benchmark/benchmark.h>
 
 #include <string>
@@ -8,11 +8,11 @@
 namespace limber {
 namespace {
 
-// sixteen arms of six joints, as the default scene has them
+// sixteen arms with six joints, as in the default scene
 struct Arms {
   Store store;
   World world{store};
-  Dispatch dispatch{world};
+  MessageDispatcher dispatch{world};
 
   Arms() {
     ShapeModel ball;
@@ -31,11 +31,11 @@ struct Arms {
             **body.add_joint(joint, parent, part, JointType::revolute, part.pose().position, {0, 1, 0}));
       }
     }
-    world.settle();
+    world.flush();
   }
 };
 
-void carry_out(benchmark::State& state, const Message& message) {
+void execute_message(benchmark::State& state, const Message& message) {
   Arms arms;
   for (auto _ : state) {
     Outcome outcome = arms.dispatch.execute(message);
@@ -48,14 +48,16 @@ void carry_out(benchmark::State& state, const Message& message) {
 const Arg kBody = Arg::of("arm7");
 const Arg kJoint = Arg::of("joint_3");
 
-BENCHMARK_CAPTURE(carry_out, world, Message{"/physics/sim/gravity", {Arg::of(-1.6)}});
-BENCHMARK_CAPTURE(carry_out, body_and_part, Message{"/physics/part/mass", {kBody, Arg::of("link_3"), Arg::of(0.3)}});
-BENCHMARK_CAPTURE(carry_out, body_and_motor_own_axis,
+BENCHMARK_CAPTURE(execute_message, world, Message{"/physics/sim/gravity", {Arg::of(-1.6)}});
+BENCHMARK_CAPTURE(execute_message, body_and_part,
+                  Message{"/physics/part/mass", {kBody, Arg::of("link_3"), Arg::of(0.3)}});
+BENCHMARK_CAPTURE(execute_message, body_and_motor_own_axis,
                   Message{"/physics/motor/angularservoposition", {kBody, kJoint, Arg::of(0.3)}});
-BENCHMARK_CAPTURE(carry_out, path, Message{"/physics/body/arm7/motor/joint_3/angular_servo_position", {Arg::of(0.3)}});
-BENCHMARK_CAPTURE(carry_out, one_body, Message{"/physics/part/friction", {kBody, Arg::of(0.3)}});
-BENCHMARK_CAPTURE(carry_out, all_bodies, Message{"/physics/part/friction", {Arg::of(0.3)}});
-BENCHMARK_CAPTURE(carry_out, pattern_path, Message{"/physics/body/arm*/part/link_3/friction", {Arg::of(0.3)}});
+BENCHMARK_CAPTURE(execute_message, path,
+                  Message{"/physics/body/arm7/motor/joint_3/angular_servo_position", {Arg::of(0.3)}});
+BENCHMARK_CAPTURE(execute_message, one_body, Message{"/physics/part/friction", {kBody, Arg::of(0.3)}});
+BENCHMARK_CAPTURE(execute_message, all_bodies, Message{"/physics/part/friction", {Arg::of(0.3)}});
+BENCHMARK_CAPTURE(execute_message, pattern_path, Message{"/physics/body/arm*/part/link_3/friction", {Arg::of(0.3)}});
 
 }  // namespace
 }  // namespace limber

@@ -1,4 +1,4 @@
-// What a guarded call costs, how late an endless one is stopped (CPU time), how long the collector pauses.
+// Cost of a guarded call, CPU time until an endless one is stopped, and pauses of the garbage collector.
 #include <algorithm>
 #include <chrono>
 #include <ctime>
@@ -19,15 +19,15 @@ namespace {
 
 struct SilentHost : ScriptHost {
   void send(Message) override {}
-  void reply(const Origin&, Message) override {}
-  void send_direct(const Origin&, Message) override {}
-  void plan_osc(const OscPlan&) override {}
-  void ask_reset() override {}
+  void reply(const CommandOrigin&, Message) override {}
+  void send_direct(const CommandOrigin&, Message) override {}
+  void configure_osc(const OscConfig&) override {}
+  void request_reset() override {}
   void script_error(std::string_view, int, std::string_view) override { faults++; }
   int faults = 0;
 };
 
-// a scene's text, run and started
+// runs and starts a scene from a string
 struct Show {
   explicit Show(const std::string& text, ScriptLimits limits = {}) {
     log_to_stderr(false);
@@ -36,9 +36,9 @@ struct Show {
     scene = std::make_unique<Scene>(world, host, options);
     const auto file = std::filesystem::temp_directory_path() / ("limber_bench_" + std::to_string(::getpid()) + ".lua");
     std::ofstream(file) << text;
-    if (const Result<void> ran = scene->run(file.string()); !ran) log_error("{}", ran.error());
+    if (const Result<void> loaded = scene->run(file.string()); !loaded) log_error("{}", loaded.error());
     std::filesystem::remove(file);
-    world.settle();
+    world.flush();
     scene->start();
   }
   Store store;
@@ -79,7 +79,7 @@ end))");
 }
 BENCHMARK(BM_GuardedCallThatWrites);
 
-// CPU time from the first look at an endless handler until it has been stopped and taken back
+// CPU time from the start of an endless handler until it was stopped and rolled back
 void stop_latency(benchmark::State& state, const std::string& body, int memory_mb = 64) {
   ScriptLimits limits;
   limits.memory = static_cast<std::size_t>(memory_mb) << 20u;
@@ -87,7 +87,7 @@ void stop_latency(benchmark::State& state, const std::string& body, int memory_m
   std::vector<double> times;
   for (auto _ : state) {
     const double before = cpu_ms();
-    show.scene->message({"/go", {}}, {});
+    show.scene->handle_message({"/go", {}}, {});
     times.push_back(cpu_ms() - before);
     for (int i = 0; i < 100; i++) show.scene->collect_garbage();
   }
@@ -120,7 +120,8 @@ const std::vector<std::pair<const char*, const char*>> kEndless = {
     {"bodies", "local n = 0 while true do n = n + 1 sim:add_body('b' .. n) end"},
 };
 
-// compiled garbage: the worst slice of 2000 ticks, each of which leaves `range(0)` kB behind, with that many MB kept
+// compiled garbage: the longest slice in 2000 ticks that each produce `range(0)` kB of garbage, with `range(1)` MB of
+// live data
 void BM_CollectorPause(benchmark::State& state) {
   Show show("kept = {} for i = 1, " + std::to_string(state.range(1)) +
             " * 10000 do kept[i] = { i, i + 1, i + 2 } end sim:on_step(function() for i = 1, " +

@@ -1,4 +1,4 @@
-// OSC's speed: what a datagram costs on its way in, and a frame of a thousand bodies on its way out.
+// Speed of OSC: the cost of an incoming datagram, and of an outgoing frame of a thousand bodies.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -44,8 +44,8 @@ void osc_decode(benchmark::State& state) {
 }
 BENCHMARK(osc_decode);
 
-// from the datagram to the engine's inbox, without a socket; drained every thousand
-void osc_take(benchmark::State& state) {
+// from the datagram to the engine's queue, without a socket; drained after every thousand
+void osc_receive(benchmark::State& state) {
   auto engine = std::make_unique<FakeEngine>();
   const NetClock clock;
   Receiver receiver(engine->link, {}, {}, clock);
@@ -53,15 +53,15 @@ void osc_take(benchmark::State& state) {
   std::vector<Command> commands;
   int count = 0;
   for (auto _ : state) {
-    receiver.take(bytes.data(), bytes.size(), {0x7f000001, 5000});
-    if (++count % 1000 == 0) engine->link.inbox.drain(commands);
+    receiver.process(bytes.data(), bytes.size(), {0x7f000001, 5000});
+    if (++count % 1000 == 0) engine->link.command_queue.drain(commands);
   }
   state.SetItemsProcessed(state.iterations());
 }
-BENCHMARK(osc_take);
+BENCHMARK(osc_receive);
 
-// range(0) messages as fast as a client sends them, range(1) to a datagram; then wait until the last is in. Messages a
-// second and the share that was lost
+// sends range(0) messages at full speed, range(1) per datagram, and waits for the last; counts messages per second and
+// the fraction lost
 void osc_burst(benchmark::State& state) {
   auto engine = std::make_unique<FakeEngine>();
   const Client client;
@@ -80,14 +80,14 @@ void osc_burst(benchmark::State& state) {
   for (auto _ : state) {
     for (std::uint64_t i = 0; i < count; i += per) {
       client.send(to, bytes);
-      if (i % 50000 == 0) engine->link.inbox.drain(commands);
+      if (i % 50000 == 0) engine->link.command_queue.drain(commands);
     }
-    // the ping stands behind all the others; it may be lost too
+    // the ping follows all others; it may be lost too
     do client.send(to, ping);
     while (!client.receive(100));
     state.PauseTiming();
     while (client.receive(0)) continue;
-    engine->link.inbox.drain(commands);
+    engine->link.command_queue.drain(commands);
     state.ResumeTiming();
   }
   const auto sent = static_cast<std::uint64_t>(state.iterations()) * count;
@@ -105,11 +105,11 @@ BENCHMARK(osc_burst)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-// a frame of 1000 bodies of 17 joints: numbers written
+// writes the numbers of a frame of 1000 bodies with 17 joints
 void osc_frame_fill(benchmark::State& state) {
   const Snapshot s = thousand_arms();
   StreamFrame frame(kTestOffsets);
-  frame.lay_out(s.roster, {});
+  frame.lay_out(s.body_list, {});
   for (auto _ : state) {
     frame.fill(s);
     benchmark::DoNotOptimize(frame.bytes().data());
@@ -119,26 +119,26 @@ void osc_frame_fill(benchmark::State& state) {
 }
 BENCHMARK(osc_frame_fill)->Unit(benchmark::kMicrosecond);
 
-// laid out anew, as after a body came or went
+// a new layout, as after a body was added or removed
 void osc_frame_lay_out(benchmark::State& state) {
   const Snapshot a = thousand_arms();
   const Snapshot b = thousand_arms();
   StreamFrame frame(kTestOffsets);
   for (auto _ : state) {
-    frame.lay_out(a.roster, {});
-    frame.lay_out(b.roster, {});
+    frame.lay_out(a.body_list, {});
+    frame.lay_out(b.body_list, {});
   }
 }
 BENCHMARK(osc_frame_lay_out)->Unit(benchmark::kMicrosecond);
 
-// the whole frame, sent over loopback to a client that reads in a thread of its own (range(2) 1) or to nobody (0);
-// range(0): bundle bytes, range(1): whether the kernel may cut
+// sends a whole frame over loopback, with a client that reads on its own thread (range(2) = 1) or without a receiver
+// (0); range(0): bundle size in bytes, range(1): whether the kernel may segment
 void osc_frame_send(benchmark::State& state) {
   const Snapshot s = thousand_arms();
-  StreamTarget wish;
-  wish.bundle = static_cast<int>(state.range(0));
+  StreamTarget target;
+  target.bundle = static_cast<int>(state.range(0));
   StreamFrame frame(kTestOffsets);
-  frame.lay_out(s.roster, wish);
+  frame.lay_out(s.body_list, target);
   system::UdpSender sender;
   if (!sender.open()) return state.SkipWithError("no socket");
   const Client client;

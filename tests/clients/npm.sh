@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# npm's OSC libraries play a scene and read its streams.
+# OSC libraries of npm control a scene and receive its streams.
 # needs: node npm python3
 set -e
 . "$(dirname "$0")/npm_folder.bash"

@@ -1,5 +1,5 @@
-# npm_folder FILE PACKAGE...: a folder of its own with a copy of that file and npm's packages beside it, gone at the end.
-# Sourced in tests/clients; afterwards the shell stands in that folder, and $home is the checkout.
+# npm_folder FILE PACKAGE...: creates a temporary folder with a copy of the file and the npm packages; it is removed at
+# the end. Sourced in tests/clients; afterwards the working directory is that folder and $home is the checkout.
 npm_folder() {
   home=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../..")
   folder=$(mktemp -d)

@@ -1,4 +1,4 @@
-// The tree as npm's oscquery understands it, and listening and setting as npm's ws and osc do.
+// Reads the tree with npm's oscquery; listens and sets values with npm's ws and osc.
 import { spawn } from 'node:child_process';
 import { createSocket } from 'node:dgram';
 import { writeFileSync } from 'node:fs';
@@ -20,9 +20,9 @@ const limber = spawn(process.argv[2], ['s.lua', '--osc-in', '127.0.0.1:0', '--os
 process.on('exit', () => limber.kill());
 
 let passed = 0;
-function must(condition, what) {
-  if (!condition) { console.log('FAILED: ' + what); process.exit(1); }
-  console.log('ok: ' + what);
+function must(condition, name) {
+  if (!condition) { console.log('FAILED: ' + name); process.exit(1); }
+  console.log('ok: ' + name);
   passed++;
 }
 
@@ -33,11 +33,11 @@ for await (const line of createInterface({ input: limber.stderr })) {
   port ||= Number(line.match(/remote panel http:\/\/127.0.0.1:(\d+)/)?.[1] || 0);
   if (line.includes('playing headless')) break;
 }
-must(oscPort && port, 'it plays');
+must(oscPort && port, 'Limber is running');
 
 const discovery = new oscquery.OSCQueryDiscovery();
 const service = await discovery.queryNewService('127.0.0.1', port);
-must(service.hostInfo.name.startsWith('Limber') && service.hostInfo.oscPort === oscPort, 'HOST_INFO is understood');
+must(service.hostInfo.name.startsWith('Limber') && service.hostInfo.oscPort === oscPort, 'HOST_INFO is valid');
 const methods = service.flat();
 must(methods.length > 40, `${methods.length} nodes are read`);
 must(service.resolvePath('/scene/wind').getValue(0) === 2, 'a value');
@@ -48,45 +48,45 @@ must(wind.access === oscquery.OSCQAccess.READWRITE, 'access');
 must(method('/scene/where').arguments.length === 3, 'three numbers');
 must(JSON.stringify(method('/scene/style').arguments[0].range.vals) === '["calm","wild"]', 'choices');
 
-const heard = [];
-const notices = [];
+const received = [];
+const pathEvents = [];
 let wake = () => {};
 const socket = new WebSocket(`ws://127.0.0.1:${port}/`);
 await new Promise((open) => socket.on('open', open));
 socket.on('message', (data, binary) => {
-  if (binary) heard.push(osc.readPacket(data, { metadata: true })); else notices.push(JSON.parse(data.toString()));
+  if (binary) received.push(osc.readPacket(data, { metadata: true })); else pathEvents.push(JSON.parse(data.toString()));
   wake();
 });
-async function until(condition, what) {
-  const late = setTimeout(() => must(false, what), 30000);
+async function until(condition, name) {
+  const timeout = setTimeout(() => must(false, name), 30000);
   while (!condition()) await new Promise((resolve) => { wake = resolve; });
-  clearTimeout(late);
-  must(true, what);
+  clearTimeout(timeout);
+  must(true, name);
 }
 socket.send(JSON.stringify({ COMMAND: 'LISTEN', DATA: '/scene/wind' }));
-await until(() => heard.some((m) => m.address === '/scene/wind' && m.args[0].value === 2), 'LISTEN gives the value');
+await until(() => received.some((m) => m.address === '/scene/wind' && m.args[0].value === 2), 'LISTEN gives the value');
 const udp = createSocket('udp4');
 const packet = (address, ...args) => Buffer.from(osc.writePacket({ address, args }, { metadata: true }));
 udp.send(packet('/scene/wind', { type: 'i', value: 5 }), oscPort, '127.0.0.1');
-await until(() => heard.some((m) => m.args[0]?.value === 5), 'a change by UDP is heard');
-heard.length = 0;
+await until(() => received.some((m) => m.args[0]?.value === 5), 'a change by UDP is received');
+received.length = 0;
 socket.send(packet('/scene/wind', { type: 'f', value: 7.5 }));
-// by two ways at once nobody knows which comes first
-async function says(value) {
+// messages by UDP and WebSocket have no defined order
+async function hasValue(value) {
   for (let tries = 0; tries < 1000; tries++) {
     if ((await (await fetch(`http://127.0.0.1:${port}/scene/wind?VALUE`)).json()).VALUE[0] === value) return true;
   }
   return false;
 }
-must(await says(7.5), 'set by the WebSocket');
+must(await hasValue(7.5), 'set by the WebSocket');
 udp.send(packet('/scene/wind', { type: 'f', value: 8 }), oscPort, '127.0.0.1');
-await until(() => heard.some((m) => m.args[0]?.value === 8), 'the next change is heard');
-must(!heard.some((m) => m.args[0]?.value === 7.5), 'its own was not echoed');
+await until(() => received.some((m) => m.args[0]?.value === 8), 'the next change is received');
+must(!received.some((m) => m.args[0]?.value === 7.5), 'no echo of its own change');
 await service.update();
-must(service.resolvePath('/scene/wind').getValue(0) === 8, 'and the tree says the same');
+must(service.resolvePath('/scene/wind').getValue(0) === 8, 'the tree has the same value');
 socket.send(packet('/more'));
-await until(() => notices.some((n) => n.COMMAND === 'PATH_ADDED' && n.DATA === '/physics/body/two'), 'PATH_ADDED');
+await until(() => pathEvents.some((n) => n.COMMAND === 'PATH_ADDED' && n.DATA === '/physics/body/two'), 'PATH_ADDED');
 socket.send(packet('/less'));
-await until(() => notices.some((n) => n.COMMAND === 'PATH_REMOVED' && n.DATA === '/physics/body/two'), 'PATH_REMOVED');
+await until(() => pathEvents.some((n) => n.COMMAND === 'PATH_REMOVED' && n.DATA === '/physics/body/two'), 'PATH_REMOVED');
 console.log(`${passed} passed`);
 process.exit(0);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Independent clients from npm: oscquery reads the tree, ws and osc listen and set.
+# Independent clients of npm: oscquery reads the tree, ws and osc listen and set values.
 # needs: node npm
 set -e
 . "$(dirname "$0")/npm_folder.bash"

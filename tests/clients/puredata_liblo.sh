@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Pure Data and liblo's tools play a scene and read its streams.
+# Pure Data and liblo's tools control a scene and receive its streams.
 # needs: pd oscsend oscdump stdbuf python3
 set -e
 cd "$(dirname "$0")/../.."

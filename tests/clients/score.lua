@@ -1,4 +1,4 @@
--- What every client plays: an arm that hangs, a behaviour, values of a scene. At /done it says what came of it.
+-- The scene that all clients control: a hanging arm, a behavior, parameters. /done prints and sends the results.
 params {
   { "wind", 0, min = 0, max = 10 }, { "where", vec3(0, 0, 0), min = -10, max = 10 }, { "lively", false },
   { "style", "calm", choices = { "calm", "wild" } },

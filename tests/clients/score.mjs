@@ -1,14 +1,14 @@
-// Plays score.lua and reads its streams with one of npm's OSC libraries: node score.mjs osc|node-osc|osc-js IN OUT
+// Controls score.lua and receives its streams with one of npm's OSC libraries: node score.mjs osc|node-osc|osc-js IN OUT
 const [library, into, out] = [process.argv[2], Number(process.argv[3]), Number(process.argv[4])];
 const host = '127.0.0.1';
 
-let said = '';
-function hear(address, args) {
+let printed = '';
+function receive(address, args) {
   const line = address === '/physics/joint/pos' ? `pos ${args.join(' ')}` : address === '/score' ? `score ${args[0]}` : '';
-  if (line && !said.includes(line)) { said += line; console.log(line); }
+  if (line && !printed.includes(line)) { printed += line; console.log(line); }
 }
 
-// what each library makes of whole numbers, fractions, truths and texts is its own
+// each library chooses its own type tags for integers, fractions, booleans and texts
 const SCORE = [
   ['/physics/sim/gravity', -3],
   ['/physics/part/friction', 'arm', 'tip', 0.75],
@@ -23,7 +23,7 @@ const TOGETHER = [['/scene/wind', 4.5], ['/scene/where', 1, 2, 3]];
 async function withOsc() {
   const { default: osc } = await import('osc');
   const port = new osc.UDPPort({ localAddress: host, localPort: out, remoteAddress: host, remotePort: into });
-  port.on('message', (m) => hear(m.address, m.args));
+  port.on('message', (m) => receive(m.address, m.args));
   port.on('ready', () => {
     const message = ([address, ...args]) => ({
       address,
@@ -44,14 +44,14 @@ async function withNodeOsc() {
     await new Promise((sent) => { client.send(new Bundle(...TOGETHER), sent); });
     client.send(['/done'], () => {});
   });
-  server.on('message', ([address, ...args]) => hear(address, args));
+  server.on('message', ([address, ...args]) => receive(address, args));
 }
 
 async function withOscJs() {
   const { default: OSC } = await import('osc-js');
   const osc = new OSC({ plugin: new OSC.DatagramPlugin({ open: { host, port: out }, send: { host, port: into } }) });
-  osc.on('/physics/joint/pos', (m) => hear(m.address, m.args));
-  osc.on('/score', (m) => hear(m.address, m.args));
+  osc.on('/physics/joint/pos', (m) => receive(m.address, m.args));
+  osc.on('/score', (m) => receive(m.address, m.args));
   osc.on('open', () => {
     SCORE.forEach((m) => osc.send(new OSC.Message(...m)));
     osc.send(new OSC.Bundle(TOGETHER.map((m) => new OSC.Message(...m)), Date.now() + 50));

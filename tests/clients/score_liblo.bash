@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Plays score.lua with liblo's oscsend and reads its streams with oscdump: score_liblo.bash IN OUT
+# Controls score.lua with liblo's oscsend and receives its streams with oscdump: score_liblo.bash IN OUT
 to=osc.udp://127.0.0.1:$1
 coproc DUMP { exec stdbuf -oL oscdump -L "$2"; }
 trap 'kill "$DUMP_PID"' EXIT
-# it listens when it hears
+# the first line shows that oscdump is listening
 read -r _ <&"${DUMP[0]}"
 oscsend "$to" /physics/sim/gravity i -3
 oscsend "$to" /physics/part/friction ssf arm tip 0.75

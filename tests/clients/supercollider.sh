@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# SuperCollider plays a scene and reads its streams.
+# SuperCollider controls a scene and receives its streams.
 # needs: sclang python3
 set -e
 cd "$(dirname "$0")/../.."

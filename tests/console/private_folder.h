@@ -1,4 +1,4 @@
-// A folder that only this user may look into, with a short path as sockets want it; gone when the test is over.
+// A private temporary folder with a short path, as sockets require; removed after the test.
 #pragma once
 
 #include <unistd.h>
@@ -30,7 +30,7 @@ class PrivateFolder {
   std::string path_;
 };
 
-/// A variable of the environment that is as it was when the test is over.
+/// Sets an environment variable and restores it after the test.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {

@@ -1,4 +1,4 @@
-// The protocol: what one end writes the other reads, and anything at all may stand in a line.
+// The console protocol: round trips between both ends, and arbitrary input.
 #include "console/protocol.h"
 
 #include <gtest/gtest.h>
@@ -10,76 +10,76 @@ namespace {
 
 using Kind = ConsoleLine::Kind;
 
-// a line as its reader gets it; each has its end and only one
-std::string cut(const std::string& line) {
+// a line as its reader gets it; every line ends with exactly one line feed
+std::string without_line_feed(const std::string& line) {
   EXPECT_EQ(line.find('\n'), line.size() - 1) << line;
   return line.substr(0, line.size() - 1);
 }
 
 ConsoleLine read(const std::string& line) {
-  const Result<ConsoleLine> read = parse_line(cut(line));
+  const Result<ConsoleLine> read = parse_line(without_line_feed(line));
   EXPECT_TRUE(read.ok()) << line;
   return read ? *read : ConsoleLine{};
 }
 
-TEST(Protocol, LinesAreAsTheyAreDocumented) {
-  EXPECT_EQ(request_line({7, ConsoleRequest::Wish::evaluate, "sim.time"}), "{\"evaluate\":\"sim.time\",\"id\":7}\n");
-  EXPECT_EQ(request_line({8, ConsoleRequest::Wish::complete, "sim.ti"}), "{\"complete\":\"sim.ti\",\"id\":8}\n");
-  EXPECT_EQ(hello_line("0.1.0", 42, "scripts/arms.lua"),
-            "{\"limber\":\"0.1.0\",\"pid\":42,\"scene\":\"scripts/arms.lua\"}\n");
-  EXPECT_EQ(answer_line(7, {Evaluation::Kind::value, "1.5"}), "{\"id\":7,\"value\":\"1.5\"}\n");
-  EXPECT_EQ(answer_line(7, {}), "{\"done\":true,\"id\":7}\n");
-  EXPECT_EQ(answer_line(7, {Evaluation::Kind::incomplete, ""}), "{\"id\":7,\"incomplete\":true}\n");
-  EXPECT_EQ(answer_line(7, {Evaluation::Kind::error, "no"}), "{\"error\":\"no\",\"id\":7}\n");
-  EXPECT_EQ(answer_line(8, {Evaluation::Kind::names, "tick\ntime", 2}),
+TEST(Protocol, LinesMatchTheDocumentation) {
+  EXPECT_EQ(request_line({7, ConsoleRequest::Kind::evaluate, "sim.time"}), "{\"evaluate\":\"sim.time\",\"id\":7}\n");
+  EXPECT_EQ(request_line({8, ConsoleRequest::Kind::complete, "sim.ti"}), "{\"complete\":\"sim.ti\",\"id\":8}\n");
+  EXPECT_EQ(hello_line("0.2.0", 42, "scripts/arms.lua"),
+            "{\"limber\":\"0.2.0\",\"pid\":42,\"scene\":\"scripts/arms.lua\"}\n");
+  EXPECT_EQ(result_line(7, {Evaluation::Kind::value, "1.5"}), "{\"id\":7,\"value\":\"1.5\"}\n");
+  EXPECT_EQ(result_line(7, {}), "{\"done\":true,\"id\":7}\n");
+  EXPECT_EQ(result_line(7, {Evaluation::Kind::incomplete, ""}), "{\"id\":7,\"incomplete\":true}\n");
+  EXPECT_EQ(result_line(7, {Evaluation::Kind::error, "no"}), "{\"error\":\"no\",\"id\":7}\n");
+  EXPECT_EQ(result_line(8, {Evaluation::Kind::names, "tick\ntime", 2}),
             "{\"id\":8,\"names\":[\"tick\",\"time\"],\"word\":2}\n");
   EXPECT_EQ(log_line(0, {1, LogLevel::print, "hi"}), "{\"print\":\"hi\"}\n");
   EXPECT_EQ(log_line(7, {1, LogLevel::warning, "oh"}), "{\"id\":7,\"warning\":\"oh\"}\n");
   EXPECT_EQ(log_line(0, {1, LogLevel::error, "ah"}), "{\"fault\":\"ah\"}\n");
   EXPECT_EQ(missed_line(3), "{\"missed\":3}\n");
-  EXPECT_EQ(refused_line("full"), "{\"refused\":\"full\"}\n");
+  EXPECT_EQ(rejected_line("full"), "{\"refused\":\"full\"}\n");
 }
 
-TEST(Protocol, Watching) {
-  using Wish = ConsoleRequest::Wish;
-  EXPECT_EQ(request_line({3, Wish::traffic, "/a"}), "{\"id\":3,\"of\":\"/a\",\"watch\":\"traffic\"}\n");
-  const Result<ConsoleRequest> changes = parse_request(cut(request_line({4, Wish::changes, ""})));
+TEST(Protocol, SubscribesAndReports) {
+  using RequestKind = ConsoleRequest::Kind;
+  EXPECT_EQ(request_line({3, RequestKind::traffic, "/a"}), "{\"id\":3,\"of\":\"/a\",\"watch\":\"traffic\"}\n");
+  const Result<ConsoleRequest> changes = parse_request(without_line_feed(request_line({4, RequestKind::changes, ""})));
   ASSERT_TRUE(changes.ok());
-  EXPECT_EQ(changes->wish, Wish::changes);
+  EXPECT_EQ(changes->kind, RequestKind::changes);
   EXPECT_EQ(changes->id, 4U);
-  EXPECT_EQ(parse_request("{\"watch\":\"birds\"}").error(), "\"watch\" is \"traffic\" or \"changes\"");
+  EXPECT_EQ(parse_request("{\"watch\":\"birds\"}").error(), "\"watch\" must be \"traffic\" or \"changes\"");
   const ConsoleLine in = read(traffic_line(true, 1.5, "127.0.0.1:5", "/a 1"));
   EXPECT_EQ(in.kind, Kind::in);
-  EXPECT_EQ(in.text + "|" + in.end, "/a 1|127.0.0.1:5");
+  EXPECT_EQ(in.text + "|" + in.origin, "/a 1|127.0.0.1:5");
   EXPECT_EQ(in.time, 1.5);
   EXPECT_EQ(read(traffic_line(false, 0, "x", "/a")).kind, Kind::out);
   const ConsoleLine change = read(change_line(2, "console", "/scene/wind 2 → 4"));
   EXPECT_EQ(change.kind, Kind::change);
   EXPECT_EQ(change.text, "/scene/wind 2 → 4");
-  EXPECT_EQ(change.end, "console");
+  EXPECT_EQ(change.origin, "console");
 }
 
-TEST(Protocol, WhatOneEndWritesTheOtherReads) {
+TEST(Protocol, LinesSurviveARoundTrip) {
   const std::string odd = "a\"b\\c\n\td 'é' \xe2\x80\xa6 \x01";
   const Result<ConsoleRequest> request =
-      parse_request(cut(request_line({9007199254740993u, ConsoleRequest::Wish::complete, odd})));
+      parse_request(without_line_feed(request_line({9007199254740993u, ConsoleRequest::Kind::complete, odd})));
   ASSERT_TRUE(request.ok());
   EXPECT_EQ(request->id, 9007199254740993u);
-  EXPECT_EQ(request->wish, ConsoleRequest::Wish::complete);
+  EXPECT_EQ(request->kind, ConsoleRequest::Kind::complete);
   EXPECT_EQ(request->text, odd);
-  const ConsoleLine hello = read(hello_line("0.1.0", 42, "a scene"));
+  const ConsoleLine hello = read(hello_line("0.2.0", 42, "a scene"));
   EXPECT_EQ(hello.kind, Kind::hello);
-  EXPECT_EQ(hello.version + "|" + hello.text, "0.1.0|a scene");
+  EXPECT_EQ(hello.version + "|" + hello.text, "0.2.0|a scene");
   EXPECT_EQ(hello.pid, 42);
-  const ConsoleLine names = read(answer_line(3, {Evaluation::Kind::names, "a\nb", 1}));
+  const ConsoleLine names = read(result_line(3, {Evaluation::Kind::names, "a\nb", 1}));
   EXPECT_EQ(names.names, (std::vector<std::string>{"a", "b"}));
   EXPECT_EQ(names.word, 1U);
-  EXPECT_TRUE(read(answer_line(3, {Evaluation::Kind::names, "", 0})).names.empty());
+  EXPECT_TRUE(read(result_line(3, {Evaluation::Kind::names, "", 0})).names.empty());
   EXPECT_EQ(read(missed_line(12)).count, 12U);
-  for (const auto& [line, kind] : {std::pair{answer_line(5, {}), Kind::done},
-                                   {answer_line(5, {Evaluation::Kind::value, "v"}), Kind::value},
-                                   {answer_line(5, {Evaluation::Kind::error, "e"}), Kind::error},
-                                   {answer_line(5, {Evaluation::Kind::incomplete, ""}), Kind::incomplete},
+  for (const auto& [line, kind] : {std::pair{result_line(5, {}), Kind::done},
+                                   {result_line(5, {Evaluation::Kind::value, "v"}), Kind::value},
+                                   {result_line(5, {Evaluation::Kind::error, "e"}), Kind::error},
+                                   {result_line(5, {Evaluation::Kind::incomplete, ""}), Kind::incomplete},
                                    {log_line(5, {1, LogLevel::print, "p"}), Kind::print},
                                    {log_line(5, {1, LogLevel::warning, "w"}), Kind::warning},
                                    {log_line(5, {1, LogLevel::error, "f"}), Kind::fault}}) {
@@ -88,35 +88,35 @@ TEST(Protocol, WhatOneEndWritesTheOtherReads) {
   }
 }
 
-TEST(Protocol, NothingFromAScriptCommandsATerminal) {
-  EXPECT_EQ(read(answer_line(1, {Evaluation::Kind::value, "\x1b[2Jgone\xff"})).text, "\\x1b[2Jgone\\xff");
-  EXPECT_EQ(read(answer_line(1, {Evaluation::Kind::names, "\x1b[2J"})).names[0], "\\x1b[2J");
-  EXPECT_EQ(read(refused_line("\x07")).text, "\\x07");
+TEST(Protocol, EscapesControlCharactersOfScripts) {
+  EXPECT_EQ(read(result_line(1, {Evaluation::Kind::value, "\x1b[2Jgone\xff"})).text, "\\x1b[2Jgone\\xff");
+  EXPECT_EQ(read(result_line(1, {Evaluation::Kind::names, "\x1b[2J"})).names[0], "\\x1b[2J");
+  EXPECT_EQ(read(rejected_line("\x07")).text, "\\x07");
 }
 
-TEST(Protocol, WrongRequestsSayWhatIsRight) {
+TEST(Protocol, InvalidRequestsDescribeTheExpectedForm) {
   for (const char* wrong : {"", "sim.time", "{", "[]", "1", "null", "\"x\"", "\xff\xfe", "[[[[[[[[[[[["}) {
     const Result<ConsoleRequest> request = parse_request(wrong);
     ASSERT_FALSE(request.ok()) << wrong;
-    EXPECT_EQ(request.error(), "this is no request; one is a line of JSON such as {\"id\":1,\"evaluate\":\"sim.time\"}")
+    EXPECT_EQ(request.error(), "not a request; expected a line of JSON such as {\"id\":1,\"evaluate\":\"sim.time\"}")
         << wrong;
   }
   for (const char* wrong : {"{}", "{\"id\":1}", "{\"evaluate\":1}", "{\"evaluate\":[\"x\"]}",
                             "{\"evaluate\":{\"a\":1}}", "{\"complete\":null,\"evaluate\":\"x\"}"})
-    EXPECT_EQ(parse_request(wrong).error(), "a request has a text in \"evaluate\" or in \"complete\"") << wrong;
-  // an id that is none is 0
+    EXPECT_EQ(parse_request(wrong).error(), "a request must have a text in \"evaluate\" or \"complete\"") << wrong;
+  // an invalid id becomes 0
   EXPECT_EQ(parse_request("{\"id\":\"seven\",\"evaluate\":\"x\"}")->id, 0U);
   EXPECT_EQ(parse_request("{\"id\":-1,\"evaluate\":\"x\"}")->id, 0U);
-  // a very deep one is refused as fast as a flat one
-  EXPECT_FALSE(parse_request(std::string(kMostLine, '[')).ok());
-  EXPECT_FALSE(parse_request("{\"evaluate\":" + std::string(kMostLine, '{')).ok());
+  // deep nesting is rejected as fast as a flat object
+  EXPECT_FALSE(parse_request(std::string(kMaxLine, '[')).ok());
+  EXPECT_FALSE(parse_request("{\"evaluate\":" + std::string(kMaxLine, '{')).ok());
 }
 
-TEST(Protocol, GarbageIsReadWithoutHarm) {
+TEST(Protocol, ParsesGarbageWithoutHarm) {
   Random random(7, "protocol");
-  const std::string good = request_line({1, ConsoleRequest::Wish::evaluate, "print('x')"}) +
-                           answer_line(2, {Evaluation::Kind::names, "a\nb", 1});
-  std::size_t refused = 0;
+  const std::string good = request_line({1, ConsoleRequest::Kind::evaluate, "print('x')"}) +
+                           result_line(2, {Evaluation::Kind::names, "a\nb", 1});
+  std::size_t rejected = 0;
   for (int i = 0; i < 6000; i++) {
     std::string line = i % 2 == 0 ? good.substr(0, 1 + static_cast<std::size_t>(random.uniform() * 70)) : "";
     const auto times = 1 + static_cast<int>(random.uniform() * 8);
@@ -129,12 +129,12 @@ TEST(Protocol, GarbageIsReadWithoutHarm) {
       }
     }
     const Result<ConsoleRequest> request = parse_request(line);
-    const Result<ConsoleLine> answer = parse_line(line);
-    refused += request.ok() ? 0 : 1;
+    const Result<ConsoleLine> parsed = parse_line(line);
+    rejected += request.ok() ? 0 : 1;
     EXPECT_TRUE(request.ok() || !request.error().empty());
-    EXPECT_TRUE(!answer.ok() || answer->names.size() <= 2U);
+    EXPECT_TRUE(!parsed.ok() || parsed->names.size() <= 2U);
   }
-  EXPECT_GT(refused, 4500U);
+  EXPECT_GT(rejected, 4500U);
 }
 
 }  // namespace

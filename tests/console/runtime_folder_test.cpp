@@ -1,4 +1,4 @@
-// Where sockets are: folders that are this user's alone, and no socket of a dead program.
+// Runtime folders: only private ones are used, and sockets of dead programs are removed.
 #include "console/runtime_folder.h"
 
 #include <fcntl.h>
@@ -24,17 +24,17 @@ unsigned mode_of(const std::string& path) {
   return lstat(path.c_str(), &about) == 0 ? about.st_mode & 07777u : 0;
 }
 
-TEST(RuntimeFolder, TheNamedOneComesFirst) {
+TEST(RuntimeFolder, TheConfiguredFolderComesFirst) {
   const PrivateFolder named;
   const PrivateFolder temp;
   const Environment runtime("XDG_RUNTIME_DIR", named.path().c_str());
   const Environment tmpdir("TMPDIR", temp.path().c_str());
   EXPECT_EQ(runtime_folders(), std::vector<std::string>{named.path()});
   EXPECT_EQ(*make_runtime_folder(), named.path());
-  EXPECT_TRUE(fs::is_empty(temp.path())) << "nothing is made that nobody needs";
+  EXPECT_TRUE(fs::is_empty(temp.path())) << "no unneeded folder is created";
 }
 
-TEST(RuntimeFolder, OneThatOthersMayOpenIsNotUsed) {
+TEST(RuntimeFolder, AnAccessibleFolderIsNotUsed) {
   const PrivateFolder named;
   const PrivateFolder temp;
   const Environment runtime("XDG_RUNTIME_DIR", named.path().c_str());
@@ -45,7 +45,7 @@ TEST(RuntimeFolder, OneThatOthersMayOpenIsNotUsed) {
   }
   chmod(named.path().c_str(), 0700);
   EXPECT_TRUE(lists(runtime_folders(), named.path()));
-  // a link to a good folder, a file, a path that is none
+  // a symlink to a private folder, a file, a relative path
   const std::string link = temp / "link";
   fs::create_directory_symlink(named.path(), link);
   const Environment linked("XDG_RUNTIME_DIR", link.c_str());
@@ -54,24 +54,24 @@ TEST(RuntimeFolder, OneThatOthersMayOpenIsNotUsed) {
   EXPECT_FALSE(lists(runtime_folders(), "here"));
 }
 
-TEST(RuntimeFolder, InTheTempFolderAPrivateOneIsMade) {
+TEST(RuntimeFolder, CreatesAPrivateTemporaryFolder) {
   const PrivateFolder temp;
   const Environment runtime("XDG_RUNTIME_DIR", "/nowhere/at/all");
   const Environment tmpdir("TMPDIR", temp.path().c_str());
   const std::string made = temp / ("limber-" + std::to_string(geteuid()));
-  EXPECT_TRUE(runtime_folders().empty()) << "to look makes nothing";
+  EXPECT_TRUE(runtime_folders().empty()) << "listing creates nothing";
   const Result<std::string> folder = make_runtime_folder();
   ASSERT_TRUE(folder.ok()) << folder.error();
   EXPECT_EQ(*folder, made);
   EXPECT_EQ(mode_of(made), 0700U);
   EXPECT_TRUE(lists(runtime_folders(), made));
-  // somebody prepared it with open doors
+  // the folder exists with public permissions
   chmod(made.c_str(), 0777);
   EXPECT_EQ(make_runtime_folder().error(),
-            "the folder " + made + " can't be used: others may look into it; chmod 700 " + made + " mends that");
+            "the folder " + made + " can't be used: other users can access it; run chmod 700 " + made);
   fs::remove(made);
   fs::create_directory_symlink(temp.path(), made);
-  EXPECT_EQ(make_runtime_folder().error(), "the folder " + made + " can't be used: it is no folder");
+  EXPECT_EQ(make_runtime_folder().error(), "the folder " + made + " can't be used: it is not a folder");
 }
 
 TEST(RuntimeFolder, SocketsOfDeadProgramsAreRemoved) {
@@ -81,7 +81,7 @@ TEST(RuntimeFolder, SocketsOfDeadProgramsAreRemoved) {
   { const Result<system::Descriptor> closes = system::listen_local(dead); }
   const Result<system::Descriptor> listener = system::listen_local(alive);
   ASSERT_TRUE(listener.ok()) << listener.error();
-  // what has nothing to do with us stays
+  // unrelated files stay
   const std::string file = folder / "limber-9.sock";
   const std::string other = folder / "limber-x.sock";
   const std::string named = folder / "limber-77.sock.new";
@@ -97,7 +97,7 @@ TEST(RuntimeFolder, SocketsOfDeadProgramsAreRemoved) {
   EXPECT_TRUE(console_sockets("/nowhere/at/all").empty());
 }
 
-TEST(RuntimeFolder, ManyThatListenAreListedByNumber) {
+TEST(RuntimeFolder, ListenersAreSortedByPid) {
   const PrivateFolder folder;
   std::vector<system::Descriptor> listeners;
   for (const int pid : {300, 7, 12}) {
@@ -105,7 +105,7 @@ TEST(RuntimeFolder, ManyThatListenAreListedByNumber) {
     ASSERT_TRUE(listener.ok());
     listeners.push_back(std::move(*listener));
   }
-  // one whose queue is full is alive as well
+  // a listener with a full queue counts as running
   std::vector<system::Descriptor> waiting;
   sockaddr_un at{};
   at.sun_family = AF_UNIX;
@@ -121,7 +121,7 @@ TEST(RuntimeFolder, ManyThatListenAreListedByNumber) {
   EXPECT_EQ(pids, (std::vector<int>{7, 12, 300}));
 }
 
-TEST(RuntimeFolder, ASocketIsItsOwnersAlone) {
+TEST(RuntimeFolder, ASocketIsPrivate) {
   const PrivateFolder folder;
   const std::string path = socket_path(folder.path(), 5);
   const Result<system::Descriptor> listener = system::listen_local(path);
@@ -132,11 +132,11 @@ TEST(RuntimeFolder, ASocketIsItsOwnersAlone) {
   ASSERT_TRUE(connection.ok()) << connection.error();
   EXPECT_EQ(system::peer_user(*connection), static_cast<long>(geteuid()));
   EXPECT_EQ(system::peer_user(system::Descriptor()), -1);
-  // again at the same place, as a program with a dead one's number does
+  // reuse of the path, as by a new program with the pid of a dead one
   EXPECT_TRUE(system::listen_local(path).ok());
 }
 
-TEST(RuntimeFolder, WhatCanNotBeHadSaysWhy) {
+TEST(RuntimeFolder, ErrorsHaveAReason) {
   const PrivateFolder folder;
   EXPECT_EQ(connect_console(folder / "none.sock").error(), folder / "none.sock: No such file or directory");
   EXPECT_EQ(system::listen_local(folder / "no/where.sock").error(),

@@ -1,4 +1,4 @@
-// The server with an engine behind it: who is let in, what is answered, and that nothing that a console does stops it.
+// The console server with an engine: access, results, and robustness against misbehaving clients.
 #include "console/server.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using engine_test::SceneFile;
 using engine_test::Show;
 using Kind = ConsoleLine::Kind;
 
-constexpr int kPatience = 60000;  // looks; only a failing test has so much
+constexpr int kMaxPolls = 60000;  // max. number of polls; reached only by failing tests
 
 constexpr const char* kScene = R"(
 ball = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 1), { mass = 0 })
@@ -38,7 +38,7 @@ EngineOptions quiet(const std::string& scene) {
 struct ServerTest : testing::Test {
   ServerTest() {
     log_to_stderr(false);
-    testing::internal::CaptureStderr();  // what scripts print
+    testing::internal::CaptureStderr();  // output of scripts
   }
   ~ServerTest() override {
     server.stop();
@@ -55,26 +55,26 @@ struct ServerTest : testing::Test {
     EXPECT_TRUE(connection.ok()) << (connection.ok() ? "" : connection.error());
     return ConsoleLink(connection ? std::move(*connection) : system::Descriptor());
   }
-  /// A console that was greeted.
-  ConsoleLink enter() {
+  /// A console that has received its first line.
+  ConsoleLink connect_and_greet() {
     ConsoleLink link = connect();
     EXPECT_EQ(next(link).kind, Kind::hello);
     return link;
   }
-  /// The next line, while the engine ticks.
+  /// Returns the next line while the engine ticks.
   ConsoleLine next(ConsoleLink& link) {
-    for (int i = 0; i < kPatience && !link.ended(); i++) {
+    for (int i = 0; i < kMaxPolls && !link.ended(); i++) {
       if (std::optional<ConsoleLine> line = link.next(1)) return *line;
       show.ticks(1);
     }
-    EXPECT_TRUE(link.ended()) << "nothing came";
+    EXPECT_TRUE(link.ended()) << "no line received";
     ConsoleLine end;
-    end.kind = Kind::refused;
+    end.kind = Kind::rejected;
     end.text = "ended";
     return end;
   }
   std::string evaluate(ConsoleLink& link, const std::string& text) {
-    EXPECT_TRUE(link.send({++id, ConsoleRequest::Wish::evaluate, text}));
+    EXPECT_TRUE(link.send({++id, ConsoleRequest::Kind::evaluate, text}));
     const ConsoleLine line = next(link);
     EXPECT_EQ(line.id, id);
     return line.text;
@@ -99,17 +99,17 @@ TEST_F(ServerTest, GreetsAndAnswers) {
   EXPECT_EQ(evaluate(link, "ball.position = vec3(0, 0, 9)"), "");
   EXPECT_NEAR(show.read("/physics/body/ball/part/ball/position", 2), 9, 0.2);
   EXPECT_TRUE(evaluate(link, "nothing").starts_with("console:1: there is no global 'nothing'"));
-  EXPECT_TRUE(link.send({50, ConsoleRequest::Wish::evaluate, "for"}));
+  EXPECT_TRUE(link.send({50, ConsoleRequest::Kind::evaluate, "for"}));
   EXPECT_EQ(next(link).kind, Kind::incomplete);
-  EXPECT_TRUE(link.send({51, ConsoleRequest::Wish::complete, "sim.ti"}));
+  EXPECT_TRUE(link.send({51, ConsoleRequest::Kind::complete, "sim.ti"}));
   const ConsoleLine names = next(link);
   EXPECT_EQ(names.names, (std::vector<std::string>{"tick", "time", "timestep"}));
   EXPECT_EQ(names.word, 2U);
 }
 
-TEST_F(ServerTest, TheSocketIsThereWhileItRuns) {
+TEST_F(ServerTest, TheSocketExistsWhileItRuns) {
   EXPECT_EQ(server.path(), "");
-  // one of a program that died
+  // the socket of a program that has died
   const std::string dead = socket_path(folder.path(), 1 << 30);
   { const Result<system::Descriptor> closes = system::listen_local(dead); }
   start();
@@ -117,40 +117,41 @@ TEST_F(ServerTest, TheSocketIsThereWhileItRuns) {
   EXPECT_EQ(path, socket_path(folder.path(), getpid()));
   EXPECT_FALSE(std::filesystem::exists(dead));
   EXPECT_EQ(console_sockets(folder.path()).size(), 1U);
-  ConsoleLink link = enter();
+  ConsoleLink link = connect_and_greet();
   server.stop();
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(next(link).text, "ended");
   start();
-  ConsoleLink again = enter();
+  ConsoleLink again = connect_and_greet();
   EXPECT_EQ(evaluate(again, "1"), "1");
 }
 
-TEST_F(ServerTest, AFolderThatCanNotBeHasItsReason) {
+TEST_F(ServerTest, AnUnusableFolderHasAReason) {
   ConsoleServer nowhere(show.link, {.folder = "/nowhere/at/all", .scene = ""});
   EXPECT_EQ(nowhere.start().error(), socket_path("/nowhere/at/all", getpid()) + ": No such file or directory");
   nowhere.stop();
 }
 
-TEST_F(ServerTest, AnotherUserIsTurnedAway) {
-  ConsoleServer others(show.link, {.folder = folder.path(), .scene = "", .user = static_cast<long>(geteuid()) + 1});
+TEST_F(ServerTest, AnotherUserIsRejected) {
+  ConsoleServer others(show.link,
+                       {.folder = folder.path(), .scene = "", .allowed_user = static_cast<long>(geteuid()) + 1});
   ASSERT_TRUE(others.start().ok());
   const std::uint64_t warnings = log_count(LogLevel::warning);
   Result<system::Descriptor> connection = connect_console(others.path());
   ASSERT_TRUE(connection.ok());
   ConsoleLink link(std::move(*connection));
-  link.send({1, ConsoleRequest::Wish::evaluate, "ball:remove()"});
-  EXPECT_EQ(next(link).text, "ended") << "not even a greeting";
+  link.send({1, ConsoleRequest::Kind::evaluate, "ball:remove()"});
+  EXPECT_EQ(next(link).text, "ended") << "no first line";
   show.ticks(3);
   EXPECT_EQ(show.read("/physics/body/ball/enabled"), 1);
   EXPECT_EQ(log_count(LogLevel::warning), warnings + 1);
 }
 
-TEST_F(ServerTest, WhatARequestPrintedComesBeforeItsAnswer) {
+TEST_F(ServerTest, OutputOfARequestPrecedesItsResult) {
   start();
-  ConsoleLink link = enter();
-  ConsoleLink other = enter();
-  EXPECT_TRUE(link.send({7, ConsoleRequest::Wish::evaluate, "print('a', 1) warn('b') return 3"}));
+  ConsoleLink link = connect_and_greet();
+  ConsoleLink other = connect_and_greet();
+  EXPECT_TRUE(link.send({7, ConsoleRequest::Kind::evaluate, "print('a', 1) warn('b') return 3"}));
   ConsoleLine line = next(link);
   EXPECT_EQ(line.kind, Kind::print);
   EXPECT_EQ(line.text, "a\t1");
@@ -160,7 +161,7 @@ TEST_F(ServerTest, WhatARequestPrintedComesBeforeItsAnswer) {
   EXPECT_EQ(line.text, "b");
   EXPECT_EQ(line.id, 7U);
   EXPECT_EQ(next(link).text, "3");
-  // the other one hears of it too, as of anything that is printed
+  // the other console receives it too, like any printed text
   line = next(other);
   EXPECT_EQ(line.kind, Kind::print);
   EXPECT_EQ(line.text, "a\t1");
@@ -168,50 +169,50 @@ TEST_F(ServerTest, WhatARequestPrintedComesBeforeItsAnswer) {
   EXPECT_EQ(next(other).kind, Kind::warning);
 }
 
-TEST_F(ServerTest, TheLogSinceTheConnectionIsTold) {
+TEST_F(ServerTest, SendsTheLogSinceTheConnection) {
   log_warning("before");
   start();
-  ConsoleLink link = enter();
+  ConsoleLink link = connect_and_greet();
   log_info("not for consoles");
   log_error("a fault\nof two lines");
   ConsoleLine line = next(link);
   EXPECT_EQ(line.kind, Kind::fault);
   EXPECT_EQ(line.text, "a fault\nof two lines");
-  // more than the log keeps: what is left out is counted
+  // more than the log's capacity: dropped lines are counted
   constexpr int kLines = 5000;
   for (int i = 0; i < kLines; i++) log_line(LogLevel::print, "flood");
   log_warning("last");
-  std::uint64_t told = 0;
+  std::uint64_t printed = 0;
   std::uint64_t missed = 0;
   while ((line = next(link)).kind != Kind::warning) {
-    told += line.kind == Kind::print ? 1 : 0;
+    printed += line.kind == Kind::print ? 1 : 0;
     missed += line.count;
-    ASSERT_NE(line.kind, Kind::refused);
+    ASSERT_NE(line.kind, Kind::rejected);
   }
-  EXPECT_EQ(told + missed, static_cast<std::uint64_t>(kLines));
+  EXPECT_EQ(printed + missed, static_cast<std::uint64_t>(kLines));
 }
 
-TEST_F(ServerTest, EightAreLetIn) {
+TEST_F(ServerTest, AcceptsEightConnections) {
   start();
   std::vector<ConsoleLink> links;
-  for (std::size_t i = 0; i < ConsoleServer::kMostVisitors; i++) links.push_back(enter());
+  for (std::size_t i = 0; i < ConsoleServer::kMaxConnections; i++) links.push_back(connect_and_greet());
   ConsoleLink ninth = connect();
   const ConsoleLine line = next(ninth);
-  EXPECT_EQ(line.kind, Kind::refused);
+  EXPECT_EQ(line.kind, Kind::rejected);
   EXPECT_EQ(line.text, "8 consoles are open already; close one");
   for (ConsoleLink& link : links) EXPECT_EQ(evaluate(link, "2 * 2"), "4");
   links.pop_back();
-  // its place is free when the server has seen that it left
-  for (int i = 0; i < kPatience; i++) {
+  // its slot is free when the server has noticed that it left
+  for (int i = 0; i < kMaxPolls; i++) {
     ConsoleLink next_one = connect();
     if (next(next_one).kind == Kind::hello) return;
   }
-  ADD_FAILURE() << "the place never became free";
+  ADD_FAILURE() << "the slot was not freed";
 }
 
-TEST_F(ServerTest, GarbageIsAnsweredAndTheNextLineCounts) {
+TEST_F(ServerTest, GarbageIsAnsweredAndTheNextLineWorks) {
   start();
-  ConsoleLink link = enter();
+  ConsoleLink link = connect_and_greet();
   const std::string garbage = "hello\n\xff\xfe\n[[[[\n{\"evaluate\":3}\n\r\n\n";
   ASSERT_EQ(send(link.fd(), garbage.data(), garbage.size(), 0), static_cast<ssize_t>(garbage.size()));
   for (int i = 0; i < 4; i++) {
@@ -222,80 +223,81 @@ TEST_F(ServerTest, GarbageIsAnsweredAndTheNextLineCounts) {
   EXPECT_EQ(evaluate(link, "'still here'"), "still here");
 }
 
-TEST_F(ServerTest, ALineThatNeverEndsIsRefused) {
+TEST_F(ServerTest, ATooLongLineIsRejected) {
   start();
-  ConsoleLink link = enter();
-  ConsoleLink other = enter();
+  ConsoleLink link = connect_and_greet();
+  ConsoleLink other = connect_and_greet();
   const std::string much(65536, 'x');
   std::size_t sent = 0;
-  while (sent < 4 * kMostLine) {
+  while (sent < 4 * kMaxLine) {
     const ssize_t n = send(link.fd(), much.data(), much.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0 && errno != EAGAIN) break;
     if (n > 0) sent += static_cast<std::size_t>(n);
     if (n < 0) show.ticks(1);
   }
-  EXPECT_LT(sent, 4 * kMostLine) << "the connection was ended";
+  EXPECT_LT(sent, 4 * kMaxLine) << "the connection was closed";
   EXPECT_EQ(evaluate(other, "'still here'"), "still here");
-  // the longest text that is taken, with every byte of it escaped
-  const std::string longest = "--" + std::string(kMostEvaluated - 2, '\x01');
+  // the longest accepted text, with every byte escaped
+  const std::string longest = "--" + std::string(kMaxEvaluatedBytes - 2, '\x01');
   EXPECT_EQ(evaluate(other, longest), "");
-  EXPECT_EQ(evaluate(other, longest + "x"), "a text for the scene has up to 65536 bytes, this one 65537");
+  EXPECT_EQ(evaluate(other, longest + "x"), "the text must have at most 65536 bytes, got 65537");
 }
 
-TEST_F(ServerTest, OneThatDoesNotReadWaitsAlone) {
+TEST_F(ServerTest, ASlowReaderDoesNotDelayOthers) {
   start();
-  ConsoleLink slow = enter();
-  ConsoleLink other = enter();
-  // asks and asks, and reads nothing, until it can't even ask any more
-  std::uint64_t asked = 0;
+  ConsoleLink slow = connect_and_greet();
+  ConsoleLink other = connect_and_greet();
+  // sends requests without reading until the connection blocks
+  std::uint64_t request_count = 0;
   std::string rest;
   for (int quiet = 0; quiet < 200;) {
-    if (rest.empty()) rest = request_line({++asked, ConsoleRequest::Wish::evaluate, "('x'):rep(60000)"});
+    if (rest.empty()) rest = request_line({++request_count, ConsoleRequest::Kind::evaluate, "('x'):rep(60000)"});
     const ssize_t n = send(slow.fd(), rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n > 0) rest.erase(0, static_cast<std::size_t>(n));
     quiet = n > 0 ? 0 : quiet + 1;
     if (n < 0) {
-      EXPECT_EQ(evaluate(other, "1"), "1") << "others are answered meanwhile";
+      EXPECT_EQ(evaluate(other, "1"), "1") << "other consoles are answered meanwhile";
     }
-    ASSERT_LT(asked, 100000U) << "somewhere it must be held back";
+    ASSERT_LT(request_count, 100000U) << "the server must stop reading at some point";
   }
-  // then it reads, and everything is there, in order
-  for (std::uint64_t i = 1; i < asked; i++) {
+  // afterwards it reads all results in order
+  for (std::uint64_t i = 1; i < request_count; i++) {
     const ConsoleLine line = next(slow);
     ASSERT_EQ(line.id, i);
     ASSERT_EQ(line.text.size(), 60000U);
   }
 }
 
-TEST_F(ServerTest, ThoseWhoLeaveInTheMiddleAreForgotten) {
+TEST_F(ServerTest, BrokenConnectionsAreRemoved) {
   start();
   for (int i = 0; i < 300; i++) {
     ConsoleLink link = connect();
-    if (i % 2 == 0) link.send({1, ConsoleRequest::Wish::evaluate, "state.left = (state.left or 0) + 1"});
+    if (i % 2 == 0) link.send({1, ConsoleRequest::Kind::evaluate, "state.left = (state.left or 0) + 1"});
     if (i % 3 == 0) show.ticks(1);
   }
-  for (int i = 0; i < kPatience; i++) {
+  for (int i = 0; i < kMaxPolls; i++) {
     ConsoleLink link = connect();
     const ConsoleLine line = next(link);
     if (line.kind != Kind::hello) continue;
     EXPECT_EQ(evaluate(link, "state.n > 0"), "true");
     return;
   }
-  ADD_FAILURE() << "nobody is let in any more";
+  ADD_FAILURE() << "no connection is accepted any more";
 }
 
-TEST_F(ServerTest, OneThatOnlyStopsTalkingIsAnswered) {
+TEST_F(ServerTest, AHalfClosedConnectionIsAnswered) {
   start();
-  ConsoleLink link = enter();
-  const std::string asks = "{\"id\":1,\"evaluate\":\"1\"}\n{\"id\":2,\"evaluate\":\"2\"}";  // no end of line at the end
-  ASSERT_EQ(send(link.fd(), asks.data(), asks.size(), 0), static_cast<ssize_t>(asks.size()));
+  ConsoleLink link = connect_and_greet();
+  const std::string requests =
+      "{\"id\":1,\"evaluate\":\"1\"}\n{\"id\":2,\"evaluate\":\"2\"}";  // no line feed at the end
+  ASSERT_EQ(send(link.fd(), requests.data(), requests.size(), 0), static_cast<ssize_t>(requests.size()));
   shutdown(link.fd(), SHUT_WR);
   EXPECT_EQ(next(link).text, "1");
   EXPECT_EQ(next(link).text, "2");
   EXPECT_EQ(next(link).text, "ended");
 }
 
-TEST_F(ServerTest, NothingThatComesInChangesTheRun) {
+TEST_F(ServerTest, InvalidInputDoesNotChangeTheRun) {
   const auto plain = [&] {
     Show alone(quiet(scene.path()));
     while (alone.engine.world().tick() < 400) alone.ticks(1);
@@ -304,7 +306,7 @@ TEST_F(ServerTest, NothingThatComesInChangesTheRun) {
   start();
   Random random(11, "console");
   std::vector<ConsoleLink> links;
-  const std::string good = request_line({1, ConsoleRequest::Wish::evaluate, "state.hash = nil"});
+  const std::string good = request_line({1, ConsoleRequest::Kind::evaluate, "state.hash = nil"});
   while (show.engine.world().tick() < 400) {
     if (links.size() < 4) links.push_back(connect());
     ConsoleLink& link = links[static_cast<std::size_t>(random.uniform() * static_cast<double>(links.size()))];
@@ -318,13 +320,13 @@ TEST_F(ServerTest, NothingThatComesInChangesTheRun) {
   EXPECT_EQ(show.engine.state_hash(), plain());
   EXPECT_EQ(show.engine.faults(), 0U);
   links.clear();
-  for (int i = 0; i < kPatience; i++) {
+  for (int i = 0; i < kMaxPolls; i++) {
     ConsoleLink link = connect();
     if (next(link).kind != Kind::hello) continue;
     EXPECT_EQ(evaluate(link, "'well'"), "well");
     return;
   }
-  ADD_FAILURE() << "nobody is let in any more";
+  ADD_FAILURE() << "no connection is accepted any more";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Watchers: messages of the link's traffic, and what two images differ in.
+// Subscriptions: messages, and differences between two value snapshots.
 #include "console/watcher.h"
 
 #include "engine/show.h"
@@ -7,7 +7,7 @@ namespace limber {
 namespace {
 
 using engine_test::Show;
-using Wish = ConsoleRequest::Wish;
+using RequestKind = ConsoleRequest::Kind;
 
 constexpr const char* kWatchedScene = R"(
 params { { "wind", 2, min = 0, max = 10 }, { "sun", 0 } }
@@ -18,82 +18,82 @@ osc:on("/more", function() sim:body("one"):copy("two") end)
 osc:on("/less", function() sim:body("two"):remove() end)
 )";
 
-struct Watching {
-  explicit Watching(EngineLink& link, Wish wish, const std::string& pattern = "") {
-    Result<std::unique_ptr<Watcher>> made = make_watcher(link, {1, wish, pattern});
+struct Subscriber {
+  explicit Subscriber(EngineLink& link, RequestKind kind, const std::string& pattern = "") {
+    Result<std::unique_ptr<Subscription>> made = make_subscription(link, {1, kind, pattern});
     EXPECT_TRUE(made.ok());
-    if (made) watcher = std::move(*made);
+    if (made) subscription = std::move(*made);
   }
-  /// What is told now, as the protocol's lines.
-  std::vector<ConsoleLine> told() {
-    std::vector<ConsoleLine> lines;
-    watcher->tell([&](const std::string& line) { lines.push_back(*parse_line(line.substr(0, line.size() - 1))); },
-                  [&](std::uint64_t count) { missed += count; });
-    return lines;
+  /// Returns the new lines, as protocol lines.
+  std::vector<ConsoleLine> new_lines() {
+    std::vector<ConsoleLine> result;
+    subscription->poll([&](const std::string& line) { result.push_back(*parse_line(line.substr(0, line.size() - 1))); },
+                       [&](std::uint64_t count) { dropped += count; });
+    return result;
   }
   std::vector<std::string> texts() {
     std::vector<std::string> all;
-    for (const ConsoleLine& line : told()) all.push_back(line.text);
+    for (const ConsoleLine& line : new_lines()) all.push_back(line.text);
     return all;
   }
-  std::unique_ptr<Watcher> watcher;
-  std::uint64_t missed = 0;
+  std::unique_ptr<Subscription> subscription;
+  std::uint64_t dropped = 0;
 };
 
 using Texts = std::vector<std::string>;
 
-// an image of a moment when all that was sent has been carried out
-void make_image(Show& show) {
-  const std::uint64_t ask = show.link.image_asks.load();
+// waits for a snapshot that includes everything sent so far
+void wait_for_snapshot(Show& show) {
+  const std::uint64_t wanted = show.link.value_snapshot_requests.load();
   for (int i = 0; i < 1000000; i++) {
     show.ticks(1);
-    const auto made = show.link.images.read();
-    if (made != nullptr && made->asks >= ask) return;
+    const auto made = show.link.value_snapshots.read();
+    if (made != nullptr && made->request >= wanted) return;
   }
-  ADD_FAILURE() << "no image is made";
+  ADD_FAILURE() << "no snapshot was taken";
 }
 
-TEST(Watcher, TellsTrafficOfItsPattern) {
+TEST(Subscription, SendsMatchingMessages) {
   EngineLink link;
-  link.traffic.note(true, "a:1", {"/before", {}});
-  Watching all(link, Wish::traffic);
-  Watching parts(link, Wish::traffic, "/physics/*/mass");
-  EXPECT_TRUE(link.traffic.watched());
-  link.traffic.note(true, "a:1", {"/physics/part/mass", {Arg::of("arm"), Arg::of(0.3)}});
-  link.traffic.note(false, "b:2", {"/pong", {}});
-  const std::vector<ConsoleLine> told = all.told();
-  ASSERT_EQ(told.size(), 2u) << "not what was before it watched";
-  EXPECT_EQ(told[0].kind, ConsoleLine::Kind::in);
-  EXPECT_EQ(told[0].text, "/physics/part/mass arm 0.3");
-  EXPECT_EQ(told[0].end, "a:1");
-  EXPECT_GT(told[0].time, 0);
-  EXPECT_EQ(told[1].kind, ConsoleLine::Kind::out);
-  EXPECT_TRUE(all.told().empty());
+  link.message_log.add(true, "a:1", {"/before", {}});
+  Subscriber all(link, RequestKind::traffic);
+  Subscriber parts(link, RequestKind::traffic, "/physics/*/mass");
+  EXPECT_TRUE(link.message_log.enabled());
+  link.message_log.add(true, "a:1", {"/physics/part/mass", {Arg::of("arm"), Arg::of(0.3)}});
+  link.message_log.add(false, "b:2", {"/pong", {}});
+  const std::vector<ConsoleLine> lines = all.new_lines();
+  ASSERT_EQ(lines.size(), 2u) << "no messages from before the subscription";
+  EXPECT_EQ(lines[0].kind, ConsoleLine::Kind::in);
+  EXPECT_EQ(lines[0].text, "/physics/part/mass arm 0.3");
+  EXPECT_EQ(lines[0].origin, "a:1");
+  EXPECT_GT(lines[0].time, 0);
+  EXPECT_EQ(lines[1].kind, ConsoleLine::Kind::out);
+  EXPECT_TRUE(all.new_lines().empty());
   EXPECT_EQ(parts.texts(), Texts{"/physics/part/mass arm 0.3"});
-  for (std::size_t i = 0; i < Traffic::kMostLines + 7; i++) link.traffic.note(true, "", {"/flood", {}});
-  EXPECT_EQ(all.told().size(), Traffic::kMostLines);
-  EXPECT_EQ(all.missed, 7u);
-  all.watcher.reset();
-  parts.watcher.reset();
-  EXPECT_FALSE(link.traffic.watched()) << "who has gone costs nothing";
+  for (std::size_t i = 0; i < MessageLog::kMaxEntries + 7; i++) link.message_log.add(true, "", {"/flood", {}});
+  EXPECT_EQ(all.new_lines().size(), MessageLog::kMaxEntries);
+  EXPECT_EQ(all.dropped, 7u);
+  all.subscription.reset();
+  parts.subscription.reset();
+  EXPECT_FALSE(link.message_log.enabled()) << "closed subscriptions cost nothing";
 }
 
-TEST(Watcher, TellsChangesOfAPattern) {
+TEST(Subscription, SendsChangesOfMatchingValues) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
-  Watching changes(show.link, Wish::changes, "//{wind,gravity,mass}");
+  Subscriber changes(show.link, RequestKind::changes, "//{wind,gravity,mass}");
   const auto after = [&] {
-    changes.told();  // asks
-    make_image(show);
+    changes.new_lines();  // requests a snapshot
+    wait_for_snapshot(show);
     return changes.texts();
   };
-  EXPECT_EQ(after(), Texts{}) << "what stands at the beginning has not changed";
-  EXPECT_EQ(after(), Texts{}) << "a ball that falls is no property";
+  EXPECT_EQ(after(), Texts{}) << "initial values are not changes";
+  EXPECT_EQ(after(), Texts{}) << "poses are not settings";
   show.send("/scene/wind", 4.5);
   show.send("/physics/sim/gravity", 0, 0, -1);
   EXPECT_EQ(after(), (Texts{"/physics/sim/gravity 0 0 -9.81 → 0 0 -1", "/scene/wind 2 → 4.5"}));
   EXPECT_EQ(after(), Texts{});
-  // things that come and go are no change of the others'; what changes in the same moment is told
+  // Added and removed objects are not reported as changes of others; a value changed in the same tick is reported.
   show.send("/more");
   show.send("/scene/wind", 5);
   EXPECT_EQ(after(), Texts{"/scene/wind 4.5 → 5"});
@@ -103,70 +103,72 @@ TEST(Watcher, TellsChangesOfAPattern) {
   EXPECT_EQ(after(), Texts{});
 }
 
-TEST(Watcher, TellsWhatHandsSet) {
+TEST(Subscription, SendsValuesSetByControllers) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
   show.send("/scene/wind", 3);
   show.ticks(1);
   show.send("/scene/wind", 4);
   show.ticks(1);
-  show.send("/physics/sim/gravity", 0, 0, -9.81);  // as it is
+  show.send("/physics/sim/gravity", 0, 0, -9.81);  // unchanged
   show.ticks(1);
-  Watching hands(show.link, Wish::changes);
-  std::vector<ConsoleLine> told = hands.told();
-  ASSERT_EQ(told.size(), 1u) << "what hands have set before, a gesture as one";
-  EXPECT_EQ(told[0].text, "/scene/wind 2 → 4");
-  EXPECT_EQ(told[0].end, "127.0.0.1:4000");
-  EXPECT_EQ(hands.texts(), Texts{});
+  Subscriber controllers(show.link, RequestKind::changes);
+  std::vector<ConsoleLine> lines = controllers.new_lines();
+  ASSERT_EQ(lines.size(), 1u) << "earlier changes by controllers; a gesture counts once";
+  EXPECT_EQ(lines[0].text, "/scene/wind 2 → 4");
+  EXPECT_EQ(lines[0].origin, "127.0.0.1:4000");
+  EXPECT_EQ(controllers.texts(), Texts{});
   show.send("/scene/wind", 5);
-  show.link.inbox.push(
-      {{}, {Hand::console}, std::make_shared<const Evaluate>(Evaluate{Evaluate::Wish::run, "sim.gravity = vec3()"})});
+  show.link.command_queue.push({{},
+                                {CommandSource::console},
+                                std::make_shared<const EvaluationRequest>(
+                                    EvaluationRequest{EvaluationRequest::Action::run, "sim.gravity = vec3()"})});
   show.send("/later");
-  show.ticks(5);  // a timer sets the sun: no hand
-  told = hands.told();
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_EQ(told[0].text, "/scene/wind 2 → 5") << "the gesture goes on";
-  EXPECT_EQ(told[1].text, "/physics/sim/gravity 0 0 -9.81 → 0 0 0");
-  EXPECT_EQ(told[1].end, "console");
+  show.ticks(5);  // a timer sets the sun: no controller
+  lines = controllers.new_lines();
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].text, "/scene/wind 2 → 5") << "the gesture continues";
+  EXPECT_EQ(lines[1].text, "/physics/sim/gravity 0 0 -9.81 → 0 0 0");
+  EXPECT_EQ(lines[1].origin, "console");
 }
 
-TEST(Watcher, TellsOfAPatternWhoseHandItWas) {
+TEST(Subscription, SendsTheControllerOfAChange) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
-  Watching scene(show.link, Wish::changes, "/scene/*");
-  // an image may have been made while ticks went on, and another one after all was done
+  Subscriber scene(show.link, RequestKind::changes, "/scene/*");
+  // a snapshot may be taken between the ticks, and another one after all changes
   const auto after = [&] {
-    std::vector<ConsoleLine> all = scene.told();
-    make_image(show);
-    for (ConsoleLine& line : scene.told()) all.push_back(std::move(line));
+    std::vector<ConsoleLine> all = scene.new_lines();
+    wait_for_snapshot(show);
+    for (ConsoleLine& line : scene.new_lines()) all.push_back(std::move(line));
     return all;
   };
   after();
   show.send("/scene/wind", 5);
   show.send("/later");
   show.ticks(5);
-  const std::vector<ConsoleLine> told = after();
-  ASSERT_EQ(told.size(), 2u);
-  EXPECT_EQ(told[0].text, "/scene/wind 2 → 5");
-  EXPECT_EQ(told[0].end, "127.0.0.1:4000");
-  EXPECT_EQ(told[1].text, "/scene/sun 0 → 1");
-  EXPECT_EQ(told[1].end, "") << "a timer is no hand";
+  const std::vector<ConsoleLine> lines = after();
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0].text, "/scene/wind 2 → 5");
+  EXPECT_EQ(lines[0].origin, "127.0.0.1:4000");
+  EXPECT_EQ(lines[1].text, "/scene/sun 0 → 1");
+  EXPECT_EQ(lines[1].origin, "") << "a timer is not a controller";
 }
 
-TEST(Watcher, TellsAnyKindWhereAPatternSaysSo) {
+TEST(Subscription, SendsAllKindsOfMatchingValues) {
   const engine_test::SceneFile file(kWatchedScene);
   Show show(file.path());
-  Watching falls(show.link, Wish::changes, "/physics/body/one/part/*/linear_velocity");
-  falls.told();
-  make_image(show);
+  Subscriber falls(show.link, RequestKind::changes, "/physics/body/one/part/*/linear_velocity");
+  falls.new_lines();
+  wait_for_snapshot(show);
   EXPECT_EQ(falls.texts(), Texts{});
-  make_image(show);
+  wait_for_snapshot(show);
   const Texts texts = falls.texts();
   ASSERT_EQ(texts.size(), 1u);
   EXPECT_TRUE(texts[0].starts_with("/physics/body/one/part/p/linear_velocity 0 0 -")) << texts[0];
-  const auto wrong = make_watcher(show.link, {1, Wish::changes, "wind"});
+  const auto wrong = make_subscription(show.link, {1, RequestKind::changes, "wind"});
   ASSERT_FALSE(wrong.ok());
-  EXPECT_EQ(wrong.error(), "'wind' is no address: it must begin with /");
+  EXPECT_EQ(wrong.error(), "'wind' is not an address; it must begin with /");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A row that joins a table: its path and its message in the seed's style are there, in every form, without more code.
+// A property that is added to a table gets its path and its legacy message, in every form, without more code.
 #include "engine/rig.h"
 
 namespace limber::engine_test {
@@ -7,23 +7,23 @@ namespace {
 using Kind = Outcome::Kind;
 using Values = std::vector<double>;
 
-// the parts' table as it is, and one row more
-const Table& parts_with_a_toy() {
-  static const Table table = [] {
-    const Table& own = Part::table();
-    std::vector<Row> list(own.rows().begin(), own.rows().end());
-    list.push_back(rows::number("toy_strength", "N", 2, 0, 10, "What a child pulls with."));
-    return Table(own.name(), own.path(), own.seed(), std::move(list));
+// the properties of parts and one more
+const PropertyTable& parts_with_a_toy() {
+  static const PropertyTable table = [] {
+    const PropertyTable& own = Part::table();
+    std::vector<Property> list(own.properties().begin(), own.properties().end());
+    list.push_back(properties::number("toy_strength", "N", 2, 0, 10, "A force."));
+    return PropertyTable(own.name(), own.path(), own.legacy_prefix(), std::move(list));
   }();
   return table;
 }
 
-// two bodies whose parts are nodes of that table and nothing else: the world never steps
+// two bodies with nodes of that table as parts and nothing else: the world never steps
 struct ToyRig {
   Store store;
   World world{store};
-  const Table* classes[1] = {&parts_with_a_toy()};
-  Dispatch dispatch{world, nullptr, classes};
+  const PropertyTable* classes[1] = {&parts_with_a_toy()};
+  MessageDispatcher dispatcher{world, nullptr, classes};
 
   ToyRig() {
     for (const char* name : {"arm", "1"}) {
@@ -34,23 +34,23 @@ struct ToyRig {
   }
   template <class... A>
   Outcome send(std::string address, A&&... args) {
-    dispatch.begin_tick();
-    return dispatch.execute(message(std::move(address), std::forward<A>(args)...));
+    dispatcher.begin_tick();
+    return dispatcher.execute(message(std::move(address), std::forward<A>(args)...));
   }
   // of arm/base, arm/tip, 1/base, 1/tip
   Values toys() const {
     Values all;
     for (const char* part : {"arm/part/base", "arm/part/tip", "1/part/base", "1/part/tip"}) {
-      const Result<Place> place = find_place(store, fmt::format("/physics/body/{}/toy_strength", part));
+      const Result<PropertyRef> ref = find_property(store, fmt::format("/physics/body/{}/toy_strength", part));
       double value = -1;
-      if (place && place->row != nullptr) store.get(place->node, *place->row, &value);
+      if (ref && ref->property != nullptr) store.get(ref->node, *ref->property, &value);
       all.push_back(value);
     }
     return all;
   }
 };
 
-TEST(AddedRow, HasItsPath) {
+TEST(AddedProperty, HasAPath) {
   ToyRig rig;
   EXPECT_EQ(rig.toys(), (Values{2, 2, 2, 2}));
   EXPECT_EQ(rig.send("/physics/body/arm/part/tip/toy_strength", 3).kind, Kind::applied);
@@ -61,7 +61,7 @@ TEST(AddedRow, HasItsPath) {
   EXPECT_EQ(asked.answers[0].args.at(0).number, 3);
 }
 
-TEST(AddedRow, HasItsMessageInEveryForm) {
+TEST(AddedProperty, HasALegacyMessageInEveryForm) {
   struct Form {
     std::vector<Arg> names;
     Values toys;
@@ -79,20 +79,20 @@ TEST(AddedRow, HasItsMessageInEveryForm) {
       ToyRig rig;
       Message m{address, form.names};
       m.args.push_back(arg(7));
-      EXPECT_EQ(rig.dispatch.execute(m).kind, Kind::applied) << address;
+      EXPECT_EQ(rig.dispatcher.execute(m).kind, Kind::applied) << address;
       EXPECT_EQ(rig.toys(), form.toys) << address;
     }
   }
 }
 
-TEST(AddedRow, ClampsRefusesAndIsNamedAsItsTableSays) {
+TEST(AddedProperty, ClampsAndRejectsAsItsTableSpecifies) {
   ToyRig rig;
-  EXPECT_EQ(Dispatch::seed_address(parts_with_a_toy(), parts_with_a_toy().at("toy_strength")),
+  EXPECT_EQ(MessageDispatcher::legacy_address(parts_with_a_toy(), parts_with_a_toy().at("toy_strength")),
             "/physics/part/toystrength");
   const Outcome clamped = rig.send("/physics/part/toystrength", "arm", 11);
   EXPECT_NE(clamped.clamped, nullptr);
   EXPECT_EQ(rig.toys(), (Values{10, 10, 2, 2}));
-  EXPECT_EQ(rig.send("/physics/part/toystrength", "arm", 1, 2).kind, Kind::refused);
+  EXPECT_EQ(rig.send("/physics/part/toystrength", "arm", 1, 2).kind, Kind::rejected);
   EXPECT_EQ(rig.send("/physics/part/toystrength", "arm", "tipp", 1).error,
             "no part 'tipp' in 'arm'; did you mean 'tip'?");
   const Outcome near = rig.send("/physics/part/toystrenght", 1);

@@ -1,4 +1,4 @@
-// No allocation of ours goes with a tick: an empty scene, and one that steps, with values coming in.
+// A tick does not allocate: with an empty scene, and with one that steps and receives values.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -38,8 +38,8 @@ std::atomic<std::size_t> allocations{0};
 namespace limber::engine_test {
 namespace {
 
-std::size_t during(Show& show, int ticks) {
-  // pools fill, the roster is made, history has as much as it keeps
+std::size_t allocations_during(Show& show, int ticks) {
+  // fill the pools, the list of bodies and the history
   show.send("/physics/sim/history", 1);
   show.ticks(250);
   const std::size_t before = allocations.load();
@@ -49,13 +49,13 @@ std::size_t during(Show& show, int ticks) {
 
 TEST(EngineAllocation, NoneInAnEmptyWorld) {
   Show show;
-  EXPECT_EQ(during(show, 200), 0U);
+  EXPECT_EQ(allocations_during(show, 200), 0U);
 }
 
-TEST(EngineAllocation, NoneWithBodiesAndHeldSnapshots) {
+TEST(EngineAllocation, NoneWithBodiesAndRetainedSnapshots) {
   Show show;
   build_bodies(show.engine.world());
-  // a reader that holds two snapshots at any time, as a stream and a window do
+  // a reader that keeps two snapshots at any time, as a stream and a window do
   std::shared_ptr<const Snapshot> older;
   std::shared_ptr<const Snapshot> newer;
   const auto tick = [&] {
@@ -77,7 +77,7 @@ local part = body:add_part("ball", sim:add_sphere_shape("ball", 0.1))
 sim:on_step(function(dt) part:apply_force(vec3(0, 0, 9.81)) end)
 )");
   Show show(scene.path());
-  EXPECT_EQ(during(show, 200), 0U);
+  EXPECT_EQ(allocations_during(show, 200), 0U);
 }
 
 TEST(EngineAllocation, NoneWhileMorphsRun) {
@@ -90,31 +90,31 @@ TEST(EngineAllocation, NoneWhileMorphsRun) {
   show.ticks(1);
   show.engine.finish_saving();  // on its own thread
   show.send("/preset/recall", "heavy", 60);
-  EXPECT_EQ(during(show, 300), 0U);
-  EXPECT_GT(show.read("/preset/progress"), 0.05) << "it runs still";
+  EXPECT_EQ(allocations_during(show, 300), 0U);
+  EXPECT_GT(show.read("/preset/progress"), 0.05) << "it is still running";
   EXPECT_LT(show.read("/preset/progress"), 0.5);
 }
 
-TEST(EngineAllocation, NoneWithEveryTypeOfBehaviour) {
+TEST(EngineAllocation, NoneWithEveryTypeOfBehavior) {
   const SceneFile scene(kEveryBehavior);
   Show show(scene.path());
-  EXPECT_EQ(during(show, 300), 0U);
+  EXPECT_EQ(allocations_during(show, 300), 0U);
 }
 
-// what the debug picture shows goes into snapshots that are there already
-TEST(EngineAllocation, NoneWithTheDebugPicture) {
+// the debug overlay is written into existing snapshots
+TEST(EngineAllocation, NoneWithTheDebugOverlay) {
   const SceneFile scene(kEveryBehavior);
   Show show(scene.path());
   show.send("/visuals/look/overlay", 1);
-  EXPECT_EQ(during(show, 300), 0U);
+  EXPECT_EQ(allocations_during(show, 300), 0U);
   EXPECT_GT(show.link.snapshots.read()->overlay.size(), 100U);
 }
 
-TEST(EngineAllocation, AValueComingInTakesNoneBeyondItsMessage) {
+TEST(EngineAllocation, NoneForAReceivedValueExceptItsMessage) {
   Show show;
   build_bodies(show.engine.world());
   World& world = show.engine.world();
-  Dispatch dispatch(world);
+  MessageDispatcher dispatch(world);
   const Message by_name = message("/physics/motor/angularservoposition", "arm", "elbow", 0.5);
   const Message to_all = message("/physics/part/friction", 0.5);
   const Message by_path = message("/physics/body/arm/motor/elbow/target", 0.25);

@@ -1,4 +1,4 @@
-// A scene with every type of behaviour at work: for tests that ask something of all of them.
+// A scene in which every type of behavior is active, for tests of all types.
 #pragma once
 
 namespace limber::engine_test {

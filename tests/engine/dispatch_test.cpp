@@ -1,4 +1,4 @@
-// What messages mean beside the seed's forms: one number for three axes, paths and patterns, refusals, questions.
+// Messages besides the legacy forms: one number for three axes, paths and patterns, rejections, queries.
 #include "engine/dispatch.h"
 
 #include <limits>
@@ -14,13 +14,13 @@ using Kind = Outcome::Kind;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-std::string motor(const char* body, const char* joint, const char* row) {
-  return fmt::format("/physics/body/{}/motor/{}/{}", body, joint, row);
+std::string motor(const char* body, const char* joint, const char* property) {
+  return fmt::format("/physics/body/{}/motor/{}/{}", body, joint, property);
 }
 
-TEST(Dispatch, OneNumberMeansTheOwnAxis) {
+TEST(MessageDispatcher, OneNumberSetsTheOwnAxis) {
   Rig rig;
-  // z is the own axis of a revolute joint: the others keep what they had; the slide has none among the angular ones
+  // z is the own axis of a revolute joint: the others keep their values; the slide has no angular axis of its own
   ASSERT_EQ(rig.send("/physics/motor/angularvelocity", "arm", "elbow", 1, 2, 3).kind, Kind::applied);
   EXPECT_EQ(rig.send("/physics/motor/angularvelocity", 0.5).kind, Kind::applied);
   EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_velocity")), (Values{1, 2, 0.5}));
@@ -35,19 +35,19 @@ TEST(Dispatch, OneNumberMeansTheOwnAxis) {
   EXPECT_EQ(rig.read(motor("arm", "elbow", "angular_spring_stiffness")), (Values{0, 0, 20}));
 }
 
-TEST(Dispatch, OneNumberWhereThereIsNoOwnAxisIsRefusedByName) {
+TEST(MessageDispatcher, OneNumberWithoutAnOwnAxisIsRejected) {
   Rig rig;
   const std::vector<double> before = rig.everything();
   const Outcome by_name = rig.send("/physics/motor/angularvelocity", "arm", "slide", 1);
-  EXPECT_EQ(by_name.kind, Kind::refused);
+  EXPECT_EQ(by_name.kind, Kind::rejected);
   EXPECT_EQ(by_name.error, "motor 'arm/slide': has no own axis for angular_velocity; give three numbers");
-  EXPECT_EQ(rig.send(motor("arm", "slide", "angular_velocity"), 1).kind, Kind::refused);
-  // a body that has none at all is an answer as well, or the performer would wonder
-  EXPECT_EQ(rig.send("/physics/motor/linearvelocity", "1", 1).kind, Kind::refused);
+  EXPECT_EQ(rig.send(motor("arm", "slide", "angular_velocity"), 1).kind, Kind::rejected);
+  // a body without any is an error with a reason too
+  EXPECT_EQ(rig.send("/physics/motor/linearvelocity", "1", 1).kind, Kind::rejected);
   EXPECT_EQ(rig.everything(), before);
 }
 
-TEST(Dispatch, OneBooleanMeansAllAxes) {
+TEST(MessageDispatcher, OneBooleanSetsAllAxes) {
   Rig rig;
   for (const Arg& on : {arg(true), arg(1), arg(0.5), arg("true"), arg("on"), arg("1")}) {
     rig.send("/physics/motor/angularspringactive", 0, 0, 0);
@@ -62,7 +62,7 @@ TEST(Dispatch, OneBooleanMeansAllAxes) {
   }
 }
 
-TEST(Dispatch, ChoicesByLabelAndByNumber) {
+TEST(MessageDispatcher, AcceptsChoicesByLabelAndByNumber) {
   Rig rig;
   EXPECT_EQ(rig.send("/physics/motor/mode", "arm", "elbow", "SPRING").kind, Kind::applied);
   EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{3}));
@@ -70,21 +70,22 @@ TEST(Dispatch, ChoicesByLabelAndByNumber) {
   EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 1).kind, Kind::applied);
   EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
   const Outcome word = rig.send("/physics/motor/mode", "arm", "elbow", "sprung");
-  EXPECT_EQ(word.kind, Kind::refused);
+  EXPECT_EQ(word.kind, Kind::rejected);
   EXPECT_EQ(word.error, "takes one of off, spin, servo, spring, not 'sprung'");
-  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 4).kind, Kind::refused);
+  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 4).kind, Kind::rejected);
   EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
 }
 
-TEST(Dispatch, ASetThroughAViewCountsAsThePerformersValue) {
+TEST(MessageDispatcher, SettingAComputedPropertyIsAnOverride) {
   Rig rig;
-  EXPECT_TRUE(rig.send("/physics/motor/target", 0.5).kept) << "the servo's position, a property, stands behind it";
-  EXPECT_FALSE(rig.send("/physics/body/arm/position", 0, 0, 3).kept) << "a pose belongs to the moment";
-  EXPECT_FALSE(rig.send("/physics/sim/paused", true).kept);
-  EXPECT_TRUE(rig.send("/physics/sim/gravity", 0).kept);
+  EXPECT_TRUE(rig.send("/physics/motor/target", 0.5).sets_override)
+      << "it sets the servo's position, a persistent property";
+  EXPECT_FALSE(rig.send("/physics/body/arm/position", 0, 0, 3).sets_override) << "a pose is a state";
+  EXPECT_FALSE(rig.send("/physics/sim/paused", true).sets_override);
+  EXPECT_TRUE(rig.send("/physics/sim/gravity", 0).sets_override);
 }
 
-TEST(Dispatch, MassLeavesStaticPartsOut) {
+TEST(MessageDispatcher, MassSkipsStaticParts) {
   Rig rig;
   EXPECT_EQ(rig.send("/physics/part/mass", 2).kind, Kind::applied);
   EXPECT_EQ(rig.read("/physics/body/arm/part/base/mass"), (Values{0}));
@@ -93,13 +94,13 @@ TEST(Dispatch, MassLeavesStaticPartsOut) {
   for (const Outcome& outcome :
        {rig.send("/physics/part/mass", "arm", "base", 1), rig.send("/physics/body/arm/part/base/mass", 1),
         rig.send("/physics/part/mass", "floor", 1), rig.send("/physics/part/mass", "base", 1)}) {
-    EXPECT_EQ(outcome.kind, Kind::refused);
+    EXPECT_EQ(outcome.kind, Kind::rejected);
     EXPECT_NE(outcome.error.find("mass 0"), std::string::npos) << outcome.error;
   }
   EXPECT_EQ(rig.read("/physics/body/arm/part/base/mass"), (Values{0}));
 }
 
-TEST(Dispatch, PathsWithPatterns) {
+TEST(MessageDispatcher, AcceptsPathsWithPatterns) {
   struct Case {
     const char* path;
     std::vector<std::string> hits;
@@ -128,7 +129,7 @@ TEST(Dispatch, PathsWithPatterns) {
   }
 }
 
-TEST(Dispatch, NamesInPathsAreEscaped) {
+TEST(MessageDispatcher, UnescapesNamesInPaths) {
   Rig rig;
   Body& body = **rig.world.add_body("left arm #1/2");
   ASSERT_TRUE(body.add_part("50%", *rig.world.find_shape("ball"), 1, {}).ok());
@@ -140,7 +141,7 @@ TEST(Dispatch, NamesInPathsAreEscaped) {
   EXPECT_EQ(rig.read(path + "/restitution"), (Values{0.75}));
 }
 
-TEST(Dispatch, APathIsFoundAgainAfterItsThingCameBack) {
+TEST(MessageDispatcher, FindsAPathAgainAfterItsObjectWasAddedAgain) {
   Rig rig;
   const std::string path = "/physics/body/arm/part/tip/friction";
   EXPECT_EQ(rig.send(path, 0.25).kind, Kind::applied);
@@ -153,70 +154,73 @@ TEST(Dispatch, APathIsFoundAgainAfterItsThingCameBack) {
   EXPECT_EQ(rig.read(path), (Values{0.75}));
 }
 
-TEST(Dispatch, RefusalsChangeNothingAndSayWhatThereIs) {
+TEST(MessageDispatcher, RejectedMessagesChangeNothingAndNameTheAlternatives) {
   struct Case {
     Message message;
     Kind kind;
-    const char* says;
+    const char* expected_error;
   };
   const Arg nothing;
   const Case cases[] = {
-      {message("/physics/part/mass", "arn", 1), Kind::refused, "there is no body or part 'arn'; did you mean 'arm'?"},
-      {message("/physics/part/mass", "arm", "tipp", 1), Kind::refused, "no part 'tipp' in 'arm'; did you mean 'tip'?"},
-      {message("/physics/part/mass", "arn", "tip", 1), Kind::refused, "there is no body 'arn'; did you mean 'arm'?"},
-      {message("/physics/motor/bounce", "floor", 1), Kind::refused, "body 'floor' has no motors"},
-      {message("/physics/motor/bounce", "x*", 1), Kind::refused, "no body and no motor matches 'x*'"},
-      {message("/physics/motor/bounce", "arm", "x*", 1), Kind::refused, "no motor matches 'x*' in 'arm'"},
-      {message("/physics/part/mass"), Kind::refused, "takes 1 number, not 0"},
-      {message("/physics/part/mass", "arm"), Kind::refused, "takes 1 number, not 0"},
-      {message("/physics/part/mass", 1, 2, 3, 4), Kind::refused, "takes 1 number, not 4"},
-      {message("/physics/part/mass", 7, 1), Kind::refused, "takes 1 number, not 2"},
-      {message("/physics/part/mass", "a", "b", "c", 1), Kind::refused, "takes a body, a part and 1 number; here are 3"},
-      {message("/physics/part/mass", nothing, 1), Kind::refused, "nothing stands where a name is expected"},
-      {message("/physics/part/mass", "arm", "tip", kNan), Kind::refused, "takes 1 number; nan is none"},
-      {message("/physics/part/mass", kInf), Kind::refused, "takes 1 number; inf is none"},
-      {message("/physics/part/mass", "arm", "tip", "heavy"), Kind::refused, "takes 1 number, not 0"},
-      {message("/physics/joint/angularlowerlimit", "arm", "elbow", 1, 2), Kind::refused, "takes 1 or 3 numbers, not 2"},
-      {message("/physics/joint/angularlowerlimit", 1, kNan, 3), Kind::refused, "nan is none"},
-      {message("/physics/body/arm/part/tip/mass", "x"), Kind::refused, "takes 1 number, not 'x'"},
-      {message("/physics/body/arm/part/tip/mass", nothing), Kind::refused, "not an argument without a value"},
-      {message("/physics/body/arm/part/tip/mass", 1, 2), Kind::refused, "takes 1 number, not 2"},
-      {message("/physics/body/arm/part/tip/center", 1, 2, 3), Kind::refused, "this can be read, not set"},
-      {message("/physics/body/arm/part/tip/rotation", 0, 0, 0, 0), Kind::refused, "0 0 0 0 is none"},
-      {message("/physics/body/arm/part/tip", 1), Kind::refused, "this is a thing, not a value"},
-      {message("/physics/body/arm/part/tip/*", 1), Kind::refused, "takes 3 numbers, not 1"},
-      {message("/physics/body/arm/part/tip/{mass,apply_torque}", 1), Kind::refused, "is an action among values"},
-      {message("/physics/body/q*/part/*/mass", 1), Kind::refused, "this pattern matches nothing that can be set"},
+      {message("/physics/part/mass", "arn", 1), Kind::rejected, "there is no body or part 'arn'; did you mean 'arm'?"},
+      {message("/physics/part/mass", "arm", "tipp", 1), Kind::rejected, "no part 'tipp' in 'arm'; did you mean 'tip'?"},
+      {message("/physics/part/mass", "arn", "tip", 1), Kind::rejected, "there is no body 'arn'; did you mean 'arm'?"},
+      {message("/physics/motor/bounce", "floor", 1), Kind::rejected, "body 'floor' has no motors"},
+      {message("/physics/motor/bounce", "x*", 1), Kind::rejected, "no body and no motor matches 'x*'"},
+      {message("/physics/motor/bounce", "arm", "x*", 1), Kind::rejected, "no motor matches 'x*' in 'arm'"},
+      {message("/physics/part/mass"), Kind::rejected, "takes 1 number, not 0"},
+      {message("/physics/part/mass", "arm"), Kind::rejected, "takes 1 number, not 0"},
+      {message("/physics/part/mass", 1, 2, 3, 4), Kind::rejected, "takes 1 number, not 4"},
+      {message("/physics/part/mass", 7, 1), Kind::rejected, "takes 1 number, not 2"},
+      {message("/physics/part/mass", "a", "b", "c", 1), Kind::rejected,
+       "takes a body, a part and 1 number, got 3 names"},
+      {message("/physics/part/mass", nothing, 1), Kind::rejected, "a name is missing: the argument is nil"},
+      {message("/physics/part/mass", "arm", "tip", kNan), Kind::rejected, "takes 1 number; nan is not finite"},
+      {message("/physics/part/mass", kInf), Kind::rejected, "takes 1 number; inf is not finite"},
+      {message("/physics/part/mass", "arm", "tip", "heavy"), Kind::rejected, "takes 1 number, not 0"},
+      {message("/physics/joint/angularlowerlimit", "arm", "elbow", 1, 2), Kind::rejected,
+       "takes 1 or 3 numbers, not 2"},
+      {message("/physics/joint/angularlowerlimit", 1, kNan, 3), Kind::rejected, "nan is not finite"},
+      {message("/physics/body/arm/part/tip/mass", "x"), Kind::rejected, "takes 1 number, not 'x'"},
+      {message("/physics/body/arm/part/tip/mass", nothing), Kind::rejected, "not an argument without a value"},
+      {message("/physics/body/arm/part/tip/mass", 1, 2), Kind::rejected, "takes 1 number, not 2"},
+      {message("/physics/body/arm/part/tip/center", 1, 2, 3), Kind::rejected, "this property is read-only"},
+      {message("/physics/body/arm/part/tip/rotation", 0, 0, 0, 0), Kind::rejected, "0 0 0 0 is not a rotation"},
+      {message("/physics/body/arm/part/tip", 1), Kind::rejected, "this is an object, not a property"},
+      {message("/physics/body/arm/part/tip/*", 1), Kind::rejected, "takes 3 numbers, not 1"},
+      {message("/physics/body/arm/part/tip/{mass,apply_torque}", 1), Kind::rejected,
+       "this matches both values and the action apply_torque"},
+      {message("/physics/body/q*/part/*/mass", 1), Kind::rejected, "this pattern matches nothing that can be set"},
       {message("/physics/body/arm/part/tip/maas", 1), Kind::unknown, "did you mean 'mass'?"},
       {message("/physics/body/arn/part/tip/mass", 1), Kind::unknown, "did you mean 'arm'?"},
       {message("/physics/part/masss", 1), Kind::unknown, "did you mean '/physics/part/mass'?"},
       {message("/somewhere/else"), Kind::unknown, "`limber describe` lists all"},
       {message("no slash", 1), Kind::unknown, "it must begin with /"},
-      {message("/", 1), Kind::refused, "this is a thing, not a value"},
+      {message("/", 1), Kind::rejected, "this is an object, not a property"},
       {message("", 1), Kind::unknown, "it must begin with /"},
-      {message("/get"), Kind::refused, "takes a path"},
-      {message("/get", 3), Kind::refused, "takes a path"},
-      {message("/get", "/physics/body/arm"), Kind::refused, "'/physics/body/arm' is no value"},
-      {message("/get", "/physics/sim/gravty"), Kind::refused, "did you mean 'gravity'?"},
-      {message("/list/parts"), Kind::refused, "takes the name of a body"},
-      {message("/list/parts", "arn"), Kind::refused, "there is no body 'arn'; did you mean 'arm'?"},
-      {message("/list/bodies", 1), Kind::refused, "takes no arguments"},
-      {message("/physics/part/applyforce", "arm", "tip", 1, 2), Kind::refused, "takes 3 or 6 numbers"},
-      {message("/physics/body/arm/reset", 1, 2), Kind::refused, "takes no value, not 2"},
+      {message("/get"), Kind::rejected, "takes a path"},
+      {message("/get", 3), Kind::rejected, "takes a path"},
+      {message("/get", "/physics/body/arm"), Kind::rejected, "'/physics/body/arm' is not a property"},
+      {message("/get", "/physics/sim/gravty"), Kind::rejected, "did you mean 'gravity'?"},
+      {message("/list/parts"), Kind::rejected, "takes the name of a body"},
+      {message("/list/parts", "arn"), Kind::rejected, "there is no body 'arn'; did you mean 'arm'?"},
+      {message("/list/bodies", 1), Kind::rejected, "takes no arguments"},
+      {message("/physics/part/applyforce", "arm", "tip", 1, 2), Kind::rejected, "takes 3 or 6 numbers"},
+      {message("/physics/body/arm/reset", 1, 2), Kind::rejected, "takes no value, not 2"},
   };
   Rig rig;
   const std::vector<double> before = rig.everything();
   for (const Case& c : cases) {
-    rig.dispatch.begin_tick();
-    const Outcome outcome = rig.dispatch.execute(c.message);
-    EXPECT_EQ(outcome.kind, c.kind) << c.message.address << ": " << c.says;
-    EXPECT_NE(outcome.error.find(c.says), std::string::npos) << c.message.address << "\n  " << outcome.error;
-    EXPECT_FALSE(outcome.kept);
+    rig.dispatcher.begin_tick();
+    const Outcome outcome = rig.dispatcher.execute(c.message);
+    EXPECT_EQ(outcome.kind, c.kind) << c.message.address << ": " << c.expected_error;
+    EXPECT_NE(outcome.error.find(c.expected_error), std::string::npos) << c.message.address << "\n  " << outcome.error;
+    EXPECT_FALSE(outcome.sets_override);
   }
   EXPECT_EQ(rig.everything(), before);
 }
 
-TEST(Dispatch, OutsideTheRangeIsClampedAndTold) {
+TEST(MessageDispatcher, ClampsToTheRangeAndReportsIt) {
   Rig rig;
   const Outcome low = rig.send("/physics/part/mass", "arm", "tip", -3);
   EXPECT_EQ(low.kind, Kind::applied);
@@ -231,37 +235,37 @@ TEST(Dispatch, OutsideTheRangeIsClampedAndTold) {
   EXPECT_EQ(rig.send("/physics/sim/substeps", 3).clamped, nullptr);
 }
 
-TEST(Dispatch, ButtonsPressAndLetGo) {
+TEST(MessageDispatcher, TriggersActOnPressOnly) {
   Rig rig;
   const Arg bang;
   for (const Arg& press : {bang, arg(1), arg(true), arg(127)}) {
     EXPECT_EQ(rig.send("/physics/sim/reset", press).kind, Kind::applied);
-    EXPECT_TRUE(rig.world.take_reset_request());
+    EXPECT_TRUE(rig.world.consume_reset_request());
   }
   EXPECT_EQ(rig.send("/physics/sim/reset").kind, Kind::applied);
-  EXPECT_TRUE(rig.world.take_reset_request());
+  EXPECT_TRUE(rig.world.consume_reset_request());
   for (const Arg& release : {arg(0), arg(false)}) {
     EXPECT_EQ(rig.send("/physics/sim/reset", release).kind, Kind::applied);
-    EXPECT_FALSE(rig.world.take_reset_request());
+    EXPECT_FALSE(rig.world.consume_reset_request());
   }
 }
 
-// two programs that are aimed at each other must not ask and answer for ever
-TEST(Dispatch, NoAnswerIsAQuestion) {
+// two programs that send to each other must not query each other forever
+TEST(MessageDispatcher, NoAnswerLooksLikeAQuery) {
   Rig full;
   struct {
     Store store;
     World world{store};
-    Dispatch dispatch{world};
+    MessageDispatcher dispatch{world};
   } bare;
   ASSERT_TRUE(bare.world.add_body("floor").ok());
-  const auto check = [](Dispatch& dispatch, const Message& question) {
+  const auto check = [](MessageDispatcher& dispatch, const Message& question) {
     dispatch.begin_tick();
     const Outcome asked = dispatch.execute(question);
     ASSERT_EQ(asked.kind, Kind::answered) << question.address << asked.error;
     for (const Message& answer : asked.answers) EXPECT_NE(dispatch.execute(answer).kind, Kind::answered);
   };
-  for (Dispatch* dispatch : {&full.dispatch, &bare.dispatch}) {
+  for (MessageDispatcher* dispatch : {&full.dispatcher, &bare.dispatch}) {
     for (const char* list : {"/list/bodies", "/list/shapes", "/list/gears", "/list/groups"})
       check(*dispatch, message(list));
     for (const char* list : {"/list/parts", "/list/joints", "/list/motors", "/list/behaviors"}) {
@@ -271,14 +275,14 @@ TEST(Dispatch, NoAnswerIsAQuestion) {
   }
 }
 
-TEST(Dispatch, AStaticPartIsNamedAsAllThingsAre) {
+TEST(MessageDispatcher, NamesAStaticPartInErrors) {
   Rig rig;
   EXPECT_EQ(rig.send("/physics/part/mass", "arm", "base", 2).error,
-            "part 'arm/base': it was made with mass 0 and never moves; make it with a mass instead");
+            "part 'arm/base': the part was created static (mass 0); create it with a mass instead");
   EXPECT_EQ(rig.send("/physics/part/force", "arm", "base", 0, 0, 2).error, "part 'arm/base' is static and never moves");
 }
 
-TEST(Dispatch, ListsAndValuesAreAnswered) {
+TEST(MessageDispatcher, AnswersListsAndValues) {
   Rig rig;
   const auto words = [](const Outcome& outcome) {
     std::string text = outcome.answers.empty() ? "none" : outcome.answers[0].address;
@@ -302,23 +306,23 @@ TEST(Dispatch, ListsAndValuesAreAnswered) {
   EXPECT_EQ(many.answers[3].address, "/physics/body/1/motor/shoulder/mode");
   EXPECT_EQ(many.answers[3].args.size(), 1U);
   EXPECT_EQ(many.answers[3].args[0].number, 2) << "made as a servo";
-  EXPECT_EQ(rig.send("/get", "//").kind, Kind::refused);
-  for (const Irregular& irregular : Dispatch::irregulars())
-    EXPECT_NE(rig.send(std::string(irregular.address)).kind, Kind::unknown) << irregular.address;
+  EXPECT_EQ(rig.send("/get", "//").kind, Kind::rejected);
+  for (const SpecialAddress& special : MessageDispatcher::special_addresses())
+    EXPECT_NE(rig.send(std::string(special.address)).kind, Kind::unknown) << special.address;
 }
 
-TEST(Dispatch, NearNamesAreBoundedPerTick) {
+TEST(MessageDispatcher, LimitsHintsPerTick) {
   Rig rig;
-  rig.dispatch.begin_tick();
+  rig.dispatcher.begin_tick();
   int hinted = 0;
   for (int i = 0; i < 1000; i++) {
-    const Outcome outcome = rig.dispatch.execute(message("/physics/part/masss", 1));
+    const Outcome outcome = rig.dispatcher.execute(message("/physics/part/masss", 1));
     EXPECT_EQ(outcome.kind, Kind::unknown);
     hinted += outcome.error.find("did you mean") != std::string::npos;
   }
   EXPECT_EQ(hinted, HintBudget::kPerTick);
-  rig.dispatch.begin_tick();
-  EXPECT_NE(rig.dispatch.execute(message("/physics/part/masss", 1)).error.find("did you mean"), std::string::npos);
+  rig.dispatcher.begin_tick();
+  EXPECT_NE(rig.dispatcher.execute(message("/physics/part/masss", 1)).error.find("did you mean"), std::string::npos);
 }
 
 }  // namespace

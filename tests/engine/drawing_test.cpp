@@ -1,4 +1,4 @@
-// Drawings: who is drawn with which form; the numbers that snapshots carry for it.
+// Render scenes: shapes and their instances, and the appearance values in snapshots.
 #include "engine/drawing.h"
 
 #include "engine/show.h"
@@ -7,23 +7,23 @@
 namespace limber::engine_test {
 namespace {
 
-TEST(Drawing, APieceForEachGeometryOfEachPart) {
+TEST(RenderScene, HasAnInstanceForEachGeometryOfEachPart) {
   Rig rig;
   Latest<Snapshot> latest;
   Publisher publisher(rig.world, latest);
   publisher.publish(false, 1);
   const auto now = latest.read();
-  const Drawing& drawing = *now->drawing;
+  const RenderScene& render_scene = *now->render_scene;
   // four parts of arm, two of 1, one floor; two shapes
-  ASSERT_EQ(drawing.pieces.size(), 7u);
-  EXPECT_EQ(drawing.forms.size(), 2u);
-  EXPECT_EQ(drawing.forms[drawing.pieces[0].form].shape.kind, ShapeKind::sphere);
-  EXPECT_EQ(drawing.forms[drawing.pieces[6].form].shape.kind, ShapeKind::plane);
-  EXPECT_EQ(drawing.pieces[3].part_at, now->roster->bodies[0].parts[3]);
-  EXPECT_EQ(drawing.pieces[4].enabled_at, now->roster->bodies[1].enabled_at);
+  ASSERT_EQ(render_scene.instances.size(), 7u);
+  EXPECT_EQ(render_scene.shapes.size(), 2u);
+  EXPECT_EQ(render_scene.shapes[render_scene.instances[0].shape].geometry.kind, ShapeKind::sphere);
+  EXPECT_EQ(render_scene.shapes[render_scene.instances[6].shape].geometry.kind, ShapeKind::plane);
+  EXPECT_EQ(render_scene.instances[3].part_offset, now->body_list->bodies[0].part_offsets[3]);
+  EXPECT_EQ(render_scene.instances[4].enabled_offset, now->body_list->bodies[1].enabled_offset);
 }
 
-TEST(Drawing, AnotherOneOnlyWhenSomebodyComesOrGoes) {
+TEST(RenderScene, IsRebuiltOnlyWhenBodiesAreAddedOrRemoved) {
   Rig rig;
   Latest<Snapshot> latest;
   Publisher publisher(rig.world, latest);
@@ -35,14 +35,14 @@ TEST(Drawing, AnotherOneOnlyWhenSomebodyComesOrGoes) {
   const auto first = now();
   rig.send("/visuals/shape/ball/transparency", 0.5);
   const auto painted = now();
-  EXPECT_EQ(painted->drawing, first->drawing);
+  EXPECT_EQ(painted->render_scene, first->render_scene);
   EXPECT_NE(painted->visuals_version, first->visuals_version);
   EXPECT_EQ(now()->visuals_version, painted->visuals_version) << "nothing was set";
   rig.world.remove_body(*rig.world.find_body("1"));
-  EXPECT_EQ(now()->drawing->pieces.size(), 5u);
+  EXPECT_EQ(now()->render_scene->instances.size(), 5u);
 }
 
-TEST(Drawing, MaterialsCameraAndLookAreTheRows) {
+TEST(RenderScene, ReadsMaterialsCameraAndAppearanceFromProperties) {
   Rig rig;
   Latest<Snapshot> latest;
   Publisher publisher(rig.world, latest);
@@ -53,37 +53,37 @@ TEST(Drawing, MaterialsCameraAndLookAreTheRows) {
   publisher.publish(false, 1);
   auto now = latest.read();
   const auto material = [&](std::size_t piece) {
-    return material_of(*now, now->drawing->forms[now->drawing->pieces[piece].form].material);
+    return material_of(*now, now->render_scene->shapes[now->render_scene->instances[piece].shape].material);
   };
   EXPECT_EQ(material(6).diffuse_color, Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(material(0).diffuse_color, Vec3(0, 0, 1));
   EXPECT_EQ(material(0).specular_pow, 77);
-  EXPECT_EQ(material_of(*now, 0).specular_pow, 10) << "0: as the table has it";
+  EXPECT_EQ(material_of(*now, 0).specular_pow, 10) << "0: the defaults of the table";
   const CameraView camera = camera_of(*now);
   EXPECT_EQ(camera.position, Vec3(1, 2, -3));
   EXPECT_EQ(camera.fovy, 50);
   EXPECT_EQ(camera.aspect, 1.5);
   EXPECT_EQ(camera.near, 0.1);
   EXPECT_EQ(camera.far, 60);
-  LookView look = look_of(*now);
-  EXPECT_FALSE(look.studio);
-  EXPECT_FALSE(look.own_background);
-  EXPECT_TRUE(look.floor);
+  AppearanceView appearance = appearance_of(*now);
+  EXPECT_FALSE(appearance.studio);
+  EXPECT_FALSE(appearance.custom_background);
+  EXPECT_TRUE(appearance.floor);
   rig.send("/visuals/look/style", "studio");
   rig.send("/visuals/look/mirror", 2);
   rig.send("/visuals/look/floor", false);
   rig.send("/visuals/background", 0.5, 1, 0.25);
   publisher.publish(false, 1);
   now = latest.read();
-  look = look_of(*now);
-  EXPECT_TRUE(look.studio);
-  EXPECT_EQ(look.mirror, 2);
-  EXPECT_FALSE(look.floor);
-  EXPECT_TRUE(look.own_background);
-  EXPECT_EQ(look.background, Vec3(0.5, 1, 0.25));
+  appearance = appearance_of(*now);
+  EXPECT_TRUE(appearance.studio);
+  EXPECT_EQ(appearance.mirror, 2);
+  EXPECT_FALSE(appearance.floor);
+  EXPECT_TRUE(appearance.custom_background);
+  EXPECT_EQ(appearance.background, Vec3(0.5, 1, 0.25));
 }
 
-TEST(Drawing, CompoundsAreDrawnChildByChildInTheirMaterial) {
+TEST(RenderScene, DrawsCompoundsChildByChildInTheirMaterial) {
   Rig rig;
   ShapeModel model;
   model.kind = ShapeKind::compound;
@@ -93,33 +93,33 @@ TEST(Drawing, CompoundsAreDrawnChildByChildInTheirMaterial) {
   Body& body = **rig.world.add_body("compound");
   ASSERT_TRUE(body.add_part("a", whole, 0, {}).ok());
   ASSERT_TRUE(body.add_part("b", whole, 0, {}).ok());
-  const Drawing drawing(rig.world);
-  ASSERT_EQ(drawing.pieces.size(), 11u);
-  EXPECT_EQ(drawing.forms.size(), 4u) << "shared by both parts";
-  EXPECT_EQ(drawing.pieces[8].origin.position.z, 2);
-  EXPECT_EQ(drawing.forms[drawing.pieces[8].form].material, 3u) << "the compound's, not the child's";
+  const RenderScene render_scene(rig.world);
+  ASSERT_EQ(render_scene.instances.size(), 11u);
+  EXPECT_EQ(render_scene.shapes.size(), 4u) << "shared by both parts";
+  EXPECT_EQ(render_scene.instances[8].origin.position.z, 2);
+  EXPECT_EQ(render_scene.shapes[render_scene.instances[8].shape].material, 3u) << "the compound's, not the child's";
 }
 
-TEST(Drawing, AFilesVisualsInTheirOwnColours) {
+TEST(RenderScene, DrawsVisualsOfAFileInTheirOwnColors) {
   Rig rig;
   const auto imported = import_urdf(std::string(LIMBER_SOURCE_DIR) + "/urdf/arm6.urdf", {});
   ASSERT_TRUE(imported.ok());
   const std::shared_ptr<const BodyModel>& model = *imported;
   ASSERT_TRUE(rig.world.add_body(model, "one", {}).ok());
-  const std::size_t before = Drawing(rig.world).forms.size();
+  const std::size_t before = RenderScene(rig.world).shapes.size();
   ASSERT_TRUE(rig.world.add_body(model, "two", {}).ok());
   Latest<Snapshot> latest;
   Publisher publisher(rig.world, latest);
   publisher.publish(false, 1);
   const auto now = latest.read();
-  EXPECT_EQ(now->drawing->forms.size(), before) << "bodies of one model share their forms";
+  EXPECT_EQ(now->render_scene->shapes.size(), before) << "bodies of one model share their render shapes";
   std::size_t visuals = 0;
   for (const LinkModel& link : model->links) visuals += link.visuals.size();
-  ASSERT_EQ(now->drawing->pieces.size(), 7 + 2 * visuals);
-  const DrawnForm& form = now->drawing->forms[now->drawing->pieces[7].form];
-  EXPECT_EQ(form.shape.mesh, model->links[0].visuals[0].shape.mesh) << "the mesh itself, not a copy";
+  ASSERT_EQ(now->render_scene->instances.size(), 7 + 2 * visuals);
+  const RenderShape& render_shape = now->render_scene->shapes[now->render_scene->instances[7].shape];
+  EXPECT_EQ(render_shape.geometry.mesh, model->links[0].visuals[0].shape.mesh) << "the mesh itself, not a copy";
   const Shape& shape = *rig.world.find_shape(visual_shape_name(*model, model->links[0], 0));
-  EXPECT_EQ(material_of(*now, form.material).diffuse_color,
+  EXPECT_EQ(material_of(*now, render_shape.material).diffuse_color,
             vec3_at(rig.store.values(shape.id(), Shape::table().at("diffuse_color"))));
 }
 

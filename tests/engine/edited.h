@@ -1,4 +1,4 @@
-// A show in a folder of its own that is edited while it plays: save() is what saving the scene's file comes to.
+// A show in a folder of its own that is edited while it plays; save() has the effect of saving the scene file.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace limber::engine_test {
 
-/// A folder with scripts/, that goes when the test is over.
+/// A folder with scripts/ that is removed at the end of the test.
 class ShowFolder {
  public:
   ShowFolder() {
@@ -37,14 +37,15 @@ class ShowFolder {
   std::filesystem::path folder_;
 };
 
-struct Edited {
+struct EditedShow {
   ShowFolder folder;
   std::string text;
   std::optional<Show> playing;
 
-  explicit Edited(std::string scene) : Edited(std::move(scene), {}) {}
+  explicit EditedShow(std::string scene) : EditedShow(std::move(scene), {}) {}
   /// `files`: name and text, written before the scene is run.
-  Edited(std::string scene, const std::vector<std::pair<std::string, std::string>>& files) : text(std::move(scene)) {
+  EditedShow(std::string scene, const std::vector<std::pair<std::string, std::string>>& files)
+      : text(std::move(scene)) {
     log_to_stderr(false);
     for (const auto& [name, file_text] : files) folder.write(name, file_text);
     folder.write("scripts/scene.lua", text);
@@ -56,23 +57,23 @@ struct Edited {
   Body& body(const std::string& name) { return *world().find_body(name); }
   Part& part(const std::string& body_name, const std::string& name) { return *body(body_name).find_part(name); }
 
-  Reload::End save(const std::string& scene) {
+  SceneReloader::ApplyResult save(const std::string& scene) {
     text = scene;
     folder.write("scripts/scene.lua", text);
     return show().engine.reload_now();
   }
   /// Saves the scene with one piece of its text replaced.
-  Reload::End edit(const std::string& from, const std::string& to) {
+  SceneReloader::ApplyResult edit(const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
-    if (at == std::string::npos) ADD_FAILURE() << "'" << from << "' does not stand in the scene";
+    if (at == std::string::npos) ADD_FAILURE() << "'" << from << "' is not in the scene";
     std::string edited = text;
     return save(edited.replace(at, from.size(), to));
   }
 };
 
-/// Where a part is and how it moves, as bits.
+/// Pose and velocity of a part, as bits.
 inline std::vector<double> motion_of(const Part& part) {
-  const Part::Stance s = part.stance();
+  const Part::State s = part.capture_state();
   std::vector<double> all;
   for (int i = 0; i < 3; i++) {
     for (const double v : {s.pose.position[i], s.linear_velocity[i], s.angular_velocity[i]}) all.push_back(v);

@@ -1,4 +1,5 @@
-// Every row that can be set, through every face: the seed's message, the path, Lua. It clamps, and refuses NaN.
+// Every writable property through every interface: the legacy message, the path, Lua. It is clamped, and NaN is
+// rejected.
 #include "engine/every_row.h"
 
 #include <limits>
@@ -9,22 +10,22 @@
 namespace limber::engine_test {
 namespace {
 
-struct Face {
+struct Interface {
   const char* name;
-  // the message that sets the row, or none where this face does not reach it
-  std::optional<Message> (*set)(const Sample& sample, const Row& row, const std::vector<double>& values);
+  // returns the message that sets the property, or none if this interface can't set it
+  std::optional<Message> (*set)(const Sample& sample, const Property& property, const std::vector<double>& values);
 };
 
-const Face kFaces[] = {
+const Interface kInterfaces[] = {
     {"path",
-     [](const Sample& sample, const Row& row, const std::vector<double>& values) {
-       Message m{sample.path + "/" + row.name, {}};
+     [](const Sample& sample, const Property& property, const std::vector<double>& values) {
+       Message m{sample.path + "/" + property.name, {}};
        for (const double v : values) m.args.push_back(arg(v));
        return std::optional(m);
      }},
-    {"seed",
-     [](const Sample& sample, const Row& row, const std::vector<double>& values) -> std::optional<Message> {
-       Message m{Dispatch::seed_address(*sample.table, row), {}};
+    {"legacy message",
+     [](const Sample& sample, const Property& property, const std::vector<double>& values) -> std::optional<Message> {
+       Message m{MessageDispatcher::legacy_address(*sample.table, property), {}};
        if (m.address.empty()) return std::nullopt;
        for (const std::string& name : sample.names) m.args.push_back(arg(name));
        for (const double v : values) m.args.push_back(arg(v));
@@ -32,87 +33,89 @@ const Face kFaces[] = {
      }},
 };
 
-void expect_value(Show& show, const std::string& path, const std::vector<double>& values, const char* face) {
+void expect_value(Show& show, const std::string& path, const std::vector<double>& values, const char* interface_name) {
   for (std::size_t i = 0; i < values.size(); i++)
-    EXPECT_NEAR(show.read(path, i), values[i], 1e-9 * std::max(1.0, std::abs(values[i]))) << path << " by " << face;
-  // and as somebody outside reads it
-  show.outbox();
+    EXPECT_NEAR(show.read(path, i), values[i], 1e-9 * std::max(1.0, std::abs(values[i])))
+        << path << " by " << interface_name;
+  // the value that clients get
+  show.sent_texts();
   show.send("/get", path);
   show.engine.tick();
   std::string text = path;
   for (std::size_t i = 0; i < values.size(); i++) text += " " + number_text(show.read(path, i));
-  EXPECT_EQ(show.outbox(), std::vector<std::string>{text});
+  EXPECT_EQ(show.sent_texts(), std::vector<std::string>{text});
 }
 
 void send_now(Show& show, const Message& m) {
-  show.link.inbox.push({{m}, {}});
+  show.link.command_queue.push({{m}, {}});
   show.engine.tick();
 }
 
-void check_bounds(Show& show, const Face& face, const Sample& sample, const Row& row) {
-  const std::string path = sample.path + "/" + row.name;
-  for (const double bound : {row.max, row.min}) {
-    if (!is_measure(row) || !std::isfinite(bound)) continue;
-    const std::uint64_t clamped = show.link.counters.clamped.load();
-    const double beyond = bound == row.max ? 2 * std::abs(bound) + 1 : -2 * std::abs(bound) - 1;
-    send_now(show, *face.set(sample, row, std::vector<double>(row.width, beyond)));
-    for (std::uint32_t i = 0; i < row.width; i++) EXPECT_EQ(show.read(path, i), bound) << path;
-    EXPECT_EQ(show.link.counters.clamped.load(), clamped + 1) << path;
+void check_bounds(Show& show, const Interface& access, const Sample& sample, const Property& property) {
+  const std::string path = sample.path + "/" + property.name;
+  for (const double bound : {property.max, property.min}) {
+    if (!is_measure(property) || !std::isfinite(bound)) continue;
+    const std::uint64_t clamped_before = show.link.counters.clamped.load();
+    const double beyond = bound == property.max ? 2 * std::abs(bound) + 1 : -2 * std::abs(bound) - 1;
+    send_now(show, *access.set(sample, property, std::vector<double>(property.width, beyond)));
+    for (std::uint32_t i = 0; i < property.width; i++) EXPECT_EQ(show.read(path, i), bound) << path;
+    EXPECT_EQ(show.link.counters.clamped.load(), clamped_before + 1) << path;
   }
   const double before = show.read(path);
-  const std::uint64_t refused = show.link.counters.refused.load();
+  const std::uint64_t rejected_before = show.link.counters.refused.load();
   for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    send_now(show, *face.set(sample, row, std::vector<double>(row.width, wrong)));
+    send_now(show, *access.set(sample, property, std::vector<double>(property.width, wrong)));
   EXPECT_EQ(show.read(path), before) << path;
-  EXPECT_EQ(show.link.counters.refused.load(), refused + 2) << path;
+  EXPECT_EQ(show.link.counters.refused.load(), rejected_before + 2) << path;
 }
 
-TEST(EveryRow, ByMessage) {
+TEST(EveryProperty, IsSetByMessage) {
   log_to_stderr(false);
   const SceneFile scene(kEverything);
-  for (const Face& face : kFaces) {
-    // paused, so that nothing moves what was set
+  for (const Interface& access : kInterfaces) {
+    // paused, so that nothing changes the value
     Show show(scene.path());
     show.send("/transport/pause");
     show.engine.tick();
-    int rows = 0;
+    int count = 0;
     for (const Sample& sample : samples(show.engine.store())) {
-      for (const Row& row : sample.table->rows()) {
-        if (!row.writable() || !face.set(sample, row, {})) continue;
-        const std::vector<double> value = other_value(row);
-        send_now(show, *face.set(sample, row, value));
-        expect_value(show, sample.path + "/" + row.name, value, face.name);
-        check_bounds(show, face, sample, row);
-        rows++;
+      for (const Property& property : sample.table->properties()) {
+        if (!property.writable() || !access.set(sample, property, {})) continue;
+        const std::vector<double> value = non_default_value(property);
+        send_now(show, *access.set(sample, property, value));
+        expect_value(show, sample.path + "/" + property.name, value, access.name);
+        check_bounds(show, access, sample, property);
+        count++;
       }
     }
-    EXPECT_GT(rows, 45) << face.name;
+    EXPECT_GT(count, 45) << access.name;
   }
   log_to_stderr(true);
 }
 
-TEST(EveryRow, InLua) {
-  // each is set, read, and told; then comes NaN, which is an error that changes nothing
+TEST(EveryProperty, IsSetInLua) {
+  // each is set, read and sent; then NaN, which is an error without an effect
   const SceneFile plain(kEverything);
   std::string text = std::string(kEverything) + "sim:on_start(function()\n";
-  std::vector<std::string> wanted;
+  std::vector<std::string> expected_texts;
   {
-    Show rig(plain.path());
-    for (const Sample& sample : samples(rig.engine.store())) {
-      for (const Row& row : sample.table->rows()) {
-        if (!row.writable()) continue;
-        const std::string member = sample.lua + "." + row.name;
-        const std::vector<double> value = other_value(row);
-        const char* nan = row.type == RowType::vec3   ? "vec3(0, 0/0, 0)"
-                          : row.type == RowType::quat ? "quat(0/0, 0, 0, 1)"
-                                                      : "0/0";
-        const std::string path = sample.path + "/" + row.name;
+    Show show(plain.path());
+    for (const Sample& sample : samples(show.engine.store())) {
+      for (const Property& property : sample.table->properties()) {
+        if (!property.writable()) continue;
+        const std::string member = sample.lua + "." + property.name;
+        const std::vector<double> value = non_default_value(property);
+        const char* nan = property.type == PropertyType::vec3   ? "vec3(0, 0/0, 0)"
+                          : property.type == PropertyType::quat ? "quat(0/0, 0, 0, 1)"
+                                                                : "0/0";
+        const std::string path = sample.path + "/" + property.name;
         text += fmt::format("  {0} = {1}\n  osc:send('{4}', (pcall(function() {0} = {2} end)), {3})\n", member,
-                            lua_literal(row, value), nan, lua_numbers(row, member), path);
-        std::string want = path + " 0";
+                            lua_literal(property, value), nan, lua_numbers(property, member), path);
+        std::string expected = path + " 0";
         for (const double v : value)
-          want += " " + (row.type == RowType::choice ? row.choices[static_cast<std::size_t>(v)] : number_text(v));
-        wanted.push_back(want);
+          expected += " " + (property.type == PropertyType::choice ? property.choices[static_cast<std::size_t>(v)]
+                                                                   : number_text(v));
+        expected_texts.push_back(expected);
       }
     }
   }
@@ -122,28 +125,28 @@ TEST(EveryRow, InLua) {
   const Result<void> started = engine.start();
   ASSERT_TRUE(started.ok()) << started.error();
   std::vector<Outgoing> out;
-  link.outbox.drain(out);
-  ASSERT_EQ(out.size(), wanted.size()) << (out.empty() ? "" : text_of(out.back().message));
+  link.output_queue.drain(out);
+  ASSERT_EQ(out.size(), expected_texts.size()) << (out.empty() ? "" : text_of(out.back().message));
   EXPECT_GT(out.size(), 50U);
-  for (std::size_t i = 0; i < out.size(); i++) EXPECT_EQ(text_of(out[i].message), wanted[i]);
+  for (std::size_t i = 0; i < out.size(); i++) EXPECT_EQ(text_of(out[i].message), expected_texts[i]);
 }
 
-TEST(EveryRow, ReadoutsAreReadOnlyInEveryFace) {
+TEST(EveryProperty, ReadoutsAreReadOnlyInEveryInterface) {
   const SceneFile plain(kEverything);
   Show show(plain.path());
   show.ticks(2);
-  show.outbox();
-  int rows = 0;
+  show.sent_texts();
+  int count = 0;
   for (const Sample& sample : samples(show.engine.store())) {
-    for (const Row& row : sample.table->rows()) {
-      if (row.kind != RowKind::readout) continue;
-      const std::string path = sample.path + "/" + row.name;
+    for (const Property& property : sample.table->properties()) {
+      if (property.kind != PropertyKind::readout) continue;
+      const std::string path = sample.path + "/" + property.name;
       send_now(show, message(path, 1));
-      EXPECT_EQ(show.outbox(), std::vector<std::string>{fmt::format("/error {} this can be read, not set", path)});
-      rows++;
+      EXPECT_EQ(show.sent_texts(), std::vector<std::string>{fmt::format("/error {} this property is read-only", path)});
+      count++;
     }
   }
-  EXPECT_GT(rows, 15);
+  EXPECT_GT(count, 15);
 }
 
 }  // namespace

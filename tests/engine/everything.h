@@ -1,4 +1,4 @@
-// A scene that holds one of everything: each class of thing, each type of joint, each kind of parameter.
+// A scene with every class of object, every type of joint and every kind of parameter.
 #pragma once
 
 namespace limber::engine_test {

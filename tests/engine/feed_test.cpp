@@ -1,4 +1,4 @@
-// What a client is told: the newest value where it is not what it knows, once, and never what it set itself.
+// Change notifications of a client: the newest value if the client does not know it, once, and never its own writes.
 #include "engine/feed.h"
 
 #include <algorithm>
@@ -12,203 +12,205 @@
 namespace limber::engine_test {
 namespace {
 
-using Told = std::vector<std::string>;
+using SentMessages = std::vector<std::string>;
 
-// one who follows, on its way to a show
-struct Hearer {
-  Origin self;
+// a subscriber of a show
+struct Subscriber {
+  CommandOrigin self;
   Feed feed;
 
-  explicit Hearer(std::uint16_t port) : self{Hand::osc, 0x7f000001, port, true} {}
+  explicit Subscriber(std::uint16_t port) : self{CommandSource::osc, 0x7f000001, port, true} {}
 
   template <class... A>
   void send(Show& show, std::string address, A&&... args) const {
-    show.link.inbox.push({{message(std::move(address), std::forward<A>(args)...)}, self});
+    show.link.command_queue.push({{message(std::move(address), std::forward<A>(args)...)}, self});
   }
-  void hear(Show& show) { feed.hear(image_of(show), self); }
-  Told told(std::size_t room = 1000) {
-    Told list;
-    feed.tell([&](const std::string& path, const Row& row, const RowValue& value) {
-      if (list.size() >= room) return false;
+  void update(Show& show) { feed.update(make_value_snapshot(show), self); }
+  SentMessages changes(std::size_t max_count = 1000) {
+    SentMessages list;
+    feed.send_changes([&](const std::string& path, const Property& property, const PropertyValue& value) {
+      if (list.size() >= max_count) return false;
       std::string text = path;
-      for (std::uint32_t i = 0; i < row.width; i++) text += " " + number_text(value.numbers[i]);
+      for (std::uint32_t i = 0; i < property.width; i++) text += " " + number_text(value.numbers[i]);
       list.push_back(std::move(text));
       return true;
     });
     return list;
   }
-  Told news(Show& show) {
-    hear(show);
-    return told();
+  SentMessages update_and_get_changes(Show& show) {
+    update(show);
+    return changes();
   }
 };
 
-struct Stage {
+struct TwoSubscribers {
   SceneFile file{kEverything};
   Show show{file.path()};
-  Hearer a{1};
-  Hearer b{2};
+  Subscriber a{1};
+  Subscriber b{2};
 
-  Stage() { show.send("/transport/pause"); }
-  void follow(const std::string& path) {
+  TwoSubscribers() { show.send("/transport/pause"); }
+  void subscribe(const std::string& path) {
     a.feed.add(path);
     b.feed.add(path);
-    a.news(show);
-    b.news(show);
+    a.update_and_get_changes(show);
+    b.update_and_get_changes(show);
   }
 };
 
-TEST(Feed, TellsTheValueAtFirstThenChangesOnly) {
-  Stage stage;
-  EXPECT_TRUE(stage.a.feed.add("/scene/wind"));
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 0"});
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  stage.show.send("/scene/wind", 3);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 3"});
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  // asked for again: told again
-  EXPECT_TRUE(stage.a.feed.add("/scene/wind"));
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 3"});
-  EXPECT_TRUE(stage.a.feed.remove("/scene/wind"));
-  EXPECT_FALSE(stage.a.feed.remove("/scene/wind"));
-  stage.show.send("/scene/wind", 4);
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
+TEST(Feed, SendsTheValueFirstThenChangesOnly) {
+  TwoSubscribers clients;
+  EXPECT_TRUE(clients.a.feed.add("/scene/wind"));
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 0"});
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  clients.show.send("/scene/wind", 3);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 3"});
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  // a repeated subscription sends the value again
+  EXPECT_TRUE(clients.a.feed.add("/scene/wind"));
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 3"});
+  EXPECT_TRUE(clients.a.feed.remove("/scene/wind"));
+  EXPECT_FALSE(clients.a.feed.remove("/scene/wind"));
+  clients.show.send("/scene/wind", 4);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
 }
 
-TEST(Feed, OneHandsChangeReachesTheOthersAndNotItself) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  stage.a.send(stage.show, "/scene/wind", 5);
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  EXPECT_EQ(stage.b.news(stage.show), Told{"/scene/wind 5"});
-  EXPECT_EQ(stage.b.news(stage.show), Told{});
-  // and the same by a message that names things by arguments
-  stage.follow("/physics/body/arm/part/hat/friction");
-  stage.b.send(stage.show, "/physics/part/friction", "arm", 0.25);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/physics/body/arm/part/hat/friction 0.25"});
-  EXPECT_EQ(stage.b.news(stage.show), Told{});
+TEST(Feed, AChangeIsSentToTheOtherClientsOnly) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  clients.a.send(clients.show, "/scene/wind", 5);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{"/scene/wind 5"});
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{});
+  // and by a legacy message with names as arguments
+  clients.subscribe("/physics/body/arm/part/hat/friction");
+  clients.b.send(clients.show, "/physics/part/friction", "arm", 0.25);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/arm/part/hat/friction 0.25"});
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{});
 }
 
-TEST(Feed, AMovingSliderHearsNothingOfItself) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  // values go on coming between images, and some images are not heard
+TEST(Feed, AMovingSliderIsNotEchoed) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  // values arrive between snapshots, and some snapshots are skipped
   for (int i = 0; i < 40; i++) {
-    stage.a.send(stage.show, "/scene/wind", 0.125 * i);
-    if (i % 3 == 0) stage.show.ticks(1);
-    if (i % 7 == 0) image_of(stage.show);
-    EXPECT_EQ(stage.a.news(stage.show), Told{}) << i;
+    clients.a.send(clients.show, "/scene/wind", 0.125 * i);
+    if (i % 3 == 0) clients.show.ticks(1);
+    if (i % 7 == 0) make_value_snapshot(clients.show);
+    EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{}) << i;
   }
-  EXPECT_EQ(stage.b.news(stage.show), Told{"/scene/wind 4.875"}) << "only the newest";
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{"/scene/wind 4.875"}) << "only the newest";
 }
 
-TEST(Feed, TheLastOfTwoHandsWinsAndTheOtherHearsIt) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  stage.a.send(stage.show, "/scene/wind", 5);
-  stage.b.send(stage.show, "/scene/wind", 7);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 7"});
-  EXPECT_EQ(stage.b.news(stage.show), Told{});
+TEST(Feed, TheLastOfTwoWritersWinsAndTheOtherIsNotified) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  clients.a.send(clients.show, "/scene/wind", 5);
+  clients.b.send(clients.show, "/scene/wind", 7);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 7"});
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{});
 }
 
-TEST(Feed, WhatAnotherHandSetsBackIsTold) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  stage.a.send(stage.show, "/scene/wind", 5);
-  stage.b.send(stage.show, "/scene/wind", 0);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 0"}) << "it believes 5, though 0 is what it was told";
-  EXPECT_EQ(stage.b.news(stage.show), Told{}) << "it believes 0";
-  stage.a.send(stage.show, "/scene/wind", 0);
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  EXPECT_EQ(stage.b.news(stage.show), Told{});
+TEST(Feed, AValueSetBackByAnotherClientIsSent) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  clients.a.send(clients.show, "/scene/wind", 5);
+  clients.b.send(clients.show, "/scene/wind", 0);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 0"})
+      << "the client assumes 5, though 0 was sent to it";
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{}) << "the client assumes 0";
+  clients.a.send(clients.show, "/scene/wind", 0);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  EXPECT_EQ(clients.b.update_and_get_changes(clients.show), SentMessages{});
 }
 
-TEST(Feed, WhatTheRangeMadeOfAValueIsTold) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  stage.a.send(stage.show, "/scene/wind", 99);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 10"}) << "it believes 99";
-  stage.a.send(stage.show, "/scene/wind", 99);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 10"}) << "again, though nothing changed";
+TEST(Feed, AClampedValueIsSentToItsWriter) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  clients.a.send(clients.show, "/scene/wind", 99);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 10"}) << "the client assumes 99";
+  clients.a.send(clients.show, "/scene/wind", 99);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 10"})
+      << "again, though nothing changed";
 }
 
-TEST(Feed, ScriptsAndRefusalsAreNoEcho) {
+TEST(Feed, WritesOfScriptsAndRejectedValuesAreNotOwnWrites) {
   const SceneFile file(R"(
 params { { "x", 0, min = 0, max = 10 } }
 osc:on("/double", function(v) params.x = 2 * v end)
 )");
   Show show(file.path());
-  Hearer a(1);
+  Subscriber a(1);
   a.feed.add("/scene/x");
-  a.news(show);
-  // a handler's doing is not the sender's own value
+  a.update_and_get_changes(show);
+  // a write by a handler is not the sender's own write
   a.send(show, "/double", 2);
-  EXPECT_EQ(a.news(show), Told{"/scene/x 4"});
+  EXPECT_EQ(a.update_and_get_changes(show), SentMessages{"/scene/x 4"});
   a.send(show, "/scene/x", "nonsense");
-  EXPECT_EQ(a.news(show), Told{});
-  // set by itself, then changed by another back and forth: each change is news
+  EXPECT_EQ(a.update_and_get_changes(show), SentMessages{});
+  // set by the client, then changed by another and changed back: each change is sent
   a.send(show, "/scene/x", 5);
-  EXPECT_EQ(a.news(show), Told{});
+  EXPECT_EQ(a.update_and_get_changes(show), SentMessages{});
   show.send("/scene/x", 6);
-  EXPECT_EQ(a.news(show), Told{"/scene/x 6"});
+  EXPECT_EQ(a.update_and_get_changes(show), SentMessages{"/scene/x 6"});
   show.send("/scene/x", 5);
-  EXPECT_EQ(a.news(show), Told{"/scene/x 5"});
+  EXPECT_EQ(a.update_and_get_changes(show), SentMessages{"/scene/x 5"});
 }
 
-TEST(Feed, PatternsFollowThingsThatComeAndGo) {
-  Stage stage;
-  stage.a.feed.add("/physics/body/*/part/free/friction");
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/physics/body/free/part/free/friction 0.5"});
-  World& world = stage.show.engine.world();
+TEST(Feed, PatternsFollowAddedAndRemovedObjects) {
+  TwoSubscribers clients;
+  clients.a.feed.add("/physics/body/*/part/free/friction");
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/free/part/free/friction 0.5"});
+  World& world = clients.show.engine.world();
   ASSERT_TRUE(world.copy_body(*world.find_body("free"), "other").ok());
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/physics/body/other/part/free/friction 0.5"});
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/other/part/free/friction 0.5"});
   world.remove_body(*world.find_body("other"));
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  stage.show.send("/physics/part/friction", "free", 0.75);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/physics/body/free/part/free/friction 0.75"});
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  clients.show.send("/physics/part/friction", "free", 0.75);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/free/part/free/friction 0.75"});
 }
 
-TEST(Feed, PathsThatAreNotThereWait) {
-  Stage stage;
-  stage.a.feed.add("/physics/body/late/part/free/friction");
-  stage.a.feed.add("/scene");
-  stage.a.feed.add("/transport/step");
-  stage.a.feed.add("nonsense");
-  EXPECT_EQ(stage.a.news(stage.show), Told{});
-  World& world = stage.show.engine.world();
+TEST(Feed, PathsWithoutAMatchWait) {
+  TwoSubscribers clients;
+  clients.a.feed.add("/physics/body/late/part/free/friction");
+  clients.a.feed.add("/scene");
+  clients.a.feed.add("/transport/step");
+  clients.a.feed.add("nonsense");
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
+  World& world = clients.show.engine.world();
   ASSERT_TRUE(world.copy_body(*world.find_body("free"), "late").ok());
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/physics/body/late/part/free/friction 0.5"});
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/late/part/free/friction 0.5"});
 }
 
-TEST(Feed, AResetOfTheSameSceneIsNoNewsBeyondItsValues) {
-  Stage stage;
-  stage.follow("/scene/wind");
-  stage.follow("/physics/body/arm/part/hat/friction");
-  stage.show.send("/scene/wind", 2);
-  EXPECT_EQ(stage.a.news(stage.show), Told{"/scene/wind 2"});
-  stage.show.send("/transport/reset");
-  EXPECT_EQ(stage.a.news(stage.show), Told{}) << "the performer's value is kept";
+TEST(Feed, AResetSendsChangedValuesOnly) {
+  TwoSubscribers clients;
+  clients.subscribe("/scene/wind");
+  clients.subscribe("/physics/body/arm/part/hat/friction");
+  clients.show.send("/scene/wind", 2);
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/scene/wind 2"});
+  clients.show.send("/transport/reset");
+  EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{}) << "the override stays";
 }
 
-TEST(Feed, WhatFindsNoRoomComesNextTime) {
-  Stage stage;
-  stage.a.feed.add("/scene/*");
-  stage.a.hear(stage.show);
-  const Told first = stage.a.told(2);
+TEST(Feed, AValueThatDoesNotFitIsSentNextTime) {
+  TwoSubscribers clients;
+  clients.a.feed.add("/scene/*");
+  clients.a.update(clients.show);
+  const SentMessages first = clients.a.changes(2);
   EXPECT_EQ(first.size(), 2u);
-  Told rest = stage.a.told();
+  SentMessages rest = clients.a.changes();
   rest.insert(rest.end(), first.begin(), first.end());
   std::sort(rest.begin(), rest.end());
-  EXPECT_EQ(rest, (Told{"/scene/lively 1", "/scene/style 0", "/scene/where 0 0 1", "/scene/wind 0"}));
-  EXPECT_EQ(stage.a.told(), Told{});
+  EXPECT_EQ(rest, (SentMessages{"/scene/lively 1", "/scene/style 0", "/scene/where 0 0 1", "/scene/wind 0"}));
+  EXPECT_EQ(clients.a.changes(), SentMessages{});
 }
 
-TEST(Feed, PathsAreBounded) {
+TEST(Feed, LimitsTheNumberOfPaths) {
   Feed feed;
-  for (std::size_t i = 0; i < Feed::kMostPaths; i++) ASSERT_TRUE(feed.add("/p" + std::to_string(i)));
+  for (std::size_t i = 0; i < Feed::kMaxPaths; i++) ASSERT_TRUE(feed.add("/p" + std::to_string(i)));
   EXPECT_FALSE(feed.add("/one/more"));
   EXPECT_TRUE(feed.add("/p7")) << "known already";
-  EXPECT_EQ(feed.size(), Feed::kMostPaths);
+  EXPECT_EQ(feed.size(), Feed::kMaxPaths);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Hands that hold parts: a spring that pulls, whatever the masses, and lets go by itself.
+// Mouse springs: they pull with any mass and are removed after a time.
 #include "engine/grips.h"
 
 #include "engine/show.h"
@@ -6,15 +6,15 @@
 namespace limber::engine_test {
 namespace {
 
-constexpr const char* kGripBall = R"(
+constexpr const char* kBallScene = R"(
 sim.gravity = vec3(0, 0, 0)
 local body = sim:add_body("body")
 body:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 1), mass = 2 })
 body:add_part("base", "ball", { position = vec3(5, 0, 1), mass = 0 })
 )";
 
-TEST(Grips, PullAPointToWhereTheHandIs) {
-  const SceneFile file(kGripBall);
+TEST(MouseSprings, PullAPointToTheTarget) {
+  const SceneFile file(kBallScene);
   Show show(file.path());
   for (int i = 0; i < 120; i++) {
     show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 2, 3);
@@ -26,23 +26,23 @@ TEST(Grips, PullAPointToWhereTheHandIs) {
 }
 
 // k = m·ω², c = 2·m·ω: from rest at distance d, after t: d·(1 + ω·t)·e^(−ω·t), a little more as forces come by ticks
-TEST(Grips, AFreeBodyComesWithoutSwingingOver) {
-  const SceneFile file(kGripBall);
+TEST(MouseSprings, MoveAFreeBodyWithoutOvershoot) {
+  const SceneFile file(kBallScene);
   Show show(file.path());
-  double most = 0;
+  double max_x = 0;
   for (int i = 1; i <= 60; i++) {
     show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, 1);
     show.ticks(1);
     const double x = show.read("/physics/body/body/part/ball/position", 0);
-    most = std::max(most, x);
-    const double t = Grips::kOmega * i / 60.0;
+    max_x = std::max(max_x, x);
+    const double t = MouseSprings::kOmega * i / 60.0;
     EXPECT_NEAR(1 - x, (1 + t) * std::exp(-t), 0.12) << "tick " << i;
   }
-  EXPECT_LT(most, 1.02);
+  EXPECT_LT(max_x, 1.02);
 }
 
-TEST(Grips, AHandThatSaysNothingMoreLetsGo) {
-  const SceneFile file(kGripBall);
+TEST(MouseSprings, AreRemovedAfterATimeout) {
+  const SceneFile file(kBallScene);
   Show show(file.path());
   show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
   show.ticks(32);
@@ -53,12 +53,13 @@ TEST(Grips, AHandThatSaysNothingMoreLetsGo) {
   show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
   show.ticks(1);
   show.send("/physics/part/release", "body", "ball");
-  const double then = show.read("/physics/body/body/part/ball/linear_velocity", 0);
+  const double speed_after_release = show.read("/physics/body/body/part/ball/linear_velocity", 0);
   show.ticks(5);
-  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), then) << "or at once, when it says so";
+  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), speed_after_release)
+      << "or at once, by /physics/part/release";
 }
 
-TEST(Grips, ALightTipOfAHeavyBodyDoesNotShake) {
+TEST(MouseSprings, PullALightTipOfAHeavyBodyStably) {
   const SceneFile file(R"(
 sim.gravity = vec3(0, 0, 0)
 local body = sim:add_body("body")
@@ -74,21 +75,21 @@ body:add_joint("j", "heavy", "tip", { axis = vec3(0, 1, 0), position = vec3(0, 0
   }
 }
 
-TEST(Grips, WhatIsWrongIsRefused) {
-  const SceneFile file(kGripBall);
+TEST(MouseSprings, RejectInvalidMessages) {
+  const SceneFile file(kBallScene);
   Show show(file.path());
-  const auto refused = [&] { return show.link.counters.refused.load(); };
+  const auto rejected_count = [&] { return show.link.counters.refused.load(); };
   show.send("/physics/part/hold", "body", "base", 0, 0, 0, 1, 0, 1);
-  show.send("/physics/part/hold", "body", "nobody", 0, 0, 0, 1, 0, 1);
+  show.send("/physics/part/hold", "body", "missing", 0, 0, 0, 1, 0, 1);
   show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0);
   show.send("/physics/part/hold", "body", "*", 0, 0, 0, 1, 0, 1);
   show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, std::numeric_limits<double>::quiet_NaN());
   show.ticks(1);
-  EXPECT_EQ(refused(), 5u);
+  EXPECT_EQ(rejected_count(), 5u);
   show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 1, 0, 1);
   show.send("/physics/body/body/remove");
   show.ticks(3);
-  EXPECT_EQ(refused(), 5u) << "a part that goes is let go of";
+  EXPECT_EQ(rejected_count(), 5u) << "the spring of a removed part is removed";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The state hash: the same for the same state, another one for every single bit that is part of it.
+// The state hash: equal for equal states, and different if a single bit of the state differs.
 #include <bit>
 #include <cmath>
 
@@ -9,15 +9,16 @@
 namespace limber::engine_test {
 namespace {
 
-// what can be set belongs to the state, but whether it is paused, how fast and how it is shown; readouts follow from it
-bool is_part(const Table& table, const Row& row) {
-  if (!row.stored() || !row.writable() || &table == &Transport::table() || &table == &CounterNode::table())
+// writable values belong to the state, except pause, speed and appearance; readouts are derived from it
+bool is_hashed(const PropertyTable& table, const Property& property) {
+  if (!property.stored() || !property.writable() || &table == &Transport::table() || &table == &CounterNode::table())
     return false;
-  if (&table == &Look::table() && row.name == "overlay") return false;
-  return !(&table == &World::table() && (row.name == "paused" || row.name == "speed" || row.name == "history"));
+  if (&table == &Appearance::table() && property.name == "overlay") return false;
+  return !(&table == &World::table() &&
+           (property.name == "paused" || property.name == "speed" || property.name == "history"));
 }
 
-TEST(Hash, EveryChangedBitChangesIt) {
+TEST(Hash, ChangesWithEveryBit) {
   const SceneFile scene(kEverything);
   Show show(scene.path());
   show.ticks(3);
@@ -25,16 +26,16 @@ TEST(Hash, EveryChangedBitChangesIt) {
   const std::uint64_t hash = show.engine.state_hash();
   int numbers = 0;
   store.walk(store.root(), [&](NodeId id) {
-    for (const Row& row : store.table(id).rows()) {
-      if (!is_part(store.table(id), row)) continue;
-      for (std::uint32_t i = 0; i < row.width; i++) {
-        double& value = store.tell(id, row)[i];
+    for (const Property& property : store.table(id).properties()) {
+      if (!is_hashed(store.table(id), property)) continue;
+      for (std::uint32_t i = 0; i < property.width; i++) {
+        double& value = store.mutable_values(id, property)[i];
         const double was = value;
-        // a count or a switch has no smaller change than one; of a measure it is the last bit
-        const bool whole = row.type == RowType::boolean || row.type == RowType::flags3 ||
-                           row.type == RowType::integer || row.type == RowType::choice;
+        // the smallest change of a count or a flag is 1; that of a measure is the last bit
+        const bool whole = property.type == PropertyType::boolean || property.type == PropertyType::flags3 ||
+                           property.type == PropertyType::integer || property.type == PropertyType::choice;
         value = whole ? (was == 0 ? 1 : was - 1) : std::bit_cast<double>(std::bit_cast<std::uint64_t>(was) ^ 1u);
-        EXPECT_NE(show.engine.state_hash(), hash) << store.path(id) << "/" << row.name << " [" << i << "]";
+        EXPECT_NE(show.engine.state_hash(), hash) << store.path(id) << "/" << property.name << " [" << i << "]";
         value = was;
         numbers++;
       }
@@ -60,18 +61,18 @@ TEST(Hash, DependsOnSeedNamesAndDraws) {
   EXPECT_NE(hash_of(one, 1, 9), hash_of(one, 2, 9));
   EXPECT_NE(hash_of(one, 1, 9), hash_of(one, 1, 10));
   EXPECT_NE(hash_of(one, 1, 9), hash_of(two, 1, 9));
-  EXPECT_NE(hash_of(one, 1, 9), hash_of(three, 1, 9)) << "a draw more or less";
+  EXPECT_NE(hash_of(one, 1, 9), hash_of(three, 1, 9)) << "one more random draw";
 }
 
-// a show of a scene and a behavior's file, under other names
+// Returns the state hash after 20 ticks of a scene with a behavior file. `name`: file name of the scene.
 std::uint64_t hash_of_show(const std::string& scene, const std::string& behavior, const std::string& name,
-                           bool asked_on_the_way = false) {
+                           bool hash_each_tick = false) {
   const ShowFolder folder;
   folder.write("scripts/" + name, scene);
   folder.write("behaviors_lua/nod.lua", behavior);
   Show show(folder.path("scripts/" + name));
   for (int i = 0; i < 20; i++) {
-    if (asked_on_the_way) (void)show.engine.state_hash();
+    if (hash_each_tick) (void)show.engine.state_hash();
     show.ticks(1);
   }
   return show.engine.state_hash();
@@ -91,30 +92,32 @@ constexpr const char* kNod = R"(return behavior {
 }
 )";
 
-std::string with_new(std::string text, const std::string& added) { return text.replace(text.find("--NEW"), 5, added); }
-
-TEST(Hash, NewParametersAtTheirDefaultsAddNothing) {
-  const std::uint64_t before = hash_of_show(kNodScene, kNod, "nod.lua");
-  const std::string added = R"({ "lift", vec3(1, 2, 3) }, { "style", "calm", choices = { "calm", "wild" } },)";
-  EXPECT_EQ(hash_of_show(with_new(kNodScene, added), kNod, "nod.lua"), before);
-  EXPECT_EQ(hash_of_show(kNodScene, with_new(kNod, added), "nod.lua"), before);
-  const std::string other = "arm:behavior('nod').style = 'wild'\n";
-  EXPECT_NE(hash_of_show(kNodScene + other, with_new(kNod, added), "nod.lua"), before);
-  EXPECT_NE(
-      hash_of_show(with_new(kNodScene, added) + "sim:at(0.2, function() params.style = 'wild' end)\n", kNod, "nod.lua"),
-      before);
+std::string with_parameters(std::string text, const std::string& added) {
+  return text.replace(text.find("--NEW"), 5, added);
 }
 
-TEST(Hash, GeneratorsThatAreNotDrawnFromAddNothing) {
-  // a scene's generator begins with the name of its file
+TEST(Hash, IgnoresNewParametersAtTheirDefaults) {
+  const std::uint64_t before = hash_of_show(kNodScene, kNod, "nod.lua");
+  const std::string added = R"({ "lift", vec3(1, 2, 3) }, { "style", "calm", choices = { "calm", "wild" } },)";
+  EXPECT_EQ(hash_of_show(with_parameters(kNodScene, added), kNod, "nod.lua"), before);
+  EXPECT_EQ(hash_of_show(kNodScene, with_parameters(kNod, added), "nod.lua"), before);
+  const std::string other = "arm:behavior('nod').style = 'wild'\n";
+  EXPECT_NE(hash_of_show(kNodScene + other, with_parameters(kNod, added), "nod.lua"), before);
+  EXPECT_NE(hash_of_show(with_parameters(kNodScene, added) + "sim:at(0.2, function() params.style = 'wild' end)\n",
+                         kNod, "nod.lua"),
+            before);
+}
+
+TEST(Hash, IgnoresUnusedGenerators) {
+  // a scene's generator is seeded with the name of its file
   EXPECT_EQ(hash_of_show(kNodScene, kNod, "a.lua"), hash_of_show(kNodScene, kNod, "b.lua"));
   const std::string draws = std::string(kNodScene) + "sim:at(0.1, function() rng:uniform() end)\n";
   EXPECT_NE(hash_of_show(draws, kNod, "a.lua"), hash_of_show(kNodScene, kNod, "a.lua"));
   EXPECT_NE(hash_of_show(draws, kNod, "a.lua"), hash_of_show(draws, kNod, "b.lua"));
 }
 
-TEST(Hash, AskingForItChangesNothing) {
-  // the seed that is in force at the first draw counts
+TEST(Hash, ComputingItChangesNothing) {
+  // the seed at the time of the first draw counts
   const std::string scene = std::string(kNodScene) + R"(
 sim:at(0.1, function() sim.seed = 5 end)
 sim:at(0.2, function() arm:part("tip"):apply_impulse(rng:direction()) end)

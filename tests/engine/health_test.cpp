@@ -1,4 +1,4 @@
-// Health: each kind of loss is provoked, and read over /list/health.
+// Health: each kind of loss is provoked and read with /list/health.
 #include "engine/health.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +16,14 @@ namespace {
 std::int64_t now_at = 0;
 std::int64_t test_clock() { return now_at; }
 
-// the answer to /list/health: the number of each entry
+// the answer to /list/health: the count of each entry
 std::map<std::string, double> losses(Show& show) {
   std::vector<Outgoing> out;
-  show.link.outbox.drain(out);
-  show.ticks(16);  // some is looked at each sixteenth time
+  show.link.output_queue.drain(out);
+  show.ticks(16);  // some counters are read every 16 passes
   show.send("/list/health");
   show.ticks(1);
-  show.link.outbox.drain(out);
+  show.link.output_queue.drain(out);
   std::map<std::string, double> list;
   for (const Outgoing& o : out) {
     if (o.message.address != "/list/health") continue;
@@ -37,9 +37,9 @@ std::map<std::string, double> losses(Show& show) {
 
 using Losses = std::map<std::string, double>;
 
-TEST(Health, SinceIsWhenAnItemLeftZeroLast) {
+TEST(Health, SinceIsTheTimeWhenACountLeftZero) {
   Health health(&test_clock);
-  EXPECT_TRUE(health.well());
+  EXPECT_TRUE(health.healthy());
   EXPECT_EQ(health.text(), "");
   now_at = 100;
   health.add(HealthItem::dropped, 2);
@@ -53,14 +53,14 @@ TEST(Health, SinceIsWhenAnItemLeftZeroLast) {
   EXPECT_EQ(entries[0].since, 100);
   EXPECT_EQ(entries[1].since, 160);
   EXPECT_EQ(health.text(), "dropped 3 since " + time_of_day(100) + ", handlers 1 since " + time_of_day(160));
-  EXPECT_EQ(text_of(health.answer("/list/health")), "/list/health dropped 3 100 handlers 1 40");
+  EXPECT_EQ(text_of(health.answer_message("/list/health")), "/list/health dropped 3 100 handlers 1 40");
   health.set(HealthItem::handlers, 0);
-  EXPECT_EQ(health.entries().size(), 1u) << "the handler is mended";
+  EXPECT_EQ(health.entries().size(), 1u) << "the handler is fixed";
   health.set(HealthItem::handlers, 2);
   EXPECT_EQ(health.entries()[1].since, 200);
 }
 
-TEST(Health, EveryItemHasANameAndAText) {
+TEST(Health, EveryItemHasANameAndADescription) {
   Health health;
   for (std::size_t i = 0; i < Health::kItems; i++) health.add(static_cast<HealthItem>(i));
   std::map<std::string, int> names;
@@ -71,20 +71,20 @@ TEST(Health, EveryItemHasANameAndAText) {
   EXPECT_EQ(names.size(), Health::kItems);
 }
 
-TEST(Health, AShowThatIsWellHasNoEntries) {
+TEST(Health, AHealthyShowHasNoEntries) {
   Show show;
-  show.outbox();
+  show.sent_texts();
   EXPECT_EQ(losses(show), Losses{});
   show.send("/list/health");
   show.send("/get", "/transport/health");
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), (std::vector<std::string>{"/list/health ", "/transport/health "}));
+  EXPECT_EQ(show.sent_texts(), (std::vector<std::string>{"/list/health ", "/transport/health "}));
   show.send("/list/health", 1);
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), std::vector<std::string>{"/error /list/health takes no arguments"});
+  EXPECT_EQ(show.sent_texts(), std::vector<std::string>{"/error /list/health takes no arguments"});
 }
 
-TEST(Health, CountsWhatTheCountersOfMessagesCount) {
+TEST(Health, IncludesTheMessageCounters) {
   Show show;
   show.link.counters.dropped = 3;
   show.link.counters.dropped_kernel = 5;
@@ -92,11 +92,11 @@ TEST(Health, CountsWhatTheCountersOfMessagesCount) {
   EXPECT_EQ(losses(show), (Losses{{"dropped", 3}, {"dropped_kernel", 5}, {"unheard", 7}}));
   show.send("/get", "/transport/health");
   show.ticks(1);
-  const std::string told = show.outbox().back();
-  EXPECT_TRUE(told.starts_with("/transport/health dropped 3 since ")) << told;
+  const std::string text = show.sent_texts().back();
+  EXPECT_TRUE(text.starts_with("/transport/health dropped 3 since ")) << text;
 }
 
-TEST(Health, CountsRequestsThatWereOvertaken) {
+TEST(Health, CountsOvertakenRequests) {
   Show show;
   show.send("/transport/play");
   show.send("/transport/panic");
@@ -104,13 +104,13 @@ TEST(Health, CountsRequestsThatWereOvertaken) {
   EXPECT_EQ(losses(show)["discarded"], 1);
 }
 
-TEST(Health, CountsAnswersThatFoundNoRoom) {
+TEST(Health, CountsDroppedAnswers) {
   Show show;
-  while (show.link.outbox.push({Outgoing::To::targets, {}, {"/filler", {}}})) continue;
+  while (show.link.output_queue.push({Outgoing::Destination::targets, {}, {"/filler", {}}})) continue;
   EXPECT_EQ(losses(show), (Losses{{"unanswered", 1}}));
 }
 
-TEST(Health, CountsDisabledHandlersUntilTheyAreMended) {
+TEST(Health, CountsDisabledHandlersUntilTheyAreFixed) {
   const SceneFile file("osc:on('/go', function() error('no') end)");
   Show show(file.path());
   show.send("/go");
@@ -135,13 +135,13 @@ for i = 1, 2 do
 end
 )";
 
-TEST(Health, CountsSuspendedBehaviorsThoseOfGroupsToo) {
+TEST(Health, CountsSuspendedBehaviorsIncludingGroups) {
   const SceneFile file(kTwoBodies);
   Show show(file.path());
   World& world = show.engine.world();
   BehaviorTypes& types = world.behaviors().types();
-  ASSERT_TRUE(types.add(BehaviorType::of<FailingBehavior>("fails", "Fails.", BehaviorTargets::any, {})).ok());
-  ASSERT_TRUE(types.add(BehaviorType::of_group<FailingBehavior>("all_fail", "Fail.", {})).ok());
+  ASSERT_TRUE(types.add(BehaviorType::create<FailingBehavior>("fails", "Fails.", BehaviorTargets::any, {})).ok());
+  ASSERT_TRUE(types.add(BehaviorType::create_group<FailingBehavior>("all_fail", "Fail.", {})).ok());
   ASSERT_TRUE(world.behaviors().add(*world.find_body("b1"), "fails", "one").ok());
   GroupSetup all;
   all.bodies = Selection(std::vector<std::string>{"*"});
@@ -152,7 +152,7 @@ TEST(Health, CountsSuspendedBehaviorsThoseOfGroupsToo) {
   EXPECT_EQ(losses(show)["behaviors"], 1);
 }
 
-TEST(Health, CountsCallsThatWereStopped) {
+TEST(Health, CountsStoppedCalls) {
   const SceneFile file("osc:on('/long', function() while true do end end)");
   EngineOptions options = fast_options(file.path());
   options.scene_options.limits.call_ms = 5;
@@ -162,7 +162,7 @@ TEST(Health, CountsCallsThatWereStopped) {
   EXPECT_EQ(losses(show)["stopped"], 1);
 }
 
-TEST(Health, CountsBodiesOutOfControl) {
+TEST(Health, CountsUnstableBodies) {
   const SceneFile file(R"(
     local part = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1), { mass = 1 })
     osc:on("/far", function() part.position = vec3(1e6, 0, 0) end))");
@@ -173,7 +173,7 @@ TEST(Health, CountsBodiesOutOfControl) {
   EXPECT_EQ(losses(show)["bodies"], 1);
 }
 
-TEST(Health, CountsLinesThatTheLogLeftOut) {
+TEST(Health, CountsSuppressedLogLines) {
   Show show;
   log_to_stderr(true);  // other tests silence it
   log_forget_sources();
@@ -181,10 +181,10 @@ TEST(Health, CountsLinesThatTheLogLeftOut) {
   EXPECT_GE(losses(show)["log"], 4) << "ten of one source are written at most";
 }
 
-TEST(Health, CountsFilesThatCouldNotBeWritten) {
+TEST(Health, CountsFailedWrites) {
   const SceneFile file("");
   Show show(file.path());
-  const std::filesystem::path presets = PresetFile::beside(file.path());
+  const std::filesystem::path presets = PresetFile::path_for(file.path());
   std::filesystem::create_directories(presets / "in the way");
   show.send("/preset/store", "dusk");
   show.ticks(1);
@@ -195,25 +195,25 @@ TEST(Health, CountsFilesThatCouldNotBeWritten) {
 TEST(Health, ReportsThatAnotherProgramOwnsTheScene) {
   const SceneFile file("");
   EngineOptions options = fast_options(file.path());
-  options.recovery = file.path() + ".recovery";
-  RecoveryKeeper other(options.recovery);
+  options.recovery_folder = file.path() + ".recovery";
+  RecoverySaver other(options.recovery_folder);
   ASSERT_TRUE(other.open(file.path()).ok());
   ASSERT_TRUE(other.owned());
   Show show(std::move(options));
   EXPECT_EQ(losses(show)["not_owned"], 1);
 }
 
-TEST(Health, LateIsWhatTheClockLetsGo) {
+TEST(Health, LateCountsSkippedDelays) {
   Clock clock;
   Clock::Time at{};
   clock.restart(at);
   clock.tick(at, 0.01, 1);
   at += std::chrono::milliseconds(200);
   clock.tick(at, 0.01, 1);
-  EXPECT_EQ(clock.let_go(), 0u) << "caught up with";
+  EXPECT_EQ(clock.stalls(), 0u) << "caught up with";
   at += std::chrono::milliseconds(300);
   clock.tick(at, 0.01, 1);
-  EXPECT_EQ(clock.let_go(), 1u);
+  EXPECT_EQ(clock.stalls(), 1u);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Time that goes back: what follows is what followed before, to the bit, however often; how far it goes, and what is
-// said of it.
+// Rewind: the replayed future is bit-identical to the original one; limits of the history and messages about them.
 #include "engine/history.h"
 
 #include <fmt/ranges.h>
@@ -14,24 +13,25 @@
 namespace limber::engine_test {
 namespace {
 
-// a run that goes back by chance again and again, in every tick the same as one that never did
-void expect_same_walk(const EngineOptions& options, TickHands hands, std::uint64_t ticks, std::uint64_t seed) {
+// Compares a run with many random rewinds, tick by tick, with one without rewinds.
+void expect_same_with_rewinds(const EngineOptions& options, TickInputs inputs, std::uint64_t ticks,
+                              std::uint64_t seed) {
   log_to_stderr(false);
   std::vector<std::uint64_t> hashes;
   {
-    Show straight(options);
-    play_to(straight, ticks, hands, hashes);
+    Show reference(options);
+    play_to(reference, ticks, inputs, hashes);
   }
   Show show(options);
   Random random(seed, "walk");
   int times = 0;
-  for (std::uint64_t most = 1; most < ticks;) {
-    const auto on = static_cast<std::uint64_t>(random.uniform(1, 90));
-    if (!plays_again(show, std::min(ticks, show.engine.world().tick() + on), hands, hashes)) return;
+  for (std::uint64_t farthest = 1; farthest < ticks;) {
+    const auto forward = static_cast<std::uint64_t>(random.uniform(1, 90));
+    if (!replays_identically(show, std::min(ticks, show.engine.world().tick() + forward), inputs, hashes)) return;
     const std::uint64_t tick = show.engine.world().tick();
     if (tick == ticks) break;
-    most = std::max(most, tick);
-    show.outbox();
+    farthest = std::max(farthest, tick);
+    show.sent_texts();
     const bool far = random.uniform() < 0.1;
     if (random.uniform() < 0.5) {
       show.send("/transport/rewind", random.uniform(0.01, far ? 4 : 0.8));
@@ -48,37 +48,38 @@ void expect_same_walk(const EngineOptions& options, TickHands hands, std::uint64
   EXPECT_GT(times, 5);
 }
 
-TEST(History, EveryBehaviorGoesTheSameWay) {
+TEST(History, RewindIsExactForEveryBehavior) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  expect_same_walk(rewound_options(folder), no_hands, 500, 1);
+  expect_same_with_rewinds(rewind_options(folder), no_inputs, 500, 1);
 }
 
-TEST(History, ScriptsGoTheSameWay) {
+TEST(History, RewindIsExactForScripts) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  expect_same_walk(rewound_options(folder), no_hands, 700, 2);
+  write_rewind_scene(folder);
+  expect_same_with_rewinds(rewind_options(folder), no_inputs, 700, 2);
 }
 
-TEST(History, WithManyHandsToo) {
+TEST(History, RewindIsExactWithManyInputs) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  for (std::uint64_t seed = 3; seed < 6; seed++) expect_same_walk(rewound_options(folder), many_hands, 500, seed);
+  write_rewind_scene(folder);
+  for (std::uint64_t seed = 3; seed < 6; seed++)
+    expect_same_with_rewinds(rewind_options(folder), random_inputs, 500, seed);
 }
 
-TEST(History, NothingIsSaidOrStoredTwice) {
+TEST(History, RewindRepeatsNoOutput) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  Show show(rewound_options(folder));
+  write_rewind_scene(folder);
+  Show show(rewind_options(folder));
   std::vector<std::uint64_t> hashes;
-  play_to(show, 170, many_hands, hashes);
-  show.outbox();
+  play_to(show, 170, random_inputs, hashes);
+  show.sent_texts();
   const std::uint64_t lines = log_newest();
   const std::size_t changes = show.link.changes.after(0).size();
   const std::uint64_t faults = show.engine.faults();
   show.send("/transport/rewind", 0.5);
   show.engine.idle();
-  const std::vector<std::string> out = show.outbox();
+  const std::vector<std::string> out = show.sent_texts();
   ASSERT_EQ(out.size(), 2u) << fmt::format("{}", fmt::join(out, "\n"));
   EXPECT_EQ(out[0].substr(0, 16), "/transport/state");
   EXPECT_EQ(out[1], "/transport/rewound 0.5 140");
@@ -87,22 +88,22 @@ TEST(History, NothingIsSaidOrStoredTwice) {
   EXPECT_EQ(show.engine.faults(), faults);
 }
 
-TEST(History, ItGoesAsFarAsItIsKept) {
+TEST(History, RewindsAsFarAsHistoryReaches) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(300);
   EXPECT_NEAR(show.read("/transport/rewindable"), 5, 0.05);
   EXPECT_GT(show.read("/transport/history_memory"), 0.1);
-  show.outbox();
+  show.sent_texts();
   show.send("/transport/rewind", 20);
   show.engine.idle();
-  EXPECT_EQ(show.outbox().back().substr(0, 26), "/transport/rewound 4.98333");
+  EXPECT_EQ(show.sent_texts().back().substr(0, 26), "/transport/rewound 4.98333");
   EXPECT_EQ(show.engine.world().tick(), 1u);
   show.send("/transport/rewind", 1);
   show.engine.idle();
-  EXPECT_EQ(show.outbox().back(), "/error /transport/rewind time can't go back: the scene has begun there");
-  // half a minute at most, or as the row says
+  EXPECT_EQ(show.sent_texts().back(), "/error /transport/rewind can't rewind: the scene starts there");
+  // the property `history` limits it; default: 30 s
   show.ticks(60 * 40);
   EXPECT_NEAR(show.read("/transport/rewindable"), 30.5, 0.51);
   show.send("/physics/sim/history", 5);
@@ -112,27 +113,27 @@ TEST(History, ItGoesAsFarAsItIsKept) {
   show.ticks(100);
   EXPECT_EQ(show.read("/transport/rewindable"), 0);
   EXPECT_EQ(show.read("/transport/history_memory"), 0);
-  show.outbox();
+  show.sent_texts();
   show.send("/transport/rewind", 1);
   show.engine.idle();
-  EXPECT_EQ(show.outbox().back(), "/error /transport/rewind time can't go back: history is switched off");
+  EXPECT_EQ(show.sent_texts().back(), "/error /transport/rewind can't rewind: history is switched off");
   show.send("/physics/sim/history", 30);
   show.ticks(100);
   EXPECT_GT(show.read("/transport/rewindable"), 1);
 }
 
-TEST(History, WhatIsNoSpanIsRefused) {
+TEST(History, RejectsInvalidSpans) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(100);
   const std::uint64_t hash = show.engine.state_hash();
   const double bad[] = {0, -1, std::nan(""), std::numeric_limits<double>::infinity()};
   for (const double seconds : bad) {
-    show.outbox();
+    show.sent_texts();
     show.send("/transport/rewind", seconds);
     show.engine.idle();
-    const std::vector<std::string> out = show.outbox();
+    const std::vector<std::string> out = show.sent_texts();
     ASSERT_EQ(out.size(), 1u);
     EXPECT_EQ(out[0].substr(0, 24), "/error /transport/rewind") << out[0];
   }
@@ -144,17 +145,28 @@ TEST(History, WhatIsNoSpanIsRefused) {
   show.send("/transport/step", -0.5);
   show.send("/transport/rewind_ticks", 0);
   show.engine.idle();
-  EXPECT_EQ(show.outbox().size(), 8u);
+  EXPECT_EQ(show.sent_texts().size(), 8u);
   EXPECT_EQ(show.engine.state_hash(), hash);
   EXPECT_EQ(show.engine.world().tick(), 100u);
 }
 
+TEST(History, PendingStepsContinueAfterARewind) {
+  Show show;
+  show.ticks(65);
+  show.send("/transport/step", 10);
+  show.ticks(4);
+  ASSERT_EQ(show.engine.world().tick(), 69u);
+  show.send("/transport/rewind_ticks", 2);
+  show.ticks(20);
+  EXPECT_EQ(show.engine.world().tick(), 67u + 6u);
+}
+
 TEST(History, StepsBackAndForthWhilePaused) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  Show show(rewound_options(folder));
+  write_rewind_scene(folder);
+  Show show(rewind_options(folder));
   std::vector<std::uint64_t> hashes;
-  play_to(show, 150, no_hands, hashes);
+  play_to(show, 150, no_inputs, hashes);
   show.send("/transport/pause");
   show.ticks(5);
   EXPECT_EQ(show.engine.world().tick(), 150u);
@@ -172,11 +184,11 @@ TEST(History, StepsBackAndForthWhilePaused) {
   }
 }
 
-// what a hand sets while time stands still belongs to the tick at which it stands
-TEST(History, WhatWasSetInAPauseStays) {
+// A value that is set while paused belongs to the tick at which the simulation is paused.
+TEST(History, KeepsValuesSetWhilePaused) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(100);
   show.send("/transport/pause");
   show.send("/physics/body/body1/part/part1/mass", 7);
@@ -194,30 +206,31 @@ TEST(History, WhatWasSetInAPauseStays) {
   EXPECT_EQ(show.read("/physics/sim/paused"), 1);
 }
 
-// of one datagram: what stands before it goes with the past, what stands behind it is done there
-TEST(History, MessagesBesideARewind) {
+// In one datagram: messages before the rewind are discarded, messages after it are executed at the restored time.
+TEST(History, ARewindDiscardsEarlierMessagesOfItsDatagram) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(100);
-  show.link.inbox.push({{message("/physics/body/body1/part/part1/mass", 7), message("/transport/rewind_ticks", 10),
-                         message("/physics/body/body1/part/part2/mass", 9), message("/transport/pause")},
-                        {Hand::osc}});
+  show.link.command_queue.push(
+      {{message("/physics/body/body1/part/part1/mass", 7), message("/transport/rewind_ticks", 10),
+        message("/physics/body/body1/part/part2/mass", 9), message("/transport/pause")},
+       {CommandSource::osc}});
   show.ticks(1);
   EXPECT_EQ(show.engine.world().tick(), 90u);
   EXPECT_EQ(show.read("/physics/body/body1/part/part1/mass"), 1);
   EXPECT_EQ(show.read("/physics/body/body1/part/part2/mass"), 9);
   EXPECT_EQ(show.read("/physics/sim/paused"), 1);
-  // and it can be undone
+  // the message after the rewind can be undone
   show.send("/edit/undo");
   show.ticks(1);
   EXPECT_EQ(show.read("/physics/body/body1/part/part2/mass"), 1);
 }
 
-TEST(History, PresetsSpeedAndPauseAreOfTheHour) {
+TEST(History, PresetsSpeedAndPauseSurviveARewind) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(100);
   show.send("/preset/store", "late");
   show.send("/physics/sim/speed", 2);
@@ -228,84 +241,85 @@ TEST(History, PresetsSpeedAndPauseAreOfTheHour) {
   EXPECT_EQ(show.read("/physics/sim/speed"), 2);
 }
 
-TEST(History, WhatComesOrGoesIsAWall) {
+TEST(History, StructuralChangesEndHistory) {
   const ShowFolder folder;
-  lay_out_rewound(folder, std::string(kRewoundScene) + R"(
+  write_rewind_scene(folder, std::string(kRewindScene) + R"(
 osc:on("/spawn", function() sim:body("stone1"):copy("more", { position = vec3(0, 0, 5) }) end)
 osc:on("/wind", function() sim:body("arm1"):add_behavior("random_force", "wind") end)
 )");
-  Show show(rewound_options(folder));
-  const auto wall = [&](const char* address, const char* why) {
+  Show show(rewind_options(folder));
+  const auto expect_limit = [&](const char* address, const char* why) {
     show.ticks(150);
     const std::uint64_t tick = show.engine.world().tick();
     show.send(address);
     show.ticks(100);
-    show.outbox();
+    show.sent_texts();
     show.send("/transport/rewind", 20);
     show.engine.idle();
-    const std::string out = show.outbox().back();
+    const std::string out = show.sent_texts().back();
     EXPECT_NE(out.find(why), std::string::npos) << out;
     if (show.engine.world().tick() > 100) {
       EXPECT_GE(show.engine.world().tick(), tick) << address;
       EXPECT_LE(show.engine.world().tick(), tick + 60) << address;
     }
   };
-  wall("/spawn", "things came or went");
-  wall("/wind", "things came or went");
-  wall("/physics/body/stone9/remove", "things came or went");
-  wall("/transport/reset", "the scene has begun there");
-  // in the tick of the rewind, before it: no state fits what there is
+  expect_limit("/spawn", "objects were added or removed");
+  expect_limit("/wind", "objects were added or removed");
+  expect_limit("/physics/body/stone9/remove", "objects were added or removed");
+  expect_limit("/transport/reset", "the scene starts there");
+  // a structural change in the tick of the rewind, before it: no checkpoint fits
   show.ticks(150);
-  show.outbox();
-  show.link.inbox.push({{message("/physics/body/stone8/remove"), message("/transport/rewind_ticks", 20)}, {Hand::osc}});
+  show.sent_texts();
+  show.link.command_queue.push(
+      {{message("/physics/body/stone8/remove"), message("/transport/rewind_ticks", 20)}, {CommandSource::osc}});
   show.ticks(1);
-  const std::vector<std::string> said = show.outbox();
-  EXPECT_TRUE(std::ranges::any_of(said, [](const std::string& line) {
-    return line.find("time can't go back: things came or went") != line.npos;
-  })) << said.size();
+  const std::vector<std::string> messages = show.sent_texts();
+  EXPECT_TRUE(std::ranges::any_of(messages, [](const std::string& line) {
+    return line.find("can't rewind: objects were added or removed") != line.npos;
+  })) << messages.size();
   show.ticks(30);
   show.send("/transport/rewind_ticks", 20);
   show.engine.idle();
-  EXPECT_EQ(show.outbox().back().find("/error"), std::string::npos);
+  EXPECT_EQ(show.sent_texts().back().find("/error"), std::string::npos);
 }
 
-TEST(History, AReloadIsAWall) {
-  Edited edited(
+TEST(History, AReloadEndsHistory) {
+  EditedShow edited(
       "local b = sim:add_body('b'):add_part('p', sim:add_sphere_shape('s', 0.1))\nsim:on_step(function() end)");
   edited.show().ticks(120);
-  EXPECT_EQ(edited.save(edited.text + "\nsim.gravity = vec3(1, 0, 0)"), Reload::End::applied);
+  EXPECT_EQ(edited.save(edited.text + "\nsim.gravity = vec3(1, 0, 0)"), SceneReloader::ApplyResult::applied);
   edited.show().ticks(90);
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/transport/rewind", 20);
   edited.show().engine.idle();
-  EXPECT_NE(edited.show().outbox().back().find("the scene was run anew there"), std::string::npos);
+  EXPECT_NE(edited.show().sent_texts().back().find("the scene was run again there"), std::string::npos);
   EXPECT_GE(edited.world().tick(), 120u);
   EXPECT_EQ(edited.show().read("/physics/sim/gravity", 0), 1);
 }
 
-// a call that was stopped is not made again, and what comes behind it is as it was
+// A stopped call is not executed again in a replay, and later ticks are identical.
 TEST(History, StoppedCallsStayStopped) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
+  write_rewind_scene(folder);
   log_to_stderr(false);
-  EngineOptions options = rewound_options(folder);
+  EngineOptions options = rewind_options(folder);
   options.scene_options.limits.call_ms = 8 * kBudgetScale;
-  const auto hands = [](Show& show, std::uint64_t tick) {
-    many_hands(show, tick);
+  const auto inputs = [](Show& show, std::uint64_t tick) {
+    random_inputs(show, tick);
     if (tick % 50 == 20) show.send("/loop", static_cast<double>(tick));
   };
   Show show(options);
   std::vector<std::uint64_t> hashes;
-  play_to(show, 230, hands, hashes);
+  play_to(show, 230, inputs, hashes);
   for (const double back : {2.5, 1.0, 3.3, 0.3}) {
     show.send("/transport/rewind", back);
     show.engine.idle();
     ASSERT_EQ(show.engine.state_hash(), hashes[show.engine.world().tick()]) << back;
-    play_to(show, 230, hands, hashes);
+    play_to(show, 230, inputs, hashes);
   }
 }
 
-TEST(History, ALargeSceneKeepsLess) {
+TEST(History, LargeScenesHaveAShorterHistory) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", R"(
 sim:add_body("ball"):add_part("p", sim:add_sphere_shape("s", 0.1))
@@ -321,34 +335,34 @@ end)
 )");
   log_to_stderr(false);
   const std::uint64_t lines = log_newest();
-  Show show(rewound_options(folder));
+  Show show(rewind_options(folder));
   show.ticks(60 * 20);
   EXPECT_LE(show.read("/transport/history_memory"), 256);
   EXPECT_GT(show.read("/transport/history_memory"), 200);
   EXPECT_GT(show.read("/transport/rewindable"), 5);
   EXPECT_LT(show.read("/transport/rewindable"), 18);
-  std::size_t said = 0;
-  for (const LogLine& line : log_since(lines)) said += line.text.find("256 MB") != std::string::npos ? 1 : 0;
-  EXPECT_EQ(said, 1u);
+  std::size_t reported = 0;
+  for (const LogLine& line : log_since(lines)) reported += line.text.find("256 MB") != std::string::npos ? 1 : 0;
+  EXPECT_EQ(reported, 1u);
   show.send("/transport/rewind", 30);
   show.engine.idle();
-  EXPECT_NE(show.outbox().back().find("more does not fit into 256 MB"), std::string::npos);
+  EXPECT_NE(show.sent_texts().back().find("history is limited to 256 MB"), std::string::npos);
 }
 
-TEST(History, ATakeWithRewindsReplays) {
+TEST(History, TakesWithRewindsReplay) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
+  write_rewind_scene(folder);
   log_to_stderr(false);
   const std::string take = folder.path("rewound.take");
   std::uint64_t hash = 0;
   {
-    EngineOptions options = rewound_options(folder);
+    EngineOptions options = rewind_options(folder);
     options.record = take;
     Show show(options);
     Random random(9, "walk");
     for (int i = 0; i < 12; i++) {
       for (auto n = static_cast<int>(random.uniform(1, 80)); n > 0; n--) {
-        many_hands(show, show.engine.world().tick());
+        random_inputs(show, show.engine.world().tick());
         show.ticks(1);
       }
       if (i == 6) show.send("/transport/pause");
@@ -364,19 +378,19 @@ TEST(History, ATakeWithRewindsReplays) {
   expect_replay(take, hash);
 }
 
-TEST(History, ReturnsToTheKeyStateBeforeATick) {
+TEST(History, RestoresTheCheckpointBeforeATick) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  Show show(rewound_options(folder));
+  write_rewind_scene(folder);
+  Show show(rewind_options(folder));
   std::vector<std::uint64_t> hashes;
-  play_to(show, 200, many_hands, hashes);
-  ASSERT_TRUE(show.engine.return_before(150));
+  play_to(show, 200, random_inputs, hashes);
+  ASSERT_TRUE(show.engine.restore_before(150));
   const std::uint64_t tick = show.engine.world().tick();
   EXPECT_LT(tick, 150u);
   EXPECT_GE(tick, 89u);
   EXPECT_EQ(show.engine.state_hash(), hashes[tick]);
-  EXPECT_TRUE(plays_again(show, 200, many_hands, hashes));
-  EXPECT_FALSE(show.engine.return_before(1));
+  EXPECT_TRUE(replays_identically(show, 200, random_inputs, hashes));
+  EXPECT_FALSE(show.engine.restore_before(1));
 }
 
 }  // namespace

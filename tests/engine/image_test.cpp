@@ -1,4 +1,4 @@
-// Images: they hold every value of their moment, are made when asked for and not too often, and tell who set what.
+// Value snapshots: they contain all values, are made on request and not too often, and contain the writes of clients.
 #include "engine/image.h"
 
 #include <gtest/gtest.h>
@@ -12,207 +12,219 @@
 namespace limber::engine_test {
 namespace {
 
-TEST(Image, HoldsEveryValueOfTheStore) {
+TEST(ValueSnapshot, ContainsEveryValueOfTheStore) {
   const SceneFile scene(kEverything);
   Show show(scene.path());
   show.ticks(20);
-  const std::shared_ptr<const Image> image = image_of(show);
+  const std::shared_ptr<const ValueSnapshot> value_snapshot = make_value_snapshot(show);
   const Store& store = show.engine.store();
-  std::size_t rows = 0;
-  for (std::uint32_t i = 0; i < image->tree->nodes().size(); i++) {
-    const Tree::Node& node = image->tree->nodes()[i];
-    for (const Row& row : node.table->rows()) {
-      const double* const values = image->value(image->tree->numbers({i, &row})).numbers;
-      if (row.kind == RowKind::action) {
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < value_snapshot->tree->nodes().size(); i++) {
+    const TreeSnapshot::Node& node = value_snapshot->tree->nodes()[i];
+    for (const Property& property : node.table->properties()) {
+      const double* const values = value_snapshot->value(value_snapshot->tree->location({i, &property})).numbers;
+      if (property.kind == PropertyKind::action) {
         EXPECT_EQ(values, nullptr);
         continue;
       }
       double expected[4] = {};
-      store.get(node.id, row, expected);
-      for (std::uint32_t k = 0; k < row.width; k++) EXPECT_EQ(values[k], expected[k]) << image->tree->path({i, &row});
-      rows++;
+      store.get(node.id, property, expected);
+      for (std::uint32_t k = 0; k < property.width; k++)
+        EXPECT_EQ(values[k], expected[k]) << value_snapshot->tree->path({i, &property});
+      count++;
     }
   }
-  EXPECT_GT(rows, 500u);
-  EXPECT_EQ(image->snapshot->tick, show.engine.world().tick());
+  EXPECT_GT(count, 500u);
+  EXPECT_EQ(value_snapshot->snapshot->tick, show.engine.world().tick());
 }
 
-TEST(Image, IsMadeOnlyWhenAskedFor) {
+TEST(ValueSnapshot, IsMadeOnRequestOnly) {
   Show show;
   show.ticks(5);
-  EXPECT_EQ(show.link.images.read(), nullptr);
-  const std::uint64_t first = show.link.ask_image();
-  const std::uint64_t second = show.link.ask_image();
+  EXPECT_EQ(show.link.value_snapshots.read(), nullptr);
+  const std::uint64_t first = show.link.request_value_snapshot();
+  const std::uint64_t second = show.link.request_value_snapshot();
   show.ticks(1);
-  const auto image = show.link.images.read();
-  ASSERT_NE(image, nullptr);
+  const auto value_snapshot = show.link.value_snapshots.read();
+  ASSERT_NE(value_snapshot, nullptr);
   EXPECT_EQ(second, first + 1);
-  EXPECT_EQ(image->asks, second) << "one image answers all who asked before";
+  EXPECT_EQ(value_snapshot->request, second) << "one snapshot serves all earlier requests";
   show.ticks(5);
-  EXPECT_EQ(show.link.images.read()->number, 1u);
+  EXPECT_EQ(show.link.value_snapshots.read()->number, 1u);
 }
 
-TEST(Image, HoldsWhatWasSentBeforeItWasAskedFor) {
+TEST(ValueSnapshot, ContainsMessagesSentBeforeItsRequest) {
   const SceneFile scene(kEverything);
   Show show(scene.path());
   for (int i = 1; i <= 10; i++) {
     show.send("/scene/wind", 0.5 * i);
-    const auto image = image_of(show);
-    EXPECT_EQ(image->value(image->tree->numbers(*image->tree->find("/scene/wind"))).numbers[0], 0.5 * i);
+    const auto value_snapshot = make_value_snapshot(show);
+    EXPECT_EQ(
+        value_snapshot->value(value_snapshot->tree->location(*value_snapshot->tree->find("/scene/wind"))).numbers[0],
+        0.5 * i);
   }
 }
 
-TEST(Image, TheTreeIsMadeAnewOnlyWhenSomethingCameOrWent) {
+TEST(ValueSnapshot, RebuildsTheTreeOnlyWhenNodesAreAddedOrRemoved) {
   const SceneFile scene(kEverything);
   Show show(scene.path());
   show.ticks(20);
   show.send("/transport/pause");
-  const auto first = image_of(show);
+  const auto first = make_value_snapshot(show);
   show.ticks(3);
-  const auto second = image_of(show);
+  const auto second = make_value_snapshot(show);
   EXPECT_EQ(second->tree, first->tree);
   EXPECT_GT(second->number, first->number);
   ASSERT_TRUE(show.engine.world().add_body("new").ok());
-  EXPECT_TRUE(image_of(show)->tree->find("/physics/body/new").ok());
+  EXPECT_TRUE(make_value_snapshot(show)->tree->find("/physics/body/new").ok());
   EXPECT_FALSE(first->tree->find("/physics/body/new").ok());
-  // a reset is another store, whatever its counters say
+  // a reset makes another store, regardless of its version numbers
   show.send("/transport/reset");
-  const auto after = image_of(show);
+  const auto after = make_value_snapshot(show);
   EXPECT_FALSE(after->tree->find("/physics/body/new").ok());
   EXPECT_GT(after->number, second->number);
   EXPECT_GE(second->snapshot->tick, 20u);
-  EXPECT_EQ(after->value(after->tree->numbers(*after->tree->find("/physics/sim/tick"))).numbers[0], 0);
+  EXPECT_EQ(after->value(after->tree->location(*after->tree->find("/physics/sim/tick"))).numbers[0], 0);
 }
 
-// a thing that says something of itself
-struct Voice {
-  std::string words;
-  std::string_view read_words() const { return words; }
+// an object with a text property
+struct TextObject {
+  std::string text;
+  std::string_view read_words() const { return text; }
 };
-const Table& voice_table() {
-  static const Table table("voice", "/voice", "",
-                           {rows::number("before", "", 0, 0, 1, "A number."),
-                            rows::say<&Voice::read_words>(rows::text("words", "What it says.")),
-                            rows::say<&Voice::read_words>(rows::text("again", "And again."))});
+const PropertyTable& text_object_table() {
+  static const PropertyTable table(
+      "voice", "/voice", "",
+      {properties::number("before", "", 0, 0, 1, "A number."),
+       properties::text_from<&TextObject::read_words>(properties::text("words", "A text.")),
+       properties::text_from<&TextObject::read_words>(properties::text("again", "The same text."))});
   return table;
 }
 
-TEST(ImageMaker, TextsAreTold) {
-  Voice one{"first"};
-  Voice two{"second"};
+TEST(ValueSnapshotter, CopiesTexts) {
+  TextObject one{"first"};
+  TextObject two{"second"};
   Store store;
-  store.add(voice_table(), store.root(), "one", &one);
-  store.add(voice_table(), store.root(), "two", &two);
-  Latest<Image> out;
-  ImageMaker maker(out);
+  store.add(text_object_table(), store.root(), "one", &one);
+  store.add(text_object_table(), store.root(), "two", &two);
+  Latest<ValueSnapshot> out;
+  ValueSnapshotter snapshotter(out);
   Feed feed;
-  std::vector<std::string> told;
+  std::vector<std::string> text;
   feed.add("/two/again");
-  const auto tell = [&] {
-    feed.hear(out.read(), {});
-    feed.tell([&](const std::string& path, const Row&, const RowValue& value) {
-      told.push_back(path + " " + std::string(value.text));
+  const auto send_changes = [&] {
+    feed.update(out.read(), {});
+    feed.send_changes([&](const std::string& path, const Property&, const PropertyValue& value) {
+      text.push_back(path + " " + std::string(value.text));
       return true;
     });
   };
-  ASSERT_TRUE(maker.make(store, std::make_shared<Snapshot>(), 1));
-  const auto image = out.read();
-  EXPECT_EQ(image->value(image->tree->numbers(*image->tree->find("/one/words"))).text, "first");
-  EXPECT_EQ(image->value(image->tree->numbers(*image->tree->find("/two/again"))).text, "second");
-  tell();
-  tell();
-  two.words = "third";
-  for (std::uint64_t ask = 2; out.read() == image; ask++) maker.make(store, std::make_shared<Snapshot>(), ask);
-  EXPECT_EQ(image->value(image->tree->numbers(*image->tree->find("/two/again"))).text, "second") << "as it was";
-  tell();
-  EXPECT_EQ(told, (std::vector<std::string>{"/two/again second", "/two/again third"}));
+  ASSERT_TRUE(snapshotter.make(store, std::make_shared<Snapshot>(), 1));
+  const auto value_snapshot = out.read();
+  EXPECT_EQ(value_snapshot->value(value_snapshot->tree->location(*value_snapshot->tree->find("/one/words"))).text,
+            "first");
+  EXPECT_EQ(value_snapshot->value(value_snapshot->tree->location(*value_snapshot->tree->find("/two/again"))).text,
+            "second");
+  send_changes();
+  send_changes();
+  two.text = "third";
+  for (std::uint64_t request = 2; out.read() == value_snapshot; request++)
+    snapshotter.make(store, std::make_shared<Snapshot>(), request);
+  EXPECT_EQ(value_snapshot->value(value_snapshot->tree->location(*value_snapshot->tree->find("/two/again"))).text,
+            "second")
+      << "unchanged";
+  send_changes();
+  EXPECT_EQ(text, (std::vector<std::string>{"/two/again second", "/two/again third"}));
 }
 
-// a clock that each look at it advances by so much
-double turned = 0;
-double turn = 0;
-double turned_clock() { return turned += turn; }
-// by which an image costs 2 ms
-double spent = 0;
-double spent_clock() { return spent += 0.002; }
+// a clock that advances by `turn` at each call
+double real_time = 0;
+double real_step = 0;
+double real_clock() { return real_time += real_step; }
+// a clock that advances by 2 ms at each call, so that a snapshot costs 2 ms
+double cpu_time = 0;
+double cpu_clock() { return cpu_time += 0.002; }
 
-TEST(ImageMaker, TakesAHundredthOfTheTime) {
+TEST(ValueSnapshotter, UsesAtMostOnePercentOfTheTime) {
   Rig rig;
-  Latest<Image> out;
-  turned = 0;
-  turn = 0.002;
-  ImageMaker maker(out, &turned_clock, &spent_clock);
+  Latest<ValueSnapshot> out;
+  real_time = 0;
+  real_step = 0.002;
+  ValueSnapshotter snapshotter(out, &real_clock, &cpu_clock);
   const auto snapshot = std::make_shared<Snapshot>();
   std::uint64_t made = 0;
-  // 10 s of looks: at most every 200 ms
-  for (std::uint64_t ask = 1; turned < 10; ask++) made += maker.make(rig.store, snapshot, ask) ? 1 : 0;
+  // 10 s: at most one every 200 ms
+  for (std::uint64_t request = 1; real_time < 10; request++)
+    made += snapshotter.make(rig.store, snapshot, request) ? 1 : 0;
   EXPECT_GE(made, 49u);
   EXPECT_LE(made, 51u);
 }
 
-TEST(ImageMaker, ASuspendedProgramOwesNothing) {
+TEST(ValueSnapshotter, IgnoresTimeInWhichTheProgramWasSuspended) {
   Rig rig;
-  Latest<Image> out;
-  ImageMaker maker(out, &turned_clock, &spent_clock);
+  Latest<ValueSnapshot> out;
+  ValueSnapshotter snapshotter(out, &real_clock, &cpu_clock);
   const auto snapshot = std::make_shared<Snapshot>();
-  turned = 0;
-  turn = 1000;  // so long the first image takes
-  ASSERT_TRUE(maker.make(rig.store, snapshot, 1));
-  turn = 0.002;
-  int looks = 1;
-  while (looks < 1000 && !maker.make(rig.store, snapshot, 2)) looks++;
-  EXPECT_NEAR(looks, 99, 1) << "the next one is due after 198 ms";
+  real_time = 0;
+  real_step = 1000;  // real time that the first snapshot takes
+  ASSERT_TRUE(snapshotter.make(rig.store, snapshot, 1));
+  real_step = 0.002;
+  int calls = 1;
+  while (calls < 1000 && !snapshotter.make(rig.store, snapshot, 2)) calls++;
+  EXPECT_NEAR(calls, 99, 1) << "the next one is due after 198 ms";
 }
 
-TEST(ImageMaker, NotesAreNewestLastAndDoNotStayForEver) {
+TEST(ValueSnapshotter, WritesAreOrderedAndExpire) {
   Rig rig;
-  Latest<Image> out;
-  turn = 0;
-  ImageMaker maker(out, &turned_clock, &turned_clock);
+  Latest<ValueSnapshot> out;
+  real_step = 0;
+  ValueSnapshotter snapshotter(out, &real_clock, &real_clock);
   const auto snapshot = std::make_shared<Snapshot>();
-  const Origin one{Hand::osc, 1, 1, true};
-  const Place friction = *find_place(rig.store, "/physics/body/arm/part/tip/friction");
-  const Place mass = *find_place(rig.store, "/physics/body/arm/part/tip/mass");
+  const CommandOrigin one{CommandSource::osc, 1, 1, true};
+  const PropertyRef friction = *find_property(rig.store, "/physics/body/arm/part/tip/friction");
+  const PropertyRef mass = *find_property(rig.store, "/physics/body/arm/part/tip/mass");
   for (const double value : {0.25, 0.75}) {
-    ASSERT_TRUE(rig.store.set(friction.node, *friction.row, {&value, 1}).ok());
-    maker.note(rig.store, one, friction, false);
+    ASSERT_TRUE(rig.store.set(friction.node, *friction.property, {&value, 1}).ok());
+    snapshotter.note_write(rig.store, one, friction, false);
   }
-  maker.note(rig.store, one, mass, true);
-  std::uint64_t ask = 0;
-  ASSERT_TRUE(maker.make(rig.store, snapshot, ++ask));
-  const auto& notes = out.read()->notes;
-  ASSERT_EQ(notes.size(), 2u) << "a place that is set twice is noted once";
-  EXPECT_EQ(notes[0].row, friction.row);
-  EXPECT_EQ(notes[0].values[0], 0.75);
-  EXPECT_FALSE(notes[0].clamped);
-  EXPECT_TRUE(notes[1].clamped);
-  EXPECT_LT(notes[0].number, notes[1].number);
-  for (std::uint64_t i = 1; i < ImageMaker::kNoteLasts; i++) ASSERT_TRUE(maker.make(rig.store, snapshot, ++ask));
-  EXPECT_EQ(out.read()->notes.size(), 2u);
-  ASSERT_TRUE(maker.make(rig.store, snapshot, ++ask));
-  EXPECT_TRUE(out.read()->notes.empty());
+  snapshotter.note_write(rig.store, one, mass, true);
+  std::uint64_t request = 0;
+  ASSERT_TRUE(snapshotter.make(rig.store, snapshot, ++request));
+  const auto& writes = out.read()->writes;
+  ASSERT_EQ(writes.size(), 2u) << "a property that is set twice is noted once";
+  EXPECT_EQ(writes[0].property, friction.property);
+  EXPECT_EQ(writes[0].values[0], 0.75);
+  EXPECT_FALSE(writes[0].clamped);
+  EXPECT_TRUE(writes[1].clamped);
+  EXPECT_LT(writes[0].number, writes[1].number);
+  for (std::uint64_t i = 1; i < ValueSnapshotter::kWriteLifetime; i++)
+    ASSERT_TRUE(snapshotter.make(rig.store, snapshot, ++request));
+  EXPECT_EQ(out.read()->writes.size(), 2u);
+  ASSERT_TRUE(snapshotter.make(rig.store, snapshot, ++request));
+  EXPECT_TRUE(out.read()->writes.empty());
   // bounded, the newest kept
-  for (std::uint32_t i = 0; i < 3 * ImageMaker::kMostNotes; i++)
-    maker.note(rig.store, {Hand::osc, 1, static_cast<std::uint16_t>(i), true}, friction, false);
-  ASSERT_TRUE(maker.make(rig.store, snapshot, ++ask));
-  EXPECT_LE(out.read()->notes.size(), ImageMaker::kMostNotes);
-  EXPECT_EQ(out.read()->notes.back().origin.port, 3 * ImageMaker::kMostNotes - 1);
+  for (std::uint32_t i = 0; i < 3 * ValueSnapshotter::kMaxWrites; i++)
+    snapshotter.note_write(rig.store, {CommandSource::osc, 1, static_cast<std::uint16_t>(i), true}, friction, false);
+  ASSERT_TRUE(snapshotter.make(rig.store, snapshot, ++request));
+  EXPECT_LE(out.read()->writes.size(), ValueSnapshotter::kMaxWrites);
+  EXPECT_EQ(out.read()->writes.back().origin.port, 3 * ValueSnapshotter::kMaxWrites - 1);
 }
 
-TEST(Image, OnlyHandsThatFollowAreNoted) {
+TEST(ValueSnapshot, ContainsWritesOfSubscribersOnly) {
   const SceneFile scene(kEverything);
   Show show(scene.path());
   const auto send = [&](bool follows, double wind) {
-    show.link.inbox.push({{message("/scene/wind", wind)}, {Hand::osc, 7, 7, follows}});
+    show.link.command_queue.push({{message("/scene/wind", wind)}, {CommandSource::osc, 7, 7, follows}});
   };
   send(false, 1);
-  EXPECT_TRUE(image_of(show)->notes.empty());
+  EXPECT_TRUE(make_value_snapshot(show)->writes.empty());
   send(true, 20);  // its range ends at 10
-  const auto image = image_of(show);
-  ASSERT_EQ(image->notes.size(), 1u);
-  EXPECT_EQ(image->notes[0].values[0], 10);
-  EXPECT_TRUE(image->notes[0].clamped);
-  EXPECT_EQ(image->notes[0].origin, (Origin{Hand::osc, 7, 7, false})) << "following is no part of who one is";
+  const auto value_snapshot = make_value_snapshot(show);
+  ASSERT_EQ(value_snapshot->writes.size(), 1u);
+  EXPECT_EQ(value_snapshot->writes[0].values[0], 10);
+  EXPECT_TRUE(value_snapshot->writes[0].clamped);
+  EXPECT_EQ(value_snapshot->writes[0].origin, (CommandOrigin{CommandSource::osc, 7, 7, false}))
+      << "subscribing is not part of the identity of a client";
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// A fault that repeats itself every tick gets ten lines of the log on standard error, whatever its kind; the panel gets
-// every line.
+// A fault of any kind that repeats every tick gets ten lines of the log on standard error; the panel gets all lines.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +17,7 @@ struct RepeatedFault {
   const char* message = "";  // sent before each tick
 };
 
-// faults whose text differs from tick to tick, where it can
+// faults with a text that differs from tick to tick, if possible
 constexpr RepeatedFault kRepeatedFaults[] = {
     {"on_step", "sim:on_step(function() error('fails at ' .. sim.tick) end)", "fails at"},
     {"every", "sim:every(0.0001, function() error('fails at ' .. sim.tick) end)", "fails at"},
@@ -47,16 +46,16 @@ constexpr RepeatedFault kRepeatedFaults[] = {
     {"a reset of a scene with an error", "", "reset:", "/transport/reset"},
 };
 
-TEST(LogLimit, HoldsForEachKindOfRepeatedFault) {
+TEST(LogLimit, AppliesToEachKindOfRepeatedFault) {
   std::string text_before;
   for (const RepeatedFault& kind : kRepeatedFaults) {
     SCOPED_TRACE(kind.name);
-    text_before += '\n';  // the place of each is another line
+    text_before += '\n';  // each is at another line
     const SceneFile scene(*kind.scene == '\0' ? "" : text_before + kind.scene);
     Show show(scene.path());
     if (*kind.scene == '\0') scene.write("this is no Lua");
     const std::uint64_t before = log_newest();
-    log_to_stderr(true);  // tests before this one may have silenced it
+    log_to_stderr(true);  // other tests silence it
     log_forget_sources();
     testing::internal::CaptureStderr();
     for (int i = 0; i < 60; i++) {

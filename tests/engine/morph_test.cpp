@@ -1,4 +1,4 @@
-// Values on their way to a preset: exact at both ends, monotonic in between, and every hand's to take.
+// Morphs: exact at both ends, monotonic in between, and interrupted by any controller that sets a property.
 #include "engine/morph.h"
 
 #include <cmath>
@@ -23,15 +23,15 @@ two:add_part("tip", ball, { position = vec3(0, -1, 1) })
 
 const std::string kWind = "/scene/wind";
 const std::string kFrictionOfOne = "/physics/body/one/part/tip/friction";
-const std::string kOfTwo = "/physics/body/two/part/tip/friction";
+const std::string kFrictionOfTwo = "/physics/body/two/part/tip/friction";
 
-// "far": wind 10, on, out, friction 2.5 of both; the scene stands at its own values
+// Stores the preset "far" (wind 10, on, out, friction 2.5 of both bodies), then restores the values of the scene.
 void store_far(Show& show) {
   show.send(kWind, 10);
   show.send("/scene/on", true);
   show.send("/scene/way", "out");
   show.send(kFrictionOfOne, 2.5);
-  show.send(kOfTwo, 2.5);
+  show.send(kFrictionOfTwo, 2.5);
   show.send("/preset/store", "far");
   show.send("/preset/store", "one", "/physics/body/one//*");
   show.send("/preset/store", "two", "/physics/body/two//*");
@@ -39,17 +39,17 @@ void store_far(Show& show) {
   show.ticks(1);
 }
 
-TEST(Morph, GoesItsWayInSimulatedTime) {
+TEST(Morph, FollowsItsEasingInSimulatedTime) {
   struct Case {
     const char* easing;
-    double (*way)(double);
+    double (*ease)(double);
   };
   constexpr Case kCases[] = {{"linear", [](double t) { return t; }},
                              {"smooth", [](double t) { return 3 * t * t - 2 * t * t * t; }},
                              {"in", [](double t) { return t * t; }},
                              {"out", [](double t) { return 1 - (1 - t) * (1 - t); }}};
   for (const Case& c : kCases) {
-    Edited edited(kMorphScene);
+    EditedShow edited(kMorphScene);
     Show& show = edited.show();
     store_far(show);
     show.send("/preset/recall", "far", 1, c.easing);
@@ -57,13 +57,13 @@ TEST(Morph, GoesItsWayInSimulatedTime) {
     for (int i = 0; i <= 60; i++) {
       show.ticks(1);
       const double wind = show.read(kWind);
-      EXPECT_NEAR(wind, 10 * c.way(std::min(1.0, i / 60.0)), 1e-9) << c.easing << " " << i;
+      EXPECT_NEAR(wind, 10 * c.ease(std::min(1.0, i / 60.0)), 1e-9) << c.easing << " " << i;
       EXPECT_GE(wind, last);
       last = wind;
-      const double gone = c.way(i / 60.0);
-      // at one half itself rounding decides
-      if (std::abs(gone - 0.5) > 1e-9) {
-        EXPECT_EQ(show.read("/scene/on"), gone > 0.5 ? 1 : 0) << c.easing << " " << i;
+      const double fraction = c.ease(i / 60.0);
+      // at exactly one half the result depends on rounding
+      if (std::abs(fraction - 0.5) > 1e-9) {
+        EXPECT_EQ(show.read("/scene/on"), fraction > 0.5 ? 1 : 0) << c.easing << " " << i;
       }
       EXPECT_EQ(show.read("/scene/on"), show.read("/scene/way"));
     }
@@ -73,8 +73,8 @@ TEST(Morph, GoesItsWayInSimulatedTime) {
   }
 }
 
-TEST(Morph, WhatItMovesIsMovedInTheWorld) {
-  Edited edited(kMorphScene);
+TEST(Morph, UpdatesTheWorld) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1, "linear");
@@ -84,8 +84,8 @@ TEST(Morph, WhatItMovesIsMovedInTheWorld) {
   EXPECT_EQ(edited.part("one", "tip").rigid().getFriction(), 2.5);
 }
 
-TEST(Morph, StandsStillWithTime) {
-  Edited edited(kMorphScene);
+TEST(Morph, PausesWithTime) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 2, "linear");
@@ -100,13 +100,13 @@ TEST(Morph, StandsStillWithTime) {
   EXPECT_NEAR(show.read(kWind), 7.5, 1e-9);
   show.send("/preset/stop");
   show.ticks(30);
-  EXPECT_NEAR(show.read(kWind), 7.5, 0.1) << "where it was";
+  EXPECT_NEAR(show.read(kWind), 7.5, 0.1) << "unchanged";
   EXPECT_EQ(show.read("/preset/progress"), 1);
 }
 
-TEST(Morph, AHandOnARowWins) {
-  Edited edited(std::string(kMorphScene) +
-                "osc:on('/mine', function(v) sim:body('two'):part('tip').friction = v end)\n");
+TEST(Morph, ASetPropertyLeavesTheMorph) {
+  EditedShow edited(std::string(kMorphScene) +
+                    "osc:on('/mine', function(v) sim:body('two'):part('tip').friction = v end)\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1);
@@ -115,98 +115,99 @@ TEST(Morph, AHandOnARowWins) {
   show.send("/mine", 0.25);
   show.ticks(60);
   EXPECT_EQ(show.read(kFrictionOfOne), 0.125) << "a message";
-  EXPECT_EQ(show.read(kOfTwo), 0.25) << "a handler of the scene's";
-  EXPECT_EQ(show.read(kWind), 10) << "the others go on";
-  // in one datagram: what comes after the recall is the newer hand
+  EXPECT_EQ(show.read(kFrictionOfTwo), 0.25) << "a handler of the scene";
+  EXPECT_EQ(show.read(kWind), 10) << "the other properties continue";
+  // in one datagram: a message after the recall takes precedence
   show.send("/preset/recall", "script");
   show.ticks(1);
-  show.link.inbox.push(
-      {{message("/preset/recall", "far", 0.5), message(kFrictionOfOne, 1.75)}, {Hand::osc, 0x7f000001, 4000}});
+  show.link.command_queue.push(
+      {{message("/preset/recall", "far", 0.5), message(kFrictionOfOne, 1.75)}, {CommandSource::osc, 0x7f000001, 4000}});
   show.ticks(60);
   EXPECT_EQ(show.read(kFrictionOfOne), 1.75);
-  EXPECT_EQ(show.read(kOfTwo), 2.5);
+  EXPECT_EQ(show.read(kFrictionOfTwo), 2.5);
 }
 
-TEST(Morph, WhatABehaviourWritesIsNoHand) {
-  Edited edited(std::string(kMorphScene) +
-                "sim:on_step(function() if params.on then return end sim:body('one'):part('tip').friction = 9 end)\n");
+TEST(Morph, CallbacksDoNotInterruptIt) {
+  EditedShow edited(
+      std::string(kMorphScene) +
+      "sim:on_step(function() if params.on then return end sim:body('one'):part('tip').friction = 9 end)\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1, "linear");
   show.ticks(20);
   EXPECT_EQ(show.read(kFrictionOfOne), 9) << "it writes later in the tick";
   show.ticks(45);
-  EXPECT_EQ(show.read(kFrictionOfOne), 2.5) << "and at the end the preset is whole";
+  EXPECT_EQ(show.read(kFrictionOfOne), 2.5) << "at the end all values are the preset's";
 }
 
-TEST(Morph, TwoOnDisjointRowsAndANewerOneOnTheSame) {
-  Edited edited(kMorphScene);
+TEST(Morph, NewerMorphsTakeOverSharedProperties) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "one", 1, "linear");
   show.send("/preset/recall", "two", 2, "linear");
   show.ticks(31);
   EXPECT_NEAR(show.read(kFrictionOfOne), 1.5, 1e-9);
-  EXPECT_NEAR(show.read(kOfTwo), 1.0, 1e-9);
-  // back, of both: the two that run give way
+  EXPECT_NEAR(show.read(kFrictionOfTwo), 1.0, 1e-9);
+  // a morph of both bodies replaces the two running ones
   show.send("/preset/recall", "script", 0.5, "linear");
   show.ticks(16);
   EXPECT_NEAR(show.read(kFrictionOfOne), 1.0 + 2 * kTick / 2, 0.05);
   show.ticks(100);
   EXPECT_EQ(show.read(kFrictionOfOne), 0.5);
-  EXPECT_EQ(show.read(kOfTwo), 0.5);
+  EXPECT_EQ(show.read(kFrictionOfTwo), 0.5);
 }
 
-TEST(Morph, GoesOnThroughAReload) {
-  Edited edited(kMorphScene);
+TEST(Morph, ContinuesAfterAReload) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   const NodeId before = edited.part("one", "tip").id();
   show.send("/preset/recall", "far", 1, "linear");
   show.ticks(31);
-  // one's part gets another shape: the body is made anew, and so is the way to it; two goes and comes back
+  // the part of `one` gets another shape, so its body is rebuilt; `two` is removed and added again
   EXPECT_EQ(edited.edit("one:add_part(\"tip\", ball,", "one:add_part(\"tip\", sim:add_sphere_shape(\"big\", 0.1),"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   EXPECT_NE(edited.part("one", "tip").id(), before);
   EXPECT_NEAR(show.read(kFrictionOfOne), 1.5, 1e-9);
   show.ticks(15);
   EXPECT_NEAR(show.read(kFrictionOfOne), 2.0, 1e-9);
   const std::string two = edited.text.substr(edited.text.find("local two"));
-  EXPECT_EQ(edited.edit(two, ""), Reload::End::applied);
+  EXPECT_EQ(edited.edit(two, ""), SceneReloader::ApplyResult::applied);
   show.ticks(3);
-  EXPECT_EQ(edited.save(edited.text + two), Reload::End::applied);
+  EXPECT_EQ(edited.save(edited.text + two), SceneReloader::ApplyResult::applied);
   show.ticks(30);
   EXPECT_EQ(show.read(kFrictionOfOne), 2.5);
-  EXPECT_EQ(show.read(kOfTwo), 2.5);
+  EXPECT_EQ(show.read(kFrictionOfTwo), 2.5);
   EXPECT_EQ(show.read(kWind), 10);
 }
 
-TEST(Morph, ALineThatIsEditedOnTheWayWins) {
-  Edited edited(std::string(kMorphScene) + "one:part('tip').friction = 0.5\n");
+TEST(Morph, AnEditedLineOverridesIt) {
+  EditedShow edited(std::string(kMorphScene) + "one:part('tip').friction = 0.5\n");
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 1, "linear");
   show.ticks(31);
-  EXPECT_EQ(edited.edit("friction = 0.5", "friction = 0.75"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("friction = 0.5", "friction = 0.75"), SceneReloader::ApplyResult::applied);
   show.ticks(60);
   EXPECT_EQ(show.read(kFrictionOfOne), 0.75);
-  EXPECT_EQ(show.read(kOfTwo), 2.5);
+  EXPECT_EQ(show.read(kFrictionOfTwo), 2.5);
 }
 
-TEST(Morph, PosesGoAlongArcs) {
-  Edited edited(kMorphScene);
+TEST(Morph, InterpolatesRotationsAlongArcs) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   const Vec3 axis = normalized(Vec3(1, 2, -1));
   const std::string part = "/physics/body/one/part/tip";
-  const auto place = [&](double angle, double x) {
+  const auto move_to = [&](double angle, double x) {
     const Quat q = quat_axis(axis, angle);
     show.send(part + "/rotation", q.x, q.y, q.z, q.w);
     show.send(part + "/position", x, 0, 1);
     show.send(part + "/angular_velocity", 0, 0, 0);
   };
-  place(2.4, 3);
+  move_to(2.4, 3);
   show.send("/preset/store", "turned", part, "poses", "velocities");
-  place(0.2, 1);
+  move_to(0.2, 1);
   show.send("/transport/pause");
   show.ticks(1);
   show.send("/preset/store", "straight", part, "poses", "velocities");
@@ -224,8 +225,8 @@ TEST(Morph, PosesGoAlongArcs) {
   EXPECT_NEAR(on_the_way.position.x, 2, 1e-6);
 }
 
-TEST(Morph, AResetIsAtItsEnd) {
-  Edited edited(kMorphScene);
+TEST(Morph, AResetJumpsToItsEnd) {
+  EditedShow edited(kMorphScene);
   Show& show = edited.show();
   store_far(show);
   show.send("/preset/recall", "far", 5);

@@ -1,4 +1,4 @@
-// The panic button: one message brings every show to rest, and the next brings it back.
+// Panic: one request brings every show to rest, and the next one restores it.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace limber::engine_test {
 namespace {
 
-// J of all that moves
+// kinetic energy in J
 double energy(World& world) {
   double sum = 0;
   for (const auto& body : world.bodies()) {
@@ -38,19 +38,19 @@ osc:on("/panic", function() sim:panic() end)
 
 constexpr const char* kBallSpeed = "/physics/body/ball/part/ball/linear_velocity";
 constexpr const char* kPanicked = "/physics/sim/panicked";
-constexpr int kFirst = 61;  // ticks: the first second of a panic, in which another request is ignored
+constexpr int kGuardTicks = 61;  // ticks: the first second of a panic, in which another request is ignored
 
-std::string said_under(Show& show, const char* address) {
-  show.outbox();
+std::string reply_to(Show& show, const char* address) {
+  show.sent_texts();
   show.send(address);
   show.ticks(1);
-  for (const std::string& said : show.outbox()) {
-    if (said.starts_with(address)) return said;
+  for (const std::string& text : show.sent_texts()) {
+    if (text.starts_with(address)) return text;
   }
   return {};
 }
 
-TEST(PanicButton, EveryShowOfOursComesToRest) {
+TEST(PanicButton, EveryShowComesToRest) {
   for (const char* scene : {"arms", "hello", "live", "quadruped", "swarm"}) {
     for (const double motors : {0.0, 1.0}) {
       Show show(std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene + ".lua");
@@ -72,7 +72,7 @@ TEST(PanicButton, EveryShowOfOursComesToRest) {
   }
 }
 
-TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
+TEST(PanicButton, StopsScriptsButNotMessages) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.ticks(60);
@@ -80,7 +80,7 @@ TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
   show.send("/transport/panic");
   show.ticks(60);
   EXPECT_LT(std::abs(show.read(kBallSpeed, 1)), 0.02);
-  const std::string before = said_under(show, "/steps");
+  const std::string before = reply_to(show, "/steps");
   ASSERT_FALSE(before.empty());
   show.send("/push");
   show.send("/physics/part/hold", "ball", "ball", 0, 0, 0, 9, 9, 9);
@@ -89,11 +89,11 @@ TEST(PanicButton, ScriptsRestWhileItHoldsAndMessagesAreHeard) {
   show.ticks(1);
   EXPECT_LT(std::abs(show.read(kBallSpeed, 2)), 0.02) << "no force gets through";
   EXPECT_EQ(show.read("/physics/sim/gravity", 2), 3) << "a value does";
-  EXPECT_EQ(said_under(show, "/steps"), before);
+  EXPECT_EQ(reply_to(show, "/steps"), before);
   EXPECT_EQ(show.read("/physics/body/ball/behavior/wind/active"), 1);
 }
 
-TEST(PanicButton, AScriptMayPressIt) {
+TEST(PanicButton, AScriptCanRequestAPanic) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/panic");
@@ -106,12 +106,12 @@ TEST(PanicButton, AScriptMayPressIt) {
   show.send("/panic");
   show.send("/panic");
   show.ticks(1);
-  EXPECT_EQ(show.read(kPanicked), 1) << "a script's second press is carried out ahead of the next tick";
+  EXPECT_EQ(show.read(kPanicked), 1) << "a script's second press is executed before the next tick";
   show.ticks(1);
   EXPECT_EQ(show.read(kPanicked), 0) << "twice in a tick is once";
 }
 
-TEST(PanicButton, AButtonThatIsLetGoDoesNothing) {
+TEST(PanicButton, ReleasingTheButtonDoesNothing) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/transport/panic", 1);
@@ -121,7 +121,7 @@ TEST(PanicButton, AButtonThatIsLetGoDoesNothing) {
   EXPECT_EQ(show.read(kPanicked), 1);
 }
 
-TEST(PanicButton, MorphsStayWhereTheyAreAndHandsLetGo) {
+TEST(PanicButton, StopsMorphsAndRemovesMouseSprings) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/preset/store", "calm");
@@ -132,15 +132,15 @@ TEST(PanicButton, MorphsStayWhereTheyAreAndHandsLetGo) {
   show.ticks(30);
   show.send("/transport/panic");
   show.ticks(1);
-  const double there = show.read("/physics/sim/gravity", 2);
-  EXPECT_LT(there, -1);
+  const double value_at_panic = show.read("/physics/sim/gravity", 2);
+  EXPECT_LT(value_at_panic, -1);
   show.ticks(60);
-  EXPECT_EQ(show.read("/physics/sim/gravity", 2), there);
+  EXPECT_EQ(show.read("/physics/sim/gravity", 2), value_at_panic);
   EXPECT_EQ(show.read("/preset/progress"), 1);
 }
 
-TEST(PanicButton, AResetAndASavedSceneEndIt) {
-  Edited edited(kPanicScene);
+TEST(PanicButton, EndsWithAResetOrASavedScene) {
+  EditedShow edited(kPanicScene);
   edited.show().send("/transport/panic");
   edited.show().ticks(5);
   EXPECT_EQ(edited.show().read(kPanicked), 1);
@@ -156,7 +156,7 @@ TEST(PanicButton, AResetAndASavedSceneEndIt) {
   EXPECT_GT(edited.show().read(kBallSpeed, 1), before);
 }
 
-TEST(PanicButton, ItIsNoEditAndNoHandRemembersIt) {
+TEST(PanicButton, IsNeitherAnEditNorAnOverride) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/physics/sim/gravity", 0, 0, -1);
@@ -169,52 +169,53 @@ TEST(PanicButton, ItIsNoEditAndNoHandRemembersIt) {
   EXPECT_EQ(show.read(kPanicked), 1);
 }
 
-// presses twice, a second and `held` ticks apart, and expects the key state before the first
-void expect_back(Show& show, std::uint64_t held, std::vector<std::uint64_t>& hashes, TickHands hands) {
+// Requests a panic twice, a second and `ticks_pressed` ticks apart, and expects the checkpoint before the first.
+void expect_restored(Show& show, std::uint64_t ticks_pressed, std::vector<std::uint64_t>& hashes,
+                     TickInputs send_messages) {
   World& world = show.engine.world();
-  const std::uint64_t pressed = world.tick();
+  const std::uint64_t panic_tick = world.tick();
   show.send("/transport/panic");
-  show.ticks(static_cast<int>(held) + kFirst);
+  show.ticks(static_cast<int>(ticks_pressed) + kGuardTicks);
   ASSERT_TRUE(world.panic().on());
   show.send("/transport/panic");
   show.engine.idle();
-  const std::uint64_t back = world.tick();
+  const std::uint64_t restored_tick = world.tick();
   EXPECT_FALSE(world.panic().on());
-  ASSERT_LT(back, pressed);
-  EXPECT_GE(back + 61, pressed) << "key states are a second apart";
-  ASSERT_EQ(show.engine.state_hash(), hashes.at(back)) << "back at tick " << back;
-  ASSERT_TRUE(plays_again(show, pressed, hands, hashes));
+  ASSERT_LT(restored_tick, panic_tick);
+  EXPECT_GE(restored_tick + 61, panic_tick) << "checkpoints are a second apart";
+  ASSERT_EQ(show.engine.state_hash(), hashes.at(restored_tick)) << "back at tick " << restored_tick;
+  ASSERT_TRUE(replays_identically(show, panic_tick, send_messages, hashes));
 }
 
-TEST(PanicButton, TheSecondPressGoesBackToTheNewestGoodMoment) {
+TEST(PanicButton, TheSecondPressRestoresTheLastCheckpoint) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  Show show(rewound_options(folder));
+  write_rewind_scene(folder);
+  Show show(rewind_options(folder));
   std::vector<std::uint64_t> hashes;
   for (const std::uint64_t at : {170, 200, 333}) {
-    play_to(show, at, many_hands, hashes);
-    expect_back(show, at % 90, hashes, many_hands);
-    // what lies before can be gone back to again, and the second press was never there
+    play_to(show, at, random_inputs, hashes);
+    expect_restored(show, at % 90, hashes, random_inputs);
+    // earlier states can be restored again, and the second press is not in the history
     show.send("/transport/rewind", 0.4);
     show.engine.idle();
     ASSERT_EQ(show.engine.state_hash(), hashes.at(show.engine.world().tick()));
-    ASSERT_TRUE(plays_again(show, at, many_hands, hashes));
+    ASSERT_TRUE(replays_identically(show, at, random_inputs, hashes));
   }
 }
 
-TEST(PanicButton, TheGoodMomentWaitsLongerThanHistoryGoesBack) {
+TEST(PanicButton, TheCheckpointOutlivesTheHistory) {
   const ShowFolder folder;
-  lay_out_rewound(folder);
-  EngineOptions options = rewound_options(folder);
+  write_rewind_scene(folder);
+  EngineOptions options = rewind_options(folder);
   options.sets = {{"/physics/sim/history", {Arg::of(2.0)}}};
   Show show(options);
   std::vector<std::uint64_t> hashes;
-  play_to(show, 200, no_hands, hashes);
-  expect_back(show, 400, hashes, no_hands);
-  expect_back(show, 3, hashes, no_hands);
+  play_to(show, 200, no_inputs, hashes);
+  expect_restored(show, 400, hashes, no_inputs);
+  expect_restored(show, 3, hashes, no_inputs);
 }
 
-TEST(PanicButton, WithoutHistoryTheSecondPressLetsEverythingActAgain) {
+TEST(PanicButton, TheSecondPressWithoutHistoryContinuesFromRest) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kPanicScene);
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
@@ -229,7 +230,7 @@ TEST(PanicButton, WithoutHistoryTheSecondPressLetsEverythingActAgain) {
   EXPECT_EQ(show.engine.world().tick(), 201U);
 }
 
-TEST(PanicButton, ATakeWithPanicsIsReplayedToItsHash) {
+TEST(PanicButton, ATakeWithPanicsReplaysToItsHash) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kPanicScene);
   const std::string take = folder.path("panic.take");

@@ -1,4 +1,4 @@
-// A pattrstorage as Max writes it, and what is none.
+// Import of pattrstorage files as Max writes them, and rejection of other files.
 #include "engine/preset_import.h"
 
 #include <gtest/gtest.h>
@@ -6,11 +6,11 @@
 namespace limber {
 namespace {
 
-// the value of a row of a preset, as text_of writes it
-std::string written(const PresetsRead& read) { return text_of(read.presets); }
+// the presets in Limber's own format
+std::string formatted(const ParsedPresets& read) { return text_of(read.presets); }
 
 TEST(PresetImport, SlotsBecomePresets) {
-  // tabs and commas as pattrstorage has them
+  // with the tabs and commas of pattrstorage
   const auto read = import_pattrstorage(
       "{\n\t\"pattrstorage\" : \t{\n\t\t\"name\" : \"store\",\n\t\t\"slots\" : \t\t{\n"
       "\t\t\t\"10\" : \t\t\t{\n\t\t\t\t\"id\" : 10,\n\t\t\t\t\"data\" : \t\t\t\t{\n"
@@ -20,7 +20,7 @@ TEST(PresetImport, SlotsBecomePresets) {
       "\t\t\t\t\t\"/physics/body/arm1/part/tip/mass\" : [ 2.0 ],\n\t\t\t\t\t\"style\" : [ \"wild\" ],\n"
       "\t\t\t\t\t\"list\" : [ 1, 2 ],\n\t\t\t\t\t\"mixed\" : [ 1, \"a\", 3 ]\n\t\t\t\t}\n\t\t\t}\n\t\t}\n\t}\n}\n");
   ASSERT_TRUE(read.ok()) << read.error();
-  EXPECT_EQ(written(*read), R"({
+  EXPECT_EQ(formatted(*read), R"({
   "limber presets": 1,
   "presets": [
     {
@@ -49,18 +49,19 @@ TEST(PresetImport, SlotsBecomePresets) {
   ]
 }
 )");
-  EXPECT_EQ(read->problems, (std::vector<std::string>{"preset 'dusk': 'list' is left out: no row has such a value",
-                                                      "preset 'dusk': 'mixed' is left out: no row has such a value"}));
+  EXPECT_EQ(read->problems,
+            (std::vector<std::string>{"preset 'dusk': 'list' is ignored: no property has such a value",
+                                      "preset 'dusk': 'mixed' is ignored: no property has such a value"}));
 }
 
-TEST(PresetImport, WhatIsNoneIsRefused) {
+TEST(PresetImport, RejectsOtherFiles) {
   for (const char* text : {"", "{", "[]", "3", "{ \"pattrstorage\" : 3 ", "\xff"})
     EXPECT_EQ(import_pattrstorage(text).error(),
-              "it is no JSON file; in Max, pattrstorage writes one by the message writejson")
+              "it is not a JSON file; in Max, pattrstorage writes one by the message writejson")
         << text;
   for (const char* text : {"{}", R"({ "pattrstorage": 3 })", R"({ "pattrstorage": { "slots": [] } })"})
     EXPECT_EQ(import_pattrstorage(text).error(),
-              "it is no pattrstorage; in Max, it writes one by the message writejson");
+              "it is not a pattrstorage file; in Max, it writes one by the message writejson");
   const auto odd = import_pattrstorage(R"({ "pattrstorage": { "slots": { "x": {}, "1": { "data": 3 },
       "3": { "name": "script", "data": { "": [1], "::": [1], "a::": [1], "a": [] } },
       "2": { "name": "slot 1" } } } })");

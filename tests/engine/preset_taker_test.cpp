@@ -1,4 +1,4 @@
-// Presets are made ready in small pieces while nothing comes or goes, and are the same as those that are not.
+// Planning in slices yields the same presets as planning at once, for all structural changes.
 #include "engine/preset_taker.h"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace limber::engine_test {
 namespace {
 
-std::size_t things_of(const Store& store) {
+std::size_t node_count(const Store& store) {
   std::size_t count = 0;
   store.walk(store.root(), [&](NodeId) { count++; });
   return count;
 }
 
-// calls until it is ready
-std::size_t prepare(PresetTaker& taker, const Store& store) {
+// Calls prepare() until it is ready; returns the number of calls.
+std::size_t prepare(PresetCapturer& taker, const Store& store) {
   std::size_t calls = 0;
   for (; !taker.ready(store) && calls < 100000; calls++) taker.prepare(store);
   return calls;
@@ -29,153 +29,158 @@ std::size_t prepare(PresetTaker& taker, const Store& store) {
 
 void expect_same(const Preset& a, const Preset& b) {
   EXPECT_EQ(a.values, b.values);
-  EXPECT_TRUE(*a.shape == *b.shape);
+  EXPECT_TRUE(*a.schema == *b.schema);
 }
 
-struct PresetTakerTest : testing::Test {
+struct PresetCapturerTest : testing::Test {
   Rig rig;
   void add_bodies(int count) {
-    Shape& shape = **rig.world.add_shape(fmt::format("shape{}", made), ball());
+    Shape& shape = **rig.world.add_shape(fmt::format("shape{}", bodies_added), ball());
     for (int i = 0; i < count; i++) {
-      Body& body = **rig.world.add_body(fmt::format("more{}", made++));
+      Body& body = **rig.world.add_body(fmt::format("more{}", bodies_added++));
       ASSERT_TRUE(body.add_part("tip", shape, i % 2, Pose{}).ok());
     }
-    rig.world.settle();
+    rig.world.flush();
   }
-  std::shared_ptr<const Preset> fresh(const PresetChoice& choice = {}) const {
-    return *PresetTaker().take(rig.store, "all", choice);
+  std::shared_ptr<const Preset> capture_new(const PresetSelection& selection = {}) const {
+    return *PresetCapturer().capture(rig.store, "all", selection);
   }
-  int made = 0;
+  int bodies_added = 0;
 };
 
-TEST_F(PresetTakerTest, TellsOfThingsInTheOrderOfTheTree) {
+TEST_F(PresetCapturerTest, ListsNodesInTheOrderOfTheTree) {
   std::vector<std::string> tree, preset;
   rig.store.walk(rig.store.root(), [&](NodeId id) {
-    const auto& rows = rig.store.table(id).rows();
-    if (std::ranges::any_of(rows, [](const Row& row) { return row.kind == RowKind::property && row.stored(); }))
+    const auto& properties = rig.store.table(id).properties();
+    if (std::ranges::any_of(properties, [](const Property& property) {
+          return property.kind == PropertyKind::setting && property.stored();
+        }))
       tree.push_back(rig.store.path(id));
   });
-  const auto taken = fresh();
-  for (std::uint32_t i = 0; i < taken->shape->things().size(); i++) {
-    if (taken->shape->rows(taken->shape->things()[i]) != nullptr) preset.push_back(taken->shape->path(i));
+  const auto captured = capture_new();
+  for (std::uint32_t i = 0; i < captured->schema->nodes().size(); i++) {
+    if (captured->schema->layout(captured->schema->nodes()[i]) != nullptr) preset.push_back(captured->schema->path(i));
   }
   EXPECT_GT(tree.size(), 15u);
   EXPECT_EQ(preset, tree);
 }
 
-TEST_F(PresetTakerTest, IsReadyInTheTickInWhichMuchCame) {
-  PresetTaker taker;
-  EXPECT_EQ(prepare(taker, rig.store), 1u);
+TEST_F(PresetCapturerTest, PlansAtOnceAfterLargeChanges) {
+  PresetCapturer capturer;
+  EXPECT_EQ(prepare(capturer, rig.store), 1u);
   add_bodies(700);
-  EXPECT_FALSE(taker.ready(rig.store));
-  EXPECT_EQ(prepare(taker, rig.store), 1u);
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  EXPECT_FALSE(capturer.ready(rig.store));
+  EXPECT_EQ(prepare(capturer, rig.store), 1u);
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
   add_bodies(300);
-  EXPECT_EQ(prepare(taker, rig.store), 1u);
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  EXPECT_EQ(prepare(capturer, rig.store), 1u);
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
   add_bodies(1);
-  EXPECT_GT(prepare(taker, rig.store), static_cast<std::size_t>(PresetTaker::kQuiet)) << "little waits for quiet";
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  EXPECT_GT(prepare(capturer, rig.store), static_cast<std::size_t>(PresetCapturer::kSettleCalls))
+      << "small changes are planned later";
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
 }
 
-TEST_F(PresetTakerTest, IsReadyAfterSoManySlices) {
-  PresetTaker taker;
-  taker.prepare(rig.store);
-  taker.forget_store();
-  EXPECT_EQ(prepare(taker, rig.store), PresetTaker::kQuiet + 1u) << "less than a slice";
+TEST_F(PresetCapturerTest, PlansInSlices) {
+  PresetCapturer capturer;
+  capturer.prepare(rig.store);
+  capturer.forget_store();
+  EXPECT_EQ(prepare(capturer, rig.store), PresetCapturer::kSettleCalls + 1u) << "less than a slice";
   add_bodies(700);
-  taker.prepare(rig.store);
-  taker.forget_store();
-  const std::size_t slices = things_of(rig.store) / PresetTaker::kSlice + 1;
+  capturer.prepare(rig.store);
+  capturer.forget_store();
+  const std::size_t slices = node_count(rig.store) / PresetCapturer::kNodesPerCall + 1;
   EXPECT_GT(slices, 4u);
-  EXPECT_EQ(prepare(taker, rig.store), PresetTaker::kQuiet + slices);
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  EXPECT_EQ(prepare(capturer, rig.store), PresetCapturer::kSettleCalls + slices);
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
 }
 
-TEST_F(PresetTakerTest, WhatComesOnTheWayIsInIt) {
-  PresetTaker taker;
+TEST_F(PresetCapturerTest, IncludesNodesAddedWhilePlanning) {
+  PresetCapturer capturer;
   add_bodies(700);
-  taker.prepare(rig.store);
-  taker.forget_store();
-  for (int i = 0; i < PresetTaker::kQuiet + 3; i++) taker.prepare(rig.store);
+  capturer.prepare(rig.store);
+  capturer.forget_store();
+  for (int i = 0; i < PresetCapturer::kSettleCalls + 3; i++) capturer.prepare(rig.store);
   add_bodies(3);
-  taker.prepare(rig.store);
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  capturer.prepare(rig.store);
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
   rig.world.remove_body(*rig.world.find_body("more1"));
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
 }
 
-TEST_F(PresetTakerTest, HalfReadyIsFinishedAtOnce) {
-  PresetTaker taker;
+TEST_F(PresetCapturerTest, CaptureFinishesPlanning) {
+  PresetCapturer capturer;
   add_bodies(700);
-  taker.prepare(rig.store);
-  taker.forget_store();
-  for (int i = 0; i < PresetTaker::kQuiet + 2; i++) taker.prepare(rig.store);
-  EXPECT_FALSE(taker.ready(rig.store));
-  const PresetChoice part{{"/physics/body/more*//*"}, {}, true, false};
-  expect_same(**taker.take(rig.store, "some", part), *fresh(part));
-  expect_same(**taker.take(rig.store, "all", {}), *fresh());
-  EXPECT_TRUE(taker.ready(rig.store));
+  capturer.prepare(rig.store);
+  capturer.forget_store();
+  for (int i = 0; i < PresetCapturer::kSettleCalls + 2; i++) capturer.prepare(rig.store);
+  EXPECT_FALSE(capturer.ready(rig.store));
+  const PresetSelection part{{"/physics/body/more*//*"}, {}, true, false};
+  expect_same(**capturer.capture(rig.store, "some", part), *capture_new(part));
+  expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
+  EXPECT_TRUE(capturer.ready(rig.store));
 }
 
-// rows of a preset, each with its numbers
-std::set<std::string> rows_of(const Preset& preset) {
+// the properties of a preset with their values, as text
+std::set<std::string> properties_of(const Preset& preset) {
   std::set<std::string> texts;
-  for (std::uint32_t i = 0; i < preset.shape->things().size(); i++) {
-    const PresetShape::Thing& thing = preset.shape->things()[i];
-    const PresetClass* const rows = preset.shape->rows(thing);
-    for (std::size_t k = 0; rows != nullptr && k < rows->rows.size(); k++) {
-      const double* const values = preset.values.data() + thing.at + rows->offsets[k];
-      texts.insert(fmt::format("{}/{} {}", preset.shape->path(i), rows->rows[k].name,
-                               fmt::join(std::span(values, rows->rows[k].width), " ")));
+  for (std::uint32_t i = 0; i < preset.schema->nodes().size(); i++) {
+    const PresetSchema::Node& node = preset.schema->nodes()[i];
+    const PresetLayout* const layout = preset.schema->layout(node);
+    for (std::size_t k = 0; layout != nullptr && k < layout->properties.size(); k++) {
+      const double* const values = preset.values.data() + node.offset + layout->offsets[k];
+      texts.insert(fmt::format("{}/{} {}", preset.schema->path(i), layout->properties[k].name,
+                               fmt::join(std::span(values, layout->properties[k].width), " ")));
     }
   }
   return texts;
 }
 
-// what an address means is asked of the store, place by place
-std::set<std::string> rows_of(const Store& store, const PresetChoice& choice) {
+// The same from the store: reference implementation that looks up each pattern.
+std::set<std::string> properties_of(const Store& store, const PresetSelection& selection) {
   std::set<std::string> texts;
-  const auto add = [&](NodeId id, const Row& row) {
-    const bool state = row.kind == RowKind::state && &store.table(id) == &Part::table();
-    const bool pose = row.name == "position" || row.name == "rotation";
-    if (row.kind != RowKind::property && !(state && (pose ? choice.poses : choice.velocities))) return;
-    if (!row.stored() || (row.refuse != nullptr && !row.refuse(store.thing(id), store.values(id, row)))) return;
-    texts.insert(
-        fmt::format("{}/{} {}", store.path(id), row.name, fmt::join(std::span(store.values(id, row), row.width), " ")));
+  const auto add = [&](NodeId id, const Property& property) {
+    const bool state = property.kind == PropertyKind::state && &store.table(id) == &Part::table();
+    const bool pose = property.name == "position" || property.name == "rotation";
+    if (property.kind != PropertyKind::setting && !(state && (pose ? selection.poses : selection.velocities))) return;
+    if (!property.stored() ||
+        (property.validate != nullptr && !property.validate(store.object(id), store.values(id, property))))
+      return;
+    texts.insert(fmt::format("{}/{} {}", store.path(id), property.name,
+                             fmt::join(std::span(store.values(id, property), property.width), " ")));
   };
   std::vector<NodeId> parts;
-  for (const std::string& pattern : choice.rows) {
+  for (const std::string& pattern : selection.include) {
     PatternBudget budget;
-    const auto places = match_places(store, pattern, budget);
-    for (const Place& place : *places) {
-      store.walk(place.node, [&](NodeId id) {
-        if (place.row != nullptr && id != place.node) return;
-        if (place.row != nullptr)
-          add(id, *place.row);
+    const auto refs = match_properties(store, pattern, budget);
+    for (const PropertyRef& ref : *refs) {
+      store.walk(ref.node, [&](NodeId id) {
+        if (ref.property != nullptr && id != ref.node) return;
+        if (ref.property != nullptr)
+          add(id, *ref.property);
         else
-          for (const Row& row : store.table(id).rows()) add(id, row);
+          for (const Property& property : store.table(id).properties()) add(id, property);
         if (&store.table(id) == &Part::table()) parts.push_back(id);
       });
     }
   }
-  // where parts are: of those that are meant, else of all
+  // state of parts: of the selected parts, or of all if no part was selected
   if (parts.empty()) {
     store.walk(store.root(), [&](NodeId id) {
       if (&store.table(id) == &Part::table()) parts.push_back(id);
     });
   }
   for (const NodeId part : parts) {
-    for (const Row& row : Part::table().rows()) {
-      if (row.kind == RowKind::state) add(part, row);
+    for (const Property& property : Part::table().properties()) {
+      if (property.kind == PropertyKind::state) add(part, property);
     }
   }
   return texts;
 }
 
-TEST_F(PresetTakerTest, AChoiceIsWhatItsPatternsMean) {
+TEST_F(PresetCapturerTest, ASelectionHasTheMatchesOfItsPatterns) {
   add_bodies(25);
-  const std::vector<PresetChoice> choices = {
+  const std::vector<PresetSelection> choices = {
       {{"/physics/body/*/part/*/*"}, {}, false, false},
       {{"/physics/body/*/part/*/{mass,friction}"}, {}, false, false},
       {{"/physics/body/more1*//*"}, {}, true, false},
@@ -188,78 +193,78 @@ TEST_F(PresetTakerTest, AChoiceIsWhatItsPatternsMean) {
       {{"/physics/body"}, {}, false, true},
       {{"/physics", "/visuals"}, {}, true, true},
   };
-  for (const PresetChoice& choice : choices) {
-    SCOPED_TRACE(choice.rows.front());
-    PresetTaker taker;
-    const auto taken = taker.take(rig.store, "some", choice);
-    ASSERT_TRUE(taken.ok()) << taken.error();
-    EXPECT_EQ(rows_of(**taken), rows_of(rig.store, choice));
-    expect_same(**taker.take(rig.store, "again", choice), **taken);
+  for (const PresetSelection& choice : choices) {
+    SCOPED_TRACE(choice.include.front());
+    PresetCapturer capturer;
+    const auto captured = capturer.capture(rig.store, "some", choice);
+    ASSERT_TRUE(captured.ok()) << captured.error();
+    EXPECT_EQ(properties_of(**captured), properties_of(rig.store, choice));
+    expect_same(**capturer.capture(rig.store, "again", choice), **captured);
   }
-  // nothing chosen is everything, here with what parts are
-  const auto all = *PresetTaker().take(rig.store, "all", {{}, {}, true, true});
-  EXPECT_EQ(rows_of(*all), rows_of(rig.store, {{"/physics", "/visuals"}, {}, true, true}));
+  // an empty selection includes all properties, here with the state of parts
+  const auto all = *PresetCapturer().capture(rig.store, "all", {{}, {}, true, true});
+  EXPECT_EQ(properties_of(*all), properties_of(rig.store, {{"/physics", "/visuals"}, {}, true, true}));
 }
 
-TEST_F(PresetTakerTest, AChoiceThatReachesNothingIsSaid) {
+TEST_F(PresetCapturerTest, ReportsASelectionWithoutMatch) {
   const auto fault = [&](const char* pattern) {
-    const auto taken = PresetTaker().take(rig.store, "some", {{pattern}, {}, false, false});
-    return taken.ok() ? "" : taken.error();
+    const auto captured = PresetCapturer().capture(rig.store, "some", {{pattern}, {}, false, false});
+    return captured.ok() ? "" : captured.error();
   };
-  EXPECT_EQ(fault("/physics/body/*/part/*/position"), "'/physics/body/*/part/*/position' reaches no property");
-  EXPECT_EQ(fault("/physics/body/nobody*"), "'/physics/body/nobody*' reaches no property");
+  EXPECT_EQ(fault("/physics/body/*/part/*/position"), "'/physics/body/*/part/*/position' matches no property");
+  EXPECT_EQ(fault("/physics/body/missing*"), "'/physics/body/missing*' matches no property");
   EXPECT_EQ(fault("/physics/bodi").find("there is no 'bodi' in /physics"), 0u) << fault("/physics/bodi");
-  EXPECT_EQ(fault("body"), "'body' is no address: it must begin with /");
-  // each is little work, all together are not
+  EXPECT_EQ(fault("body"), "'body' is not an address: it must begin with /");
+  // each pattern costs little work, but not all together
   const auto many =
-      PresetTaker().take(rig.store, "many", {std::vector<std::string>(100000, "//mass"), {}, false, false});
+      PresetCapturer().capture(rig.store, "many", {std::vector<std::string>(100000, "//mass"), {}, false, false});
   ASSERT_FALSE(many.ok());
-  EXPECT_EQ(many.error().find("the pattern '//mass' is too much work"), 0u) << many.error();
+  EXPECT_EQ(many.error().find("the pattern '//mass' needs too much work"), 0u) << many.error();
 }
 
-// where copies are worth room that is made beside the show, and where the room is too small for what came
-TEST_F(PresetTakerTest, ManyNumbersAreTheSameInRoomMadeAhead) {
-  PresetTaker taker;
+// With a buffer that was allocated ahead, also when it is too small for the added nodes.
+TEST_F(PresetCapturerTest, LargePresetsAreTheSameInAPreparedBuffer) {
+  PresetCapturer capturer;
   for (const int more : {7000, 1, 1500}) {
     add_bodies(more);
-    for (int i = 0; i < 3; i++) taker.prepare(rig.store);
-    const auto taken = *taker.take(rig.store, "all", {});
-    EXPECT_GT(taken->values.size(), PresetTaker::kRoomWorth);
-    expect_same(*taken, *fresh());
+    for (int i = 0; i < 3; i++) capturer.prepare(rig.store);
+    const auto captured = *capturer.capture(rig.store, "all", {});
+    EXPECT_GT(captured->values.size(), PresetCapturer::kMinBufferValues);
+    expect_same(*captured, *capture_new());
   }
 }
 
-// what stands as it stood is not looked at again: whatever came, went or moved beside it
-TEST_F(PresetTakerTest, KeepsWhatStandsAsItStood) {
-  PresetTaker taker;
+// Unchanged subtrees are copied from the previous plan, whatever was added, removed or moved next to them.
+TEST_F(PresetCapturerTest, ReusesUnchangedSubtrees) {
+  PresetCapturer capturer;
   add_bodies(20);
-  taker.make_ready(rig.store);
-  const auto expect_fresh = [&](const char* what) {
-    EXPECT_FALSE(taker.ready(rig.store)) << what;
+  capturer.finish_planning(rig.store);
+  const auto expect_new_plan = [&](const char* what) {
+    EXPECT_FALSE(capturer.ready(rig.store)) << what;
     SCOPED_TRACE(what);
-    expect_same(**taker.take(rig.store, "all", {}), *fresh());
-    EXPECT_TRUE(taker.ready(rig.store)) << what;
+    expect_same(**capturer.capture(rig.store, "all", {}), *capture_new());
+    EXPECT_TRUE(capturer.ready(rig.store)) << what;
   };
   add_bodies(1);
-  expect_fresh("one came");
+  expect_new_plan("one was added");
   rig.world.remove_body(*rig.world.find_body("more0"));
-  expect_fresh("the first went");
+  expect_new_plan("the first was removed");
   rig.world.remove_body(*rig.world.find_body("more20"));
   rig.world.remove_body(*rig.world.find_body("more7"));
   add_bodies(2);
-  expect_fresh("others in the same slots");
+  expect_new_plan("others in the same slots");
   const NodeId body = rig.world.find_body("more9")->id();
   const std::size_t place = rig.store.hide(body);
-  expect_fresh("one hides");
+  expect_new_plan("one is hidden");
   rig.store.show(body, place);
-  expect_fresh("it is back");
+  expect_new_plan("it is shown again");
   const NodeId first[] = {rig.world.find_body("more15")->id(), body};
   rig.store.order_children(rig.store.parent(body), first);
-  expect_fresh("another order");
-  rig.store.note_structure();
-  expect_fresh("no node at all");
-  const PresetChoice part{{"/physics/body/more1*//*"}, {}, false, false};
-  expect_same(**taker.take(rig.store, "some", part), *fresh(part));
+  expect_new_plan("another order");
+  rig.store.bump_structure_version();
+  expect_new_plan("nothing changed");
+  const PresetSelection part{{"/physics/body/more1*//*"}, {}, false, false};
+  expect_same(**capturer.capture(rig.store, "some", part), *capture_new(part));
 }
 
 }  // namespace

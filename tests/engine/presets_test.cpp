@@ -1,4 +1,4 @@
-// Presets through a playing engine: what is stored comes back, whatever happened in between.
+// Presets in a running engine: stored values are restored, whatever happened in between.
 #include "engine/presets.h"
 
 #include "base/log.h"
@@ -9,9 +9,9 @@
 namespace limber::engine_test {
 namespace {
 
-std::vector<double> kept_of(Show& show) {
-  const auto kept = show.engine.store().kept();
-  return {kept.begin(), kept.end()};
+std::vector<double> persistent_values(Show& show) {
+  const auto persistent = show.engine.store().persistent_values();
+  return {persistent.begin(), persistent.end()};
 }
 
 std::vector<std::string> names_of(Show& show) {
@@ -20,21 +20,21 @@ std::vector<std::string> names_of(Show& show) {
   return names;
 }
 
-// what was answered to the message, or ""
+// Sends a message; returns the reply, or "".
 template <class... A>
-std::string answer(Show& show, std::string address, A&&... args) {
-  show.outbox();
+std::string send_and_get_reply(Show& show, std::string address, A&&... args) {
+  show.sent_texts();
   show.send(std::move(address), std::forward<A>(args)...);
   show.ticks(1);
   std::string all;
-  for (const std::string& text : show.outbox()) {
+  for (const std::string& text : show.sent_texts()) {
     if (!text.starts_with("/physics/contact")) all += (all.empty() ? "" : "\n") + text;
   }
   return all;
 }
 
-// values of a scene that stands still, so that nothing but hands moves anything
-constexpr const char* kTwo = R"(
+// a static scene, so that only messages change values
+constexpr const char* kTwoBodyScene = R"(
 sim.gravity = vec3(0, 0, 0)
 params { { "wind", 1, min = 0, max = 10 }, { "on", false }, { "way", "in", choices = { "in", "out" } } }
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -45,39 +45,39 @@ for _, name in ipairs { "left", "right" } do
 end
 )";
 
-TEST(Presets, EveryValueComesBackToTheBit) {
-  Edited edited(kEverything);
+TEST(Presets, RestoresEveryValueExactly) {
+  EditedShow edited(kEverything);
   Show& show = edited.show();
   Random random(5, "presets");
   for (int i = 0; i < 5; i++) {
-    set_at_random(show.engine.store(), random);
-    show.engine.world().settle();
-    const std::vector<double> before = kept_of(show);
-    EXPECT_EQ(answer(show, "/preset/store", "all"), "");
-    EXPECT_GT(set_at_random(show.engine.store(), random), 300);
-    EXPECT_NE(kept_of(show), before);
-    EXPECT_EQ(answer(show, "/preset/recall", "all"), "");
-    EXPECT_EQ(kept_of(show), before);
+    set_random_values(show.engine.store(), random);
+    show.engine.world().flush();
+    const std::vector<double> before = persistent_values(show);
+    EXPECT_EQ(send_and_get_reply(show, "/preset/store", "all"), "");
+    EXPECT_GT(set_random_values(show.engine.store(), random), 300);
+    EXPECT_NE(persistent_values(show), before);
+    EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "all"), "");
+    EXPECT_EQ(persistent_values(show), before);
   }
 }
 
-TEST(Presets, AnotherEngineReadsThemToTheBit) {
-  Edited edited(kEverything);
+TEST(Presets, AnotherEngineReadsThemExactly) {
+  EditedShow edited(kEverything);
   Random random(6, "presets");
-  set_at_random(edited.show().engine.store(), random);
-  const std::vector<double> before = kept_of(edited.show());
-  EXPECT_EQ(answer(edited.show(), "/preset/store", "dusk"), "");
-  EXPECT_EQ(answer(edited.show(), "/preset/store", "sky", "looks", "except", "/visuals/camera//*"), "");
+  set_random_values(edited.show().engine.store(), random);
+  const std::vector<double> before = persistent_values(edited.show());
+  EXPECT_EQ(send_and_get_reply(edited.show(), "/preset/store", "dusk"), "");
+  EXPECT_EQ(send_and_get_reply(edited.show(), "/preset/store", "sky", "looks", "except", "/visuals/camera//*"), "");
   edited.show().engine.finish_saving();
   Show other(edited.folder.path("scripts/scene.lua"));
   EXPECT_EQ(names_of(other), (std::vector<std::string>{"dusk", "sky"}));
-  EXPECT_EQ(other.engine.presets().list()[1]->choice.except, (std::vector<std::string>{"/visuals/camera//*"}));
-  EXPECT_EQ(answer(other, "/preset/recall", "dusk"), "");
-  EXPECT_EQ(kept_of(other), before);
+  EXPECT_EQ(other.engine.presets().list()[1]->selection.except, (std::vector<std::string>{"/visuals/camera//*"}));
+  EXPECT_EQ(send_and_get_reply(other, "/preset/recall", "dusk"), "");
+  EXPECT_EQ(persistent_values(other), before);
 }
 
-TEST(Presets, ChosenByPatternAndWord) {
-  Edited edited(kTwo);
+TEST(Presets, SelectsByPatternAndWord) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   show.send("/preset/store", "left", "/physics/body/left//*");
   show.send("/preset/store", "moves", "behaviors");
@@ -104,7 +104,7 @@ TEST(Presets, ChosenByPatternAndWord) {
                              {"script", 0.5, 0.5, 0, 0, 1, 0.62}};
   for (const Case& c : kCases) {
     disturb();
-    EXPECT_EQ(answer(show, "/preset/recall", c.preset), "") << c.preset;
+    EXPECT_EQ(send_and_get_reply(show, "/preset/recall", c.preset), "") << c.preset;
     EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), c.left_friction) << c.preset;
     EXPECT_EQ(show.read("/physics/body/right/part/tip/friction"), c.right_friction) << c.preset;
     EXPECT_EQ(show.read("/physics/body/left/behavior/push/amp"), c.left_amp) << c.preset;
@@ -114,8 +114,8 @@ TEST(Presets, ChosenByPatternAndWord) {
   }
 }
 
-TEST(Presets, PosesAndVelocitiesWhenAskedFor) {
-  Edited edited(kTwo);
+TEST(Presets, IncludesPosesAndVelocitiesOnRequest) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   show.send("/physics/body/left/part/tip/linear_velocity", 1, 2, 3);
   show.send("/physics/body/left/part/tip/rotation", 0.1, 0.2, 0.3, 0.4);
@@ -128,18 +128,18 @@ TEST(Presets, PosesAndVelocitiesWhenAskedFor) {
   const std::vector<double> before = motion_of(edited.part("left", "tip"));
   show.send("/transport/play");
   show.ticks(20);
-  EXPECT_EQ(answer(show, "/transport/pause").substr(0, 16), "/transport/state");
-  EXPECT_EQ(answer(show, "/preset/recall", "moving"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/transport/pause").substr(0, 16), "/transport/state");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "moving"), "");
   EXPECT_EQ(motion_of(edited.part("left", "tip")), before);
   show.send("/physics/body/left/part/tip/linear_velocity", 0, 0, 5);
   show.send("/physics/body/left/part/tip/position", 7, 7, 7);
-  EXPECT_EQ(answer(show, "/preset/recall", "still"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "still"), "");
   EXPECT_NEAR(show.read("/physics/body/left/part/tip/position", 2), 1 + 3 * 3 / 60.0, 1e-6);
-  EXPECT_EQ(show.read("/physics/body/left/part/tip/linear_velocity", 2), 5) << "it was not asked for";
+  EXPECT_EQ(show.read("/physics/body/left/part/tip/linear_velocity", 2), 5) << "velocities were not stored";
 }
 
-TEST(Presets, ANumberBetweenTwoIsABlend) {
-  Edited edited(kTwo);
+TEST(Presets, AFractionalNumberIsABlend) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   const std::string path = "/physics/body/left/part/tip/friction";
   for (const double friction : {1.0, 2.0, 5.0}) {
@@ -153,18 +153,18 @@ TEST(Presets, ANumberBetweenTwoIsABlend) {
     bool on;
   };
   for (const Case& c : {Case{1, 1, false}, {2.5, 3.5, true}, {2.25, 2.75, false}, {3, 5, true}, {1.5, 1.5, false}}) {
-    EXPECT_EQ(answer(show, "/preset/recall", c.number), "");
+    EXPECT_EQ(send_and_get_reply(show, "/preset/recall", c.number), "");
     EXPECT_EQ(show.read(path), c.friction) << c.number;
     EXPECT_EQ(show.read("/scene/on"), c.on ? 1 : 0) << c.number;
   }
-  EXPECT_EQ(answer(show, "/preset/morph", "friction 1", "friction 5", 0.75), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/morph", "friction 1", "friction 5", 0.75), "");
   EXPECT_EQ(show.read(path), 4);
-  EXPECT_EQ(answer(show, "/preset/morph", "friction 5", 1, 2), "") << "beyond the end is the end";
+  EXPECT_EQ(send_and_get_reply(show, "/preset/morph", "friction 5", 1, 2), "") << "the amount is clamped to 1";
   EXPECT_EQ(show.read(path), 1);
 }
 
-TEST(Presets, WhatOnlyOneOfTwoHasIsLeftAloneInBetween) {
-  Edited edited(kTwo);
+TEST(Presets, BlendsOnlyPropertiesOfBoth) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   show.send("/preset/store", "a", "/physics/body/left//*", "/scene//*");
   show.send("/physics/body/left/part/tip/friction", 1.5);
@@ -172,30 +172,31 @@ TEST(Presets, WhatOnlyOneOfTwoHasIsLeftAloneInBetween) {
   show.send("/preset/store", "b", "/physics/body/*/part//*", "/scene/way");
   show.send("/scene/wind", 4);
   show.send("/physics/body/right/part/tip/friction", 9);
-  EXPECT_EQ(answer(show, "/preset/recall", 1.5), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", 1.5), "");
   EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 1);
   EXPECT_EQ(show.read("/scene/wind"), 4);
   EXPECT_EQ(show.read("/scene/way"), 1) << "a choice switches at the middle";
   EXPECT_EQ(show.read("/physics/body/right/part/tip/friction"), 9);
 }
 
-TEST(Presets, InOrderUnderTheirNames) {
-  Edited edited(kTwo);
+TEST(Presets, KeepsOrderAndNames) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
-  EXPECT_EQ(answer(show, "/list/presets"), "/list/presets ");
-  for (const char* name : {"one", "two", "three"}) EXPECT_EQ(answer(show, "/preset/store", name, "looks"), "");
-  EXPECT_EQ(answer(show, "/list/presets"), "/list/presets one two three");
-  EXPECT_EQ(answer(show, "/preset/delete", "two"), "");
-  EXPECT_EQ(answer(show, "/preset/store", 1), "") << "again, in its place";
-  EXPECT_EQ(answer(show, "/list/presets"), "/list/presets one three");
-  EXPECT_EQ(show.engine.presets().list()[0]->choice.rows, (std::vector<std::string>{"/visuals//*"}))
-      << "made of what it was made of before";
+  EXPECT_EQ(send_and_get_reply(show, "/list/presets"), "/list/presets ");
+  for (const char* name : {"one", "two", "three"})
+    EXPECT_EQ(send_and_get_reply(show, "/preset/store", name, "looks"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/list/presets"), "/list/presets one two three");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/delete", "two"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/store", 1), "") << "replaces the preset in its place";
+  EXPECT_EQ(send_and_get_reply(show, "/list/presets"), "/list/presets one three");
+  EXPECT_EQ(show.engine.presets().list()[0]->selection.include, (std::vector<std::string>{"/visuals//*"}))
+      << "with the same selection as before";
   EXPECT_EQ(show.read("/preset/count"), 2);
-  EXPECT_EQ(answer(show, "/get", "/preset/names"), "/preset/names one\nthree");
+  EXPECT_EQ(send_and_get_reply(show, "/get", "/preset/names"), "/preset/names one\nthree");
 }
 
-TEST(Presets, ARecallIsTheHandThatAResetKeeps) {
-  Edited edited(kTwo);
+TEST(Presets, ARecallSurvivesAReset) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   show.send("/physics/body/left/part/tip/friction", 2);
   show.send("/preset/store", "two");
@@ -206,11 +207,11 @@ TEST(Presets, ARecallIsTheHandThatAResetKeeps) {
   show.send("/transport/reset");
   show.ticks(2);
   EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 2);
-  EXPECT_EQ(show.read("/scene/wind"), 6) << "set after it";
+  EXPECT_EQ(show.read("/scene/wind"), 6) << "set after the recall";
 }
 
-TEST(Presets, AReloadDecidesByTheOneRule) {
-  Edited edited(std::string(kTwo) + "sim:body('left'):part('tip').friction = 0.2\n");
+TEST(Presets, AReloadOverridesOnlyChangedLines) {
+  EditedShow edited(std::string(kTwoBodyScene) + "sim:body('left'):part('tip').friction = 0.2\n");
   Show& show = edited.show();
   const std::string friction = "/physics/body/left/part/tip/friction";
   show.send(friction, 2);
@@ -218,28 +219,28 @@ TEST(Presets, AReloadDecidesByTheOneRule) {
   show.send("/preset/recall", "script");
   show.ticks(1);
   EXPECT_EQ(show.read(friction), 0.2);
-  EXPECT_EQ(answer(show, "/preset/recall", "two"), "");
-  EXPECT_EQ(edited.save(edited.text + "-- nothing new\n"), Reload::End::applied);
-  EXPECT_EQ(show.read(friction), 2) << "said as before";
-  EXPECT_EQ(edited.edit("0.2", "0.3"), Reload::End::applied);
-  EXPECT_EQ(show.read(friction), 0.3) << "said otherwise";
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "two"), "");
+  EXPECT_EQ(edited.save(edited.text + "-- nothing new\n"), SceneReloader::ApplyResult::applied);
+  EXPECT_EQ(show.read(friction), 2) << "the line is unchanged";
+  EXPECT_EQ(edited.edit("0.2", "0.3"), SceneReloader::ApplyResult::applied);
+  EXPECT_EQ(show.read(friction), 0.3) << "the line has changed";
   show.send("/transport/reset");
   show.ticks(2);
-  EXPECT_EQ(show.read(friction), 0.3) << "and so it stays";
-  EXPECT_EQ(answer(show, "/preset/recall", "script"), "");
+  EXPECT_EQ(show.read(friction), 0.3) << "also after a reset";
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "script"), "");
   EXPECT_EQ(show.read(friction), 0.3);
 }
 
 struct Change {
-  const char* what;
+  const char* name;
   const char* from;
   const char* to;
-  const char* said;  // how the answer begins, behind the address and the preset's name; null: anyhow
-  const char* path;  // a value
-  double value;      // what it is after the recall
+  const char* reply_prefix;  // prefix of the reply, after the address and the preset's name; null: any
+  const char* path;          // of a property
+  double value;              // expected value after the recall
 };
 
-TEST(Presets, SurviveAnEditedScene) {
+TEST(Presets, RecallAfterAnEditOfTheScene) {
   constexpr const char* kScene = R"(
 params { { "wind", 1, min = 0, max = 10 }, { "way", "out", choices = { "in", "out" } }, { "where", vec3(1, 2, 3) } }
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -250,98 +251,99 @@ local wind = one:add_behavior("random_force", "wind", { max_amp = 3 })
 sim:add_body("two"):add_part("tip", ball)
 )";
   constexpr Change kChanges[] = {
-      {"renamed body", "\"two\"", "\"too\"", "2 things are gone (/physics/body/two, /physics/body/two/part/tip); ",
-       "/scene/wind", 8},
+      {"renamed body", "\"two\"", "\"too\"",
+       "2 objects were not found (/physics/body/two, /physics/body/two/part/tip); ", "/scene/wind", 8},
       {"removed body", "sim:add_body(\"two\"):add_part(\"tip\", ball)", "",
-       "2 things are gone (/physics/body/two, /physics/body/two/part/tip)", "/scene/wind", 8},
+       "2 objects were not found (/physics/body/two, /physics/body/two/part/tip)", "/scene/wind", 8},
       {"added body", "sim:add_body(\"two\")", "sim:add_body(\"three\"):add_part(\"tip\", ball) sim:add_body(\"two\")",
-       "15 values came since and stay as they are", "/scene/wind", 8},
-      {"a part that moves now", "{ mass = 0,", "{ mass = 2,", "1 value came since and stays as it is",
+       "15 values are new and stay unchanged", "/scene/wind", 8},
+      {"a part that moves now", "{ mass = 0,", "{ mass = 2,", "1 value is new and stays unchanged",
        "/physics/body/one/part/base/mass", 2},
-      {"removed behaviour", "local wind = one:add_behavior(\"random_force\", \"wind\", { max_amp = 3 })", "",
-       "1 thing is gone (/physics/body/one/behavior/wind)", "/scene/wind", 8},
-      {"another behaviour", "\"random_force\", \"wind\", { max_amp = 3 }", "\"force\", \"wind\"", nullptr,
-       "/scene/wind", 8},
+      {"removed behavior", "local wind = one:add_behavior(\"random_force\", \"wind\", { max_amp = 3 })", "",
+       "1 object was not found (/physics/body/one/behavior/wind)", "/scene/wind", 8},
+      {"another behavior", "\"random_force\", \"wind\", { max_amp = 3 }", "\"force\", \"wind\"", nullptr, "/scene/wind",
+       8},
       {"removed parameter", "{ \"wind\", 1, min = 0, max = 10 }, ", "",
-       "1 row is no longer there or of another type (/scene/wind)", "/scene/way", 0},
+       "1 property is missing or of another type (/scene/wind)", "/scene/way", 0},
       {"retyped parameter", "{ \"wind\", 1, min = 0, max = 10 }", "{ \"wind\", true }",
-       "1 row is no longer there or of another type (/scene/wind); 1 value came", "/scene/wind", 1},
+       "1 property is missing or of another type (/scene/wind); 1 value is new", "/scene/wind", 1},
       {"a vector that becomes a number", "vec3(1, 2, 3)", "4",
-       "1 row is no longer there or of another type (/scene/where); 1 value came", "/scene/where", 4},
-      {"narrowed range", "max = 10", "max = 5", "1 value was not taken as it is (/scene/wind takes 0 .. 5)",
+       "1 property is missing or of another type (/scene/where); 1 value is new", "/scene/where", 4},
+      {"narrowed range", "max = 10", "max = 5", "1 value was clamped or rejected (/scene/wind accepts 0 .. 5)",
        "/scene/wind", 5},
       {"choices in another order", "{ \"in\", \"out\" }", "{ \"out\", \"beyond\", \"in\" }", "", "/scene/way", 2},
       {"a choice that is gone", "{ \"in\", \"out\" }", "{ \"out\", \"beyond\" }",
-       "1 choice stays as it is (/scene/way has no 'in' any more)", "/scene/way", 0},
+       "1 choice stays unchanged (/scene/way has no 'in' any more)", "/scene/way", 0},
       {"another spelling", "\"wind\", 1, min", "\"Wind\", 1, min", "", "/scene/Wind", 8},
   };
   for (const Change& c : kChanges) {
-    Edited edited(kScene);
+    EditedShow edited(kScene);
     Show& show = edited.show();
     show.send("/scene/wind", 8);
     show.send("/scene/way", "in");
     show.send("/preset/store", "kept");
     show.send("/preset/recall", "script");
     show.ticks(1);
-    EXPECT_EQ(edited.edit(c.from, c.to), Reload::End::applied) << c.what;
-    const std::string said = answer(show, "/preset/recall", "kept");
-    const std::string_view wanted = c.said == nullptr ? "" : c.said;
-    const std::string begin = fmt::format("/error /preset/recall preset 'kept': {}", wanted);
-    EXPECT_TRUE(c.said != nullptr && wanted.empty() ? said.empty() : said.starts_with(begin)) << c.what << ": " << said;
-    EXPECT_EQ(show.read(c.path), c.value) << c.what;
+    EXPECT_EQ(edited.edit(c.from, c.to), SceneReloader::ApplyResult::applied) << c.name;
+    const std::string reply = send_and_get_reply(show, "/preset/recall", "kept");
+    const std::string_view expected = c.reply_prefix == nullptr ? "" : c.reply_prefix;
+    const std::string begin = fmt::format("/error /preset/recall preset 'kept': {}", expected);
+    EXPECT_TRUE(c.reply_prefix != nullptr && expected.empty() ? reply.empty() : reply.starts_with(begin))
+        << c.name << ": " << reply;
+    EXPECT_EQ(show.read(c.path), c.value) << c.name;
   }
 }
 
-// a slider between presets sends many a second
-TEST(Presets, WhatIsLeftOutIsAnsweredEachTimeAndLoggedOnce) {
-  Edited edited(kTwo);
+// a slider that blends presets sends many messages per second
+TEST(Presets, SkippedValuesAreRepliedEachTimeAndLoggedOnce) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
   show.send("/preset/store", "dusk");
   show.ticks(1);
-  ASSERT_EQ(edited.edit("{ \"on\", false }, ", ""), Reload::End::applied);
+  ASSERT_EQ(edited.edit("{ \"on\", false }, ", ""), SceneReloader::ApplyResult::applied);
   const std::uint64_t before = log_count(LogLevel::warning);
   for (int i = 0; i < 20; i++) {
-    EXPECT_EQ(answer(show, "/preset/recall", "dusk"),
-              "/error /preset/recall preset 'dusk': 1 row is no longer there or of another type (/scene/on)");
+    EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "dusk"),
+              "/error /preset/recall preset 'dusk': 1 property is missing or of another type (/scene/on)");
   }
   EXPECT_EQ(log_count(LogLevel::warning) - before, 1u);
 }
 
-TEST(Presets, RefusalsNameTheCure) {
-  Edited edited(kTwo);
+TEST(Presets, ErrorsNameTheFix) {
+  EditedShow edited(kTwoBodyScene);
   Show& show = edited.show();
-  EXPECT_EQ(answer(show, "/preset/recall", 1), "/error /preset/recall there is no preset yet; /preset/store makes one");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", 1),
+            "/error /preset/recall there is no preset yet; /preset/store makes one");
   show.send("/preset/store", "dusk");
   show.ticks(1);
-  const auto refused = [&](const std::string& address, auto... args) {
-    const std::string said = answer(show, address, args...);
-    return said.substr(std::min(said.size(), 8 + address.size()));
+  const auto rejection = [&](const std::string& address, auto... args) {
+    const std::string reply = send_and_get_reply(show, address, args...);
+    return reply.substr(std::min(reply.size(), 8 + address.size()));
   };
-  EXPECT_EQ(refused("/preset/recall", "dusky"), "there is no preset 'dusky'; did you mean 'dusk'?");
-  EXPECT_EQ(refused("/preset/recall", 2), "presets have the numbers 1 .. 1; 2 is none");
-  EXPECT_EQ(refused("/preset/recall", 0.5), "presets have the numbers 1 .. 1; 0.5 is none");
-  EXPECT_EQ(refused("/preset/recall", "dusk", -1), "takes 0 to 86400 seconds behind the name");
-  EXPECT_EQ(refused("/preset/recall", "dusk", 1, "bouncy"),
-            "'bouncy' is no easing; there are: linear, smooth, in, out");
-  EXPECT_EQ(refused("/preset/recall"),
-            "takes a name or a number, seconds if it is to take some, and how: linear, smooth, in, out");
-  EXPECT_EQ(refused("/preset/store"), "takes a name, and what is kept if that is not all");
-  EXPECT_EQ(refused("/preset/store", "script"), "'script' is what the scene describes; take another name");
-  EXPECT_EQ(refused("/preset/store", "x", "/nowhere/*"), "'/nowhere/*' reaches no property");
-  EXPECT_EQ(refused("/preset/store", "x", "/nowhere").substr(0, 29), "there is no 'nowhere' in /; t");
-  EXPECT_EQ(refused("/preset/store", "x", "lookz"),
-            "'lookz' is none of the words behind the name: patterns of paths, behaviors, looks, all, poses, "
+  EXPECT_EQ(rejection("/preset/recall", "dusky"), "there is no preset 'dusky'; did you mean 'dusk'?");
+  EXPECT_EQ(rejection("/preset/recall", 2), "the number of a preset must be 1 to 1, got 2");
+  EXPECT_EQ(rejection("/preset/recall", 0.5), "the number of a preset must be 1 to 1, got 0.5");
+  EXPECT_EQ(rejection("/preset/recall", "dusk", -1), "the duration must be 0 to 86400 s");
+  EXPECT_EQ(rejection("/preset/recall", "dusk", 1, "bouncy"),
+            "unknown easing 'bouncy'; expected one of: linear, smooth, in, out");
+  EXPECT_EQ(rejection("/preset/recall"),
+            "expected a name or a number, optionally seconds and an easing: linear, smooth, in, out");
+  EXPECT_EQ(rejection("/preset/store"), "expected a name, and optionally the properties to store");
+  EXPECT_EQ(rejection("/preset/store", "script"), "'script' is reserved for the values of the scene; use another name");
+  EXPECT_EQ(rejection("/preset/store", "x", "/nowhere/*"), "'/nowhere/*' matches no property");
+  EXPECT_EQ(rejection("/preset/store", "x", "/nowhere").substr(0, 29), "there is no 'nowhere' in /; t");
+  EXPECT_EQ(rejection("/preset/store", "x", "lookz"),
+            "unknown word 'lookz'; expected path patterns, behaviors, looks, all, poses, "
             "velocities, except");
-  EXPECT_EQ(refused("/preset/delete", "script"), "'script' is what the scene describes; it can't be deleted");
-  EXPECT_EQ(refused("/preset/delete"), "takes the name of a preset");
-  EXPECT_EQ(refused("/preset/morph", "dusk", 0.5),
-            "takes two presets and how far from the first to the second, 0 to 1");
-  EXPECT_EQ(refused("/list/presets", "x"), "takes no arguments");
+  EXPECT_EQ(rejection("/preset/delete", "script"), "'script' has the values of the scene; it can't be deleted");
+  EXPECT_EQ(rejection("/preset/delete"), "expected the name of a preset");
+  EXPECT_EQ(rejection("/preset/morph", "dusk", 0.5), "expected two presets and an amount from 0 to 1");
+  EXPECT_EQ(rejection("/list/presets", "x"), "takes no arguments");
   EXPECT_EQ(names_of(show), (std::vector<std::string>{"dusk"}));
 }
 
 TEST(Presets, ScriptsStoreAndRecall) {
-  Edited edited(std::string(kTwo) + R"(
+  EditedShow edited(std::string(kTwoBodyScene) + R"(
 local tip = sim:body("left"):part("tip")
 osc:on("/go", function()
   tip.friction = 4
@@ -354,20 +356,20 @@ osc:on("/wrong", function() tip.friction = 8 presets:recall("fuor") end)
 osc:on("/mix", function() presets:morph("script", "four", 0.5) presets:delete("four") end)
 )");
   Show& show = edited.show();
-  EXPECT_EQ(answer(show, "/go"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/go"), "");
   EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 1)
-      << "both act once the callback has ended: stored is what it left";
+      << "both act after the callback: the final values are stored";
   EXPECT_EQ(names_of(show), (std::vector<std::string>{"four"}));
-  const std::string wrong = answer(show, "/wrong");
+  const std::string wrong = send_and_get_reply(show, "/wrong");
   EXPECT_NE(wrong.find("presets:recall: there is no preset 'fuor'; did you mean 'four'?"), std::string::npos) << wrong;
-  EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 1) << "what the failing call wrote is taken back";
-  EXPECT_EQ(answer(show, "/mix"), "");
+  EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 1) << "writes of the failed call are rolled back";
+  EXPECT_EQ(send_and_get_reply(show, "/mix"), "");
   EXPECT_EQ(show.read("/physics/body/left/part/tip/friction"), 0.75) << "half-way from 0.5 to 1";
   EXPECT_TRUE(names_of(show).empty());
 }
 
-TEST(Presets, TheCommandLineBeginsWithOne) {
-  Edited edited(kTwo);
+TEST(Presets, TheCommandLineRecallsOne) {
+  EditedShow edited(kTwoBodyScene);
   edited.show().send("/scene/wind", 7);
   edited.show().send("/physics/sim/gravity", 0, 0, -3);
   edited.show().send("/preset/store", "windy");
@@ -378,7 +380,7 @@ TEST(Presets, TheCommandLineBeginsWithOne) {
   options.sets = {message("/physics/sim/gravity", 0, 0, -1)};
   Show other(options);
   EXPECT_EQ(other.read("/scene/wind"), 7);
-  EXPECT_EQ(other.read("/physics/sim/gravity", 2), -1) << "what is set comes after it";
+  EXPECT_EQ(other.read("/physics/sim/gravity", 2), -1) << "--set is applied after --preset";
   EngineLink link;
   options.preset = "wind";
   Engine wrong(link, options);
@@ -387,23 +389,23 @@ TEST(Presets, TheCommandLineBeginsWithOne) {
   EXPECT_EQ(started.error(), "--preset: there is no preset 'wind'; did you mean 'windy'?");
 }
 
-TEST(Presets, AGroupAndItsMembersEachHaveTheirOwn) {
-  Edited edited(std::string(kTwo) + R"(sim:add_group_behavior("cohesion", "swarm", { bodies = "all" }))");
+TEST(Presets, StoresGroupsAndMembersSeparately) {
+  EditedShow edited(std::string(kTwoBodyScene) + R"(sim:add_group_behavior("cohesion", "swarm", { bodies = "all" }))");
   Show& show = edited.show();
   const std::string member = "/physics/body/left/behavior/swarm/amount";
   show.send("/physics/group/swarm/amount", 2);
   show.send(member, 3);
   show.send("/preset/store", "kept");
   show.send("/physics/group/swarm/amount", 5);
-  EXPECT_EQ(answer(show, "/preset/recall", "kept"), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "kept"), "");
   EXPECT_EQ(show.read("/physics/group/swarm/amount"), 2);
   EXPECT_EQ(show.read("/physics/body/right/behavior/swarm/amount"), 2);
   EXPECT_EQ(show.read(member), 3);
   show.send("/physics/group/swarm/amount", 5);
-  EXPECT_EQ(answer(show, "/preset/recall", "kept", 0.05), "");
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "kept", 0.05), "");
   show.ticks(10);
   EXPECT_EQ(show.read("/physics/group/swarm/amount"), 2);
-  EXPECT_EQ(show.read(member), 3) << "and at the end of a morph";
+  EXPECT_EQ(show.read(member), 3) << "also at the end of a morph";
 }
 
 }  // namespace

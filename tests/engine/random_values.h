@@ -1,4 +1,4 @@
-// Every property of a world at some value of its range.
+// Sets every property of a world to a random value of its range.
 #pragma once
 
 #include <algorithm>
@@ -10,16 +10,16 @@
 
 namespace limber::engine_test {
 
-/// Through the door; what a thing can't take stays. The answer: how many values were set.
-inline int set_at_random(Store& store, Random& random) {
+/// Uses the setter; values that an object rejects stay. Returns the number of values set.
+inline int set_random_values(Store& store, Random& random) {
   int count = 0;
   store.walk(store.root(), [&](NodeId id) {
-    for (const Row& row : store.table(id).rows()) {
-      if (row.kind != RowKind::property || !row.stored()) continue;
+    for (const Property& property : store.table(id).properties()) {
+      if (property.kind != PropertyKind::setting || !property.stored()) continue;
       std::array<double, 4> values{};
-      for (std::uint32_t i = 0; i < row.width; i++)
-        values[i] = random.uniform(std::max(row.low(i), -50.0), std::min(row.high(i), 50.0));
-      count += store.set(id, row, {values.data(), row.width}) ? 1 : 0;
+      for (std::uint32_t i = 0; i < property.width; i++)
+        values[i] = random.uniform(std::max(property.low(i), -50.0), std::min(property.high(i), 50.0));
+      count += store.set(id, property, {values.data(), property.width}) ? 1 : 0;
     }
   });
   return count;

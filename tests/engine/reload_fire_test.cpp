@@ -1,4 +1,4 @@
-// Reload under fire: a hundred saves of good and broken versions from a thread of their own, while messages come in.
+// Reload under load: a hundred saves of good and broken versions from another thread, while messages arrive.
 #include <thread>
 
 #include "base/random.h"
@@ -7,8 +7,8 @@
 namespace limber::engine_test {
 namespace {
 
-// `stone` and `arm` are the same in every good version; all else comes, goes and changes
-std::string version(int number, Random& random) {
+// `stone` and `arm` are the same in every good version; everything else is added, removed and changed
+std::string version_text(int number, Random& random) {
   std::string text = R"(
 sim.gravity = vec3(0, 0, -9.81)
 local ball = sim:add_sphere_shape("ball", 0.05)
@@ -35,36 +35,36 @@ sim:on_step(function() if #sim.bodies < 2 then error("bodies are missing") end e
   return text;
 }
 
-std::string broken(std::string good, Random& random) {
+std::string broken_version(std::string good, Random& random) {
   constexpr const char* kEnds[] = {"\nerror('on purpose')", "\nsim.gravty = 1", "\nif", "\nlocal a = {} .. {}"};
-  // half written; a half may be a whole scene by chance, but not with such an end
+  // half written; a half may be a valid scene by chance, but not with this end
   if (random.uniform() < 0.4) return good.substr(0, static_cast<std::size_t>(random.uniform(80, 900))) + "\nend end";
   return good + kEnds[static_cast<std::size_t>(random.uniform(0, 4))];
 }
 
-struct Heard {
+struct ReceivedMessages {
   int hits = 0;
   int errors = 0;
   int wind = 0;
   std::vector<int> versions;
 };
 
-void check_hit(const Message& m, Heard& heard) {
+void check_hit(const Message& m, ReceivedMessages& received) {
   ASSERT_EQ(m.args.size(), 4u);
-  EXPECT_EQ(m.args[0].number, heard.hits) << "each message once: no handler twice, none lost";
-  EXPECT_EQ(m.args[1].number, heard.hits + 1) << "state goes on";
-  // handlers hear a message after all of its tick took effect
-  EXPECT_GE(m.args[2].number, std::max(heard.hits, heard.wind)) << "the hand's parameter stays";
-  heard.wind = static_cast<int>(m.args[2].number);
-  heard.hits++;
+  EXPECT_EQ(m.args[0].number, received.hits) << "each message once: no handler twice, none lost";
+  EXPECT_EQ(m.args[1].number, received.hits + 1) << "state persists";
+  // handlers are called after all messages of the tick have taken effect
+  EXPECT_GE(m.args[2].number, std::max(received.hits, received.wind)) << "the overridden parameter stays";
+  received.wind = static_cast<int>(m.args[2].number);
+  received.hits++;
   const int version = static_cast<int>(m.args[3].number);
-  if (heard.versions.empty() || heard.versions.back() != version) heard.versions.push_back(version);
+  if (received.versions.empty() || received.versions.back() != version) received.versions.push_back(version);
 }
 
-TEST(ReloadUnderFire, AHundredSavesWhileMessagesComeIn) {
+TEST(ReloadUnderLoad, SurvivesAHundredSavesWhileMessagesArrive) {
   Random random(7, "fire");
-  Edited edited(version(0, random));
-  Edited control(version(0, random));
+  EditedShow edited(version_text(0, random));
+  EditedShow control(version_text(0, random));
   Engine& engine = edited.show().engine;
   EngineLink& link = edited.show().link;
   std::atomic<bool> saved{false};
@@ -72,40 +72,40 @@ TEST(ReloadUnderFire, AHundredSavesWhileMessagesComeIn) {
   std::thread sim([&] { engine.run(); });
   std::thread editor([&] {
     for (int i = 1; i <= 100; i++) {
-      const std::string text = version(i, random);
+      const std::string text = version_text(i, random);
       const bool is_good = random.uniform() < 0.5;
-      edited.folder.write("scripts/scene.lua", is_good ? text : broken(text, random));
+      edited.folder.write("scripts/scene.lua", is_good ? text : broken_version(text, random));
       if (is_good) good.push_back(i);
       engine.reload();
     }
     saved = true;
   });
-  Heard heard;
+  ReceivedMessages received;
   std::vector<Outgoing> out;
   int sent = 0;
-  while (!saved.load() || heard.hits < sent) {
-    if (!saved.load() && sent < heard.hits + 8) {
-      link.inbox.push({{message("/scene/wind", sent), message("/hit", sent)}, {Hand::osc, 1, 2}});
+  while (!saved.load() || received.hits < sent) {
+    if (!saved.load() && sent < received.hits + 8) {
+      link.command_queue.push({{message("/scene/wind", sent), message("/hit", sent)}, {CommandSource::osc, 1, 2}});
       sent++;
     }
-    link.outbox.drain(out);
+    link.output_queue.drain(out);
     for (const Outgoing& o : out) {
-      if (o.message.address == "/heard") check_hit(o.message, heard);
-      if (o.message.address == "/script/error") heard.errors++;
+      if (o.message.address == "/heard") check_hit(o.message, received);
+      if (o.message.address == "/script/error") received.errors++;
     }
     std::this_thread::yield();
   }
   editor.join();
   engine.stop();
   sim.join();
-  EXPECT_EQ(heard.errors, 101 - static_cast<int>(good.size()));
-  // the versions that were heard are good ones, in order, and the last good one is in force
-  EXPECT_TRUE(std::includes(good.begin(), good.end(), heard.versions.begin(), heard.versions.end()));
-  edited.show().outbox();
-  edited.show().send("/hit", heard.hits);
+  EXPECT_EQ(received.errors, 101 - static_cast<int>(good.size()));
+  // the versions that were played are good ones, in order, and the last good one plays now
+  EXPECT_TRUE(std::includes(good.begin(), good.end(), received.versions.begin(), received.versions.end()));
+  edited.show().sent_texts();
+  edited.show().send("/hit", received.hits);
   edited.show().ticks(1);
-  EXPECT_EQ(edited.show().outbox().back().substr(0, 6), "/heard");
-  // what every version says alike has gone its way to the bit
+  EXPECT_EQ(edited.show().sent_texts().back().substr(0, 6), "/heard");
+  // objects that are equal in all versions have moved undisturbed, to the bit
   const auto ticks = static_cast<int>(engine.world().tick());
   ASSERT_GT(ticks, 10);
   control.show().ticks(ticks);
@@ -113,15 +113,15 @@ TEST(ReloadUnderFire, AHundredSavesWhileMessagesComeIn) {
     EXPECT_EQ(motion_of(edited.part(body, part)), motion_of(control.part(body, part))) << body;
 }
 
-TEST(ReloadUnderFire, ResetsInBetween) {
+TEST(ReloadUnderLoad, SurvivesResetsDuringSaves) {
   Random random(11, "fire");
-  Edited edited(version(0, random));
+  EditedShow edited(version_text(0, random));
   Engine& engine = edited.show().engine;
   std::thread sim([&] { engine.run(); });
   std::atomic<bool> saved{false};
   std::thread editor([&] {
     for (int i = 1; i <= 40; i++) {
-      edited.folder.write("scripts/scene.lua", version(i, random));
+      edited.folder.write("scripts/scene.lua", version_text(i, random));
       engine.reload();
     }
     saved = true;
@@ -133,10 +133,10 @@ TEST(ReloadUnderFire, ResetsInBetween) {
   editor.join();
   engine.stop();
   sim.join();
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/hit", 0);
   edited.show().ticks(1);
-  const std::vector<std::string> texts = edited.show().outbox();
+  const std::vector<std::string> texts = edited.show().sent_texts();
   ASSERT_FALSE(texts.empty());
   EXPECT_EQ(texts.back(), "/heard 0 1 0 40");
 }

@@ -1,4 +1,4 @@
-// Gears in a reload: changed, added, removed, kept when a body is rebuilt; and in history and presets by their path.
+// Gears in a reload: changed, added, removed, preserved when a body is rebuilt.
 #include <cmath>
 
 #include "engine/edited.h"
@@ -20,55 +20,55 @@ local gear = sim:add_gear(body:joint("j1"), body:joint("j2"), 2, { name = "gear"
 --MORE
 )";
 
-Gear* gear_of(Edited& edited, const char* name = "gear") { return edited.world().find_gear(name); }
-double angle(Edited& edited, const char* joint) { return edited.body("train").find_joint(joint)->value(); }
+Gear* gear_of(EditedShow& edited, const char* name = "gear") { return edited.world().find_gear(name); }
+double angle(EditedShow& edited, const char* joint) { return edited.body("train").find_joint(joint)->value(); }
 
 TEST(ReloadGears, AnEditThatChangesNothingChangesNoBit) {
-  Edited edited(kGearShow);
-  Edited control(kGearShow);
+  EditedShow edited(kGearShow);
+  EditedShow control(kGearShow);
   for (int i = 0; i < 3; i++) {
     edited.show().ticks(5);
     control.show().ticks(5);
-    EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), Reload::End::applied);
+    EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), SceneReloader::ApplyResult::applied);
     ASSERT_EQ(edited.show().engine.state_hash(), control.show().engine.state_hash()) << i;
   }
 }
 
-TEST(ReloadGears, ARatioIsChangedWhereItIs) {
-  Edited edited(kGearShow);
+TEST(ReloadGears, ARatioIsChangedInPlace) {
+  EditedShow edited(kGearShow);
   edited.show().ticks(60);
   const NodeId id = gear_of(edited)->id();
   EXPECT_NEAR(angle(edited, "j2"), 0.6, 1e-3);
-  EXPECT_EQ(edited.edit("body:joint(\"j2\"), 2", "body:joint(\"j2\"), -1"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("body:joint(\"j2\"), 2", "body:joint(\"j2\"), -1"), SceneReloader::ApplyResult::applied);
   edited.show().ticks(60);
   EXPECT_EQ(gear_of(edited)->id(), id);
   EXPECT_NEAR(angle(edited, "j2"), -0.3, 1e-3);
 }
 
-TEST(ReloadGears, ComeAndGoAndChangeTheirJoints) {
-  Edited edited(kGearShow);
+TEST(ReloadGears, AreAddedRemovedAndChangeTheirJoints) {
+  EditedShow edited(kGearShow);
   edited.show().ticks(5);
   EXPECT_EQ(edited.edit("--MORE", "sim:add_gear(body:joint(\"j2\"), body:joint(\"j3\"), -1, { name = \"more\" })"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   edited.show().ticks(60);
   EXPECT_NEAR(angle(edited, "j3") + angle(edited, "j2"), 0, 0.05);
   EXPECT_EQ(edited.edit("local gear = sim:add_gear(body:joint(\"j1\"), body:joint(\"j2\")",
                         "local gear = sim:add_gear(body:joint(\"j1\"), body:joint(\"j3\")"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   EXPECT_EQ(gear_of(edited)->joint_b().name(), "j3");
-  EXPECT_EQ(edited.edit("local gear = ", "--"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("local gear = ", "--"), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(gear_of(edited), nullptr);
   EXPECT_NE(gear_of(edited, "more"), nullptr);
 }
 
 TEST(ReloadGears, StayWhenTheirBodyIsRebuilt) {
-  Edited edited(kGearShow);
+  EditedShow edited(kGearShow);
   edited.show().ticks(60);
   const NodeId id = gear_of(edited)->id();
   EXPECT_EQ(edited.edit("--MORE", R"(
 body:add_part("hat", arm, { position = vec3(0, 0, 1) })
 body:add_joint("weld", "arm3", "hat", { type = "fixed" }))"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   ASSERT_NE(gear_of(edited), nullptr);
   EXPECT_EQ(gear_of(edited)->id(), id);
   EXPECT_EQ(&gear_of(edited)->joint_b(), edited.body("train").find_joint("j2"));
@@ -77,12 +77,12 @@ body:add_joint("weld", "arm3", "hat", { type = "fixed" }))"),
   EXPECT_NEAR(angle(edited, "j2"), -0.4, 1e-3);
 }
 
-TEST(ReloadGears, OneThatWasRemovedComesBack) {
-  Edited edited(kGearShow);
+TEST(ReloadGears, ARemovedOneIsAddedAgain) {
+  EditedShow edited(kGearShow);
   edited.show().ticks(5);
   edited.world().remove_gear(*gear_of(edited));
   edited.show().ticks(5);
-  EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), SceneReloader::ApplyResult::applied);
   EXPECT_NE(gear_of(edited), nullptr);
 }
 

@@ -1,5 +1,4 @@
-// Excluded pairs and collision properties across edits of a scene: what is declared differently is applied, the rest
-// stays as it is.
+// Excluded pairs and collision properties across edits of a scene: changed declarations are applied, the rest stays.
 #include <string>
 
 #include "engine/edited.h"
@@ -26,58 +25,59 @@ std::string pairs_of(const Body& body) {
   return text;
 }
 
-TEST(ReloadPairs, WhatIsDeclaredDifferentlyIsApplied) {
-  Edited edited(kPairsShow);
+TEST(ReloadPairs, ChangedDeclarationsAreApplied) {
+  EditedShow edited(kPairsShow);
   edited.show().ticks(3);
   EXPECT_EQ(pairs_of(edited.body("three")), "ab ");
-  EXPECT_EQ(edited.edit("--EDIT", "three:exclude_pair('b', 'c')\n--EDIT"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("--EDIT", "three:exclude_pair('b', 'c')\n--EDIT"), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(pairs_of(edited.body("three")), "ab bc ");
-  EXPECT_EQ(edited.edit("three:exclude_pair('b', 'c')", "three:include_pair('a', 'b')"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("three:exclude_pair('b', 'c')", "three:include_pair('a', 'b')"),
+            SceneReloader::ApplyResult::applied);
   EXPECT_EQ(pairs_of(edited.body("three")), "");
-  EXPECT_EQ(edited.edit("three:include_pair('a', 'b')", ""), Reload::End::applied);
+  EXPECT_EQ(edited.edit("three:include_pair('a', 'b')", ""), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(pairs_of(edited.body("three")), "ab ") << "back to the default";
 }
 
-TEST(ReloadPairs, WhatTheShowChangedStays) {
-  Edited edited(kPairsShow);
+TEST(ReloadPairs, ChangesOfTheShowStay) {
+  EditedShow edited(kPairsShow);
   edited.show().ticks(3);
   edited.show().send("/include");
   edited.show().send("/exclude");
   edited.show().ticks(1);
   EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
-  EXPECT_EQ(edited.edit("vec3(0, 3, 0)", "vec3(0, 4, 0)"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("vec3(0, 3, 0)", "vec3(0, 4, 0)"), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
-  // the body is rebuilt, and its parts have other places in the list
+  // the body is rebuilt, and its parts have other indices
   EXPECT_EQ(edited.edit("three:add_part(\"a\", ball)",
                         "three:add_part(\"new\", ball, { position = vec3(0, 9, 0) })\n"
                         "three:add_part(\"a\", ball)"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
   edited.show().ticks(3);
   EXPECT_EQ(pairs_of(edited.body("three")), "ac ");
 }
 
-// a rebuilt body is compared where it is described, not where its parts moved to
-TEST(ReloadPairs, ARebuiltBodyIsComparedAsDescribed) {
-  Edited edited(kPairsShow);
+// a rebuilt body is compared by its start poses, not by the current poses of its parts
+TEST(ReloadPairs, ARebuiltBodyIsComparedByItsSpec) {
+  EditedShow edited(kPairsShow);
   edited.show().ticks(3);
   edited.part("three", "b").set_pose({{0, 3.1, 0}, quat_identity()});
   edited.show().ticks(2);
   EXPECT_EQ(edited.edit("three:add_part(\"c\", ball, {", "three:add_part(\"c\", ball, { mass = 0,"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   edited.show().ticks(2);
   EXPECT_EQ(pairs_of(edited.body("three")), "ab ");
 }
 
 TEST(ReloadPairs, GroupsAreProperties) {
-  Edited edited(kPairsShow);
+  EditedShow edited(kPairsShow);
   edited.show().ticks(1);
   EXPECT_EQ(
       edited.edit("--EDIT", "sim.collision_groups = { 'one', 'two' }\nthree:part('a').collision_group = 'two'\n--EDIT"),
-      Reload::End::applied);
+      SceneReloader::ApplyResult::applied);
   edited.show().ticks(1);
   EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 2);
-  EXPECT_EQ(edited.edit("{ 'one', 'two' }", "{ 'one', 'more', 'two' }"), Reload::End::applied);
+  EXPECT_EQ(edited.edit("{ 'one', 'two' }", "{ 'one', 'more', 'two' }"), SceneReloader::ApplyResult::applied);
   edited.show().ticks(1);
   EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 4);
 }

@@ -1,4 +1,4 @@
-// A scene's own parameters over a reload, and those that run the scene again.
+// A scene's own parameters in a reload, and those that run the scene again.
 #include "engine/edited.h"
 
 namespace limber::engine_test {
@@ -7,14 +7,14 @@ namespace {
 using Texts = std::vector<std::string>;
 
 struct ParamCase {
-  const char* what;
+  const char* name;
   const char* before;
-  Arg hand;
+  Arg override_value;
   const char* after;
   double value;
 };
 
-TEST(ReloadParams, DefaultsRangesAndTypes) {
+TEST(ReloadParams, ApplyDefaultsRangesAndTypes) {
   const ParamCase kCases[] = {
       {"untouched by the editor", "5, min = 0, max = 10", arg(7), "5, min = 0, max = 10, doc = 'x'", 7},
       {"an edited default", "5, min = 0, max = 10", arg(7), "6, min = 0, max = 10", 6},
@@ -28,15 +28,15 @@ TEST(ReloadParams, DefaultsRangesAndTypes) {
   };
   for (const ParamCase& c : kCases) {
     const auto scene = [](const char* spec) { return fmt::format("params {{ {{ 'p', {} }} }}", spec); };
-    Edited edited(scene(c.before));
-    edited.show().send("/scene/p", c.hand);
+    EditedShow edited(scene(c.before));
+    edited.show().send("/scene/p", c.override_value);
     edited.show().ticks(1);
-    ASSERT_EQ(edited.save(scene(c.after)), Reload::End::applied) << c.what;
-    EXPECT_EQ(edited.show().read("/scene/p"), c.value) << c.what;
-    // a reset comes to the same
+    ASSERT_EQ(edited.save(scene(c.after)), SceneReloader::ApplyResult::applied) << c.name;
+    EXPECT_EQ(edited.show().read("/scene/p"), c.value) << c.name;
+    // a reset has the same result
     edited.show().send("/transport/reset");
     edited.show().ticks(2);
-    EXPECT_EQ(edited.show().read("/scene/p"), c.value) << c.what;
+    EXPECT_EQ(edited.show().read("/scene/p"), c.value) << c.name;
   }
 }
 
@@ -44,7 +44,7 @@ TEST(ReloadParams, TheTopLevelReadsTheLiveValue) {
   const std::string scene =
       "params { { 'n', 2, min = 0, max = 9 } }\n"
       "for i = 1, params.n do sim:add_body('b' .. i) end\n";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/scene/n", 4);
   edited.show().ticks(1);
   EXPECT_EQ(edited.world().bodies().size(), 2u);
@@ -55,17 +55,17 @@ TEST(ReloadParams, TheTopLevelReadsTheLiveValue) {
   EXPECT_EQ(edited.show().read("/scene/n"), 3);
 }
 
-TEST(ReloadParams, TheNodeStaysWhileItsRowsDo) {
-  Edited edited("params { { 'a', 1 } } sim:on_step(function() osc:send('/a', params.a) end)");
+TEST(ReloadParams, TheNodeStaysWhileItsPropertiesDo) {
+  EditedShow edited("params { { 'a', 1 } } sim:on_step(function() osc:send('/a', params.a) end)");
   const NodeId id = edited.show().engine.store().child(edited.show().engine.store().root(), "scene");
   edited.edit("osc:send('/a', params.a)", "osc:send('/b', params.a)");
   EXPECT_EQ(edited.show().engine.store().child(edited.show().engine.store().root(), "scene"), id);
   edited.show().ticks(1);
-  EXPECT_EQ(edited.show().outbox(), Texts{"/b 1"});
+  EXPECT_EQ(edited.show().sent_texts(), Texts{"/b 1"});
   edited.edit("{ 'a', 1 }", "{ 'z', 5 }, { 'a', 1 }");
   edited.show().send("/scene/a", 3);
   edited.show().ticks(1);
-  EXPECT_EQ(edited.show().outbox(), Texts{"/b 3"});
+  EXPECT_EQ(edited.show().sent_texts(), Texts{"/b 3"});
   edited.save("sim:on_step(function() end)");
   EXPECT_TRUE(edited.show().engine.store().child(edited.show().engine.store().root(), "scene").null());
 }
@@ -78,7 +78,7 @@ sim:on_start(function() osc:send("/start", #sim.bodies) end)
 )";
 
 TEST(Rerun, TheSceneFollowsItsSliderAtTheNextTick) {
-  Edited edited(kRerun);
+  EditedShow edited(kRerun);
   edited.show().ticks(10);
   const std::vector<double> first = motion_of(edited.part("b1", "p"));
   edited.show().send("/scene/wind", 3);
@@ -92,30 +92,30 @@ TEST(Rerun, TheSceneFollowsItsSliderAtTheNextTick) {
   edited.show().send("/transport/pause");
   edited.show().ticks(1);
   EXPECT_EQ(edited.world().bodies().size(), 5u);
-  EXPECT_EQ(motion_of(edited.part("b1", "p")), before) << "the ones that stay go on";
+  EXPECT_EQ(motion_of(edited.part("b1", "p")), before) << "the remaining ones are not disturbed";
   EXPECT_EQ(edited.show().read("/scene/wind"), 3);
   edited.show().send("/scene/count", 1);
   edited.show().ticks(2);
   EXPECT_EQ(edited.world().bodies().size(), 1u);
 }
 
-TEST(Rerun, IsARunOfWhatTheLastGoodOneRead) {
-  Edited edited(kRerun);
+TEST(Rerun, UsesTheSourcesOfTheLastSuccessfulRun) {
+  EditedShow edited(kRerun);
   edited.folder.write("scripts/scene.lua", "half a file (");
   edited.show().send("/scene/count", 3);
   edited.show().ticks(2);
   EXPECT_EQ(edited.world().bodies().size(), 3u);
-  EXPECT_EQ(edited.show().outbox(), Texts{}) << "nobody has saved: nothing is read, nothing is said";
+  EXPECT_EQ(edited.show().sent_texts(), Texts{}) << "no file was saved: nothing is read or reported";
   edited.show().engine.reload_now();
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/scene/count", 4);
   edited.show().ticks(2);
   EXPECT_EQ(edited.world().bodies().size(), 4u);
-  EXPECT_EQ(edited.show().outbox(), Texts{}) << "the file is not mended by that";
+  EXPECT_EQ(edited.show().sent_texts(), Texts{}) << "that does not count as a fix of the file";
 }
 
-TEST(Rerun, TheHandBeforeTheFirstTickCounts) {
-  Edited file(kRerun);
+TEST(Rerun, UsesOverridesBeforeTheFirstTick) {
+  EditedShow file(kRerun);
   EngineOptions options = fast_options(file.folder.path("scripts/scene.lua"));
   options.sets = {message("/scene/count", 7)};
   EngineLink link;
@@ -123,36 +123,36 @@ TEST(Rerun, TheHandBeforeTheFirstTickCounts) {
   ASSERT_TRUE(engine.start().ok());
   EXPECT_EQ(engine.world().bodies().size(), 7u);
   std::vector<Outgoing> out;
-  link.outbox.drain(out);
+  link.output_queue.drain(out);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_EQ(text_of(out[0].message), "/start 7");
 }
 
 TEST(Rerun, AResetKeepsTheSlider) {
-  Edited edited(kRerun);
+  EditedShow edited(kRerun);
   edited.show().send("/scene/count", 5);
   edited.show().ticks(2);
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/transport/reset");
   edited.show().ticks(1);
   EXPECT_EQ(edited.world().bodies().size(), 5u);
-  EXPECT_EQ(edited.show().outbox()[0], "/start 5");
+  EXPECT_EQ(edited.show().sent_texts()[0], "/start 5");
 }
 
-TEST(Rerun, AFailingOneIsToldOnceAndTheShowGoesOn) {
-  Edited edited(std::string(kRerun) + "if params.count > 10 then error('too many') end");
+TEST(Rerun, AFailedOneIsReportedOnceAndTheShowContinues) {
+  EditedShow edited(std::string(kRerun) + "if params.count > 10 then error('too many') end");
   edited.show().send("/scene/count", 12);
   edited.show().ticks(5);
   EXPECT_EQ(edited.world().bodies().size(), 2u);
-  EXPECT_EQ(edited.show().outbox().size(), 1u);
+  EXPECT_EQ(edited.show().sent_texts().size(), 1u);
   edited.show().send("/scene/count", 4);
   edited.show().ticks(2);
   EXPECT_EQ(edited.world().bodies().size(), 4u);
 }
 
-TEST(Rerun, RepeatsToTheBit) {
+TEST(Rerun, IsDeterministic) {
   const auto hash = [] {
-    Edited edited(kRerun);
+    EditedShow edited(kRerun);
     for (const int count : {5, 9, 3, 8}) {
       edited.show().send("/scene/count", count);
       edited.show().ticks(7);

@@ -1,5 +1,4 @@
-// Things of the performance: made in callbacks, removed by hand, taken over by the scene; and models that change on
-// disk.
+// Unmanaged objects: made in callbacks, removed by commands, adopted by the scene; and models that change on disk.
 #include <cmath>
 #include <map>
 
@@ -22,8 +21,8 @@ osc:on("/shape", function() sim:add_body("box"):add_part("b", sim:add_box_shape(
 --MORE
 )";
 
-TEST(ReloadPerformance, WhatCallbacksMadeOutlivesReloadsAndGoesWithAReset) {
-  Edited edited(kHeavyShow);
+TEST(ReloadUnmanaged, ObjectsOfCallbacksSurviveReloadsButNotAReset) {
+  EditedShow edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().send("/shape");
   edited.show().ticks(30);
@@ -39,8 +38,8 @@ TEST(ReloadPerformance, WhatCallbacksMadeOutlivesReloadsAndGoesWithAReset) {
   EXPECT_EQ(edited.world().find_shape("own"), nullptr);
 }
 
-TEST(ReloadPerformance, ASceneTakesOverWhatItComesToDescribe) {
-  Edited edited(kHeavyShow);
+TEST(ReloadUnmanaged, ObjectsAreAdoptedWhenTheSceneDeclaresThem) {
+  EditedShow edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().ticks(30);
   const NodeId id = edited.body("mine").id();
@@ -48,18 +47,18 @@ TEST(ReloadPerformance, ASceneTakesOverWhatItComesToDescribe) {
   ASSERT_NE(there.y, 0);
   edited.edit("--MORE", "sim:add_body('mine'):add_part('p', s, { restitution = 0.5 })");
   EXPECT_EQ(edited.body("mine").id(), id);
-  EXPECT_EQ(edited.part("mine", "p").pose().position, there) << "no place was said";
+  EXPECT_EQ(edited.part("mine", "p").pose().position, there) << "no position was set";
   EXPECT_EQ(edited.show().read("/physics/body/mine/part/p/restitution"), 0.5);
   EXPECT_EQ(edited.show().read("/physics/body/mine/part/p/friction"), 0.9) << "nor a friction";
   edited.edit("restitution = 0.5", "restitution = 0.5, position = vec3(5, 0, 0)");
   EXPECT_EQ(edited.part("mine", "p").pose().position, Vec3(5, 0, 0));
-  // from now on it is the scene's
+  // from now on it belongs to the scene
   edited.edit("sim:add_body('mine')", "sim:add_body('yours')");
   EXPECT_EQ(edited.world().find_body("mine"), nullptr);
 }
 
-TEST(ReloadPerformance, AStrangerOfAnotherMakingIsMadeAnewInItsPlace) {
-  Edited edited(kHeavyShow);
+TEST(ReloadUnmanaged, AnAdoptedObjectOfOtherConstructionIsRebuiltInPlace) {
+  EditedShow edited(kHeavyShow);
   edited.show().send("/copy", "mine");
   edited.show().ticks(30);
   const Pose there = edited.part("mine", "p").pose();
@@ -70,8 +69,8 @@ TEST(ReloadPerformance, AStrangerOfAnotherMakingIsMadeAnewInItsPlace) {
   EXPECT_EQ(edited.show().read("/physics/body/mine/part/p/friction"), 0.9);
 }
 
-TEST(ReloadPerformance, WhatWasRemovedComesBackWhereTheSceneSays) {
-  Edited edited(kHeavyShow);
+TEST(ReloadUnmanaged, RemovedObjectsAreAddedAgainAtTheirStart) {
+  EditedShow edited(kHeavyShow);
   edited.show().ticks(3);
   edited.show().send("/physics/part/friction", "stone", 0.9);
   edited.show().send("/physics/body/stone/remove");
@@ -83,11 +82,11 @@ TEST(ReloadPerformance, WhatWasRemovedComesBackWhereTheSceneSays) {
   EXPECT_EQ(edited.show().read("/physics/body/stone/part/p/friction"), 0.3);
   edited.show().send("/copy", "again");
   edited.show().ticks(1);
-  EXPECT_NE(edited.world().find_body("again"), nullptr) << "the run's handle means the body that came back";
+  EXPECT_NE(edited.world().find_body("again"), nullptr) << "the run's handle refers to the added body";
 }
 
-TEST(ReloadPerformance, ACallbackMayReplaceABodyByAnotherOfItsName) {
-  Edited edited(std::string(kHeavyShow) + R"(
+TEST(ReloadUnmanaged, ACallbackCanReplaceABodyOfTheSameName) {
+  EditedShow edited(std::string(kHeavyShow) + R"(
 osc:on("/swap", function()
   stone:remove()
   sim:add_body("stone"):add_part("p", sim:add_box_shape("brick", vec3(1, 1, 1)), { position = vec3(0, 0, 9) })
@@ -95,8 +94,8 @@ end))");
   edited.show().send("/swap");
   edited.show().ticks(2);
   edited.edit("--MORE", "-- nothing");
-  EXPECT_EQ(edited.world().find_shape("s")->id(), edited.part("stone", "p").shape()) << "made as the scene says";
-  EXPECT_EQ(edited.part("stone", "p").pose().position, Vec3(0, 0, 1)) << "and where it says";
+  EXPECT_EQ(edited.world().find_shape("s")->id(), edited.part("stone", "p").shape()) << "constructed as in the scene";
+  EXPECT_EQ(edited.part("stone", "p").pose().position, Vec3(0, 0, 1)) << "and at its start pose";
 }
 
 std::string crane(const char* length, const char* mass, const char* extra = "") {
@@ -112,8 +111,8 @@ std::string crane(const char* length, const char* mass, const char* extra = "") 
                      mass, extra, length);
 }
 
-TEST(ReloadModels, AChangedUrdfIsBuiltWhereTheBodyIs) {
-  Edited edited(
+TEST(ReloadModels, AChangedUrdfIsRebuiltAtTheCurrentPose) {
+  EditedShow edited(
       "local c = sim:load_urdf('urdf/crane.urdf', { motors = 'off' })\nc:copy('twin', { position = vec3(3, 0, 0) })\n"
       "c:motor('lift').damping = 0.2",
       {{"urdf/crane.urdf", crane("1", "2")}});
@@ -125,8 +124,8 @@ TEST(ReloadModels, AChangedUrdfIsBuiltWhereTheBodyIs) {
     const double lift = edited.body(name).find_joint("lift")->value();
     const Pose root = edited.body(name).pose();
     edited.folder.write("urdf/crane.urdf", crane(name[0] == 'c' ? "1.5" : "2.5", "3"));
-    ASSERT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
-    edited.world().settle();
+    ASSERT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
+    edited.world().flush();
     EXPECT_NEAR(edited.body(name).find_joint("lift")->value(), lift, 1e-6);
     EXPECT_EQ(edited.body(name).pose().position, root.position);
     const Pose jib = edited.part(name, "jib").pose();
@@ -139,16 +138,16 @@ TEST(ReloadModels, AChangedUrdfIsBuiltWhereTheBodyIs) {
   EXPECT_EQ(edited.show().read("/physics/body/crane/part/jib/friction"), 0.9);
 }
 
-TEST(ReloadModels, LinksComeAndGoTheOthersStand) {
-  Edited edited("sim.gravity = vec3(0, 0, 0) sim:load_urdf('urdf/crane.urdf', { motors = 'off' })",
-                {{"urdf/crane.urdf", crane("1", "2")}});
+TEST(ReloadModels, AddedAndRemovedLinksDoNotMoveOthers) {
+  EditedShow edited("sim.gravity = vec3(0, 0, 0) sim:load_urdf('urdf/crane.urdf', { motors = 'off' })",
+                    {{"urdf/crane.urdf", crane("1", "2")}});
   edited.show().send("/physics/part/angularvelocity", "crane", "jib", 0, 1, 0);
   edited.show().ticks(20);
   const std::vector<double> jib = motion_of(edited.part("crane", "jib"));
   const std::vector<double> hook = motion_of(edited.part("crane", "hook"));
   edited.folder.write("urdf/crane.urdf", crane("1", "2", R"(<link name="lamp"/><joint name="lamp" type="continuous">
 <parent link="hook"/><child link="lamp"/><origin xyz="0 0 0.3"/></joint>)"));
-  ASSERT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
+  ASSERT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
   ASSERT_NE(edited.body("crane").find_part("lamp"), nullptr);
   EXPECT_EQ(motion_of(edited.part("crane", "jib")), jib);
   EXPECT_EQ(motion_of(edited.part("crane", "hook")), hook);
@@ -157,21 +156,21 @@ TEST(ReloadModels, LinksComeAndGoTheOthersStand) {
   edited.show().ticks(3);
 }
 
-TEST(ReloadModels, ATouchedFileIsNoOtherFile) {
+TEST(ReloadModels, ATouchedFileChangesNothing) {
   const std::string scene = "sim.gravity = vec3(0, 0, -9.81) sim:load_urdf('urdf/crane.urdf', { motors = 'off' })";
-  Edited edited(scene, {{"urdf/crane.urdf", crane("1", "2")}});
-  Edited control(scene, {{"urdf/crane.urdf", crane("1", "2")}});
+  EditedShow edited(scene, {{"urdf/crane.urdf", crane("1", "2")}});
+  EditedShow control(scene, {{"urdf/crane.urdf", crane("1", "2")}});
   edited.show().ticks(20);
   control.show().ticks(20);
   edited.folder.write("urdf/crane.urdf", crane("1", "2"));
-  ASSERT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
+  ASSERT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
   edited.show().ticks(20);
   control.show().ticks(20);
   EXPECT_EQ(edited.show().engine.state_hash(), control.show().engine.state_hash());
 }
 
-TEST(ReloadModels, AnEditedPoseTurnsTheJointsItNames) {
-  Edited edited(
+TEST(ReloadModels, AnEditedPoseTurnsItsJoints) {
+  EditedShow edited(
       "sim.gravity = vec3(0, 0, 0) sim:load_urdf('urdf/crane.urdf', { motors = 'off', pose = { lift = 0.5 } })",
       {{"urdf/crane.urdf", crane("1", "2")}});
   edited.show().send("/physics/part/angularvelocity", "crane", "hook", 0, 1, 0);
@@ -179,15 +178,16 @@ TEST(ReloadModels, AnEditedPoseTurnsTheJointsItNames) {
   const double swing = edited.body("crane").find_joint("swing")->value();
   ASSERT_GT(std::abs(swing), 0.1);
   edited.edit("lift = 0.5", "lift = 0.8");
-  edited.world().settle();
+  edited.world().flush();
   EXPECT_NEAR(edited.body("crane").find_joint("lift")->value(), 0.8, 1e-5);
   EXPECT_NEAR(edited.body("crane").find_joint("swing")->value(), swing, 1e-5);
 }
 
-TEST(ReloadModels, FilesThatTheRunDependsOnAreTold) {
-  Edited edited("require 'dance' sim:load_urdf('urdf/crane.urdf')", {{"urdf/crane.urdf", crane("1", "2")},
-                                                                     {"scripts/lib/dance.lua", "require 'dance.steps'"},
-                                                                     {"scripts/lib/dance/steps.lua", ""}});
+TEST(ReloadModels, FilesOfTheRunAreListed) {
+  EditedShow edited("require 'dance' sim:load_urdf('urdf/crane.urdf')",
+                    {{"urdf/crane.urdf", crane("1", "2")},
+                     {"scripts/lib/dance.lua", "require 'dance.steps'"},
+                     {"scripts/lib/dance/steps.lua", ""}});
   const auto has = [&](const std::string& name) {
     for (const SourceFile& file : edited.show().engine.files()) {
       if (file.path == edited.folder.path(name)) return true;
@@ -197,19 +197,19 @@ TEST(ReloadModels, FilesThatTheRunDependsOnAreTold) {
   for (const char* name :
        {"scripts/scene.lua", "scripts/lib/dance.lua", "scripts/lib/dance/steps.lua", "urdf/crane.urdf"})
     EXPECT_TRUE(has(name)) << name;
-  EXPECT_TRUE(has("scripts/urdf/crane.urdf")) << "a file that comes to stand there is the nearer one";
+  EXPECT_TRUE(has("scripts/urdf/crane.urdf")) << "a new file in that folder takes precedence";
   EXPECT_FALSE(has("scripts/lib/other.lua"));
-  // a failing run is to be tried again when what it lacks appears
+  // a failed run must be tried again when the missing file appears
   edited.edit("require 'dance'", "require 'other'");
   EXPECT_TRUE(has("scripts/lib/other.lua"));
-  EXPECT_TRUE(has("scripts/lib/dance.lua")) << "the good run's stay";
+  EXPECT_TRUE(has("scripts/lib/dance.lua")) << "the files of the successful run stay";
   edited.folder.write("scripts/lib/other.lua", "");
-  EXPECT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
+  EXPECT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
   EXPECT_FALSE(has("scripts/lib/dance.lua"));
 }
 
-// somebody may save before the files are watched: what was read is compared with the disk then
-TEST(ReloadModels, WhatFilesHeldWhenTheyWereReadIsTold) {
+// a file may be saved before it is watched, so the text that was read is compared with the file then
+TEST(ReloadModels, ListedFilesHaveTheContentsThatWereRead) {
   const ShowFolder folder;
   const auto write = [&](const std::string& name, const std::string& text) {
     folder.write(name, text);
@@ -222,7 +222,7 @@ TEST(ReloadModels, WhatFilesHeldWhenTheyWereReadIsTold) {
       write("urdf/jib.stl",
             "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
             "endfacet\nendsolid s\n")};
-  const auto told = [&](const Engine& engine) {
+  const auto hashes_of_files = [&](const Engine& engine) {
     std::map<std::string, std::uint64_t> all;
     for (const SourceFile& file : engine.files()) {
       if (file.content) all[file.path] = *file.content;
@@ -236,17 +236,17 @@ sim:load_urdf('urdf/crane.urdf')
 )";
   read.insert(write("scripts/scene.lua", scene));
   Show show(folder.path("scripts/scene.lua"));
-  EXPECT_EQ(told(show.engine), read);
+  EXPECT_EQ(hashes_of_files(show.engine), read);
   show.send("/scene/count", 2.0);
   show.ticks(2);
-  EXPECT_EQ(told(show.engine), read) << "after a run without the disk";
-  // the first run fails, in a file that it takes
+  EXPECT_EQ(hashes_of_files(show.engine), read) << "after a run without the disk";
+  // the first run fails, in a file that it includes
   read[folder.path("scripts/scene.lua")] = write("scripts/scene.lua", scene + "require 'broken'").second;
   read.insert(write("scripts/lib/broken.lua", "oh no"));
   EngineLink link;
   Engine engine(link, fast_options(folder.path("scripts/scene.lua")));
   EXPECT_FALSE(engine.start().ok());
-  EXPECT_EQ(told(engine), read);
+  EXPECT_EQ(hashes_of_files(engine), read);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Things come, go and are made anew by a reload; what the edit does not tell differently is not touched.
+// Objects are added, removed and rebuilt by a reload; objects that the edit does not change are not touched.
 #include <cmath>
 
 #include "engine/edited.h"
@@ -23,20 +23,20 @@ stone:add_part("stone", ball, { position = vec3(0, 3, 4), linear_velocity = vec3
 --MORE
 )";
 
-TEST(ReloadThings, AnEditThatChangesNothingChangesNoBit) {
-  Edited edited(kThingsShow);
-  Edited control(kThingsShow);
+TEST(ReloadObjects, AnEditThatChangesNothingChangesNoBit) {
+  EditedShow edited(kThingsShow);
+  EditedShow control(kThingsShow);
   for (int i = 0; i < 5; i++) {
     edited.show().ticks(13);
     control.show().ticks(13);
-    EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), Reload::End::applied);
+    EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), SceneReloader::ApplyResult::applied);
     ASSERT_EQ(edited.show().engine.state_hash(), control.show().engine.state_hash()) << i;
   }
 }
 
-TEST(ReloadThings, WhatIsNotToldDifferentlyGoesOnToTheBit) {
-  Edited edited(kThingsShow);
-  Edited control(kThingsShow);
+TEST(ReloadObjects, UnchangedObjectsMoveOnUndisturbed) {
+  EditedShow edited(kThingsShow);
+  EditedShow control(kThingsShow);
   edited.show().ticks(20);
   control.show().ticks(20);
   const NodeId arm = edited.body("arm").id();
@@ -44,8 +44,8 @@ TEST(ReloadThings, WhatIsNotToldDifferentlyGoesOnToTheBit) {
   EXPECT_EQ(edited.edit("--MORE", R"(
 local more = sim:add_body("more")
 more:add_part("more", sim:add_box_shape("box", vec3(1, 1, 1)), { position = vec3(5, 5, 0.5) }))"),
-            Reload::End::applied);
-  EXPECT_EQ(edited.edit("position = vec3(0, 3, 4)", "position = vec3(0, 6, 4)"), Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
+  EXPECT_EQ(edited.edit("position = vec3(0, 3, 4)", "position = vec3(0, 6, 4)"), SceneReloader::ApplyResult::applied);
   edited.show().ticks(60);
   control.show().ticks(60);
   EXPECT_EQ(edited.body("arm").id(), arm);
@@ -55,10 +55,10 @@ more:add_part("more", sim:add_box_shape("box", vec3(1, 1, 1)), { position = vec3
   EXPECT_EQ(edited.body("arm").state_hash(1), control.body("arm").state_hash(1));
 }
 
-TEST(ReloadThings, NewOnesComeOthersGo) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AreAddedAndRemoved) {
+  EditedShow edited(kThingsShow);
   edited.show().ticks(5);
-  EXPECT_EQ(edited.edit(R"(sim:add_body("stone"))", R"(sim:add_body("pebble"))"), Reload::End::applied);
+  EXPECT_EQ(edited.edit(R"(sim:add_body("stone"))", R"(sim:add_body("pebble"))"), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(edited.world().find_body("stone"), nullptr);
   ASSERT_NE(edited.world().find_body("pebble"), nullptr);
   EXPECT_EQ(edited.body("pebble").pose().position, Vec3(0, 3, 4)) << "a renamed body is a new one";
@@ -69,8 +69,8 @@ TEST(ReloadThings, NewOnesComeOthersGo) {
   edited.show().ticks(5);
 }
 
-TEST(ReloadThings, BodiesStandInTheOrderOfTheScene) {
-  Edited edited(
+TEST(ReloadObjects, BodiesAreInTheOrderOfTheScene) {
+  EditedShow edited(
       "local s = sim:add_sphere_shape('s', 0.1)\n"
       "for _, n in ipairs { 'a', 'b', 'c' } do sim:add_body(n):add_part('p', s) end");
   edited.show().send("/make");
@@ -85,47 +85,47 @@ TEST(ReloadThings, BodiesStandInTheOrderOfTheScene) {
       "local s = sim:add_sphere_shape('s', 0.1)\n"
       "for _, n in ipairs { 'b', 'c' } do sim:add_body(n):add_part('p', s) end");
   EXPECT_EQ(edited.world().body_names(), (std::vector<std::string_view>{"b", "c", "mine"}));
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/list/bodies");
   edited.show().ticks(1);
-  EXPECT_EQ(edited.show().outbox(), (std::vector<std::string>{"/list/bodies b c mine"}));
+  EXPECT_EQ(edited.show().sent_texts(), (std::vector<std::string>{"/list/bodies b c mine"}));
 }
 
-TEST(ReloadThings, AnEditedStartMovesTheBodyWithPostureAndSpeed) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AnEditedStartMovesTheBodyInItsCurrentState) {
+  EditedShow edited(kThingsShow);
   edited.show().ticks(30);
   const Pose root = edited.body("arm").pose();
   const Vec3 tip = edited.part("arm", "tip").pose().position;
   const Vec3 speed = edited.part("arm", "tip").linear_velocity();
   const double angle = edited.body("arm").find_joint("elbow")->value();
   ASSERT_GT(glm::length(speed), 0.5);
-  // one word moves all of it: the places of parts and joints are written from it
+  // one constant moves all of it: the poses of parts and joints are computed from it
   std::string moved = edited.text;
   for (std::size_t at = 0; (at = moved.find(", 0, 1)", at)) != std::string::npos;) moved.replace(at, 7, ", 7, 1)");
-  EXPECT_EQ(edited.save(moved), Reload::End::applied);
+  EXPECT_EQ(edited.save(moved), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(edited.body("arm").pose().position, root.position + Vec3(0, 7, 0));
   EXPECT_NEAR(glm::length(edited.part("arm", "tip").pose().position - tip - Vec3(0, 7, 0)), 0, 1e-9);
   EXPECT_EQ(edited.part("arm", "tip").linear_velocity(), speed);
   edited.show().ticks(1);
   EXPECT_NEAR(edited.body("arm").find_joint("elbow")->value(), angle, 0.1);
-  // reset's goal is the new start
+  // body:reset() uses the new start
   edited.show().send("/physics/body/arm/reset");
   edited.show().ticks(1);
   EXPECT_NEAR(edited.part("arm", "tip").pose().position.y, 7, 1e-6);
 }
 
-TEST(ReloadThings, APlaceThatIsNotEditedIsNotTouched) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AnUnchangedStartPoseIsNotApplied) {
+  EditedShow edited(kThingsShow);
   edited.show().ticks(30);
   const std::vector<double> there = motion_of(edited.part("stone", "stone"));
   edited.edit("linear_velocity = vec3(1, 0, 0)", "linear_velocity = vec3(1, 0, 0), friction = 0.1");
   EXPECT_EQ(motion_of(edited.part("stone", "stone")), there);
   edited.edit("linear_velocity = vec3(1, 0, 0)", "linear_velocity = vec3(2, 0, 0)");
-  EXPECT_EQ(edited.part("stone", "stone").linear_velocity(), Vec3(2, 0, 0)) << "a start speed is said too";
+  EXPECT_EQ(edited.part("stone", "stone").linear_velocity(), Vec3(2, 0, 0)) << "a start velocity is explicitly set too";
   EXPECT_NE(edited.part("stone", "stone").pose().position, Vec3(0, 3, 4));
 }
 
-TEST(ReloadThings, ARingOfAnotherCountMovesWhatStays) {
+TEST(ReloadObjects, ARingWithAnotherCountMovesTheRemainingBodies) {
   const auto ring = [](int n) {
     return fmt::format(R"(
 sim.gravity = vec3(0, 0, 0)
@@ -137,7 +137,7 @@ for i = 1, n do
 end)",
                        n);
   };
-  Edited edited(ring(4));
+  EditedShow edited(ring(4));
   edited.show().send("/physics/part/linearvelocity", "b2", 0, 0, 1);
   edited.show().ticks(10);
   edited.save(ring(6));
@@ -153,18 +153,18 @@ end)",
   EXPECT_EQ(edited.world().bodies().size(), 3u);
 }
 
-TEST(ReloadThings, AnotherShapeMakesTheBodyAnewWhereItIs) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AnotherShapeRebuildsTheBodyInPlace) {
+  EditedShow edited(kThingsShow);
   edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
   edited.show().ticks(25);
   const Pose tip = edited.part("arm", "tip").pose();
   const Vec3 spin = edited.part("arm", "tip").angular_velocity();
   const std::vector<double> base = motion_of(edited.part("arm", "base"));
   const NodeId shape = edited.world().find_shape("ball")->id();
-  EXPECT_EQ(edited.edit(R"(("ball", 0.05))", R"(("ball", 0.07))"), Reload::End::applied);
+  EXPECT_EQ(edited.edit(R"(("ball", 0.05))", R"(("ball", 0.07))"), SceneReloader::ApplyResult::applied);
   EXPECT_EQ(edited.world().find_shape("ball")->id(), shape);
   EXPECT_EQ(edited.world().find_shape("ball")->model().radius, 0.07);
-  // a sphere's centre stays where it is, so all of the arm stands to the bit
+  // the center of a sphere does not move, so the whole arm stays to the bit
   EXPECT_EQ(motion_of(edited.part("arm", "base")), base);
   EXPECT_EQ(edited.part("arm", "tip").pose().position, tip.position);
   EXPECT_EQ(edited.part("arm", "tip").angular_velocity(), spin);
@@ -174,8 +174,8 @@ TEST(ReloadThings, AnotherShapeMakesTheBodyAnewWhereItIs) {
   edited.show().ticks(5);
 }
 
-TEST(ReloadThings, AnotherFrameKeepsAnglesAndSpeeds) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AnotherFrameKeepsAnglesAndSpeeds) {
+  EditedShow edited(kThingsShow);
   edited.show().ticks(25);
   const auto joint = [&](const char* name) -> Joint& { return *edited.body("arm").find_joint(name); };
   const double shoulder = joint("shoulder").value();
@@ -185,7 +185,7 @@ TEST(ReloadThings, AnotherFrameKeepsAnglesAndSpeeds) {
   // a longer upper arm: its end and the elbow are 0.2 m farther out
   edited.edit(R"("tip", ball, { position = vec3(0.8)", R"("tip", ball, { position = vec3(1.0)");
   edited.edit(R"({ position = vec3(0.4, 0, 1), axis = kAxis })", R"({ position = vec3(0.6, 0, 1), axis = kAxis })");
-  edited.world().settle();
+  edited.world().flush();
   EXPECT_NEAR(joint("shoulder").value(), shoulder, 1e-5);
   EXPECT_NEAR(joint("elbow").value(), elbow, 1e-5);
   EXPECT_NEAR(edited.show().read("/physics/body/arm/joint/elbow/speed"), rate, 1e-4);
@@ -194,8 +194,8 @@ TEST(ReloadThings, AnotherFrameKeepsAnglesAndSpeeds) {
   EXPECT_NEAR(reach, expected, 2e-3);
 }
 
-TEST(ReloadThings, AnotherTypeOfJointStartsAsItWasMade) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, AnotherJointTypeStartsAtItsStartPose) {
+  EditedShow edited(kThingsShow);
   edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
   edited.show().ticks(20);
   const Pose upper = edited.part("arm", "upper").pose();
@@ -203,15 +203,15 @@ TEST(ReloadThings, AnotherTypeOfJointStartsAsItWasMade) {
               R"("tip", { position = vec3(0.4, 0, 1), axis = kAxis, type = "prismatic" })");
   EXPECT_EQ(edited.body("arm").find_joint("elbow")->type(), JointType::prismatic);
   EXPECT_EQ(edited.part("arm", "upper").pose().position, upper.position);
-  // as it was made: 0.4 m along the upper arm's own x
+  // at its start pose: 0.4 m along the upper arm's own x
   const Vec3 tip = edited.part("arm", "tip").pose().position;
   EXPECT_NEAR(glm::length(tip - upper * Vec3(0.4, 0, 0)), 0, 1e-5);
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.9);
   edited.show().ticks(3);
 }
 
-TEST(ReloadThings, StaticOrNotIsMaking) {
-  Edited edited(kThingsShow);
+TEST(ReloadObjects, ChangingStaticRebuildsTheBody) {
+  EditedShow edited(kThingsShow);
   edited.show().ticks(20);
   const Vec3 tip = edited.part("arm", "tip").pose().position;
   edited.edit(R"("base", ball, { mass = 0,)", R"("base", ball, { mass = 3,)");
@@ -224,8 +224,8 @@ TEST(ReloadThings, StaticOrNotIsMaking) {
   EXPECT_TRUE(edited.part("arm", "base").is_static());
 }
 
-TEST(ReloadThings, LooseTreesStandForThemselves) {
-  Edited edited(R"(
+TEST(ReloadObjects, SeparateTreesAreMovedIndependently) {
+  EditedShow edited(R"(
 sim.gravity = vec3(0, 0, 0)
 local s = sim:add_sphere_shape("s", 0.1)
 local heap = sim:add_body("heap")
@@ -240,7 +240,7 @@ heap:part("p2").position = vec3(2, 0, 1)
   EXPECT_EQ(edited.part("heap", "p2").pose().position, Vec3(2, 0, 5));
   EXPECT_EQ(edited.part("heap", "p3").pose().position, third);
   EXPECT_EQ(edited.part("heap", "p2").linear_velocity(), Vec3(0, 2, 0));
-  // the whole heap is placed: all go along
+  // the whole heap is moved: all parts move along
   edited.show().ticks(1);
   const Vec3 before = edited.part("heap", "p3").pose().position - edited.part("heap", "p1").pose().position;
   edited.save(edited.text + "heap.position = vec3(10, 0, 1)");

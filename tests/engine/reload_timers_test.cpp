@@ -1,5 +1,4 @@
-// A save keeps what was scheduled: timers that callbacks have set go on with the functions and variables that they were
-// set with, and end by cancel or a reset.
+// Timers set by callbacks survive a save with their functions and variables, and end by cancel or a reset.
 #include "engine/edited.h"
 #include "engine/taken.h"
 #include "script/earlier_runs.h"
@@ -25,10 +24,10 @@ osc:on("/cue", function(seconds)
 end)
 )";
 
-Texts heard(Show& show, int ticks) {
-  show.outbox();
+Texts received(Show& show, int ticks) {
+  show.sent_texts();
   show.ticks(ticks);
-  return show.outbox();
+  return show.sent_texts();
 }
 
 std::string newest_log(std::uint64_t seen, std::string_view about) {
@@ -38,47 +37,48 @@ std::string newest_log(std::uint64_t seen, std::string_view about) {
   return "";
 }
 
-TEST(ReloadTimers, ABlackoutComesAfterSavesWithItsOwnFunctionAndVariables) {
-  Edited edited(kCue);
+TEST(ReloadTimers, ABlackoutRunsAfterSavesWithItsOwnFunctionAndVariables) {
+  EditedShow edited(kCue);
   edited.show().send("/cue", 3);
   edited.show().ticks(1);
   const std::uint64_t seen = log_newest();
   for (int i = 0; i < 5; i++) {
-    ASSERT_EQ(edited.save(std::string(kCue) + fmt::format("name = 'save {}'", i)), Reload::End::applied);
+    ASSERT_EQ(edited.save(std::string(kCue) + fmt::format("name = 'save {}'", i)), SceneReloader::ApplyResult::applied);
     edited.show().ticks(2);
   }
-  EXPECT_NE(newest_log(seen, "1 timer set by callbacks before the save goes on"), "");
-  ASSERT_EQ(edited.save("sim.timestep = 0.1"), Reload::End::applied) << "its ball is gone, and so is its line";
-  ASSERT_EQ(edited.save(kCue), Reload::End::applied);
+  EXPECT_NE(newest_log(seen, "1 timer set by callbacks before the save continues"), "");
+  ASSERT_EQ(edited.save("sim.timestep = 0.1"), SceneReloader::ApplyResult::applied)
+      << "its ball and its line are removed";
+  ASSERT_EQ(edited.save(kCue), SceneReloader::ApplyResult::applied);
   // the cue was given at tick 0, and 30 ticks are 3 s
-  EXPECT_EQ(heard(edited.show(), 19), Texts{});
-  edited.show().send("/cue", 100);  // one of the run that plays
-  const Texts out = heard(edited.show(), 2);
+  EXPECT_EQ(received(edited.show(), 19), Texts{});
+  edited.show().send("/cue", 100);  // a timer of the current run
+  const Texts out = received(edited.show(), 2);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_TRUE(out[0].starts_with("/script/error scripts/scene.lua")) << out[0];
   EXPECT_NE(out[0].find("body 'ball' no longer exists"), std::string::npos) << out[0];
 }
 
-TEST(ReloadTimers, HandlesFollowThingsThatAreMadeAgain) {
-  Edited edited(kCue);
+TEST(ReloadTimers, HandlesFollowRebuiltObjects) {
+  EditedShow edited(kCue);
   edited.show().send("/cue", 3);
   edited.show().ticks(1);
   const std::string box = "sim:add_box_shape(\"stone\", vec3(1, 1, 1))";
-  ASSERT_EQ(edited.edit("sim:add_sphere_shape(\"stone\", 0.1)", box), Reload::End::applied);
+  ASSERT_EQ(edited.edit("sim:add_sphere_shape(\"stone\", 0.1)", box), SceneReloader::ApplyResult::applied);
   edited.show().ticks(5);
-  // another joint: the body is built again
+  // another joint: the body is rebuilt
   ASSERT_EQ(edited.edit("local name", R"(ball:add_part("q", stone, { position = vec3(0, 0, 7) })
 ball:add_joint("j", "p", "q", { type = "prismatic" })
 local name)"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   edited.show().ticks(24);
   EXPECT_EQ(edited.part("ball", "p").mass(), 1);
-  EXPECT_EQ(heard(edited.show(), 1), Texts{"/blackout first 1 30 1"});
+  EXPECT_EQ(received(edited.show(), 1), Texts{"/blackout first 1 30 1"});
   EXPECT_EQ(edited.part("ball", "p").mass(), 2);
 }
 
 TEST(ReloadTimers, RunsShareState) {
-  Edited edited(kCue);
+  EditedShow edited(kCue);
   edited.show().send("/cue", 1);
   edited.show().ticks(1);
   ASSERT_EQ(edited.save(std::string(kCue) + R"(
@@ -87,18 +87,18 @@ local list = state.list
 state.f = print
 osc:on("/more", function() state.cues = state.cues + 10; osc:send("/list", list == state.list, state.f == print) end)
 )"),
-            Reload::End::applied);
+            SceneReloader::ApplyResult::applied);
   edited.show().send("/more");
   edited.show().ticks(1);
   edited.show().send("/cue", 2);
   edited.show().ticks(1);
-  EXPECT_EQ(heard(edited.show(), 8), Texts{"/blackout first 1 10 12"}) << "it sees what the later run wrote";
+  EXPECT_EQ(received(edited.show(), 8), Texts{"/blackout first 1 10 12"}) << "it sees the writes of the later run";
   edited.show().send("/more");
-  EXPECT_EQ(heard(edited.show(), 1), Texts{"/list 1 1"});
-  EXPECT_EQ(heard(edited.show(), 11), Texts{"/blackout first 12 22 22"});
+  EXPECT_EQ(received(edited.show(), 1), Texts{"/list 1 1"});
+  EXPECT_EQ(received(edited.show(), 11), Texts{"/blackout first 12 22 22"});
 }
 
-TEST(ReloadTimers, SequencesGoOn) {
+TEST(ReloadTimers, SequencesContinue) {
   const std::string scene = R"(
 sim.timestep = 0.1
 osc:on("/go", function()
@@ -111,13 +111,13 @@ osc:on("/go", function()
   sim:after(0.5, more)
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/go");
   Texts all;
   for (int i = 0; i < 30; i++) {
     edited.show().ticks(1);
-    for (const std::string& text : edited.show().outbox()) all.push_back(text);
-    ASSERT_EQ(edited.save(fmt::format("{}\n-- {}", scene, i)), Reload::End::applied);
+    for (const std::string& text : edited.show().sent_texts()) all.push_back(text);
+    ASSERT_EQ(edited.save(fmt::format("{}\n-- {}", scene, i)), SceneReloader::ApplyResult::applied);
   }
   EXPECT_EQ(all, (Texts{"/step 1 5", "/step 2 10", "/step 3 15", "/step 4 20"}));
 }
@@ -134,17 +134,17 @@ osc:on("/go", function()
   end)
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/go");
   edited.show().ticks(1);
   edited.save(scene + "-- saved");
-  EXPECT_EQ(heard(edited.show(), 20), (Texts{"/beat 2", "/beat 4", "/beat 6"}));
+  EXPECT_EQ(received(edited.show(), 20), (Texts{"/beat 2", "/beat 4", "/beat 6"}));
   edited.show().send("/go");
   edited.show().ticks(1);
   edited.save(scene + "-- again");
   edited.show().send("/transport/reset");
   edited.show().ticks(1);
-  EXPECT_EQ(heard(edited.show(), 20), Texts{});
+  EXPECT_EQ(received(edited.show(), 20), Texts{});
 }
 
 TEST(ReloadTimers, ATimerInStateIsCancelledByALaterRun) {
@@ -160,7 +160,7 @@ osc:on("/cancel_and_fail", function(n)
   error("no")
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   for (int n = 1; n <= 4; n++) {
     edited.show().send("/go", n);
     edited.show().ticks(1);
@@ -171,45 +171,45 @@ end)
   edited.show().send("/cancel_and_fail", 2);
   edited.show().send("/cancel", 4);
   edited.show().ticks(1);
-  EXPECT_EQ(heard(edited.show(), 20), (Texts{"/go 2 11", "/go 3 12"}));
+  EXPECT_EQ(received(edited.show(), 20), (Texts{"/go 2 11", "/go 3 12"}));
   // a run may end with the last timer that another one cancels
   edited.show().send("/go", 5);
   edited.show().ticks(1);
   edited.save(scene + "-- once more");
   edited.show().send("/cancel", 5);
-  EXPECT_EQ(heard(edited.show(), 20), Texts{});
+  EXPECT_EQ(received(edited.show(), 20), Texts{});
   edited.show().send("/cancel", 5);
-  EXPECT_EQ(heard(edited.show(), 1), Texts{}) << "it has ended already";
+  EXPECT_EQ(received(edited.show(), 1), Texts{}) << "it has ended already";
 }
 
 TEST(ReloadTimers, TopLevelAfterActsOnceAtItsTime) {
   const std::string scene = "sim.timestep = 0.1\nsim:after(0.5, function() osc:send('/after', 1, sim.tick) end)\n";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().ticks(3);
-  // edited before it acts: at its time, with the new function
+  // edited before it is due: called at its time, with the new function
   edited.edit("'/after', 1", "'/after', 2");
-  EXPECT_EQ(heard(edited.show(), 3), Texts{"/after 2 5"});
+  EXPECT_EQ(received(edited.show(), 3), Texts{"/after 2 5"});
   edited.edit("'/after', 2", "'/after', 3");
-  EXPECT_EQ(heard(edited.show(), 20), Texts{}) << "it has acted";
+  EXPECT_EQ(received(edited.show(), 20), Texts{}) << "it was called";
   // a new one, and one with another delay, count from the run, here from tick 26
   edited.save(scene + "sim:after(0.5, function() osc:send('/more', sim.tick) end)");
-  EXPECT_EQ(heard(edited.show(), 20), Texts{"/more 31"});
+  EXPECT_EQ(received(edited.show(), 20), Texts{"/more 31"});
   edited.edit("sim:after(0.5, function() osc:send('/after'", "sim:after(0.4, function() osc:send('/after'");
-  EXPECT_EQ(heard(edited.show(), 20), Texts{"/after 1 50"});
+  EXPECT_EQ(received(edited.show(), 20), Texts{"/after 1 50"});
   edited.show().send("/transport/reset");
   edited.show().ticks(1);
-  EXPECT_EQ(heard(edited.show(), 20), (Texts{"/after 1 4", "/more 5"})) << "a reset begins again";
+  EXPECT_EQ(received(edited.show(), 20), (Texts{"/after 1 4", "/more 5"})) << "a reset begins again";
 }
 
 TEST(ReloadTimers, AFailedTopLevelAfterIsCorrectedByASave) {
   const std::string scene = "sim.timestep = 0.1\nsim:after(0.5, function() osc:nothing() end)\n";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().ticks(10);
   edited.edit("osc:nothing()", "osc:send('/mended', sim.tick)");
-  EXPECT_EQ(heard(edited.show(), 20), Texts{"/mended 15"});
+  EXPECT_EQ(received(edited.show(), 20), Texts{"/mended 15"});
 }
 
-TEST(ReloadTimers, AFailingOneIsReportedAndItsWritesAreUndone) {
+TEST(ReloadTimers, AFailedOneIsReportedAndItsWritesAreRolledBack) {
   const std::string scene = R"(
 sim.timestep = 0.1
 osc:on("/go", function()
@@ -217,18 +217,18 @@ osc:on("/go", function()
   sim:every(0.3, function() osc:send("/beat", sim.tick) end)
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/go");
   edited.show().ticks(1);
   edited.save(scene + "-- saved");
-  const Texts out = heard(edited.show(), 7);
+  const Texts out = received(edited.show(), 7);
   ASSERT_EQ(out.size(), 3u);
   EXPECT_TRUE(out[0].starts_with("/script/error scripts/scene.lua 4")) << out[0];
   EXPECT_EQ((Texts{out[1], out[2]}), (Texts{"/beat 3", "/beat 6"}));
   EXPECT_NE(edited.show().read("/physics/sim/gravity", 2), -1);
 }
 
-TEST(ReloadTimers, ParametersAreThoseOfTheRunThatPlays) {
+TEST(ReloadTimers, UseTheParametersOfTheCurrentRun) {
   const std::string scene = R"(
 sim.timestep = 0.1
 params { { "wind", 1, max = 9 }, { "rain", 2, max = 9 }, { "mode", "a", choices = { "a", "b" } } }
@@ -236,15 +236,15 @@ osc:on("/go", function()
   sim:every(0.2, function() osc:send("/is", params.wind, params.mode); params.wind = params.wind + 1 end)
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/go");
   edited.show().ticks(1);
   edited.save(scene + "-- the same parameters");
-  EXPECT_EQ(heard(edited.show(), 2), Texts{"/is 1 a"});
+  EXPECT_EQ(received(edited.show(), 2), Texts{"/is 1 a"});
   edited.edit("{ \"wind\", 1, max = 9 }, { \"rain\", 2, max = 9 }", "{ \"snow\", 3 }, { \"wind\", 1, max = 4 }");
-  EXPECT_EQ(heard(edited.show(), 4), (Texts{"/is 2 a", "/is 3 a"}));
+  EXPECT_EQ(received(edited.show(), 4), (Texts{"/is 2 a", "/is 3 a"}));
   edited.edit("{ \"wind\", 1, max = 4 }, ", "");
-  const Texts out = heard(edited.show(), 2);
+  const Texts out = received(edited.show(), 2);
   ASSERT_EQ(out.size(), 1u);
   EXPECT_NE(out[0].find("params has no 'wind'"), std::string::npos) << out[0];
 }
@@ -263,20 +263,20 @@ osc:on("/go", function()
   sim:every(0.2, function() osc:send("/depth", sway.depth, sway.alive); sway.depth = sway.depth / 2 end)
 end)
 )";
-  Edited edited("", {{"behaviors_lua/sway.lua", sway}});
+  EditedShow edited("", {{"behaviors_lua/sway.lua", sway}});
   namespace fs = std::filesystem;
   fs::create_directories(edited.folder.path("urdf"));
   fs::copy(fs::path(LIMBER_SOURCE_DIR) / "urdf/arm6.urdf", edited.folder.path("urdf/arm6.urdf"));
   fs::copy(fs::path(LIMBER_SOURCE_DIR) / "urdf/meshes", edited.folder.path("urdf/meshes"), fs::copy_options::recursive);
-  ASSERT_EQ(edited.save(scene), Reload::End::applied);
+  ASSERT_EQ(edited.save(scene), SceneReloader::ApplyResult::applied);
   edited.show().send("/go");
   edited.show().ticks(1);
   edited.folder.write("behaviors_lua/sway.lua", R"(return behavior {
   params = { { "speed", 7, max = 9 }, { "far", 5, max = 9 }, { "depth", 0.4, max = 1 } },
   step = function(self, dt) self.motors[1].target = self.depth end,
 })");
-  ASSERT_EQ(edited.show().engine.reload_now(), Reload::End::applied);
-  EXPECT_EQ(heard(edited.show(), 4), (Texts{"/depth 0.4 1", "/depth 0.2 1"}));
+  ASSERT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
+  EXPECT_EQ(received(edited.show(), 4), (Texts{"/depth 0.4 1", "/depth 0.2 1"}));
   EXPECT_EQ(edited.show().read("/physics/body/arm/behavior/sway/speed"), 7);
   EXPECT_EQ(edited.show().read("/physics/body/arm/behavior/sway/depth"), 0.1);
 }
@@ -289,7 +289,7 @@ osc:on("/go", function()
   sim:every(0.01, function() osc:on("/late", function() osc:send("/late") end) osc:send("/beat") end)
 end)
 )";
-  Edited edited(scene);
+  EditedShow edited(scene);
   edited.show().send("/go");
   edited.show().ticks(1);
   const std::uint64_t seen = log_newest();
@@ -297,48 +297,48 @@ end)
   EXPECT_NE(newest_log(seen, "handlers registered in callbacks ended with the save"), "");
   edited.show().ticks(2);
   EXPECT_NE(newest_log(seen, "osc:on is ignored"), "");
-  edited.show().outbox();
+  edited.show().sent_texts();
   edited.show().send("/late");
   edited.show().send("/more");
-  const Texts out = heard(edited.show(), 1);
+  const Texts out = received(edited.show(), 1);
   EXPECT_EQ(std::count(out.begin(), out.end(), "/beat"), 1);
   EXPECT_EQ(std::count(out.begin(), out.end(), "/late") + std::count(out.begin(), out.end(), "/more"), 0);
 }
 
-TEST(ReloadTimers, AsManyRunsAreKeptAsThereIsRoomFor) {
+TEST(ReloadTimers, TheNumberOfEarlierRunsIsLimited) {
   const std::string scene = "osc:on('/go', function(n) sim:every(0.01, function() osc:send('/beat', n) end) end)";
-  Edited edited(scene);
-  constexpr int kMore = 3;
-  constexpr auto kKept = static_cast<int>(EarlierRuns::kMax);
+  EditedShow edited(scene);
+  constexpr int kExtraRuns = 3;
+  constexpr auto kMaxEarlierRuns = static_cast<int>(EarlierRuns::kMaxRuns);
   const std::uint64_t seen = log_newest();
-  for (int i = 0; i < kKept + kMore; i++) {
+  for (int i = 0; i < kMaxEarlierRuns + kExtraRuns; i++) {
     edited.show().send("/go", i);
     edited.show().ticks(1);
-    ASSERT_EQ(edited.save(fmt::format("{} -- {}", scene, i)), Reload::End::applied);
+    ASSERT_EQ(edited.save(fmt::format("{} -- {}", scene, i)), SceneReloader::ApplyResult::applied);
   }
   EXPECT_NE(newest_log(seen, "1 timer scheduled by the oldest run ended"), "");
   Texts expected;
-  for (int i = kMore; i < kKept + kMore; i++) expected.push_back(fmt::format("/beat {}", i));
-  EXPECT_EQ(heard(edited.show(), 1), expected) << "oldest first";
+  for (int i = kExtraRuns; i < kMaxEarlierRuns + kExtraRuns; i++) expected.push_back(fmt::format("/beat {}", i));
+  EXPECT_EQ(received(edited.show(), 1), expected) << "oldest first";
 }
 
-TEST(ReloadTimers, TimeGoesBackToBeforeTheyEnded) {
-  Edited edited(kCue);
+TEST(ReloadTimers, ARewindRestoresEndedOnes) {
+  EditedShow edited(kCue);
   edited.show().send("/cue", 2);
   edited.show().ticks(1);
   edited.save(std::string(kCue) + "-- saved");
   edited.show().ticks(15);
   const std::uint64_t hash = edited.show().engine.state_hash();
-  EXPECT_EQ(heard(edited.show(), 10), Texts{"/blackout first 1 20 1"});
+  EXPECT_EQ(received(edited.show(), 10), Texts{"/blackout first 1 20 1"});
   const std::uint64_t end = edited.show().engine.state_hash();
   edited.show().send("/transport/rewind_ticks", 10);
   edited.show().engine.idle();
   EXPECT_EQ(edited.show().engine.state_hash(), hash);
-  EXPECT_EQ(heard(edited.show(), 10), Texts{"/blackout first 1 20 1"});
+  EXPECT_EQ(received(edited.show(), 10), Texts{"/blackout first 1 20 1"});
   EXPECT_EQ(edited.show().engine.state_hash(), end);
 }
 
-TEST(ReloadTimers, ATakeHasThem) {
+TEST(ReloadTimers, ATakeReplaysThem) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kCue);
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
@@ -357,25 +357,25 @@ TEST(ReloadTimers, ATakeHasThem) {
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(options.record);
+  const ReplayOutcome again = replay_take(options.record);
   EXPECT_EQ(again.error, "");
   EXPECT_EQ(again.hash, hash);
-  EXPECT_FALSE(again.verdict.parted.has_value());
-  // one of a version that ended timers when a file was saved
-  std::string bytes = take_bytes(options.record);
+  EXPECT_FALSE(again.result.diverged_at.has_value());
+  // a take of a version that ended timers when a file was saved
+  std::string bytes = file_bytes(options.record);
   ASSERT_EQ(bytes.substr(0, 13), "limber take 4");
   bytes[12] = '3';
   folder.write("old.take", bytes);
-  EXPECT_EQ(replay_take(folder.path("old.take")).verdict.parted, 3u)
+  EXPECT_EQ(replay_take(folder.path("old.take")).result.diverged_at, 3u)
       << "there is no timer in the state from the save on";
 }
 
-TEST(ReloadTimers, ParametersThatAConsoleSetSurviveAReset) {
+TEST(ReloadTimers, ParametersSetByAConsoleSurviveAReset) {
   const std::string scene =
       "params { { 'wind', 1, max = 9 }, { 'on', false }, { 'where', vec3(1, 2, 3) },\n"
       "  { 'mode', 'a', choices = { 'a', 'b' } }, { 'rain', 5, max = 9 } }\n"
       "osc:on('/rain', function(x) params.rain = x end)";
-  Edited edited(scene);
+  EditedShow edited(scene);
   evaluate(edited.show(), "params.wind = 3 params.on = true params.where = vec3(4, 5, 6) params.mode = 'b'");
   evaluate(edited.show(), "params.rain = 7 error('no')");
   edited.show().ticks(1);
@@ -388,7 +388,7 @@ TEST(ReloadTimers, ParametersThatAConsoleSetSurviveAReset) {
   EXPECT_EQ(edited.show().read("/scene/on"), 1);
   EXPECT_EQ(edited.show().read("/scene/where", 2), 6);
   EXPECT_EQ(edited.show().read("/scene/mode"), 1);
-  EXPECT_EQ(edited.show().read("/scene/rain"), 5) << "a callback's value is not the performer's";
+  EXPECT_EQ(edited.show().read("/scene/rain"), 5) << "a callback's value is not an override";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The one rule for values: what a run says otherwise than the last good one is applied, what it says as before stays as
-// the hand left it, what it no longer says returns to its default.
+// The rule for values in a reload: changed values are applied, values set as before keep their overrides, values that
+// are no longer set return to their default.
 #include "engine/edited.h"
 
 namespace limber::engine_test {
@@ -22,40 +22,40 @@ std::string arm_with(const std::string& line) {
 }
 
 struct ValueCase {
-  const char* what;
+  const char* name;
   const char* before;
   const char* after;
   double value;
 };
 
-TEST(ReloadValues, OneRuleWhoeverActedLast) {
-  // friction is 0.5 by default; the hand sets 0.9 between the two runs
+TEST(ReloadValues, TheRuleHoldsForAnyOrderOfWrites) {
+  // friction is 0.5 by default; a controller sets 0.9 between the two runs
   constexpr ValueCase kCases[] = {
-      {"said otherwise", "tip.friction = 0.2", "tip.friction = 0.3", 0.3},
-      {"said as before", "tip.friction = 0.2", "tip.friction = 0.2", 0.9},
-      {"said as before, written otherwise", "tip.friction = 0.2",
-       "for _, p in ipairs { tip } do p.friction = 1 / 5 end", 0.9},
-      {"only the last word counts", "tip.friction = 0.2", "tip.friction = 0.7 tip.friction = 0.2", 0.9},
-      {"never said", "", "-- a comment", 0.9},
-      {"no longer said", "tip.friction = 0.2", "", 0.5},
-      {"no longer said, was the default", "tip.friction = 0.5", "", 0.5},
-      {"said for the first time", "", "tip.friction = 0.3", 0.3},
-      {"said for the first time, equals the default", "", "tip.friction = 0.5", 0.5},
-      {"something else is said", "tip.friction = 0.2", "tip.friction = 0.2 tip.restitution = 0.1", 0.9},
+      {"set to another value", "tip.friction = 0.2", "tip.friction = 0.3", 0.3},
+      {"set as before", "tip.friction = 0.2", "tip.friction = 0.2", 0.9},
+      {"set as before, by other code", "tip.friction = 0.2", "for _, p in ipairs { tip } do p.friction = 1 / 5 end",
+       0.9},
+      {"only the last assignment counts", "tip.friction = 0.2", "tip.friction = 0.7 tip.friction = 0.2", 0.9},
+      {"never set", "", "-- a comment", 0.9},
+      {"no longer set", "tip.friction = 0.2", "", 0.5},
+      {"no longer set, was the default", "tip.friction = 0.5", "", 0.5},
+      {"set for the first time", "", "tip.friction = 0.3", 0.3},
+      {"set for the first time, to the default", "", "tip.friction = 0.5", 0.5},
+      {"another property is set", "tip.friction = 0.2", "tip.friction = 0.2 tip.restitution = 0.1", 0.9},
   };
   for (const ValueCase& c : kCases) {
-    Edited edited(arm_with(c.before));
+    EditedShow edited(arm_with(c.before));
     edited.show().send("/physics/part/friction", "arm", "tip", 0.9);
     edited.show().ticks(2);
-    EXPECT_EQ(edited.save(arm_with(c.after)), Reload::End::applied) << c.what;
-    EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), c.value) << c.what;
+    EXPECT_EQ(edited.save(arm_with(c.after)), SceneReloader::ApplyResult::applied) << c.name;
+    EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), c.value) << c.name;
     edited.show().ticks(1);
-    EXPECT_FLOAT_EQ(edited.part("arm", "tip").rigid().getFriction(), static_cast<float>(c.value)) << c.what;
+    EXPECT_FLOAT_EQ(edited.part("arm", "tip").rigid().getFriction(), static_cast<float>(c.value)) << c.name;
   }
 }
 
-TEST(ReloadValues, WhatAMakingSaysIsSaid) {
-  Edited edited(arm_with(""));
+TEST(ReloadValues, ArgumentsOfConstructorsAreExplicitlySet) {
+  EditedShow edited(arm_with(""));
   edited.show().send("/physics/part/mass", "arm", "tip", 2);
   edited.show().ticks(1);
   edited.edit("--WORLD", "-- a word");
@@ -68,8 +68,8 @@ TEST(ReloadValues, WhatAMakingSaysIsSaid) {
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/mass"), 1);
 }
 
-TEST(ReloadValues, ViewsAreTheRowsBehindThem) {
-  Edited edited(arm_with("motor.target = 0.4 motor.speed = 2"));
+TEST(ReloadValues, ComputedPropertiesSetTheirStoredOnes) {
+  EditedShow edited(arm_with("motor.target = 0.4 motor.speed = 2"));
   edited.show().send("/physics/motor/target", "arm", "elbow", -0.2);
   edited.show().ticks(1);
   edited.save(arm_with("motor.speed = 3 motor.target = 0.4"));
@@ -84,8 +84,8 @@ TEST(ReloadValues, ViewsAreTheRowsBehindThem) {
   EXPECT_EQ(edited.show().read("/physics/body/arm/motor/elbow/angular_servo_active", 2), 1);
 }
 
-TEST(ReloadValues, TheWorldsRowsFollowTheRuleToo) {
-  Edited edited(arm_with(""));
+TEST(ReloadValues, WorldPropertiesFollowTheRuleToo) {
+  EditedShow edited(arm_with(""));
   const auto gravity = [&] { return edited.show().read("/physics/sim/gravity", 2); };
   edited.edit("--WORLD", "sim.gravity = vec3(0, 0, -5) sim.substeps = 8");
   EXPECT_EQ(gravity(), -5);
@@ -99,8 +99,8 @@ TEST(ReloadValues, TheWorldsRowsFollowTheRuleToo) {
   EXPECT_EQ(gravity(), -9.81);
 }
 
-TEST(ReloadValues, CallbacksAreHands) {
-  Edited edited(arm_with("sim:on_step(function() tip.friction = 0.9 end)"));
+TEST(ReloadValues, ValuesSetByCallbacksStay) {
+  EditedShow edited(arm_with("sim:on_step(function() tip.friction = 0.9 end)"));
   edited.show().ticks(1);
   edited.save(arm_with(""));
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.9);
@@ -108,23 +108,23 @@ TEST(ReloadValues, CallbacksAreHands) {
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.3);
 }
 
-TEST(ReloadValues, TheTopLevelReadsWhatTheRunHasSaid) {
-  Edited edited(arm_with("tip.friction = 0.2 arm.root.friction = 2 * tip.friction"));
+TEST(ReloadValues, TheTopLevelReadsTheValuesOfItsRun) {
+  EditedShow edited(arm_with("tip.friction = 0.2 arm.root.friction = 2 * tip.friction"));
   edited.show().send("/physics/part/friction", "arm", 0.9);
   edited.show().ticks(1);
   edited.save(arm_with("tip.friction = 0.3 arm.root.friction = 2 * tip.friction"));
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/base/friction"), 0.6);
 }
 
-TEST(ReloadValues, ACopyHoldsWhatWasSaidUpToItsLine) {
+TEST(ReloadValues, ACopyHasTheValuesSetBeforeIt) {
   const std::string both = "tip.friction = 0.2 arm:copy('twin', { position = vec3(1, 0, 1) }) ";
-  Edited edited(arm_with(both + "tip.friction = 0.3"));
+  EditedShow edited(arm_with(both + "tip.friction = 0.3"));
   const auto twin = [&] { return edited.show().read("/physics/body/twin/part/tip/friction"); };
   EXPECT_EQ(twin(), 0.2);
   edited.show().send("/physics/part/friction", "twin", "tip", 0.9);
   edited.show().ticks(1);
   edited.save(arm_with(both + "tip.friction = 0.4"));
-  EXPECT_EQ(twin(), 0.9) << "what came after the copy is none of its business";
+  EXPECT_EQ(twin(), 0.9) << "changes after the copy do not affect it";
   edited.save(arm_with("tip.friction = 0.25 arm:copy('twin', { position = vec3(1, 0, 1) })"));
   EXPECT_EQ(twin(), 0.25);
   edited.show().send("/physics/part/friction", "twin", "tip", 0.9);
@@ -133,8 +133,8 @@ TEST(ReloadValues, ACopyHoldsWhatWasSaidUpToItsLine) {
   EXPECT_EQ(twin(), 0.5);
 }
 
-TEST(ReloadValues, AResetUsesTheFileAsItIsAndTheHandsOfNow) {
-  Edited edited(arm_with("tip.friction = 0.2 tip.restitution = 0.1"));
+TEST(ReloadValues, AResetUsesTheCurrentFileAndOverrides) {
+  EditedShow edited(arm_with("tip.friction = 0.2 tip.restitution = 0.1"));
   edited.show().send("/physics/part/friction", 0.9);  // of all parts
   edited.show().send("/physics/part/restitution", "arm", "tip", 0.8);
   edited.show().ticks(1);
@@ -148,9 +148,9 @@ TEST(ReloadValues, AResetUsesTheFileAsItIsAndTheHandsOfNow) {
   edited.show().ticks(1);
   edited.show().send("/transport/reset");
   edited.show().ticks(2);
-  EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.7) << "now the hand did";
+  EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.7) << "now the controller did";
   edited.save(arm_with("tip.friction = 0.3 tip.restitution = 0.2"));
-  EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.7) << "a reset is no edit";
+  EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/friction"), 0.7) << "a reset is not an edit";
   EXPECT_EQ(edited.show().read("/physics/body/arm/part/tip/restitution"), 0.2);
 }
 

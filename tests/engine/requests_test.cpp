@@ -1,4 +1,5 @@
-// Requests: done by the simulation's thread, waited for by the one that asks, let go when the simulation ends.
+// SimThreadExecutor: work is executed by the simulation thread while the caller waits; callers are released when the
+// simulation ends.
 #include "engine/requests.h"
 
 #include <gtest/gtest.h>
@@ -9,49 +10,49 @@
 namespace limber {
 namespace {
 
-TEST(Requests, WorkIsDoneByWhoServes) {
-  Requests requests;
-  requests.open();
-  std::atomic<bool> over{false};
+TEST(SimThreadExecutor, RunsWorkOnTheServingThread) {
+  SimThreadExecutor executor;
+  executor.open();
+  std::atomic<bool> done{false};
   std::thread::id served_by;
   std::thread sim([&] {
-    while (!over.load()) requests.serve();
-    requests.close();
+    while (!done.load()) executor.serve();
+    executor.close();
   });
-  EXPECT_TRUE(requests.ask([&] { served_by = std::this_thread::get_id(); }, [] {}));
+  EXPECT_TRUE(executor.run_and_wait([&] { served_by = std::this_thread::get_id(); }, [] {}));
   EXPECT_EQ(served_by, sim.get_id());
-  EXPECT_FALSE(requests.waiting());
-  over = true;
+  EXPECT_FALSE(executor.waiting());
+  done = true;
   sim.join();
-  EXPECT_FALSE(requests.ask([] { FAIL() << "nobody is there"; }, [] {}));
+  EXPECT_FALSE(executor.run_and_wait([] { FAIL() << "no thread is serving"; }, [] {}));
 }
 
-TEST(Requests, ManyAskersOneAfterTheOther) {
-  Requests requests;
-  requests.open();
-  std::atomic<int> left{4};
+TEST(SimThreadExecutor, ServesManyCallersInTurn) {
+  SimThreadExecutor executor;
+  executor.open();
+  std::atomic<int> callers_left{4};
   int count = 0;  // touched by the server alone
-  std::vector<std::thread> askers;
+  std::vector<std::thread> callers;
   for (int i = 0; i < 4; i++) {
-    askers.emplace_back([&] {
-      for (int k = 0; k < 250; k++) EXPECT_TRUE(requests.ask([&] { count++; }, [] {}));
-      left--;
+    callers.emplace_back([&] {
+      for (int k = 0; k < 250; k++) EXPECT_TRUE(executor.run_and_wait([&] { count++; }, [] {}));
+      callers_left--;
     });
   }
-  while (left.load() > 0) requests.serve();
-  for (std::thread& asker : askers) asker.join();
+  while (callers_left.load() > 0) executor.serve();
+  for (std::thread& caller : callers) caller.join();
   EXPECT_EQ(count, 1000);
 }
 
-TEST(Requests, WhoWaitsIsLetGoAtTheEnd) {
-  Requests requests;
-  requests.open();
-  std::atomic<bool> asked{false};
+TEST(SimThreadExecutor, ReleasesWaitingCallersAtTheEnd) {
+  SimThreadExecutor executor;
+  executor.open();
+  std::atomic<bool> called{false};
   bool done = true;
-  std::thread asker([&] { done = requests.ask([] { FAIL() << "never served"; }, [&] { asked = true; }); });
-  while (!asked.load()) std::this_thread::yield();
-  requests.close();
-  asker.join();
+  std::thread caller([&] { done = executor.run_and_wait([] { FAIL() << "never served"; }, [&] { called = true; }); });
+  while (!called.load()) std::this_thread::yield();
+  executor.close();
+  caller.join();
   EXPECT_FALSE(done);
 }
 

@@ -1,5 +1,5 @@
-// Shows that are rewound: scenes in which everything goes on that a key state must hold, hands whose doings depend on
-// the tick alone, and a run that is compared with one that never went back.
+// Fixtures for rewind tests: a scene with all kinds of state that a checkpoint must contain, inputs that depend only on
+// the tick, and comparison with a run without rewinds.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace limber::engine_test {
 
-// Lua's state, timers, coroutines, contacts, generators; what scripts made shows in what they push
-inline constexpr const char* kRewoundScene = R"(
+// Uses Lua state, timers, coroutines, contacts and generators, and makes them visible by impulses on bodies.
+inline constexpr const char* kRewindScene = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
 local box, ball = sim:add_box_shape("box", vec3(0.2, 0.25, 0.15)), sim:add_sphere_shape("ball", 0.12)
 for i = 1, 9 do
@@ -55,7 +55,7 @@ osc:on("/mistake", function(x) touches = touches + x; sim.gravity = vec3(0, 0, x
 osc:on("/loop", function(n) sim.gravity = vec3(0, 0, n); while n == n do end end)
 osc:on("/recall", function(name) presets:recall(name, 0.4) end)
 )";
-inline constexpr const char* kRewoundSway = R"(return behavior {
+inline constexpr const char* kRewindSway = R"(return behavior {
   params = { { "depth", 0.4, min = 0, max = 1 } },
   start = function(self) self.state.phase = 0; self.past = {} end,
   step = function(self, dt)
@@ -66,7 +66,7 @@ inline constexpr const char* kRewoundSway = R"(return behavior {
   end,
 }
 )";
-inline constexpr const char* kRewoundDrift = R"(return behavior {
+inline constexpr const char* kRewindDrift = R"(return behavior {
   group = true,
   start = function(self) self.state.steps = 0 end,
   step = function(self, dt)
@@ -76,68 +76,69 @@ inline constexpr const char* kRewoundDrift = R"(return behavior {
 }
 )";
 
-inline void lay_out_rewound(const ShowFolder& folder, const std::string& scene = kRewoundScene) {
+inline void write_rewind_scene(const ShowFolder& folder, const std::string& scene = kRewindScene) {
   namespace fs = std::filesystem;
   const fs::path from = fs::path(LIMBER_SOURCE_DIR) / "urdf";
   fs::create_directories(folder.path("urdf"));
   fs::copy(from / "arm6.urdf", folder.path("urdf/arm6.urdf"));
   fs::copy(from / "meshes", folder.path("urdf/meshes"), fs::copy_options::recursive);
   folder.write("scripts/scene.lua", scene);
-  folder.write("behaviors_lua/sway.lua", kRewoundSway);
-  folder.write("behaviors_lua/drift.lua", kRewoundDrift);
+  folder.write("behaviors_lua/sway.lua", kRewindSway);
+  folder.write("behaviors_lua/drift.lua", kRewindDrift);
 }
 
-inline EngineOptions rewound_options(const ShowFolder& folder) {
+inline EngineOptions rewind_options(const ShowFolder& folder) {
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
   options.scene_options.seed = 11;
   return options;
 }
 
-/// What hands do before the tick that follows `tick`.
-using TickHands = void (*)(Show& show, std::uint64_t tick);
-inline void no_hands(Show&, std::uint64_t) {}
+/// Sends the inputs before the tick that follows `tick`.
+using TickInputs = void (*)(Show& show, std::uint64_t tick);
+inline void no_inputs(Show&, std::uint64_t) {}
 
-/// Messages of many kinds, by the tick alone: floods, refusals, undo, presets and morphs, texts, mistakes.
-inline void many_hands(Show& show, std::uint64_t tick) {
+/// Sends messages of many kinds, depending only on the tick: floods, invalid ones, undo, presets, Lua code, errors.
+inline void random_inputs(Show& show, std::uint64_t tick) {
   Random random(tick, "hands");
-  const auto some = [&](int n) { return static_cast<int>(random.uniform() * n); };
-  for (int k = some(8); k > 0; k--) show.send("/push", random.uniform(-0.02, 0.02));
+  const auto random_int = [&](int n) { return static_cast<int>(random.uniform() * n); };
+  for (int k = random_int(8); k > 0; k--) show.send("/push", random.uniform(-0.02, 0.02));
   show.send("/physics/motor/angularspringstiffness", "arm1", random.uniform(0, 20));
   if (tick == 10) show.send("/preset/store", "p1");
   if (tick == 40) show.send("/preset/store", "p2");
-  if (tick > 60 && some(25) == 0) show.send("/preset/recall", some(2) == 0 ? "p1" : "p2", 0.7);
-  if (tick > 60 && some(60) == 0) show.send("/recall", "p1");
-  if (some(9) == 0) show.send("/physics/sim/gravity", random.uniform(-2, 2), 0, random.uniform(-12, -6));
-  if (some(15) == 0) show.send("/physics/body/arm2/enabled", some(2));
-  if (some(12) == 0) show.send("/edit/undo");
-  if (some(18) == 0) show.send("/edit/redo");
-  if (some(20) == 0) show.send("/mistake", random.uniform(-3, 3));
-  if (some(20) == 0) show.send("/physics/body/nobody/part/p/mass", 3);
-  if (some(30) == 0) show.send("/physics/part/hold", "stone5", "p", 0, 0, 0, random.uniform(-1, 1), 0, 1);
-  if (some(30) == 0) show.send("/physics/behavior/parameter", "gust", "active", some(2));
-  if (some(40) == 0) show.send("/physics/body/stone6/reset");
-  if (some(25) == 0) {
-    auto wish = std::make_shared<Evaluate>();
-    wish->text = "sim:body('stone7').parts[1]:apply_impulse(rng:direction() * 0.1)";
-    wish->answer = [](const Evaluation&) {};
-    show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
+  if (tick > 60 && random_int(25) == 0) show.send("/preset/recall", random_int(2) == 0 ? "p1" : "p2", 0.7);
+  if (tick > 60 && random_int(60) == 0) show.send("/recall", "p1");
+  if (random_int(9) == 0) show.send("/physics/sim/gravity", random.uniform(-2, 2), 0, random.uniform(-12, -6));
+  if (random_int(15) == 0) show.send("/physics/body/arm2/enabled", random_int(2));
+  if (random_int(12) == 0) show.send("/edit/undo");
+  if (random_int(18) == 0) show.send("/edit/redo");
+  if (random_int(20) == 0) show.send("/mistake", random.uniform(-3, 3));
+  if (random_int(20) == 0) show.send("/physics/body/missing/part/p/mass", 3);
+  if (random_int(30) == 0) show.send("/physics/part/hold", "stone5", "p", 0, 0, 0, random.uniform(-1, 1), 0, 1);
+  if (random_int(30) == 0) show.send("/physics/behavior/parameter", "gust", "active", random_int(2));
+  if (random_int(40) == 0) show.send("/physics/body/stone6/reset");
+  if (random_int(25) == 0) {
+    auto request = std::make_shared<EvaluationRequest>();
+    request->text = "sim:body('stone7').parts[1]:apply_impulse(rng:direction() * 0.1)";
+    request->on_result = [](const Evaluation&) {};
+    show.link.command_queue.push({{}, {CommandSource::console}, std::move(request)});
   }
 }
 
-/// Plays on to a tick; the state's hash behind each stands at its number.
-inline void play_to(Show& show, std::uint64_t tick, TickHands hands, std::vector<std::uint64_t>& hashes) {
+/// Plays to a tick; stores the state hash after each tick in `hashes`, by tick.
+inline void play_to(Show& show, std::uint64_t tick, TickInputs inputs, std::vector<std::uint64_t>& hashes) {
   hashes.resize(tick + 1);
   while (show.engine.world().tick() < tick) {
-    hands(show, show.engine.world().tick());
+    inputs(show, show.engine.world().tick());
     show.ticks(1);
     hashes[show.engine.world().tick()] = show.engine.state_hash();
   }
 }
 
-/// The same where the hashes are known: false at the first that differs.
-inline bool plays_again(Show& show, std::uint64_t tick, TickHands hands, const std::vector<std::uint64_t>& hashes) {
+/// Plays to a tick and compares the state hashes. False at the first difference.
+inline bool replays_identically(Show& show, std::uint64_t tick, TickInputs inputs,
+                                const std::vector<std::uint64_t>& hashes) {
   while (show.engine.world().tick() < tick) {
-    hands(show, show.engine.world().tick());
+    inputs(show, show.engine.world().tick());
     show.ticks(1);
     const std::uint64_t now = show.engine.world().tick();
     EXPECT_EQ(show.engine.state_hash(), hashes[now]) << "tick " << now;

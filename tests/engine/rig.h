@@ -1,4 +1,4 @@
-// A small world for the engine's tests: two bodies with joints and motors, one of them called "1", and a floor.
+// A small world for the engine's tests: two bodies with joints and motors, one of them named "1", and a floor.
 #pragma once
 
 #include <array>
@@ -44,7 +44,7 @@ inline void build_bodies(World& world) {
   Shape& sphere = **world.add_shape("ball", ball());
   Shape& plane = **world.add_shape("ground", ground);
   const auto pose = [](double x, double z) { return Pose{{x, 0, z}, quat_identity()}; };
-  const auto hang = [](Body& body, const char* name, const char* from, const char* to, JointType type) {
+  const auto add_joint = [](Body& body, const char* name, const char* from, const char* to, JointType type) {
     Part& child = *body.find_part(to);
     const Vec3 axis = type == JointType::prismatic ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     Joint& joint = **body.add_joint(name, *body.find_part(from), child, type, child.pose().position, axis);
@@ -55,48 +55,48 @@ inline void build_bodies(World& world) {
   ASSERT_TRUE(arm.add_part("upper", sphere, 1, pose(0, 1.5)).ok());
   ASSERT_TRUE(arm.add_part("lower", sphere, 1, pose(0, 2)).ok());
   ASSERT_TRUE(arm.add_part("tip", sphere, 1, pose(0, 2.5)).ok());
-  hang(arm, "shoulder", "base", "upper", JointType::revolute);
-  hang(arm, "elbow", "upper", "lower", JointType::revolute);
-  hang(arm, "slide", "lower", "tip", JointType::prismatic);
+  add_joint(arm, "shoulder", "base", "upper", JointType::revolute);
+  add_joint(arm, "elbow", "upper", "lower", JointType::revolute);
+  add_joint(arm, "slide", "lower", "tip", JointType::prismatic);
   Body& one = **world.add_body("1");
   ASSERT_TRUE(one.add_part("base", sphere, 0, pose(3, 1)).ok());
   ASSERT_TRUE(one.add_part("tip", sphere, 1, pose(3, 1.5)).ok());
-  hang(one, "shoulder", "base", "tip", JointType::revolute);
+  add_joint(one, "shoulder", "base", "tip", JointType::revolute);
   Body& floor = **world.add_body("floor");
   ASSERT_TRUE(floor.add_part("floor", plane, 0, pose(0, 0)).ok());
-  world.settle();
+  world.flush();
 }
 
-/// Store, world and dispatch as the engine has them, with the bodies above.
+/// Store, world and dispatcher as in the engine, with the bodies above.
 struct Rig {
   Store store;
   World world{store};
-  Dispatch dispatch{world};
+  MessageDispatcher dispatcher{world};
 
   Rig() { build_bodies(world); }
 
   template <class... A>
   Outcome send(std::string address, A&&... args) {
-    dispatch.begin_tick();
-    return dispatch.execute(message(std::move(address), std::forward<A>(args)...));
+    dispatcher.begin_tick();
+    return dispatcher.execute(message(std::move(address), std::forward<A>(args)...));
   }
 
-  /// What a path holds now, or nothing where there is no such value.
+  /// Returns the values of a path, or nothing if there is no such value.
   std::vector<double> read(const std::string& path) const {
-    const Result<Place> place = find_place(store, path);
-    if (!place || place->row == nullptr) {
-      ADD_FAILURE() << path << " is no value";
+    const Result<PropertyRef> ref = find_property(store, path);
+    if (!ref || ref->property == nullptr) {
+      ADD_FAILURE() << path << " is not a property";
       return {};
     }
-    std::vector<double> values(place->row->width);
-    store.get(place->node, *place->row, values.data());
+    std::vector<double> values(ref->property->width);
+    store.get(ref->node, *ref->property, values.data());
     return values;
   }
 
-  /// Every kept and live number of the world: what a refused message must not change.
+  /// All persistent and transient values of the world, which a rejected message must not change.
   std::vector<double> everything() const {
-    std::vector<double> all(store.kept().begin(), store.kept().end());
-    all.insert(all.end(), store.live().begin(), store.live().end());
+    std::vector<double> all(store.persistent_values().begin(), store.persistent_values().end());
+    all.insert(all.end(), store.transient_values().begin(), store.transient_values().end());
     return all;
   }
 };

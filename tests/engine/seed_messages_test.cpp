@@ -1,4 +1,4 @@
-// The seed's physics messages: every address in every form, its effect read back from the store.
+// The physics messages of ofxDabPhysics: every address in every form, with its effect read from the store.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -33,10 +33,10 @@ const std::map<std::string, std::vector<std::pair<std::string, std::string>>> kE
 
 bool is_static(const std::string& element) { return element == "base" || element == "floor"; }
 
-// the names in front of a message, and which elements they mean
+// the names at the start of a message, and the elements that they select
 struct Form {
   std::vector<Arg> names;
-  bool (*means)(const std::string& of, const std::string& body, const std::string& element);
+  bool (*targets)(const std::string& of, const std::string& body, const std::string& element);
 };
 
 using S = const std::string&;
@@ -55,64 +55,64 @@ const Form kForms[] = {
     {{arg("?rm"), arg("*e*")}, [](S, S body, S e) { return body == "arm" && e.find('e') != std::string::npos; }},
 };
 
-// how a client may write the numbers; int, float and double have become numbers before they come here
-enum class Written { numbers, booleans, text };
+// notations of numbers; int, float and double are already converted to numbers here
+enum class Notation { numbers, booleans, text };
 
-std::optional<Arg> written(double v, Written how) {
-  if (how == Written::text) return arg(number_text(v));
-  if (how == Written::numbers) return arg(v);
+std::optional<Arg> format_value(double v, Notation notation) {
+  if (notation == Notation::text) return arg(number_text(v));
+  if (notation == Notation::numbers) return arg(v);
   return v == 0 || v == 1 ? std::optional(arg(v != 0)) : std::nullopt;
 }
 
 std::string path_of(const Address& a, const std::string& body, const std::string& element) {
-  return fmt::format("/physics/body/{}/{}/{}/{}", body, a.of, element, a.row);
+  return fmt::format("/physics/body/{}/{}/{}/{}", body, a.class_name, element, a.property);
 }
 
-void check_form(Rig& rig, const Address& a, const Form& form, Written how) {
-  Message m{seed_address(a), form.names};
+void check_form(Rig& rig, const Address& a, const Form& form, Notation notation) {
+  Message m{legacy_address(a), form.names};
   for (const double v : value_of(a)) {
-    const auto value = written(v, how);
+    const auto value = format_value(v, notation);
     if (!value) return;
     m.args.push_back(*value);
   }
   std::map<std::string, Values> before;
   std::map<std::string, Values> expected;
   bool any = false;
-  for (const auto& [body, element] : kElements.at(a.of)) {
+  for (const auto& [body, element] : kElements.at(a.class_name)) {
     const std::string path = path_of(a, body, element);
-    const bool left_out = std::string_view(a.seed) == "mass" && is_static(element);
-    const bool meant = form.means(a.of, body, element) && !left_out;
+    const bool skipped = std::string_view(a.address) == "mass" && is_static(element);
+    const bool selected = form.targets(a.class_name, body, element) && !skipped;
     before[path] = rig.read(path);
-    expected[path] = meant ? value_of(a) : before[path];
-    any = any || meant;
+    expected[path] = selected ? value_of(a) : before[path];
+    any = any || selected;
   }
-  rig.dispatch.begin_tick();
-  const Outcome outcome = rig.dispatch.execute(m);
-  EXPECT_EQ(outcome.kind, any ? Kind::applied : Kind::refused) << outcome.error;
-  EXPECT_EQ(outcome.kept, any);
+  rig.dispatcher.begin_tick();
+  const Outcome outcome = rig.dispatcher.execute(m);
+  EXPECT_EQ(outcome.kind, any ? Kind::applied : Kind::rejected) << outcome.error;
+  EXPECT_EQ(outcome.sets_override, any);
   EXPECT_EQ(outcome.clamped, nullptr);
   for (const auto& [path, values] : expected) {
     EXPECT_EQ(rig.read(path), values) << path;
-    // as it was, for the next form; a static part's mass can't be set, and was not
+    // restore the value for the next form; the mass of a static part can't be set
     if (before[path] == values) continue;
-    const Place place = find_place(rig.store, path).value();
-    ASSERT_TRUE(rig.store.set(place.node, *place.row, before[path]).ok());
+    const PropertyRef ref = find_property(rig.store, path).value();
+    ASSERT_TRUE(rig.store.set(ref.node, *ref.property, before[path]).ok());
   }
 }
 
-TEST(SeedMessages, EveryAddressInEveryForm) {
+TEST(LegacyMessages, AcceptsEveryAddressInEveryForm) {
   Rig rig;
-  for (const Address& a : kByName) {
+  for (const Address& a : kElementAddresses) {
     for (std::size_t f = 0; f < std::size(kForms); f++) {
-      for (const Written how : {Written::numbers, Written::booleans, Written::text}) {
-        SCOPED_TRACE(fmt::format("{} form {} written {}", seed_address(a), f, static_cast<int>(how)));
+      for (const Notation how : {Notation::numbers, Notation::booleans, Notation::text}) {
+        SCOPED_TRACE(fmt::format("{} form {} written {}", legacy_address(a), f, static_cast<int>(how)));
         check_form(rig, a, kForms[f], how);
       }
     }
   }
 }
 
-TEST(SeedMessages, NamesAreComparedWithoutCaseAndUnderscores) {
+TEST(LegacyMessages, NamesIgnoreCaseAndUnderscores) {
   for (const char* address : {"/physics/motor/angularservoposition", "/physics/motor/angular_servo_position",
                               "/Physics/Motor/AngularServoPosition", "/physics/motor/angularservoposition/"}) {
     Rig rig;
@@ -121,7 +121,7 @@ TEST(SeedMessages, NamesAreComparedWithoutCaseAndUnderscores) {
   }
 }
 
-TEST(SeedMessages, TheWorldTakesNoNames) {
+TEST(LegacyMessages, TheWorldTakesNoNames) {
   Rig rig;
   EXPECT_EQ(rig.send("/physics/sim/gravity", -1.62).kind, Kind::applied);
   EXPECT_EQ(rig.read("/physics/sim/gravity"), (Values{0, 0, -1.62}));
@@ -131,21 +131,21 @@ TEST(SeedMessages, TheWorldTakesNoNames) {
   EXPECT_EQ(rig.read("/physics/sim/gravity"), (Values{0, 0, -3.5}));
   EXPECT_EQ(rig.send("/physics/sim/timestep", 0.02).kind, Kind::applied);
   EXPECT_EQ(rig.read("/physics/sim/timestep"), (Values{0.02}));
-  // the seed refused a float here; any number is taken and rounded
+  // ofxDabPhysics rejected a float here; any number is accepted and rounded
   EXPECT_EQ(rig.send("/physics/sim/substeps", 6.6).kind, Kind::applied);
   EXPECT_EQ(rig.read("/physics/sim/substeps"), (Values{7}));
 
   const std::vector<double> before = rig.everything();
   for (const Outcome& outcome : {rig.send("/physics/sim/gravity", 1, 2), rig.send("/physics/sim/gravity"),
                                  rig.send("/physics/sim/gravity", "arm", 1), rig.send("/physics/sim/substeps", 1, 2)}) {
-    EXPECT_EQ(outcome.kind, Kind::refused);
+    EXPECT_EQ(outcome.kind, Kind::rejected);
     EXPECT_FALSE(outcome.error.empty());
   }
   EXPECT_EQ(rig.everything(), before);
 }
 
-TEST(SeedMessages, ForceIsThrustForOneTick) {
-  // F = m·a: without gravity 6 N on 1 kg for a tick of 1/60 s leave 0.1 m/s; motors off, so that nothing holds
+TEST(LegacyMessages, ForceActsForOneTick) {
+  // F = m·a: without gravity 6 N on 1 kg for a tick of 1/60 s leave 0.1 m/s; motors off, so that nothing resists
   Rig rig;
   rig.send("/physics/sim/gravity", 0);
   ASSERT_EQ(rig.send("/physics/motor/mode", "off").kind, Kind::applied);
@@ -158,36 +158,37 @@ TEST(SeedMessages, ForceIsThrustForOneTick) {
   EXPECT_NEAR(v[1], 0.1, 1e-6);
   rig.world.step();
   EXPECT_NEAR(rig.read("/physics/body/free/part/free/linear_velocity")[1], 0.1, 1e-6) << "it ended with its tick";
-  // beside the centre it turns as well: torque r × F = (0.05,0,0) × (0,6,0) = 0.3 N·m about z; a sphere has 2/5·m·r²
+  // off the center it turns as well: torque r × F = (0.05,0,0) × (0,6,0) = 0.3 N·m about z; a sphere has 2/5·m·r²
   EXPECT_EQ(rig.send("/physics/part/force", "free", "free", 0, 6, 0, 0.05, 0, 0).kind, Kind::applied);
   rig.world.step();
   EXPECT_NEAR(rig.read("/physics/body/free/part/free/angular_velocity")[2], 0.3 / (0.4 * 0.05 * 0.05) / 60, 1e-3);
 
-  EXPECT_EQ(rig.send("/physics/part/force", 0, 0, 1).kind, Kind::applied) << "static parts are left out";
+  EXPECT_EQ(rig.send("/physics/part/force", 0, 0, 1).kind, Kind::applied) << "static parts are skipped";
   for (const Outcome& outcome :
        {rig.send("/physics/part/force", "arm", "base", 0, 0, 1), rig.send("/physics/part/force", 1, 2),
-        rig.send("/physics/part/force", "arm", "tip", "x", 1, 2, 3), rig.send("/physics/part/force", "nobody", 1, 2, 3),
+        rig.send("/physics/part/force", "arm", "tip", "x", 1, 2, 3),
+        rig.send("/physics/part/force", "missing", 1, 2, 3),
         rig.send("/physics/part/force", "free", std::nan(""), 0, 0)}) {
-    EXPECT_EQ(outcome.kind, Kind::refused);
+    EXPECT_EQ(outcome.kind, Kind::rejected);
   }
 }
 
-TEST(SeedMessages, WhatTookFramesApartIsRefusedWithTheReason) {
+TEST(LegacyMessages, ChangingJointFramesIsRejectedWithTheReason) {
   for (const char* address : {"/physics/joint/basis", "/physics/joint/prevpos", "/physics/joint/nextpos"}) {
     Rig rig;
     const Outcome outcome = rig.send(address, 1, 0, 0);
-    EXPECT_EQ(outcome.kind, Kind::refused) << address;
-    EXPECT_NE(outcome.error.find("can't be changed while it lives"), std::string::npos) << outcome.error;
+    EXPECT_EQ(outcome.kind, Kind::rejected) << address;
+    EXPECT_NE(outcome.error.find("can't be changed"), std::string::npos) << outcome.error;
   }
 }
 
-// the parameters as the seed spells them, its own types and how many numbers each takes
-struct SeedParameter {
+// the parameters in the spelling of ofxDabPhysics, with type and number of values
+struct LegacyParameter {
   const char* type;
   const char* name;
   std::size_t numbers;
 };
-constexpr SeedParameter kParameters[] = {
+constexpr LegacyParameter kParameters[] = {
     {"ForceBehavior", "dir", 3},
     {"ForceBehavior", "amp", 1},
     {"ForceBehavior", "maxAmp", 1},
@@ -220,8 +221,8 @@ constexpr SeedParameter kParameters[] = {
     {"AlignmentBehavior", "angularAmount", 1},
 };
 
-TEST(SeedMessages, BehavioursParametersInBothForms) {
-  for (const SeedParameter& p : kParameters) {
+TEST(LegacyMessages, SetsBehaviorParametersInBothForms) {
+  for (const LegacyParameter& p : kParameters) {
     Rig rig;
     BehaviorList& list = rig.world.behaviors();
     const bool grouped = list.types().find(p.type)->is_group;
@@ -240,7 +241,7 @@ TEST(SeedMessages, BehavioursParametersInBothForms) {
     const auto send = [&](std::vector<Arg> names, double last) {
       names.push_back(arg(p.name));
       for (std::size_t i = 1; i <= p.numbers; i++) names.push_back(arg(i == p.numbers ? last : 0.25));
-      return rig.dispatch.execute({"/physics/behavior/parameter", names});
+      return rig.dispatcher.execute({"/physics/behavior/parameter", names});
     };
     EXPECT_EQ(send({arg("it")}, 0.5).kind, Kind::applied) << p.type << " " << p.name;
     EXPECT_EQ(value("arm"), 0.5) << p.type << " " << p.name;
@@ -251,27 +252,27 @@ TEST(SeedMessages, BehavioursParametersInBothForms) {
   }
 }
 
-TEST(SeedMessages, EveryWritableRowHasItsMessage) {
-  // derived: a row added to a table answers at once; nothing else is to be written
+TEST(LegacyMessages, EveryWritablePropertyHasAMessage) {
+  // derived: a property added to a table works at once, without more code
   Rig rig;
   std::set<std::string> listed;
-  for (const Table* table : {&World::table(), &Part::table(), &Joint::table(), &Motor::table()}) {
+  for (const PropertyTable* table : {&World::table(), &Part::table(), &Joint::table(), &Motor::table()}) {
     const std::string element = table == &Part::table() ? "tip" : "elbow";
-    for (const Row& row : table->rows()) {
-      const std::string address = Dispatch::seed_address(*table, row);
-      EXPECT_EQ(address.empty(), row.kind == RowKind::readout) << row.name;
+    for (const Property& property : table->properties()) {
+      const std::string address = MessageDispatcher::legacy_address(*table, property);
+      EXPECT_EQ(address.empty(), property.kind == PropertyKind::readout) << property.name;
       if (address.empty()) continue;
       listed.insert(address);
       EXPECT_NE(rig.send(address).kind, Kind::unknown) << address;
-      if (!row.writable()) continue;
+      if (!property.writable()) continue;
       Message m{address, {}};
       if (table != &World::table()) m.args = {arg("arm"), arg(element)};
-      for (std::uint32_t i = 0; i < row.width; i++) m.args.push_back(arg(row.initial[i]));
-      const Outcome outcome = rig.dispatch.execute(m);
+      for (std::uint32_t i = 0; i < property.width; i++) m.args.push_back(arg(property.initial[i]));
+      const Outcome outcome = rig.dispatcher.execute(m);
       EXPECT_EQ(outcome.kind, Kind::applied) << address << ": " << outcome.error;
     }
   }
-  for (const Address& a : kByName) EXPECT_TRUE(listed.contains(seed_address(a))) << seed_address(a);
+  for (const Address& a : kElementAddresses) EXPECT_TRUE(listed.contains(legacy_address(a))) << legacy_address(a);
   for (const char* a : {"/physics/sim/gravity", "/physics/sim/timestep", "/physics/sim/substeps"})
     EXPECT_TRUE(listed.contains(a)) << a;
 }

@@ -1,4 +1,4 @@
-// The seed's 52 addresses, as its documentation and its code have them, for tests that send each in every form.
+// The 52 addresses of ofxDabPhysics, from its documentation and code, for tests that send each in every form.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@
 namespace limber::engine_test {
 
 struct Address {
-  const char* of;     // class
-  const char* seed;   // as the seed's documentation writes it
-  const char* row;    // as the table has it
-  std::size_t width;  // numbers
+  const char* class_name;  // class
+  const char* address;     // in the documentation of ofxDabPhysics
+  const char* property;    // name of the property
+  std::size_t width;       // numbers
   bool flags = false;
 };
 
-/// Those that name a body and an element by arguments.
-inline constexpr Address kByName[] = {
+/// Addresses that take a body and an element as arguments.
+inline constexpr Address kElementAddresses[] = {
     {"part", "mass", "mass", 1},
     {"part", "lineardamping", "linear_damping", 1},
     {"part", "angulardamping", "angular_damping", 1},
@@ -54,28 +54,31 @@ inline constexpr Address kByName[] = {
     {"motor", "angularspringdamping", "angular_spring_damping", 3},
 };
 
-/// Those that name a shape.
-inline constexpr Address kOfShapes[] = {
+/// Addresses that take a shape.
+inline constexpr Address kShapeAddresses[] = {
     {"shape", "transparency", "transparency", 1},  {"shape", "ambientscale", "ambient_scale", 1},
     {"shape", "diffusescale", "diffuse_scale", 1}, {"shape", "specularscale", "specular_scale", 1},
     {"shape", "specularpow", "specular_pow", 1},   {"shape", "ambientcolor", "ambient_color", 3},
     {"shape", "diffusecolor", "diffuse_color", 3},
 };
 
-/// Those that take no names.
-inline constexpr const char* kOfOne[] = {"/physics/sim/gravity",     "/physics/sim/timestep",
-                                         "/physics/sim/substeps",    "/visuals/camera/projection",
-                                         "/visuals/camera/position", "/visuals/camera/rotation"};
+/// Addresses without names.
+inline constexpr const char* kSingletonAddresses[] = {"/physics/sim/gravity",     "/physics/sim/timestep",
+                                                      "/physics/sim/substeps",    "/visuals/camera/projection",
+                                                      "/visuals/camera/position", "/visuals/camera/rotation"};
 
-/// The irregular ones, and those that are refused with the reason.
-inline constexpr const char* kOther[] = {"/physics/part/force", "/physics/behavior/parameter", "/physics/joint/basis",
-                                         "/physics/joint/prevpos", "/physics/joint/nextpos"};
+/// Special addresses, and those that are rejected with a reason.
+inline constexpr const char* kOtherAddresses[] = {"/physics/part/force", "/physics/behavior/parameter",
+                                                  "/physics/joint/basis", "/physics/joint/prevpos",
+                                                  "/physics/joint/nextpos"};
 
-static_assert(std::size(kByName) + std::size(kOfShapes) + std::size(kOfOne) + std::size(kOther) == 52);
+static_assert(std::size(kElementAddresses) + std::size(kShapeAddresses) + std::size(kSingletonAddresses) +
+                  std::size(kOtherAddresses) ==
+              52);
 
-inline std::string seed_address(const Address& a) {
-  const bool shape = std::string_view(a.of) == "shape";
-  return fmt::format("{}/{}/{}", shape ? "/visuals" : "/physics", a.of, a.seed);
+inline std::string legacy_address(const Address& a) {
+  const bool shape = std::string_view(a.class_name) == "shape";
+  return fmt::format("{}/{}/{}", shape ? "/visuals" : "/physics", a.class_name, a.address);
 }
 
 }  // namespace limber::engine_test

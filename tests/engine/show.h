@@ -1,4 +1,4 @@
-// A scene in a temporary file and the engine that plays it, for tests: messages in, what goes out as text.
+// A scene in a temporary file and the engine that plays it, for tests: messages in, output as text.
 #pragma once
 
 #include <unistd.h>
@@ -16,7 +16,7 @@
 
 namespace limber::engine_test {
 
-/// A file that goes when the test is over.
+/// A file that is removed at the end of the test.
 class SceneFile {
  public:
   explicit SceneFile(const std::string& text) {
@@ -40,7 +40,7 @@ class SceneFile {
   std::filesystem::path folder_;
 };
 
-/// The seed of every scene here: nothing is sent, nothing is read but the file.
+/// The options of every scene here: a fixed random seed, no package paths.
 inline EngineOptions fast_options(const std::string& scene = "") {
   EngineOptions options;
   options.scene = scene;
@@ -63,30 +63,31 @@ struct Show {
   explicit Show(EngineOptions options) : engine(link, std::move(options)) {
     const Result<void> started = engine.start();
     EXPECT_TRUE(started.ok()) << started.error();
-    outbox();
+    sent_texts();
   }
 
   template <class... A>
   void send(std::string address, A&&... args) {
-    link.inbox.push({{message(std::move(address), std::forward<A>(args)...)}, {Hand::osc, 0x7f000001, 4000}});
+    link.command_queue.push(
+        {{message(std::move(address), std::forward<A>(args)...)}, {CommandSource::osc, 0x7f000001, 4000}});
   }
   void ticks(int count) {
     for (int i = 0; i < count; i++) engine.tick();
   }
   double read(const std::string& path, std::size_t index = 0) {
-    const Result<Place> place = find_place(engine.store(), path);
-    if (!place || place->row == nullptr) {
-      ADD_FAILURE() << path << " is no value";
+    const Result<PropertyRef> ref = find_property(engine.store(), path);
+    if (!ref || ref->property == nullptr) {
+      ADD_FAILURE() << path << " is not a property";
       return 0;
     }
     double values[4] = {};
-    engine.store().get(place->node, *place->row, values);
+    engine.store().get(ref->node, *ref->property, values);
     return values[index];
   }
-  /// What went out since the last call, as text.
-  std::vector<std::string> outbox() {
+  /// Returns the messages sent since the last call, as text.
+  std::vector<std::string> sent_texts() {
     std::vector<Outgoing> out;
-    link.outbox.drain(out);
+    link.output_queue.drain(out);
     std::vector<std::string> texts;
     texts.reserve(out.size());
     for (const Outgoing& o : out) texts.push_back(text_of(o.message));
@@ -94,9 +95,9 @@ struct Show {
   }
 };
 
-/// Work of another thread that needs ticks to go on; their number is nobody's to say.
+/// Runs work on another thread while this one ticks, as often as the work needs.
 template <class Work>
-void beside(Show& show, Work work) {
+void run_while_ticking(Show& show, Work work) {
   std::atomic<bool> done{false};
   std::thread thread([&] {
     work();
@@ -106,16 +107,16 @@ void beside(Show& show, Work work) {
   thread.join();
 }
 
-/// Engine::play_take() beside the show, with no tick more than it needs: a take may be short.
-inline Result<void> begin_take(Show& show, const std::string& take) {
+/// Calls Engine::play_take() on another thread, with no more ticks than it needs, because a take may be short.
+inline Result<void> play_take(Show& show, const std::string& take) {
   Result<void> played;
   std::atomic<bool> done{false};
   std::thread thread([&] {
     played = show.engine.play_take(take);
     done = true;
   });
-  const bool another = show.read("/take/plays") != 0;
-  while (!done && (another || show.read("/take/plays") == 0)) show.ticks(1);
+  const bool was_playing = show.read("/take/plays") != 0;
+  while (!done && (was_playing || show.read("/take/plays") == 0)) show.ticks(1);
   thread.join();
   return played;
 }

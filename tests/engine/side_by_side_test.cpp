@@ -6,7 +6,7 @@
 namespace limber::engine_test {
 namespace {
 
-// arms that sway, some of them in each other's way, and heaps of boxes on the same floor
+// arms that sway, some of them in contact, and heaps of boxes on the same floor
 constexpr const char* kCrowd = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
 local arm = sim:load_urdf(ROOT .. "/urdf/arm6.urdf", { name = "arm1" })
@@ -20,7 +20,7 @@ for i = 0, 59 do
 end
 )";
 
-// as many drops as need several trees of boxes, which all are left in each step; each step takes one from either end
+// enough drops to need several trees of boxes; each step removes one from either end
 constexpr const char* kRain = R"(
 local box = sim:add_box_shape("box", vec3(0.1, 0.1, 0.1))
 for i = 1, 400 do
@@ -44,7 +44,7 @@ std::uint64_t hash_with(int threads, const std::string& scene, int ticks, std::s
   return show.engine.state_hash();
 }
 
-TEST(SideBySide, AnyNumberOfThemComesToTheSameState) {
+TEST(ParallelIslands, AnyNumberOfThreadsGivesTheSameState) {
   for (const std::string solver : {"iterative", "direct"}) {
     const std::string scene =
         "local ROOT = \"" LIMBER_SOURCE_DIR "\"\n" + std::string(kCrowd) + "sim.solver = \"" + solver + "\"\n";
@@ -54,7 +54,7 @@ TEST(SideBySide, AnyNumberOfThemComesToTheSameState) {
   }
 }
 
-TEST(SideBySide, SoDoManyThatComeAndGo) {
+TEST(ParallelIslands, ManyAddedAndRemovedBodiesGiveTheSameState) {
   const std::uint64_t alone = hash_with(1, kRain, 60, 280);
   EXPECT_NE(alone, hash_with(1, kRain, 59, 282));
   for (const int threads : {2, 3}) EXPECT_EQ(hash_with(threads, kRain, 60, 280), alone) << threads;

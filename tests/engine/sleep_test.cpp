@@ -1,5 +1,5 @@
-// Sleep in a show: what reaches the world from outside wakes it in the same tick, going back in time restores what
-// slept and for how long the rest had been at rest, and a take plays again.
+// Sleep in a show: commands wake bodies in the same tick, a rewind restores sleeping bodies and rest times, and a take
+// replays to the same result.
 #include <gtest/gtest.h>
 
 #include "engine/rewound.h"
@@ -8,7 +8,7 @@
 namespace limber::engine_test {
 namespace {
 
-// Two stacks, a hinged beam and a ball that comes along; a behavior that pushes only when it is told to.
+// Two stacks, a hinged beam and a moving ball; a behavior that pushes only when it is switched on.
 constexpr const char* kSleepers = R"(
 sim.gravity = vec3(0, 0, -9.81)
 sim:add_body("floor"):add_part("p", sim:add_plane_shape("ground"))
@@ -27,12 +27,12 @@ sim:at(3, function() ball.linear_velocity = vec3(6, 0, 0) end)
 sim:on_step(function() arm:apply_force(vec3(0, 0, 0)) end)
 )";
 
-struct Message3 {
+struct WakingMessage {
   const char* name;
   void (*send)(Show& show);
 };
 
-struct SleepMessage : testing::TestWithParam<Message3> {};
+struct SleepMessage : testing::TestWithParam<WakingMessage> {};
 
 TEST_P(SleepMessage, WakesInTheSameTick) {
   const SceneFile scene(kSleepers);
@@ -47,14 +47,14 @@ TEST_P(SleepMessage, WakesInTheSameTick) {
   EXPECT_LT(show.read("/physics/sim/sleeping_parts"), 6);
 }
 
-const Message3 kMessages[] = {
+const WakingMessage kMessages[] = {
     {"hold", [](Show& show) { show.send("/physics/part/hold", "box1", "p", 0, 0, 0, 1, 0, 1); }},
     {"target", [](Show& show) { show.send("/physics/motor/target", "beam", 0.1); }},
     {"preset", [](Show& show) { show.send("/preset/recall", "before"); }},
     {"morph",
      [](Show& show) {
        show.send("/preset/recall", "before", 0.5);
-       show.ticks(1);  // it begins where the values are
+       show.ticks(1);  // start from the current values
      }},
     {"undo", [](Show& show) { show.send("/edit/undo"); }},
     {"behavior", [](Show& show) { show.send("/physics/behavior/parameter", "wind", "amp", 0.1); }},
@@ -67,26 +67,26 @@ const Message3 kMessages[] = {
 INSTANTIATE_TEST_SUITE_P(Each, SleepMessage, testing::ValuesIn(kMessages),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(SleepInAShow, GoesTheSameWayAfterEachReturn) {
+TEST(SleepInAShow, IsRepeatedExactlyAfterARewind) {
   const SceneFile scene(kSleepers);
   std::vector<std::uint64_t> hashes;
-  const auto hands = [](Show& show, std::uint64_t tick) {
+  const auto inputs = [](Show& show, std::uint64_t tick) {
     if (tick == 250) show.send("/physics/motor/target", "beam", 0.2);
   };
   {
-    Show straight(scene.path());
-    play_to(straight, 400, hands, hashes);
+    Show reference(scene.path());
+    play_to(reference, 400, inputs, hashes);
   }
   Show show(scene.path());
-  ASSERT_TRUE(plays_again(show, 170, hands, hashes));
+  ASSERT_TRUE(replays_identically(show, 170, inputs, hashes));
   EXPECT_EQ(show.read("/physics/sim/sleeping_parts"), 6);
-  // to before they slept; to where they slept, from where the ball has hit them
+  // rewinds to before they slept, and to where they slept, from after the impact of the ball
   const std::pair<double, std::uint64_t> returns[] = {{1.5, 300}, {3, 230}, {1, 400}, {2, 400}};
   for (const auto& [seconds, to] : returns) {
     show.send("/transport/rewind", seconds);
     show.engine.idle();
     ASSERT_EQ(show.engine.state_hash(), hashes[show.engine.world().tick()]);
-    ASSERT_TRUE(plays_again(show, to, hands, hashes));
+    ASSERT_TRUE(replays_identically(show, to, inputs, hashes));
   }
 }
 
@@ -98,9 +98,9 @@ TEST(SleepInAShow, IsTheSameForAnyNumberOfThreads) {
     options.threads = threads;
     Show show(options);
     if (threads == 1) {
-      play_to(show, 300, no_hands, hashes);
+      play_to(show, 300, no_inputs, hashes);
     } else {
-      EXPECT_TRUE(plays_again(show, 300, no_hands, hashes));
+      EXPECT_TRUE(replays_identically(show, 300, no_inputs, hashes));
     }
   }
 }

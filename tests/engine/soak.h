@@ -1,5 +1,5 @@
 // A soak test's show: a list of actions (floods, saves, stopped calls, timers, presets, rewinds, resets, panics,
-// pauses) that is recorded, replayed and compared; a list that diverges is shrunk to the actions that it takes.
+// pauses) that is recorded, replayed and compared; a list that diverges is reduced to the necessary actions.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct SoakAction {
 };
 
 inline std::string soak_scene() {
-  return std::string(kTakenScene) + R"(
+  return std::string(kTakeScene) + R"(
 local cues = 0
 osc:on("/cue", function(seconds)
   cues = cues + 1
@@ -46,7 +46,7 @@ sim:after(1.5, function() sim:body("arm1").parts[2]:apply_impulse(vec3(0.01, 0, 
 )";
 }
 
-/// What the soak may do; each is a message, a console's text, or a save.
+/// The actions of the soak test; each is a message, a console text or a save.
 struct SoakKind {
   const char* name;
   int weight;
@@ -55,7 +55,7 @@ struct SoakKind {
 
 inline void save_tool(Show& show, const ShowFolder& folder, double x) {
   folder.write("scripts/lib/tool.lua", fmt::format("return {{ depth = {:.3f}, more = {} }}\n", 0.1 + 0.3 * x, x < 0.5));
-  beside(show, [&] { show.engine.reload(); });
+  run_while_ticking(show, [&] { show.engine.reload(); });
 }
 
 inline const std::vector<SoakKind>& soak_kinds() {
@@ -125,7 +125,7 @@ inline const std::vector<SoakKind>& soak_kinds() {
       {"bad save", 1,
        [](S& s, const F& folder, double x) {
          folder.write("scripts/lib/tool.lua", "return {");
-         beside(s, [&] { s.engine.reload(); });
+         run_while_ticking(s, [&] { s.engine.reload(); });
          save_tool(s, folder, x);
        }},
   };
@@ -149,18 +149,18 @@ inline std::vector<SoakAction> soak_actions(int ticks, std::uint64_t seed, doubl
   return actions;
 }
 
-struct Soaked {
-  std::string fault;  ///< Empty: the replay came to the take's hash.
+struct SoakResult {
+  std::string fault;  ///< Empty: the replay reached the take's hash.
   std::uint64_t stopped = 0, reloads = 0;
 };
 
 /// Plays the actions, records them, replays the take and compares.
-inline Soaked soak(const std::vector<SoakAction>& actions, int ticks) {
+inline SoakResult soak(const std::vector<SoakAction>& actions, int ticks) {
   const ShowFolder folder;
-  lay_out(folder);
+  write_take_scene(folder);
   folder.write("scripts/scene.lua", soak_scene());
   const std::string take = folder.path("soak.take");
-  EngineOptions options = taken_options(folder);
+  EngineOptions options = take_options(folder);
   options.record = take;
   std::uint64_t hash = 0;
   {
@@ -170,17 +170,17 @@ inline Soaked soak(const std::vector<SoakAction>& actions, int ticks) {
       for (; next != actions.end() && next->tick <= tick; ++next)
         soak_kinds()[static_cast<std::size_t>(next->kind)].act(show, folder, next->x);
       show.ticks(1);
-      show.outbox();
+      show.sent_texts();
     }
     show.engine.end_take();
     hash = show.engine.state_hash();
     show.engine.finish_saving();
   }
-  const Replayed again = replay_take(take);
-  if (!again.error.empty()) return {again.error};
-  if (again.verdict.parted.has_value()) return {text_of(again.verdict)};
-  if (again.verdict.cut_off) return {"the take was cut off"};
-  return {again.hash == hash ? "" : "the hash at the end differs"};
+  const ReplayOutcome replayed = replay_take(take);
+  if (!replayed.error.empty()) return {replayed.error};
+  if (replayed.result.diverged_at.has_value()) return {text_of(replayed.result)};
+  if (replayed.result.truncated) return {"the take was cut off"};
+  return {replayed.hash == hash ? "" : "the hash at the end differs"};
 }
 
 inline std::string text_of(const std::vector<SoakAction>& actions) {
@@ -191,9 +191,9 @@ inline std::string text_of(const std::vector<SoakAction>& actions) {
   return text;
 }
 
-/// Delta debugging (Zeller's ddmin): a list of actions that still fails, from which no part can be left out.
-inline std::vector<SoakAction> shrink(std::vector<SoakAction> actions,
-                                      const std::function<bool(const std::vector<SoakAction>&)>& fails) {
+/// Delta debugging (Zeller's ddmin): returns a list of actions that still fails and has no removable part.
+inline std::vector<SoakAction> minimize(std::vector<SoakAction> actions,
+                                        const std::function<bool(const std::vector<SoakAction>&)>& fails) {
   std::size_t parts = 2;
   while (actions.size() >= 2) {
     const std::size_t size = (actions.size() + parts - 1) / parts;
@@ -214,18 +214,18 @@ inline std::vector<SoakAction> shrink(std::vector<SoakAction> actions,
   return actions;
 }
 
-/// Soaks with a seed; a list that fails is shrunk and shown.
+/// Runs the soak test with a random seed; a failing list is reduced and printed.
 inline void expect_soaks(int ticks, std::uint64_t seed) {
   log_to_stderr(false);
   const std::vector<SoakAction> actions = soak_actions(ticks, seed);
   const std::string fault = soak(actions, ticks).fault;
   if (fault.empty()) return;
-  fmt::print("seed {}, {} actions: {}\n", seed, actions.size(), fault);  // shrinking takes its time
+  fmt::print("seed {}, {} actions: {}\n", seed, actions.size(), fault);  // reducing takes a while
   std::fflush(stdout);
   const auto fails = [&](const std::vector<SoakAction>& some) { return !soak(some, ticks).fault.empty(); };
-  const std::vector<SoakAction> few = shrink(actions, fails);
+  const std::vector<SoakAction> reduced = minimize(actions, fails);
   ADD_FAILURE() << "seed " << seed << ", " << ticks << " ticks: " << fault << "\nthe fewest actions that fail:\n"
-                << text_of(few) << soak(few, ticks).fault;
+                << text_of(reduced) << soak(reduced, ticks).fault;
 }
 
 }  // namespace limber::engine_test

@@ -1,4 +1,4 @@
-// What the tree tells of takes: the one that is recorded, the one that is replayed, none.
+// The node /take while recording, while replaying, and without a take.
 #include "engine/show.h"
 
 namespace limber::engine_test {
@@ -9,43 +9,43 @@ sim:add_sphere_shape("ball", 0.1)
 sim:add_body("one"):add_part("ball", "ball", { mass = 1, position = vec3(0, 0, 5) })
 )";
 
-// the answer to /get of the take's name
-std::string told_name(Show& show) {
-  show.outbox();
+// Returns the reply to /get /take/name.
+std::string reply_to_name(Show& show) {
+  show.sent_texts();
   show.send("/get", "/take/name");
   show.engine.idle();
-  for (const std::string& line : show.outbox()) {
+  for (const std::string& line : show.sent_texts()) {
     if (line.starts_with("/take/name ")) return line.substr(11);
   }
   return "no answer";
 }
 
-TEST(TakeNode, TellsOfTheTakeThatIsRecorded) {
+TEST(TakeNode, ShowsTheRecordedTake) {
   const SceneFile file(kFalling);
   Show show(file.path());
   show.ticks(3);
-  EXPECT_EQ(told_name(show), "");
+  EXPECT_EQ(reply_to_name(show), "");
   show.send("/take/record", "dusk");
   show.engine.idle();
   show.ticks(10);
-  EXPECT_EQ(told_name(show), "dusk");
+  EXPECT_EQ(reply_to_name(show), "dusk");
   EXPECT_EQ(show.read("/take/ticks"), 10);
   EXPECT_EQ(show.read("/take/replays"), 0);
   show.send("/transport/pause");
   show.ticks(5);
   show.send("/physics/sim/gravity", -1.0);
   show.ticks(5);
-  EXPECT_EQ(show.read("/take/ticks"), 10) << "time stands still";
+  EXPECT_EQ(show.read("/take/ticks"), 10) << "paused";
   show.send("/transport/play");
   show.ticks(1);
   EXPECT_EQ(show.read("/take/ticks"), 11);
   show.send("/take/stop");
   show.ticks(1);
-  EXPECT_EQ(told_name(show), "");
+  EXPECT_EQ(reply_to_name(show), "");
   EXPECT_EQ(show.read("/take/ticks"), 0);
 }
 
-TEST(TakeNode, TellsHowFarAReplayIsAndHowLong) {
+TEST(TakeNode, ShowsProgressAndLengthOfAReplay) {
   const SceneFile file(kFalling);
   EngineOptions options = fast_options(file.path());
   options.record = file.path() + ".take";
@@ -64,16 +64,16 @@ TEST(TakeNode, TellsHowFarAReplayIsAndHowLong) {
   replay.replay = options.record;
   Show show(replay);
   EXPECT_EQ(show.read("/take/replays"), 1);
-  EXPECT_EQ(show.read("/take/whole"), 50) << "time that stood still does not count, nor does a reset end it";
-  while (show.read("/take/ticks") < 35 && !show.engine.replay_over()) show.engine.tick();
+  EXPECT_EQ(show.read("/take/whole"), 50) << "pauses are not counted, and a reset does not end the take";
+  while (show.read("/take/ticks") < 35 && !show.engine.replay_finished()) show.engine.tick();
   EXPECT_EQ(show.read("/take/ticks"), 35);
-  EXPECT_EQ(show.read("/physics/sim/tick"), 14) << "since the reset, which came behind the first tick there";
-  while (!show.engine.replay_over()) show.engine.tick();
+  EXPECT_EQ(show.read("/physics/sim/tick"), 14) << "since the reset, which follows the first tick there";
+  while (!show.engine.replay_finished()) show.engine.tick();
   EXPECT_EQ(show.read("/take/ticks"), 50);
-  EXPECT_EQ(show.engine.verdict().parted, std::nullopt);
+  EXPECT_EQ(show.engine.replay_result().diverged_at, std::nullopt);
 }
 
-TEST(TakeNode, ATakeThatWasCutOffIsAsLongAsItsWholeTicks) {
+TEST(TakeNode, CountsCompleteTicksOfATruncatedTake) {
   const SceneFile file(kFalling);
   EngineOptions options = fast_options(file.path());
   options.record = file.path() + ".take";
@@ -89,7 +89,7 @@ TEST(TakeNode, ATakeThatWasCutOffIsAsLongAsItsWholeTicks) {
   Show show(replay);
   const double whole = show.read("/take/whole");
   EXPECT_LT(whole, 40);
-  while (!show.engine.replay_over()) show.engine.tick();
+  while (!show.engine.replay_finished()) show.engine.tick();
   EXPECT_EQ(show.read("/take/ticks"), whole);
 }
 

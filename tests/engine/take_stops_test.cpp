@@ -1,10 +1,10 @@
-// Calls that are stopped, in takes and rewinds: they are not made again, and whatever the scripts do, a replay ends.
+// Stopped script calls in takes and rewinds: they are not executed again, and every replay terminates.
 #include "engine/taken.h"
 
 namespace limber::engine_test {
 namespace {
 
-// trap() computes without an end when it is called for the first time: a stopped call leaves `hits` at 1
+// trap() loops forever when it is called for the first time: a stopped call leaves `hits` at 1
 constexpr const char* kTrap = R"(
 sim.timestep = 0.02
 local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("s", 0.1), { position = vec3(0, 0, 9) })
@@ -17,16 +17,16 @@ function trap()
 end
 )";
 
-struct Trapped {
+struct TrapFixture {
   ShowFolder folder;
   EngineOptions options;
 
-  Trapped() {
+  TrapFixture() {
     log_to_stderr(false);
     folder.write("scripts/scene.lua", kTrap);
     options = fast_options(folder.path("scripts/scene.lua"));
     options.scene_options.limits.call_ms = 5 * kBudgetScale;
-    options.scene_options.limits.again_ms = 20 * kBudgetScale;
+    options.scene_options.limits.replay_ms = 20 * kBudgetScale;
     options.record = folder.path("takes/trap.take");
     std::filesystem::create_directories(folder.path("takes"));
   }
@@ -39,14 +39,14 @@ struct Trapped {
 };
 
 TEST(TakeStops, AStoppedCallStaysStoppedWhenAReplayRewinds) {
-  Trapped trapped;
+  TrapFixture trapped;
   std::uint64_t hash = 0;
   {
     Show show(trapped.options);
     show.ticks(60);
     evaluate(show, "while true do end");
     show.ticks(5);
-    // in the tick of a rewind, before and after it
+    // in the tick of a rewind, before and after the rewind
     evaluate(show, "while true do end");
     show.send("/transport/rewind_ticks", 8);
     show.send("/push", 1);
@@ -60,8 +60,8 @@ TEST(TakeStops, AStoppedCallStaysStoppedWhenAReplayRewinds) {
   expect_replay(trapped.options.record, hash);
 }
 
-TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {
-  Trapped trapped;
+TEST(TakeStops, ARewindEndsEvenIfARepeatedCallDoesNot) {
+  TrapFixture trapped;
   Show show(trapped.options);
   show.ticks(60);
   evaluate(show, "trap()");
@@ -79,9 +79,9 @@ TEST(TakeStops, ARewindEndsThoughACallThatItRepeatsDoesNot) {
   EXPECT_EQ(show.engine.world().tick(), 69u);
 }
 
-// what a stopped call had set in Lua's variables is not in the take: the second call of trap() is the first there
-TEST(TakeStops, AShowThatPlaysATakeWhoseCallsDifferGoesOn) {
-  Trapped trapped;
+// Changes of Lua variables by a stopped call are not in the take: the second call of trap() is the first in the replay.
+TEST(TakeStops, PlaybackWithDifferentCallsEnds) {
+  TrapFixture trapped;
   {
     Show show(trapped.options);
     show.ticks(10);
@@ -95,12 +95,12 @@ TEST(TakeStops, AShowThatPlaysATakeWhoseCallsDifferGoesOn) {
   options.record.clear();
   options.fast = false;
   Show show(options);
-  ASSERT_TRUE(begin_take(show, trapped.options.record).ok());
+  ASSERT_TRUE(play_take(show, trapped.options.record).ok());
   for (int i = 0; i < 100 && show.read("/take/plays") != 0; i++) show.ticks(1);
-  EXPECT_EQ(show.read("/take/plays"), 0) << "it ends where the runs part";
+  EXPECT_EQ(show.read("/take/plays"), 0) << "it ends where the replay diverges";
   show.send("/push", 1);
   show.ticks(1);
-  EXPECT_TRUE(show.engine.replays() == false);
+  EXPECT_TRUE(show.engine.is_replaying() == false);
 }
 
 }  // namespace

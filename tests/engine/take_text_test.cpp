@@ -1,4 +1,4 @@
-// The bytes of takes: every number and text comes back as it was, and forms that repeat are short.
+// Binary encoding of takes: round trips are exact, and repeated message headers are short.
 #include "engine/take_text.h"
 
 #include <bit>
@@ -15,45 +15,45 @@ bool same_arg(const Arg& a, const Arg& b) {
          std::bit_cast<std::uint64_t>(a.number) == std::bit_cast<std::uint64_t>(b.number);
 }
 
-TEST(TakeText, NumbersComeBackToTheBit) {
+TEST(TakeText, NumbersRoundTripExactly) {
   std::string text;
-  TakeBytes out(text);
-  TakeForms forms;
+  TakeEncoder out(text);
+  TakeMessageCodec encoder;
   std::vector<double> numbers = {0,           -0.0,  1,       -1,    127,   128,
                                  -64,         1e9,   1e9 - 1, 0.5,   0.1,   double{0.1F},
                                  3e38,        1e300, 5e-324,  1e-40, -2e-7, std::numeric_limits<double>::infinity(),
                                  std::nan("")};
-  for (const double v : numbers) forms.write(out, message("/a", v), {});
-  TakeScan in(text);
-  TakeForms read;
+  for (const double v : numbers) encoder.encode(out, message("/a", v), {});
+  TakeDecoder in(text);
+  TakeMessageCodec decoder;
   for (const double v : numbers) {
     TakeMessage m;
-    ASSERT_TRUE(read.read(in, m)) << v;
+    ASSERT_TRUE(decoder.decode(in, m)) << v;
     ASSERT_EQ(m.message.args.size(), 1u);
     EXPECT_TRUE(same_arg(m.message.args[0], Arg::of(v))) << v;
   }
-  EXPECT_TRUE(in.done());
+  EXPECT_TRUE(in.at_end());
 }
 
-TEST(TakeText, MessagesComeBackWithTheirSenders) {
+TEST(TakeText, MessagesRoundTripWithSenders) {
   const std::vector<Message> messages = {message("/a", 1, "text", true, false, Arg{}),
                                          message("/a", "", std::string(300, 'x')), message("/bb")};
-  const Origin origins[] = {{Hand::osc, 0x7f000001, 4000}, {Hand::panel, 0, 0}};
+  const CommandOrigin origins[] = {{CommandSource::osc, 0x7f000001, 4000}, {CommandSource::panel, 0, 0}};
   std::string text;
-  TakeBytes out(text);
-  TakeForms forms;
+  TakeEncoder out(text);
+  TakeMessageCodec encoder;
   for (int i = 0; i < 3; i++) {
     for (const Message& m : messages) {
-      for (const Origin& origin : origins) forms.write(out, m, origin);
+      for (const CommandOrigin& origin : origins) encoder.encode(out, m, origin);
     }
   }
-  TakeScan in(text);
-  TakeForms read;
+  TakeDecoder in(text);
+  TakeMessageCodec decoder;
   for (int i = 0; i < 3; i++) {
     for (const Message& m : messages) {
-      for (const Origin& origin : origins) {
+      for (const CommandOrigin& origin : origins) {
         TakeMessage taken;
-        ASSERT_TRUE(read.read(in, taken));
+        ASSERT_TRUE(decoder.decode(in, taken));
         EXPECT_EQ(taken.message.address, m.address);
         EXPECT_EQ(taken.origin, origin);
         ASSERT_EQ(taken.message.args.size(), m.args.size());
@@ -61,97 +61,98 @@ TEST(TakeText, MessagesComeBackWithTheirSenders) {
       }
     }
   }
-  EXPECT_TRUE(in.done());
+  EXPECT_TRUE(in.at_end());
 }
 
-TEST(TakeText, AFormStandsOnce) {
+TEST(TakeText, WritesMessageHeadersOnce) {
   std::string text;
-  TakeBytes out(text);
-  TakeForms forms;
+  TakeEncoder out(text);
+  TakeMessageCodec encoder;
   const Message sent = message("/physics/body/arm1/motor/m/target", double{0.3F});
-  forms.write(out, sent, {});
+  encoder.encode(out, sent, {});
   const std::size_t first = text.size();
-  forms.write(out, sent, {});
-  EXPECT_EQ(text.size() - first, 5u) << "its number, and a float";
+  encoder.encode(out, sent, {});
+  EXPECT_EQ(text.size() - first, 5u) << "the number of the header, and a float";
 }
 
-TEST(TakeText, TicksComeBack) {
+TEST(TakeText, TicksRoundTrip) {
   TakeTick tick;
   tick.running = true;
-  tick.runs = {{TakeRun::Kind::scene, true, false, 3, "other.lua"}, {TakeRun::Kind::rerun, false, true, 0, ""}};
-  tick.stopped = {{12, "scripts/a.lua", 7, "stopped"}};
+  tick.runs = {{TakeSceneRun::Kind::scene, true, false, 3, "other.lua"},
+               {TakeSceneRun::Kind::rerun, false, true, 0, ""}};
+  tick.stopped_calls = {{12, "scripts/a.lua", 7, "stopped"}};
   tick.tick = 100000;
-  tick.motion = 0xfedcba9876543210u;
-  tick.state = 5;
+  tick.motion_hash = 0xfedcba9876543210u;
+  tick.state_hash = 5;
   tick.first_body = 32;
-  tick.bodies = {1, 65535};
+  tick.body_hashes = {1, 65535};
   std::string messages;
-  TakeBytes out(messages);
-  TakeForms forms;
-  forms.write(out, message("/a", 1), {});
+  TakeEncoder out(messages);
+  TakeMessageCodec encoder;
+  encoder.encode(out, message("/a", 1), {});
   std::string text;
   append_tick(text, tick, 1, messages);
   TakeTick again;
-  TakeForms read;
-  ASSERT_TRUE(read_tick(text, read, again));
+  TakeMessageCodec decoder;
+  ASSERT_TRUE(read_tick(text, decoder, again));
   ASSERT_EQ(again.runs.size(), 2u);
   EXPECT_EQ(again.runs[0].scene, "other.lua");
-  EXPECT_TRUE(again.runs[0].good && !again.runs[1].good && again.runs[1].again);
+  EXPECT_TRUE(again.runs[0].succeeded && !again.runs[1].succeeded && again.runs[1].reuses_files);
   EXPECT_EQ(again.messages.size(), 1u);
-  ASSERT_EQ(again.stopped.size(), 1u);
-  EXPECT_EQ(again.stopped[0].number, 12u);
-  EXPECT_EQ(again.stopped[0].line, 7);
+  ASSERT_EQ(again.stopped_calls.size(), 1u);
+  EXPECT_EQ(again.stopped_calls[0].number, 12u);
+  EXPECT_EQ(again.stopped_calls[0].line, 7);
   EXPECT_EQ(again.tick, tick.tick);
-  EXPECT_EQ(again.motion, tick.motion);
-  EXPECT_EQ(again.state, tick.state);
-  EXPECT_EQ(again.bodies, tick.bodies);
+  EXPECT_EQ(again.motion_hash, tick.motion_hash);
+  EXPECT_EQ(again.state_hash, tick.state_hash);
+  EXPECT_EQ(again.body_hashes, tick.body_hashes);
   for (std::size_t size = 0; size < text.size(); size++) {
-    TakeForms fresh;
+    TakeMessageCodec fresh;
     EXPECT_FALSE(read_tick(text.substr(0, size), fresh, again)) << size;
   }
 }
 
-TEST(TakeText, ATickTakesTheWholePlaceOfAnother) {
-  TakeForms written;
-  TakeForms read;
+TEST(TakeText, ReadingATickReplacesThePreviousOne) {
+  TakeMessageCodec encoder;
+  TakeMessageCodec decoder;
   const auto bytes = [&](const TakeTick& tick, const std::vector<Message>& messages) {
     std::string sent;
-    TakeBytes out(sent);
-    for (const Message& m : messages) written.write(out, m, {});
+    TakeEncoder out(sent);
+    for (const Message& m : messages) encoder.encode(out, m, {});
     std::string text;
     append_tick(text, tick, messages.size(), sent);
     return text;
   };
   TakeTick full;
   full.running = true;
-  full.runs = {{TakeRun::Kind::scene, true, false, 3, "other.lua"}};
-  full.stopped = {{12, "a.lua", 7, "stopped"}};
-  full.state = 5;
+  full.runs = {{TakeSceneRun::Kind::scene, true, false, 3, "other.lua"}};
+  full.stopped_calls = {{12, "a.lua", 7, "stopped"}};
+  full.state_hash = 5;
   full.first_body = 32;
-  full.bodies = {1, 2};
+  full.body_hashes = {1, 2};
   TakeTick tick;
-  // a text of a console has no address
-  ASSERT_TRUE(read_tick(bytes(full, {message("", "sim.time"), message("/a", "x", 2), message("/b")}), read, tick));
+  // console input has no address
+  ASSERT_TRUE(read_tick(bytes(full, {message("", "sim.time"), message("/a", "x", 2), message("/b")}), decoder, tick));
   ASSERT_EQ(tick.messages.size(), 3U);
   EXPECT_TRUE(tick.messages[0].evaluate);
   EXPECT_EQ(tick.messages[0].message.address, "sim.time");
-  ASSERT_TRUE(read_tick(bytes({}, {message("/b", 1), message("/a", 1)}), read, tick));
+  ASSERT_TRUE(read_tick(bytes({}, {message("/b", 1), message("/a", 1)}), decoder, tick));
   ASSERT_EQ(tick.messages.size(), 2U);
   EXPECT_FALSE(tick.messages[0].evaluate);
   EXPECT_EQ(tick.messages[0].message.address, "/b");
   ASSERT_EQ(tick.messages[1].message.args.size(), 1U);
   EXPECT_TRUE(same_arg(tick.messages[1].message.args[0], Arg::of(1.0)));
-  EXPECT_FALSE(tick.running || tick.state);
-  EXPECT_TRUE(tick.runs.empty() && tick.stopped.empty() && tick.bodies.empty());
+  EXPECT_FALSE(tick.running || tick.state_hash);
+  EXPECT_TRUE(tick.runs.empty() && tick.stopped_calls.empty() && tick.body_hashes.empty());
   EXPECT_EQ(tick.first_body, 0U);
-  ASSERT_TRUE(read_tick(bytes({}, {}), read, tick));
+  ASSERT_TRUE(read_tick(bytes({}, {}), decoder, tick));
   EXPECT_TRUE(tick.messages.empty());
 }
 
-TEST(TakeText, HeadsOfNewerOnesAreRefusedByVersion) {
+TEST(TakeText, RejectsNewerVersions) {
   TakeHeader header;
   header.scene = "a \"b\".lua";
-  const std::string text = head_text(header);
+  const std::string text = header_text(header);
   const std::size_t line = text.find('\n');
   const Result<TakeHeader> read = header_of(text.substr(0, line), text.substr(line + 1));
   ASSERT_TRUE(read.ok());

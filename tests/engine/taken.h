@@ -1,5 +1,5 @@
-// A show of everything that a take must hold (floods, reloads, spawned bodies, stopped scripts, morphs, another scene),
-// recorded by a seed; and its replay.
+// Fixtures for take tests: a session with everything that a take must contain (floods, reloads, spawned bodies, stopped
+// scripts, morphs, a change of the scene), random by a seed; and its replay.
 #pragma once
 
 #include "base/random.h"
@@ -7,7 +7,7 @@
 
 namespace limber::engine_test {
 
-inline constexpr const char* kTakenScene = R"(
+inline constexpr const char* kTakeScene = R"(
 params { { "count", 2, min = 1, max = 3, rerun = true }, { "wind", 0.5, min = 0, max = 2 } }
 local tool = require "tool"
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("ground"))
@@ -32,12 +32,12 @@ osc:on("/gone", function(name) if sim:find_body(name) then sim:body(name):remove
 sim:every(0.25, function() presets:store("now") end)
 --MORE
 )";
-// a run that reads another set of models than the one before
-inline constexpr const char* kTakenBead = R"(<robot name="bead"><link name="bead">
+// for a run that reads another set of models than the previous one
+inline constexpr const char* kTakeBead = R"(<robot name="bead"><link name="bead">
   <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   <collision><geometry><sphere radius="0.1"/></geometry></collision>
 </link></robot>)";
-inline constexpr const char* kTakenSway = R"(return behavior {
+inline constexpr const char* kTakeSway = R"(return behavior {
   params = { { "depth", 0.4, min = 0, max = 1 }, { "hang", false } },
   start = function(self) self.state.phase = 0 end,
   step = function(self, dt)
@@ -47,100 +47,100 @@ inline constexpr const char* kTakenSway = R"(return behavior {
   end,
 }
 )";
-inline constexpr const char* kTakenOther = R"(
+inline constexpr const char* kTakeOtherScene = R"(
 local ball = sim:add_sphere_shape("ball", 0.1)
 for i = 1, 5 do sim:add_body("ball" .. i):add_part("p", ball, { position = vec3(0.01 * i, 0, 0.3 * i) }) end
 osc:on("/push", function(x) sim:body("ball3").parts[1]:apply_impulse(vec3(x, 0, rng:uniform(0, 0.1))) end)
 )";
 
-/// The presets of a file beside a scene; a recall of one brings what the file said when it was read.
-inline std::string taken_presets(const std::string& path, const std::string& values) {
+/// Text of a preset file with the preset "filed".
+inline std::string preset_file_text(const std::string& path, const std::string& values) {
   return fmt::format(R"({{"limber presets": 1, "presets": [{{"name": "filed", "values": {{"{}": {{{}}}}}}}]}})", path,
                      values);
 }
 
-inline void lay_out(const ShowFolder& folder) {
+inline void write_take_scene(const ShowFolder& folder) {
   namespace fs = std::filesystem;
   const fs::path from = fs::path(LIMBER_SOURCE_DIR) / "urdf";
   fs::create_directories(folder.path("urdf"));
   fs::copy(from / "arm6.urdf", folder.path("urdf/arm6.urdf"));
   fs::copy(from / "meshes", folder.path("urdf/meshes"), fs::copy_options::recursive);
-  folder.write("urdf/bead.urdf", kTakenBead);
-  folder.write("scripts/scene.lua", kTakenScene);
-  folder.write("scripts/other.lua", kTakenOther);
-  folder.write("scripts/scene.presets.json", taken_presets("/physics/body/arm1/behavior/sway", "\"depth\": 0.75"));
-  folder.write("scripts/other.presets.json", taken_presets("/physics/body/ball2/part/p", "\"linear_damping\": 0.5"));
+  folder.write("urdf/bead.urdf", kTakeBead);
+  folder.write("scripts/scene.lua", kTakeScene);
+  folder.write("scripts/other.lua", kTakeOtherScene);
+  folder.write("scripts/scene.presets.json", preset_file_text("/physics/body/arm1/behavior/sway", "\"depth\": 0.75"));
+  folder.write("scripts/other.presets.json", preset_file_text("/physics/body/ball2/part/p", "\"linear_damping\": 0.5"));
   folder.write("scripts/lib/tool.lua", "return { depth = 0.3 }\n");
-  folder.write("behaviors_lua/sway.lua", kTakenSway);
+  folder.write("behaviors_lua/sway.lua", kTakeSway);
 }
 
-inline EngineOptions taken_options(const ShowFolder& folder) {
+inline EngineOptions take_options(const ShowFolder& folder) {
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
   options.scene_options.limits.call_ms = 8 * kBudgetScale;
   options.scene_options.seed = 7;
   return options;
 }
 
-/// A line of a console.
+/// Evaluates Lua code as from a console.
 inline void evaluate(Show& show, const std::string& text) {
-  auto wish = std::make_shared<Evaluate>();
-  wish->text = text;
-  wish->answer = [](const Evaluation&) {};
-  show.link.inbox.push({{}, {Hand::console}, std::move(wish)});
+  auto request = std::make_shared<EvaluationRequest>();
+  request->text = text;
+  request->on_result = [](const Evaluation&) {};
+  show.link.command_queue.push({{}, {CommandSource::console}, std::move(request)});
 }
 
-/// What a performer may do, by chance; scripts that never end are among it.
-inline void play_wildly(Show& show, const ShowFolder& folder, int ticks, std::uint64_t seed) {
+/// Sends random inputs of a performer, including scripts that never end.
+inline void play_random_inputs(Show& show, const ShowFolder& folder, int ticks, std::uint64_t seed) {
   Random random(seed, "hands");
-  const auto some = [&](int n) { return static_cast<int>(random.uniform() * n); };
+  const auto random_int = [&](int n) { return static_cast<int>(random.uniform() * n); };
   for (int i = 0; i < ticks; i++) {
-    for (int k = some(6); k > 0; k--) show.send("/push", random.uniform(-0.02, 0.02));
+    for (int k = random_int(6); k > 0; k--) show.send("/push", random.uniform(-0.02, 0.02));
     show.send("/physics/motor/angularspringstiffness", "arm1", random.uniform(0, 20));
-    if (some(20) == 0) show.send("/spawn", fmt::format("extra{}", some(4)));
-    if (some(30) == 0) show.send("/gone", fmt::format("extra{}", some(4)));
-    if (some(40) == 0) show.send("/preset/store", fmt::format("p{}", some(3)));
-    if (some(20) == 0) show.send("/preset/recall", fmt::format("p{}", some(3)), 0.3);
-    if (some(50) == 0) show.send("/preset/recall", "filed", 0.2);
-    if (some(20) == 0)
+    if (random_int(20) == 0) show.send("/spawn", fmt::format("extra{}", random_int(4)));
+    if (random_int(30) == 0) show.send("/gone", fmt::format("extra{}", random_int(4)));
+    if (random_int(40) == 0) show.send("/preset/store", fmt::format("p{}", random_int(3)));
+    if (random_int(20) == 0) show.send("/preset/recall", fmt::format("p{}", random_int(3)), 0.3);
+    if (random_int(50) == 0) show.send("/preset/recall", "filed", 0.2);
+    if (random_int(20) == 0)
       evaluate(show, fmt::format("sim:body('arm1').parts[3]:apply_impulse(rng:direction() * {})", 0.01));
-    if (some(60) == 0) evaluate(show, "sim.gravity.x = sim.nothing");
-    if (some(60) == 0) evaluate(show, "while true do end");
+    if (random_int(60) == 0) evaluate(show, "sim.gravity.x = sim.nothing");
+    if (random_int(60) == 0) evaluate(show, "while true do end");
     if (i % 70 == 11) show.send("/physics/behavior/parameter", "arm1", "sway", "hang", 1);
     if (i % 70 == 25) {
       show.send("/physics/behavior/parameter", "arm1", "sway", "hang", 0);
       show.send("/physics/behavior/parameter", "arm1", "sway", "active", 1);
     }
-    if (some(25) == 0) show.send("/edit/undo");
-    if (some(30) == 0) show.send("/edit/redo");
-    // one that another steps before in the same call
+    if (random_int(25) == 0) show.send("/edit/undo");
+    if (random_int(30) == 0) show.send("/edit/redo");
+    // a behavior that is stepped after another one in the same call
     if (i % 70 == 41) show.send("/physics/behavior/parameter", "arm1", "again", "hang", 1);
     if (i % 70 == 55) {
       show.send("/physics/behavior/parameter", "arm1", "again", "hang", 0);
       show.send("/physics/behavior/parameter", "arm1", "again", "active", 1);
     }
-    if (some(60) == 0) show.send("/scene/count", 1 + some(3));
-    if (some(90) == 0) show.send("/transport/reset");
-    if (some(60) == 0) show.send("/transport/step", 3);
-    if (some(30) == 0) show.send("/transport/play");
+    if (random_int(60) == 0) show.send("/scene/count", 1 + random_int(3));
+    if (random_int(90) == 0) show.send("/transport/reset");
+    if (random_int(60) == 0) show.send("/transport/step", 3);
+    if (random_int(30) == 0) show.send("/transport/play");
     if (i % 40 == 9) show.send("/physics/body/arm1/behavior/again/place", 1 + i % 3);
     if (i % 50 == 17) show.send("/loop", i);
     if (i % 60 == 31) {
       folder.write("scripts/lib/tool.lua",
-                   fmt::format("return {{ depth = {}, more = {} }}\n", 0.1 + 0.01 * some(30), i % 120 == 31));
-      beside(show, [&] { show.engine.reload(); });
+                   fmt::format("return {{ depth = {}, more = {} }}\n", 0.1 + 0.01 * random_int(30), i % 120 == 31));
+      run_while_ticking(show, [&] { show.engine.reload(); });
     }
     show.ticks(1);
   }
 }
 
-/// Records such a show; the hash at its end.
+/// Records such a session; returns the state hash at its end.
 inline std::uint64_t record_take(const ShowFolder& folder, const std::string& take, int ticks, std::uint64_t seed) {
   log_to_stderr(false);
-  EngineOptions options = taken_options(folder);
+  EngineOptions options = take_options(folder);
   options.record = take;
   Show show(options);
-  play_wildly(show, folder, ticks, seed);
-  beside(show, [&] { EXPECT_TRUE(show.engine.change_scene(folder.path("scripts/other.lua")).ok()); });
+  play_random_inputs(show, folder, ticks, seed);
+  run_while_ticking(show, [&] { EXPECT_TRUE(show.engine.change_scene(folder.path("scripts/other.lua")).ok()); });
   for (int i = 0; i < ticks / 10; i++) {
     show.send("/push", 0.01 * i);
     if (i == 3) show.send("/preset/recall", "filed");
@@ -153,13 +153,13 @@ inline std::uint64_t record_take(const ShowFolder& folder, const std::string& ta
   return hash;
 }
 
-struct Replayed {
-  TakeVerdict verdict;
+struct ReplayOutcome {
+  ReplayResult result;
   std::uint64_t hash = 0;
-  std::string error;  ///< Why it did not begin.
+  std::string error;  ///< Why the replay did not start.
 };
 
-inline Replayed replay_take(const std::string& take, bool current_scripts = false) {
+inline ReplayOutcome replay_take(const std::string& take, bool current_scripts = false) {
   log_to_stderr(false);
   EngineLink link;
   EngineOptions options = fast_options();
@@ -168,18 +168,18 @@ inline Replayed replay_take(const std::string& take, bool current_scripts = fals
   Engine engine(link, options);
   if (const Result<void> started = engine.start(); !started) return {{}, 0, started.error()};
   engine.run();
-  return {engine.verdict(), engine.state_hash(), ""};
+  return {engine.replay_result(), engine.state_hash(), ""};
 }
 
-/// The take replays to its end, with this hash.
+/// Expects that the take replays to its end, with this final hash.
 inline void expect_replay(const std::string& take, std::uint64_t hash) {
-  const Replayed again = replay_take(take);
-  EXPECT_EQ(again.error, "");
-  EXPECT_FALSE(again.verdict.parted.has_value()) << text_of(again.verdict);
-  EXPECT_EQ(again.hash, hash);
+  const ReplayOutcome replayed = replay_take(take);
+  EXPECT_EQ(replayed.error, "");
+  EXPECT_FALSE(replayed.result.diverged_at.has_value()) << text_of(replayed.result);
+  EXPECT_EQ(replayed.hash, hash);
 }
 
-inline std::string take_bytes(const std::string& file) {
+inline std::string file_bytes(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }

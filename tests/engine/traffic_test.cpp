@@ -1,4 +1,4 @@
-// What went in and out: kept while somebody watches, bounded, as text for people.
+// The message log: enabled by a watcher, bounded, as readable text.
 #include "engine/traffic.h"
 
 #include <gtest/gtest.h>
@@ -8,47 +8,47 @@
 namespace limber {
 namespace {
 
-TEST(Traffic, IsKeptWhileSomebodyWatches) {
-  Traffic traffic;
-  EXPECT_FALSE(traffic.watched());
+TEST(MessageLog, IsEnabledByAWatcher) {
+  MessageLog message_log;
+  EXPECT_FALSE(message_log.enabled());
   {
-    const Traffic::Watch one(traffic);
-    auto other = std::make_unique<Traffic::Watch>(traffic);
+    const MessageLog::Watch one(message_log);
+    auto other = std::make_unique<MessageLog::Watch>(message_log);
     other.reset();
-    EXPECT_TRUE(traffic.watched());
-    traffic.note(true, "127.0.0.1:5", {"/a", {Arg::of(1.0)}});
-    traffic.note(false, "127.0.0.1:6", {"/b", {}});
+    EXPECT_TRUE(message_log.enabled());
+    message_log.add(true, "127.0.0.1:5", {"/a", {Arg::of(1.0)}});
+    message_log.add(false, "127.0.0.1:6", {"/b", {}});
   }
-  EXPECT_FALSE(traffic.watched());
-  const std::vector<TrafficLine> all = traffic.since(0);
+  EXPECT_FALSE(message_log.enabled());
+  const std::vector<LoggedMessage> all = message_log.since(0);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].number, 1u);
-  EXPECT_TRUE(all[0].in);
-  EXPECT_EQ(all[0].end, "127.0.0.1:5");
-  EXPECT_FALSE(all[1].in);
+  EXPECT_TRUE(all[0].incoming);
+  EXPECT_EQ(all[0].peer, "127.0.0.1:5");
+  EXPECT_FALSE(all[1].incoming);
   EXPECT_LE(all[0].time, all[1].time);
-  EXPECT_EQ(traffic.newest(), 2u);
-  ASSERT_EQ(traffic.since(1).size(), 1u);
-  EXPECT_EQ(traffic.since(1)[0].message.address, "/b");
-  EXPECT_TRUE(traffic.since(2).empty());
+  EXPECT_EQ(message_log.newest(), 2u);
+  ASSERT_EQ(message_log.since(1).size(), 1u);
+  EXPECT_EQ(message_log.since(1)[0].message.address, "/b");
+  EXPECT_TRUE(message_log.since(2).empty());
 }
 
-TEST(Traffic, TheOldestGoWhenThereAreTooMany) {
-  Traffic traffic;
-  for (std::size_t i = 0; i < Traffic::kMostLines + 10; i++) traffic.note(true, "", {"/a", {}});
-  std::vector<TrafficLine> all = traffic.since(0);
-  EXPECT_EQ(all.size(), Traffic::kMostLines);
+TEST(MessageLog, DropsTheOldestEntries) {
+  MessageLog message_log;
+  for (std::size_t i = 0; i < MessageLog::kMaxEntries + 10; i++) message_log.add(true, "", {"/a", {}});
+  std::vector<LoggedMessage> all = message_log.since(0);
+  EXPECT_EQ(all.size(), MessageLog::kMaxEntries);
   EXPECT_EQ(all.front().number, 11u);
   // large messages count by their bytes
   Message large{"/large", {}};
   large.args.assign(5000, Arg::of(1.0));
-  for (int i = 0; i < 100; i++) traffic.note(true, "", large);
-  all = traffic.since(0);
-  EXPECT_LT(all.size() * 5000 * sizeof(Arg), Traffic::kMostBytes + 5000 * sizeof(Arg));
+  for (int i = 0; i < 100; i++) message_log.add(true, "", large);
+  all = message_log.since(0);
+  EXPECT_LT(all.size() * 5000 * sizeof(Arg), MessageLog::kMaxBytes + 5000 * sizeof(Arg));
   EXPECT_GE(all.size(), 10u);
 }
 
-TEST(Traffic, MessagesAsText) {
+TEST(MessageLog, FormatsMessages) {
   EXPECT_EQ(message_text({"/a/b", {}}), "/a/b");
   EXPECT_EQ(message_text({"/m", {Arg::of("arm"), Arg::of(0.3), Arg::of(true), Arg{}}}), "/m arm 0.3 true nil");
   EXPECT_EQ(message_text({"/m", {Arg::of(1.0 / 3), Arg::of(12.0)}}), "/m 0.33333 12");

@@ -1,43 +1,43 @@
-// Urgent requests overtake everything that waits, and act in the next tick; the first second of a panic.
+// Urgent requests overtake all waiting commands and act in the next tick; the first second of a panic.
 #include "engine/taken.h"
 
 namespace limber::engine_test {
 namespace {
 
 constexpr const char* kPanicked = "/physics/sim/panicked";
-constexpr const char* kFaller = R"(
+constexpr const char* kFallingBalls = R"(
 local ball = sim:add_sphere_shape("ball", 0.1)
 for i = 1, 20 do sim:add_body("ball" .. i):add_part("p", ball, { position = vec3(i, 0, 9) }) end
 state.heard = 0
 osc:on("/slow", function() state.heard = state.heard + 1; sim.gravity = vec3(0, 0, -state.heard) end)
 )";
 
-// everything that fits, and more: `messages` patterns that reach every part
+// fills the queue with patterns that match every part
 void flood(Show& show, std::size_t messages) {
   constexpr std::size_t kEach = 64;
   for (std::size_t i = 0; i < messages; i += kEach) {
     Command command;
-    command.origin = {Hand::osc, 0x7f000001, 4000};
+    command.origin = {CommandSource::osc, 0x7f000001, 4000};
     for (std::size_t k = 0; k < kEach; k++)
       command.messages.push_back(message("/physics/body/*/part/{p,q}/mass", 1 + 0.001 * static_cast<double>(i + k)));
-    show.link.inbox.push(std::move(command));
+    show.link.command_queue.push(std::move(command));
   }
 }
 
 // one of many senders
 void send_from(Show& show, std::uint16_t port, Message message) {
-  show.link.inbox.push({{std::move(message)}, {Hand::osc, 0x7f000001, port}});
+  show.link.command_queue.push({{std::move(message)}, {CommandSource::osc, 0x7f000001, port}});
 }
 
-TEST(Urgent, APanicIsInForceAfterOneTickOfAMillionPatterns) {
-  const SceneFile file(kFaller);
+TEST(Urgent, APanicActsAfterOneTickOfAMillionPatterns) {
+  const SceneFile file(kFallingBalls);
   Show show(file.path());
   show.ticks(1);
   flood(show, 1'000'000);
-  while (show.link.inbox.push({{message("/physics/sim/gravity", 1)}, {}})) continue;  // until there is no room
-  const std::uint64_t dropped = show.link.inbox.dropped();
+  while (show.link.command_queue.push({{message("/physics/sim/gravity", 1)}, {}})) continue;  // until the queue is full
+  const std::uint64_t dropped = show.link.command_queue.dropped();
   show.send("/transport/panic");
-  EXPECT_EQ(show.link.inbox.dropped(), dropped);
+  EXPECT_EQ(show.link.command_queue.dropped(), dropped);
   show.ticks(1);
   EXPECT_EQ(show.read(kPanicked), 1);
 }
@@ -53,33 +53,33 @@ TEST(Urgent, APauseActsInTheNextTick) {
 
 TEST(Urgent, TheEndOfATakeActsInTheNextTick) {
   const ShowFolder folder;
-  folder.write("scripts/scene.lua", kFaller);
+  folder.write("scripts/scene.lua", kFallingBalls);
   Show show(fast_options(folder.path("scripts/scene.lua")));
   show.send("/take/record", "one");
   show.ticks(2);
   flood(show, 100'000);
-  show.outbox();
+  show.sent_texts();
   show.send("/take/stop", 0);
   show.ticks(1);
-  EXPECT_TRUE(show.outbox().empty()) << "a button that is released";
+  EXPECT_TRUE(show.sent_texts().empty()) << "a button that is released";
   show.send("/take/stop", 1);
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), std::vector<std::string>{"/take/stopped"});
+  EXPECT_EQ(show.sent_texts(), std::vector<std::string>{"/take/stopped"});
 }
 
-TEST(Urgent, AnyNumberOfSendersFindsRoom) {
+TEST(Urgent, AcceptsAnyNumberOfSenders) {
   Show show;
   for (int i = 0; i < 3000; i++) {
     send_from(show, static_cast<std::uint16_t>(i), message("/transport/pause"));
     send_from(show, static_cast<std::uint16_t>(i), message("/transport/panic"));
     send_from(show, static_cast<std::uint16_t>(i), message("/take/stop"));
   }
-  std::vector<UrgentRequest> lane;
-  show.link.inbox.drain_urgent(lane);
-  EXPECT_LE(lane.size(), CommandInbox::kMostUrgent);
+  std::vector<UrgentRequest> requests;
+  show.link.command_queue.drain_urgent(requests);
+  EXPECT_LE(requests.size(), CommandQueue::kMaxUrgent);
   for (const UrgentKind kind : {UrgentKind::pause, UrgentKind::panic, UrgentKind::take_stop})
-    EXPECT_GT(std::ranges::count(lane, kind, &UrgentRequest::kind), 0);
-  EXPECT_EQ(lane.back().origin.port, 2999);
+    EXPECT_GT(std::ranges::count(requests, kind, &UrgentRequest::kind), 0);
+  EXPECT_EQ(requests.back().origin.port, 2999);
 }
 
 TEST(Urgent, TheSignalIsAPanic) {
@@ -91,7 +91,7 @@ TEST(Urgent, TheSignalIsAPanic) {
   EXPECT_FALSE(show.link.panic_signal);
 }
 
-TEST(Urgent, OlderRequestsThatItOvertakesAreDiscardedAndCounted) {
+TEST(Urgent, DiscardsAndCountsOvertakenRequests) {
   Show show;
   flood(show, 20'000);
   show.send("/transport/play");
@@ -111,10 +111,10 @@ TEST(Urgent, OlderRequestsThatItOvertakesAreDiscardedAndCounted) {
   EXPECT_EQ(show.read("/osc/discarded"), 3);
 }
 
-TEST(Urgent, WithinABundleTheOrderCounts) {
+TEST(Urgent, TheOrderWithinABundleCounts) {
   Show show;
   const auto bundle = [&](std::vector<Message> messages) {
-    show.link.inbox.push({std::move(messages), {Hand::osc, 0x7f000001, 4000}});
+    show.link.command_queue.push({std::move(messages), {CommandSource::osc, 0x7f000001, 4000}});
     show.ticks(1);
   };
   bundle({message("/transport/play"), message("/transport/pause")});
@@ -127,7 +127,7 @@ TEST(Urgent, WithinABundleTheOrderCounts) {
 }
 
 TEST(Urgent, AnOlderResetDoesNotEndAPanic) {
-  const SceneFile file(kFaller);
+  const SceneFile file(kFallingBalls);
   Show show(file.path());
   show.ticks(100);
   flood(show, 2'000);
@@ -140,7 +140,7 @@ TEST(Urgent, AnOlderResetDoesNotEndAPanic) {
   EXPECT_EQ(show.read("/osc/discarded"), 2);
 }
 
-TEST(PanicFirstSecond, AnotherRequestInItIsIgnored) {
+TEST(PanicFirstSecond, IgnoresAnotherRequest) {
   for (const double paused : {0.0, 1.0}) {
     Show show;
     show.send("/physics/sim/paused", paused);
@@ -193,18 +193,18 @@ TEST(PanicFirstSecond, ZeroOfAnyKindDoesNothing) {
   }
 }
 
-// a clock that goes on by so much each time that it is read
-EngineOptions clocked(const std::string& scene, double seconds) {
+// Returns options with a clock that advances by `seconds` each time it is read.
+EngineOptions options_with_clock(const std::string& scene, double seconds) {
   EngineOptions options = fast_options(scene);
   options.fast = false;
   options.clock = [now = 0.0, seconds]() mutable { return now += seconds; };
   return options;
 }
 
-TEST(PanicFirstSecond, ATakeHasItsEnd) {
+TEST(PanicFirstSecond, ATakeRecordsItsEnd) {
   const ShowFolder folder;
-  folder.write("scripts/scene.lua", kFaller);
-  EngineOptions options = clocked(folder.path("scripts/scene.lua"), 0.01);
+  folder.write("scripts/scene.lua", kFallingBalls);
+  EngineOptions options = options_with_clock(folder.path("scripts/scene.lua"), 0.01);
   options.record = folder.path("first.take");
   std::uint64_t hash = 0;
   {
@@ -222,10 +222,10 @@ TEST(PanicFirstSecond, ATakeHasItsEnd) {
   expect_replay(options.record, hash);
 }
 
-// each look at the clock takes 1 ms, so a handler takes 1 ms, and a tick has time for some
-TEST(HandlerBudget, MessagesWaitInOrderAndValuesDoNot) {
-  const SceneFile file(kFaller);
-  Show show(clocked(file.path(), 0.001));
+// each read of the clock takes 1 ms, so a handler takes 1 ms, and a tick has time for some handlers
+TEST(HandlerBudget, MessagesWaitInOrderButValuesActAtOnce) {
+  const SceneFile file(kFallingBalls);
+  Show show(options_with_clock(file.path(), 0.001));
   for (int i = 0; i < 100; i++) show.send("/slow");
   show.send("/physics/sim/substeps", 2);
   show.ticks(1);
@@ -243,17 +243,17 @@ TEST(HandlerBudget, MessagesWaitInOrderAndValuesDoNot) {
   EXPECT_EQ(before, 100) << "all are heard in the end";
 }
 
-TEST(HandlerBudget, AReplayAndARewindHearTheSameInTheSameTick) {
+TEST(HandlerBudget, AReplayAndARewindHandleTheSameMessagesPerTick) {
   const ShowFolder folder;
-  folder.write("scripts/scene.lua", kFaller);
-  EngineOptions options = clocked(folder.path("scripts/scene.lua"), 0.001);
+  folder.write("scripts/scene.lua", kFallingBalls);
+  EngineOptions options = options_with_clock(folder.path("scripts/scene.lua"), 0.001);
   options.record = folder.path("slow.take");
   std::uint64_t hash = 0;
   std::vector<std::uint64_t> hashes(400);
   {
     Show show(options);
     const auto play = [&](int i) {
-      if (i % 40 == 15) {
+      if (i % 40 == 19) {  // some wait at the checkpoint of tick 60
         for (int k = 0; k < 16; k++) show.send("/slow");
       }
       show.ticks(1);
@@ -277,18 +277,18 @@ TEST(HandlerBudget, AReplayAndARewindHearTheSameInTheSameTick) {
   expect_replay(options.record, hash);
 }
 
-TEST(HandlerBudget, MoreThanWaitAreCountedAndMissed) {
-  const SceneFile file(kFaller);
-  Show show(clocked(file.path(), 1));  // no time for any but the first
+TEST(HandlerBudget, MessagesBeyondTheQueueAreDroppedAndCounted) {
+  const SceneFile file(kFallingBalls);
+  Show show(options_with_clock(file.path(), 1));  // no time for any but the first
   Command command;
-  for (std::size_t i = 0; i < HandlerQueue::kMost + 100; i++) command.messages.push_back(message("/slow"));
-  show.link.inbox.push(std::move(command));
+  for (std::size_t i = 0; i < HandlerQueue::kMaxEntries + 100; i++) command.messages.push_back(message("/slow"));
+  show.link.command_queue.push(std::move(command));
   show.ticks(1);
   EXPECT_EQ(show.read("/osc/unheard"), 100);
 }
 
 TEST(FailedHandler, IsReportedOnceAndEnabledByASave) {
-  Edited edited("osc:on('/fails', function() nothing() end)\nosc:on('/works', function() osc:reply('/yes') end)\n");
+  EditedShow edited("osc:on('/fails', function() nothing() end)\nosc:on('/works', function() osc:reply('/yes') end)\n");
   Show& show = edited.show();
   const auto faults = [&] {
     std::size_t count = 0;
@@ -296,10 +296,10 @@ TEST(FailedHandler, IsReportedOnceAndEnabledByASave) {
       show.send("/fails");
       show.send("/works");
       show.ticks(1);
-      const std::vector<std::string> said = show.outbox();
-      EXPECT_EQ(std::ranges::count(said, "/yes"), 1);
+      const std::vector<std::string> messages = show.sent_texts();
+      EXPECT_EQ(std::ranges::count(messages, "/yes"), 1);
       count += static_cast<std::size_t>(
-          std::ranges::count_if(said, [](const std::string& line) { return line.starts_with("/script/error"); }));
+          std::ranges::count_if(messages, [](const std::string& line) { return line.starts_with("/script/error"); }));
     }
     return count;
   };
@@ -311,8 +311,8 @@ TEST(FailedHandler, IsReportedOnceAndEnabledByASave) {
   EXPECT_EQ(faults(), 1u) << "it fails still";
 }
 
-// takes of before have handlers that are called again after they failed
-TEST(FailedHandler, ATakeOfBeforeCallsItAgain) {
+// in replays of older takes, handlers are called again after they failed
+TEST(FailedHandler, AnOlderTakeCallsItAgain) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", "osc:on('/fails', function() nothing() end)\n");
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
@@ -327,7 +327,7 @@ TEST(FailedHandler, ATakeOfBeforeCallsItAgain) {
     show.engine.end_take();
     show.engine.finish_saving();
   }
-  std::string bytes = take_bytes(options.record);
+  std::string bytes = file_bytes(options.record);
   const std::string rules = ",\"rules\":1";
   const std::size_t at = bytes.find(rules);
   ASSERT_NE(at, std::string::npos);
@@ -344,23 +344,23 @@ TEST(FailedHandler, ATakeOfBeforeCallsItAgain) {
   }
 }
 
-TEST(StepAndGet, AQuestionBehindAStepIsAnsweredAfterItsTicks) {
+TEST(StepAndGet, AQueryAfterAStepIsAnsweredAfterItsTicks) {
   Show show;
   show.send("/transport/pause");
   show.ticks(1);
-  show.outbox();
+  show.sent_texts();
   show.send("/transport/step", 3);
   show.send("/get", "/physics/sim/tick");
   send_from(show, 4001, message("/get", "/physics/sim/tick"));
   show.ticks(6);
-  EXPECT_EQ(show.outbox(), (std::vector<std::string>{"/physics/sim/tick 0", "/physics/sim/tick 3"}))
+  EXPECT_EQ(show.sent_texts(), (std::vector<std::string>{"/physics/sim/tick 0", "/physics/sim/tick 3"}))
       << "another sender's is answered at once";
   show.send("/transport/step", 100);
   show.send("/get", "/physics/sim/tick");
   show.ticks(10);
   show.send("/transport/pause");
   show.ticks(1);
-  EXPECT_EQ(show.outbox(), std::vector<std::string>{"/physics/sim/tick 13"}) << "no step is left";
+  EXPECT_EQ(show.sent_texts(), std::vector<std::string>{"/physics/sim/tick 13"}) << "no step is left";
 }
 
 }  // namespace

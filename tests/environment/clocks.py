@@ -1,4 +1,4 @@
-"""Clocks of the wall that are wrong, jump, or run at another speed (libfaketime)."""
+"""Wall clocks that are wrong, jump, or run at another speed (libfaketime)."""
 import glob
 import time
 
@@ -20,15 +20,15 @@ def add(name, text, expected="the same hash, and the take replays"):
     @row(GROUP, name, expected)
     def play(place):
         show, _ = with_clock(place, lambda e: place.play(environment=e), text)
-        return place.whole(show) + ", " + place.replays()
+        return place.expect_end(show) + ", " + place.replays()
 
 
 add("it is 1970", "@1970-01-01 00:00:10")
 add("it is 1901 (before the epoch)", "@1901-12-14 00:00:00")
-add("it is 2038-01-19, two seconds before 32 bits end", "@2038-01-19 03:14:06")
+add("it is 2038-01-19, two seconds before 32-bit time ends", "@2038-01-19 03:14:06")
 add("it is 2262", "@2262-04-11 00:00:00")
 add("the clock runs ten times as fast", "+0 x10")
-add("the clock stands still", "2026-01-01 00:00:00")
+add("the clock is stopped", "2026-01-01 00:00:00")
 
 
 def add_jump(name, before, after):
@@ -38,7 +38,7 @@ def add_jump(name, before, after):
         show.tick(30)
         file.write_text(after + "\n")
         show.tick(60)
-        return place.whole(show) + ", " + place.replays()
+        return place.expect_end(show) + ", " + place.replays()
 
 
 add_jump("the clock jumps a day ahead", "+0", "+1d")
@@ -53,4 +53,4 @@ def slept(place):
     show.signal(signal.SIGSTOP)
     time.sleep(2)
     show.signal(signal.SIGCONT)
-    return place.whole(show)
+    return place.expect_end(show)

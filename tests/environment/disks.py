@@ -1,4 +1,4 @@
-"""Disks that are full or vanish, files that are not what their name says, and links."""
+"""Full disks, folders that disappear, special files in place of regular ones, and links."""
 import os
 import pathlib
 import shutil
@@ -9,17 +9,17 @@ from place import SCENE, expect, row, until
 GROUP = "Disks, files and links"
 
 
-@row(GROUP, "a full disk under the take", "plays to its end with the same hash; the take is reported, once")
+@row(GROUP, "a full disk for the take", "plays to its end with the same hash; the take is reported, once")
 def take_full(place):
     folder = place.folder / "tmp/disk"
     folder.mkdir()
     show = place.play(take=folder / "a.take", disk=(folder, 8, 8))
-    seen = place.whole(show, take=False, says="a.take", code=show.end())
-    expect(show.err.count("a.take") == 1, f"said {show.err.count('a.take')} times")
+    seen = place.expect_end(show, take=False, says="a.take", code=show.end())
+    expect(show.err.count("a.take") == 1, f"reported {show.err.count('a.take')} times")
     return seen
 
 
-@row(GROUP, "a disk that is full after the first second of a take", "plays to its end with the same hash; the take is "
+@row(GROUP, "a disk that fills up after the first second of a take", "plays to its end with the same hash; the take is "
      "reported, and replays as far as it goes")
 def take_grows(place):
     folder = place.folder / "tmp/disk"
@@ -28,21 +28,21 @@ def take_grows(place):
     client = show.osc()
     for i in range(3000):
         client.send("/heard", i)
-        if "the disk takes no more" in show.err:
+        if "writing failed" in show.err:
             break
         if i % 20 == 0:
             until("ticks", lambda: client.ping() or show.gone())
-    show.wait_for("the disk takes no more")
+    show.wait_for("writing failed")
     copy = place.folder / "tmp/copy.take"
     shutil.copy(place.inside(show, folder / "a.take"), copy)
     place.own(copy)
     expect(show.end() == 0, f"exit code {show.code}")
     done = place.run("--replay", copy, "--fast", "--headless")
-    expect("every hash is the take's" in done.err, f"replay: {done.code} {done.err[-300:]}")
+    expect("all hashes match the take" in done.err, f"replay: {done.code} {done.err[-300:]}")
     return "exit code 0, the take ends there and replays"
 
 
-@row(GROUP, "a full disk under presets and recovery files", "plays to its end with the same hash; both are reported")
+@row(GROUP, "a full disk for presets and recovery files", "plays to its end with the same hash; both are reported")
 def state_full(place):
     folder = place.folder / "tmp/disk"
     folder.mkdir()
@@ -60,13 +60,13 @@ def state_full(place):
     return f"exit code 0; \"{place.short(line)}\""
 
 
-@row(GROUP, "the show's folder can't be written", "plays to its end with the same hash; a preset that can't be kept is reported")
+@row(GROUP, "the show's folder can't be written", "plays to its end with the same hash; a preset that can't be saved is reported")
 def read_only(place):
     place.show_folder.chmod(0o555)
     show = place.play()
     client = show.osc()
     client.send("/preset/store", "kept")
-    return place.whole(show, says="Permission denied|can't be written")
+    return place.expect_end(show, says="Permission denied|can't be written")
 
 
 @row(GROUP, "the show's folder is deleted while it plays", "plays to its end with the same hash")
@@ -74,7 +74,7 @@ def folder_gone(place):
     show = place.play()
     show.tick(20)
     shutil.rmtree(place.show_folder)
-    return place.whole(show)
+    return place.expect_end(show)
 
 
 @row(GROUP, "the show's folder is replaced by another release", "the new scene plays")
@@ -92,7 +92,7 @@ def folder_replaced(place):
     return "it plays; exit code 0 at SIGINT"
 
 
-@row(GROUP, "the scene is deleted while it plays, and comes back", "plays on; the scene that comes back runs")
+@row(GROUP, "the scene is deleted while it plays, then restored", "plays on; the restored scene runs")
 def scene_gone(place):
     show = place.play(ticks=None)
     show.tick(20)
@@ -109,7 +109,7 @@ def add_scene(name, make, expected="plays on with the same hash; reported"):
         show = place.play()
         show.tick(20)
         make(place.scene)
-        return place.whole(show)
+        return place.expect_end(show)
 
 
 def replaced(path, make):
@@ -118,7 +118,7 @@ def replaced(path, make):
 
 
 add_scene("an empty folder", lambda p: replaced(p, lambda q: q.mkdir()))
-add_scene("a named pipe that nobody writes to", lambda p: replaced(p, os.mkfifo))
+add_scene("a named pipe without a writer", lambda p: replaced(p, os.mkfifo))
 add_scene("a link to /dev/zero", lambda p: replaced(p, lambda q: q.symlink_to("/dev/zero")))
 add_scene("a link to itself", lambda p: replaced(p, lambda q: q.symlink_to(q)))
 add_scene("a file that can't be read", lambda p: p.chmod(0))
@@ -127,14 +127,14 @@ add_scene("half a file", lambda p: p.write_text(SCENE[:len(SCENE) // 2 + 3]))
 
 
 def add_preset_file(name, make, says):
-    @row(GROUP, f"its file of presets is {name}", "plays to its end with the same hash; reported, and left as it is")
+    @row(GROUP, f"its file of presets is {name}", "plays to its end with the same hash; reported, and the file is unchanged")
     def play(place):
         file = place.show_folder / "scene.presets.json"
         outside = place.write("home/outside.txt", "mine\n")
         make(file, outside)
         show = place.play()
         show.osc().send("/preset/store", "kept")
-        seen = place.whole(show, says=says)
+        seen = place.expect_end(show, says=says)
         expect(outside.read_text() == "mine\n", "a file outside was overwritten")
         expect(file.is_symlink() or not file.is_file(), "it was replaced")
         return seen
@@ -156,7 +156,7 @@ def takes_link(place):
     answer = show.osc().ask("/take/record")
     expect(answer and answer[0] == "/error" and "link" in answer[1][1], f"answered {answer}")
     expect(not list(outside.iterdir()), "a take was written outside")
-    return place.whole(show, take=False) + f"; answered \"{answer[1][1]}\""
+    return place.expect_end(show, take=False) + f"; answered \"{answer[1][1]}\""
 
 
 @row(GROUP, "a recovery file that is a named pipe", "plays to its end with the same hash; reported")
@@ -174,7 +174,7 @@ def recovery_pipe(place):
             if not name.exists():
                 os.mkfifo(name)
                 place.own(name)
-    return place.whole(place.play(take=False), take=False)
+    return place.expect_end(place.play(take=False), take=False)
 
 
 @row(GROUP, "two programs play one show", "the second reports it, and writes neither presets nor recovery files")
@@ -183,7 +183,7 @@ def two(place):
     first.tick(5)
     second = place.play()
     second.wait_for("another")
-    seen = place.whole(second, says="another")
+    seen = place.expect_end(second, says="another")
     expect(first.end(2) == 0, f"the first ended with {first.code}")
     return seen
 
@@ -198,10 +198,10 @@ def killed(place):
     show.end(9)
     done = place.run("--replay", place.folder / "tmp/show.take", "--fast", "--headless")
     expect(done.code == 0, f"replay: {done.err[-300:]}")
-    return place.whole(place.play(take=False), take=False, says="--recover")
+    return place.expect_end(place.play(take=False), take=False, says="--recover")
 
 
-@row(GROUP, "a console socket that a crashed program left", "plays with a console of its own")
+@row(GROUP, "a console socket left by a crashed program", "plays with its own console")
 def stale_socket(place):
     stale = socket.socket(socket.AF_UNIX)
     stale.bind(f"{place.folder}/run/limber-1.sock")
@@ -209,4 +209,4 @@ def stale_socket(place):
     place.own(pathlib.Path(f"{place.folder}/run/limber-1.sock"))
     show = place.play()
     show.tick(10)
-    return place.whole(show)
+    return place.expect_end(show)

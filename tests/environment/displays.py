@@ -1,4 +1,4 @@
-"""Displays that are missing, lost or odd, and keyboards of several countries."""
+"""Displays that are missing, lost or unusual, and keyboard layouts of several countries."""
 import os
 import signal
 import subprocess
@@ -10,7 +10,7 @@ GROUP = "Displays"
 
 
 class Display:
-    """An X server without a screen, and a window's environment."""
+    """An X server without a screen, and the environment variables of programs that use it."""
 
     def __init__(self, place, screen="640x480x24"):
         reading, writing = os.pipe()
@@ -45,22 +45,22 @@ def windowed(place, display, **how):
 
 @row(GROUP, "a window", "the same hash")
 def window(place):
-    return place.whole(windowed(place, Display(place)))
+    return place.expect_end(windowed(place, Display(place)))
 
 
 @row(GROUP, "DISPLAY is not set", "the same hash, without a window")
 def none(place):
-    return place.whole(place.play(window=True))
+    return place.expect_end(place.play(window=True))
 
 
-@row(GROUP, "DISPLAY names no display", "the same hash, without a window")
+@row(GROUP, "DISPLAY is invalid", "the same hash, without a window")
 def wrong(place):
-    return place.whole(place.play(window=True, environment={**place.environment, "DISPLAY": ":9999"}))
+    return place.expect_end(place.play(window=True, environment={**place.environment, "DISPLAY": ":9999"}))
 
 
-@row(GROUP, "WAYLAND_DISPLAY names no display", "the same hash, without a window")
+@row(GROUP, "WAYLAND_DISPLAY is invalid", "the same hash, without a window")
 def wayland(place):
-    return place.whole(place.play(window=True, environment={**place.environment, "WAYLAND_DISPLAY": "none"}))
+    return place.expect_end(place.play(window=True, environment={**place.environment, "WAYLAND_DISPLAY": "none"}))
 
 
 @row(GROUP, "the display server is killed", "plays on to its end with the same hash; reported")
@@ -70,7 +70,7 @@ def killed(place):
     display.window()
     show.tick(30)
     display.process.kill()
-    return place.whole(show, says="display")
+    return place.expect_end(show, says="display")
 
 
 @row(GROUP, "the display server hangs for a second", "plays on to its end with the same hash")
@@ -82,7 +82,7 @@ def hangs(place):
     display.process.send_signal(signal.SIGSTOP)
     time.sleep(1)
     display.process.send_signal(signal.SIGCONT)
-    return place.whole(show)
+    return place.expect_end(show)
 
 
 @row(GROUP, "the display server hangs until the end", "plays on; ends at SIGTERM")
@@ -104,13 +104,13 @@ def window_killed(place):
     window = display.window()
     show.tick(20)
     display.tool("xdotool", "windowkill", window)
-    return place.whole(show)
+    return place.expect_end(show)
 
 
 def add_screen(name, screen):
     @row(GROUP, f"a screen of {name}", "the same hash")
     def play(place):
-        return place.whole(windowed(place, Display(place, screen)))
+        return place.expect_end(windowed(place, Display(place, screen)))
 
 
 add_screen("16 bits", "640x480x16")
@@ -123,7 +123,7 @@ def no_driver(place):
     display = Display(place)
     display.environment.update(LIBGL_DRIVERS_PATH="/nonexistent", GBM_BACKENDS_PATH="/nonexistent",
                                __EGL_VENDOR_LIBRARY_DIRS="/nonexistent", __GLX_VENDOR_LIBRARY_NAME="none")
-    return place.whole(windowed(place, display))
+    return place.expect_end(windowed(place, display))
 
 
 KEYBOARDS = "Keyboards"

@@ -1,4 +1,4 @@
-"""Limits of the system, and an environment without what programs expect."""
+"""Resource limits of the system, and unusual process environments."""
 import os
 import resource
 import subprocess
@@ -9,8 +9,8 @@ from place import expect, row
 GROUP = "Limits"
 
 
-def plays_or_says(place, show, says):
-    """Either the same hash, or exit code 3 and this message."""
+def plays_or_fails(place, show, says):
+    """Expects either the same hash, or exit code 3 and this message."""
     code = show.end()
     if code == 0:
         expect(place.hash_of(show) == place.hash_expected, "another hash")
@@ -22,12 +22,12 @@ def plays_or_says(place, show, says):
 def add_limit(name, limits, says, expected):
     @row(GROUP, name, expected)
     def play(place):
-        return plays_or_says(place, place.play(limits=limits), says)
+        return plays_or_fails(place, place.play(limits=limits), says)
 
 
 FEW = "plays with the same hash, or exit code 3 and a message that names the limit"
-for most in (5, 8, 12, 16, 20, 24, 32, 64):
-    add_limit(f"{most} file descriptors", [(resource.RLIMIT_NOFILE, most)], "more files and sockets can be opened", FEW)
+for count in (5, 8, 12, 16, 20, 24, 32, 64):
+    add_limit(f"{count} file descriptors", [(resource.RLIMIT_NOFILE, count)], "more files and sockets can be opened", FEW)
 add_limit("a stack of 64 KiB", [(resource.RLIMIT_STACK, 65536)], "stack is limited", FEW)
 add_limit("a stack of 256 KiB", [(resource.RLIMIT_STACK, 262144)], "stack is limited", FEW)
 for megabytes in (64, 128, 256, 1024):
@@ -36,9 +36,9 @@ add_limit("no locked memory, no real-time priority, no core files",
           [(resource.RLIMIT_MEMLOCK, 0), (resource.RLIMIT_RTPRIO, 0), (resource.RLIMIT_CORE, 0)], "-", "the same hash")
 
 
-@row(GROUP, "no process or thread more", "exit code 3 and a message")
+@row(GROUP, "no more processes or threads", "exit code 3 and a message")
 def threads(place):
-    return plays_or_says(place, place.play(limits=[(resource.RLIMIT_NPROC, 1)]), "thread")
+    return plays_or_fails(place, place.play(limits=[(resource.RLIMIT_NPROC, 1)]), "thread")
 
 
 @row(GROUP, "files of at most 1 KiB (SIGXFSZ)", "plays to its end; the take that does not fit is reported")
@@ -68,7 +68,7 @@ def add_environment(name, change, expected="the same hash", **how):
     def play(place):
         environment = dict(place.environment)
         change(environment)
-        return place.whole(place.play(environment=environment, **how))
+        return place.expect_end(place.play(environment=environment, **how))
 
 
 add_environment("an empty environment", lambda e: e.clear())
@@ -79,7 +79,7 @@ add_environment("XDG_RUNTIME_DIR does not exist", lambda e: e.update(XDG_RUNTIME
 add_environment("XDG_RUNTIME_DIR unset", lambda e: e.pop("XDG_RUNTIME_DIR"))
 add_environment("TMPDIR does not exist", lambda e: e.update(TMPDIR="/nonexistent/tmp"))
 add_environment("a locale that does not exist", lambda e: e.update(LC_ALL="xx_YY.UTF-16", LANG="zz"))
-add_environment("TZ is nonsense", lambda e: e.update(TZ=":\x01/../../etc/passwd"))
+add_environment("TZ is invalid", lambda e: e.update(TZ=":\x01/../../etc/passwd"))
 add_environment("standard input is endless (/dev/zero)", lambda e: None, into=os.open("/dev/zero", os.O_RDONLY))
 add_environment("standard input is closed", lambda e: None, closed=[0])
 add_environment("umask 0777", lambda e: None, umask=0o777, take=False)
@@ -88,22 +88,22 @@ add_environment("one processor", lambda e: None, before=["taskset", "-c", "0"])
 add_environment("the batch scheduler", lambda e: None, before=["chrt", "--batch", "0"])
 
 
-@row(GROUP, "a runtime folder whose path is too long for a socket", "the same hash; the missing console is reported")
+@row(GROUP, "a runtime folder with a path too long for a socket", "the same hash; the missing console is reported")
 def long_path(place):
     folder = place.folder / "run" / ("d" * 100)
     folder.mkdir(mode=0o700)
     place.own(folder)
-    return place.whole(place.play(environment={**place.environment, "XDG_RUNTIME_DIR": str(folder)}), says="console")
+    return place.expect_end(place.play(environment={**place.environment, "XDG_RUNTIME_DIR": str(folder)}), says="console")
 
 
 @row(GROUP, "its working folder has been deleted", "the same hash")
 def no_folder(place):
-    gone = place.folder / "tmp/gone"
-    gone.mkdir()
-    place.own(gone)
+    folder = place.folder / "tmp/gone"
+    folder.mkdir()
+    place.own(folder)
     show = place.start("-c", 'rmdir "$PWD"; exec "$0" play "$1" --headless --osc-in off --query off --osc-out off '
-                       '--ticks 150 --hash', place.program, place.scene, program="sh", cwd=gone)
-    return place.whole(show, take=False)
+                       '--ticks 150 --hash', place.program, place.scene, program="sh", cwd=folder)
+    return place.expect_end(show, take=False)
 
 
 @row(GROUP, "a busy machine: two endless programs at normal priority", "the same hash")
@@ -112,4 +112,4 @@ def busy(place):
     for other in others:
         place.later(other.wait)
         place.later(other.kill)
-    return place.whole(place.play())
+    return place.expect_end(place.play())

@@ -13,7 +13,7 @@ GROUP = "Networks"
 
 
 def while_playing(name, send, expected="plays to its end with the same hash, and answers"):
-    """A row: send(show, client) while it plays."""
+    """Adds a row that calls send(show, client) while the show plays."""
     @row(GROUP, name, expected)
     def play(place):
         show = place.play(take=False)
@@ -21,7 +21,7 @@ def while_playing(name, send, expected="plays to its end with the same hash, and
         expect(client.ping(), "no answer before")
         send(show, client)
         expect(show.gone() or client.ping(), "no answer afterwards")
-        return place.whole(show, take=False)
+        return place.expect_end(show, take=False)
 
 
 def noise(show, client):
@@ -56,7 +56,7 @@ def patterns(show, client):
         client.raw(burst)
 
 
-def questions(show, client):
+def queries(show, client):
     for _ in range(3000):
         client.send("/physics/body/*/part/*/position")
 
@@ -90,11 +90,11 @@ while_playing("3000 damaged OSC messages", broken_osc)
 while_playing("5000 messages for addresses that do not exist", unknown)
 while_playing("20 000 messages for a script", heard)
 while_playing("50 000 patterns in bundles", patterns)
-while_playing("3000 questions with patterns", questions)
+while_playing("3000 queries with patterns", queries)
 while_playing("1000 empty datagrams", zero_length)
 while_playing("50 messages of 65 000 bytes", largest)
 while_playing("20 bundles, nested as deep as a datagram allows", nested)
-while_playing("300 subscriptions of one sender", subscriptions)
+while_playing("300 subscriptions by one sender", subscriptions)
 
 
 @row(GROUP, "/transport/panic in 20 000 messages", "panic while they arrive, and the take replays")
@@ -111,7 +111,7 @@ def panic(place):
     return "panicked; " + place.replays()
 
 
-@row(GROUP, "its OSC port is taken", "exit code 3 and a message")
+@row(GROUP, "its OSC port is in use", "exit code 3 and a message")
 def taken(place):
     other = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     other.bind(("127.0.0.1", 0))
@@ -123,31 +123,31 @@ def taken(place):
     return f"exit code 3; \"{place.short(show.err.strip().splitlines()[-1])}\""
 
 
-@row(GROUP, "its OSC port is taken, --osc-optional", "plays to its end with the same hash; reported")
+@row(GROUP, "its OSC port is in use, --osc-optional", "plays to its end with the same hash; reported")
 def taken_optional(place):
     other = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     other.bind(("127.0.0.1", 0))
     place.later(other.close)
     show = place.start("play", place.scene, "--headless", "--osc-in", f"127.0.0.1:{other.getsockname()[1]}", "--osc-out", "off",
                        "--query", "off", "--ticks", "150", "--hash", "--osc-optional")
-    return place.whole(show, take=False, says="already in use")
+    return place.expect_end(show, take=False, says="already in use")
 
 
-@row(GROUP, "the receiver of its streams does not exist", "the same hash")
-def nobody(place):
+@row(GROUP, "the receiver of its streams doesn't exist", "the same hash")
+def no_receiver(place):
     probe = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     probe.bind(("127.0.0.1", 0))
     port = probe.getsockname()[1]
     probe.close()
-    return place.whole(place.play("--osc-out", f"127.0.0.1:{port}"))
+    return place.expect_end(place.play("--osc-out", f"127.0.0.1:{port}"))
 
 
 @row(GROUP, "a receiver's name can't be resolved", "the same hash; reported")
 def unresolved(place):
-    return place.whole(place.play("--osc-out", "no-such-host.invalid:9005"), says="no-such-host")
+    return place.expect_end(place.play("--osc-out", "no-such-host.invalid:9005"), says="no-such-host")
 
 
-@row(GROUP, "a network of its own without any interface up", "the same hash, or exit code 3 and a message")
+@row(GROUP, "a separate network without active interfaces", "the same hash, or exit code 3 and a message")
 def no_interface(place):
     show = place.start("play", place.scene, "--headless", "--osc-in", "127.0.0.1:0", "--osc-out", "127.0.0.1:9005", "--query",
                        "127.0.0.1:0", "--ticks", "150", "--hash", before=["unshare", "-Urn"])
@@ -167,14 +167,14 @@ def web_row(name, act, expected="plays to its end with the same hash; a page is 
     def play(place):
         show = place.play(ticks=400)
         port = web_port(show)
-        kept = act(port)
+        sockets = act(port)
         page = socket.create_connection(("127.0.0.1", port), timeout=30, source_address=("127.0.0.3", 0))
         page.sendall(f"GET /transport HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nConnection: close\r\n\r\n".encode())
         page.settimeout(30)
         got = page.recv(64)
         expect(got.startswith(b"HTTP/1.1 200"), f"no page: {got[:60]}")
         page.close()
-        for one in kept:
+        for one in sockets:
             one.close()
         expect(show.end() == 0, f"exit code {show.code}: {show.err[-300:]}")
         return "a page was served; exit code 0, " + place.replays()
@@ -234,9 +234,9 @@ def noise_http(port):
     return []
 
 
-web_row("300 idle connections of one address to its web server", connections)
-web_row("100 requests that never end", half_requests)
+web_row("300 idle connections from one address to its web server", connections)
+web_row("100 incomplete requests", half_requests)
 web_row("500 connections that are reset", resets)
-web_row("300 WebSockets of one address", websockets)
+web_row("300 WebSockets from one address", websockets)
 web_row("20 WebSockets that subscribe and never read", unread_websockets)
-web_row("300 connections of random bytes", noise_http)
+web_row("300 connections with random bytes", noise_http)

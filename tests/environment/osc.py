@@ -1,4 +1,4 @@
-"""OSC and WebSocket messages, as far as these rows need them."""
+"""A minimal OSC and WebSocket client for these rows."""
 import base64
 import os
 import socket
@@ -26,7 +26,7 @@ def bundle(messages):
 
 
 def decoded(data):
-    """(address, arguments); of a bundle, its first message."""
+    """Returns (address, arguments) of a message, or of the first message of a bundle."""
     while data.startswith(b"#bundle"):
         data = data[20:]
 
@@ -67,7 +67,7 @@ class Client:
             pass
 
     def ask(self, address, *arguments, tries=200):
-        """Sends it until an answer comes."""
+        """Sends the message repeatedly until a reply arrives."""
         for _ in range(tries):
             self.send(address, *arguments)
             self.socket.settimeout(0.3)
@@ -106,7 +106,7 @@ class WebSocket:
         self.open = answer.startswith(b"HTTP/1.1 101")
 
     def send(self, data, kind=2):
-        """One masked frame; kind 2: OSC, 1: text."""
+        """Sends one masked frame; kind 2: OSC, 1: text."""
         length = len(data)
         head = bytes([0x80 | kind])
         head += bytes([0x80 | length]) if length < 126 else bytes([0x80 | 126]) + struct.pack(">H", length)

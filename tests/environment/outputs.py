@@ -1,4 +1,4 @@
-"""Outputs that are full, closed, slow or not read, each as standard output, standard error, and both."""
+"""Outputs that are full, closed, slow or unread: as standard output, standard error, and both."""
 import os
 import pty
 import signal
@@ -49,13 +49,13 @@ def hung_up(place):
     return slave
 
 
-# a result waits for its reader, as that of any program does; a signal ends the waiting
+# writing a result blocks until it is read, as in any program; a signal ends the wait
 WAITS = None
-# what it is, how it is made, the exit code where it is standard output
+# description, factory, exit code if it is standard output
 KINDS = [
     ("full (/dev/full)", full, 3),
-    ("an unread pipe without room", unread, WAITS),
-    ("a pipe whose reader has left", reader_left, 0),
+    ("a full, unread pipe", unread, WAITS),
+    ("a pipe with a closed reader", reader_left, 0),
     ("a pipe that is read slowly", slow, 0),
     ("a terminal stopped by Ctrl+S", stopped, WAITS),
     ("a terminal that hung up", hung_up, 3),
@@ -63,12 +63,12 @@ KINDS = [
 
 
 def add(kind, make, code, names):
-    what = " and ".join({"out": "standard output", "err": "standard error"}[n] for n in names)
-    lost = ""
+    streams = " and ".join({"out": "standard output", "err": "standard error"}[n] for n in names)
+    note = ""
     if "out" in names and code != 0:
-        lost = "; the hash can't be printed: exit code 3" if code else "; the hash waits until SIGTERM: exit code 3"
+        note = "; the hash can't be printed: exit code 3" if code else "; the hash waits until SIGTERM: exit code 3"
 
-    @row(GROUP, f"{what}: {kind}", f"plays to its end with the same hash{lost}")
+    @row(GROUP, f"{streams}: {kind}", f"plays to its end with the same hash{note}")
     def play(place):
         target = make(place)
         show = place.play(**{name: target for name in names})
@@ -78,8 +78,8 @@ def add(kind, make, code, names):
             until("a whole take", lambda: f"hash {place.hash_expected}" in place.run("take", "info", take).out)
             expect(not show.gone(), "it did not wait")
             show.signal(signal.SIGTERM)
-            return place.whole(show, code=3)
-        return place.whole(show, code=code if "out" in names else 0)
+            return place.expect_end(show, code=3)
+        return place.expect_end(show, code=code if "out" in names else 0)
 
 
 for kind, make, code in KINDS:
@@ -91,7 +91,7 @@ def add_closed(names, numbers, code):
     @row(GROUP, f"{names}: closed", "plays to its end with the same hash" + (
         "; the hash can't be printed: exit code 3" if code else ""))
     def play(place):
-        return place.whole(place.play(closed=numbers), code=code)
+        return place.expect_end(place.play(closed=numbers), code=code)
 
 
 add_closed("standard output", [1], 3)
@@ -99,7 +99,7 @@ add_closed("standard error", [2], 0)
 add_closed("standard input, output and error", [0, 1, 2], 3)
 
 
-@row(GROUP, "both on a full disk, which has room again later", "plays to its end with the same hash; the log goes on")
+@row(GROUP, "both on a full disk that has space again later", "plays to its end with the same hash; the log continues")
 def disk_full_for_a_while(place):
     folder = place.folder / "tmp/disk"
     folder.mkdir()
@@ -112,9 +112,9 @@ def disk_full_for_a_while(place):
     log = place.inside(show, folder / "log").read_text(errors="replace")
     show.place.shows.remove(show)
     expect(show.end() == 0, f"exit code {show.code}")
-    expect("step" in log, f"its log did not go on: {log[-200:]}")
+    expect("step" in log, f"its log did not continue: {log[-200:]}")
     place.replays()
-    return "exit code 0, the log went on, the take replays"
+    return "exit code 0, the log continued, the take replays"
 
 
 @row(GROUP, "a terminal with tostop, in the background", "plays to its end with the same hash; SIGTTOU does not stop it")

@@ -1,8 +1,8 @@
-"""Where a show is tried: a folder and a user of its own, and the rows of the table.
+"""The environment of a show: its own folder and user, and the registry of rows.
 
-A row has a group, a name, what is expected in words, and a function of a Place that returns what was observed, or raises
-Unexpected. Whoever runs the table as root has the shows run as the user "nobody"; another user's shows run as that user.
-Nothing of the machine is changed: full disks are small tmpfs in a mount namespace of the show's own.
+A row has a group, a name, a description of the expected result, and a function of a Place that returns a description of the
+observed result or raises Unexpected. If the table is run as root, the shows run as the user "nobody", else as the same user.
+The machine is not changed: full disks are small tmpfs in a separate mount namespace.
 """
 import contextlib
 import os
@@ -20,12 +20,12 @@ import time
 
 import osc
 
-PATIENCE = 60  # s; only a failing row waits as long
-TICKS = 150  # of a whole show: two and a half seconds
+TIMEOUT = 60  # s; only failing rows reach it
+TICKS = 150  # length of a show: two and a half seconds
 NOBODY = 65534
 ROOT = os.geteuid() == 0
 
-# It talks, moves, and draws numbers; what arrives by OSC changes nothing that its hash depends on, unless a row wants it.
+# Prints, moves, and uses random numbers; OSC messages don't change its hash, unless a row intends that.
 SCENE = """
 sim.seed = 7
 local floor = sim:add_body("floor")
@@ -48,7 +48,7 @@ end)
 
 
 class Unexpected(Exception):
-    """What was observed, where it is not what is expected."""
+    """Describes an observation that differs from the expectation."""
 
 
 def expect(condition, observed):
@@ -60,25 +60,25 @@ ROWS = []  # (group, name, expected, function)
 
 
 def row(group, name, expected):
-    def keep(function):
+    def register(function):
         ROWS.append((group, name, expected, function))
         return function
-    return keep
+    return register
 
 
-def until(what, holds, patience=PATIENCE):
-    """Waits until holds() is true, and gives that."""
-    end = time.monotonic() + patience
+def until(description, holds, timeout=TIMEOUT):
+    """Waits until holds() returns a true value, and returns it."""
+    end = time.monotonic() + timeout
     while time.monotonic() < end:
         value = holds()
         if value:
             return value
         time.sleep(0.01)
-    raise Unexpected(f"it never came: {what}")
+    raise Unexpected(f"timed out waiting for {description}")
 
 
 def program_for_all(given):
-    """A copy that every user can run."""
+    """Copies the program so that every user can run it."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="limber_program_"))
     folder.chmod(0o755)
     copy = folder / "limber"
@@ -88,7 +88,7 @@ def program_for_all(given):
 
 
 class Stopped:
-    """A terminal whose output is stopped, as by Ctrl+S."""
+    """A terminal with stopped output, as after Ctrl+S."""
 
     def __init__(self):
         self.master, self.slave = pty.openpty()
@@ -100,7 +100,7 @@ class Stopped:
 
 
 class Show:
-    """A program that runs; its outputs are files of its place, or what the row says."""
+    """A running program. Its outputs are files of its place unless the row redirects them."""
 
     def __init__(self, place, process, out, err):
         self.place, self.process, self.out_file, self.err_file = place, process, out, err
@@ -120,8 +120,8 @@ class Show:
     def gone(self):
         return self.process.poll() is not None
 
-    def port(self, what="OSC in"):
-        found = until(f"the port of {what}", lambda: re.search(what + r"[^\n]*127\.0\.0\.1:(\d+)", self.err) or
+    def port(self, service="OSC in"):
+        found = until(f"the port of {service}", lambda: re.search(service + r"[^\n]*127\.0\.0\.1:(\d+)", self.err) or
                       (self.gone() and self.fail()))
         return int(found.group(1))
 
@@ -135,19 +135,19 @@ class Show:
         self.process.send_signal(number)
 
     def console(self, text):
-        """What the show's console answers; None while it doesn't."""
+        """Evaluates text in the show's console; returns None if there is no reply."""
         asked = self.place.run("console", "-e", text)
         return asked.out.strip() if asked.code == 0 else None
 
-    def tick(self, least):
-        """Waits until it has come to this tick."""
+    def tick(self, number):
+        """Waits until the show has reached this tick."""
         def now():
             answer = self.console("sim.tick")
-            return answer is not None and float(answer) >= least
-        until(f"tick {least}", lambda: now() or (self.gone() and self.fail()))
+            return answer is not None and float(answer) >= number
+        until(f"tick {number}", lambda: now() or (self.gone() and self.fail()))
 
-    def end(self, number=None, within=PATIENCE):
-        """Its exit code, -N where signal N ended it; sends `number` before."""
+    def end(self, number=None, within=TIMEOUT):
+        """Sends signal `number` and returns the exit code, -N if signal N ended the program."""
         if number:
             self.signal(number)
         try:
@@ -208,11 +208,11 @@ class Place:
 
     def start(self, *words, out=None, err=None, into=subprocess.DEVNULL, environment=None, limits=(), before=(),
               disk=None, cwd=None, closed=(), session=False, umask=0o022, program=None):
-        """A program with these arguments.
+        """Starts a program with these arguments.
 
-        out, err: a file descriptor or a path; left out: a file of this place. limits: (resource, most). before: words
-        in front of it. disk: (folder, size in KiB, how much of it is full) of a file system of its own. closed: file
-        descriptors that it does not have. program: another one, such as a shell.
+        out, err: a file descriptor or a path; default: a file of this place. limits: (resource, maximum). before: prefix
+        of the command. disk: (folder, size in KiB, used KiB) of a separate file system. closed: file descriptors to
+        close. program: another program, such as a shell.
         """
         self.count += 1
         files = []
@@ -226,8 +226,8 @@ class Place:
 
         def prepare():
             os.umask(umask)
-            for limit, most in limits:
-                resource.setrlimit(limit, (most, most))
+            for limit, maximum in limits:
+                resource.setrlimit(limit, (maximum, maximum))
             if ROOT and not disk:
                 os.setgroups([])
                 os.setgid(NOBODY)
@@ -247,7 +247,7 @@ class Place:
 
     @staticmethod
     def mounted(disk):
-        """The words before a program that has a file system of its own; without the rights of who mounted it."""
+        """Returns the command prefix that mounts a separate file system and drops the privileges needed for it."""
         if not disk:
             return []
         folder, size, full = disk
@@ -259,11 +259,11 @@ class Place:
                 str(full), "setpriv", *drop, "--bounding-set=-all", "--inh-caps=-all"]
 
     def inside(self, show, path):
-        """That path as the show with a disk of its own sees it."""
+        """Returns the path as seen by a show with a separate file system."""
         return pathlib.Path(f"/proc/{show.process.pid}/root{path}")
 
     def play(self, *more, ticks=TICKS, take=True, scene=None, window=False, query="127.0.0.1:0", **how):
-        """A show in real time; endless with ticks=None."""
+        """Starts a show in real time; ticks=None: without an end."""
         words = ["play", scene or self.scene, "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", query]
         if not window:
             words.append("--headless")
@@ -274,14 +274,14 @@ class Place:
         return self.start(*words, *more, **how)
 
     def run(self, *words, **how):
-        """A program from its start to its end."""
+        """Runs a program to its end."""
         show = self.start(*words, **how)
         show.end()
         self.shows.remove(show)
         return show
 
     def hash_of(self, show, take=True):
-        """The hash at the end of a whole show, of its output or, where that got lost, of its take."""
+        """Returns the final hash from the show's output or, if that was lost, from its take."""
         found = re.search(r"hash ([0-9a-f]{16}) tick \d+", show.out)
         if not found and take:
             info = self.run("take", "info", take if isinstance(take, pathlib.Path) else self.folder / "tmp/show.take")
@@ -290,22 +290,22 @@ class Place:
         expect(found, f"no hash; exit code {show.process.returncode}: {show.err[-300:]}")
         return found.group(1)
 
-    def whole(self, show, code=0, says=None, take=True):
-        """That a show of TICKS ticks ended with this code, and the hash of an undisturbed one."""
+    def expect_end(self, show, code=0, says=None, take=True):
+        """Expects that a show of TICKS ticks ends with this code and the hash of an undisturbed show."""
         got = show.end()
         seen = self.hash_of(show, take)
         expect(got == code, f"exit code {got}: {show.err[-300:]}")
         expect(seen == self.hash_expected, f"another hash: {seen}")
         if says:
             line = next((l for l in show.err.splitlines() if re.search(says, l)), None)
-            expect(line, f"it does not say '{says}': {show.err[-300:]}")
+            expect(line, f"no message matches '{says}': {show.err[-300:]}")
             return f"same hash, exit code {code}; \"{self.short(line)}\""
         return f"same hash, exit code {code}"
 
     def replays(self, take=None):
-        """That a take replays to its own hashes."""
+        """Expects that a take replays to its own hashes."""
         done = self.run("--replay", take or self.folder / "tmp/show.take", "--fast", "--hash", "--headless")
-        expect(done.code == 0 and "every hash is the take's" in done.err, f"replay: {done.code} {done.err[-300:]}")
+        expect(done.code == 0 and "all hashes match the take" in done.err, f"replay: {done.code} {done.err[-300:]}")
         return "the take replays to its hash"
 
     def short(self, text):
@@ -313,7 +313,7 @@ class Place:
 
 
 def filled_pipe():
-    """Both ends of a pipe that has no room."""
+    """Returns both ends of a full pipe."""
     reading, writing = os.pipe()
     os.set_blocking(writing, False)
     with contextlib.suppress(BlockingIOError):

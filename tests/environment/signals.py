@@ -1,4 +1,4 @@
-"""Signals, in the states in which a show can be."""
+"""Signals in the various states of a show."""
 import signal
 import time
 
@@ -14,12 +14,12 @@ def ended(place, show, number, within=20):
     code = show.end(number, within)
     expect(code == 0, f"exit code {code}: {show.err[-300:]}")
     info = place.run("take", "info", place.folder / "tmp/show.take")
-    expect("whole" in info.out, f"the take is not whole: {info.out[-300:]}")
-    return "exit code 0, the take is whole, and " + place.replays()
+    expect("complete" in info.out, f"the take is not complete: {info.out[-300:]}")
+    return "exit code 0, the take is complete, and " + place.replays()
 
 
 def add_end(number):
-    @row(GROUP, f"{number.name} while it plays", "ends well: exit code 0, the take is whole and replays")
+    @row(GROUP, f"{number.name} while it plays", "ends cleanly: exit code 0, the take is complete and replays")
     def play(place):
         show = place.play(ticks=None)
         show.tick(30)
@@ -30,7 +30,7 @@ for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
     add_end(number)
 
 
-@row(GROUP, "SIGINT twice", "ends well, as with one")
+@row(GROUP, "SIGINT twice", "ends cleanly, as with one")
 def twice(place):
     show = place.play(ticks=None)
     show.tick(30)
@@ -38,7 +38,7 @@ def twice(place):
     return ended(place, show, signal.SIGINT)
 
 
-@row(GROUP, "SIGTERM while time stands still", "ends well")
+@row(GROUP, "SIGTERM while paused", "ends cleanly")
 def paused(place):
     show = place.play(ticks=None)
     show.tick(10)
@@ -46,7 +46,7 @@ def paused(place):
     return ended(place, show, signal.SIGTERM)
 
 
-@row(GROUP, "SIGTERM before the scene has run to its end", "ends at once")
+@row(GROUP, "SIGTERM while the scene loads", "ends at once")
 def loading(place):
     scene = place.write("show/slow.lua", "while true do end\n")
     show = place.play(ticks=None, scene=scene, take=False)
@@ -57,7 +57,7 @@ def loading(place):
     return f"exit code {code}"
 
 
-@row(GROUP, "SIGTERM while a script computes without an end", "ends well; the script was stopped")
+@row(GROUP, "SIGTERM during an endless script", "ends cleanly; the script was stopped")
 def endless(place):
     scene = place.write("show/endless.lua", ENDLESS)
     show = place.play(ticks=None, scene=scene)
@@ -65,7 +65,7 @@ def endless(place):
     return ended(place, show, signal.SIGTERM)
 
 
-@row(GROUP, "SIGTERM while its terminal is stopped", "ends well")
+@row(GROUP, "SIGTERM while its terminal is stopped", "ends cleanly")
 def terminal(place):
     stopped = Stopped()
     show = place.play(ticks=None, out=stopped.slave, err=stopped.slave)
@@ -80,7 +80,7 @@ def add_ignored(number):
         show.tick(20)
         for _ in range(20):
             show.signal(number)
-        return place.whole(show)
+        return place.expect_end(show)
 
 
 for number in (signal.SIGPIPE, signal.SIGWINCH, signal.SIGCHLD, signal.SIGCONT, signal.SIGURG, signal.SIGIO,
@@ -95,10 +95,10 @@ def asleep(place):
     show.signal(signal.SIGSTOP)
     time.sleep(1)
     show.signal(signal.SIGCONT)
-    return place.whole(show)
+    return place.expect_end(show)
 
 
-@row(GROUP, "SIGUSR2", "panic, once, which a second one after a second ends")
+@row(GROUP, "SIGUSR2", "panic")
 def panic(place):
     show = place.play(ticks=None)
     show.tick(30)

@@ -1,4 +1,4 @@
-// The commit that a build reports: of a checkout, of an archive without git, of an archive within another checkout.
+// The commit that a build reports: for a checkout, an archive without git, and an archive inside another checkout.
 #include <unistd.h>
 
 #include <cstdlib>
@@ -35,18 +35,18 @@ class BuildInfo : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  /// The commit that a build of this folder reports; the version must be the one that is given.
+  /// Returns the commit reported by a build of this folder; checks the version.
   std::string commit_of(const std::string& folder) const {
     shell("cmake -DSOURCE='" + (root_ / folder).string() + "' -DVERSION=4.5.6 -DDATA_DIR=/data -DTO=out.cpp -P '" +
           LIMBER_SOURCE_DIR "/src/base/build_info.cmake'");
     const std::string text = content("out.cpp");
     EXPECT_NE(text.find("version() { return \"4.5.6\"; }"), std::string::npos) << text;
-    const std::string mark = "commit() { return \"";
-    const std::size_t at = text.find(mark);
+    const std::string prefix = "commit() { return \"";
+    const std::size_t at = text.find(prefix);
     if (at == std::string::npos) return "none";
-    return text.substr(at + mark.size(), text.find('"', at + mark.size()) - at - mark.size());
+    return text.substr(at + prefix.size(), text.find('"', at + prefix.size()) - at - prefix.size());
   }
-  /// The tree as a checkout with one commit, whose hash is returned.
+  /// Makes the tree a checkout with one commit and returns its hash.
   std::string check_in() const {
     shell(
         "git init -q tree && cd tree && git add -A && git -c user.name=a -c user.email=a@b.example "
@@ -60,20 +60,20 @@ class BuildInfo : public testing::Test {
   fs::path root_;
 };
 
-TEST_F(BuildInfo, OfACheckoutIsItsCommit) {
+TEST_F(BuildInfo, ACheckoutReportsItsCommit) {
   const std::string hash = check_in();
   EXPECT_EQ(commit_of("tree"), hash);
   std::ofstream(path("tree/.gitattributes")) << "changed\n";
   EXPECT_EQ(commit_of("tree"), hash + "+");
 }
 
-TEST_F(BuildInfo, OfAnArchiveIsTheCommitThatItWasMadeOf) {
+TEST_F(BuildInfo, AnArchiveReportsItsCommit) {
   const std::string hash = check_in();
   shell("mkdir unpacked && git -C tree archive HEAD | tar -xf - -C unpacked");
   EXPECT_EQ(commit_of("unpacked"), hash);
 }
 
-TEST_F(BuildInfo, OfAnArchiveWithinAnotherCheckoutIsTheArchives) {
+TEST_F(BuildInfo, AnArchiveInsideACheckoutReportsItsOwnCommit) {
   const std::string hash = check_in();
   shell(
       "git init -q home && cd home && git -c user.name=a -c user.email=a@b.example -c commit.gpgsign=false commit -qm "
@@ -81,8 +81,8 @@ TEST_F(BuildInfo, OfAnArchiveWithinAnotherCheckoutIsTheArchives) {
   EXPECT_EQ(commit_of("home/unpacked"), hash);
 }
 
-TEST_F(BuildInfo, WithoutGitAndArchiveIsUnknown) {
-  EXPECT_EQ(commit_of("tree"), "unknown") << "the file of the archive has its placeholder still";
+TEST_F(BuildInfo, ReportsUnknownWithoutGitAndArchive) {
+  EXPECT_EQ(commit_of("tree"), "unknown") << "the archive's file still has its placeholder";
   fs::remove(path("tree/.git_archival.txt"));
   EXPECT_EQ(commit_of("tree"), "unknown");
 }

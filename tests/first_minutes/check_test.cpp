@@ -1,4 +1,4 @@
-// ./check --long on a machine where all is installed: its parts by name, and which of them are run again.
+// ./check --long on a machine with everything installed: selection of parts by name, and skipping of passed ones.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A repository with `check`, its steps, and three parts of the test's own that need no build.
+/// A repository with `check`, its steps, and three test parts that need no build.
 class CheckTree {
  public:
   CheckTree() {
@@ -60,7 +60,7 @@ class CheckTree {
     return code;
   }
 
-  std::string text;   ///< What it printed.
+  std::string text;   ///< Output.
   std::string calls;  ///< The parts that it ran.
 
  private:
@@ -76,7 +76,7 @@ class CheckTree {
   fs::path root_;
 };
 
-TEST(Check, RunsTheLongPartsThatAreNamed) {
+TEST(Check, RunsTheNamedLongParts) {
   CheckTree tree;
   EXPECT_EQ(tree.check("--long plum apple"), 0) << tree.text;
   EXPECT_EQ(tree.calls, "plum\napple\n") << tree.text;
@@ -84,7 +84,7 @@ TEST(Check, RunsTheLongPartsThatAreNamed) {
   EXPECT_TRUE(tree.text.ends_with("2 passed, 0 failed\n")) << tree.text;
 }
 
-TEST(Check, LeavesOutLongPartsThatPassedAtTheSameCommit) {
+TEST(Check, SkipsLongPartsThatPassedAtTheSameCommit) {
   CheckTree tree;
   EXPECT_EQ(tree.check("--long apple pear"), 1) << tree.text;
   EXPECT_EQ(tree.calls, "apple\npear\n") << tree.text;
@@ -103,11 +103,11 @@ TEST(Check, RejectsUnknownLongParts) {
   CheckTree tree;
   EXPECT_EQ(tree.check("--long apple cherry"), 2);
   EXPECT_EQ(tree.calls, "");
-  EXPECT_NE(tree.text.find("check: 'cherry' is no part of --long."), std::string::npos) << tree.text;
-  EXPECT_NE(tree.text.find("cure: ./check --help lists them."), std::string::npos) << tree.text;
+  EXPECT_NE(tree.text.find("check: --long has no part 'cherry'."), std::string::npos) << tree.text;
+  EXPECT_NE(tree.text.find("fix: ./check --help lists them."), std::string::npos) << tree.text;
 }
 
-/// Packages that ./check asks apt for, on a machine of this release that has none.
+/// Packages that ./check requests from apt on a machine of this release that has none.
 std::string packages_of(CheckTree& tree, const std::string& arguments, const std::string& os_release) {
   tree.write("bin/os-release", os_release);
   tree.program("dpkg-query", "exit 1");

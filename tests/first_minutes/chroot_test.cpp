@@ -1,5 +1,4 @@
-// .ci/chroot with programs of the test's own instead of debootstrap, unshare, mount and chroot: it needs neither root
-// nor a network.
+// .ci/chroot with fakes for debootstrap, unshare, mount and chroot, so that the test needs neither root nor a network.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A checkout with .ci/chroot, and a machine that makes and enters roots by name only.
+/// A checkout with .ci/chroot, and fakes that only pretend to create and enter roots.
 class Roots {
  public:
   Roots() {
@@ -30,7 +29,7 @@ class Roots {
     program("id", "echo 0");
     program("apt-get", "echo 'Debian|http://mirror.example/debian/'; echo 'Debian-Security|http://mirror.example/s/'");
     program("apt-config", "echo 'Acquire::http::Proxy \"http://proxy.example:3142\";'");
-    // leaves a system that is as small as can be; its last arguments are RELEASE, FOLDER and MIRROR
+    // creates a minimal system; its last arguments are RELEASE, FOLDER and MIRROR
     program("debootstrap",
             "echo \"debootstrap $*\" \"$http_proxy\" >>\"$CALLS\"\n"
             "while [ $# -gt 3 ]; do shift; done\n"
@@ -38,7 +37,7 @@ class Roots {
             "  mkdir -p \"$2/$d\"\ndone\n: >\"$2/var/lib/apt/lists/lock\"; echo \"$1\" >\"$2/etc/release\"");
     program("unshare", "while [ \"$1\" != -- ]; do shift; done; shift; exec \"$@\"");
     program("mount", "exit 0");
-    // enters by going there
+    // enters a root by changing the directory
     program("chroot", "root=$1; while [ \"$1\" != sh ]; do shift; done; cd \"$root\" && shift 5 && exec \"$@\"");
   }
   ~Roots() { fs::remove_all(root_); }
@@ -70,17 +69,17 @@ class Roots {
     return {std::istreambuf_iterator<char>(in), {}};
   }
 
-  std::string text;   ///< What it printed.
-  std::string calls;  ///< What debootstrap was called with.
+  std::string text;   ///< Output.
+  std::string calls;  ///< Arguments of debootstrap.
 
  private:
   fs::path root_;
 };
 
-TEST(Chroot, MakesARootOnceFromTheHostsMirrorAndRunsTheCommandInIt) {
+TEST(Chroot, CreatesARootOnceFromTheHostsMirrorAndRunsTheCommand) {
   Roots roots;
   EXPECT_EQ(roots.run("trixie --no-source -- sh -c 'cat etc/release; echo here >left; exit 7'"), 7) << roots.text;
-  EXPECT_NE(roots.text.find("chroot: making a bare trixie "), std::string::npos) << roots.text;
+  EXPECT_NE(roots.text.find("chroot: creating a minimal trixie "), std::string::npos) << roots.text;
   EXPECT_TRUE(roots.text.ends_with("\ntrixie\n")) << roots.text;
   EXPECT_NE(roots.calls.find(" http://mirror.example/debian http://proxy.example:3142\n"), std::string::npos)
       << roots.calls;
@@ -88,11 +87,11 @@ TEST(Chroot, MakesARootOnceFromTheHostsMirrorAndRunsTheCommandInIt) {
             "deb http://mirror.example/debian trixie main\ndeb http://mirror.example/debian trixie-updates main\n"
             "deb http://mirror.example/s trixie-security main\n");
   EXPECT_EQ(roots.run("trixie --no-source cat left"), 0);
-  EXPECT_EQ(roots.text, "here\n") << "what it had is kept";
+  EXPECT_EQ(roots.text, "here\n") << "the existing root is reused";
   EXPECT_EQ(roots.calls, "");
 }
 
-TEST(Chroot, BeginsAfreshAndUnderOtherNamesWithoutMakingItAgain) {
+TEST(Chroot, ReusesARootForFreshCopiesAndOtherNames) {
   Roots roots;
   ASSERT_EQ(roots.run("sid --no-source -- sh -c 'echo here >left'"), 0) << roots.text;
   EXPECT_EQ(roots.run("sid --no-source --name other ls left"), 2) << roots.text;
@@ -102,18 +101,18 @@ TEST(Chroot, BeginsAfreshAndUnderOtherNamesWithoutMakingItAgain) {
   EXPECT_EQ(roots.read("roots/sid/etc/apt/sources.list"), "deb http://mirror.example/debian sid main\n");
 }
 
-TEST(Chroot, AnInterruptedRootIsMadeAgain) {
+TEST(Chroot, AnInterruptedRootIsCreatedAgain) {
   Roots roots;
   const std::string whole = roots.read("bin/debootstrap");
   roots.program("debootstrap", "while [ $# -gt 3 ]; do shift; done; mkdir -p \"$2/half\"; echo 'E: no answer'; exit 1");
   EXPECT_EQ(roots.run("trixie --no-source true"), 3);
   EXPECT_NE(roots.text.find("E: no answer"), std::string::npos) << roots.text;
-  EXPECT_NE(roots.text.find("chroot: debootstrap could not make trixie"), std::string::npos) << roots.text;
+  EXPECT_NE(roots.text.find("chroot: debootstrap could not create trixie"), std::string::npos) << roots.text;
   roots.program("debootstrap", whole);
   EXPECT_EQ(roots.run("trixie --no-source -- sh -c '[ ! -e half ]'"), 0) << roots.text;
 }
 
-TEST(Chroot, RemovesARootOnlyWhenNothingIsMountedInIt) {
+TEST(Chroot, RemovesARootOnlyWithoutMounts) {
   Roots roots;
   ASSERT_EQ(roots.run("trixie --no-source true"), 0) << roots.text;
   const fs::path root = roots.chroots() / "trixie";
@@ -124,13 +123,13 @@ TEST(Chroot, RemovesARootOnlyWhenNothingIsMountedInIt) {
     EXPECT_EQ(roots.run("trixie --no-source --fresh true"), 3) << at;
     EXPECT_TRUE(fs::exists(root / "etc/release"));
   }
-  // a neighbor whose name begins alike
+  // another folder with the same prefix in its name
   roots.write("mounts", "22 1 0:21 / " + root.string() + "2/proc rw - proc proc rw\n");
   EXPECT_EQ(roots.run("trixie --remove"), 0) << roots.text;
   EXPECT_FALSE(fs::exists(root));
 }
 
-TEST(Chroot, RejectsWhatItCannotDo) {
+TEST(Chroot, RejectsInvalidArguments) {
   Roots roots;
   EXPECT_EQ(roots.run("../elsewhere true"), 2);
   EXPECT_EQ(roots.run("trixie"), 2);
@@ -138,7 +137,7 @@ TEST(Chroot, RejectsWhatItCannotDo) {
   EXPECT_EQ(roots.run("trixie --sideways true"), 2);
   EXPECT_EQ(roots.run("trixie --no-source --arch 'arm 64' true"), 2);
   EXPECT_EQ(roots.run("trixie true"), 3);
-  EXPECT_NE(roots.text.find("is no git checkout"), std::string::npos) << roots.text;
+  EXPECT_NE(roots.text.find("is not a git checkout"), std::string::npos) << roots.text;
   roots.program("id", "echo 1000");
   EXPECT_EQ(roots.run("trixie --no-source true"), 3);
   EXPECT_NE(roots.text.find("only root can"), std::string::npos) << roots.text;

@@ -1,5 +1,5 @@
-// ./run on machines that lack something: each refusal has its text and its cure, and nothing is called that need not
-// be. The machine is made of small scripts in a folder that is the whole PATH, so the test changes nothing and asks no
+// ./run on machines that lack something: each error has its text and fix, and no unnecessary program is called. The
+// machine consists of small scripts in a folder that is the whole PATH, so the test changes nothing and needs no
 // network.
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
+struct RunResult {
   int code = -1;
   std::string text;
-  std::string calls;  ///< What apt-get, sudo and cmake were called with, one call a line.
+  std::string calls;  ///< Arguments of apt-get, sudo and cmake, one call per line.
 };
 
-/// A checkout with nothing but `run`, on a machine where all is installed; tests take away and spoil.
+/// A checkout with only `run`, on a machine with everything installed; tests remove or break parts of it.
 class Machine {
  public:
   Machine() {
@@ -46,7 +46,7 @@ class Machine {
     program("id", "echo 0");
     program("nproc", "echo 2");
     program("g++", "echo 12");
-    // answers that every package it is asked for is installed
+    // reports every package as installed
     program("dpkg-query", "shift 2; for p in \"$@\"; do echo \"ii $p \"; done");
     program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
     program("cmake",
@@ -71,7 +71,7 @@ class Machine {
   bool has(const std::string& name) const { return fs::exists(path(name)); }
   void nothing_installed() const { program("dpkg-query", "exit 1"); }
 
-  Answer run(const std::string& arguments = "") const {
+  RunResult run(const std::string& arguments = "") const {
     const std::string root = root_.string();
     fs::remove(root_ / "calls");
     const std::string command = "cd " + root + "/tree && /usr/bin/env -i PATH=" + root + "/bin TMPDIR=" + root +
@@ -89,9 +89,9 @@ class Machine {
   fs::path root_;
 };
 
-TEST(Run, BuildsAndPlaysAndSaysWhereItIs) {
+TEST(Run, BuildsPlaysAndReportsThePath) {
   const Machine machine;
-  const Answer first = machine.run("scripts/hello.lua --fast");
+  const RunResult first = machine.run("scripts/hello.lua --fast");
   EXPECT_EQ(first.code, 0) << first.text;
   EXPECT_TRUE(first.text.starts_with("run: Limber on Debian GNU/Linux 12\n")) << first.text;
   EXPECT_TRUE(first.text.ends_with("limber play scripts/hello.lua --fast\n")) << first.text;
@@ -100,7 +100,7 @@ TEST(Run, BuildsAndPlaysAndSaysWhereItIs) {
       "cmake --preset release -DLIMBER_WERROR=OFF -DLIMBER_TESTS=OFF\ncmake --build build --target limber -j 2\n");
 }
 
-TEST(Run, SecondTimeNeitherConfiguresNorCallsApt) {
+TEST(Run, SecondRunNeitherConfiguresNorCallsApt) {
   const Machine machine;
   ASSERT_EQ(machine.run().code, 0);
   EXPECT_EQ(machine.run().calls, "cmake --build build --target limber -j 2\n");
@@ -108,26 +108,26 @@ TEST(Run, SecondTimeNeitherConfiguresNorCallsApt) {
 
 TEST(Run, BuildOnlyDoesNotPlay) {
   const Machine machine;
-  const Answer answer = machine.run("--build-only");
-  EXPECT_EQ(answer.code, 0);
-  EXPECT_TRUE(answer.text.ends_with("run: built: build/limber\n")) << answer.text;
+  const RunResult result = machine.run("--build-only");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.text.ends_with("run: built: build/limber\n")) << result.text;
 }
 
-TEST(Run, InstallsWhatIsMissingAsRoot) {
+TEST(Run, InstallsMissingPackagesAsRoot) {
   const Machine machine;
-  // all but two are there
+  // all but two packages are installed
   machine.program("dpkg-query",
                   "shift 2; for p in \"$@\"; do case $p in cmake|libfmt-dev) ;; *) echo \"ii $p \" ;; esac; done");
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 0) << answer.text;
-  EXPECT_NE(answer.text.find("run: installing with apt: cmake libfmt-dev\n"), std::string::npos) << answer.text;
-  EXPECT_NE(answer.calls.find("apt-get update"), std::string::npos);
-  EXPECT_NE(answer.calls.find(" cmake libfmt-dev\n"), std::string::npos) << answer.calls;
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 0) << result.text;
+  EXPECT_NE(result.text.find("run: installing with apt: cmake libfmt-dev\n"), std::string::npos) << result.text;
+  EXPECT_NE(result.calls.find("apt-get update"), std::string::npos);
+  EXPECT_NE(result.calls.find(" cmake libfmt-dev\n"), std::string::npos) << result.calls;
 }
 
-TEST(Run, UninstallTakesBackWhatItMadeAndBrought) {
+TEST(Run, UninstallRemovesFilesAndPackages) {
   const Machine machine;
-  EXPECT_EQ(machine.run("--uninstall").text, "run: nothing of it is here\n");
+  EXPECT_EQ(machine.run("--uninstall").text, "run: nothing to remove\n");
   machine.program("dpkg-query",
                   "shift 2; for p in \"$@\"; do case $p in cmake|libfmt-dev) ;; *) echo \"ii $p \" ;; esac; done");
   ASSERT_EQ(machine.run("--build-only").code, 0);
@@ -136,27 +136,27 @@ TEST(Run, UninstallTakesBackWhatItMadeAndBrought) {
   fs::create_directories(machine.path("home/.config/others"));
   machine.program("apt-get", "exit 100");
   EXPECT_EQ(machine.run("--uninstall").code, 3);
-  EXPECT_TRUE(machine.has("tree/build")) << "what went wrong can be tried again";
+  EXPECT_TRUE(machine.has("tree/build")) << "a failed removal can be repeated";
   machine.program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
-  const Answer answer = machine.run("--uninstall");
-  EXPECT_EQ(answer.code, 0) << answer.text;
-  EXPECT_EQ(answer.calls, "apt-get remove -y cmake libfmt-dev\n");
+  const RunResult result = machine.run("--uninstall");
+  EXPECT_EQ(result.code, 0) << result.text;
+  EXPECT_EQ(result.calls, "apt-get remove -y cmake libfmt-dev\n");
   EXPECT_FALSE(machine.has("tree/build"));
   EXPECT_FALSE(machine.has("home/.config/limber"));
   EXPECT_TRUE(machine.has("home/.config/others"));
   EXPECT_TRUE(machine.has("tree/run"));
 }
 
-TEST(Run, PackageNeedsTheToolThatFindsTheDependencies) {
+TEST(Run, PackageRequiresDpkgShlibdeps) {
   const Machine machine;
   machine.program("dpkg-deb", "echo dpkg-deb \"$@\" >>\"$CALLS\"");
-  const Answer answer = machine.run("--package");
-  EXPECT_EQ(answer.code, 3) << answer.text;
-  EXPECT_NE(answer.text.find("dpkg-shlibdeps not found, so no package can be built."), std::string::npos)
-      << answer.text;
-  EXPECT_NE(answer.text.find("cure: apt-get install dpkg-dev\n"), std::string::npos) << answer.text;
-  EXPECT_EQ(answer.calls.find("dpkg-deb"), std::string::npos) << answer.calls;
-  EXPECT_EQ(answer.text.find("limber play"), std::string::npos) << "it must not play";
+  const RunResult result = machine.run("--package");
+  EXPECT_EQ(result.code, 3) << result.text;
+  EXPECT_NE(result.text.find("dpkg-shlibdeps not found, so no package can be built."), std::string::npos)
+      << result.text;
+  EXPECT_NE(result.text.find("fix: apt-get install dpkg-dev\n"), std::string::npos) << result.text;
+  EXPECT_EQ(result.calls.find("dpkg-deb"), std::string::npos) << result.calls;
+  EXPECT_EQ(result.text.find("limber play"), std::string::npos) << "it must not play";
 }
 
 TEST(Run, PackageInstallsItsToolsAsRoot) {
@@ -164,33 +164,33 @@ TEST(Run, PackageInstallsItsToolsAsRoot) {
   machine.program("dpkg-query",
                   "shift 2; for p in \"$@\"; do case $p in dpkg-dev) ;; *) echo \"ii $p \" ;; esac; done");
   EXPECT_NE(machine.run("--package").calls.find(" dpkg-dev\n"), std::string::npos);
-  EXPECT_EQ(machine.run("--build-only").calls.find("dpkg-dev"), std::string::npos) << "a build needs none";
+  EXPECT_EQ(machine.run("--build-only").calls.find("dpkg-dev"), std::string::npos) << "a build needs no package";
 }
 
-TEST(Run, TarballIsBuiltOnTheOldestReleaseAlone) {
+TEST(Run, TarballIsBuiltOnlyOnTheOldestRelease) {
   const Machine machine;
   machine.write("os-release", "ID=debian\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13'\n");
-  const Answer answer = machine.run("--tarball");
-  EXPECT_EQ(answer.code, 3) << answer.text;
-  EXPECT_NE(answer.text.find("would not run on Debian 12"), std::string::npos) << answer.text;
-  EXPECT_NE(answer.text.find("cure: build it on Debian 12"), std::string::npos) << answer.text;
+  const RunResult result = machine.run("--tarball");
+  EXPECT_EQ(result.code, 3) << result.text;
+  EXPECT_NE(result.text.find("would not run on Debian 12"), std::string::npos) << result.text;
+  EXPECT_NE(result.text.find("fix: build it on Debian 12"), std::string::npos) << result.text;
 }
 
-TEST(Run, TriesOnForeignSystemsAndSaysSo) {
+TEST(Run, TriesOnOtherSystemsWithAWarning) {
   const Machine machine;
   machine.write("os-release", "ID=ubuntu\nVERSION_ID=24.04\nPRETTY_NAME='Ubuntu 24.04'\n");
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 0);
-  EXPECT_TRUE(answer.text.starts_with("run: Limber on Ubuntu 24.04: untested (Debian 12 and 13 are tested), trying\n"))
-      << answer.text;
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.text.starts_with("run: Limber on Ubuntu 24.04: untested (Debian 12 and 13 are tested), trying\n"))
+      << result.text;
 }
 
-TEST(Run, Debian13IsTested) {
+TEST(Run, AcceptsDebian13) {
   const Machine machine;
   machine.write("os-release", "ID=debian\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13 (trixie)'\n");
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 0);
-  EXPECT_TRUE(answer.text.starts_with("run: Limber on Debian GNU/Linux 13 (trixie)\n")) << answer.text;
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 0);
+  EXPECT_TRUE(result.text.starts_with("run: Limber on Debian GNU/Linux 13 (trixie)\n")) << result.text;
 }
 
 TEST(Run, NeverLetsAptRemovePackages) {
@@ -200,51 +200,51 @@ TEST(Run, NeverLetsAptRemovePackages) {
       "apt-get",
       "echo apt-get \"$@\" >>\"$CALLS\"\n"
       "case $1 in -s) echo 'Inst cmake (3.25)'; echo 'Remv browser [1.0]'; echo 'Remv editor [2.0]' ;; esac");
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 3) << answer.text;
-  EXPECT_NE(answer.text.find("run: apt would remove packages in order to install g++ cmake "), std::string::npos)
-      << answer.text;
-  EXPECT_NE(answer.text.find(": browser editor. Nothing was changed."), std::string::npos) << answer.text;
-  EXPECT_EQ(answer.calls.find("apt-get install"), std::string::npos) << answer.calls;
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 3) << result.text;
+  EXPECT_NE(result.text.find("run: apt would remove packages in order to install g++ cmake "), std::string::npos)
+      << result.text;
+  EXPECT_NE(result.text.find(": browser editor. Nothing was changed."), std::string::npos) << result.text;
+  EXPECT_EQ(result.calls.find("apt-get install"), std::string::npos) << result.calls;
   // if the package lists change between the simulation and the installation, apt itself has to stop
   machine.program("apt-get", "echo apt-get \"$@\" >>\"$CALLS\"");
   EXPECT_NE(machine.run().calls.find("apt-get install -y --no-install-recommends --no-remove "), std::string::npos);
 }
 
-TEST(Run, StartsAfreshWhenTheCheckoutHasMoved) {
+TEST(Run, ReconfiguresAMovedCheckout) {
   const Machine machine;
   ASSERT_EQ(machine.run().code, 0);
   machine.write("tree/build/CMakeCache.txt", "CMAKE_HOME_DIRECTORY:INTERNAL=/somewhere/else\n");
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 0);
-  EXPECT_NE(answer.text.find("the checkout has moved"), std::string::npos) << answer.text;
-  EXPECT_NE(answer.calls.find("--preset release"), std::string::npos) << answer.calls;
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.text.find("the checkout has moved"), std::string::npos) << result.text;
+  EXPECT_NE(result.calls.find("--preset release"), std::string::npos) << result.calls;
 }
 
-/// One spoilt machine: what is wrong with it, and what ./run says. Every refusal ends with 3.
-struct Refusal {
+/// A broken machine: its defect, and the error of ./run. All errors exit with 3.
+struct ErrorCase {
   const char* name;
-  void (*spoil)(const Machine&);
+  void (*break_machine)(const Machine&);
   const char* text;
-  const char* cure;
+  const char* fix;
 };
 
-/// GoogleTest names a failed parameter with this.
-std::ostream& operator<<(std::ostream& out, const Refusal& refusal) { return out << refusal.name; }
+/// Prints the parameter of a failed test.
+std::ostream& operator<<(std::ostream& out, const ErrorCase& error_case) { return out << error_case.name; }
 
-class Refusals : public testing::TestWithParam<Refusal> {};
+class RunErrors : public testing::TestWithParam<ErrorCase> {};
 
-TEST_P(Refusals, SayWhatAndTheCure) {
+TEST_P(RunErrors, HaveACauseAndAFix) {
   const Machine machine;
-  GetParam().spoil(machine);
-  const Answer answer = machine.run();
-  EXPECT_EQ(answer.code, 3) << answer.text;
-  EXPECT_NE(answer.text.find(std::string("run: ") + GetParam().text), std::string::npos) << answer.text;
-  EXPECT_NE(answer.text.find(std::string("cure: ") + GetParam().cure), std::string::npos) << answer.text;
-  EXPECT_EQ(answer.text.find("limber play"), std::string::npos) << "it must not play";
+  GetParam().break_machine(machine);
+  const RunResult result = machine.run();
+  EXPECT_EQ(result.code, 3) << result.text;
+  EXPECT_NE(result.text.find(std::string("run: ") + GetParam().text), std::string::npos) << result.text;
+  EXPECT_NE(result.text.find(std::string("fix: ") + GetParam().fix), std::string::npos) << result.text;
+  EXPECT_EQ(result.text.find("limber play"), std::string::npos) << "it must not play";
 }
 
-const Refusal kRefusals[] = {
+const ErrorCase kErrorCases[] = {
     {"no_sudo",
      [](const Machine& m) {
        m.nothing_installed();
@@ -273,21 +273,22 @@ const Refusal kRefusals[] = {
        m.nothing_installed();
        m.program("apt-get", "echo 'E: Unable to locate package libbullet-dev'; exit 100");
      },
-     "apt could not install the packages", "mend what apt says above"},
+     "apt could not install the packages", "fix the problem that apt reports above"},
     {"no_apt",
      [](const Machine& m) {
        m.without("dpkg-query");
        m.without("apt-get");
        m.without("g++");
      },
-     "this system has no apt, so nothing can be installed from here; not found: g++ ", "install them under the names"},
+     "this system has no apt, so packages can't be installed automatically; not found: g++ ",
+     "install them under the names"},
     {"no_compiler", [](const Machine& m) { m.without("g++"); }, "there is no C++ compiler", "apt-get install g++"},
     {"old_compiler", [](const Machine& m) { m.program("g++", "echo 10.2.1"); }, "g++ is version 10, Limber needs 12",
      "install a newer g++"},
     {"no_room", [](const Machine& m) { m.write("tree/build", "a file in its way"); }, "cannot write to ",
      "work in a clone"},
     {"configure_fails", [](const Machine& m) { m.program("cmake", "echo 'CMake Error: no glm'; exit 1"); },
-     "configuring the build failed", "mend what is said above"},
+     "configuring the build failed", "fix the problem above"},
     {"build_fails",
      [](const Machine& m) { m.program("cmake", "case $1 in --build) exit 1 ;; esac; : >build/build.ninja"); },
      "the build failed", "on a full disk"},
@@ -298,8 +299,8 @@ const Refusal kRefusals[] = {
      },
      "the build failed on Ubuntu 24.04, an untested system", "report that error"},
 };
-INSTANTIATE_TEST_SUITE_P(Run, Refusals, testing::ValuesIn(kRefusals),
-                         [](const testing::TestParamInfo<Refusal>& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(Run, RunErrors, testing::ValuesIn(kErrorCases),
+                         [](const testing::TestParamInfo<ErrorCase>& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Any text as what a request says: target, host, origin, accepted types, method, one a line ("-": none). The answer is
-// one of OSCQuery's, its JSON is JSON, and nobody is let in whose host is not ours.
+// Fuzzes HTTP requests. Input: target, host, origin, accepted types and method, one per line ("-": absent). Checks that
+// the response is valid for OSCQuery, JSON bodies are valid, and requests with an unknown host or origin are rejected.
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,20 +19,20 @@ namespace {
 
 using namespace limber;
 
-// a world that stands still: requests change nothing
-std::shared_ptr<const Image> make_image() {
+// a paused world, because requests change nothing
+std::shared_ptr<const ValueSnapshot> make_snapshot() {
   log_to_stderr(false);
   const engine_test::SceneFile file(std::string(engine_test::kEverything) +
                                     "sim:add_body('a b')\nsim:add_body('c/d%')\n");
   engine_test::Show show(file.path());
-  return engine_test::image_of(show);
+  return engine_test::make_value_snapshot(show);
 }
 
 std::optional<std::string> header(std::string_view line) {
   return line == "-" ? std::nullopt : std::optional(std::string(line));
 }
 
-void check(const HttpAnswer& answer) {
+void check(const HttpResponse& answer) {
   const int s = answer.status;
   must(s == 200 || s == 204 || s == 400 || s == 403 || s == 404 || s == 405);
   if (s == 204) must(answer.body.empty());
@@ -46,7 +46,8 @@ void check(const HttpAnswer& answer) {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::shared_ptr<const Image>& image = *new std::shared_ptr<const Image>(make_image());
+  static const std::shared_ptr<const ValueSnapshot>& snapshot =
+      *new std::shared_ptr<const ValueSnapshot>(make_snapshot());
   static const HostInfo info{{"stage", "stage.local"}, 9003};
   std::vector<std::string_view> lines = split({reinterpret_cast<const char*>(data), size}, '\n');
   lines.resize(5, "-");
@@ -56,13 +57,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   request.origin = header(lines[2]);
   request.accept = lines[3];
   request.method = lines[4];
-  const std::optional<HttpAnswer> stranger = refuse_stranger(request, info);
-  const std::optional<HttpAnswer> at_once = answer_at_once(request, info);
-  if (stranger) must(at_once && at_once->status == stranger->status && stranger->status >= 400);
-  if (at_once) {
-    check(*at_once);
+  const std::optional<HttpResponse> rejected = reject_unknown_origin(request, info);
+  const std::optional<HttpResponse> direct = respond_without_tree(request, info);
+  if (rejected) must(direct && direct->status == rejected->status && rejected->status >= 400);
+  if (direct) {
+    check(*direct);
   } else {
-    check(answer_from(request, *image));
+    check(respond_from_tree(request, *snapshot));
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-// Any text as a command of a client, which should be JSON. An image after it tells what the client hears now.
+// Fuzzes the JSON commands of an OSCQuery client. After some inputs, a snapshot is published, which sends values to it.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -7,12 +7,12 @@
 
 namespace {
 
-struct Desk : limber::FuzzedQueryDesk {
+struct JsonFixture : limber::QueryFixture {
   void input(std::string_view bytes) {
-    // it waits for an image just when it begins to listen to something
-    const bool waits = client().text(bytes);
+    // the client waits for a snapshot only if it has subscribed to something
+    const bool waits = client().on_text(bytes);
     limber::must(!waits || nlohmann::json::accept(bytes));
-    done();
+    end_input();
   }
 };
 
@@ -20,5 +20,5 @@ struct Desk : limber::FuzzedQueryDesk {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  return limber::live_input<Desk>(bytes, size);
+  return limber::persistent_input<JsonFixture>(bytes, size);
 }

@@ -1,4 +1,4 @@
-// Any bytes as a mesh file: the first byte says which format, the rest is the file.
+// Fuzzes the mesh readers. Input: the first byte selects the format and the scale, the rest is the file.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -23,6 +23,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const limber::Vec3& v : m.vertices) limber::must(limber::is_finite(v));
   for (const unsigned t : m.triangles) limber::must(t < m.vertices.size());
   limber::must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
-  limber::must(std::isfinite(m.hull_error) && m.solid.mass > 0 && std::isfinite(m.solid.mass));
+  limber::must(std::isfinite(m.hull_error) && m.unit_inertial.mass > 0 && std::isfinite(m.unit_inertial.mass));
   return 0;
 }

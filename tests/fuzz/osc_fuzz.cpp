@@ -1,6 +1,5 @@
-// Arbitrary bytes through the way of a datagram into a live world: validator, codec, receiver, inbox, dispatch, Lua
-// handlers, physics. The world lives on from input to input, so a fault may need those before it: the same -seed and
-// -runs find it again.
+// Fuzzes OSC datagrams in a live world: validator, codec, receiver, queue, dispatch, Lua handlers, physics. The world
+// persists across inputs, so a fault may depend on earlier inputs: reproduce it with the same -seed and -runs.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -27,16 +26,16 @@ namespace {
 
 using namespace limber;
 
-// handlers, beside what the tests' scene has
+// handlers in addition to those of the tests' scene
 constexpr std::string_view kHandlers = R"(
 osc:on("/fuzz/*", function(...) osc:send("/heard", select("#", ...)) end)
 osc:on("//mass", function() osc:reply("/heaviest", 1) end)
 )";
 constexpr Endpoint kFrom{0x7f000001, 5000};
-constexpr std::uint64_t kPlayEvery = 16;   // inputs until they take effect, and a good message behind them
+constexpr std::uint64_t kPlayEvery = 16;   // inputs between two ticks of the engine
 constexpr std::uint64_t kStepEvery = 128;  // inputs between two steps of physics
 constexpr int kUrgentKinds = static_cast<int>(UrgentKind::take_stop) + 1;
-constexpr std::uint64_t kRenewEvery = 16384;  // inputs that a world sees
+constexpr std::uint64_t kRenewEvery = 16384;  // inputs per world
 
 std::uint32_t u32_at(const char* data) {
   std::uint32_t value = 0;
@@ -44,7 +43,7 @@ std::uint32_t u32_at(const char* data) {
   return value;
 }
 
-// messages of a packet that is whole, counted without the code that is tested
+// number of messages in a valid packet, counted independently of the tested code
 std::uint64_t messages_in(const char* data, std::size_t size) {
   if (size < 8 || std::memcmp(data, "#bundle", 8) != 0) return 1;
   std::uint64_t count = 0;
@@ -56,7 +55,7 @@ std::uint64_t messages_in(const char* data, std::size_t size) {
   return count;
 }
 
-// the scene as a file that is nowhere on the disk
+// the scene as a file in memory
 std::string scene_file() {
   static const int file = [] {
     const int made = memfd_create("scene", 0);
@@ -80,46 +79,46 @@ bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-// an engine and what stands before it, for some thousand inputs
-class Desk {
+// an engine with its OSC front end, used for thousands of inputs
+class OscFixture {
  public:
-  Desk() {
+  OscFixture() {
     must(engine_.start().ok());
     bodies_ = engine_.world().bodies().size();
-    clear_outbox();
+    drain_output();
   }
 
-  // one input; now and then what came takes effect, and so does a good message behind it
+  // processes one input; every kPlayEvery inputs, runs a tick and checks that a valid message still takes effect
   void input(std::string_view bytes) {
-    take(bytes.data(), bytes.size());
+    process_and_check(bytes.data(), bytes.size());
     inputs_++;
     if (inputs_ % kPlayEvery == 0) play();
   }
 
-  bool worn() {
+  bool needs_renewal() {
     const bool missing = engine_.world().bodies().size() < bodies_;
     return inputs_ >= kRenewEvery || (missing && inputs_ % (kRenewEvery / 8) == 0);
   }
 
  private:
-  void take(const char* data, std::size_t size) {
+  void process_and_check(const char* data, std::size_t size) {
     const Counters& counters = link_.counters;
     const std::uint64_t malformed = counters.malformed;
     const std::uint64_t received = counters.received;
-    const bool whole = packet_fault(data, size) == nullptr;
-    check_codecs(data, size, whole);
-    receiver_.take(data, size, kFrom);
-    // the codec takes whatever the validator has passed, and nothing comes of what it has not
-    must(counters.malformed - malformed == (whole ? 0u : 1u));
-    must(counters.received - received == (whole ? messages_in(data, size) : 0u));
+    const bool valid = packet_fault(data, size) == nullptr;
+    check_codecs(data, size, valid);
+    receiver_.process(data, size, kFrom);
+    // the codec accepts all packets that the validator accepts; rejected packets have no effect
+    must(counters.malformed - malformed == (valid ? 0u : 1u));
+    must(counters.received - received == (valid ? messages_in(data, size) : 0u));
   }
 
-  // our own codec on every input; oscpack's, where it is correct, on valid ones: both find and write the same
-  void check_codecs(const char* data, std::size_t size, bool whole) {
+  // decodes every input with the own codec, and valid inputs with oscpack's, too: both must agree in both directions
+  void check_codecs(const char* data, std::size_t size, bool valid) {
     const Result<Decoded> own = own_codec::decode(data, size);
-    must(own.ok() == whole);
+    must(own.ok() == valid);
 #if LIMBER_OSCPACK
-    if (!whole) return;
+    if (!valid) return;
     const Result<Decoded> oscpack = oscpack_codec::decode(data, size);
     must(oscpack.ok() && osc_test::same(*own, *oscpack));
     for (const Message& message : own->messages) {
@@ -132,42 +131,43 @@ class Desk {
 
   void play() {
     const bool step = inputs_ % kStepEvery == 0;
-    if (step) steady_ += 11'000'000'000;  // bundles that wait for their time are due
-    receiver_.release_due();              // first: what they hold must not come behind the good message
+    if (step) steady_ += 11'000'000'000;  // makes all scheduled bundles due
+    receiver_.process_pending();          // first, so that their messages don't follow the valid message
     const double gravity = -1 - static_cast<double>(inputs_ / kPlayEvery % 1024) / 64;  // exact as a float
-    say({"/physics/sim/gravity", {Arg::of(0.0), Arg::of(0.0), Arg::of(gravity)}});
-    say({"/physics/sim/paused", {Arg::of(true)}});
+    send({"/physics/sim/gravity", {Arg::of(0.0), Arg::of(0.0), Arg::of(gravity)}});
+    send({"/physics/sim/paused", {Arg::of(true)}});
     if (step) {
-      // values that a machine can't keep up with are the performer's right, and none of the fuzzer's business
-      say({"/physics/sim/substeps", {Arg::of(2.0)}});
-      say({"/physics/sim/solver_iterations", {Arg::of(10.0)}});
-      say({"/transport/step", {}});
+      // valid values that make physics very slow are allowed, but would only slow the fuzzer down
+      send({"/physics/sim/substeps", {Arg::of(2.0)}});
+      send({"/physics/sim/solver_iterations", {Arg::of(10.0)}});
+      send({"/transport/step", {}});
     }
     subscribers_.work();
-    count_waiting();
+    check_queued_commands();
     const std::uint64_t tick = engine_.world().tick();
     engine_.tick();
 
     const Store& store = engine_.store();
     must(store.values(engine_.world().id(), World::table().at("gravity"))[2] == gravity);
     if (step) {
-      // a reset begins time anew
+      // a reset restarts the tick count
       must(engine_.world().tick() == tick + 1 || engine_.world().tick() <= 1);
-      must(all_finite(store.kept()) && all_finite(store.live()));
+      must(all_finite(store.persistent_values()) && all_finite(store.transient_values()));
     }
     check_counters(step);
   }
 
-  void say(const Message& message) {
+  void send(const Message& message) {
     const std::span<const char> packet = encode_message(message, buffer_);
-    take(packet.data(), packet.size());
+    process_and_check(packet.data(), packet.size());
   }
 
-  // looks at what waits for the engine, and puts it back
-  void count_waiting() {
-    // urgent requests don't wait with the others; several are one, and discard what they overtake
-    for (int kind = 0; kind < kUrgentKinds; kind++) urgent_ |= link_.inbox.waits(static_cast<UrgentKind>(kind));
-    link_.inbox.drain(commands_);
+  // checks the messages queued for the engine, and queues them again
+  void check_queued_commands() {
+    // urgent requests are not in the queue; several are merged into one, and they discard the messages they overtake
+    for (int kind = 0; kind < kUrgentKinds; kind++)
+      urgent_ |= link_.command_queue.has_urgent(static_cast<UrgentKind>(kind));
+    link_.command_queue.drain(commands_);
     for (Command& command : commands_) {
       for (const Message& message : command.messages) {
         must(!message.address.empty() && message.address[0] == '/');
@@ -175,31 +175,32 @@ class Desk {
         check_packet(message);
         executed_++;
       }
-      must(link_.inbox.push(std::move(command)));
+      must(link_.command_queue.push(std::move(command)));
     }
   }
 
-  // what came in can be sent on, and what goes out is OSC
+  // checks that a message can be encoded as valid OSC
   void check_packet(const Message& message) {
     const std::span<const char> packet = encode_message(message, buffer_);
     must(packet.empty() || packet_fault(packet.data(), packet.size()) == nullptr);
   }
 
-  void clear_outbox() { link_.outbox.drain(outgoing_); }
+  void drain_output() { link_.output_queue.drain(outgoing_); }
 
-  void check_counters(bool nothing_is_held) {
-    clear_outbox();
+  void check_counters(bool nothing_pending) {
+    drain_output();
     for (const Outgoing& out : outgoing_) {
-      if (out.to == Outgoing::To::error) errors_++;
+      if (out.destination == Outgoing::Destination::error) errors_++;
       check_packet(out.message);
     }
     const Counters& counters = link_.counters;
-    // every message came to one end, and each refusal was told to its sender
-    const std::uint64_t ended = executed_ + pongs_ + subscribed_ + tokens_ + refused_here_ + counters.dropped;
-    must(counters.received >= ended + uncounted_);
-    if (nothing_is_held && std::exchange(urgent_, false)) uncounted_ = counters.received - ended;
-    must(!nothing_is_held || counters.received == ended + uncounted_);
-    must(link_.outbox.dropped() > 0 || counters.refused + counters.unknown == errors_);
+    // each message is counted exactly once, and each rejection was reported to its sender
+    const std::uint64_t accounted =
+        executed_ + pongs_ + subscribed_ + tokens_ + rejected_by_receiver_ + counters.dropped;
+    must(counters.received >= accounted + uncounted_);
+    if (nothing_pending && std::exchange(urgent_, false)) uncounted_ = counters.received - accounted;
+    must(!nothing_pending || counters.received == accounted + uncounted_);
+    must(link_.output_queue.dropped() > 0 || counters.refused + counters.unknown == errors_);
   }
 
   EngineLink link_;
@@ -209,18 +210,18 @@ class Desk {
   Receiver receiver_{link_,
                      {},
                      {[this](const Outgoing& out) {
-                        refused_here_++;
+                        rejected_by_receiver_++;
                         errors_++;
                         check_packet(out.message);
                       },
-                      [this](const Origin&) { pongs_++; },
-                      [this](const Message& message, const Origin& origin) {
-                        Result<void> done = subscribers_.take(message, origin);
+                      [this](const CommandOrigin&) { pongs_++; },
+                      [this](const Message& message, const CommandOrigin& origin) {
+                        Result<void> done = subscribers_.handle(message, origin);
                         subscribed_ += done ? 1 : 0;
                         return done;
                       },
-                      [this](const Origin& origin) { return subscribers_.follows(origin); },
-                      [](const Endpoint&, std::size_t) {}, [this](const Message&, const Origin&) { tokens_++; }},
+                      [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
+                      [](const Endpoint&, std::size_t) {}, [this](const Message&, const CommandOrigin&) { tokens_++; }},
                      clock_};
   Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) {
                              check_packet(out.message);
@@ -233,12 +234,12 @@ class Desk {
   std::size_t bodies_ = 0;
   std::uint64_t inputs_ = 0;
   std::uint64_t executed_ = 0;
-  std::uint64_t uncounted_ = 0;  // urgent requests, and what they discarded
-  bool urgent_ = false;          // one came since it was counted
+  std::uint64_t uncounted_ = 0;  // urgent requests, and the messages they discarded
+  bool urgent_ = false;          // an urgent request arrived since uncounted_ was updated
   std::uint64_t pongs_ = 0;
   std::uint64_t subscribed_ = 0;
   std::uint64_t tokens_ = 0;
-  std::uint64_t refused_here_ = 0;
+  std::uint64_t rejected_by_receiver_ = 0;
   std::uint64_t errors_ = 0;
 };
 
@@ -246,5 +247,5 @@ class Desk {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  return live_input<Desk>(bytes, size);
+  return persistent_input<OscFixture>(bytes, size);
 }

@@ -1,4 +1,4 @@
-// Any bytes as a file of presets, and as a pattrstorage: what is read can be written, read again and blended.
+// Fuzzes the readers of preset files and pattrstorage files. Checks that the result can be written, read and blended.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -11,33 +11,33 @@ namespace {
 
 using limber::must;
 
-void must_be_whole(const limber::Preset& preset) {
-  must(preset.values.size() == preset.shape->width());
-  const auto& things = preset.shape->things();
-  for (std::uint32_t i = 1; i < things.size(); i++) {
-    must(things[i].parent < i);
-    const limber::PresetClass* const rows = preset.shape->rows(things[i]);
-    if (rows == nullptr) continue;
-    must(things[i].at + rows->width <= preset.values.size());
-    for (std::size_t k = 0; k < rows->rows.size(); k++) {
-      const double v = preset.values[things[i].at + rows->offsets[k]];
-      if (rows->rows[k].type == limber::RowType::choice)
-        must(v >= 0 && v < static_cast<double>(rows->rows[k].labels.size()));
+void check_consistent(const limber::Preset& preset) {
+  must(preset.values.size() == preset.schema->value_count());
+  const auto& nodes = preset.schema->nodes();
+  for (std::uint32_t i = 1; i < nodes.size(); i++) {
+    must(nodes[i].parent < i);
+    const limber::PresetLayout* const layout = preset.schema->layout(nodes[i]);
+    if (layout == nullptr) continue;
+    must(nodes[i].offset + layout->value_count <= preset.values.size());
+    for (std::size_t k = 0; k < layout->properties.size(); k++) {
+      const double v = preset.values[nodes[i].offset + layout->offsets[k]];
+      if (layout->properties[k].type == limber::PropertyType::choice)
+        must(v >= 0 && v < static_cast<double>(layout->properties[k].labels.size()));
     }
   }
 }
 
-void try_read(const limber::Result<limber::PresetsRead>& read) {
+void check_parsed(const limber::Result<limber::ParsedPresets>& read) {
   if (!read) return must(!read.error().empty());
-  for (const auto& preset : read->presets) must_be_whole(*preset);
+  for (const auto& preset : read->presets) check_consistent(*preset);
   if (read->presets.size() > 1) {
-    const limber::Blend blend = limber::aligned(read->presets[0], read->presets[1]);
-    must_be_whole(*blend.a);
-    must_be_whole(*blend.b);
-    must(blend.a->shape == blend.b->shape);
+    const limber::Blend blend = limber::align(read->presets[0], read->presets[1]);
+    check_consistent(*blend.a);
+    check_consistent(*blend.b);
+    must(blend.a->schema == blend.b->schema);
   }
   const std::string text = limber::text_of(read->presets);
-  const auto again = limber::presets_of(text);
+  const auto again = limber::parse_presets(text);
   must(again.ok() && again->problems.empty() && limber::text_of(again->presets) == text);
 }
 
@@ -46,7 +46,7 @@ void try_read(const limber::Result<limber::PresetsRead>& read) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  try_read(limber::presets_of(bytes));
-  try_read(limber::import_pattrstorage(bytes));
+  check_parsed(limber::parse_presets(bytes));
+  check_parsed(limber::import_pattrstorage(bytes));
   return 0;
 }

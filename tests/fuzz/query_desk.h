@@ -1,5 +1,5 @@
-// What the targets of OSCQuery share: a live world behind the hall, and two clients. What comes back is JSON or OSC,
-// and the second client is served whatever the first one does.
+// Shared by the OSCQuery fuzz targets: a live world with a QueryHub and two clients. Checks that all replies are valid
+// JSON or OSC, and that the second client is served whatever the first one sends.
 #pragma once
 
 #include <cstddef>
@@ -18,8 +18,8 @@
 
 namespace limber {
 
-/// What a client is sent; each frame is looked at.
-struct QueryLine : ClientLine {
+/// The connection to a client: checks that each frame is valid, and counts values of the seed.
+struct CheckedSink : ClientSink {
   std::size_t bytes = 0;
   std::uint64_t values = 0;
 
@@ -29,57 +29,58 @@ struct QueryLine : ClientLine {
     if (!text) must(packet_fault(frame.data(), frame.size()) == nullptr);
     if (!text && frame.starts_with("/physics/sim/seed")) values++;
   }
-  std::size_t waiting() const override { return bytes; }
+  std::size_t queued_bytes() const override { return bytes; }
 };
 
-/// A world and two clients of it: one sends what the target gives it, the other listens to one value.
-class FuzzedQueryDesk {
+/// A world with two clients: one sends the fuzzer's input, the other subscribes to one value.
+class QueryFixture {
  public:
-  FuzzedQueryDesk() {
-    hall_.enter(client_);
-    hall_.enter(other_);
-    (void)other_.text(R"({"COMMAND":"LISTEN","DATA":"/physics/sim/seed"})");
+  QueryFixture() {
+    hub_.add_client(client_);
+    hub_.add_client(other_);
+    (void)other_.on_text(R"({"COMMAND":"LISTEN","DATA":"/physics/sim/seed"})");
   }
-  ~FuzzedQueryDesk() {
-    hall_.leave(client_);
-    hall_.leave(other_);
+  ~QueryFixture() {
+    hub_.remove_client(client_);
+    hub_.remove_client(other_);
   }
 
-  FuzzedQueryDesk(const FuzzedQueryDesk&) = delete;
-  FuzzedQueryDesk& operator=(const FuzzedQueryDesk&) = delete;
+  QueryFixture(const QueryFixture&) = delete;
+  QueryFixture& operator=(const QueryFixture&) = delete;
 
   Client& client() { return client_; }
-  /// What has come takes effect; the other client is told of a value that is set now.
-  void look() {
+  /// Executes pending commands; checks that the other client is notified of a changed value.
+  void publish_snapshot() {
     const double seed = static_cast<double>(++seed_);
-    show_.link.inbox.push({{{"/physics/sim/seed", {Arg::of(seed)}}, {"/physics/sim/paused", {Arg::of(true)}}}, {}});
-    hall_.hurry();
-    (void)engine_test::image_of(show_);
-    line_.bytes = other_line_.bytes = 0;
-    const std::uint64_t before = other_line_.values;
-    hall_.bell();
-    must(other_line_.values == before + 1);
+    show_.link.command_queue.push(
+        {{{"/physics/sim/seed", {Arg::of(seed)}}, {"/physics/sim/paused", {Arg::of(true)}}}, {}});
+    hub_.request_values();
+    (void)engine_test::make_value_snapshot(show_);
+    sink_.bytes = other_sink_.bytes = 0;
+    const std::uint64_t before = other_sink_.values;
+    hub_.on_link_event();
+    must(other_sink_.values == before + 1);
   }
-  /// After each input.
-  void done() {
-    if (++inputs_ % 16 == 0) look();
+  /// Called after each input.
+  void end_input() {
+    if (++inputs_ % 16 == 0) publish_snapshot();
   }
-  bool worn() { return inputs_ >= kRenewEvery || show_.engine.world().bodies().size() < 4; }
+  bool needs_renewal() { return inputs_ >= kRenewEvery || show_.engine.world().bodies().size() < 4; }
 
  private:
-  static constexpr std::uint64_t kRenewEvery = 2048;  // inputs that a world sees
+  static constexpr std::uint64_t kRenewEvery = 2048;  // inputs per world
 
-  QueryDoors doors() {
-    QueryDoors doors;
-    doors.encode = [this](const Message& message, std::string_view tags) {
+  QueryHost host() {
+    QueryHost host;
+    host.encode = [this](const Message& message, std::string_view tags) {
       const auto packet = tags.empty() ? encode_message(message, buffer_) : encode_tagged(message, tags, buffer_);
       return std::string(packet.begin(), packet.end());
     };
-    doors.take = [this](const Origin& origin, const std::string& packet) {
-      receiver_.take(packet.data(), packet.size(), origin);
-      receiver_.release_due();
+    host.process = [this](const CommandOrigin& origin, const std::string& packet) {
+      receiver_.process(packet.data(), packet.size(), origin);
+      receiver_.process_pending();
     };
-    return doors;
+    return host;
   }
 
   engine_test::SceneFile file_{engine_test::kEverything};
@@ -87,11 +88,11 @@ class FuzzedQueryDesk {
   NetClock clock_{[] { return std::int64_t{0}; }, [] { return std::uint64_t{1} << 63; }};
   Receiver receiver_{show_.link, {}, {[this](const Outgoing& out) { show_.link.push_out(out); }}, clock_};
   PacketBuffer buffer_;
-  Hall hall_{show_.link, doors(), {}};
-  QueryLine line_;
-  QueryLine other_line_;
-  Client client_{{Hand::query, 1, 1}, line_, hall_.doors()};
-  Client other_{{Hand::query, 1, 2}, other_line_, hall_.doors()};
+  QueryHub hub_{show_.link, host(), {}};
+  CheckedSink sink_;
+  CheckedSink other_sink_;
+  Client client_{{CommandSource::oscquery, 1, 1}, sink_, hub_.host()};
+  Client other_{{CommandSource::oscquery, 1, 2}, other_sink_, hub_.host()};
   std::uint64_t inputs_ = 0;
   std::uint64_t seed_ = 1000;
 };

@@ -1,5 +1,5 @@
-// Random scripts over a grammar, with random limits of time and memory: the program lives, scripts that come after
-// still run, and a callback that fails leaves the world as it was, bit for bit.
+// Fuzzes scripts generated from a grammar, with random limits of time and memory. Checks that the program survives,
+// that later scripts still run, and that a failing callback leaves the world unchanged, bit for bit.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -21,10 +21,10 @@ namespace {
 
 struct SilentHost : ScriptHost {
   void send(Message) override {}
-  void reply(const Origin&, Message) override {}
-  void send_direct(const Origin&, Message) override {}
-  void plan_osc(const OscPlan&) override {}
-  void ask_reset() override {}
+  void reply(const CommandOrigin&, Message) override {}
+  void send_direct(const CommandOrigin&, Message) override {}
+  void configure_osc(const OscConfig&) override {}
+  void request_reset() override {}
   void script_error(std::string_view file, int line, std::string_view text) override {
     faults++;
     must(file == "fuzz.lua" && line > 0 && !text.empty() && text.size() < 20000);
@@ -33,7 +33,7 @@ struct SilentHost : ScriptHost {
   int faults = 0;
 };
 
-// turns bytes into statements; when they are used up everything is its first, plain choice
+// generates statements from bytes; after the last byte, every choice takes its first, simple alternative
 class Writer {
  public:
   explicit Writer(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -52,7 +52,7 @@ class Writer {
   }
 
  private:
-  // what is registered fails when all do: at its end at the latest
+  // if all callbacks are to fail, this one raises an error at its end at the latest
   std::string callback(std::string_view where, std::string_view arguments, int depth) {
     return fmt::format("{}({}function(e) {} {}end)\n", where, arguments, block(depth), end_);
   }
@@ -216,13 +216,13 @@ class Writer {
   std::string end_;
 };
 
-// the same scripts run after it
-void still_works(Vm& vm) {
+// checks that the VM still runs valid scripts
+void check_vm_works(Vm& vm) {
   constexpr std::string_view kGood = "local n = 0 for i = 1, 100 do n = n + i end return n";
   for (int attempt = 0; attempt < 100; attempt++) {
     must(luaL_loadbuffer(vm.state(), kGood.data(), kGood.size(), "@good") == 0);
     if (!vm.guard().call(0, 1)) {
-      must(vm.guard().fault().stopped);  // the limits may be that tight
+      must(vm.guard().fault().stopped);  // the limits may be too tight for this attempt
       continue;
     }
     must(lua_tonumber(vm.state(), -1) == 5050);
@@ -246,7 +246,7 @@ void play(std::span<const std::uint8_t> bytes) {
   SilentHost host;
   ScriptContext context(world, host, options);
   context.random_name = "fuzz";
-  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::draft : VmMode::live);
+  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::interpreted : VmMode::live);
   const std::string before =
       "local ball = sim:add_sphere_shape('ball', 0.1) "
       "for i, name in ipairs { 'one', 'two' } do "
@@ -255,19 +255,19 @@ void play(std::span<const std::uint8_t> bytes) {
   ScriptPlace fault;
   (void)vm.run(before + writer.scene(all_fail), "fuzz.lua", fault);
   context.answer.top_level = 0;
-  world.settle();
+  world.flush();
   world.step();
   for (int tick = 0; tick < 4; tick++) {
     const std::uint64_t hash = context.hash(world.state_hash());
     const std::size_t shapes = world.shapes().size();
     if (tick == 0) vm.start();
-    vm.message({"/go", {Arg::of(1.0)}}, {});
+    vm.handle_message({"/go", {Arg::of(1.0)}}, {});
     vm.tick(1.0 / 60);
     if (all_fail) must(context.hash(world.state_hash()) == hash && world.shapes().size() == shapes);
     world.step();
     vm.collect_garbage();
   }
-  still_works(vm);
+  check_vm_works(vm);
 }
 
 }  // namespace

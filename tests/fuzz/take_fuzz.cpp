@@ -1,4 +1,5 @@
-// Any bytes as a take: it is read to its last whole frame, and what was read can be written and read again.
+// Fuzzes the reader of takes. Checks that takes are read up to the last complete frame, and that frames survive a round
+// trip through writing and reading.
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -13,22 +14,23 @@ namespace {
 
 using limber::must;
 
-void must_come_back(const limber::TakeTick& tick) {
-  limber::TakeForms written;
+void check_round_trip(const limber::TakeTick& tick) {
+  limber::TakeMessageCodec written;
   std::string messages;
-  limber::TakeBytes out(messages);
-  for (const limber::TakeMessage& taken : tick.messages) {
-    limber::Message message = taken.message;
-    if (taken.evaluate) message = {"", {limber::Arg::of(std::string_view(taken.message.address))}};
-    written.write(out, message, taken.origin);
+  limber::TakeEncoder out(messages);
+  for (const limber::TakeMessage& recorded : tick.messages) {
+    limber::Message message = recorded.message;
+    if (recorded.evaluate) message = {"", {limber::Arg::of(std::string_view(recorded.message.address))}};
+    written.encode(out, message, recorded.origin);
   }
   std::string text;
   limber::append_tick(text, tick, tick.messages.size(), messages);
-  limber::TakeForms read;
+  limber::TakeMessageCodec read;
   limber::TakeTick again;
   must(limber::read_tick(text, read, again));
   must(again.messages.size() == tick.messages.size() && again.runs.size() == tick.runs.size());
-  must(again.motion == tick.motion && again.bodies == tick.bodies && again.state == tick.state);
+  must(again.motion_hash == tick.motion_hash && again.body_hashes == tick.body_hashes &&
+       again.state_hash == tick.state_hash);
 }
 
 }  // namespace
@@ -36,15 +38,15 @@ void must_come_back(const limber::TakeTick& tick) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  auto opened = limber::TakeReader::of(std::make_unique<std::istringstream>(bytes), "fuzz");
+  auto opened = limber::TakeReader::from_stream(std::make_unique<std::istringstream>(bytes), "fuzz");
   if (!opened) {
     must(!opened.error().empty());
     return 0;
   }
   limber::TakeReader& reader = **opened;
   for (limber::TakeTick tick; reader.next(tick);) {
-    must_come_back(tick);
-    for (const limber::TakeRun& run : tick.runs) {
+    check_round_trip(tick);
+    for (const limber::TakeSceneRun& run : tick.runs) {
       must(run.files == 0 || reader.sources(run.files) != nullptr);
       (void)reader.presets(run.files);
     }

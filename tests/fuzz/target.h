@@ -1,4 +1,4 @@
-// What fuzz targets share: what is a fault, and desks that live on from input to input.
+// Shared by the fuzz targets: an assertion, and a fixture that persists across inputs.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,24 @@
 
 namespace limber {
 
-/// A fault that no sanitizer sees.
+/// Assertion for faults that no sanitizer detects: aborts if `condition` is false.
 inline void must(bool condition, int line = __builtin_LINE()) {
   if (condition) return;
-  std::fprintf(stderr, "line %d of the target does not hold\n", line);
+  std::fprintf(stderr, "line %d of the target: assertion failed\n", line);
   std::abort();
 }
 
-/// Gives the bytes to a Desk that is made for the first input, and anew when it is worn().
-template <class Desk>
-int live_input(const std::uint8_t* bytes, std::size_t size) {
-  static std::unique_ptr<Desk>& desk = *new std::unique_ptr<Desk>;  // lives as long as the process
-  if (desk == nullptr) {
+/// Passes the bytes to a fixture that persists across inputs until it asks for its renewal; the next input then gets a
+/// new one.
+template <class Fixture>
+int persistent_input(const std::uint8_t* bytes, std::size_t size) {
+  static std::unique_ptr<Fixture>& fixture = *new std::unique_ptr<Fixture>;  // never destroyed
+  if (fixture == nullptr) {
     log_to_stderr(false);
-    desk = std::make_unique<Desk>();
+    fixture = std::make_unique<Fixture>();
   }
-  desk->input(std::string_view(reinterpret_cast<const char*>(bytes), size));
-  if (desk->worn()) desk.reset();
+  fixture->input(std::string_view(reinterpret_cast<const char*>(bytes), size));
+  if (fixture->worn()) fixture.reset();
   return 0;
 }
 

@@ -1,4 +1,4 @@
-// Any bytes as a URDF file: the importer answers with a body or an error, and what it gives is sound.
+// Fuzzes the URDF importer. Checks that it returns a consistent body or an error.
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +20,7 @@ void check_links(const limber::BodyModel& model) {
     const limber::LinkModel& link = model.links[i];
     limber::must(is_sound(link.home) && is_sound(link.start) && std::isfinite(link.inertial.mass));
     limber::must(i == 0 || link.inertial.mass > 0);
-    if (link.inertial.mass > 0) limber::must(limber::tensor_fault(link.inertial.tensor).empty());
+    if (link.inertial.mass > 0) limber::must(limber::tensor_error(link.inertial.tensor).empty());
     for (const limber::PlacedShape& s : link.collisions) limber::must(is_sound(s.origin));
   }
 }
@@ -52,6 +52,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   check_links(**model);
   check_joints(**model);
-  for (const limber::Problem& p : (*model)->problems) limber::must(!p.text.empty() && !p.cure.empty());
+  for (const limber::Problem& p : (*model)->problems) limber::must(!p.text.empty() && !p.fix.empty());
   return 0;
 }

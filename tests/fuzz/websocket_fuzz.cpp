@@ -1,5 +1,5 @@
-// Any frames of a WebSocket client into a live world: a kind (0 text, 1 binary, 2 an image) and a length of two bytes
-// before each.
+// Fuzzes WebSocket frames in a live world. Input: frames, each with a kind (0 text, 1 binary, 2 publish a snapshot) and
+// a length of two bytes.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace {
 
-struct Desk : limber::FuzzedQueryDesk {
+struct WebSocketFixture : limber::QueryFixture {
   void input(std::string_view bytes) {
     while (bytes.size() >= 3) {
       const int kind = bytes[0] % 3;
@@ -17,11 +17,11 @@ struct Desk : limber::FuzzedQueryDesk {
           static_cast<unsigned char>(bytes[1]) << 8 | static_cast<unsigned char>(bytes[2]), bytes.size() - 3);
       const std::string_view frame = bytes.substr(3, size);
       bytes.remove_prefix(3 + size);
-      if (kind == 0) (void)client().text(frame);
-      if (kind == 1) client().binary(frame);
-      if (kind == 2) look();
+      if (kind == 0) (void)client().on_text(frame);
+      if (kind == 1) client().on_binary(frame);
+      if (kind == 2) publish_snapshot();
     }
-    done();
+    end_input();
   }
 };
 
@@ -29,5 +29,5 @@ struct Desk : limber::FuzzedQueryDesk {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  return limber::live_input<Desk>(bytes, size);
+  return limber::persistent_input<WebSocketFixture>(bytes, size);
 }

@@ -1,5 +1,5 @@
-// Plays golden scenes by their scores, and reads the table of their hashes. LIMBER_GOLDEN_LOG=1: with their messages.
-// LIMBER_GOLDEN_JIT=off: LuaJIT interprets.
+// Plays golden scenes by their scores, and reads the table of their hashes. LIMBER_GOLDEN_LOG=1 shows their messages;
+// LIMBER_GOLDEN_JIT=off turns off LuaJIT's compiler.
 #pragma once
 
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 inline const fs::path kFolder = fs::path(LIMBER_SOURCE_DIR) / "tests/golden";
 
-/// What a run came to, as a line of hashes.txt has it.
+/// The result of a run, as in a line of hashes.txt.
 struct Outcome {
   std::uint64_t ticks = 0;
   std::uint64_t hash = 0;
@@ -57,10 +57,10 @@ inline std::map<std::string, Outcome> golden_hashes() {
   return table;
 }
 
-/// A folder of its own that holds the scene's file, so that what a show writes stays out of the sources.
+/// A temporary folder with the scene file, so that files written by the show stay out of the sources.
 class ScratchShow {
  public:
-  /// The file keeps its name, since generators begin with it.
+  /// The file keeps its name, because generators are seeded with it.
   ScratchShow(const std::string& name, int threads, const std::string& text)
       : folder_(fs::path(::testing::TempDir()) / fmt::format("limber_golden_{}_{}_{}", ::getpid(), name, threads)),
         scene_(folder_ / "scripts" / (name + ".lua")) {
@@ -76,7 +76,7 @@ class ScratchShow {
 
   void write(const std::string& text) const { std::ofstream(scene_, std::ios::binary) << text; }
   std::string scene() const { return scene_.string(); }
-  std::string take() const { return (folder_ / "run.take").string(); }
+  std::string take_path() const { return (folder_ / "run.take").string(); }
 
  private:
   fs::path folder_;
@@ -86,7 +86,7 @@ class ScratchShow {
 inline EngineOptions golden_options(int threads) {
   EngineOptions options;
   options.scene_options.data_dir = LIMBER_SOURCE_DIR;
-  // a call that is stopped after some time would depend on the machine
+  // a time limit for calls would depend on the machine
   options.scene_options.limits.call_ms = 600000;
   const char* const compiler = std::getenv("LIMBER_GOLDEN_JIT");
   options.scene_options.limits.compiled = compiler == nullptr || std::string_view(compiler) != "off";
@@ -110,7 +110,7 @@ class ScenePlay {
     log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
     EngineOptions options = golden_options(threads_);
     options.scene = show_.scene();
-    if (score_.take) options.record = show_.take();
+    if (score_.records_take) options.record = show_.take_path();
     Engine engine(link_, options);
     engine_ = &engine;
     const Result<void> started = engine.start();
@@ -118,30 +118,30 @@ class ScenePlay {
     if (!started) return {};
     std::size_t next = 0;
     for (pass_ = 0; pass_ < score_.ticks; pass_++) {
-      if (again_ && again_->first == pass_) end_again();
-      for (; next < score_.lines.size() && score_.lines[next].pass == pass_; next++) perform(score_.lines[next]);
+      if (expected_hash_ && expected_hash_->first == pass_) check_repeated_hash();
+      for (; next < score_.lines.size() && score_.lines[next].pass == pass_; next++) apply_input(score_.lines[next]);
       engine.tick();
     }
-    if (again_) end_again();
-    EXPECT_EQ(next, score_.lines.size()) << "the score has lines behind its last pass";
-    EXPECT_EQ(engine.faults(), score_.faults) << "script errors, refused values, health events" << refusals();
+    if (expected_hash_) check_repeated_hash();
+    EXPECT_EQ(next, score_.lines.size()) << "the score has lines after its last pass";
+    EXPECT_EQ(engine.faults(), score_.faults) << "script errors, rejected values, health events" << rejections();
     const Outcome outcome{engine.world().tick(), engine.state_hash()};
-    if (score_.take) {
+    if (score_.records_take) {
       engine.end_take();
       engine.finish_saving();
     }
     return outcome;
   }
 
-  bool recorded() const { return score_.take; }
-  std::string take() const { return show_.take(); }
+  bool records_take() const { return score_.records_take; }
+  std::string take_path() const { return show_.take_path(); }
 
  private:
-  /// Messages /error, which answered what was refused.
-  std::string refusals() {
+  /// Texts of the /error messages, which answer rejected messages.
+  std::string rejections() {
     std::string text;
     std::vector<Outgoing> out;
-    link_.outbox.drain(out);
+    link_.output_queue.drain(out);
     for (const Outgoing& each : out) {
       if (each.message.address != "/error") continue;
       for (const Arg& arg : each.message.args) text += "\n" + arg.text;
@@ -149,20 +149,22 @@ class ScenePlay {
     return text;
   }
 
-  void send(Message message) { link_.inbox.push({{std::move(message)}, {Hand::osc, 0x7f000001, 4000}}); }
+  void send(Message message) {
+    link_.command_queue.push({{std::move(message)}, {CommandSource::osc, 0x7f000001, 4000}});
+  }
 
-  void perform(const ScoreLine& line) {
+  void apply_input(const ScoreLine& line) {
     if (line.verb == "send" || line.verb == "flood") {
       for (int i = 0; i < line.count; i++) send(line.message);
     } else if (line.verb == "eval") {
-      auto wish = std::make_shared<Evaluate>();
-      wish->text = line.text;
-      wish->answer = [](const Evaluation&) {};
-      link_.inbox.push({{}, {Hand::console}, std::move(wish)});
+      auto request = std::make_shared<EvaluationRequest>();
+      request->text = line.text;
+      request->on_result = [](const Evaluation&) {};
+      link_.command_queue.push({{}, {CommandSource::console}, std::move(request)});
     } else if (line.verb == "replace" || line.verb == "reload") {
       reload(line);
     } else {
-      if (line.verb == "again") again_ = {pass_ + line.count, engine_->state_hash()};
+      if (line.verb == "again") expected_hash_ = {pass_ + line.count, engine_->state_hash()};
       send({"/transport/rewind_ticks", {Arg::of(static_cast<double>(line.count))}});
     }
   }
@@ -174,12 +176,12 @@ class ScenePlay {
       text_.replace(at, line.text.size(), line.replacement);
     }
     show_.write(text_);
-    EXPECT_EQ(engine_->reload_now(), Reload::End::applied);
+    EXPECT_EQ(engine_->reload_now(), SceneReloader::ApplyResult::applied);
   }
 
-  void end_again() {
-    EXPECT_EQ(engine_->state_hash(), again_->second) << "pass " << pass_ << ", played again after a rewind";
-    again_.reset();
+  void check_repeated_hash() {
+    EXPECT_EQ(engine_->state_hash(), expected_hash_->second) << "pass " << pass_ << ", played again after a rewind";
+    expected_hash_.reset();
   }
 
   std::string text_;
@@ -189,10 +191,10 @@ class ScenePlay {
   EngineLink link_;
   Engine* engine_ = nullptr;
   int pass_ = 0;
-  std::optional<std::pair<int, std::uint64_t>> again_;  // the pass in which the hash must be that one
+  std::optional<std::pair<int, std::uint64_t>> expected_hash_;  // a pass and the hash that is expected in it
 };
 
-/// Replays a take to its end; every hash in it must come out.
+/// Replays a take to its end and compares all its hashes.
 inline Outcome replay(const std::string& take, int threads) {
   log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
   EngineLink link;
@@ -203,9 +205,9 @@ inline Outcome replay(const std::string& take, int threads) {
   EXPECT_TRUE(started.ok()) << started.error();
   if (!started) return {};
   engine.run();
-  const TakeVerdict verdict = engine.verdict();
-  EXPECT_FALSE(verdict.parted.has_value()) << limber::text_of(verdict);
-  EXPECT_TRUE(verdict.compared && !verdict.cut_off && verdict.damage.empty()) << limber::text_of(verdict);
+  const ReplayResult result = engine.replay_result();
+  EXPECT_FALSE(result.diverged_at.has_value()) << limber::text_of(result);
+  EXPECT_TRUE(result.compared && !result.truncated && result.damage.empty()) << limber::text_of(result);
   return {engine.world().tick(), engine.state_hash()};
 }
 

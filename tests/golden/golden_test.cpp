@@ -1,6 +1,6 @@
-// Each golden scene comes to the hash in hashes.txt, for any number of threads, and so does the recorded show.
-// LIMBER_GOLDEN_OUT=FILE: lines "name ticks hash threads" are added to that file.
-// LIMBER_GOLDEN_RECORD=FILE: the show is recorded there anew.
+// Each golden scene reaches the hash in hashes.txt for any number of threads, and the recorded show replays to its
+// hash. LIMBER_GOLDEN_OUT=FILE appends lines "name ticks hash threads" to that file. LIMBER_GOLDEN_RECORD=FILE
+// records the show to this file.
 #include "golden/golden.h"
 
 namespace limber::golden {
@@ -30,8 +30,8 @@ TEST_P(Golden, HashIsTheSame) {
   ScenePlay play("scenes/" + name + ".lua", threads);
   const Outcome outcome = play.play();
   compare(name, outcome, threads);
-  if (threads == 1 && play.recorded()) {
-    EXPECT_EQ(text_of(replay(play.take(), threads)), text_of(outcome)) << name << ": replay of its take";
+  if (threads == 1 && play.records_take()) {
+    EXPECT_EQ(text_of(replay(play.take_path(), threads)), text_of(outcome)) << name << ": replay of its take";
   }
 }
 
@@ -46,7 +46,7 @@ TEST(GoldenShow, TakeReplaysToItsHash) {
   if (const char* const file = std::getenv("LIMBER_GOLDEN_RECORD")) {
     ScenePlay show("show.lua", 1);
     show.play();
-    fs::copy_file(show.take(), file, fs::copy_options::overwrite_existing);
+    fs::copy_file(show.take_path(), file, fs::copy_options::overwrite_existing);
   }
   for (const int threads : {1, 2, 3}) compare(kShow, replay((kFolder / kShow).string(), threads), threads);
 }

@@ -1,16 +1,16 @@
-// Score of a golden scene: lines in its comments that name the number of ticks and what reaches the scene in which
-// pass.
+// Score of a golden scene: lines in its comments that give the number of engine passes, and the pass and content of
+// each input.
 //
-//   --@ ticks 120                    passes that are played
+//   --@ ticks 120                    number of passes of the engine (fewer simulated ticks if it is paused or rewinds)
 //   --@ 30 send /push 0.5 left       a message; numbers, true, false, text
 //   --@ 30 flood 500 /push 0.001     the same message 500 times
-//   --@ 40 eval sim.gravity = vec3() a line of a console
+//   --@ 40 eval sim.gravity = vec3() a console line
 //   --@ 50 replace "0.5" "0.7"       the scene's file is saved with another text, and reloaded
 //   --@ 60 reload                    the scene's file is saved as it is, and reloaded
-//   --@ 70 again 20                  20 ticks back, and played again: the hash must come out as before
-//   --@ 80 back 20                   20 ticks back, and on from there
+//   --@ 70 again 20                  rewinds 20 ticks; when they are played again, the hash must be the same
+//   --@ 80 back 20                   rewinds 20 ticks
 //   --@ take                         the run is recorded, and the take must replay to the same hash
-//   --@ faults 2                     script errors, refused values and health events that belong to the scene
+//   --@ faults 2                     expected script errors, rejected values and health events
 #pragma once
 
 #include <filesystem>
@@ -32,13 +32,13 @@ struct ScoreLine {
   std::string verb;
   int count = 1;  ///< Of flood, again, back.
   Message message;
-  std::string text;         ///< Of eval; what replace looks for.
-  std::string replacement;  ///< Of replace.
+  std::string text;         ///< Of eval; the old text of replace.
+  std::string replacement;  ///< The new text of replace.
 };
 
 struct Score {
   int ticks = 0;
-  bool take = false;
+  bool records_take = false;
   std::uint64_t faults = 0;
   std::vector<ScoreLine> lines;  ///< In the order of their passes.
 };
@@ -64,7 +64,7 @@ inline Message message_of(std::istream& in) {
   return message;
 }
 
-/// "a" "b" -> both texts
+/// Parses `"a" "b"`. Returns false if there are not two quoted texts.
 inline bool two_quoted(const std::string& text, std::string& first, std::string& second) {
   const std::vector<std::string_view> pieces = split(text, '"');
   if (pieces.size() != 5) return false;
@@ -73,14 +73,14 @@ inline bool two_quoted(const std::string& text, std::string& first, std::string&
   return true;
 }
 
-/// False: it is no line of a score.
+/// Parses a score line into `score`. Returns false on a syntax error.
 inline bool read_line(const std::string& line, Score& score) {
   std::istringstream in(line.substr(4));
   std::string word;
   in >> word;
   if (word == "ticks") return static_cast<bool>(in >> score.ticks);
   if (word == "faults") return static_cast<bool>(in >> score.faults);
-  if (word == "take") return score.take = true;
+  if (word == "take") return score.records_take = true;
   const auto pass = parse_number(word);
   ScoreLine item;
   if (!pass || !(in >> item.verb)) return false;

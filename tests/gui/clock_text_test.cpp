@@ -1,4 +1,4 @@
-// Seconds as a clock shows them.
+// Formatting of seconds as a clock.
 #include "gui/clock_text.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace limber::gui_test {
 namespace {
 
-TEST(ClockText, MinutesSecondsHundredths) {
+TEST(ClockText, FormatsMinutesSecondsHundredths) {
   EXPECT_EQ(clock_text(0), "00:00.00");
   EXPECT_EQ(clock_text(83.459), "01:23.45");
   EXPECT_EQ(clock_text(59.999), "00:59.99") << "the minute has not come";

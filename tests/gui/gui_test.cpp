@@ -1,4 +1,4 @@
-// The panel as a whole: hides, helps, grows, registers all its files, says what fonts are missing.
+// The panel as a whole: hiding, help, text size, registration of panels, missing fonts.
 #include "gui/gui.h"
 
 #include <algorithm>
@@ -19,84 +19,84 @@ TEST(Gui, EveryPanelFileRegistersItself) {
     if (name.starts_with("panel_") && name.ends_with(".cpp")) files.insert(name.substr(6, name.size() - 10));
   }
   std::set<std::string> kinds;
-  for (const PanelKind& kind : panel_kinds()) kinds.insert(std::string(kind.name));
+  for (const PanelType& kind : panel_types()) kinds.insert(std::string(kind.name));
   EXPECT_EQ(kinds, files);
 }
 
-TEST(Gui, F1HidesAndF2Helps) {
-  PanelRig rig;
-  EXPECT_TRUE(rig.sees("transport.play"));
-  rig.key(GuiKey::f1);
-  rig.frames(2);
-  EXPECT_FALSE(rig.sees("transport.play"));
-  EXPECT_FALSE(rig.gui->wants_mouse());
-  rig.key(GuiKey::f1);
-  rig.frames(2);
-  EXPECT_TRUE(rig.sees("transport.play"));
-  rig.key(GuiKey::f2);
-  EXPECT_TRUE(rig.gui->desk().help);
+TEST(Gui, F1HidesPanelAndF2ShowsHelp) {
+  PanelFixture fixture;
+  EXPECT_TRUE(fixture.is_visible("transport.play"));
+  fixture.key(GuiKey::f1);
+  fixture.frames(2);
+  EXPECT_FALSE(fixture.is_visible("transport.play"));
+  EXPECT_FALSE(fixture.gui->wants_mouse());
+  fixture.key(GuiKey::f1);
+  fixture.frames(2);
+  EXPECT_TRUE(fixture.is_visible("transport.play"));
+  fixture.key(GuiKey::f2);
+  EXPECT_TRUE(fixture.gui->context().show_help);
 }
 
-// what is drawn last lies above
-std::string drawn_last() {
-  const ImDrawData* const drawn = ImGui::GetDrawData();
-  return drawn->CmdLists[drawn->CmdListsCount - 1]->_OwnerName;
+// Returns the topmost window, which is drawn last.
+std::string topmost_window() {
+  const ImDrawData* const draw_data = ImGui::GetDrawData();
+  return draw_data->CmdLists[draw_data->CmdListsCount - 1]->_OwnerName;
 }
 
-TEST(Gui, HelpAndNoticesLieOverThePanels) {
-  PanelRig rig(kScene, 900, 600);
-  rig.key(GuiKey::f2);
-  rig.frames(2);
-  EXPECT_EQ(drawn_last(), "##help");
-  rig.key(GuiKey::f2);
-  rig.key(GuiKey::z, {true, false, false});
-  rig.frames(2);
-  EXPECT_EQ(drawn_last(), "##notice");
+TEST(Gui, DrawsHelpAndNoticesAbovePanels) {
+  PanelFixture fixture(kScene, 900, 600);
+  fixture.key(GuiKey::f2);
+  fixture.frames(2);
+  EXPECT_EQ(topmost_window(), "##help");
+  fixture.key(GuiKey::f2);
+  fixture.key(GuiKey::z, {true, false, false});
+  fixture.frames(2);
+  EXPECT_EQ(topmost_window(), "##notice");
 }
 
-TEST(Gui, TheWholeHelpIsSeenInASmallWindow) {
+TEST(Gui, HelpFitsSmallWindow) {
   for (const auto& [width, height] : {std::pair(800.0, 450.0), {1600.0, 900.0}}) {
-    PanelRig rig(kScene, width, height);
-    rig.key(GuiKey::f2);
-    rig.frames(3);
-    const PanelRect first = rig.where("help:panic");
-    const PanelRect last = rig.where("help:Tab, arrows, Enter");
+    PanelFixture fixture(kScene, width, height);
+    fixture.key(GuiKey::f2);
+    fixture.frames(3);
+    const PanelRect first = fixture.rect_of("help:panic");
+    const PanelRect last = fixture.rect_of("help:Tab, arrows, Enter");
     EXPECT_GT(last.y, first.y);
     EXPECT_LT(last.y + last.height, height - 8) << width;
     EXPECT_GE(last.height, 11) << "and can be read";
   }
 }
 
-TEST(Gui, AClickInTheHelpChoosesAnotherKey) {
-  PanelRig rig;
-  rig.key(GuiKey::f2);
-  rig.frames(3);
+TEST(Gui, ClickInHelpRebindsKey) {
+  PanelFixture fixture;
+  fixture.key(GuiKey::f2);
+  fixture.frames(3);
   const auto choose = [&](GuiKey key, KeyMods mods = {}) {
-    rig.click("help:panic");
-    rig.key(key, mods);
-    rig.frames(2);
-    return rig.gui->settings().keys;
+    fixture.click("help:panic");
+    fixture.key(key, mods);
+    fixture.frames(2);
+    return fixture.gui->settings().keys;
   };
-  EXPECT_EQ(choose(GuiKey::f9), (KeyChoices{{"panic", "F9"}}));
-  EXPECT_EQ(choose(GuiKey::r, kCtrl), (KeyChoices{{"panic", "F9"}})) << "that one is taken";
-  EXPECT_EQ(choose(GuiKey::escape), (KeyChoices{{"panic", "F9"}}));
-  rig.key(GuiKey::f2);
-  rig.key(GuiKey::f12);
-  rig.heard();
-  EXPECT_FALSE(rig.gui->desk().panicked());
-  rig.key(GuiKey::f9);
-  rig.heard();
-  EXPECT_TRUE(rig.gui->desk().panicked());
-  rig.key(GuiKey::f2);
-  rig.frames(3);
-  EXPECT_EQ(choose(GuiKey::erase), KeyChoices());
-  rig.click("help:recall");
-  rig.key(GuiKey::f9);
-  EXPECT_EQ(rig.gui->settings().keys, KeyChoices()) << "eight keys";
+  EXPECT_EQ(choose(GuiKey::f9), (KeyBindings{{"panic", "F9"}}));
+  EXPECT_EQ(choose(GuiKey::r, kCtrl), (KeyBindings{{"panic", "F9"}})) << "the key is in use";
+  EXPECT_EQ(choose(GuiKey::escape), (KeyBindings{{"panic", "F9"}}));
+  fixture.key(GuiKey::f2);
+  fixture.key(GuiKey::f12);
+  fixture.sync();
+  EXPECT_FALSE(fixture.gui->context().panicked());
+  fixture.key(GuiKey::f9);
+  fixture.sync();
+  EXPECT_TRUE(fixture.gui->context().panicked());
+  fixture.key(GuiKey::f2);
+  fixture.frames(3);
+  EXPECT_EQ(choose(GuiKey::erase), KeyBindings());
+  fixture.click("help:recall");
+  fixture.key(GuiKey::f9);
+  EXPECT_EQ(fixture.gui->settings().keys, KeyBindings()) << "eight keys";
 }
 
-TEST(Gui, KeysOfTheSettingsAct) {
-  GuiOptions options = PanelRig::headless();
+TEST(Gui, UsesKeysOfSettings) {
+  GuiOptions options = PanelFixture::headless();
   options.settings.keys = {{"help", "Ctrl+H"}, {"nothing", "F9"}};
   EngineLink link;
   const std::uint64_t before = log_newest();
@@ -106,172 +106,173 @@ TEST(Gui, KeysOfTheSettingsAct) {
   }));
   gui.push({.kind = InputEvent::Kind::key, .key = GuiKey::h, .down = true, .mods = kCtrl});
   gui.frame({800, 600, 1, 0.1});
-  EXPECT_TRUE(gui.desk().help);
+  EXPECT_TRUE(gui.context().show_help);
 }
 
-TEST(Gui, F3ShowsTheDebugPicture) {
-  PanelRig rig;
-  rig.key(GuiKey::f3);
-  EXPECT_EQ(rig.read("/visuals/look/overlay"), 1);
-  rig.key(GuiKey::f3);
-  EXPECT_EQ(rig.read("/visuals/look/overlay"), 0);
+TEST(Gui, F3TogglesDebugOverlay) {
+  PanelFixture fixture;
+  fixture.key(GuiKey::f3);
+  EXPECT_EQ(fixture.read("/visuals/look/overlay"), 1);
+  fixture.key(GuiKey::f3);
+  EXPECT_EQ(fixture.read("/visuals/look/overlay"), 0);
 }
 
-TEST(Gui, NineViewsAreKeptAndTakenAgain) {
-  PanelRig rig;
-  const auto look = [&](double x) {
-    for (const char* row : {"/visuals/camera/eye", "/visuals/camera/target", "/visuals/camera/eye"})
-      rig.show.send(row, x, std::string_view(row).ends_with("eye") ? -5.0 : 1.0, 2.0);
-    rig.heard();
+TEST(Gui, StoresAndRestoresViews) {
+  PanelFixture fixture;
+  const auto move_camera = [&](double x) {
+    for (const char* address : {"/visuals/camera/eye", "/visuals/camera/target", "/visuals/camera/eye"})
+      fixture.show.send(address, x, std::string_view(address).ends_with("eye") ? -5.0 : 1.0, 2.0);
+    fixture.sync();
   };
-  look(3);
-  rig.key(GuiKey::digit_1, kCtrlShift);
-  look(7);
-  rig.key(GuiKey::digit_9, kCtrlShift);
-  look(11);
-  rig.key(GuiKey::digit_5, kCtrl);
-  EXPECT_NEAR(rig.read("/visuals/camera/eye"), 11, 1e-6) << "there is none";
-  EXPECT_NE(rig.gui->desk().notice.find("there is no view 5"), std::string::npos) << rig.gui->desk().notice;
+  move_camera(3);
+  fixture.key(GuiKey::digit_1, kCtrlShift);
+  move_camera(7);
+  fixture.key(GuiKey::digit_9, kCtrlShift);
+  move_camera(11);
+  fixture.key(GuiKey::digit_5, kCtrl);
+  EXPECT_NEAR(fixture.read("/visuals/camera/eye"), 11, 1e-6) << "there is none";
+  EXPECT_NE(fixture.gui->context().notice.find("View 5 is empty"), std::string::npos) << fixture.gui->context().notice;
   for (const auto& [key, x] : {std::pair(GuiKey::digit_1, 3.0), {GuiKey::digit_9, 7.0}}) {
-    rig.key(key, kCtrl);
-    EXPECT_NEAR(rig.read("/visuals/camera/eye", 0), x, 1e-6);
-    EXPECT_NEAR(rig.read("/visuals/camera/eye", 1), -5, 1e-6);
-    EXPECT_NEAR(rig.read("/visuals/camera/target", 0), x, 1e-6);
-    EXPECT_NEAR(rig.read("/visuals/camera/target", 1), 1, 1e-6);
+    fixture.key(key, kCtrl);
+    EXPECT_NEAR(fixture.read("/visuals/camera/eye", 0), x, 1e-6);
+    EXPECT_NEAR(fixture.read("/visuals/camera/eye", 1), -5, 1e-6);
+    EXPECT_NEAR(fixture.read("/visuals/camera/target", 0), x, 1e-6);
+    EXPECT_NEAR(fixture.read("/visuals/camera/target", 1), 1, 1e-6);
   }
-  EXPECT_EQ(rig.gui->take_actions().back(), HotkeyAction::go_to_view) << "what is followed is followed no more";
+  EXPECT_EQ(fixture.gui->consume_actions().back(), HotkeyAction::restore_view) << "following has ended";
 }
 
-TEST(Gui, TheChosenStyleIsRememberedUnlessTheSceneHasItsOwn) {
-  PanelRig rig;
-  rig.click("parameters.search");
-  rig.type("look style");
-  rig.click("/visuals/look/style");
-  rig.click("/visuals/look/style=studio");
-  EXPECT_EQ(rig.read("/visuals/look/style"), 1);
-  const PanelSettings settings = rig.gui->settings();
+TEST(Gui, RestoresStyleUnlessSceneSetsOne) {
+  PanelFixture fixture;
+  fixture.click("parameters.search");
+  fixture.type("look style");
+  fixture.click("/visuals/look/style");
+  fixture.click("/visuals/look/style=studio");
+  EXPECT_EQ(fixture.read("/visuals/look/style"), 1);
+  const PanelSettings settings = fixture.gui->settings();
   EXPECT_EQ(settings.style, "studio");
   for (const auto& [scene, style] :
        {std::pair(std::string(kScene), 1.0), {std::string(kScene) + "visuals.look.style = \"stage\"\n", 0.0}}) {
-    PanelRig next(scene);
-    GuiOptions options = PanelRig::headless();
+    PanelFixture next(scene);
+    GuiOptions options = PanelFixture::headless();
     options.settings = settings;
     next.gui = std::make_unique<Gui>(next.show.link, std::move(options));
-    next.heard();
-    next.heard();
+    next.sync();
+    next.sync();
     EXPECT_EQ(next.read("/visuals/look/style"), style);
   }
 }
 
-TEST(Gui, TextGrowsFrom12To28) {
-  PanelRig rig;
-  const double before = rig.where("transport.play").height;
-  for (int i = 0; i < 20; i++) rig.key(GuiKey::equal, kCtrl);
-  EXPECT_EQ(rig.gui->settings().text_size, 28);
-  EXPECT_NEAR(rig.where("transport.play").height / before, 28.0 / 16, 0.1);
-  for (int i = 0; i < 30; i++) rig.key(GuiKey::minus, kCtrl);
-  EXPECT_EQ(rig.gui->settings().text_size, 12);
+TEST(Gui, LimitsTextSize) {
+  PanelFixture fixture;
+  const double before = fixture.rect_of("transport.play").height;
+  for (int i = 0; i < 20; i++) fixture.key(GuiKey::equal, kCtrl);
+  EXPECT_EQ(fixture.gui->settings().text_size, 28);
+  EXPECT_NEAR(fixture.rect_of("transport.play").height / before, 28.0 / 16, 0.1);
+  for (int i = 0; i < 30; i++) fixture.key(GuiKey::minus, kCtrl);
+  EXPECT_EQ(fixture.gui->settings().text_size, 12);
 }
 
-TEST(Gui, FavouritesStayTogether) {
-  PanelRig rig;
-  rig.click("star:/scene/rate");
-  rig.click("star:/physics/sim/gravity");
-  rig.click("parameters.favourites");
-  EXPECT_TRUE(rig.sees("/scene/rate"));
-  EXPECT_TRUE(rig.sees("/physics/sim/gravity/2"));
-  EXPECT_FALSE(rig.sees("/scene/lit"));
-  rig.drag("/scene/rate", 0.9);
-  EXPECT_GT(rig.read("/scene/rate"), 1.5);
-  rig.click("star:/scene/rate");
-  EXPECT_FALSE(rig.sees("/scene/rate"));
+TEST(Gui, ShowsFavoritesOnly) {
+  PanelFixture fixture;
+  fixture.click("star:/scene/rate");
+  fixture.click("star:/physics/sim/gravity");
+  fixture.click("parameters.favorites");
+  EXPECT_TRUE(fixture.is_visible("/scene/rate"));
+  EXPECT_TRUE(fixture.is_visible("/physics/sim/gravity/2"));
+  EXPECT_FALSE(fixture.is_visible("/scene/lit"));
+  fixture.drag("/scene/rate", 0.9);
+  EXPECT_GT(fixture.read("/scene/rate"), 1.5);
+  fixture.click("star:/scene/rate");
+  EXPECT_FALSE(fixture.is_visible("/scene/rate"));
 }
 
-TEST(Gui, ASearchLooksThroughEverything) {
-  PanelRig rig;
-  rig.key(GuiKey::f, {true, false, false});
-  rig.type("LEG tip mass");
-  rig.frames(5);
-  ASSERT_TRUE(rig.sees("/physics/body/leg/part/tip/mass"));
-  EXPECT_FALSE(rig.sees("/physics/body/arm/part/tip/mass"));
+TEST(Gui, SearchesAllProperties) {
+  PanelFixture fixture;
+  fixture.key(GuiKey::f, {true, false, false});
+  fixture.type("LEG tip mass");
+  fixture.frames(5);
+  ASSERT_TRUE(fixture.is_visible("/physics/body/leg/part/tip/mass"));
+  EXPECT_FALSE(fixture.is_visible("/physics/body/arm/part/tip/mass"));
 }
 
-TEST(Gui, EverythingIsReachedByKeys) {
-  PanelRig rig;
-  rig.click("parameters.search");
-  rig.type("scene rate");
-  rig.frames(4);
-  rig.key(GuiKey::enter);
-  rig.key(GuiKey::down);
-  rig.key(GuiKey::down);
-  rig.key(GuiKey::enter);
-  rig.key(GuiKey::a, {true, false, false});
-  rig.type("1.25");
-  rig.key(GuiKey::enter);
-  EXPECT_EQ(rig.read("/scene/rate"), 1.25);
+TEST(Gui, SupportsKeyboardNavigation) {
+  PanelFixture fixture;
+  fixture.click("parameters.search");
+  fixture.type("scene rate");
+  fixture.frames(4);
+  fixture.key(GuiKey::enter);
+  fixture.key(GuiKey::down);
+  fixture.key(GuiKey::down);
+  fixture.key(GuiKey::enter);
+  fixture.key(GuiKey::a, {true, false, false});
+  fixture.type("1.25");
+  fixture.key(GuiKey::enter);
+  EXPECT_EQ(fixture.read("/scene/rate"), 1.25);
 }
 
-TEST(Gui, OnlyTheWindowsActionsAreHandedOn) {
-  PanelRig rig;
-  rig.key(GuiKey::f11);
-  rig.key(GuiKey::home);
-  rig.key(GuiKey::f2);
-  EXPECT_EQ(rig.gui->take_actions(), (std::vector<HotkeyAction>{HotkeyAction::full_screen, HotkeyAction::home_view}));
-  EXPECT_TRUE(rig.gui->take_actions().empty());
+TEST(Gui, ReturnsOnlyActionsOfTheWindow) {
+  PanelFixture fixture;
+  fixture.key(GuiKey::f11);
+  fixture.key(GuiKey::home);
+  fixture.key(GuiKey::f2);
+  EXPECT_EQ(fixture.gui->consume_actions(),
+            (std::vector<HotkeyAction>{HotkeyAction::full_screen, HotkeyAction::default_view}));
+  EXPECT_TRUE(fixture.gui->consume_actions().empty());
 }
 
-TEST(Gui, AWindowOfOnePixelIsAWindow) {
-  PanelRig rig;
-  rig.resize(1, 1);
-  EXPECT_TRUE(rig.gui->names().all().empty());
-  rig.resize(1600, 900);
-  EXPECT_TRUE(rig.sees("transport.play"));
+TEST(Gui, SupportsTinyWindow) {
+  PanelFixture fixture;
+  fixture.resize(1, 1);
+  EXPECT_TRUE(fixture.gui->names().all().empty());
+  fixture.resize(1600, 900);
+  EXPECT_TRUE(fixture.is_visible("transport.play"));
 }
 
-// a frame's corner stands for all letters that the two lack: JetBrains Mono has it, but it is not taken of that
-TEST(Gui, LettersOfNamesComeFromAThirdFont) {
+// A box-drawing character is used for the characters that both fonts lack: the fallback font contains it.
+TEST(Gui, UsesFallbackFontForNames) {
   const std::string scene = std::string(kScene) + "sim:add_body('\u250crm \u8155')\n";
-  PanelRig rig(scene);
-  const std::filesystem::path root = rig.folder() / "fonts_of_a_test";
+  PanelFixture fixture(scene);
+  const std::filesystem::path root = fixture.folder() / "fonts_of_a_test";
   const std::filesystem::path droid = root / "usr/share/fonts/truetype/droid";
   std::filesystem::create_directories(droid);
   std::filesystem::copy_file("/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf",
                              droid / "DroidSansFallbackFull.ttf");
-  GuiOptions options = PanelRig::headless();
+  GuiOptions options = PanelFixture::headless();
   options.font_root = root.string();
-  rig.gui = std::make_unique<Gui>(rig.show.link, std::move(options));
-  rig.heard();
-  rig.frames(2);
-  for (const ImFont* font : {rig.gui->desk().fonts.words, rig.gui->desk().fonts.code}) {
+  fixture.gui = std::make_unique<Gui>(fixture.show.link, std::move(options));
+  fixture.sync();
+  fixture.frames(2);
+  for (const ImFont* font : {fixture.gui->context().fonts.text, fixture.gui->context().fonts.code}) {
     EXPECT_NE(font->FindGlyphNoFallback(0x250c), nullptr);
-    EXPECT_EQ(font->FindGlyphNoFallback(0x2510), nullptr) << "what no name has is not taken";
+    EXPECT_EQ(font->FindGlyphNoFallback(0x2510), nullptr) << "unused characters are not loaded";
   }
   std::filesystem::remove_all(root);
-  const std::uint64_t said = log_count(LogLevel::warning);
-  GuiOptions none = PanelRig::headless();
+  const std::uint64_t warnings_before = log_count(LogLevel::warning);
+  GuiOptions none = PanelFixture::headless();
   none.font_root = "/nowhere";
-  rig.gui = std::make_unique<Gui>(rig.show.link, std::move(none));
-  rig.heard();
-  rig.frames(2);
-  EXPECT_EQ(log_count(LogLevel::warning), said + 3) << "two fonts are missing, and one for these letters";
+  fixture.gui = std::make_unique<Gui>(fixture.show.link, std::move(none));
+  fixture.sync();
+  fixture.frames(2);
+  EXPECT_EQ(log_count(LogLevel::warning), warnings_before + 3) << "two fonts are missing, and one for these letters";
 }
 
-TEST(Gui, WhatFontsAreMissingIsSaid) {
+TEST(Gui, ReportsMissingFonts) {
   const FontFiles none = find_fonts("/nowhere");
-  ASSERT_EQ(none.said.size(), 2u);
-  EXPECT_NE(none.said[0].find("apt-get install fonts-inter"), std::string::npos);
-  EXPECT_NE(none.said[1].find("apt-get install fonts-jetbrains-mono"), std::string::npos);
+  ASSERT_EQ(none.warnings.size(), 2u);
+  EXPECT_NE(none.warnings[0].find("apt-get install fonts-inter"), std::string::npos);
+  EXPECT_NE(none.warnings[1].find("apt-get install fonts-jetbrains-mono"), std::string::npos);
   EngineLink link;
-  GuiOptions options = PanelRig::headless();
+  GuiOptions options = PanelFixture::headless();
   options.font_root = "/nowhere";
   Gui gui(link, std::move(options));
   gui.frame({800, 600, 1, 0.1});
-  EXPECT_NE(gui.desk().fonts.words, nullptr) << "the one inside stands in";
+  EXPECT_NE(gui.context().fonts.text, nullptr) << "the built-in font is used";
 }
 
-TEST(Gui, SeveralLiveSideBySide) {
-  PanelRig one;
-  PanelRig two;
+TEST(Gui, SupportsSeveralInstances) {
+  PanelFixture one;
+  PanelFixture two;
   one.key(GuiKey::f1);
   two.frames(2);
   EXPECT_TRUE(one.gui->settings().hidden);

@@ -1,4 +1,4 @@
-// The bar of the past: back to where a hand lets go, and not before it does.
+// The history bar rewinds to the time at which the mouse is released, and not before.
 #include "gui/rig.h"
 
 namespace limber::gui_test {
@@ -7,51 +7,51 @@ namespace {
 class HistoryBar : public ::testing::Test {
  protected:
   HistoryBar() {
-    rig.show.ticks(600);  // 10 s of the 30 that are kept
-    rig.heard();
-    bar = rig.where("transport.past");
+    fixture.show.ticks(600);  // 10 s of the 30 s of history
+    fixture.sync();
+    bar = fixture.rect_of("transport.history");
   }
   double x_of(double seconds_back) const { return bar.x + bar.width * (1 - seconds_back / 30); }
-  void move_to(double seconds_back) { rig.move(x_of(seconds_back), bar.y + bar.height / 2); }
+  void move_to(double seconds_back) { fixture.move(x_of(seconds_back), bar.y + bar.height / 2); }
 
-  PanelRig rig;
+  PanelFixture fixture;
   PanelRect bar;
 };
 
-TEST_F(HistoryBar, GoesBackToWhereAHandLetsGo) {
+TEST_F(HistoryBar, RewindsOnRelease) {
   move_to(1);
-  rig.button(true);
-  rig.heard();
+  fixture.button(true);
+  fixture.sync();
   move_to(4);
-  rig.heard();
-  EXPECT_EQ(rig.read("/physics/sim/tick"), 600) << "held, not let go of";
-  rig.button(false);
-  rig.heard();
+  fixture.sync();
+  EXPECT_EQ(fixture.read("/physics/sim/tick"), 600) << "not yet released";
+  fixture.button(false);
+  fixture.sync();
   const double pixel = 30 / bar.width;  // s
-  EXPECT_NEAR(rig.read("/physics/sim/time"), 6, pixel + 1.0 / 60);
-  EXPECT_EQ(rig.read("/physics/sim/paused"), 0) << "and plays on";
+  EXPECT_NEAR(fixture.read("/physics/sim/time"), 6, pixel + 1.0 / 60);
+  EXPECT_EQ(fixture.read("/physics/sim/paused"), 0) << "and plays on";
 }
 
-TEST_F(HistoryBar, NoFurtherThanThereIsAPast) {
+TEST_F(HistoryBar, LimitsRewindToHistory) {
   move_to(1);
-  rig.button(true);
+  fixture.button(true);
   move_to(25);
-  rig.heard();
-  rig.button(false);
-  rig.heard();
-  EXPECT_LE(rig.read("/physics/sim/tick"), 1);
-  EXPECT_EQ(rig.gui->desk().refusal, "");
+  fixture.sync();
+  fixture.button(false);
+  fixture.sync();
+  EXPECT_LE(fixture.read("/physics/sim/tick"), 1);
+  EXPECT_EQ(fixture.gui->context().rejection, "");
 }
 
-TEST_F(HistoryBar, AHandThatComesBackToNowHasChangedItsMind) {
+TEST_F(HistoryBar, CancelsAtThePresent) {
   move_to(3);
-  rig.button(true);
-  rig.heard();
-  rig.move(bar.x + bar.width + 40, bar.y + 2);
-  rig.heard();
-  rig.button(false);
-  rig.heard();
-  EXPECT_EQ(rig.read("/physics/sim/tick"), 600);
+  fixture.button(true);
+  fixture.sync();
+  fixture.move(bar.x + bar.width + 40, bar.y + 2);
+  fixture.sync();
+  fixture.button(false);
+  fixture.sync();
+  EXPECT_EQ(fixture.read("/physics/sim/tick"), 600);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Places of panels: nothing overlaps, nothing is outside, whatever the window; and the same of every widget in them.
+// The layout of panels and of the widgets in them: no overlaps and nothing outside the window, at any window size.
 #include "gui/layout.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct WindowSize {
   double width, height, scale;
 };
 
-TEST(Layout, PanelsNeitherOverlapNorLeaveTheWindow) {
+TEST(Layout, PanelsStayInWindowWithoutOverlap) {
   for (double scale = 0.75; scale <= 4; scale += 0.25) {
     for (double width = 1; width < 4000; width = width * 1.17 + 1) {
       for (double height = 1; height < 2400; height = height * 1.23 + 1) {
@@ -43,74 +43,75 @@ TEST(Layout, PanelsNeitherOverlapNorLeaveTheWindow) {
   }
 }
 
-TEST(Layout, IsCompactBelow1200PixelsOfItsOwn) {
+TEST(Layout, IsCompactBelow1200Units) {
   EXPECT_FALSE(lay_out(1200, 800, 1).compact);
   EXPECT_TRUE(lay_out(1199, 800, 1).compact);
-  EXPECT_TRUE(lay_out(2399, 1600, 2).compact) << "twice the pixels, the same room";
+  EXPECT_TRUE(lay_out(2399, 1600, 2).compact) << "twice the pixels, the same units";
   EXPECT_FALSE(lay_out(2400, 1600, 2).compact);
-  EXPECT_TRUE(lay_out(1, 1, 1).at(Slot::top).empty());
+  EXPECT_TRUE(lay_out(1, 1, 1).at(PanelSlot::top).empty());
 }
 
-TEST(Layout, TheMiddleStaysFreeForThePicture) {
+TEST(Layout, LeavesTheMiddleForTheView) {
   const Layout layout = lay_out(1600, 900, 1);
-  EXPECT_GT(layout.free.width, 800);
-  EXPECT_GT(layout.free.height, 500);
+  EXPECT_GT(layout.view.width, 800);
+  EXPECT_GT(layout.view.height, 500);
 }
 
-// of each window of the panel, the widgets that are seen
-void expect_orderly(const PanelRig& rig, const WindowSize& size) {
-  const std::vector<NamedWidget> widgets = rig.gui->names().all();
+// Checks the visible widgets.
+void expect_no_overlap(const PanelFixture& fixture, const WindowSize& size) {
+  const std::vector<NamedWidget> widgets = fixture.gui->names().all();
   ASSERT_GT(widgets.size(), 15u);
   for (const NamedWidget& widget : widgets) {
     if (widget.visible.empty()) continue;
     EXPECT_TRUE(inside(widget.visible, size.width, size.height)) << widget.name;
-    // scrolling goes up and down alone: nothing is cut at the sides
-    // (a line of a list reaches a little into the gap beside it)
-    EXPECT_NEAR(widget.visible.width, widget.whole.width, 9 * size.scale) << widget.name << " is cut";
+    // Scrolling is only vertical, so nothing is cut at the sides. A line of a list extends slightly into the gap beside
+    // it.
+    EXPECT_NEAR(widget.visible.width, widget.rect.width, 9 * size.scale) << widget.name << " is cut";
     for (const NamedWidget& other : widgets) {
-      // a list and its lines, a row's field and its search sign
-      const bool apart = &other != &widget && other.name != "console.said" && widget.name != "console.said";
-      if (!apart || other.visible.empty()) continue;
+      // the console's output and its lines may overlap
+      const bool should_be_apart =
+          &other != &widget && other.name != "console.output" && widget.name != "console.output";
+      if (!should_be_apart || other.visible.empty()) continue;
       EXPECT_FALSE(overlap(widget.visible, other.visible)) << widget.name << " and " << other.name;
     }
   }
 }
 
-class LayoutOfWidgets : public ::testing::TestWithParam<WindowSize> {};
+class WidgetLayout : public ::testing::TestWithParam<WindowSize> {};
 
-TEST_P(LayoutOfWidgets, NothingOverlapsOrIsCut) {
+TEST_P(WidgetLayout, HasNoOverlapsOrCuts) {
   const WindowSize size = GetParam();
-  PanelRig rig(kScene, size.width, size.height);
-  rig.scale = size.scale;
-  rig.gui->desk().selected = "/physics/body/arm/motor/hinge";
-  rig.frames(3);
-  expect_orderly(rig, size);
+  PanelFixture fixture(kScene, size.width, size.height);
+  fixture.scale = size.scale;
+  fixture.gui->context().selected = "/physics/body/arm/motor/hinge";
+  fixture.frames(3);
+  expect_no_overlap(fixture, size);
   for (const char* const tab :
        {"tab:scene", "tab:behaviors", "tab:errors", "tab:osc", "tab:performance", "tab:plots"}) {
-    if (!rig.sees(tab)) continue;
-    rig.click(tab);
-    rig.move(0, 0);
-    rig.frames(3);
-    expect_orderly(rig, size);
+    if (!fixture.is_visible(tab)) continue;
+    fixture.click(tab);
+    fixture.move(0, 0);
+    fixture.frames(3);
+    expect_no_overlap(fixture, size);
   }
 }
 
-TEST_P(LayoutOfWidgets, NorWhileThereIsAPanicATakeAndARefusal) {
+TEST_P(WidgetLayout, HasNoOverlapsDuringPanicAndTake) {
   const WindowSize size = GetParam();
-  PanelRig rig(kScene, size.width, size.height);
-  rig.scale = size.scale;
-  rig.show.send("/take/record", "a name that is as long as names are, and a bit longer");
-  rig.heard();
-  rig.click("transport.panic");
-  rig.click("transport.rewind");  // a take has just begun: there is no past
-  rig.move(0, 0);
-  rig.heard();
-  for (const char* const shown : {"panic.banner", "take.text", "refusal", "transport.past"})
-    EXPECT_TRUE(rig.sees(shown)) << shown;
-  expect_orderly(rig, size);
+  PanelFixture fixture(kScene, size.width, size.height);
+  fixture.scale = size.scale;
+  fixture.show.send("/take/record", "a name that is as long as names are, and a bit longer");
+  fixture.sync();
+  fixture.click("transport.panic");
+  fixture.click("transport.rewind");  // a take has just begun: there is no past
+  fixture.move(0, 0);
+  fixture.sync();
+  for (const char* const shown : {"panic.banner", "take.text", "rejection", "transport.history"})
+    EXPECT_TRUE(fixture.is_visible(shown)) << shown;
+  expect_no_overlap(fixture, size);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, LayoutOfWidgets,
+INSTANTIATE_TEST_SUITE_P(Sizes, WidgetLayout,
                          ::testing::Values(WindowSize{1600, 900, 1}, WindowSize{1280, 720, 1}, WindowSize{1200, 700, 1},
                                            WindowSize{900, 600, 1}, WindowSize{1600, 900, 2},
                                            WindowSize{3200, 1800, 2}));

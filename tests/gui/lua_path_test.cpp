@@ -1,4 +1,4 @@
-// The Lua path of every row is a name that the scene's console knows, and has the value that the address has.
+// The Lua path of every property is valid in the scene's console and has the same value as the OSC address.
 #include "gui/lua_path.h"
 
 #include "gui/rig.h"
@@ -7,31 +7,31 @@
 namespace limber::gui_test {
 namespace {
 
-TEST(LuaPath, EachIsKnownToTheConsole) {
-  PanelRig rig;
-  const Tree& tree = *rig.gui->desk().image->tree;
+TEST(LuaPath, IsValidInTheConsole) {
+  PanelFixture fixture;
+  const TreeSnapshot& tree = *fixture.gui->context().value_snapshot->tree;
   std::vector<std::string> paths;
   for (std::uint32_t node = 0; node < tree.nodes().size(); node++) {
-    for (const Row& row : tree.nodes()[node].table->rows()) {
-      const std::string path = lua_path(tree, {node, &row});
-      if (!path.empty() && row.kind != RowKind::action) paths.push_back(path);
+    for (const Property& property : tree.nodes()[node].table->properties()) {
+      const std::string path = lua_path(tree, {node, &property});
+      if (!path.empty() && property.kind != PropertyKind::action) paths.push_back(path);
     }
   }
   ASSERT_GT(paths.size(), 150u);
   for (const std::string& path : paths) {
-    Evaluation said;
-    auto wish = std::make_shared<Evaluate>();
-    wish->text = path;
-    wish->answer = [&](const Evaluation& e) { said = e; };
-    rig.show.link.inbox.push({{}, Origin{Hand::console, 0, 0, false}, wish});
-    rig.show.engine.idle();
-    EXPECT_EQ(said.kind, Evaluation::Kind::value) << path << ": " << said.text;
+    Evaluation result;
+    auto request = std::make_shared<EvaluationRequest>();
+    request->text = path;
+    request->on_result = [&](const Evaluation& e) { result = e; };
+    fixture.show.link.command_queue.push({{}, CommandOrigin{CommandSource::console, 0, 0, false}, request});
+    fixture.show.engine.idle();
+    EXPECT_EQ(result.kind, Evaluation::Kind::value) << path << ": " << result.text;
   }
 }
 
-TEST(LuaPath, SaysWhatScriptsSay) {
-  PanelRig rig;
-  const Tree& tree = *rig.gui->desk().image->tree;
+TEST(LuaPath, MatchesScripts) {
+  PanelFixture fixture;
+  const TreeSnapshot& tree = *fixture.gui->context().value_snapshot->tree;
   const auto of = [&](const char* path) { return lua_path(tree, *tree.find(path)); };
   EXPECT_EQ(of("/physics/body/arm/part/tip/mass"), "sim:body(\"arm\"):part(\"tip\").mass");
   EXPECT_EQ(of("/physics/body/leg/behavior/push/amp"), "sim:body(\"leg\"):behavior(\"push\").amp");

@@ -1,4 +1,4 @@
-// The tree of things: opens, finds, chooses; cheap with many.
+// The object tree: expand, search, select; fast with many objects.
 #include <algorithm>
 
 #include "gui/rig.h"
@@ -7,56 +7,56 @@
 namespace limber::gui_test {
 namespace {
 
-TEST(PanelScene, OpensAndChooses) {
-  PanelRig rig;
-  ASSERT_TRUE(rig.sees("tree:/physics/body/arm")) << "bodies are open from the start";
-  EXPECT_FALSE(rig.sees("tree:/physics/body/arm/part"));
-  rig.click("tree:/physics/body/arm");
-  EXPECT_EQ(rig.gui->desk().selected, "/physics/body/arm");
-  EXPECT_TRUE(rig.sees("section:/physics/body/arm")) << "its rows stand among the parameters";
-  rig.click("tree:/physics/body/arm");
-  rig.scroll("tree:/physics/body/arm", -3);
-  rig.click("tree:/physics/body/arm/part");
-  rig.scroll("tree:/physics/body/arm/part", -3);
-  rig.click("tree:/physics/body/arm/part/tip");
-  rig.drag("/physics/body/arm/part/tip/friction", 0.8);
-  EXPECT_GT(rig.read("/physics/body/arm/part/tip/friction"), 0.5);
-  EXPECT_EQ(rig.read("/physics/body/leg/part/tip/friction"), 0.5);
+TEST(PanelScene, ExpandsAndSelects) {
+  PanelFixture fixture;
+  ASSERT_TRUE(fixture.is_visible("tree:/physics/body/arm")) << "bodies are open from the start";
+  EXPECT_FALSE(fixture.is_visible("tree:/physics/body/arm/part"));
+  fixture.click("tree:/physics/body/arm");
+  EXPECT_EQ(fixture.gui->context().selected, "/physics/body/arm");
+  EXPECT_TRUE(fixture.is_visible("section:/physics/body/arm")) << "its properties are shown";
+  fixture.click("tree:/physics/body/arm");
+  fixture.scroll("tree:/physics/body/arm", -3);
+  fixture.click("tree:/physics/body/arm/part");
+  fixture.scroll("tree:/physics/body/arm/part", -3);
+  fixture.click("tree:/physics/body/arm/part/tip");
+  fixture.drag("/physics/body/arm/part/tip/friction", 0.8);
+  EXPECT_GT(fixture.read("/physics/body/arm/part/tip/friction"), 0.5);
+  EXPECT_EQ(fixture.read("/physics/body/leg/part/tip/friction"), 0.5);
 }
 
-TEST(PanelScene, ASearchShowsWhatFitsAndWhatItLiesIn) {
-  PanelRig rig;
-  rig.click("scene.search");
-  rig.type("HING");
-  rig.frames(2);
-  EXPECT_TRUE(rig.sees("tree:/physics/body/arm/joint/hinge"));
-  EXPECT_TRUE(rig.sees("tree:/physics/body/leg"));
-  EXPECT_FALSE(rig.sees("tree:/physics/body/arm/part/tip"));
+TEST(PanelScene, SearchShowsMatchesWithAncestors) {
+  PanelFixture fixture;
+  fixture.click("scene.search");
+  fixture.type("HING");
+  fixture.frames(2);
+  EXPECT_TRUE(fixture.is_visible("tree:/physics/body/arm/joint/hinge"));
+  EXPECT_TRUE(fixture.is_visible("tree:/physics/body/leg"));
+  EXPECT_FALSE(fixture.is_visible("tree:/physics/body/arm/part/tip"));
 }
 
-TEST(PanelScene, WhatHasGoneIsChosenNoMore) {
-  PanelRig rig;
-  rig.click("tree:/physics/body/leg");
-  rig.show.send("/physics/body/leg/remove");
-  rig.heard();
-  EXPECT_FALSE(rig.sees("tree:/physics/body/leg"));
-  EXPECT_EQ(rig.gui->desk().selected, "");
+TEST(PanelScene, DeselectsRemovedObject) {
+  PanelFixture fixture;
+  fixture.click("tree:/physics/body/leg");
+  fixture.show.send("/physics/body/leg/remove");
+  fixture.sync();
+  EXPECT_FALSE(fixture.is_visible("tree:/physics/body/leg"));
+  EXPECT_EQ(fixture.gui->context().selected, "");
 }
 
-TEST(PanelScene, ManyThingsCostWhatIsSeen) {
-  PanelRig rig(R"(
+TEST(PanelScene, CostDependsOnVisibleLines) {
+  PanelFixture fixture(R"(
     sim:add_sphere_shape("ball", 0.1)
     for b = 1, 40 do
       local body = sim:add_body("body" .. b)
       for p = 1, 25 do body:add_part("part" .. p, "ball", { position = vec3(b, p, 1) }) end
     end)");
-  const auto widgets = rig.gui->names().all();
+  const auto widgets = fixture.gui->names().all();
   EXPECT_LT(
       std::count_if(widgets.begin(), widgets.end(), [](const NamedWidget& w) { return w.name.starts_with("tree:"); }),
       40)
       << "lines that are scrolled out of sight are not made";
   TreeList list;
-  const std::shared_ptr<const Tree> tree = rig.gui->desk().image->tree;
+  const std::shared_ptr<const TreeSnapshot> tree = fixture.gui->context().value_snapshot->tree;
   const TreeList::Line* const first = list.lines(tree, "").data();
   const std::size_t size = list.lines(tree, "").size();
   EXPECT_EQ(list.lines(tree, "").data(), first);

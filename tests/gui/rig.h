@@ -1,4 +1,5 @@
-// A panel without a window over an engine that plays a scene: hands by name, effects read back from the world.
+// A panel without a window on an engine that runs a scene: tests act on widgets by name and read the effects from the
+// world.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +14,11 @@
 
 namespace limber::gui_test {
 
-/// A scene with everything that a panel shows: two bodies with joints and motors, behaviours, parameters.
 inline constexpr KeyMods kCtrl{true, false, false};
 inline constexpr KeyMods kShift{false, true, false};
 inline constexpr KeyMods kCtrlShift{true, true, false};
 
+/// A scene that uses all parts of the panel: two bodies with joints and motors, behaviors, parameters.
 inline constexpr const char* kScene = R"(
 params {
   { "rate", 0.5, min = 0, max = 2, unit = "Hz", doc = "How often." },
@@ -36,30 +37,30 @@ for i, name in ipairs { "arm", "leg" } do
 end
 )";
 
-class PanelRig {
+class PanelFixture {
  public:
-  explicit PanelRig(const std::string& scene = kScene, double width = 1600, double height = 900)
+  explicit PanelFixture(const std::string& scene = kScene, double width = 1600, double height = 900)
       : file_(scene), show(file_.path()), width_(width), height_(height) {
     GuiOptions options = headless();
     options.copy = [this](const std::string& text) { clipboard = text; };
     options.behavior_types = {"force", "torque"};
     gui = std::make_unique<Gui>(show.link, std::move(options));
-    heard();
+    sync();
   }
 
-  /// The same over an engine of these options, such as one that replays a take.
-  explicit PanelRig(EngineOptions options) : file_(kScene), show(std::move(options)), width_(1600), height_(900) {
+  /// The same on an engine with these options, for example for a replay.
+  explicit PanelFixture(EngineOptions options) : file_(kScene), show(std::move(options)), width_(1600), height_(900) {
     gui = std::make_unique<Gui>(show.link, headless());
-    heard();
+    sync();
   }
 
   static GuiOptions headless() {
     GuiOptions options;
-    options.paints = false;
+    options.draws = false;
     return options;
   }
 
-  /// A picture of the panel, after what waits in the simulation's inbox has been done; time stands still for that.
+  /// Draws a frame after the commands in the simulation's inbox have been executed; simulated time does not advance.
   void frame() {
     show.engine.idle();
     clock_ += 1.0 / 60;
@@ -68,19 +69,19 @@ class PanelRig {
   void frames(int count) {
     for (int i = 0; i < count; i++) frame();
   }
-  /// Until the simulation has done what hands have sent, and the panel has heard it.
-  void heard() {
-    const std::uint64_t ask = show.link.ask_image();
-    for (int i = 0; i < kPatience; i++) {
+  /// Waits until the simulation has executed all sent messages and the panel has read the result.
+  void sync() {
+    const std::uint64_t ask = show.link.request_value_snapshot();
+    for (int i = 0; i < kMaxFrames; i++) {
       frame();
       if (gui->has_events()) continue;
-      const std::shared_ptr<const Image> image = show.link.images.read();
-      if (image != nullptr && image->asks >= ask && gui->desk().image == image) return frame();
+      const std::shared_ptr<const ValueSnapshot> snapshot = show.link.value_snapshots.read();
+      if (snapshot != nullptr && snapshot->request >= ask && gui->context().value_snapshot == snapshot) return frame();
     }
-    ADD_FAILURE() << "the simulation made no image";
+    ADD_FAILURE() << "the simulation made no value snapshot";
   }
 
-  // hands
+  // input
   void push(const InputEvent& event) { gui->push(event); }
   void move(double x, double y) {
     InputEvent event;
@@ -107,9 +108,9 @@ class PanelRig {
     event.down = false;
     push(event);
     release(mods);
-    heard();
+    sync();
   }
-  /// Ctrl, Shift and Alt are let go of.
+  /// Releases Ctrl, Shift and Alt.
   void release(KeyMods mods) {
     if (mods == KeyMods{}) return;
     InputEvent event;
@@ -120,14 +121,14 @@ class PanelRig {
     for (const char c : text) {
       InputEvent event;
       event.kind = InputEvent::Kind::text;
-      event.letter = static_cast<unsigned char>(c);
+      event.character = static_cast<unsigned char>(c);
       push(event);
     }
-    heard();
+    sync();
   }
 
-  /// Where it is seen; a widget that is not seen is a failure.
-  PanelRect where(const std::string& name) const {
+  /// Returns the visible rectangle; fails if the widget is not visible.
+  PanelRect rect_of(const std::string& name) const {
     const NamedWidget* const widget = gui->names().find(name);
     if (widget == nullptr || widget->visible.empty()) {
       ADD_FAILURE() << "there is no widget '" << name << "' to be seen";
@@ -135,12 +136,12 @@ class PanelRig {
     }
     return widget->visible;
   }
-  bool sees(const std::string& name) const {
+  bool is_visible(const std::string& name) const {
     const NamedWidget* const widget = gui->names().find(name);
     return widget != nullptr && !widget->visible.empty();
   }
   void point(const std::string& name, double part = 0.5) {
-    const PanelRect at = where(name);
+    const PanelRect at = rect_of(name);
     move(at.x + part * at.width, at.y + at.height / 2);
     frames(2);
   }
@@ -149,18 +150,18 @@ class PanelRig {
     button(true, which, mods);
     button(false, which, mods);
     release(mods);
-    heard();
+    sync();
     frames(2);
   }
-  /// To that part of its width, and lets go.
+  /// Drags to this fraction of the widget's width and releases.
   void drag(const std::string& name, double to) {
-    const PanelRect at = where(name);
+    const PanelRect at = rect_of(name);
     move(at.x + at.width / 2, at.y + at.height / 2);
     button(true);
     move(at.x + to * at.width, at.y + at.height / 2);
     frames(3);
     button(false);
-    heard();
+    sync();
   }
   void scroll(const std::string& over, double steps) {
     point(over);
@@ -171,12 +172,12 @@ class PanelRig {
     frames(2);
   }
 
-  /// Where the scene lies.
+  /// The folder of the scene.
   std::filesystem::path folder() const { return std::filesystem::path(file_.path()).parent_path(); }
   double read(const std::string& path, std::size_t index = 0) { return show.read(path, index); }
 
  private:
-  static constexpr int kPatience = 100000;
+  static constexpr int kMaxFrames = 100000;
   engine_test::SceneFile file_;
 
  public:

@@ -1,4 +1,4 @@
-// Samples: the newest so many, and none of a time that has not been.
+// Samples: the number is limited, and rewinding discards later ones.
 #include "gui/samples.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace limber::gui_test {
 namespace {
 
-TEST(Samples, KeepTheNewest) {
+TEST(Samples, KeepLatest) {
   Samples samples(3);
   for (std::uint64_t tick = 1; tick <= 5; tick++) samples.add(tick, {static_cast<double>(10 * tick)});
   ASSERT_EQ(samples.size(), 3u);
@@ -14,7 +14,7 @@ TEST(Samples, KeepTheNewest) {
   EXPECT_EQ(samples[2][0], 50);
 }
 
-TEST(Samples, WhatComesAfterAMomentThatTimeWentBackToIsGone) {
+TEST(Samples, DiscardLaterOnesAfterRewind) {
   Samples samples(10);
   for (std::uint64_t tick = 1; tick <= 6; tick++) samples.add(tick, {static_cast<double>(tick)});
   samples.add(4, {-4});

@@ -1,4 +1,4 @@
-// What is remembered: there and back, damage, files.
+// Persistent settings: round trip, damaged content, files.
 #include "gui/settings.h"
 
 #include <unistd.h>
@@ -20,7 +20,7 @@ PanelSettings own_settings() {
   settings.hidden = true;
   settings.morph_seconds = 0.25;
   settings.easing = 2;
-  settings.favourites = {"/physics/sim/gravity", "/scene/größe"};
+  settings.favorites = {"/physics/sim/gravity", "/scene/größe"};
   settings.keys = {{"panic", "F9"}};
   settings.style = "studio";
   settings.fullscreen = settings.hide_pointer = true;
@@ -30,17 +30,17 @@ PanelSettings own_settings() {
   return settings;
 }
 
-TEST(Settings, ThereAndBack) {
+TEST(Settings, RoundTrip) {
   const Result<PanelSettings> back = read_settings(settings_text(own_settings()));
   ASSERT_TRUE(back.ok()) << back.error();
   EXPECT_EQ(*back, own_settings());
 }
 
-TEST(Settings, WhatIsMissingOrAbsurdIsMended) {
+TEST(Settings, RepairsMissingAndInvalidValues) {
   EXPECT_EQ(*read_settings("{}"), PanelSettings());
   EXPECT_EQ(read_settings(R"({"text_size": 400})")->text_size, 28);
   EXPECT_EQ(read_settings(R"({"text_size": "big", "favourites": [1, "/a", null]})")->text_size, 16);
-  EXPECT_EQ(read_settings(R"({"favourites": [1, "/a", null]})")->favourites, std::set<std::string>{"/a"});
+  EXPECT_EQ(read_settings(R"({"favourites": [1, "/a", null]})")->favorites, std::set<std::string>{"/a"});
   EXPECT_EQ(read_settings(R"({"keys": {"panic": "F9", "step": 3}})")->keys,
             (std::map<std::string, std::string>{{"panic", "F9"}}));
   EXPECT_EQ(read_settings(R"({"window_width": -1e30})")->window_width, 0);
@@ -49,7 +49,7 @@ TEST(Settings, WhatIsMissingOrAbsurdIsMended) {
   EXPECT_FALSE(read_settings("{\"text_size\": 1").ok());
 }
 
-TEST(Settings, ADamagedFileIsSetAside) {
+TEST(Settings, RenamesDamagedFile) {
   const fs::path folder = fs::path(::testing::TempDir()) / fmt::format("limber_settings_{}", ::getpid());
   const std::string file = (folder / "limber" / "panel.json").string();
   EXPECT_EQ(load_settings(file), PanelSettings()) << "there is none yet";

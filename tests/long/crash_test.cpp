@@ -1,10 +1,10 @@
-// Two hundred shows that are killed.
+// Kills two hundred shows.
 #include "app/crash.h"
 
 namespace limber::app_test {
 namespace {
 
-TEST(LongCrash, TwoHundredKilledShows) { crash(200, 8); }
+TEST(LongCrash, RecoversTwoHundredKilledShows) { crash(200, 8); }
 
 }  // namespace
 }  // namespace limber::app_test

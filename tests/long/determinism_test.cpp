@@ -1,4 +1,4 @@
-// Twenty processes, one hash: every way to play in every surrounding.
+// Twenty processes with the same hash: all modes of playing in all environments.
 #include <fmt/ranges.h>
 
 #include "app/determinism.h"
@@ -6,15 +6,15 @@
 namespace limber::app_test {
 namespace {
 
-TEST(LongDeterminism, TwentyProcesses) {
-  const Folder folder;
+TEST(LongDeterminism, TwentyProcessesHaveOneHash) {
+  const TempFolder folder;
   const std::string scene = folder.file("wild.lua", kWildScene);
   const std::string first = hash_of(scene, {"--fast"}, {}, "2000");
   ASSERT_TRUE(first.ends_with(" tick 2000\n")) << first;
   int processes = 0;
   while (processes < 20) {
-    for (const auto& before : surroundings()) {
-      for (const auto& how : ways_to_play()) {
+    for (const auto& before : environments()) {
+      for (const auto& how : play_options()) {
         EXPECT_EQ(hash_of(scene, how, before, "2000"), first)
             << fmt::format("{} {}", fmt::join(before, " "), fmt::join(how, " "));
         processes++;

@@ -1,4 +1,4 @@
-// Long tests of the fixed math functions: ten million arguments of each function, and all floats, against MPFR.
+// Long tests of the fixed math functions against MPFR: ten million arguments of each function, and all floats.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ class LongMath : public testing::TestWithParam<MathFunction> {};
 INSTANTIATE_TEST_SUITE_P(LongMath, LongMath, testing::ValuesIn(math_functions()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST_P(LongMath, ErrorOfTenMillionIsBelowTheBound) {
+TEST_P(LongMath, ErrorsOfTenMillionAreBelowTheBound) {
   const MathFunction& f = GetParam();
   const unsigned parts = thread_count();
   std::vector<WorstCase> worst(parts);
@@ -39,7 +39,7 @@ TEST_P(LongMath, ErrorOfTenMillionIsBelowTheBound) {
   EXPECT_LE(all.ulps, f.max_ulps) << std::hexfloat << all.x << ", " << all.y;
 }
 
-// A function in single and double precision, the C library's function in double precision, and MPFR's.
+// A function in single and double precision, the C library's double function, and MPFR's.
 struct FloatFunction {
   const char* name;
   float (*single)(float);
@@ -67,7 +67,7 @@ const auto kFloatFunctions = std::to_array<FloatFunction>({
     {"cbrtf", fixed::cbrtf, std::cbrt, mpfr_cbrt},
 });
 
-// Counts of results that are next to the correctly rounded float, and of results that are further away.
+// Numbers of results that are adjacent to the correctly rounded float, and of results that are further off.
 struct FloatErrors {
   std::atomic<std::uint64_t> misrounded{0}, wrong{0}, first_wrong{0};
 };
@@ -86,8 +86,8 @@ void compare_with_exact(const FloatFunction& f, float x, float result, FloatErro
   errors.wrong++;
 }
 
-// Compares with the double result of the C library, whose error is below 2^-51, if all doubles so near to it round to
-// the same float; otherwise with MPFR, which is a hundred times slower.
+// Compares with the C library's double result, which has an error below 2^-51, if all doubles that close round to the
+// same float; otherwise with MPFR, which is a hundred times slower.
 void compare_floats(const FloatFunction& f, std::uint64_t begin, std::uint64_t end, FloatErrors& errors) {
   for (std::uint64_t i = begin; i < end; i++) {
     const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(i));
@@ -106,7 +106,7 @@ class LongMathFloats : public testing::TestWithParam<FloatFunction> {};
 INSTANTIATE_TEST_SUITE_P(LongMath, LongMathFloats, testing::ValuesIn(kFloatFunctions),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST_P(LongMathFloats, EachIsRoundedCorrectlyButForAFew) {
+TEST_P(LongMathFloats, AlmostAllAreRoundedCorrectly) {
   const FloatFunction& f = GetParam();
   constexpr std::uint64_t kAll = std::uint64_t{1} << 32;
   const std::uint64_t parts = thread_count();

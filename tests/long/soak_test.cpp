@@ -1,4 +1,4 @@
-// An hour of stage time, in minutes: a flood of messages, bodies that come and go, memory that stays.
+// An hour of simulation time in minutes: many messages, added and removed bodies, constant memory.
 #include <malloc.h>
 
 #include <fstream>
@@ -31,7 +31,7 @@ osc:on("/hit", function(x) state.last = { x, tostring(x) } end)
 
 std::string busy_scene() { return fmt::format("local ARM = '{}/urdf/arm6.urdf'\n{}", LIMBER_SOURCE_DIR, kBusyScene); }
 
-// twenty messages a tick: values, refusals, questions, handlers; of a tick's number alone
+// twenty messages per tick: values, invalid ones, queries, handlers; determined by the tick number
 void flood(Show& show, int tick) {
   for (int i = 0; i < 4; i++) {
     show.send("/physics/motor/angularservoposition", "arm", i + 1, 0.01 * (tick % 50));
@@ -47,9 +47,9 @@ double heap() { return static_cast<double>(mallinfo2().uordblks); }
 double resident() {
   std::ifstream statm("/proc/self/statm");
   double all = 0;
-  double mine = 0;
-  statm >> all >> mine;
-  return mine * static_cast<double>(system::page_size());
+  double pages = 0;
+  statm >> all >> pages;
+  return pages * static_cast<double>(system::page_size());
 }
 
 TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
@@ -60,7 +60,7 @@ TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
   for (int tick = 0; tick < kHour; tick++) {
     flood(show, tick);
     show.ticks(1);
-    show.outbox();
+    show.sent_texts();
     if (tick == 10 * kMinute) {
       heap_then = heap();
       resident_then = resident();
@@ -68,24 +68,24 @@ TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
   }
   EXPECT_LT(heap(), 1.01 * heap_then);
   EXPECT_LT(resident(), 1.01 * resident_then);
-  EXPECT_EQ(show.link.inbox.dropped(), 0U);
+  EXPECT_EQ(show.link.command_queue.dropped(), 0U);
   fmt::print("heap {:.3f} MB at minute 10, {:.3f} at the end; resident {:.1f} and {:.1f} MB\n", heap_then / 1e6,
              heap() / 1e6, resident_then / 1e6, resident() / 1e6);
 }
 
-TEST(Soak, AFloodOfQuestionsAndRefusalsLeavesTheMotionAsItIs) {
+TEST(Soak, QueriesAndErrorsDoNotChangeTheMotion) {
   const engine_test::SceneFile scene(busy_scene());
   Show quiet(scene.path());
   Show loud(scene.path());
   for (int tick = 0; tick < 10 * kMinute; tick++) {
     for (int i = 0; i < 20; i++) {
       loud.send("/physics/motor/angularservopositoin", "arm", i, 1);
-      loud.send("/physics/part/mass", "nobody", "tip", 1);
+      loud.send("/physics/part/mass", "missing", "tip", 1);
       loud.send("/list/parts", "arm");
     }
     loud.ticks(1);
     quiet.ticks(1);
-    loud.outbox();
+    loud.sent_texts();
   }
   EXPECT_EQ(loud.engine.state_hash(), quiet.engine.state_hash());
 }

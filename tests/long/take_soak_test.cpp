@@ -1,5 +1,5 @@
-// Soaks that are recorded and replayed: many seeds, and one of ten minutes. A list of actions that diverges is shrunk.
-// LIMBER_SOAK_SEED and LIMBER_SOAK_COUNT choose other seeds.
+// Recorded and replayed soak tests: many seeds, and one of ten minutes. A list of actions that diverges is minimized.
+// LIMBER_SOAK_SEED and LIMBER_SOAK_COUNT select other seeds.
 #include <cstdlib>
 
 #include "engine/soak.h"
@@ -12,7 +12,7 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
   return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
-TEST(LongTakeSoak, ManySeedsComeAgainToTheBit) {
+TEST(LongTakeSoak, ManySeedsReplayExactly) {
   const std::uint64_t first = number_of("LIMBER_SOAK_SEED", 100);
   const std::uint64_t count = number_of("LIMBER_SOAK_COUNT", 40);
   for (std::uint64_t seed = first; seed < first + count; seed++) {
@@ -21,8 +21,8 @@ TEST(LongTakeSoak, ManySeedsComeAgainToTheBit) {
   }
 }
 
-// in parts of a minute: where one diverges, its list is soon shrunk
-TEST(LongTakeSoak, TenMinutesComeAgainToTheBit) {
+// in parts of a minute, so that a diverging list is minimized quickly
+TEST(LongTakeSoak, TenMinutesReplayExactly) {
   for (std::uint64_t seed = 1; seed <= 10; seed++) expect_soaks(3600, seed);
 }
 

@@ -1,5 +1,5 @@
--- Contacts of each pair of shapes, with and without joints, and each way to a solution: direct, iterative, crowds, too
--- many rows, parts that begin inside others, and joints at a singular pose. Prints the state's hash twice a second.
+-- Contacts of all pairs of shapes, with and without joints, and all solver paths: direct, iterative, crowds, too many
+-- rows, initial penetration, joints in a singular pose. Prints the state hash twice per second.
 params { { "iterative", 0, min = 0, max = 1, rerun = true } }
 sim.solver = params.iterative > 0.5 and "iterative" or "direct"
 
@@ -19,7 +19,7 @@ local shapes = {
   sim:add_compound_shape("compound"):add_child(ball, vec3(0.1, 0, 0)):add_child(box, vec3(-0.1, 0, 0)),
 }
 
--- each shape falls on the floor, and on each shape that stands still, with friction and bouncing
+-- each shape falls on the floor and on each static shape, with friction and restitution
 for i, falling in ipairs(shapes) do
   for j, standing in ipairs(shapes) do
     local pair = sim:add_body(("pair_%d_%d"):format(i, j))
@@ -34,7 +34,7 @@ for i, falling in ipairs(shapes) do
   alone:add_part("part", falling, { position = vec3(i, -2, 0.16), linear_velocity = vec3(0.5, 0.2, 0) })
 end
 
--- an arm of two hinges; `mass` of its base: 0 stands still
+-- an arm with two hinges; a base with `mass` 0 is static
 local function arm(name, place, mass, mode)
   local body = sim:add_body(name)
   local base = body:add_part("base", box, { position = place, mass = mass })
@@ -48,7 +48,7 @@ local function arm(name, place, mass, mode)
   return body
 end
 
--- a stack, a heavy part on a light one, arms that press on boxes and on each other
+-- a stack of increasing mass, and arms that press on boxes and on each other
 for i = 0, 3 do
   sim:add_body("stack_" .. i):add_part("part", box, { position = vec3(-2, 0, 0.1 + 0.2 * i), mass = 10 ^ i })
 end
@@ -56,7 +56,7 @@ arm("reaching", vec3(-2, 2, 0.25), 0, "servo")
 sim:add_body("reached"):add_part("part", slab, { position = vec3(-1.6, 2, 0.1), mass = 1 })
 -- a crowd: several small trees that touch
 for i = 0, 5 do arm("crowd_" .. i, vec3(-2 + 0.05 * i, 4, 0.11 + 0.21 * i), 2, i % 2 == 0 and "servo" or nil) end
--- more rows than the direct solver takes: boxes on a layer of boxes, with an arm among them
+-- more rows than the direct solver accepts: boxes on a layer of boxes, with an arm among them
 for i = 0, 5 do
   for j = 0, 5 do
     for k = 0, 1 do
@@ -66,11 +66,11 @@ for i = 0, 5 do
   end
 end
 arm("on_the_pile", vec3(-3.6, 6.4, 0.5), 1, "servo")
--- an arm that begins inside a wall, and boxes inside each other
+-- an arm that starts inside a wall, and overlapping boxes
 sim:add_body("wall"):add_part("wall", slab, { mass = 0, position = vec3(-3.6, 0, 0.4) })
 arm("inside", vec3(-4, 0, 0.4), 0, "spin")
 for i = 0, 1 do sim:add_body("inside_" .. i):add_part("part", box, { position = vec3(-4, 2 + 0.03 * i, 0.1) }) end
--- a lock that is turned to where two of its axes are one: the direct solver leaves its island to the iterative one
+-- a fixed joint rotated into gimbal lock: the direct solver leaves its island to the iterative solver
 local turned = sim:add_body("turned")
 turned:add_part("frame", box, { position = vec3(-4, 4, 4) })
 local rotor = turned:add_part("rotor", box, { position = vec3(-3.7, 4, 4) })

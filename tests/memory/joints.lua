@@ -1,5 +1,5 @@
--- Each joint type, free, limited, driven, in loops and in contact, far from each other: all at once, or the one with the
--- number `case`. Prints the state hash of a body in each tick. For valgrind and for comparing processes.
+-- Each joint type: free, limited, driven, in loops and in contact, far apart: all at once, or only the one with number
+-- `case`. Prints the state hash of a body in each tick. For valgrind and for comparing processes.
 params { { "case", 0, min = 0, max = 100, step = 1, rerun = true }, { "iterative", 0, min = 0, max = 1, rerun = true } }
 local types = { "revolute", "continuous", "prismatic", "planar", "floating", "spherical", "fixed" }
 local uses = { "free", "limited", "off", "spin", "servo", "spring", "loop", "driven loop", "floating base", "contact" }
@@ -8,7 +8,7 @@ local box = sim:add_box_shape("box", vec3(0.2, 0.2, 0.2))
 local rod = sim:add_capsule_shape("rod", 0.05, 0.2)
 local ball = sim:add_sphere_shape("ball", 0.08)
 
--- calls f with the name of each half of a joint's axes, and with its free axes: a lower limit above the upper one
+-- calls f for the linear and angular half of a joint, with its free axes (lower limit above the upper one)
 local function free_axes(joint, f)
   for _, half in ipairs { "linear", "angular" } do
     local lower, upper = joint[half .. "_lower_limit"], joint[half .. "_upper_limit"]
@@ -50,7 +50,7 @@ local function joint_of(body, name, parent, child, kind, place, axis)
   return joint
 end
 
--- base, arm and tip in a row, with two joints of that type
+-- base, arm and tip in a chain, with two joints of that type
 local function chain(name, kind, use, p)
   local body = sim:add_body(name)
   local stands = use ~= "contact" and use ~= "floating base"
@@ -66,7 +66,7 @@ local function chain(name, kind, use, p)
   end
 end
 
--- a frame of four parts; the joints of its upper part are of that type, and the last one closes the loop
+-- a loop of four parts; the joints of its upper part are of that type, and the last one closes the loop
 local function loop(name, kind, use, p)
   local body = sim:add_body(name)
   local base = body:add_part("base", box, { position = p, mass = 0 })

@@ -1,4 +1,4 @@
-// A file's stamp: what changed is another file, whatever its times say.
+// FileStamp: detects changes of content, independent of the file's times.
 #include "model/file_stamp.h"
 
 #include <fcntl.h>
@@ -23,36 +23,36 @@ struct FileStampTest : testing::Test {
   const std::string path = (fs::temp_directory_path() / ("limber_stamp_" + std::to_string(::getpid()))).string();
 };
 
-TEST_F(FileStampTest, HoldsWhileTheFileStays) {
+TEST_F(FileStampTest, IsCurrentWhileTheFileIsUnchanged) {
   FileStamp stamp(path);
-  EXPECT_TRUE(stamp.holds(path));
-  // of another age, with the same in it
+  EXPECT_TRUE(stamp.is_current(path));
+  // another time, the same content
   fs::last_write_time(path, fs::last_write_time(path) - std::chrono::hours(1));
-  EXPECT_TRUE(stamp.holds(path));
+  EXPECT_TRUE(stamp.is_current(path));
   EXPECT_TRUE(stamp == FileStamp(path));
 }
 
-TEST_F(FileStampTest, EndsWithAnotherContent) {
+TEST_F(FileStampTest, DetectsChangedContent) {
   FileStamp stamp(path);
   write("two");
-  EXPECT_FALSE(stamp.holds(path));
+  EXPECT_FALSE(stamp.is_current(path));
   stamp = FileStamp(path);
   write("longer");
-  EXPECT_FALSE(stamp.holds(path));
+  EXPECT_FALSE(stamp.is_current(path));
   EXPECT_FALSE(stamp == FileStamp(path));
 }
 
-TEST_F(FileStampTest, AFileThatIsNotThereIsOneToo) {
+TEST_F(FileStampTest, HandlesAMissingFile) {
   fs::remove(path);
   FileStamp none(path);
-  EXPECT_TRUE(none.holds(path));
+  EXPECT_TRUE(none.is_current(path));
   write("one");
-  EXPECT_FALSE(none.holds(path));
+  EXPECT_FALSE(none.is_current(path));
 }
 
-// A clock of a file system that ticks too slowly gives two saves one time. Here the second change goes through memory
-// that is the file's: Linux notes a time at the first write to a page, and none for those that follow.
-TEST_F(FileStampTest, AYoungFileIsReadWhateverItsTimesSay) {
+// Two saves within one tick of the file system's clock get the same time. Simulated with mapped memory: Linux updates
+// the time at the first write to a page, but not at later ones.
+TEST_F(FileStampTest, HashesARecentFileEvenIfItsTimesAreUnchanged) {
   const int file = open(path.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_GE(file, 0);
   auto* const text = static_cast<char*>(mmap(nullptr, 3, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0));
@@ -60,9 +60,9 @@ TEST_F(FileStampTest, AYoungFileIsReadWhateverItsTimesSay) {
   ASSERT_NE(static_cast<void*>(text), MAP_FAILED);
   text[0] = 'O';
   FileStamp stamp(path);
-  EXPECT_TRUE(stamp.holds(path));
+  EXPECT_TRUE(stamp.is_current(path));
   text[1] = 'N';
-  EXPECT_FALSE(stamp.holds(path));
+  EXPECT_FALSE(stamp.is_current(path));
   munmap(text, 3);
 }
 

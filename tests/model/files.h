@@ -1,4 +1,4 @@
-// A folder of its own for a test's files, taken away afterwards.
+// Files: a temporary folder for a test, deleted afterwards.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ class Files {
   Files(const Files&) = delete;
   Files& operator=(const Files&) = delete;
 
-  /// Writes a file below the folder, with the folders it needs; gives its path.
+  /// Writes a file below the folder, creating subfolders as needed; returns its path.
   std::string write(const std::string& name, const std::string& bytes) const {
     const std::filesystem::path path = folder_ / name;
     std::filesystem::create_directories(path.parent_path());

@@ -1,4 +1,4 @@
-// Hulls against solids whose hull is known, and against every point by itself.
+// Hulls compared with solids of known hull, and checked against every point of the cloud.
 #include "model/hull.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ std::vector<Vec3> cloud(std::uint64_t seed, int count) {
   Random random(seed);
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) {
-    // one draw a line: compilers differ in the order of arguments
+    // separate statements, because the evaluation order of arguments is unspecified
     const double x = uniform(random);
     const double y = uniform(random);
     const double z = uniform(random);
@@ -27,40 +27,40 @@ std::vector<Vec3> cloud(std::uint64_t seed, int count) {
   return points;
 }
 
-/// Highest distance of a point above a face plane of the hull: 0 or less when the hull holds them all.
-double highest_above(const Hull& hull, const std::vector<Vec3>& points) {
-  double most = -1e9;
+/// Largest signed distance of a point above a face plane of the hull: at most 0 if the hull contains all points.
+double max_height_above(const Hull& hull, const std::vector<Vec3>& points) {
+  double max_height = -1e9;
   for (std::size_t i = 0; i < hull.triangles.size(); i += 3) {
     const Vec3& a = hull.vertices[hull.triangles[i]];
     const Vec3 n =
         normalized(glm::cross(hull.vertices[hull.triangles[i + 1]] - a, hull.vertices[hull.triangles[i + 2]] - a));
-    for (const Vec3& p : points) most = std::max(most, glm::dot(n, p - a));
+    for (const Vec3& p : points) max_height = std::max(max_height, glm::dot(n, p - a));
   }
-  return most;
+  return max_height;
 }
 
-/// Distance of the farthest point outside the hull, every triangle asked. Inside is where the triangles are seen under
-/// 4π altogether (Van Oosterom, Strackee 1983), which slivers, whose planes mean nothing, do not disturb.
+/// Largest distance of a point outside the hull, by brute force over all triangles. A point is inside if the triangles'
+/// solid angles add up to 4π (Van Oosterom, Strackee 1983), which is robust against slivers.
 double farthest_outside(const Hull& hull, const std::vector<Vec3>& points) {
   double farthest = 0;
   for (const Vec3& p : points) {
-    double seen = 0;
+    double solid_angle = 0;
     double nearest = 1e9;
     for (std::size_t i = 0; i < hull.triangles.size(); i += 3) {
       const Vec3 a = hull.vertices[hull.triangles[i]] - p;
       const Vec3 b = hull.vertices[hull.triangles[i + 1]] - p;
       const Vec3 c = hull.vertices[hull.triangles[i + 2]] - p;
       const double x = glm::length(a), y = glm::length(b), z = glm::length(c);
-      seen += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
-                             x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
+      solid_angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
+                                    x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
       nearest = std::min(nearest, triangle_distance(Vec3(0), a, b, c));
     }
-    if (seen < 2 * kPi) farthest = std::max(farthest, nearest);
+    if (solid_angle < 2 * kPi) farthest = std::max(farthest, nearest);
   }
   return farthest;
 }
 
-TEST(Hull, OfACubeWithPointsInsideAndOnItsFacesIsTheCube) {
+TEST(Hull, IgnoresPointsInsideAndOnTheFacesOfACube) {
   std::vector<Vec3> points = cloud(1, 500);
   for (int x = 0; x <= 10; ++x) {
     for (int y = 0; y <= 10; ++y) points.emplace_back(x / 5.0 - 1, y / 5.0 - 1, 1);
@@ -70,22 +70,22 @@ TEST(Hull, OfACubeWithPointsInsideAndOnItsFacesIsTheCube) {
   const Hull hull = convex_hull(points);
   EXPECT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.triangles.size(), 36u);
-  EXPECT_NEAR(solid_of(hull.vertices, hull.triangles).mass, 8, 1e-12);
+  EXPECT_NEAR(unit_inertial_of(hull.vertices, hull.triangles).mass, 8, 1e-12);
 }
 
-TEST(Hull, HoldsEveryPointAndIsClosed) {
+TEST(Hull, ContainsEveryPointAndIsClosed) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const std::vector<Vec3> points = cloud(seed, 400);
     const Hull hull = convex_hull(points);
-    EXPECT_LT(highest_above(hull, points), 1e-5) << seed;
+    EXPECT_LT(max_height_above(hull, points), 1e-5) << seed;
     EXPECT_TRUE(is_closed(hull.triangles)) << seed;
     // Euler: V - E + F = 2 with E = 3F/2
     EXPECT_EQ(hull.triangles.size() / 3, 2 * hull.vertices.size() - 4) << seed;
   }
 }
 
-TEST(Hull, OfASphereHasItsVolume) {
-  // n points on a sphere span less than 4π/3; with 5000 spread ones about 0.1 % less
+TEST(Hull, OfASphereHasTheVolumeOfTheSphere) {
+  // the hull of points on a sphere has less volume than 4π/3; about 0.1 % less for 5000 distributed points
   std::vector<Vec3> points;
   const double golden = kPi * (3 - std::sqrt(5.0));
   for (int i = 0; i < 5000; ++i) {
@@ -95,38 +95,38 @@ TEST(Hull, OfASphereHasItsVolume) {
   }
   const Hull hull = convex_hull(points);
   EXPECT_EQ(hull.vertices.size(), 5000u);
-  const double volume = solid_of(hull.vertices, hull.triangles).mass;
+  const double volume = unit_inertial_of(hull.vertices, hull.triangles).mass;
   EXPECT_LT(volume, 4 * kPi / 3);
   EXPECT_GT(volume, 4 * kPi / 3 * 0.998);
 }
 
-TEST(Hull, FlatStraightAndSinglePointsBecomeThinSolids) {
+TEST(Hull, ThickensFlatStraightAndSinglePointClouds) {
   // a square of 1 m: 0.1 % to each side
   const std::vector<Vec3> square{{0, 0, 3}, {1, 0, 3}, {1, 1, 3}, {0, 1, 3}, {0.5, 0.5, 3}};
   const Hull plate = convex_hull(square);
   EXPECT_EQ(plate.vertices.size(), 8u);
-  EXPECT_NEAR(solid_of(plate.vertices, plate.triangles).mass, 0.002, 1e-9);
+  EXPECT_NEAR(unit_inertial_of(plate.vertices, plate.triangles).mass, 0.002, 1e-9);
   const std::vector<Vec3> line{{0, 0, 0}, {0, 2, 0}, {0, 1, 0}};
   const Hull rod = convex_hull(line);
   EXPECT_EQ(rod.vertices.size(), 8u);
-  EXPECT_NEAR(solid_of(rod.vertices, rod.triangles).mass, 2 * 0.004 * 0.004, 1e-9);
+  EXPECT_NEAR(unit_inertial_of(rod.vertices, rod.triangles).mass, 2 * 0.004 * 0.004, 1e-9);
   const std::vector<Vec3> point{{5, 5, 5}, {5, 5, 5}};
   const Hull dot = convex_hull(point);
-  EXPECT_NEAR(solid_of(dot.vertices, dot.triangles).mass, 8e-12, 1e-14);
+  EXPECT_NEAR(unit_inertial_of(dot.vertices, dot.triangles).mass, 8e-12, 1e-14);
   EXPECT_TRUE(convex_hull(std::vector<Vec3>{}).vertices.empty());
 }
 
-TEST(Hull, FarAwayCloudsSmallerThanTheNoiseStillHaveAVolume) {
+TEST(Hull, HasAVolumeForSmallCloudsFarFromTheOrigin) {
   for (const double away : {1.0, 100.0, 1e4, 1e6}) {
     std::vector<Vec3> points = cloud(5, 50);
     for (Vec3& p : points) p = 0.01 * p + Vec3(away, -away, away);
     const Hull hull = convex_hull(points);
     EXPECT_GE(hull.vertices.size(), 8u) << away;
-    EXPECT_GT(solid_of(hull.vertices, hull.triangles).mass, 0) << away;
+    EXPECT_GT(unit_inertial_of(hull.vertices, hull.triangles).mass, 0) << away;
   }
 }
 
-TEST(Hull, NearlyFlatAndRepeatedPointsDoNotBreakIt) {
+TEST(Hull, HandlesNearlyFlatAndRepeatedPoints) {
   Random random(7);
   for (const double thickness : {1e-3, 1e-5, 1e-6, 1e-7, 1e-9, 0.0}) {
     std::vector<Vec3> points = cloud(3, 300);
@@ -135,13 +135,13 @@ TEST(Hull, NearlyFlatAndRepeatedPointsDoNotBreakIt) {
     points.insert(points.end(), again.begin(), again.end());
     const Hull hull = convex_hull(points);
     EXPECT_TRUE(is_closed(hull.triangles)) << thickness;
-    EXPECT_GT(solid_of(hull.vertices, hull.triangles).mass, 0) << thickness;
-    // a sliver's plane says little; the distance from the surface does
+    EXPECT_GT(unit_inertial_of(hull.vertices, hull.triangles).mass, 0) << thickness;
+    // compares distances from the surface, because the planes of slivers are unreliable
     EXPECT_LT(farthest_outside(hull, points), 1e-5) << thickness;
   }
 }
 
-TEST(ReducedHull, KeepsToItsLimitsAndTellsTheTrueError) {
+TEST(ReducedHull, RespectsItsLimitsAndReturnsTheExactError) {
   const test::Solid solids[] = {test::capsule(0.1, 0.5, 64), test::cylinder(0.3, 0.1, 200), test::capsule(1, 0, 48)};
   for (const test::Solid& s : solids) {
     const Hull whole = convex_hull(s.vertices);
@@ -155,29 +155,29 @@ TEST(ReducedHull, KeepsToItsLimitsAndTellsTheTrueError) {
     if (hull.vertices.size() < 64) {
       EXPECT_LE(hull.error, 0.02 * size + 1e-9);
     }
-    // every vertex is one of the cloud's
+    // every vertex is a point of the cloud
     for (const Vec3& v : hull.vertices) {
       EXPECT_NE(std::find(s.vertices.begin(), s.vertices.end(), v), s.vertices.end());
     }
   }
 }
 
-TEST(ReducedHull, KeepsAllWhenTheyAreFew) {
+TEST(ReducedHull, KeepsAllOfFewVertices) {
   const Hull hull = reduced_hull(test::box({1, 2, 3}).vertices);
   EXPECT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.error, 0);
 }
 
-TEST(ReducedHull, ListsAreKeptUpTo255) {
-  const HullLimits list{255, 255, 0};
+TEST(ReducedHull, KeepsUpTo255VerticesIfAllowed) {
+  const HullLimits limits{255, 255, 0};
   const test::Solid ball = test::capsule(1, 0, 20);
   const std::size_t all = convex_hull(ball.vertices).vertices.size();
   ASSERT_LT(all, 255u);
-  EXPECT_EQ(reduced_hull(ball.vertices, list).vertices.size(), all);
-  EXPECT_EQ(reduced_hull(test::capsule(1, 0, 64).vertices, list).vertices.size(), 255u);
+  EXPECT_EQ(reduced_hull(ball.vertices, limits).vertices.size(), all);
+  EXPECT_EQ(reduced_hull(test::capsule(1, 0, 64).vertices, limits).vertices.size(), 255u);
 }
 
-TEST(ReducedHull, IsTheSameEachTime) {
+TEST(ReducedHull, IsDeterministic) {
   const std::vector<Vec3> points = cloud(9, 1000);
   const Hull a = reduced_hull(points);
   const Hull b = reduced_hull(points);
@@ -185,7 +185,7 @@ TEST(ReducedHull, IsTheSameEachTime) {
   EXPECT_EQ(a.triangles, b.triangles);
 }
 
-TEST(TriangleDistance, ToCornersEdgesAndInside) {
+TEST(TriangleDistance, MeasuresToCornersEdgesAndInterior) {
   const Vec3 a{0, 0, 0}, b{2, 0, 0}, c{0, 2, 0};
   EXPECT_DOUBLE_EQ(triangle_distance({0.5, 0.5, 3}, a, b, c), 3);
   EXPECT_DOUBLE_EQ(triangle_distance({-3, -4, 0}, a, b, c), 5);

@@ -1,4 +1,4 @@
-// Imports URDF text that a test carries inline.
+// Imports URDF text given inline in a test.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@ inline Result<std::shared_ptr<const BodyModel>> try_import(std::string_view text
   return import_urdf_text(text, "robot.urdf", options, meshes);
 }
 
-/// The body of a text that must hold one; an empty body, and a failure, when it does not.
+/// Imports a text that must contain a body; otherwise fails the test and returns an empty body.
 inline BodyModel import_text(std::string_view text, const ImportOptions& options = {}) {
   const Result<std::shared_ptr<const BodyModel>> model = try_import(text, options);
   if (model) return **model;
@@ -24,10 +24,10 @@ inline BodyModel import_text(std::string_view text, const ImportOptions& options
   return {};
 }
 
-/// Whether there is a problem of this severity whose text holds `part`, with a cure and at this line.
-inline bool says(const BodyModel& model, Severity severity, std::string_view part, int line) {
+/// True if there is a problem of this severity at this line, with a text that contains `part`, and with a fix.
+inline bool has_problem(const BodyModel& model, Severity severity, std::string_view part, int line) {
   for (const Problem& p : model.problems) {
-    if (p.severity == severity && p.text.find(part) != std::string::npos && !p.cure.empty() && p.line == line)
+    if (p.severity == severity && p.text.find(part) != std::string::npos && !p.fix.empty() && p.line == line)
       return true;
   }
   return false;
@@ -35,14 +35,14 @@ inline bool says(const BodyModel& model, Severity severity, std::string_view par
 
 inline std::string all_problems(const BodyModel& model) {
   std::string text;
-  for (const Problem& p : model.problems) text += std::to_string(p.line) + ": " + p.text + ". " + p.cure + "\n";
+  for (const Problem& p : model.problems) text += std::to_string(p.line) + ": " + p.text + ". " + p.fix + "\n";
   return text;
 }
 
-inline void expect_near(const Vec3& a, const Vec3& b, double tolerance, const std::string& what = "") {
-  EXPECT_NEAR(a.x, b.x, tolerance) << what;
-  EXPECT_NEAR(a.y, b.y, tolerance) << what;
-  EXPECT_NEAR(a.z, b.z, tolerance) << what;
+inline void expect_near(const Vec3& a, const Vec3& b, double tolerance, const std::string& label = "") {
+  EXPECT_NEAR(a.x, b.x, tolerance) << label;
+  EXPECT_NEAR(a.y, b.y, tolerance) << label;
+  EXPECT_NEAR(a.z, b.z, tolerance) << label;
 }
 
 /// Angle between two orientations, rad.

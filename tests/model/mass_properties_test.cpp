@@ -1,4 +1,4 @@
-// Mass properties against the textbook, and meshes against primitives.
+// Mass properties compared with textbook formulas, and of meshes compared with primitives.
 #include "model/mass_properties.h"
 
 #include <gtest/gtest.h>
@@ -23,16 +23,16 @@ ShapeModel shape(ShapeKind kind, double radius, double height) {
   return s;
 }
 
-/// The same by adding up small cubes: independent of every formula.
-Inertial by_cubes(const std::function<bool(const Vec3&)>& inside, double reach, int steps) {
-  const double edge = 2 * reach / steps;
+/// Mass properties by summing small cubes, independent of any formula.
+Inertial by_cubes(const std::function<bool(const Vec3&)>& inside, double half_size, int steps) {
+  const double edge = 2 * half_size / steps;
   double mass = 0;
   Vec3 first(0);
   Mat3 second(0);
   for (int i = 0; i < steps; ++i) {
     for (int j = 0; j < steps; ++j) {
       for (int k = 0; k < steps; ++k) {
-        const Vec3 p = Vec3(i + 0.5, j + 0.5, k + 0.5) * edge - reach;
+        const Vec3 p = Vec3(i + 0.5, j + 0.5, k + 0.5) * edge - half_size;
         if (!inside(p)) continue;
         const double m = edge * edge * edge;
         mass += m;
@@ -49,7 +49,7 @@ TEST(MassProperties, PrimitivesAgreeWithSmallCubes) {
   const double r = 0.5, h = 0.8;
   const auto across = [](const Vec3& p) { return std::hypot(p.x, p.y); };
   const auto check = [](const ShapeModel& s, const Inertial& cubes) {
-    const Inertial exact = solid_of(s);
+    const Inertial exact = unit_inertial_of(s);
     EXPECT_NEAR(exact.mass / cubes.mass, 1, 0.005);
     test::expect_near(exact.center, cubes.center, 0.005);
     expect_tensor(exact.tensor, cubes.tensor, 0.01 * exact.tensor[0][0]);
@@ -67,43 +67,43 @@ TEST(MassProperties, PrimitivesAgreeWithSmallCubes) {
         by_cubes([&](const Vec3& p) { return std::abs(p.z) < h / 2 && across(p) < r * (0.5 - p.z / h); }, 1, 120));
 }
 
-TEST(MassProperties, BoxByFormula) {
+TEST(MassProperties, BoxMatchesTheFormula) {
   ShapeModel s;
   s.size = {1, 2, 3};
-  const Inertial box = solid_of(s);
+  const Inertial box = unit_inertial_of(s);
   EXPECT_DOUBLE_EQ(box.mass, 6);
   EXPECT_DOUBLE_EQ(box.tensor[0][0], 6.0 / 12 * 13);
   EXPECT_DOUBLE_EQ(box.tensor[1][1], 6.0 / 12 * 10);
   EXPECT_DOUBLE_EQ(box.tensor[2][2], 6.0 / 12 * 5);
 }
 
-TEST(MassProperties, MeshOfABoxFarAwayAndTurnedIsTheBox) {
+TEST(MassProperties, MeshOfATransformedBoxMatchesTheBox) {
   const Pose pose{{100, -50, 7}, quat_euler(0.3, -0.8, 2)};
   const test::Solid mesh = test::box({1, 2, 3}).moved(pose);
   ShapeModel s;
   s.size = {1, 2, 3};
-  const Inertial expected = moved(solid_of(s), pose);
-  const Inertial found = solid_of(mesh.vertices, mesh.triangles);
+  const Inertial expected = transformed(unit_inertial_of(s), pose);
+  const Inertial found = unit_inertial_of(mesh.vertices, mesh.triangles);
   EXPECT_NEAR(found.mass, 6, 1e-10);
   test::expect_near(found.center, pose.position, 1e-9);
   expect_tensor(found.tensor, expected.tensor, 1e-9);
 }
 
-TEST(MassProperties, MeshOfACylinderNearsTheCylinder) {
+TEST(MassProperties, MeshOfACylinderApproximatesTheCylinder) {
   const test::Solid mesh = test::cylinder(0.4, 1.2, 400);
-  const Inertial found = solid_of(mesh.vertices, mesh.triangles);
-  const Inertial exact = solid_of(shape(ShapeKind::cylinder, 0.4, 1.2));
+  const Inertial found = unit_inertial_of(mesh.vertices, mesh.triangles);
+  const Inertial exact = unit_inertial_of(shape(ShapeKind::cylinder, 0.4, 1.2));
   EXPECT_NEAR(found.mass / exact.mass, 1, 1e-4);
   expect_tensor(found.tensor, exact.tensor, 2e-4 * exact.tensor[0][0]);
 }
 
-TEST(MassProperties, InsideOutMeansNegative) {
+TEST(MassProperties, InsideOutMeshHasANegativeVolume) {
   test::Solid mesh = test::box({1, 1, 1});
   for (std::size_t i = 0; i < mesh.triangles.size(); i += 3) std::swap(mesh.triangles[i], mesh.triangles[i + 1]);
-  EXPECT_NEAR(solid_of(mesh.vertices, mesh.triangles).mass, -1, 1e-12);
+  EXPECT_NEAR(unit_inertial_of(mesh.vertices, mesh.triangles).mass, -1, 1e-12);
 }
 
-TEST(MassProperties, ClosedNeedsEveryEdgeTwice) {
+TEST(MassProperties, ClosedRequiresEveryEdgeTwice) {
   test::Solid mesh = test::box({1, 1, 1});
   EXPECT_TRUE(is_closed(mesh.triangles));
   std::vector<unsigned> open(mesh.triangles.begin(), mesh.triangles.end() - 3);
@@ -117,27 +117,27 @@ TEST(MassProperties, SumOfTwoHalvesIsTheWhole) {
   ShapeModel half, whole;
   half.size = {1, 2, 1.5};
   whole.size = {1, 2, 3};
-  const Inertial parts[] = {moved(solid_of(half), {{0, 0, 0.75}, quat_identity()}),
-                            moved(solid_of(half), {{0, 0, -0.75}, quat_axis({0, 0, 1}, kPi)})};
-  const Inertial sum = sum_of(parts);
+  const Inertial parts[] = {transformed(unit_inertial_of(half), {{0, 0, 0.75}, quat_identity()}),
+                            transformed(unit_inertial_of(half), {{0, 0, -0.75}, quat_axis({0, 0, 1}, kPi)})};
+  const Inertial sum = combined(parts);
   EXPECT_NEAR(sum.mass, 6, 1e-12);
   test::expect_near(sum.center, {0, 0, 0}, 1e-12);
-  expect_tensor(sum.tensor, solid_of(whole).tensor, 1e-12);
+  expect_tensor(sum.tensor, unit_inertial_of(whole).tensor, 1e-12);
 }
 
-TEST(MassProperties, PrincipalAxesRebuildTheTensor) {
+TEST(MassProperties, PrincipalAxesReconstructTheTensor) {
   const Mat3 turn = glm::mat3_cast(quat_euler(0.4, 1.1, -2));
   const Mat3 tensor = turn * Mat3(3, 0, 0, 0, 1e-9, 0, 0, 0, 2) * glm::transpose(turn);
-  const Principal p = principal_of(tensor);
+  const PrincipalAxes p = principal_axes(tensor);
   test::expect_near(p.moments, {1e-9, 2, 3}, 1e-14);
   const Mat3 again = p.axes * Mat3(p.moments.x, 0, 0, 0, p.moments.y, 0, 0, 0, p.moments.z) * glm::transpose(p.axes);
   expect_tensor(again, tensor, 1e-14);
   EXPECT_NEAR(glm::determinant(p.axes), 1, 1e-14);
-  test::expect_near(principal_of(Mat3(5)).moments, {5, 5, 5}, 0);
+  test::expect_near(principal_axes(Mat3(5)).moments, {5, 5, 5}, 0);
 }
 
-TEST(MassProperties, ImpossibleTensorsAreFound) {
-  const auto fault = [](double x, double y, double z) { return tensor_fault(Mat3(x, 0, 0, 0, y, 0, 0, 0, z)); };
+TEST(MassProperties, ReportsImpossibleTensors) {
+  const auto fault = [](double x, double y, double z) { return tensor_error(Mat3(x, 0, 0, 0, y, 0, 0, 0, z)); };
   EXPECT_EQ(fault(1, 1, 1), "");
   EXPECT_EQ(fault(1, 1, 2), "");
   EXPECT_EQ(fault(1, 1, 2.01), "");
@@ -147,16 +147,16 @@ TEST(MassProperties, ImpossibleTensorsAreFound) {
   EXPECT_NE(fault(NAN, 1, 1), "");
 }
 
-TEST(MassProperties, SmallMomentsAreRaised) {
+TEST(MassProperties, RaisesSmallMoments) {
   bool raised = false;
-  const Mat3 rod = solvable_tensor(Mat3(1, 0, 0, 0, 1, 0, 0, 0, 1e-5), raised);
+  const Mat3 rod = regularized_tensor(Mat3(1, 0, 0, 0, 1, 0, 0, 0, 1e-5), raised);
   EXPECT_TRUE(raised);
   EXPECT_NEAR(rod[2][2], 1e-3, 1e-15);
-  const Mat3 dust = solvable_tensor(Mat3(1e-9), raised);
+  const Mat3 dust = regularized_tensor(Mat3(1e-9), raised);
   EXPECT_TRUE(raised);
   EXPECT_NEAR(dust[0][0], 1e-6, 1e-18);
   const Mat3 fine(1, 0.1, 0, 0.1, 1, 0, 0, 0, 0.5);
-  EXPECT_EQ(solvable_tensor(fine, raised), fine);
+  EXPECT_EQ(regularized_tensor(fine, raised), fine);
   EXPECT_FALSE(raised);
 }
 

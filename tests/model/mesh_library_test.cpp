@@ -1,4 +1,4 @@
-// Where mesh files are found, and that one file is loaded once.
+// Search for mesh files, and the cache of loaded meshes.
 #include "model/mesh_library.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ std::string found(const std::string& uri, const std::string& folder, const std::
   return path ? std::filesystem::canonical(*path).string() : "none: " + path.error();
 }
 
-TEST(MeshLibrary, EveryFormOfUriIsFound) {
+TEST(MeshLibrary, FindsEveryFormOfUri) {
   const test::Files files;
   const auto canonical = [](const std::string& path) { return std::filesystem::canonical(path).string(); };
   const std::string mesh = canonical(files.write("ws/arm/meshes/x.stl", "x"));
@@ -36,23 +36,23 @@ TEST(MeshLibrary, EveryFormOfUriIsFound) {
   EXPECT_EQ(found("package://hand/z.stl", urdf, {files.path("elsewhere/hand")}), other);
 }
 
-TEST(MeshLibrary, TheUrdfsOwnFolderWins) {
+TEST(MeshLibrary, SearchesTheUrdfsFolderFirst) {
   const test::Files files;
   files.write("a/m.stl", "1");
   const std::string near = std::filesystem::canonical(files.write("a/b/m.stl", "2")).string();
   EXPECT_EQ(found("package://m.stl", files.path("a/b"), {files.path("a")}), near);
 }
 
-TEST(MeshLibrary, WhatIsNotFoundSaysWhereItLooked) {
+TEST(MeshLibrary, ErrorListsTheSearchedFolders) {
   const test::Files files;
   const std::string text = found("package://hand/z.stl", files.path(""), {files.path("packages")});
   EXPECT_NE(text.find(files.path("packages")), std::string::npos) << text;
   EXPECT_NE(text.find("--package-path"), std::string::npos) << text;
   EXPECT_NE(found("https://x.org/z.stl", files.path("")).find("network"), std::string::npos);
-  EXPECT_NE(found(files.path(""), files.path("")).find("none: "), std::string::npos) << "a folder is no mesh";
+  EXPECT_NE(found(files.path(""), files.path("")).find("none: "), std::string::npos) << "a folder is not a mesh";
 }
 
-TEST(MeshLibrary, OneFileAndScaleIsOneMesh) {
+TEST(MeshLibrary, CachesMeshesByFileAndScale) {
   const test::Files files;
   const std::string path = files.write("box.stl", test::binary_stl(test::box({1, 2, 3})));
   MeshLibrary library;
@@ -62,10 +62,10 @@ TEST(MeshLibrary, OneFileAndScaleIsOneMesh) {
   ASSERT_TRUE(first && again && scaled);
   EXPECT_EQ(*first, *again);
   EXPECT_NE(*first, *scaled);
-  EXPECT_NEAR((*scaled)->solid.mass, 48, 1e-4);
+  EXPECT_NEAR((*scaled)->unit_inertial.mass, 48, 1e-4);
 }
 
-TEST(MeshLibrary, AChangedFileIsLoadedAnew) {
+TEST(MeshLibrary, ReloadsAChangedFile) {
   const test::Files files;
   const std::string path = files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   MeshLibrary library;
@@ -74,7 +74,7 @@ TEST(MeshLibrary, AChangedFileIsLoadedAnew) {
   const auto second = library.load(path, Vec3(1));
   ASSERT_TRUE(first && second);
   EXPECT_NE(*first, *second);
-  EXPECT_EQ((*first)->vertices.size(), 8u) << "who holds the old one keeps it";
+  EXPECT_EQ((*first)->vertices.size(), 8u) << "holders of the old mesh are not affected";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// OBJ as programs really write it, and what is wrong with broken ones.
+// OBJ in the notations of real programs, and the errors for invalid files.
 #include <gtest/gtest.h>
 
 #include "model/mesh_load.h"
@@ -14,7 +14,7 @@ std::string read_obj(const std::string& text, MeshSoup* into = nullptr) {
   return soup ? "read" : soup.error();
 }
 
-TEST(MeshObj, EveryHandwritingGivesTheSameTriangle) {
+TEST(MeshObj, ReadsEveryNotation) {
   const MeshSoup expected{{1, 2, 3}, {2, 2, 3}, {1, 4, 3}};
   const std::string vertices = "v 1 2 3\nv 2 2 3\nv 1 4 3\n";
   const std::string texts[] = {vertices + "f 1 2 3\n",
@@ -42,14 +42,14 @@ TEST(MeshObj, EveryHandwritingGivesTheSameTriangle) {
   }
 }
 
-TEST(MeshObj, NegativeIndicesCountFromTheFaceBack) {
+TEST(MeshObj, NegativeIndicesAreRelativeToTheFace) {
   MeshSoup soup;
   EXPECT_EQ(read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 0 0 5\nf -3 -2 -1\n", &soup), "read");
   EXPECT_EQ(soup, MeshSoup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}}));
 }
 
-TEST(MeshObj, PolygonsMakeAClosedSolid) {
-  // an L, 3 m high: two six-cornered ends, six quads; its fan from the first corner would cover what is outside
+TEST(MeshObj, PolygonsFormAClosedSolid) {
+  // an L-shaped prism, 3 m high: two hexagonal ends and six quads; a fan would cover area outside the L
   const double x[] = {2, 2, 0, 0, 1, 1};
   const double y[] = {0, 2, 2, 1, 1, 0};
   std::string text;
@@ -61,7 +61,7 @@ TEST(MeshObj, PolygonsMakeAClosedSolid) {
   const auto mesh = mesh_from_bytes(text, MeshFormat::obj, Vec3(1), "m");
   ASSERT_TRUE(mesh) << mesh.error();
   EXPECT_TRUE((*mesh)->closed);
-  EXPECT_NEAR((*mesh)->solid.mass, 9, 1e-12);
+  EXPECT_NEAR((*mesh)->unit_inertial.mass, 9, 1e-12);
   EXPECT_EQ((*mesh)->triangles.size(), 3u * (4 + 4 + 12));
   double area = 0;
   for (std::size_t i = 0; i < (*mesh)->triangles.size(); i += 3) {
@@ -71,30 +71,30 @@ TEST(MeshObj, PolygonsMakeAClosedSolid) {
   EXPECT_NEAR(area, 3 + 3 + 8 * 3, 1e-12);
 }
 
-TEST(MeshObj, NumbersKeepTheirDigits) {
+TEST(MeshObj, NumbersKeepTheirPrecision) {
   MeshSoup soup;
   EXPECT_EQ(read_obj("v 0.1 1.23456789012345 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &soup), "read");
   EXPECT_EQ(soup.at(0), Vec3(0.1, 1.23456789012345, 0));
 }
 
-TEST(MeshObj, FaultsHaveTheirLineAndACure) {
+TEST(MeshObj, ErrorsHaveALineAndAFix) {
   const std::string v = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const std::pair<std::string, std::string> cases[] = {
-      {v + "f 1 2 4\n", "line 4: a face wants vertex 4; there are 3"},
-      {v + "f 1 \\\n2 \\\n4\n", "line 4: a face wants vertex 4; there are 3"},
-      {v + "\r\n\nf 1 2 3\nf 0 1 2\n", "line 7: a face wants vertex 0; there are 3"},
-      {v + "f -1 -2 -4\nv 0 0 1\n", "line 4: a face wants vertex -4; there are 3"},
-      {v + "f 1 2 3x\n", "line 4: '3x' is no corner of a face"},
-      {v + "f 1 2 3/x\n", "line 4: '3/x' is no corner of a face"},
-      {v + "f 1 2 /3\n", "line 4: '/3' is no corner of a face"},
-      {v + "f 1 2 99999999999999999999\n", "line 4: '99999999999999999999' is no corner of a face"},
+      {v + "f 1 2 4\n", "line 4: a face uses vertex 4, but there are 3"},
+      {v + "f 1 \\\n2 \\\n4\n", "line 4: a face uses vertex 4, but there are 3"},
+      {v + "\r\n\nf 1 2 3\nf 0 1 2\n", "line 7: a face uses vertex 0, but there are 3"},
+      {v + "f -1 -2 -4\nv 0 0 1\n", "line 4: a face uses vertex -4, but there are 3"},
+      {v + "f 1 2 3x\n", "line 4: '3x' is not a corner of a face"},
+      {v + "f 1 2 3/x\n", "line 4: '3/x' is not a corner of a face"},
+      {v + "f 1 2 /3\n", "line 4: '/3' is not a corner of a face"},
+      {v + "f 1 2 99999999999999999999\n", "line 4: '99999999999999999999' is not a corner of a face"},
       {v + "v 1 2\n", "line 4: a vertex has fewer than three coordinates"},
-      {v + "v 1 nan 2\n", "line 4: 'nan' is no finite number"},
-      {v + "v 1 2 -inf\n", "line 4: '-inf' is no finite number"},
-      {v + "v 1 1,5 2\n", "line 4: '1,5' is no finite number"},
-      {v + "v 1 1 2 0\n", "line 4: '0' is no weight of a vertex"},
+      {v + "v 1 nan 2\n", "line 4: 'nan' is not a finite number"},
+      {v + "v 1 2 -inf\n", "line 4: '-inf' is not a finite number"},
+      {v + "v 1 1,5 2\n", "line 4: '1,5' is not a finite number"},
+      {v + "v 1 1 2 0\n", "line 4: '0' is not a weight of a vertex"},
       {v + "v 1e300 1 2 1e-300\n", "line 4: a vertex is not finite"},
-      {v + "v \x1b[31m 1 2\n", "line 4: '\\x1b[31m' is no finite number"}};
+      {v + "v \x1b[31m 1 2\n", "line 4: '\\x1b[31m' is not a finite number"}};
   for (const auto& [text, expected] : cases) {
     EXPECT_EQ(read_obj(text), expected + ". Export it again, or as binary STL.") << text;
   }

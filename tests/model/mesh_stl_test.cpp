@@ -1,4 +1,4 @@
-// STL as programs really write it, and what is wrong with broken ones.
+// STL in the notations of real programs, and the errors for invalid files.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,7 +25,7 @@ std::string facet(const std::string& vertices, const std::string& normal = "0 0 
   return "facet normal " + normal + "\n outer loop\n" + vertices + " endloop\nendfacet\n";
 }
 
-TEST(MeshStl, AsciiIsReadInEveryHandwriting) {
+TEST(MeshStl, ReadsAsciiInEveryNotation) {
   const std::string vertices = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 0.5 -2\n";
   std::string old_mac = "solid a\n" + facet(vertices) + "endsolid a\n";
   std::replace(old_mac.begin(), old_mac.end(), '\n', '\r');
@@ -51,24 +51,24 @@ TEST(MeshStl, AsciiIsReadInEveryHandwriting) {
   }
 }
 
-TEST(MeshStl, SeveralSolidsAreOneMesh) {
+TEST(MeshStl, MergesSeveralSolids) {
   const test::Solid box = test::box({1, 1, 1});
   const std::string far = test::ascii_stl(box.moved({{5, 0, 0}, quat_identity()}));
   const auto mesh = mesh_from_bytes(test::ascii_stl(box) + "\n" + far, MeshFormat::stl, Vec3(1), "m");
   ASSERT_TRUE(mesh) << mesh.error();
   EXPECT_EQ((*mesh)->vertices.size(), 16u);
-  EXPECT_NEAR((*mesh)->solid.mass, 2, 1e-12);
-  test::expect_near((*mesh)->solid.center, {2.5, 0, 0}, 1e-12);
+  EXPECT_NEAR((*mesh)->unit_inertial.mass, 2, 1e-12);
+  test::expect_near((*mesh)->unit_inertial.center, {2.5, 0, 0}, 1e-12);
 }
 
-TEST(MeshStl, FacetsWithMoreCornersAreCut) {
+TEST(MeshStl, TriangulatesFacetsWithMoreCorners) {
   MeshSoup soup;
   EXPECT_EQ(read_stl("solid\n" + facet("vertex 0 0 0 vertex 1 0 0 vertex 1 1 0 vertex 0 1 0\n") + "endsolid", &soup),
             "read");
   EXPECT_EQ(soup, MeshSoup({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
 }
 
-TEST(MeshStl, AsciiNumbersKeepTheirDigits) {
+TEST(MeshStl, AsciiNumbersKeepTheirPrecision) {
   MeshSoup soup;
   EXPECT_EQ(
       read_stl("solid\n" + facet("vertex 0.1 0 0 vertex 1.23456789012345 0 0 vertex 0 1 0\n") + "endsolid", &soup),
@@ -77,11 +77,11 @@ TEST(MeshStl, AsciiNumbersKeepTheirDigits) {
   EXPECT_EQ(soup.at(1).x, 1.23456789012345);
 }
 
-TEST(MeshStl, BinaryIsWhatIsAsLongAsItSays) {
+TEST(MeshStl, DetectsBinaryByItsLength) {
   test::Solid one;
   one.vertices = kTriangle;
   one.triangles = {0, 1, 2};
-  // a header that says all the words of ASCII STL
+  // a header that contains all keywords of ASCII STL
   for (const char* header : {"binary", "solid facet vertex endsolid"}) {
     for (const char* tail : {"", "and more"}) {
       MeshSoup soup;
@@ -99,27 +99,26 @@ TEST(MeshStl, BinaryIsWhatIsAsLongAsItSays) {
   EXPECT_EQ(read_stl(many), "has more than 2000000 triangles. Simplify it.");
 }
 
-TEST(MeshStl, FaultsHaveTheirLineAndACure) {
+TEST(MeshStl, ErrorsHaveALineAndAFix) {
   const std::string good = "vertex 0 0 0\nvertex 1 0 0\nvertex 0 0.5 -2\n";
-  const std::string cure = ". Export it again, or as binary STL.";
+  const std::string fix = ". Export it again, or as binary STL.";
   const std::pair<std::string, std::string> cases[] = {
-      {"solid a\n" + facet(good), "line 9: the ASCII STL stops before 'endsolid'"},
-      {"solid a\n" + facet(good) + "fac", "line 9: the ASCII STL stops before 'endsolid'"},
-      {"solid a\nfacet normal 0 0 1 outer loop\nvertex 0 0 1e", "line 3: the ASCII STL stops before 'endsolid'"},
+      {"solid a\n" + facet(good), "line 9: the ASCII STL ends without 'endsolid'"},
+      {"solid a\n" + facet(good) + "fac", "line 9: the ASCII STL ends without 'endsolid'"},
+      {"solid a\nfacet normal 0 0 1 outer loop\nvertex 0 0 1e", "line 3: the ASCII STL ends without 'endsolid'"},
       {"solid a\n" + facet("vertex 0 0 0\nvertex 1 0 x\nvertex 0 1 0\n") + "endsolid",
-       "line 5: 'x' is no finite number"},
+       "line 5: 'x' is not a finite number"},
       {"solid a\n" + facet("vertex 0 0 0\nvertex 1 0 1e999\nvertex 0 1 0\n") + "endsolid",
-       "line 5: '1e999' is no finite number"},
+       "line 5: '1e999' is not a finite number"},
       {"solid a\n" + facet("vertex 0 0 0\nvertex 1 0,5 0\nvertex 0 1 0\n") + "endsolid",
-       "line 5: '0,5' is no finite number"},
+       "line 5: '0,5' is not a finite number"},
       {"solid a\n" + facet("vertex 0 0 0\nvertex 1 0 0\n") + "endsolid", "line 7: a facet has 2 corners, not 3"},
-      {"solid a\n" + facet(good + "vertx 0 0 0\n") + "endsolid",
-       "line 7: 'vertx' stands where ASCII STL has no such word"},
-      {"solid a\nendsolid a\n" + facet(good), "line 3: 'facet' stands where ASCII STL has no such word"}};
+      {"solid a\n" + facet(good + "vertx 0 0 0\n") + "endsolid", "line 7: unexpected 'vertx' in ASCII STL"},
+      {"solid a\nendsolid a\n" + facet(good), "line 3: unexpected 'facet' in ASCII STL"}};
   for (const auto& [text, expected] : cases) {
-    const std::string said = read_stl(text);
-    EXPECT_EQ(said.substr(0, expected.size()), expected) << text;
-    EXPECT_EQ(said.substr(std::min(said.size(), said.size() - cure.size())), cure) << said;
+    const std::string error = read_stl(text);
+    EXPECT_EQ(error.substr(0, expected.size()), expected) << text;
+    EXPECT_EQ(error.substr(std::min(error.size(), error.size() - fix.size())), fix) << error;
   }
 }
 

@@ -1,4 +1,4 @@
-// The same file is one shared model; a changed file, another option or a changed mesh is another.
+// Cache of models: the same file gives one shared model; a changed file, changed mesh or other options a new one.
 #include "model/model_library.h"
 
 #include <array>
@@ -16,7 +16,7 @@ constexpr const char* kRobot =
     R"(<robot name="r"><link name="a"><collision><geometry><mesh filename="m.stl"/></geometry></collision></link>
 <link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint></robot>)";
 
-TEST(ModelLibrary, SameFileAndOptionsAreOneModel) {
+TEST(ModelLibrary, CachesModelsByFileAndOptions) {
   const test::Files files;
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   const std::string path = files.write("r.urdf", kRobot);
@@ -35,7 +35,7 @@ TEST(ModelLibrary, SameFileAndOptionsAreOneModel) {
   EXPECT_EQ((*a)->links[0].collisions[0].shape.mesh, (*c)->links[0].collisions[0].shape.mesh);
 }
 
-TEST(ModelLibrary, ChangedFilesAreImportedAnew) {
+TEST(ModelLibrary, ReimportsChangedFiles) {
   const test::Files files;
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   const std::string path = files.write("r.urdf", kRobot);
@@ -51,7 +51,7 @@ TEST(ModelLibrary, ChangedFilesAreImportedAnew) {
   EXPECT_EQ((*urdf_changed)->name, "new");
 }
 
-TEST(ModelLibrary, TheSameContentIsTheSameWhoeverReadIt) {
+TEST(ModelLibrary, EqualContentHasTheSameHashInAnyLibrary) {
   const test::Files files;
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   const std::string path = files.write("r.urdf", kRobot);
@@ -59,7 +59,7 @@ TEST(ModelLibrary, TheSameContentIsTheSameWhoeverReadIt) {
     ModelLibrary library;
     const auto model = library.load_urdf(file, options);
     EXPECT_TRUE(model.ok());
-    return model ? (*model)->content : 0;
+    return model ? (*model)->content_hash : 0;
   };
   const std::uint64_t first = content(path);
   EXPECT_EQ(content(path), first);
@@ -71,11 +71,11 @@ TEST(ModelLibrary, TheSameContentIsTheSameWhoeverReadIt) {
   EXPECT_NE(other_mesh, first);
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   EXPECT_EQ(content(path), first);
-  const test::Files elsewhere;  // where its mesh is not
+  const test::Files elsewhere;  // a folder without the mesh
   EXPECT_NE(content(elsewhere.write("r.urdf", kRobot)), first);
 }
 
-TEST(ModelLibrary, ManyThreadsGetOneModel) {
+TEST(ModelLibrary, SharesOneModelBetweenThreads) {
   const test::Files files;
   files.write("m.stl", test::binary_stl(test::capsule(1, 1, 64)));
   const std::string path = files.write("r.urdf", kRobot);
@@ -93,7 +93,7 @@ TEST(ModelLibrary, ManyThreadsGetOneModel) {
   for (const auto& model : got) EXPECT_EQ(model, got[0]);
 }
 
-TEST(ModelLibrary, AMissingFileIsAnErrorEachTime) {
+TEST(ModelLibrary, ReportsAMissingFileEachTime) {
   ModelLibrary library;
   for (int i = 0; i < 2; ++i) {
     const auto none = library.load_urdf("no_such.urdf");

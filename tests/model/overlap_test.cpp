@@ -1,4 +1,4 @@
-// Penetration depths with known answers: which shapes overlap, by how much, and where touching ends.
+// Penetration depths of shapes with known results, and overlapping links of models.
 #include "model/overlap.h"
 
 #include <cmath>
@@ -45,7 +45,7 @@ ShapeModel hull_of(const std::vector<Vec3>& points) {
 
 ShapeModel wedge() { return hull_of({{0, 0, 0}, {0.2, 0, 0}, {0, 0.2, 0}, {0, 0, 0.2}}); }
 
-/// Two shapes that touch: `b` moved by `gap` along z separates them, or makes them overlap by -gap.
+/// Two touching shapes: moving `b` by `gap` along z separates them, or makes them overlap by -gap.
 struct Touching {
   std::string name;
   ShapeModel a, b;
@@ -69,7 +69,7 @@ const std::vector<Touching>& touching() {
   return all;
 }
 
-// turned together, so that nothing is along an axis and rounding is in every coordinate
+// both rotated, so that nothing is axis-aligned and every coordinate has rounding errors
 double depth_of(const Touching& t, double gap, bool turned) {
   const Pose frame = turned ? Pose{{3.1, -2.7, 1.3}, quat_euler(0.3, -1.1, 2.2)} : Pose{};
   PlacedShape a = placed_at(t.a, {0, 0, 0});
@@ -79,7 +79,7 @@ double depth_of(const Touching& t, double gap, bool turned) {
   return overlap_depth(a, b);
 }
 
-TEST(Overlap, TouchingIsNone) {
+TEST(Overlap, TouchingShapesDoNotOverlap) {
   for (const Touching& t : touching()) {
     for (const bool turned : {false, true}) {
       EXPECT_EQ(depth_of(t, 0, turned), 0) << t.name << turned;
@@ -100,8 +100,8 @@ TEST(Overlap, ReportsDepthsAboveATenthOfAMillimeter) {
   }
 }
 
-TEST(Overlap, EdgesAndCornersCount) {
-  // a cube on its edge: half its diagonal above the face
+TEST(Overlap, MeasuresOverlapsOfEdgesAndCorners) {
+  // a cube standing on an edge: its center is half a diagonal above the face
   const double high = 0.1 + 0.1 * std::sqrt(2.0);
   const PlacedShape floor = placed_at(box_of({1, 1, 0.2}), {0, 0, 0});
   const auto on_edge = [&](double z) {
@@ -109,7 +109,7 @@ TEST(Overlap, EdgesAndCornersCount) {
   };
   EXPECT_EQ(overlap_depth(floor, on_edge(high)), 0);
   EXPECT_NEAR(overlap_depth(floor, on_edge(high - 0.0005)), 0.0005, 1e-5);
-  // crossed edges: the shortest way is along both edges' normal
+  // crossed edges: the shortest separation is along the normal of both edges
   const PlacedShape below = placed_at(box_of({0.2, 0.2, 0.2}), {0, 0, 0}, quat_euler(0, kPi / 4, 0));
   EXPECT_EQ(overlap_depth(below, on_edge(0.2 * std::sqrt(2.0))), 0);
   EXPECT_NEAR(overlap_depth(below, on_edge(0.2 * std::sqrt(2.0) - 0.001)), 0.001, 2e-5);
@@ -124,25 +124,25 @@ TEST(Overlap, ConcentricShapesOverlap) {
   EXPECT_NEAR(overlap_depth(box, box), 0.2, 0.004);
 }
 
-TEST(Overlap, FlatShapesThatCrossOverlap) {
+TEST(Overlap, CrossingFlatShapesOverlap) {
   const PlacedShape plate = placed_at(box_of({1, 1, 0.002}), {0, 0, 0});
   const PlacedShape upright = placed_at(box_of({0.002, 1, 1}), {0, 0, 0});
   EXPECT_NEAR(overlap_depth(plate, upright), 0.501, 0.02);
   EXPECT_NEAR(overlap_depth(plate, placed_at(box_of({1, 1, 0.002}), {0, 0, 0.0015})), 0.0005, 1e-5);
 }
 
-TEST(Overlap, PlanesOverlapNothing) {
+TEST(Overlap, PlanesNeverOverlap) {
   ShapeModel plane;
   plane.kind = ShapeKind::plane;
   EXPECT_EQ(overlap_depth(placed_at(plane, {0, 0, 0}), placed_at(box_of({1, 1, 1}), {0, 0, 0})), 0);
 }
 
-TEST(Overlap, AgreesWithSpheresAtRandom) {
-  // a sphere of many directions against a box: distance by clamping
+TEST(Overlap, AgreesWithRandomSpheres) {
+  // spheres in random directions from a box; the reference distance is computed by clamping
   unsigned state = 7;
-  const auto next = [&](double reach) {
+  const auto next = [&](double limit) {
     state = state * 1664525u + 1013904223u;
-    return reach * (2.0 * (state >> 8) / 16777216.0 - 1);
+    return limit * (2.0 * (state >> 8) / 16777216.0 - 1);
   };
   int overlapping = 0;
   for (int i = 0; i < 500; ++i) {
@@ -164,7 +164,7 @@ TEST(Overlap, AgreesWithSpheresAtRandom) {
   EXPECT_GT(overlapping, 50);
 }
 
-// links in a star around the base, so that none of them is joined to another
+// links in a star around the base, so that no two of them share a joint
 std::string star(const std::string& links, const std::string& more = "") {
   return "<robot name=\"star\"><link name=\"base\"/>\n" + links + more + "</robot>";
 }
@@ -178,7 +178,7 @@ std::string arm_of(const std::string& name, const std::string& xyz, const std::s
          "\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>\n";
 }
 
-TEST(Overlap, ModelsListTheirPairs) {
+TEST(Overlap, ModelsListOverlappingPairs) {
   const BodyModel m = test::import_text(
       star(arm_of("a", "0 0 0") + arm_of("b", "0.1995 0 0") + arm_of("c", "0 0.2 0") + arm_of("d", "0.399 0 0.1")));
   ASSERT_EQ(m.overlaps.size(), 2u);
@@ -186,23 +186,24 @@ TEST(Overlap, ModelsListTheirPairs) {
   EXPECT_EQ(m.links[static_cast<std::size_t>(m.overlaps[0].b)].name, "b");
   EXPECT_NEAR(m.overlaps[0].depth, 0.0005, 1e-5);
   EXPECT_EQ(m.links[static_cast<std::size_t>(m.overlaps[1].b)].name, "d");
-  EXPECT_TRUE(test::says(m, Severity::warning,
-                         "'a' and 'b' overlap at the home pose (0.5 mm); excluded from collision … and 1 more of this "
-                         "kind",
-                         2))
+  EXPECT_TRUE(
+      test::has_problem(m, Severity::warning,
+                        "'a' and 'b' overlap at the home pose (0.5 mm); excluded from collision … and 1 more of this "
+                        "kind",
+                        2))
       << test::all_problems(m);
 }
 
-TEST(Overlap, TheHomePoseCountsNotTheStart) {
-  // the slide starts at 0.1, because its limits exclude 0: there nothing overlaps
+TEST(Overlap, UsesTheHomePose) {
+  // the slide starts at 0.1, because its limits exclude 0; nothing overlaps there
   const std::string away = arm_of("b", "0.1 0 0", "prismatic", "0.5");
   EXPECT_EQ(test::import_text(star(arm_of("a", "0 0 0") + away)).overlaps.size(), 1u);
-  // and with 0 apart, a start inside the other changes nothing
+  // links that are separated at 0 but overlap at the start are not listed
   const std::string into = arm_of("b", "-0.6 0 0", "prismatic", "0.5");
   EXPECT_EQ(test::import_text(star(arm_of("a", "0 0 0") + into)).overlaps.size(), 0u);
 }
 
-TEST(Overlap, JointedLinksAreNotListed) {
+TEST(Overlap, OmitsLinksConnectedByAJoint) {
   const BodyModel m = test::import_text(
       R"(<robot name="r"><link name="a"><collision><geometry><sphere radius="1"/></geometry></collision></link>
 <link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>
@@ -210,15 +211,15 @@ TEST(Overlap, JointedLinksAreNotListed) {
   EXPECT_TRUE(m.overlaps.empty());
 }
 
-TEST(Overlap, LargeModelsAreSweptAndBounded) {
-  // 400 boxes in a row, each over its neighbor: 399 pairs of 79 800
+TEST(Overlap, BoundsTheWorkForLargeModels) {
+  // 400 boxes in a row, each overlapping its neighbor: 399 of 79 800 pairs
   std::vector<PlacedShape> shape{placed_at(box_of({0.2, 0.2, 0.2}), {0, 0, 0})};
-  std::vector<OverlapPart> row;
-  for (int i = 0; i < 400; ++i) row.push_back({shape, {{0.15 * i, 0, 0}, quat_identity()}});
-  const OverlapResult found = find_overlaps(row, [](std::size_t, std::size_t) { return true; });
+  std::vector<OverlapPart> parts;
+  for (int i = 0; i < 400; ++i) parts.push_back({shape, {{0.15 * i, 0, 0}, quat_identity()}});
+  const OverlapResult found = find_overlaps(parts, [](std::size_t, std::size_t) { return true; });
   EXPECT_EQ(found.found.size(), 399u);
   EXPECT_EQ(found.unchecked, 0u);
-  // many flat shapes that cross without touching cost more than the bound: that is counted, not waited for
+  // many flat shapes that cross without touching exceed the work limit: the remaining pairs are counted, not checked
   std::vector<PlacedShape> comb;
   for (int i = 0; i < 1000; ++i) {
     comb.push_back(placed_at(box_of({1, 0.0001, 1}), {0, 0.001 * i, 0}, quat_euler(0, 0, 0.0004)));

@@ -1,4 +1,4 @@
-// Robots that several tests of the importer read.
+// Robots used by several tests of the importer.
 #pragma once
 
 namespace limber::test {
@@ -20,7 +20,7 @@ inline constexpr const char* kArm = R"(<?xml version="1.0"?>
     <dynamics damping="0.3" friction="0.4"/></joint>
 </robot>)";
 
-// a plate of 1 kg with a second one of 3 kg fixed 0.4 m beside it, turned by a quarter about z
+// a plate of 1 kg and one of 3 kg fixed to it at a distance of 0.4 m, rotated by 90 degrees about z
 inline constexpr const char* kFixed = R"(<robot name="r"><link name="base"/>
 <link name="a"><inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.25"/></inertial>
   <collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>

@@ -1,4 +1,4 @@
-// Triangle meshes of known solids, and the bytes of mesh files that hold them.
+// Triangle meshes of known solids, and their encoding as mesh files.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ inline Solid box(const Vec3& size) {
 }
 
 /// A surface of revolution about z through (radius, z) points from bottom to top; radius 0 at both ends.
-inline Solid turned(const std::vector<std::pair<double, double>>& profile, unsigned around) {
+inline Solid revolved(const std::vector<std::pair<double, double>>& profile, unsigned around) {
   Solid s;
   const auto rings = static_cast<unsigned>(profile.size()) - 2;
   s.vertices.emplace_back(0, 0, profile.front().second);
@@ -83,11 +83,11 @@ inline Solid capsule(double radius, double height, unsigned around = 32) {
     profile.emplace_back(i == rings ? 0 : radius * std::cos(a), height / 2 + radius * std::sin(a));
   }
   profile.front().first = 0;
-  return turned(profile, around);
+  return revolved(profile, around);
 }
 
 inline Solid cylinder(double radius, double height, unsigned around = 32) {
-  return turned({{0, -height / 2}, {radius, -height / 2}, {radius, height / 2}, {0, height / 2}}, around);
+  return revolved({{0, -height / 2}, {radius, -height / 2}, {radius, height / 2}, {0, height / 2}}, around);
 }
 
 inline std::string binary_stl(const Solid& s, const std::string& header = "binary") {
@@ -131,7 +131,7 @@ inline std::string obj(const Solid& s) {
   return out;
 }
 
-/// A Collada file with this unit, up axis, and one node that scales and shifts.
+/// A Collada file with this unit and up axis, and one node with the transform elements in `node`.
 inline std::string dae(const Solid& s, double meter, const std::string& up, const std::string& node) {
   std::string points, faces;
   for (const Vec3& v : s.vertices) points += fmt::format("{} {} {} ", v.x, v.y, v.z);

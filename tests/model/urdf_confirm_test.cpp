@@ -1,4 +1,4 @@
-// urdfdom's second opinion: silent on what it reads as we do, loud on what it does not.
+// Cross-check with urdfdom: reports nothing for equal results, and an error for each difference.
 #include "model/urdf_confirm.h"
 
 #include <limits>
@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-/// Two links and a joint that have one of everything.
+/// Two links and a joint that use all kinds of elements.
 UrdfFile robot() {
   UrdfFile file;
   file.links.resize(2);
@@ -42,39 +42,39 @@ UrdfFile robot() {
 
 const std::vector<UrdfNode> kTree{{0, -1, -1}, {1, 0, 0}};
 
-std::vector<Problem> opinion(const UrdfFile& file) {
+std::vector<Problem> cross_check(const UrdfFile& file) {
   Problems problems;
-  confirm_with_urdfdom(file, kTree, problems);
-  return problems.take();
+  cross_check_with_urdfdom(file, kTree, problems);
+  return problems.release();
 }
 
-TEST(UrdfConfirm, AgreesWithWhatWasRead) {
+TEST(UrdfConfirm, AgreesWithTheReader) {
   UrdfFile file = robot();
   for (const JointType type : {JointType::revolute, JointType::prismatic, JointType::continuous, JointType::fixed,
                                JointType::planar, JointType::floating}) {
     file.joints[0].type = type;
     file.joints[0].limited = type == JointType::revolute || type == JointType::prismatic;
-    const std::vector<Problem> problems = opinion(file);
+    const std::vector<Problem> problems = cross_check(file);
     EXPECT_TRUE(problems.empty()) << joint_type_name(type) << ": " << problems[0].text;
   }
 }
 
-TEST(UrdfConfirm, SaysWhereUrdfdomReadsOtherwise) {
+TEST(UrdfConfirm, ReportsDifferences) {
   UrdfFile file = robot();
   file.links[1].inertial->mass = std::numeric_limits<double>::quiet_NaN();
-  const std::vector<Problem> problems = opinion(file);
+  const std::vector<Problem> problems = cross_check(file);
   ASSERT_FALSE(problems.empty());
   EXPECT_EQ(problems[0].severity, Severity::error);
   EXPECT_EQ(problems[0].line, 7);
   EXPECT_NE(problems[0].text.find("urdfdom reads link"), std::string::npos);
 }
 
-TEST(UrdfConfirm, SaysWhenUrdfdomReadsNothing) {
+TEST(UrdfConfirm, ReportsWhenUrdfdomFails) {
   UrdfFile file = robot();
   file.joints[0].origin.xyz.x = std::numeric_limits<double>::infinity();
-  const std::vector<Problem> problems = opinion(file);
+  const std::vector<Problem> problems = cross_check(file);
   ASSERT_EQ(problems.size(), 1u);
-  EXPECT_NE(problems[0].text.find("urdfdom does not read"), std::string::npos);
+  EXPECT_NE(problems[0].text.find("urdfdom rejects"), std::string::npos);
 }
 
 }  // namespace

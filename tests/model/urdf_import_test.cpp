@@ -1,4 +1,4 @@
-// What the importer makes of good files: order, frames, limits, merging, masses, mimics, start poses.
+// Import of valid files: order, frames, limits, merging, masses, mimic joints, start poses.
 #include "model/urdf_import.h"
 
 #include <fmt/format.h>
@@ -10,12 +10,12 @@
 namespace limber {
 namespace {
 
+using test::has_problem;
 using test::import_text;
 using test::kArm;
 using test::kFixed;
-using test::says;
 
-TEST(UrdfImport, LinksAndJointsComeDepthFirstFromTheRoot) {
+TEST(UrdfImport, OrdersLinksAndJointsDepthFirst) {
   const BodyModel m = import_text(kArm);
   ASSERT_EQ(m.links.size(), 4u);
   EXPECT_EQ(m.links[0].name, "base");
@@ -29,7 +29,7 @@ TEST(UrdfImport, LinksAndJointsComeDepthFirstFromTheRoot) {
   for (const JointModel& j : m.joints) EXPECT_LT(j.parent, j.child);
 }
 
-TEST(UrdfImport, JointsInFileOrderAtABranch) {
+TEST(UrdfImport, OrdersJointsOfABranchAsInTheFile) {
   const BodyModel m = import_text(R"(<robot name="r"><link name="a"/><link name="x"/><link name="y"/><link name="x2"/>
     <joint name="to_y" type="continuous"><parent link="a"/><child link="y"/><axis xyz="0 0 1"/></joint>
     <joint name="to_x" type="continuous"><parent link="a"/><child link="x"/><axis xyz="0 0 1"/></joint>
@@ -40,14 +40,14 @@ TEST(UrdfImport, JointsInFileOrderAtABranch) {
   EXPECT_EQ(m.links[3].name, "x2");
 }
 
-TEST(UrdfImport, AxesAreUnitAndFramesHaveThemAsZ) {
+TEST(UrdfImport, NormalizesAxesAndAlignsFrames) {
   const BodyModel m = import_text(kArm);
   test::expect_near(m.file_joints[0].axis, {0, 0, 1}, 1e-15);
   test::expect_near(m.file_joints[2].axis, Vec3(1, 1, 0) / std::sqrt(2.0), 1e-15);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vec3 z = m.joints[i].frame_in_child.rotation * Vec3(0, 0, 1);
     test::expect_near(z, m.file_joints[i].axis, 1e-12, m.joints[i].name);
-    // at home both halves of a joint's frame are one place
+    // at the home pose, both frames of a joint coincide
     const Pose a = m.links[static_cast<std::size_t>(m.joints[i].parent)].home * m.joints[i].frame_in_parent;
     const Pose b = m.links[static_cast<std::size_t>(m.joints[i].child)].home * m.joints[i].frame_in_child;
     test::expect_near(a.position, b.position, 1e-12);
@@ -55,7 +55,7 @@ TEST(UrdfImport, AxesAreUnitAndFramesHaveThemAsZ) {
   }
 }
 
-TEST(UrdfImport, PlusZKeepsTheFrameAndMinusZTurnsAboutX) {
+TEST(UrdfImport, PlusZKeepsTheFrameAndMinusZRotatesAboutX) {
   const char* text = R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
     <joint name="up" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
     <joint name="down" type="continuous"><parent link="b"/><child link="c"/><axis xyz="0 0 -1"/></joint></robot>)";
@@ -64,7 +64,7 @@ TEST(UrdfImport, PlusZKeepsTheFrameAndMinusZTurnsAboutX) {
   EXPECT_EQ(m.joints[1].frame_in_child.rotation, quat_xyzw(1, 0, 0, 0));
 }
 
-TEST(UrdfImport, LimitsByPresence) {
+TEST(UrdfImport, ReadsLimitsByPresence) {
   const auto joint = [](const char* type, const char* limit) {
     return import_text(std::string(R"(<robot name="r"><link name="a"/><link name="b"/><joint name="j" type=")") + type +
                        R"("><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>)" + limit + "</joint></robot>")
@@ -97,23 +97,23 @@ TEST(UrdfImport, LimitsByPresence) {
   }
 }
 
-TEST(UrdfImport, EffortZeroOrAbsentIsTenThousandAndSaid) {
+TEST(UrdfImport, DefaultsMissingEffortAndReportsIt) {
   const BodyModel m = import_text(R"(<robot name="r"><link name="a"/><link name="b"/>
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
 <limit effort="0" velocity="2" lower="-1" upper="1"/></joint></robot>)");
   EXPECT_DOUBLE_EQ(m.joints[0].effort, 10000);
   EXPECT_DOUBLE_EQ(m.file_joints[0].effort, 0);
   EXPECT_DOUBLE_EQ(m.joints[0].velocity, 2);
-  EXPECT_TRUE(says(m, Severity::note, "effort", 2)) << test::all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::note, "effort", 2)) << test::all_problems(m);
 }
 
-TEST(UrdfImport, DynamicsAreKept) {
+TEST(UrdfImport, ReadsDynamics) {
   const BodyModel m = import_text(kArm);
   EXPECT_DOUBLE_EQ(m.joints[2].damping, 0.3);
   EXPECT_DOUBLE_EQ(m.joints[2].friction, 0.4);
 }
 
-TEST(UrdfImport, AllTypesAreRead) {
+TEST(UrdfImport, ReadsAllJointTypes) {
   std::string text = R"(<robot name="r"><link name="l0"/>)";
   const char* types[] = {"revolute", "continuous", "prismatic", "planar", "floating"};
   const JointType expected[] = {JointType::revolute, JointType::continuous, JointType::prismatic, JointType::planar,
@@ -128,7 +128,7 @@ TEST(UrdfImport, AllTypesAreRead) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(m.joints[i].type, expected[i]);
 }
 
-TEST(UrdfImport, MaterialsAreFoundByName) {
+TEST(UrdfImport, ResolvesMaterialsByName) {
   const BodyModel m =
       import_text(R"(<robot name="r"><material name="red"><color rgba="1 0 0 0.5"/></material><link name="a">
     <visual><geometry><box size="1 1 1"/></geometry><material name="red"/></visual>
@@ -143,7 +143,7 @@ TEST(UrdfImport, MaterialsAreFoundByName) {
   EXPECT_FALSE(v[3].color);
 }
 
-TEST(UrdfImport, GeometriesIncludingCapsuleAndPlane) {
+TEST(UrdfImport, ReadsAllGeometriesIncludingCapsuleAndPlane) {
   const BodyModel m = import_text(R"(<robot name="r"><link name="a">
     <collision><geometry><capsule radius="0.1" length="0.4"/></geometry></collision>
     <collision><geometry><cylinder radius="0.2" length="0.6"/></geometry></collision>
@@ -159,15 +159,15 @@ TEST(UrdfImport, GeometriesIncludingCapsuleAndPlane) {
   EXPECT_EQ(c[3].origin.position, Vec3(1, 2, 3));
 }
 
-TEST(UrdfImport, NothingOfAnUnknownKindStopsTheRest) {
+TEST(UrdfImport, UnknownElementsDoNotStopTheImport) {
   const BodyModel m = import_text(R"(<robot name="r"><link name="a">
 <collision><geometry><cdf/></geometry></collision>
 <collision><geometry><sphere radius="1"/></geometry></collision></link>
 <transmission name="t"/><gazebo/><gazebo/></robot>)");
   EXPECT_EQ(m.links[0].collisions.size(), 1u);
-  EXPECT_TRUE(says(m, Severity::error, "<cdf>", 2));
-  EXPECT_TRUE(says(m, Severity::note, "2 <gazebo> elements", 4)) << test::all_problems(m);
-  EXPECT_TRUE(says(m, Severity::note, "1 <transmission> element", 4));
+  EXPECT_TRUE(has_problem(m, Severity::error, "<cdf>", 2));
+  EXPECT_TRUE(has_problem(m, Severity::note, "2 <gazebo> elements", 4)) << test::all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::note, "1 <transmission> element", 4));
 }
 
 TEST(UrdfImport, SameTextGivesTheSameModel) {

@@ -1,4 +1,4 @@
-// Home and start poses, poses that were asked for, mimics.
+// Home and start poses, poses in the import options, mimic joints.
 #include "model/urdf_import.h"
 
 #include <string>
@@ -12,16 +12,16 @@
 namespace limber {
 namespace {
 
+using test::has_problem;
 using test::import_text;
 using test::kArm;
-using test::says;
 using test::try_import;
 
 constexpr double kHalf = kPi / 2;
 
 TEST(UrdfPose, HomePoseIsForwardKinematicsAtZero) {
   const BodyModel m = import_text(kArm);
-  // the elbow's origin turns by 90 degrees about z, so the slide's 1 m along x lies along world y
+  // the elbow's origin is rotated by 90 degrees about z, so the slide's offset of 1 m along x is along world y
   test::expect_near(m.links[1].home.position, {0, 0, 1}, 1e-12);
   test::expect_near(m.links[2].home.position, {0, 0, 2}, 1e-12);
   test::expect_near(m.links[3].home.position, {0, 1, 2}, 1e-12);
@@ -30,30 +30,30 @@ TEST(UrdfPose, HomePoseIsForwardKinematicsAtZero) {
 
 TEST(UrdfPose, StartsAtTheNearestAllowedAngle) {
   const BodyModel m = import_text(kArm);
-  // elbow 0 is below 0.5: it starts at 0.5 about -y of its frame, whose x is world y
+  // 0 is below the elbow's lower limit 0.5: it starts at 0.5 about -y of its frame; the frame's x is world y
   EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
   test::expect_near(m.links[3].start.position, {0, std::cos(0.5), 2 + std::sin(0.5)}, 1e-12);
-  EXPECT_TRUE(says(m, Severity::note, "starts at 0.5", 7)) << test::all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::note, "starts at 0.5", 7)) << test::all_problems(m);
 }
 
-TEST(UrdfPose, AskedPoseIsClampedAndPlaced) {
+TEST(UrdfPose, ClampsAndAppliesTheRequestedPose) {
   ImportOptions options;
   options.pose = {{"shoulder", kHalf}, {"slide", 9.0}};
   const BodyModel m = import_text(kArm, options);
   EXPECT_DOUBLE_EQ(m.joints[0].start, kHalf);
   EXPECT_DOUBLE_EQ(m.joints[2].start, 0.2);
-  // shoulder turns y to -x; the slide moves 0.2 m along (1,1,0)/sqrt(2) of the lower link
+  // the shoulder rotates y to -x; the slide moves 0.2 m along (1,1,0)/sqrt(2) of the lower link
   const double s = 0.2 / std::sqrt(2.0);
   const double along = 1 + s;
   test::expect_near(m.links[3].start.position, {-along * std::cos(0.5), -s, 2 + along * std::sin(0.5)}, 1e-12);
 }
 
-TEST(UrdfPose, PoseOfAnUnknownJointIsRefusedWithNearName) {
+TEST(UrdfPose, RejectsUnknownJointsWithASuggestion) {
   ImportOptions options;
   options.pose = {{"elbov", 1.0}};
-  const auto refused = try_import(kArm, options);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().find("elbow"), std::string::npos) << refused.error();
+  const auto result = try_import(kArm, options);
+  ASSERT_FALSE(result);
+  EXPECT_NE(result.error().find("elbow"), std::string::npos) << result.error();
 }
 
 std::string finger(const char* mimic1, const char* mimic2) {
@@ -65,7 +65,7 @@ std::string finger(const char* mimic1, const char* mimic2) {
                      mimic1, mimic2);
 }
 
-TEST(UrdfPose, MimicChainsAreResolvedToTheirLeader) {
+TEST(UrdfPose, ResolvesMimicChains) {
   const BodyModel m = import_text(finger(R"(<mimic joint="i" multiplier="2" offset="0.1"/>)",
                                          R"(<mimic joint="j" multiplier="-0.5" offset="0.3"/>)"));
   EXPECT_EQ(m.joints[1].mimic, 0);
@@ -76,12 +76,12 @@ TEST(UrdfPose, MimicChainsAreResolvedToTheirLeader) {
   // i starts at its lower limit 0.2
   EXPECT_DOUBLE_EQ(m.joints[1].start, 0.5);
   EXPECT_DOUBLE_EQ(m.joints[2].start, 0.05);
-  EXPECT_TRUE(
-      says(m, Severity::note, "joint 'k': follows 'j', which follows another joint; it follows 'i' * -1 + 0.25", 4))
+  EXPECT_TRUE(has_problem(m, Severity::note,
+                          "joint 'k': follows 'j', which follows another joint; it follows 'i' * -1 + 0.25", 4))
       << test::all_problems(m);
 }
 
-TEST(UrdfPose, AFollowerWhoseLimitsStopItsLeaderIsReported) {
+TEST(UrdfPose, ReportsFollowersThatReachTheirLimits) {
   struct Case {
     const char *mimic, *text;
   };
@@ -101,11 +101,11 @@ TEST(UrdfPose, AFollowerWhoseLimitsStopItsLeaderIsReported) {
     EXPECT_EQ(m.joints[1].mimic, 0) << c.mimic;
     const bool reported = test::all_problems(m).find("are reached when") != std::string::npos;
     EXPECT_EQ(reported, c.text != nullptr) << c.mimic << test::all_problems(m);
-    EXPECT_TRUE(c.text == nullptr || says(m, Severity::warning, c.text, 3)) << test::all_problems(m);
+    EXPECT_TRUE(c.text == nullptr || has_problem(m, Severity::warning, c.text, 3)) << test::all_problems(m);
   }
 }
 
-TEST(UrdfPose, AMimicOfAJointThatCannotFollowIsReported) {
+TEST(UrdfPose, ReportsMimicsOfUnsupportedJointTypes) {
   for (const char* type : {"fixed", "planar", "floating"}) {
     const BodyModel m = import_text(fmt::format(
         R"(<robot name="r"><link name="a"/><link name="b"/><link name="c"/>
@@ -113,25 +113,25 @@ TEST(UrdfPose, AMimicOfAJointThatCannotFollowIsReported) {
 <joint name="j" type="{}"><parent link="b"/><child link="c"/><axis xyz="0 0 1"/><mimic joint="i"/></joint></robot>)",
         type));
     for (const JointModel& joint : m.joints) EXPECT_EQ(joint.mimic, -1) << type;
-    EXPECT_TRUE(says(m, Severity::error, fmt::format("joint 'j': is {} and can't follow 'i'", type), 3))
+    EXPECT_TRUE(has_problem(m, Severity::error, fmt::format("joint 'j': is {} and can't follow 'i'", type), 3))
         << test::all_problems(m);
   }
 }
 
-TEST(UrdfPose, MimicsThatCannotBeAreDropped) {
+TEST(UrdfPose, DropsInvalidMimics) {
   struct Case {
     const char *first, *second, *text;
   };
   const Case cases[] = {{R"(<mimic joint="nope"/>)", "", "'nope'"},
                         {R"(<mimic joint="j"/>)", "", "itself"},
-                        {R"(<mimic joint="k"/>)", R"(<mimic joint="j"/>)", "circle"},
+                        {R"(<mimic joint="k"/>)", R"(<mimic joint="j"/>)", "cycle"},
                         {R"(<mimic/>)", "", "names no joint"}};
   for (const Case& c : cases) {
     const BodyModel m = import_text(finger(c.first, c.second));
     ASSERT_EQ(m.joints.size(), 3u);
     EXPECT_EQ(m.joints[1].mimic, -1) << c.text;
     EXPECT_EQ(m.joints[2].mimic, -1) << c.text;
-    EXPECT_TRUE(says(m, Severity::error, c.text, 3)) << test::all_problems(m);
+    EXPECT_TRUE(has_problem(m, Severity::error, c.text, 3)) << test::all_problems(m);
   }
 }
 

@@ -1,4 +1,4 @@
-// glTF: counts by its JSON, poses by assimp.
+// glTF writer: counts checked in the JSON, poses with assimp.
 #include "motion/gltf.h"
 
 #include <cstring>
@@ -15,7 +15,7 @@ namespace {
 using GltfTest = MotionTest;
 using Json = nlohmann::json;
 
-// the text of a .glb, whose lengths are right
+// the JSON of a .glb file; checks the chunk lengths
 Json json_of(const std::string& glb) {
   const auto word = [&](std::size_t at) {
     std::uint32_t value = 0;
@@ -49,23 +49,23 @@ std::size_t keys_of(const Json& json, const std::string& node, const std::string
   return 0;
 }
 
-TEST_F(GltfTest, HasANodeALinkAndAKeyAFrame) {
+TEST_F(GltfTest, WritesANodePerLinkAndAKeyPerFrame) {
   const auto writer = opened(write_gltf(path("a.glb")));
   const auto seen = triangle({1, 0, 0});
-  for (const char* name : {"one", "two"}) ASSERT_EQ(said(writer->add_body(three_links(name, seen))), "");
+  for (const char* name : {"one", "two"}) ASSERT_EQ(error_text(writer->add_body(three_links(name, seen))), "");
   std::vector<std::vector<MotionSample>> truth;
   for (int i = 0; i <= 50; i++) {
     truth.push_back({posed(0.2 * i, 0.3 * i), posed(-0.1 * i, std::cos(i), {0.1 * i, 0, 0}, -i)});
-    ASSERT_EQ(said(writer->add_frame(2 + i / 25.0, truth.back())), "");
+    ASSERT_EQ(error_text(writer->add_frame(2 + i / 25.0, truth.back())), "");
   }
-  ASSERT_EQ(said(writer->finish()), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   EXPECT_EQ(files(), std::vector<std::string>{"a.glb"});
   const Json json = json_of(text("a.glb"));
-  EXPECT_EQ(json["nodes"].size(), 1u + 2 + 6) << "the scene's, two bodies, three links each";
+  EXPECT_EQ(json["nodes"].size(), 1u + 2 + 6) << "the scene's root, two bodies, three links each";
   EXPECT_EQ(json["meshes"].size(), 1u) << "shared by four links";
   EXPECT_EQ(json["materials"].size(), 1u);
   EXPECT_EQ(json["animations"][0]["channels"].size(), 10u)
-      << "place and turn of five links: the base of `one` stands still";
+      << "position and rotation of five links: the base of `one` does not move";
   EXPECT_EQ(keys_of(json, "one.base", "translation"), 0u);
   for (const char* node : {"one.arm", "one.tip", "two.base", "two.arm", "two.tip"}) {
     EXPECT_EQ(keys_of(json, node, "translation"), 51u) << node;
@@ -78,22 +78,22 @@ TEST_F(GltfTest, HasANodeALinkAndAKeyAFrame) {
   for (const unsigned frame : {0u, 23u, 50u}) {
     for (std::size_t b = 0; b < 2; b++) {
       for (const auto& [link, name] : {std::pair(0u, "base"), {1u, "arm"}, {2u, "tip"}}) {
-        const Pose told = loaded.z_up(std::string(b == 0 ? "one." : "two.") + name, frame);
-        const Pose& is = truth[frame][b].links[link];
-        EXPECT_LT(glm::length(told.position - is.position), 1e-5) << name << frame;
-        EXPECT_LT(turn_between(told.rotation, is.rotation), 1e-3) << name << frame;
+        const Pose actual = loaded.z_up(std::string(b == 0 ? "one." : "two.") + name, frame);
+        const Pose& expected = truth[frame][b].links[link];
+        EXPECT_LT(glm::length(actual.position - expected.position), 1e-5) << name << frame;
+        EXPECT_LT(angle_between(actual.rotation, expected.rotation), 1e-3) << name << frame;
       }
     }
   }
 }
 
-TEST_F(GltfTest, TurnsTakeTheShortWay) {
+TEST_F(GltfTest, RotationsTakeTheShortWay) {
   const auto writer = opened(write_gltf(path("a.glb")));
-  ASSERT_EQ(said(writer->add_body(three_links("a"))), "");
-  // half a turn further the same rotation is told by the other quaternion
+  ASSERT_EQ(error_text(writer->add_body(three_links("a"))), "");
+  // after a full turn, the same rotation has the opposite quaternion
   for (int i = 0; i <= 100; i++)
-    ASSERT_EQ(said(writer->add_frame(i, std::vector{posed(std::remainder(0.5 * i, 2 * kPi), 0)})), "");
-  ASSERT_EQ(said(writer->finish()), "");
+    ASSERT_EQ(error_text(writer->add_frame(i, std::vector{posed(std::remainder(0.5 * i, 2 * kPi), 0)})), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   const Loaded loaded(path("a.glb"));
   const aiNodeAnim* const arm = loaded.channel("a.arm");
   ASSERT_NE(arm, nullptr);
@@ -105,18 +105,18 @@ TEST_F(GltfTest, TurnsTakeTheShortWay) {
   }
 }
 
-TEST_F(GltfTest, WhoComesAndGoesIsOfNoSizeMeanwhile) {
+TEST_F(GltfTest, AbsentBodiesHaveScaleZero) {
   const auto writer = opened(write_gltf(path("a.glb")));
-  ASSERT_EQ(said(writer->add_body(three_links("goes"))), "");
-  ASSERT_EQ(said(writer->add_frame(0, std::vector{posed(0, 0)})), "");
-  ASSERT_EQ(said(writer->add_frame(1, std::vector{posed(1, 0)})), "");
-  ASSERT_EQ(said(writer->add_body(three_links("comes"))), "");
-  ASSERT_EQ(said(writer->add_frame(2, std::vector{gone(), posed(2, 0)})), "");
-  ASSERT_EQ(said(writer->add_frame(3, std::vector{posed(3, 0), posed(3, 0)})), "");
-  ASSERT_EQ(said(writer->add_frame(4, std::vector{gone(), posed(4, 0)})), "");
-  ASSERT_EQ(said(writer->finish()), "");
+  ASSERT_EQ(error_text(writer->add_body(three_links("goes"))), "");
+  ASSERT_EQ(error_text(writer->add_frame(0, std::vector{posed(0, 0)})), "");
+  ASSERT_EQ(error_text(writer->add_frame(1, std::vector{posed(1, 0)})), "");
+  ASSERT_EQ(error_text(writer->add_body(three_links("comes"))), "");
+  ASSERT_EQ(error_text(writer->add_frame(2, std::vector{absent(), posed(2, 0)})), "");
+  ASSERT_EQ(error_text(writer->add_frame(3, std::vector{posed(3, 0), posed(3, 0)})), "");
+  ASSERT_EQ(error_text(writer->add_frame(4, std::vector{absent(), posed(4, 0)})), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   const Json json = json_of(text("a.glb"));
-  EXPECT_EQ(keys_of(json, "goes.arm", "rotation"), 4u) << "to the last frame in which it is there";
+  EXPECT_EQ(keys_of(json, "goes.arm", "rotation"), 4u) << "up to the last frame in which it is present";
   EXPECT_EQ(keys_of(json, "comes.arm", "rotation"), 3u);
   EXPECT_EQ(json["animations"][0]["samplers"][0]["interpolation"], "STEP");
   const Loaded loaded(path("a.glb"));
@@ -134,14 +134,14 @@ TEST_F(GltfTest, WhoComesAndGoesIsOfNoSizeMeanwhile) {
   EXPECT_NEAR(loaded.channel("comes.arm")->mRotationKeys[0].mTime / loaded.animation().mTicksPerSecond, 2, 1e-6);
 }
 
-TEST_F(GltfTest, ColoursAndMeshesAreSharedWhereTheyAreTheSame) {
+TEST_F(GltfTest, SharesEqualMaterialsAndMeshes) {
   const auto writer = opened(write_gltf(path("a.gltf")));
   MotionBody body = three_links("a", triangle({0.5, 0.25, 1}, 0.5));
   body.links[1].surfaces = triangle({0.5, 0.25, 1}, 0.5);
   body.links[2].surfaces = triangle({0, 1, 0});
-  ASSERT_EQ(said(writer->add_body(body)), "");
-  ASSERT_EQ(said(writer->add_frame(0, std::vector{posed(0, 0)})), "");
-  ASSERT_EQ(said(writer->finish()), "");
+  ASSERT_EQ(error_text(writer->add_body(body)), "");
+  ASSERT_EQ(error_text(writer->add_frame(0, std::vector{posed(0, 0)})), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   EXPECT_EQ(files(), (std::vector<std::string>{"a.bin", "a.gltf"}));
   const Json json = Json::parse(text("a.gltf"));
   EXPECT_EQ(json["buffers"][0]["uri"], "a.bin");
@@ -150,21 +150,21 @@ TEST_F(GltfTest, ColoursAndMeshesAreSharedWhereTheyAreTheSame) {
   ASSERT_EQ(json["materials"].size(), 2u);
   EXPECT_EQ(json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"], Json({0.5, 0.25, 1.0, 0.5}));
   EXPECT_EQ(json["materials"][0]["alphaMode"], "BLEND");
-  EXPECT_FALSE(json.contains("animations")) << "one frame moves nothing";
+  EXPECT_FALSE(json.contains("animations")) << "a single frame has no motion";
   const Loaded loaded(path("a.gltf"));
   EXPECT_EQ(loaded.scene().mNumMeshes, 3u);
   EXPECT_NEAR(loaded.scene().mMeshes[0]->mVertices[2].z, 0.3, 1e-6);
 }
 
-TEST_F(GltfTest, NamesAreEachThereOnce) {
+TEST_F(GltfTest, MakesNamesUnique) {
   const auto writer = opened(write_gltf(path("my show & 雪.gltf")));
   for (const char* name : {"limber", "a b", "a b", "größe \"x\""})
-    ASSERT_EQ(said(writer->add_body(three_links(name))), "");
+    ASSERT_EQ(error_text(writer->add_body(three_links(name))), "");
   const std::vector<MotionSample> four(4, posed(0, 0));
   const std::vector<MotionSample> turned(4, posed(1, 0));
-  ASSERT_EQ(said(writer->add_frame(0, four)), "");
-  ASSERT_EQ(said(writer->add_frame(1, turned)), "");
-  ASSERT_EQ(said(writer->finish()), "");
+  ASSERT_EQ(error_text(writer->add_frame(0, four)), "");
+  ASSERT_EQ(error_text(writer->add_frame(1, turned)), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   const Json json = Json::parse(text("my show & 雪.gltf"));
   EXPECT_EQ(json["buffers"][0]["uri"], "my%20show%20%26%20%E9%9B%AA.bin");
   std::set<std::string> names;
@@ -174,34 +174,34 @@ TEST_F(GltfTest, NamesAreEachThereOnce) {
     EXPECT_TRUE(names.contains(name)) << name;
 }
 
-TEST_F(GltfTest, WithoutBodiesThereIsAScene) {
+TEST_F(GltfTest, WritesASceneWithoutBodies) {
   const auto writer = opened(write_gltf(path("a.glb")));
-  ASSERT_EQ(said(writer->add_frame(0, {})), "");
-  ASSERT_EQ(said(writer->finish()), "");
+  ASSERT_EQ(error_text(writer->add_frame(0, {})), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
   const Json json = json_of(text("a.glb"));
   EXPECT_EQ(json["nodes"].size(), 1u);
   EXPECT_FALSE(json.contains("animations"));
 }
 
-TEST_F(GltfTest, TooManyKeysAreSaid) {
+TEST_F(GltfTest, ReportsTooManyKeys) {
   auto writer = write_gltf(path("a.glb"), 28 * 3 * 2);
   ASSERT_TRUE(writer) << writer.error();
-  ASSERT_EQ(said((*writer)->add_body(three_links("a"))), "");
-  ASSERT_EQ(said((*writer)->add_frame(0, std::vector{posed(0, 0)})), "");
-  ASSERT_EQ(said((*writer)->add_frame(1, std::vector{posed(0, 0)})), "");
-  EXPECT_EQ(said((*writer)->add_frame(2, std::vector{posed(0, 0)})),
+  ASSERT_EQ(error_text((*writer)->add_body(three_links("a"))), "");
+  ASSERT_EQ(error_text((*writer)->add_frame(0, std::vector{posed(0, 0)})), "");
+  ASSERT_EQ(error_text((*writer)->add_frame(1, std::vector{posed(0, 0)})), "");
+  EXPECT_EQ(error_text((*writer)->add_frame(2, std::vector{posed(0, 0)})),
             path("a.glb") +
-                ": the keys of 3 frames are 0 MB, which few programs read: choose bodies by --body, fewer "
-                "frames by --rate, or a stretch by --from and --to");
+                ": the keys of 3 frames take 0 MB, more than most programs read. Choose bodies with --body, fewer "
+                "frames with --rate, or a range with --from and --to");
 }
 
-TEST_F(GltfTest, AFullDiskIsSaidAndLeavesNothing) {
+TEST_F(GltfTest, ReportsAFullDiskAndLeavesNoFile) {
   for (const char* name : {"a.glb", "a.gltf"}) {
     const auto writer = opened(write_gltf(path(name)));
-    ASSERT_EQ(said(writer->add_body(three_links("a"))), "");
-    for (int i = 0; i < 2000; i++) ASSERT_EQ(said(writer->add_frame(i, std::vector{posed(0.01 * i, 0)})), "");
+    ASSERT_EQ(error_text(writer->add_body(three_links("a"))), "");
+    for (int i = 0; i < 2000; i++) ASSERT_EQ(error_text(writer->add_frame(i, std::vector{posed(0.01 * i, 0)})), "");
     const FullDisk full(50000);
-    EXPECT_NE(said(writer->finish()).find("can't be written: File too large"), std::string::npos);
+    EXPECT_NE(error_text(writer->finish()).find("can't be written: File too large"), std::string::npos);
   }
   EXPECT_EQ(files(), std::vector<std::string>{});
 }

@@ -1,5 +1,4 @@
-// What another program makes of an exported file: loaded by assimp, posed at a key, by code that knows nothing of
-// Limber.
+// Loaded: an exported file as loaded by assimp and posed at a keyframe, independent of Limber's code.
 #pragma once
 
 #include <cmath>
@@ -32,7 +31,7 @@ class Loaded {
     return nullptr;
   }
 
-  /// How many nodes there are below that one, itself included.
+  /// Number of nodes in the subtree of a node, including itself.
   static unsigned count(const aiNode* node) {
     unsigned sum = 1;
     for (unsigned i = 0; i < node->mNumChildren; i++) sum += count(node->mChildren[i]);
@@ -50,24 +49,25 @@ class Loaded {
     for (; node != nullptr; node = node->mParent) world = local(node, key) * world;
     return world;
   }
-  /// The same where Z is up again.
+  /// World pose of a node at a key, converted to Z up.
   Pose z_up(const std::string& name, unsigned key) const {
-    const Quat turn = quat_axis({1, 0, 0}, kPi / 2);
-    return Pose{{0, 0, 0}, turn} * pose(name, key);
+    const Quat rotation = quat_axis({1, 0, 0}, kPi / 2);
+    return Pose{{0, 0, 0}, rotation} * pose(name, key);
   }
 
  private:
   Pose local(const aiNode* node, unsigned key) const {
     aiVector3D size;
-    aiVector3D place;
-    aiQuaternion turn;
-    node->mTransformation.Decompose(size, turn, place);
+    aiVector3D position;
+    aiQuaternion rotation;
+    node->mTransformation.Decompose(size, rotation, position);
     if (const aiNodeAnim* keys = channel(node->mName.C_Str())) {
       const auto at = [key](unsigned count) { return std::min(key, count - 1); };
-      if (keys->mNumPositionKeys > 0) place = keys->mPositionKeys[at(keys->mNumPositionKeys)].mValue;
-      if (keys->mNumRotationKeys > 0) turn = keys->mRotationKeys[at(keys->mNumRotationKeys)].mValue;
+      if (keys->mNumPositionKeys > 0) position = keys->mPositionKeys[at(keys->mNumPositionKeys)].mValue;
+      if (keys->mNumRotationKeys > 0) rotation = keys->mRotationKeys[at(keys->mNumRotationKeys)].mValue;
     }
-    return {{place.x, place.y, place.z}, glm::normalize(quat_xyzw(turn.x, turn.y, turn.z, turn.w))};
+    return {{position.x, position.y, position.z},
+            glm::normalize(quat_xyzw(rotation.x, rotation.y, rotation.z, rotation.w))};
   }
 
   Assimp::Importer importer_;
@@ -75,7 +75,7 @@ class Loaded {
 };
 
 /// Angle between two rotations, rad.
-inline double turn_between(const Quat& a, const Quat& b) {
+inline double angle_between(const Quat& a, const Quat& b) {
   return 2 * std::acos(std::min(1.0, std::abs(glm::dot(glm::normalize(a), glm::normalize(b)))));
 }
 

@@ -1,4 +1,4 @@
-// A body of three links that moves by formulas, a folder for what is written of it, and a disk that is full.
+// Test fixtures: a body of three links that moves by formulas, a folder for exported files, and a simulated full disk.
 #pragma once
 
 #include <sys/resource.h>
@@ -58,7 +58,7 @@ inline std::shared_ptr<const Surfaces> triangle(const Vec3& color, double alpha 
   return std::make_shared<const Surfaces>(Surfaces{s});
 }
 
-/// A base; an arm half a metre above it, lying on its side; a tip 0.3 m along the arm's own x.
+/// A base, an arm 0.5 m above it rotated by 90 degrees about x, and a tip 0.3 m along the arm's x axis.
 inline MotionBody three_links(const std::string& name, const std::shared_ptr<const Surfaces>& seen = nullptr) {
   const Pose arm{{0, 0, 0.5}, quat_axis({1, 0, 0}, kPi / 2)};
   return {name,
@@ -66,7 +66,7 @@ inline MotionBody three_links(const std::string& name, const std::shared_ptr<con
           {{"shoulder", {"angle"}}, {"wrist", {"angle"}}}};
 }
 
-/// That body with its joints turned (rad), the base at a place.
+/// That body with these joint angles (rad), the base at `at`.
 inline MotionSample posed(double shoulder, double wrist, const Vec3& at = {1, 2, 3}, double heading = 0.4) {
   const MotionBody body = three_links("");
   const Pose base{at, quat_axis({0, 0, 1}, heading)};
@@ -75,26 +75,26 @@ inline MotionSample posed(double shoulder, double wrist, const Vec3& at = {1, 2,
   return {true, {base, arm, tip}, {shoulder, wrist}};
 }
 
-inline MotionSample gone() { return {}; }
+inline MotionSample absent() { return {}; }
 
-/// While one lives, no file may grow past so many bytes, as on a full disk.
+/// Limits the size of files during its lifetime, to simulate a full disk.
 class FullDisk {
  public:
-  explicit FullDisk(rlim_t bytes) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit little{bytes, old_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &little);
+  explicit FullDisk(rlim_t bytes) : previous_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &previous_limit_);
+    const rlimit lowered{bytes, previous_limit_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &lowered);
   }
   ~FullDisk() {
-    setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, before_);
+    setrlimit(RLIMIT_FSIZE, &previous_limit_);
+    std::signal(SIGXFSZ, previous_handler_);
   }
   FullDisk(const FullDisk&) = delete;
   FullDisk& operator=(const FullDisk&) = delete;
 
  private:
-  void (*before_)(int);
-  rlimit old_{};
+  void (*previous_handler_)(int);
+  rlimit previous_limit_{};
 };
 
 inline std::unique_ptr<MotionWriter> opened(Result<std::unique_ptr<MotionWriter>> writer) {
@@ -102,6 +102,6 @@ inline std::unique_ptr<MotionWriter> opened(Result<std::unique_ptr<MotionWriter>
   return std::move(*writer);
 }
 
-inline std::string said(const Result<void>& result) { return result ? "" : result.error(); }
+inline std::string error_text(const Result<void>& result) { return result ? "" : result.error(); }
 
 }  // namespace limber::motion_test

@@ -1,6 +1,6 @@
 """Finds the functions of a C++ source file, and a sequence of tokens in them.
 
-This is no compiler: it reads clang-formatted code as the repository has it, without running the preprocessor.
+It is not a C++ parser: it expects code formatted by clang-format, and does not run the preprocessor.
 """
 import re
 from typing import NamedTuple
@@ -144,7 +144,7 @@ def functions_of(tokens):
                 closing = matching(tokens, i)
                 name = _declarator_name(head)
                 if name is not None and _is_member_initializer(head):
-                    i = closing  # the declaration goes on
+                    i = closing  # the declaration continues
                 elif name is not None:
                     parts = [scope for scope in scopes if scope] + [name]
                     found.append(Function("::".join(parts).removeprefix("limber::"), begin, i, closing))

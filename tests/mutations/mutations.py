@@ -3,16 +3,16 @@
 An entry names a function and a sequence of tokens in its body (white space and comments don't matter), not a line,
 so it survives moves, reformatting and changes elsewhere in the function:
 
-    [osc_error_limit] eleven errors a second
-    in ErrorLimit::allow
-    - window->count >= kMost
-    + window->count > kMost
+    [osc_error_limit] eleven errors per second are sent
+    in ErrorRateLimit::allow
+    - if (window->count >= kMaxPerSecond) return false;
+    + if (window->count > kMaxPerSecond) return false;
     tests test_osc Sender.*
 
-"in" names a function by its qualified name, without the namespace limber, or a file that is no C++ (such a mutation is
-tried in a build of its own). "-" and "+" may have several lines; without "+" the tokens are deleted. "tests" names a
-test program, or another check as .ci/faults.sh has it ("tsan:test_base"), and a GoogleTest filter; the first one to
-fail proves the mutation noticed.
+"in" names a function by its qualified name, without the namespace limber, or a file that is not C++ (such a mutation is
+tried in a separate build). "-" and "+" may have several lines; without "+" the tokens are deleted. "tests" names a
+test program, or another check of .ci/faults.sh ("tsan:test_base"), and a GoogleTest filter. A mutation counts as noticed
+when the first of its tests fails.
 """
 import dataclasses
 import pathlib
@@ -22,7 +22,7 @@ import cpp_source
 
 
 class MutationError(Exception):
-    """What is wrong with an entry, with its place."""
+    """An invalid entry: file, line and reason."""
 
 
 @dataclasses.dataclass

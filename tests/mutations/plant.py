@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Copies the last commit into a folder, with mutations planted in its sources.
 
-Files that are equal already keep their time, so that builds of the folder are incremental.
+Unchanged files keep their modification times, so that builds of the folder are incremental.
 """
 import argparse
 import io
@@ -18,14 +18,14 @@ SWITCH_HEADER = "src/base/mutation_switch.h"
 
 
 def committed_files():
-    """{path: (bytes, mode)} of the last commit."""
+    """Returns {path: (bytes, mode)} of the last commit."""
     archive = subprocess.run(["git", "archive", "HEAD"], check=True, capture_output=True).stdout
     with tarfile.open(fileobj=io.BytesIO(archive)) as tar:
         return {entry.name: (tar.extractfile(entry).read(), entry.mode) for entry in tar if entry.isfile()}
 
 
 def synchronize(folder, files):
-    """Makes the folder, but for build/, hold exactly these files."""
+    """Makes the folder, except build/ and shared/, contain exactly these files."""
     for path in folder.rglob("*"):
         relative = path.relative_to(folder)
         if relative.parts[0] not in ("build", "shared") and path.is_file() and str(relative) not in files:
@@ -39,7 +39,7 @@ def synchronize(folder, files):
 
 
 def mutate_text(text, mutation):
-    """A file that is no C++ with its mutation; white space within the searched text doesn't matter."""
+    """Returns the text of a file that is not C++ with its mutation; white space within the searched text doesn't matter."""
     pattern = r"\s+".join(re.escape(word) for word in mutation.replace.split())
     changed, count = re.subn(pattern, lambda match: mutation.by.rstrip("\n"), text)
     if count != 1:
@@ -49,10 +49,10 @@ def mutate_text(text, mutation):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--folder", type=pathlib.Path, help="left out: only check that each mutation finds its place")
-    parser.add_argument("--table", type=pathlib.Path, help="gets a line for each: name, alone or together, tests, fault")
-    parser.add_argument("--alone", help="plant this one mutation, of a file that is no C++")
-    parser.add_argument("names", nargs="*", help="beginnings of names; left out: all")
+    parser.add_argument("--folder", type=pathlib.Path, help="default: only check that each mutation finds its place")
+    parser.add_argument("--table", type=pathlib.Path, help="write a line for each mutation to this file: name, alone or together, tests, fault")
+    parser.add_argument("--alone", help="plant this mutation of a file that is not C++")
+    parser.add_argument("names", nargs="*", help="beginnings of names; default: all")
     options = parser.parse_args()
     chosen = [m for path in sorted(HERE.glob("*.txt")) for m in mutations.read(path)
               if not options.names or m.name.startswith(tuple(options.names))]

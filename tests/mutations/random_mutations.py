@@ -148,7 +148,7 @@ class Planted:
 
 
 def run_tests(planted, programs, name, seconds):
-    """True if all pass."""
+    """Returns True if all tests pass."""
     environment = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/nonexistent", "LC_ALL": "C.UTF-8", "LIMBER_MUTATION": name}
     for program in programs:
         try:
@@ -168,7 +168,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--tests", help="test programs, separated by commas; default: the module's")
     parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("build/faults/random"))
-    parser.add_argument("--jobs", type=int, default=2, help="of the build")
+    parser.add_argument("--jobs", type=int, default=2, help="parallel jobs of the build")
     options = parser.parse_args()
     name = options.module.split("/")[1] if options.module.startswith("src/") else options.module.split("/")[0]
     programs = options.tests.split(",") if options.tests else [f"test_{name}"]

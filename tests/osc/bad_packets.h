@@ -1,4 +1,4 @@
-// Datagrams that are no OSC, each with the fault that it carries; the fuzz corpus and the tests share them.
+// Malformed OSC packets with the expected error of each, shared by the tests and the fuzz corpus.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 namespace limber::osc_test {
 
 struct BadPacket {
-  const char* what;
+  const char* description;
   std::string bytes;
 };
 
@@ -52,7 +52,7 @@ inline std::vector<BadPacket> bad_packets() {
       {"padding of a string not zero", from_hex("2f610000 2c730000 61006263")},
       {"blob without size", from_hex("2f610000 2c620000")},
       {"blob larger than its message", from_hex("2f610000 2c620000 00001000")},
-      {"blob whose size wraps when rounded", from_hex("2f610000 2c626900 fffffffd 00000007")},
+      {"blob with a size that wraps when rounded", from_hex("2f610000 2c626900 fffffffd 00000007")},
       {"blob of four that lacks them", from_hex("2f610000 2c620000 00000004")},
       {"blob, then blob", from_hex("2f610000 2c626200 7fffff00")},
       {"blob, then string", from_hex("2f610000 2c627300 00000100 78000000")},

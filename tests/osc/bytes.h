@@ -1,4 +1,4 @@
-// OSC's bytes as its specification has them, written and read without the code that is tested.
+// Writes and reads the bytes of OSC packets according to the specification, independently of the tested code.
 #pragma once
 
 #include <bit>
@@ -46,7 +46,7 @@ inline std::string bundle(std::uint64_t time_tag, const std::vector<std::string>
 /// `/n ,i number`
 inline std::string numbered(std::uint32_t number) { return Bytes().text("/n").text(",i").u32(number).str(); }
 
-/// A message of one float.
+/// A message with one float.
 inline std::string one_float(std::string_view address, float value) {
   return Bytes().text(address).text(",f").f(value).str();
 }

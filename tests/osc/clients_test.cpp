@@ -1,4 +1,4 @@
-// Real clients: liblo's oscsend plays a running Network, its oscdump reads the streams.
+// Real clients: liblo's oscsend sends to a running Network and its oscdump reads the streams.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -19,13 +19,13 @@ namespace {
 
 using namespace osc_test;
 
-// a child process; its output can be read, and it ends with this object
+// A child process with readable output; it is killed by the destructor.
 class Child {
  public:
   explicit Child(std::vector<std::string> words) {
     std::array<int, 2> ends{};
     EXPECT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
-    // everything that allocates comes before the fork: other threads may hold the allocator's lock
+    // all allocations happen before the fork: other threads may hold the allocator's lock
     std::vector<char*> arguments;
     arguments.reserve(words.size() + 1);
     for (std::string& w : words) arguments.push_back(w.data());
@@ -41,12 +41,12 @@ class Child {
   }
   ~Child() { end(); }
 
-  /// The exit status; waits for it, killing a child that takes more than our patience.
+  /// Returns the exit status; kills the child after a timeout.
   int status() {
     pollfd p{output_.fd(), POLLIN, 0};
-    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
     std::array<char, 4096> skipped{};
-    while (std::chrono::steady_clock::now() < until && poll(&p, 1, kPatienceMs) > 0) {
+    while (std::chrono::steady_clock::now() < until && poll(&p, 1, kTimeoutMs) > 0) {
       if (read(output_.fd(), skipped.data(), skipped.size()) <= 0) break;
     }
     if (std::chrono::steady_clock::now() >= until) kill(pid_, SIGKILL);
@@ -55,12 +55,12 @@ class Child {
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
-  /// The next line of its output; empty when none comes.
+  /// Returns the next line of output, or an empty string on timeout.
   std::string line() {
     while (text_.find('\n') == std::string::npos) {
       pollfd p{output_.fd(), POLLIN, 0};
       std::array<char, 4096> more{};
-      if (poll(&p, 1, kPatienceMs) <= 0) return {};
+      if (poll(&p, 1, kTimeoutMs) <= 0) return {};
       const auto size = read(output_.fd(), more.data(), more.size());
       if (size <= 0) return {};
       text_.append(more.data(), static_cast<std::size_t>(size));
@@ -90,7 +90,7 @@ OscOptions options_to_port(std::uint16_t port) {
   return options;
 }
 
-TEST(Clients, OscsendPlays) {
+TEST(Clients, OscsendControlsTheScene) {
   FakeEngine engine;
   Network network(engine.link, options_to_port(9), kTestOffsets);
   ASSERT_TRUE(network.start().ok());
@@ -118,19 +118,19 @@ TEST(Clients, OscsendPlays) {
   EXPECT_EQ(a[8].text, "word");
 }
 
-TEST(Clients, OscdumpReadsTheStreams) {
-  // a port that is free now; oscdump takes it in a moment
+TEST(Clients, OscdumpReceivesTheStreams) {
+  // a port that is currently free; oscdump opens it shortly after
   const std::uint16_t port = Client().end().port;
   Child dump({"stdbuf", "-oL", "oscdump", "-L", std::to_string(port)});
   FakeEngine engine;
   Snapshot world = test_world({{"arm", 1}});
-  for (std::size_t i = 0; i < world.live.size(); i++) world.live[i] = static_cast<double>(i) / 4;
-  const auto spare = engine.link.snapshots.spare();
+  for (std::size_t i = 0; i < world.transient.size(); i++) world.transient[i] = static_cast<double>(i) / 4;
+  const auto spare = engine.link.snapshots.acquire_buffer();
   *spare = world;
   engine.link.snapshots.publish(spare);
   Network network(engine.link, options_to_port(port), kTestOffsets);
   ASSERT_TRUE(network.start().ok());
-  // the block's numbers are a quarter of their place: position at 1, rotation at 4
+  // each number is a quarter of its index: position at 1, rotation at 4
   for (int i = 0; i < 10; i++) {
     const std::string line = dump.line();
     const bool pos = line.find("/physics/joint/pos sfff \"arm\" 0.250000 0.500000 0.750000") != std::string::npos;

@@ -1,5 +1,5 @@
-// The two codecs against each other, where oscpack is correct: the same packets accepted, the same values, the same
-// bytes written. Our own against hand-written bytes everywhere.
+// Compares the two codecs where oscpack is correct: they accept the same packets, decode the same values and write the
+// same bytes. Our own codec is also tested against hand-written bytes.
 #include "osc/codec.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ using namespace osc_test;
 
 std::string text_of(std::span<const char> packet) { return {packet.begin(), packet.end()}; }
 
-// in an allocation of exactly its size, so that the address sanitizer reports a byte too many
+// Decodes from an allocation of exact size, so that the address sanitizer reports reads past the end.
 Result<Decoded> own_decoded(const std::string& bytes) {
   const auto exact = std::make_unique<char[]>(bytes.size());
   std::copy(bytes.begin(), bytes.end(), exact.get());
@@ -65,10 +65,10 @@ TEST(OwnCodec, DecodesEveryTypeThatAddressesAccept) {
 }
 
 TEST(OwnCodec, RejectsEveryBadPacket) {
-  for (const BadPacket& bad : bad_packets()) EXPECT_FALSE(own_decoded(bad.bytes).ok()) << bad.what;
+  for (const BadPacket& bad : bad_packets()) EXPECT_FALSE(own_decoded(bad.bytes).ok()) << bad.description;
 }
 
-TEST(OwnCodec, NeverReadsBeyondACutPacket) {
+TEST(OwnCodec, NeverReadsPastATruncatedPacket) {
   const std::string whole = bundle(
       9,
       {Bytes().text("/ab").text(",s[f]bth").text("name").f(1).u32(5).raw("abcdefgh").u64(3).u64(4).str(), numbered(7)});
@@ -97,7 +97,7 @@ TEST(OwnCodec, EncodesRareTypesFromHexadecimalDigits) {
                                                                            .str());
 }
 
-TEST(OwnCodec, EncodesTheLargestDatagramAndNoLargerOne) {
+TEST(OwnCodec, LimitsDatagramSize) {
   PacketBuffer buffer;
   Message m{"/a", std::vector<Arg>(13099, Arg::of(1.0))};
   EXPECT_EQ(own_codec::encode(m, buffer).size(), 65504u);
@@ -107,7 +107,7 @@ TEST(OwnCodec, EncodesTheLargestDatagramAndNoLargerOne) {
 
 #if LIMBER_OSCPACK
 
-// writes the same random packet with both writers
+// Writes the same random packet with both writers.
 class RandomPacket {
  public:
   explicit RandomPacket(std::uint64_t seed) : random_(seed, "packet") {}
@@ -183,7 +183,7 @@ class RandomPacket {
         return out.string(word(30).c_str());
       case 'S':
         return out.symbol(word(30).c_str());
-      // oscpack extends the sign of characters beyond ASCII, which OSC doesn't have
+      // oscpack sign-extends characters beyond ASCII, which OSC does not define
       case 'c':
         return out.character(static_cast<char>(bits % 128));
       case 'r':
@@ -235,17 +235,17 @@ TEST(BothCodecs, ReadTheSameValues) {
     ASSERT_TRUE(ours.ok() && theirs.ok()) << "seed " << seed;
     ASSERT_TRUE(same(*ours, *theirs)) << "seed " << seed;
     messages += ours->messages.size();
-    rejected += ours->refused.size();
+    rejected += ours->rejected.size();
   }
   EXPECT_GT(messages, 1000u);
   EXPECT_GT(rejected, 1000u);
 }
 
-// What our codec rejects and oscpack would not: it reads or loops out of bounds there, so it is not asked.
+// True for packets that our codec rejects and on which oscpack would read or loop out of bounds.
 bool is_unsafe_for_oscpack(std::string_view fault) {
   return fault.starts_with("a blob") || fault == "a bundle's element is larger than the bundle";
 }
-// Rules of ours that oscpack does not have: limits, addresses, NULs behind the end of a string, "][".
+// True for rules that only our codec has: limits, addresses, NULs after the end of a string, "][".
 bool is_stricter_than_oscpack(std::string_view fault) {
   for (const char* rule :
        {"larger than 65504", "it begins with neither", "bundles nested deeper", "more than", "an address",
@@ -280,7 +280,7 @@ TEST(BothCodecs, AcceptTheSameMutatedPackets) {
   EXPECT_GT(rejected, 10000);
 }
 
-// the documented differences: malformed packets that oscpack accepts
+// The documented differences: malformed packets that oscpack accepts.
 TEST(BothCodecs, OnlyOscpackAcceptsThese) {
   const std::pair<const char*, std::string> cases[] = {
       {"unbalanced arrays", from_hex("2f610000 2c5d5b69 00000000 00000007")},
@@ -340,8 +340,8 @@ TEST(BothCodecs, EncodeTheSameMessages) {
 
 #endif
 
-// which codec the program was built with, by what only one of them says of a bad packet
-TEST(BothCodecs, TheProgramUsesTheChosenOne) {
+// Detects the codec of this build by an error text that only one of them produces.
+TEST(BothCodecs, ProgramUsesTheSelectedCodec) {
   const std::string bytes = from_hex("2f610000 2c690000");
   const Result<Decoded> decoded = decode_packet(bytes.data(), bytes.size());
   ASSERT_FALSE(decoded.ok());

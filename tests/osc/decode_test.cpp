@@ -1,4 +1,4 @@
-// Decoding: every tag's value, flattened bundles and arrays, refused tags, and the way there and back.
+// Decoding: the value of each type tag, flattened bundles and arrays, rejected types, and round trips.
 #include "osc/decode.h"
 
 #include <gtest/gtest.h>
@@ -40,14 +40,14 @@ TEST(Decode, NumericTagsBecomeNumbers) {
   }
 }
 
-TEST(Decode, NotANumberAndInfinityPass) {
+TEST(Decode, KeepsNanAndInfinity) {
   EXPECT_TRUE(std::isnan(only_argument(Bytes().text("/a").text(",f").u32(0x7fc00000u).str()).number));
   EXPECT_EQ(only_argument(Bytes().text("/a").text(",f").u32(0xff800000u).str()).number,
             -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(only_argument(Bytes().text("/a").text(",d").u64(0x7ff8000000000000u).str()).number));
 }
 
-TEST(Decode, OtherTags) {
+TEST(Decode, DecodesNonNumericTags) {
   const Decoded d = decoded(Bytes().text("/a").text(",TFINsSc").text("arm").text("tip").u32('q').str());
   const std::vector<Arg>& a = d.messages.at(0).args;
   ASSERT_EQ(a.size(), 7u);
@@ -61,7 +61,7 @@ TEST(Decode, OtherTags) {
   EXPECT_EQ(a[6].text, "q");
 }
 
-TEST(Decode, NoTagsIsNoArguments) {
+TEST(Decode, AcceptsMissingTypeTags) {
   for (const std::string& bytes :
        {Bytes().text("/transport/pause").str(), Bytes().text("/transport/pause").text(",").str()}) {
     const Decoded d = decoded(bytes);
@@ -72,7 +72,7 @@ TEST(Decode, NoTagsIsNoArguments) {
   }
 }
 
-TEST(Decode, ArraysAreFlattened) {
+TEST(Decode, FlattensArrays) {
   const Decoded d = decoded(Bytes().text("/a").text(",s[fff]i").text("arm").f(1).f(2).f(3).u32(4).str());
   const std::vector<Arg>& a = d.messages.at(0).args;
   ASSERT_EQ(a.size(), 5u);
@@ -80,35 +80,35 @@ TEST(Decode, ArraysAreFlattened) {
   for (std::size_t i = 1; i < 5; i++) EXPECT_EQ(a[i].number, static_cast<double>(i));
 }
 
-TEST(Decode, RefusedTagsAreSaid) {
+TEST(Decode, ReportsUnsupportedTags) {
   const std::pair<std::string, std::string> cases[] = {
       {Bytes().text("/a").text(",b").u32(4).raw("abcd").str(), "a blob (b)"},
       {Bytes().text("/a").text(",t").u64(1).str(), "a time tag (t)"},
       {Bytes().text("/a").text(",m").u32(1).str(), "a MIDI message (m)"},
-      {Bytes().text("/a").text(",r").u32(1).str(), "a packed colour (r)"},
-      {Bytes().text("/a").text(",[[f]]").f(1).str(), "an array inside an array"},
+      {Bytes().text("/a").text(",r").u32(1).str(), "a packed color (r)"},
+      {Bytes().text("/a").text(",[[f]]").f(1).str(), "nested arrays"},
   };
-  for (const auto& [bytes, what] : cases) {
+  for (const auto& [bytes, reason] : cases) {
     const Decoded d = decoded(bytes);
     EXPECT_TRUE(d.messages.empty());
-    ASSERT_EQ(d.refused.size(), 1u) << what;
-    EXPECT_EQ(d.refused[0].address, "/a");
-    EXPECT_EQ(d.refused[0].text.rfind(what, 0), 0u) << d.refused[0].text;
+    ASSERT_EQ(d.rejected.size(), 1u) << reason;
+    EXPECT_EQ(d.rejected[0].address, "/a");
+    EXPECT_EQ(d.rejected[0].reason.rfind(reason, 0), 0u) << d.rejected[0].reason;
   }
 }
 
-TEST(Decode, BundlesAreFlattenedInOrder) {
+TEST(Decode, FlattensBundlesInOrder) {
   const std::string blob = Bytes().text("/b").text(",b").u32(0).str();
   const Decoded d =
       decoded(bundle(77, {numbered(1), bundle(99, {numbered(2), bundle(1, {}), numbered(3)}), blob, numbered(4)}));
   EXPECT_EQ(d.time_tag, 77u);
   ASSERT_EQ(d.messages.size(), 4u);
   for (std::size_t i = 0; i < 4; i++) EXPECT_EQ(d.messages[i].args.at(0).number, static_cast<double>(i + 1));
-  ASSERT_EQ(d.refused.size(), 1u);
-  EXPECT_EQ(d.refused[0].address, "/b");
+  ASSERT_EQ(d.rejected.size(), 1u);
+  EXPECT_EQ(d.rejected[0].address, "/b");
 }
 
-TEST(Encode, ExactBytes) {
+TEST(Encode, WritesExactBytes) {
   PacketBuffer buffer;
   Message m{"/pulse", {Arg::of(1.5), Arg::of(true), Arg::of("arm"), Arg::of(false), Arg{}}};
   const auto packet = encode_message(m, buffer);
@@ -118,7 +118,7 @@ TEST(Encode, ExactBytes) {
   EXPECT_EQ(std::string(pong.begin(), pong.end()), Bytes().text("/pong").text(",if").u32(5).f(2.25f).str());
 }
 
-TEST(Encode, NumbersBeyondFloatAreClamped) {
+TEST(Encode, ClampsToFloatRange) {
   PacketBuffer buffer;
   const auto packet = encode_message({"/a", {Arg::of(1e300), Arg::of(-1e300)}}, buffer);
   EXPECT_EQ(std::string(packet.begin(), packet.end()), Bytes()
@@ -129,18 +129,18 @@ TEST(Encode, NumbersBeyondFloatAreClamped) {
                                                            .str());
 }
 
-TEST(Encode, LargestDatagramAndOneMore) {
+TEST(Encode, LimitsDatagramSize) {
   PacketBuffer buffer;
   Message m{"/a", {}};
-  // n floats take 4 + pad4(1 + n + 1) + 4 n bytes; n = 13099 gives 4 + 13104 + 52396 = 65504
+  // n floats take 4 + padded(1 + n + 1) + 4 n bytes; n = 13099 gives 4 + 13104 + 52396 = 65504
   m.args.assign(13099, Arg::of(1.0));
   EXPECT_EQ(encode_message(m, buffer).size(), 65504u);
   m.args.push_back(Arg::of(1.0));
   EXPECT_TRUE(encode_message(m, buffer).empty());
 }
 
-// what is encoded comes back: numbers as the nearest float, booleans as 0 and 1, texts whole
-TEST(Encode, RoundTrip) {
+// Encoded messages are decoded again: numbers as the nearest float, booleans as 0 and 1, texts unchanged.
+TEST(Encode, RoundTrips) {
   Random random(11);
   PacketBuffer buffer;
   for (int i = 0; i < 5000; i++) {

@@ -1,5 +1,5 @@
-// What the network thread sends to whom: tokens, loops, and the setup that the docs describe for TouchOSC. Clients are
-// on this machine; a sender of another network is one whose address is in no subnet that the test names.
+// Limits of the network thread: tokens, loops, and the TouchOSC setup of the documentation. All clients are on this
+// machine; a remote sender is simulated by leaving its address out of the test's list of subnets.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace {
 
 using namespace osc_test;
 
-// an end whose client belongs to another network
-struct FarDesk {
-  FarDesk() {
+// A Network with a client that appears to be in another network.
+struct RemoteClientFixture {
+  RemoteClientFixture() {
     OscOptions options;
     options.in = *parse_osc_in("0");
     options.out = *parse_osc_out("off");
@@ -27,7 +27,7 @@ struct FarDesk {
     network = std::make_unique<Network>(engine.link, std::move(options), kTestOffsets);
     EXPECT_TRUE(network->start().ok());
     end = network->bound().at(0);
-    const auto spare = engine.link.snapshots.spare();
+    const auto spare = engine.link.snapshots.acquire_buffer();
     *spare = test_world({{"arm", 50}});
     engine.link.snapshots.publish(spare);
   }
@@ -35,10 +35,10 @@ struct FarDesk {
     sent += bytes.size();
     client.send(end, bytes);
   }
-  // the next message to the client, which counts its bytes
+  // Returns the client's next message and counts its bytes.
   Message next() {
     const std::optional<std::string> bytes = client.receive();
-    if (!bytes) return {"nothing came", {}};
+    if (!bytes) return {"no reply", {}};
     received += bytes->size();
     const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
     return decoded && !decoded->messages.empty() ? decoded->messages[0] : Message{"no message", {}};
@@ -51,24 +51,24 @@ struct FarDesk {
   std::size_t sent = 0, received = 0;
 };
 
-TEST(NetworkLimits, AFarSenderGetsThreeBytesForOneUntilItReturnsTheToken) {
+TEST(NetworkLimits, LimitsRemoteSenderUntilTokenReturns) {
   log_to_stderr(false);
-  FarDesk desk;
-  desk.send(Bytes().text("/subscribe").text(",sf").text("pos").f(1000).str());
-  const Message token = desk.next();
+  RemoteClientFixture fixture;
+  fixture.send(Bytes().text("/subscribe").text(",sf").text("pos").f(1000).str());
+  const Message token = fixture.next();
   ASSERT_EQ(token.address, "/token");
   for (int i = 0; i < 200; i++) {
-    desk.send(Bytes().text("/ping").text(",").str());
-    while (desk.next().address != "/pong") continue;
-    ASSERT_LE(desk.received, 3 * desk.sent);
+    fixture.send(Bytes().text("/ping").text(",").str());
+    while (fixture.next().address != "/pong") continue;
+    ASSERT_LE(fixture.received, 3 * fixture.sent);
   }
-  desk.send(Bytes().text("/token").text(",s").text(token.args.at(0).text).str());
-  while (desk.received < 6 * desk.sent) ASSERT_NE(desk.next().address, "nothing came");
-  EXPECT_GT(desk.engine.link.health.count(HealthItem::limited), 0u);
+  fixture.send(Bytes().text("/token").text(",s").text(token.args.at(0).text).str());
+  while (fixture.received < 6 * fixture.sent) ASSERT_NE(fixture.next().address, "no reply");
+  EXPECT_GT(fixture.engine.link.health.count(HealthItem::limited), 0u);
   log_to_stderr(true);
 }
 
-TEST(NetworkLimits, ANearSenderGetsNoToken) {
+TEST(NetworkLimits, SendsNoTokenToLocalSender) {
   Client client;
   FakeEngine engine;
   OscOptions options;
@@ -76,7 +76,7 @@ TEST(NetworkLimits, ANearSenderGetsNoToken) {
   options.out = *parse_osc_out("off");
   Network network(engine.link, options, kTestOffsets);
   ASSERT_TRUE(network.start().ok());
-  const auto spare = engine.link.snapshots.spare();
+  const auto spare = engine.link.snapshots.acquire_buffer();
   *spare = test_world({{"arm", 50}});
   engine.link.snapshots.publish(spare);
   client.send(network.bound().at(0), Bytes().text("/subscribe").text(",sf").text("pos").f(1000).str());
@@ -87,8 +87,8 @@ TEST(NetworkLimits, ANearSenderGetsNoToken) {
   }
 }
 
-struct NearDesk {
-  NearDesk() {
+struct LocalClientFixture {
+  LocalClientFixture() {
     OscOptions options;
     options.in = *parse_osc_in("0");
     options.out = *parse_osc_out("off");
@@ -96,9 +96,9 @@ struct NearDesk {
     EXPECT_TRUE(network->start().ok());
     end = network->bound().at(0);
   }
-  Origin origin() const { return {Hand::osc, client.end().ip, client.end().port}; }
-  // what the engine sends after all before
-  void mark() { engine.say({Outgoing::To::direct, origin(), {"/mark", {}}}); }
+  CommandOrigin origin() const { return {CommandSource::osc, client.end().ip, client.end().port}; }
+  // Sends a marker after all earlier messages of the engine.
+  void send_mark() { engine.push_out({Outgoing::Destination::direct, origin(), {"/mark", {}}}); }
   std::string next() const {
     const std::optional<std::string> bytes = client.receive();
     return bytes ? std::string(bytes->c_str()) : "nothing";
@@ -110,97 +110,99 @@ struct NearDesk {
   Endpoint end;
 };
 
-TEST(NetworkLimits, NothingIsSentToTheProgramItself) {
+TEST(NetworkLimits, NeverSendsToOwnInput) {
   log_to_stderr(false);
   const std::uint64_t warnings = log_count(LogLevel::warning);
-  NearDesk desk;
-  const Origin self{Hand::osc, desk.end.ip, desk.end.port};
+  LocalClientFixture fixture;
+  const CommandOrigin self{CommandSource::osc, fixture.end.ip, fixture.end.port};
   for (int i = 0; i < 5; i++) {
-    desk.engine.say({Outgoing::To::direct, self, {"/loop", {}}});
-    desk.engine.say({Outgoing::To::error, self, {"/error", {Arg::of("/loop"), Arg::of("unknown")}}});
+    fixture.engine.push_out({Outgoing::Destination::direct, self, {"/loop", {}}});
+    fixture.engine.push_out({Outgoing::Destination::error, self, {"/error", {Arg::of("/loop"), Arg::of("unknown")}}});
   }
-  desk.mark();
-  EXPECT_EQ(desk.next(), "/mark");
-  desk.client.send(desk.end, Bytes().text("/after").text(",").str());
-  ASSERT_TRUE(desk.engine.wait_for(1));
-  EXPECT_EQ(desk.engine.commands.at(0).messages.at(0).address, "/after");
-  EXPECT_EQ(desk.engine.link.counters.received, 1u);
-  EXPECT_EQ(desk.engine.link.health.count(HealthItem::loops), 1u);
+  fixture.send_mark();
+  EXPECT_EQ(fixture.next(), "/mark");
+  fixture.client.send(fixture.end, Bytes().text("/after").text(",").str());
+  ASSERT_TRUE(fixture.engine.wait_for(1));
+  EXPECT_EQ(fixture.engine.commands.at(0).messages.at(0).address, "/after");
+  EXPECT_EQ(fixture.engine.link.counters.received, 1u);
+  EXPECT_EQ(fixture.engine.link.health.count(HealthItem::loops), 1u);
   EXPECT_EQ(log_count(LogLevel::warning), warnings + 1) << "reported once";
   log_to_stderr(true);
 }
 
-TEST(NetworkLimits, ATargetThatIsTheOwnInputIsLeftOut) {
+TEST(NetworkLimits, SkipsTargetThatIsOwnInput) {
   log_to_stderr(false);
-  NearDesk desk;
-  auto plan = std::make_shared<OscPlan>();
-  for (const std::uint16_t port : {desk.end.port, desk.client.end().port}) {
+  LocalClientFixture fixture;
+  auto plan = std::make_shared<OscConfig>();
+  for (const std::uint16_t port : {fixture.end.port, fixture.client.end().port}) {
     StreamTarget target;
     target.host = "127.0.0.1";
     target.port = port;
     plan->targets.push_back(target);
   }
-  // the command line says "off", so the scene's plan is given to another network
+  // `--osc-out` is not given here, so that the second network uses the scene's plan
   OscOptions options;
-  options.in = *parse_osc_in("127.0.0.1:" + std::to_string(desk.end.port));
-  desk.network->stop();
-  const auto spare = desk.engine.link.osc_plan.spare();
+  options.in = *parse_osc_in("127.0.0.1:" + std::to_string(fixture.end.port));
+  fixture.network->stop();
+  const auto spare = fixture.engine.link.osc_config.acquire_buffer();
   *spare = *plan;
-  desk.engine.link.osc_plan.publish(spare);
-  Network network(desk.engine.link, options, kTestOffsets);
+  fixture.engine.link.osc_config.publish(spare);
+  Network network(fixture.engine.link, options, kTestOffsets);
   ASSERT_TRUE(network.start().ok());
-  const std::vector<std::string> lines = network.lines();
+  const std::vector<std::string> lines = network.status_lines();
   EXPECT_EQ(std::ranges::count_if(lines, [](const std::string& line) { return line.starts_with("OSC out 127"); }), 1);
   network.stop();
   log_to_stderr(true);
 }
 
-TEST(NetworkLimits, AProgramThatAnswersErrorsGetsNoMore) {
+TEST(NetworkLimits, StopsErrorLoop) {
   log_to_stderr(false);
   const std::uint64_t warnings = log_count(LogLevel::warning);
-  NearDesk desk;
-  const Outgoing error{Outgoing::To::error, desk.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
+  LocalClientFixture fixture;
+  const Outgoing error{
+      Outgoing::Destination::error, fixture.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
   for (const char* answer : {"/Error/", "/failed"}) {
-    NearDesk other;
-    const Outgoing fault{Outgoing::To::error, other.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
-    other.engine.say(fault);
+    LocalClientFixture other;
+    const Outgoing fault{
+        Outgoing::Destination::error, other.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
+    other.engine.push_out(fault);
     ASSERT_EQ(other.next(), "/error");
     other.client.send(other.end, Bytes().text(answer).text(",ss").text("/error").text("no such address").str());
-    ASSERT_TRUE(other.engine.wait_for(1)) << "the scene hears it";
-    for (int i = 0; i < 3; i++) other.engine.say(fault);
-    other.engine.say({Outgoing::To::direct, other.origin(), {"/mark", {}}});
+    ASSERT_TRUE(other.engine.wait_for(1)) << "it reaches the scene";
+    for (int i = 0; i < 3; i++) other.engine.push_out(fault);
+    other.engine.push_out({Outgoing::Destination::direct, other.origin(), {"/mark", {}}});
     EXPECT_EQ(other.next(), "/mark") << answer;
     EXPECT_EQ(other.engine.link.health.count(HealthItem::loops), 1u);
   }
   EXPECT_EQ(log_count(LogLevel::warning), warnings + 2) << "once each";
-  // an /error to which nothing was sent before is no answer, and whoever errs otherwise is told each time
-  desk.client.send(desk.end, Bytes().text("/error").text(",s").text("/x").str());
-  ASSERT_TRUE(desk.engine.wait_for(1));
+  // an /error is no answer if none was sent before, and other faulty messages are always answered
+  fixture.client.send(fixture.end, Bytes().text("/error").text(",s").text("/x").str());
+  ASSERT_TRUE(fixture.engine.wait_for(1));
   for (int i = 0; i < 3; i++) {
-    desk.engine.say(error);
-    EXPECT_EQ(desk.next(), "/error");
-    desk.client.send(desk.end, Bytes().text("/wrong").text(",").str());
+    fixture.engine.push_out(error);
+    EXPECT_EQ(fixture.next(), "/error");
+    fixture.client.send(fixture.end, Bytes().text("/wrong").text(",").str());
   }
-  EXPECT_EQ(desk.engine.link.health.count(HealthItem::loops), 0u);
+  EXPECT_EQ(fixture.engine.link.health.count(HealthItem::loops), 0u);
   log_to_stderr(true);
 }
 
 // docs/osc.md, "Clients": --osc-in 0.0.0.0:9003, --osc-out TABLET:PORT, faders, buttons, /subscribe every 20 s
-TEST(NetworkLimits, TheTouchOscSetupOfTheDocsWorks) {
+TEST(NetworkLimits, DocumentedTouchOscSetupWorks) {
   log_to_stderr(false);
   const engine_test::SceneFile file(engine_test::kEverything);
   engine_test::Show show(file.path());
   Client tablet;
-  Client receiver;  // the tablet's port for what comes in
+  Client receiver;  // the tablet's port for incoming messages
   OscOptions options;
   options.in = *parse_osc_in("0.0.0.0:0");
   options.out = *parse_osc_out("127.0.0.1:" + std::to_string(receiver.end().port));
-  Network network(show.link, options, live_offsets());
+  Network network(show.link, options, transient_offsets());
   ASSERT_TRUE(network.start().ok());
   const Endpoint end{0x7f000001, network.bound().at(0).port};
-  // ticks until the tablet has got that
+  // runs ticks until the client has received such a message
   const auto comes = [&](const Client& client, std::string_view begin) {
-    for (int i = 0; i < kPatienceMs / 5; i++) {
+    for (int i = 0; i < kTimeoutMs / 5; i++) {
       show.ticks(1);
       const std::optional<std::string> bytes = client.receive(5);
       if (!bytes) continue;
@@ -209,9 +211,9 @@ TEST(NetworkLimits, TheTouchOscSetupOfTheDocsWorks) {
     }
     return false;
   };
-  // and until a row has that value
+  // runs ticks until the property has this value
   const auto becomes = [&](const char* path, double value) {
-    for (int i = 0; i < kPatienceMs; i++) {
+    for (int i = 0; i < kTimeoutMs; i++) {
       show.ticks(1);
       if (std::abs(show.read(path) - value) < 1e-6) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -230,7 +232,7 @@ TEST(NetworkLimits, TheTouchOscSetupOfTheDocsWorks) {
   EXPECT_TRUE(becomes("/scene/wind", 3));
   EXPECT_EQ(show.read("/physics/sim/paused"), 1) << "a button that is released";
   show.send("/scene/wind", 5);
-  EXPECT_TRUE(comes(tablet, "/scene/wind")) << "another hand has set it";
+  EXPECT_TRUE(comes(tablet, "/scene/wind")) << "set by another controller";
   EXPECT_EQ(show.link.health.count(HealthItem::limited), 0u);
   log_to_stderr(true);
 }

@@ -1,4 +1,4 @@
-// Tools of the OSC tests: packets written by hand, a UDP client, a clock that is turned by hand, an inbox to wait at.
+// Tools of the OSC tests: a UDP client, a clock that tests control, and an inbox to wait for messages.
 #pragma once
 
 #include <poll.h>
@@ -21,15 +21,15 @@
 
 namespace limber::osc_test {
 
-/// Nothing waits longer than this; only a failing test waits as long.
-inline constexpr int kPatienceMs = 20000;
+/// Timeout of all waits; reached only by failing tests.
+inline constexpr int kTimeoutMs = 20000;
 
-/// A clock that stands still until it is turned.
-struct HandClock {
+/// A clock that advances only when a test sets it.
+struct ManualClock {
   std::int64_t ns = 5'000'000'000;
   std::uint64_t ntp = std::uint64_t{3'900'000'000u} << 32;
 
-  void turn(double seconds) {
+  void advance(double seconds) {
     ns += static_cast<std::int64_t>(seconds * 1e9);
     ntp += static_cast<std::uint64_t>(seconds * 4294967296.0);
   }
@@ -54,8 +54,8 @@ class Client {
     const sockaddr_in address = system::socket_address(to);
     sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
   }
-  /// The next datagram and where it came from; nothing when none comes within `ms`.
-  std::optional<std::string> receive(int ms = kPatienceMs, Endpoint* from = nullptr) const {
+  /// Returns the next datagram and its sender, or nothing if none arrives within `ms`.
+  std::optional<std::string> receive(int ms = kTimeoutMs, Endpoint* from = nullptr) const {
     pollfd p{socket_.fd(), POLLIN, 0};
     if (poll(&p, 1, ms) <= 0) return std::nullopt;
     std::string bytes(65536, '\0');
@@ -73,31 +73,31 @@ class Client {
   system::UdpSocket socket_;
 };
 
-/// An engine's link without an engine: what arrives is collected.
+/// An engine link without an engine; collects incoming commands.
 class FakeEngine {
  public:
   FakeEngine() {
     link.wake_engine = [this] {
       const std::scoped_lock lock(mutex_);
-      rung_ = true;
-      bell_.notify_all();
+      notified_ = true;
+      changed_.notify_all();
     };
   }
 
-  /// Waits until that many messages have come in all; false when they do not.
+  /// Waits until this many messages have arrived in total; returns false on timeout.
   bool wait_for(std::size_t messages) {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
     for (;;) {
       collect();
       if (count() >= messages) return true;
       std::unique_lock lock(mutex_);
-      if (!bell_.wait_until(lock, until, [this] { return rung_; })) return false;
-      rung_ = false;
+      if (!changed_.wait_until(lock, until, [this] { return notified_; })) return false;
+      notified_ = false;
     }
   }
   void collect() {
     std::vector<Command> batch;
-    link.inbox.drain(batch);
+    link.command_queue.drain(batch);
     for (Command& c : batch) commands.push_back(std::move(c));
   }
   std::size_t count() const {
@@ -105,8 +105,8 @@ class FakeEngine {
     for (const Command& c : commands) n += c.messages.size();
     return n;
   }
-  void say(Outgoing out) {
-    link.outbox.push(std::move(out));
+  void push_out(Outgoing out) {
+    link.output_queue.push(std::move(out));
     link.wake_network();
   }
 
@@ -115,8 +115,8 @@ class FakeEngine {
 
  private:
   std::mutex mutex_;
-  std::condition_variable bell_;
-  bool rung_ = false;
+  std::condition_variable changed_;
+  bool notified_ = false;
 };
 
 }  // namespace limber::osc_test

@@ -1,5 +1,5 @@
-// What goes away and comes back: the network, a listener, a port that another program holds, a right clock. It is said
-// once, nothing else suffers, and it goes on by itself.
+// Outages and recovery: the network, a listener, a port used by another program, a wrong clock. Each is logged once,
+// affects nothing else, and recovers automatically.
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
@@ -20,7 +20,7 @@
 
 namespace {
 
-// the port to which nothing can be sent, as if the network there was gone; 0: all is well
+// Sending to this port fails as if its network was down; 0: no failure.
 std::atomic<int> unreachable_port{0};
 
 bool unreachable(const void* to) {
@@ -33,7 +33,7 @@ bool unreachable(const void* to) {
 
 }  // namespace
 
-// the kernel's doors as this program has them
+// Replacements of the system calls in this program.
 extern "C" ssize_t sendto(int fd, const void* data, size_t size, int flags, const sockaddr* to, socklen_t length) {
   return unreachable(to) ? -1 : syscall(SYS_sendto, fd, data, size, flags, to, length);
 }
@@ -62,8 +62,8 @@ OscOptions options_to_ports(std::vector<std::uint16_t> ports, const std::string&
   return options;
 }
 
-bool until(const std::function<bool()>& condition) {
-  const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+bool wait_until(const std::function<bool()>& condition) {
+  const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
   while (!condition()) {
     if (std::chrono::steady_clock::now() > late) return false;
     std::this_thread::yield();
@@ -72,18 +72,18 @@ bool until(const std::function<bool()>& condition) {
 }
 
 void publish_world(EngineLink& link) {
-  const auto spare = link.snapshots.spare();
+  const auto spare = link.snapshots.acquire_buffer();
   *spare = test_world({{"arm", 2}});
   link.snapshots.publish(spare);
 }
 
-int said(std::uint64_t since, const std::string& text) {
+int log_count_of(std::uint64_t since, const std::string& text) {
   const auto lines = log_since(since);
   return static_cast<int>(
       std::ranges::count_if(lines, [&](const auto& line) { return line.text.find(text) != std::string::npos; }));
 }
 
-TEST(Outage, ANetworkThatGoesAwayAndComesBack) {
+TEST(Outage, RecoversFromNetworkOutage) {
   log_to_stderr(false);
   const std::uint64_t before = log_newest();
   FakeEngine engine;
@@ -96,48 +96,49 @@ TEST(Outage, ANetworkThatGoesAwayAndComesBack) {
   EXPECT_EQ(engine.link.counters.unsent, 0u);
 
   unreachable_port = port;
-  engine.say({Outgoing::To::targets, {}, {"/lost", {}}});
-  ASSERT_TRUE(until([&] { return engine.link.counters.unsent >= 20; }));
+  engine.push_out({Outgoing::Destination::targets, {}, {"/lost", {}}});
+  ASSERT_TRUE(wait_until([&] { return engine.link.counters.unsent >= 20; }));
   while (target.receive(0)) continue;
-  EXPECT_EQ(said(before, "Network is unreachable"), 2) << "once for the stream, once for the message";
+  EXPECT_EQ(log_count_of(before, "Network is unreachable"), 2) << "once for the stream, once for the message";
   player.send(network.bound().at(0), numbered(1));
-  EXPECT_TRUE(engine.wait_for(1)) << "what comes in is heard as ever";
+  EXPECT_TRUE(engine.wait_for(1)) << "input is not affected";
 
   unreachable_port = 0;
   EXPECT_TRUE(target.receive()) << "frames come again by themselves";
-  engine.say({Outgoing::To::targets, {}, {"/found", {}}});
+  engine.push_out({Outgoing::Destination::targets, {}, {"/found", {}}});
   const std::string found = Bytes().text("/found").text(",").str();
   std::optional<std::string> got = target.receive();
   while (got && *got != found) got = target.receive();
   EXPECT_TRUE(got);
   network.stop();
-  EXPECT_EQ(said(before, "Network is unreachable"), 2);
+  EXPECT_EQ(log_count_of(before, "Network is unreachable"), 2);
   log_to_stderr(true);
 }
 
-TEST(Outage, ATargetThatRefusesIsSaidOnceAndServedWhenItListens) {
+TEST(Outage, ReportsUnreachableTargetOnceAndKeepsSending) {
   log_to_stderr(false);
   const std::uint64_t before = log_newest();
   FakeEngine engine;
   const Client innocent;
   Endpoint refuser;
   {
-    const Client gone;
-    refuser = gone.end();
+    const Client closed;
+    refuser = closed.end();
   }
   Network network(engine.link, options_to_ports({refuser.port, innocent.end().port}, ",rate=500,streams=pos"),
                   kTestOffsets);
   publish_world(engine.link);
   ASSERT_TRUE(network.start().ok());
-  ASSERT_TRUE(until([&] { return engine.link.counters.unsent >= 10; }));
-  const std::string text = "OSC out 127.0.0.1:" + std::to_string(refuser.port) + ": nobody listens there";
-  EXPECT_EQ(said(before, text), 1);
-  EXPECT_EQ(said(before, "nobody listens there"), 1) << "the other one is not blamed";
+  ASSERT_TRUE(wait_until([&] { return engine.link.counters.unsent >= 10; }));
+  const std::string text = "OSC out 127.0.0.1:" + std::to_string(refuser.port) + ": no listener yet";
+  EXPECT_EQ(log_count_of(before, text), 1);
+  EXPECT_EQ(log_count_of(before, "no listener yet"), 1) << "the other target is not reported";
 
-  // what is sent between refused datagrams arrives, all of it
-  for (int i = 0; i < 200; i++) engine.say({Outgoing::To::targets, {}, {"/n", {Arg::of(static_cast<double>(i))}}});
+  // all messages sent between failed datagrams arrive
+  for (int i = 0; i < 200; i++)
+    engine.push_out({Outgoing::Destination::targets, {}, {"/n", {Arg::of(static_cast<double>(i))}}});
   double expected = 0;
-  const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceMs);
+  const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
   while (expected < 200 && std::chrono::steady_clock::now() < late) {
     const auto bytes = innocent.receive();
     ASSERT_TRUE(bytes) << "lost: " << expected;
@@ -152,14 +153,14 @@ TEST(Outage, ATargetThatRefusesIsSaidOnceAndServedWhenItListens) {
   const Result<system::UdpSocket> back = system::open_udp(refuser);
   ASSERT_TRUE(back.ok()) << back.error();
   pollfd p{back->fd(), POLLIN, 0};
-  EXPECT_EQ(poll(&p, 1, kPatienceMs), 1) << "who listens again is sent to at once";
+  EXPECT_EQ(poll(&p, 1, kTimeoutMs), 1) << "a new listener receives immediately";
   network.stop();
-  EXPECT_EQ(said(before, text), 1);
+  EXPECT_EQ(log_count_of(before, text), 1);
   log_to_stderr(true);
 }
 
-// a clock of the network thread that a test turns while it runs
-struct TurnedClock {
+// A clock of the network thread that a test changes while the thread runs.
+struct AdjustableClock {
   std::atomic<std::int64_t> ns{1'000'000'000};
   std::atomic<int> readings{0};
   NetClock clock() {
@@ -172,7 +173,7 @@ struct TurnedClock {
   }
 };
 
-TEST(Outage, ATakenPortIsHadWhenItIsFree) {
+TEST(Outage, OpensPortWhenItBecomesFree) {
   log_to_stderr(false);
   const std::uint64_t before = log_newest();
   FakeEngine engine;
@@ -181,75 +182,77 @@ TEST(Outage, ATakenPortIsHadWhenItIsFree) {
   OscOptions options = options_to_ports({}, "");
   options.in = {{"127.0.0.1", wanted.port}};
   options.optional = true;
-  TurnedClock hand;
-  Network network(engine.link, options, kTestOffsets, hand.clock());
+  AdjustableClock manual_clock;
+  Network network(engine.link, options, kTestOffsets, manual_clock.clock());
   ASSERT_TRUE(network.start().ok());
-  EXPECT_EQ(network.lines().at(0), "OSC in off");
+  EXPECT_EQ(network.status_lines().at(0), "OSC in off");
   const auto try_again = [&] {
-    hand.ns += 1'000'000'000;
+    manual_clock.ns += 1'000'000'000;
     engine.link.wake_network();
   };
-  // some rounds of its loop, in each of which it is time to try again
-  const int readings = hand.readings;
-  ASSERT_TRUE(until([&] {
+  // run some passes of the network thread's loop, each of which retries
+  const int readings = manual_clock.readings;
+  ASSERT_TRUE(wait_until([&] {
     try_again();
-    return hand.readings >= readings + 100;
+    return manual_clock.readings >= readings + 100;
   }));
   holder.reset();
-  ASSERT_TRUE(until([&] {
+  ASSERT_TRUE(wait_until([&] {
     try_again();
     return !network.bound().empty();
   }));
   EXPECT_EQ(network.bound().at(0), wanted);
-  EXPECT_EQ(network.lines().at(0), "OSC in " + endpoint_text(wanted));
+  EXPECT_EQ(network.status_lines().at(0), "OSC in " + endpoint_text(wanted));
   const Client player;
   player.send(wanted, numbered(7));
   ASSERT_TRUE(engine.wait_for(1));
   EXPECT_EQ(engine.commands.at(0).messages.at(0).args.at(0).number, 7);
   network.stop();
-  EXPECT_EQ(said(before, "Address already in use"), 1) << "not at each try";
-  EXPECT_EQ(said(before, "OSC in " + endpoint_text(wanted)), 1);
+  EXPECT_EQ(log_count_of(before, "Address already in use"), 1) << "not at each try";
+  EXPECT_EQ(log_count_of(before, "OSC in " + endpoint_text(wanted)), 1);
   log_to_stderr(true);
 }
 
-// a tablet's clock runs an hour ahead, then an hour behind, then right: what it sends acts at once, acts at once, waits
-TEST(Outage, AClockThatIsAnHourWrong) {
+// A sender's clock is an hour ahead, then an hour behind, then correct: its bundle is applied immediately, immediately,
+// at its time.
+TEST(Outage, ToleratesWrongClocks) {
   log_to_stderr(false);
   constexpr std::uint64_t kSecond = std::uint64_t{1} << 32;
   constexpr std::uint64_t kHour = 3600 * kSecond;
   const std::uint64_t before = log_newest();
   FakeEngine engine;
-  HandClock hand;
-  const NetClock clock = hand.clock();
+  ManualClock manual_clock;
+  const NetClock clock = manual_clock.clock();
   Receiver receiver(engine.link, {}, {}, clock);
-  const auto take = [&](std::uint64_t tag, std::uint32_t number) {
+  const auto process = [&](std::uint64_t tag, std::uint32_t number) {
     const std::string bytes = bundle(tag, {numbered(number)});
-    receiver.take(bytes.data(), bytes.size(), {0xc0a80107u, 5000});
-    receiver.release_due();
+    receiver.process(bytes.data(), bytes.size(), {0xc0a80107u, 5000});
+    receiver.process_pending();
     engine.collect();
     return engine.count();
   };
   std::size_t count = 0;
-  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(take(hand.ntp + kHour + i * kSecond, i), ++count);
-  EXPECT_EQ(said(before, "a bundle from 192.168.1.7:5000 is dated more than 10 s ahead: applied now"), 1);
-  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(take(hand.ntp - kHour + i * kSecond, i), ++count);
-  EXPECT_EQ(said(before, "is dated more than 10 s ahead"), 1);
-  EXPECT_EQ(take(hand.ntp + kSecond, 1), count) << "right again: it waits";
-  hand.turn(1);
-  receiver.release_due();
+  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(process(manual_clock.ntp + kHour + i * kSecond, i), ++count);
+  EXPECT_EQ(log_count_of(before, "the time tag of a bundle from 192.168.1.7:5000 is more than 10 s ahead; applied now"),
+            1);
+  for (std::uint32_t i = 0; i < 100; i++) EXPECT_EQ(process(manual_clock.ntp - kHour + i * kSecond, i), ++count);
+  EXPECT_EQ(log_count_of(before, "is more than 10 s ahead"), 1);
+  EXPECT_EQ(process(manual_clock.ntp + kSecond, 1), count) << "right again: it waits";
+  manual_clock.advance(1);
+  receiver.process_pending();
   engine.collect();
   EXPECT_EQ(engine.count(), ++count);
 
-  // this machine's own clock is put an hour forward while something waits: it comes; then back again: so does that
-  EXPECT_EQ(take(hand.ntp + 5 * kSecond, 2), count);
-  hand.ntp += kHour;
-  receiver.release_due();
+  // the system clock is set an hour ahead while a bundle is scheduled, and then back: both are delivered
+  EXPECT_EQ(process(manual_clock.ntp + 5 * kSecond, 2), count);
+  manual_clock.ntp += kHour;
+  receiver.process_pending();
   engine.collect();
   EXPECT_EQ(engine.count(), ++count);
-  EXPECT_EQ(take(hand.ntp + 5 * kSecond, 3), count);
-  hand.ntp -= kHour;
-  hand.turn(10);
-  receiver.release_due();
+  EXPECT_EQ(process(manual_clock.ntp + 5 * kSecond, 3), count);
+  manual_clock.ntp -= kHour;
+  manual_clock.advance(10);
+  receiver.process_pending();
   engine.collect();
   EXPECT_EQ(engine.count(), ++count) << "ten seconds at the most";
   EXPECT_EQ(engine.link.counters.dropped, 0u);

@@ -1,4 +1,4 @@
-// PacketWriter: every type's exact bytes, nested bundles, and buffers that are too small.
+// PacketWriter: the exact bytes of every type, nested bundles, and buffers that are too small.
 #include "osc/packet_writer.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using namespace osc_test;
 
 std::string written(std::size_t size, const std::function<void(PacketWriter&)>& write) {
-  // in an allocation of exactly that size, so that the address sanitizer reports a byte too many
+  // an allocation of exact size, so that the address sanitizer reports writes past the end
   const auto buffer = std::make_unique<char[]>(size);
   PacketWriter out(buffer.get(), size);
   write(out);
@@ -95,13 +95,13 @@ TEST(PacketWriter, WritesEveryType) {
 
 TEST(PacketWriter, WritesNestedBundles) { EXPECT_EQ(written(1000, write_nested), written_nested_bytes()); }
 
-TEST(PacketWriter, NeedsTheSizeOfThePacketAndNotAByteLess) {
+TEST(PacketWriter, RequiresExactPacketSize) {
   const std::size_t size = written_nested_bytes().size();
   EXPECT_EQ(written(size, write_nested), written_nested_bytes());
   for (std::size_t n = 0; n < size; n++) ASSERT_EQ(written(n, write_nested), "") << n;
 }
 
-TEST(PacketWriter, NestsAsDeepAsTheValidatorAllows) {
+TEST(PacketWriter, NestsToValidatorLimit) {
   const auto deep = [](int depth) {
     return [depth](PacketWriter& out) {
       for (int i = 0; i < depth; i++) out.begin_bundle(1);

@@ -1,5 +1,5 @@
-// The bytes that real clients sent while they played tests/clients/score.lua, kept in tests/osc/recorded: each plays it
-// again. Each file begins with the client's version and its command.
+// Replays the bytes that real clients sent for tests/clients/score.lua, recorded in tests/osc/recorded. Each file
+// begins with the client's version and command.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ EngineOptions options() {
 
 class Recorded : public testing::TestWithParam<const char*> {};
 
-TEST_P(Recorded, PlaysTheScoreAgain) {
+TEST_P(Recorded, ReplaysTheScore) {
   log_to_stderr(false);
   const Recording recording = read_recording(kTests / "osc" / "recorded" / (std::string(GetParam()) + ".hex"));
   ASSERT_GE(recording.datagrams.size(), 9u);
@@ -52,17 +52,17 @@ TEST_P(Recorded, PlaysTheScoreAgain) {
   Receiver receiver(show.link, {}, {.error = [&](const Outgoing& out) { errors.push_back(out); }}, clock);
   const std::uint64_t before = log_newest();
   for (const std::string& datagram : recording.datagrams) {
-    receiver.take(datagram.data(), datagram.size(), {0x7f000001, 5000});
-    receiver.release_due();
+    receiver.process(datagram.data(), datagram.size(), {0x7f000001, 5000});
+    receiver.process_pending();
     show.ticks(1);
   }
   EXPECT_EQ(show.link.counters.malformed + show.link.counters.refused + show.link.counters.unknown, 0u);
   EXPECT_TRUE(errors.empty());
-  std::string said;
-  for (const LogLine& line : log_since(before)) said += line.text + "\n";
-  EXPECT_NE(said.find("score\t-3\t0.75\t0.25\t0.5\tfalse\twild\ttrue\t4.5\tvec3(1, 2, 3)"), std::string::npos) << said;
+  std::string log;
+  for (const LogLine& line : log_since(before)) log += line.text + "\n";
+  EXPECT_NE(log.find("score\t-3\t0.75\t0.25\t0.5\tfalse\twild\ttrue\t4.5\tvec3(1, 2, 3)"), std::string::npos) << log;
   EXPECT_EQ(show.read("/scene/wind"), 4.5);
-  const std::vector<std::string> out = show.outbox();
+  const std::vector<std::string> out = show.sent_texts();
   EXPECT_EQ(std::ranges::count(out, "/score 4.5"), 1);
   EXPECT_TRUE(recording.head.starts_with("# " + std::string(GetParam()))) << recording.head;
   log_to_stderr(true);

@@ -1,4 +1,4 @@
-// Compares what two codecs made of one packet, to the bit.
+// Compares the results of two codecs for the same packet bit by bit.
 #pragma once
 
 #include <algorithm>
@@ -21,11 +21,11 @@ inline bool same(const Message& a, const Message& b) {
 
 inline bool same(const Decoded& a, const Decoded& b) {
   const auto equal = [](const Message& x, const Message& y) { return same(x, y); };
-  const auto rejected = [](const RefusedMessage& x, const RefusedMessage& y) {
-    return x.address == y.address && x.text == y.text;
+  const auto rejected = [](const RejectedMessage& x, const RejectedMessage& y) {
+    return x.address == y.address && x.reason == y.reason;
   };
   return a.time_tag == b.time_tag && std::ranges::equal(a.messages, b.messages, equal) &&
-         std::ranges::equal(a.refused, b.refused, rejected);
+         std::ranges::equal(a.rejected, b.rejected, rejected);
 }
 
 }  // namespace limber::osc_test

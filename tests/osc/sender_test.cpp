@@ -1,4 +1,5 @@
-// The sender: who gets what, ten errors a second, and what is never answered.
+// The sender: receivers of each kind of message, the limit of ten errors per second, and messages that are never
+// answered.
 #include "osc/sender.h"
 
 #include <gtest/gtest.h>
@@ -11,144 +12,147 @@ namespace {
 
 using namespace osc_test;
 
-Origin origin_of(const Client& client) { return {Hand::osc, client.end().ip, client.end().port}; }
+CommandOrigin origin_of(const Client& client) { return {CommandSource::osc, client.end().ip, client.end().port}; }
 
 Message error_about(const std::string& address) { return {"/error", {Arg::of(address), Arg::of("wrong")}}; }
 
-// how many datagrams wait; a last one from the client to itself says that there are no more
-int waiting(const Client& client) {
+// Counts the waiting datagrams; the client sends itself a last one as an end marker.
+int count_waiting(const Client& client) {
   client.send(client.end(), "end!");
   int count = 0;
   while (client.receive().value_or("end!") != "end!") count++;
   return count;
 }
 
-struct SenderDesk {
-  SenderDesk() {
+struct SenderFixture {
+  SenderFixture() {
     EXPECT_TRUE(sender.open().ok());
     StreamTarget plain;
     StreamTarget with_errors;
     with_errors.errors = true;
-    sender.set_targets({{plain, target.end()}, {with_errors, watcher.end()}});
+    sender.set_targets({{plain, target.end()}, {with_errors, error_target.end()}});
   }
-  Client asker, target, watcher, listener;
-  HandClock hand;
-  NetClock clock = hand.clock();
+  Client requester, target, error_target, listener;
+  ManualClock manual_clock;
+  NetClock clock = manual_clock.clock();
   Counters counters;
-  Traffic traffic;
+  MessageLog traffic;
   int reply_fd = -1;
   Sender sender{counters, traffic, [this](const Endpoint&) { return reply_fd; }, clock};
 };
 
-TEST(Sender, AnswersGoToTheAsker) {
-  SenderDesk desk;
-  desk.sender.send({Outgoing::To::sender, origin_of(desk.asker), {"/list/bodies", {Arg::of("arm1"), Arg::of("arm2")}}});
-  EXPECT_EQ(desk.asker.receive(), Bytes().text("/list/bodies").text(",ss").text("arm1").text("arm2").str());
-  desk.sender.pong(origin_of(desk.asker), 12, 0.5);
-  EXPECT_EQ(desk.asker.receive(), Bytes().text("/pong").text(",if").u32(12).f(0.5f).str());
-  desk.sender.send({Outgoing::To::direct, origin_of(desk.asker), {"/hello", {}}});
-  EXPECT_EQ(desk.asker.receive(), Bytes().text("/hello").text(",").str());
-  EXPECT_EQ(waiting(desk.target), 0);
-  EXPECT_EQ(desk.counters.sent, 3u);
+TEST(Sender, RepliesToSender) {
+  SenderFixture fixture;
+  fixture.sender.send({Outgoing::Destination::sender,
+                       origin_of(fixture.requester),
+                       {"/list/bodies", {Arg::of("arm1"), Arg::of("arm2")}}});
+  EXPECT_EQ(fixture.requester.receive(), Bytes().text("/list/bodies").text(",ss").text("arm1").text("arm2").str());
+  fixture.sender.pong(origin_of(fixture.requester), 12, 0.5);
+  EXPECT_EQ(fixture.requester.receive(), Bytes().text("/pong").text(",if").u32(12).f(0.5f).str());
+  fixture.sender.send({Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
+  EXPECT_EQ(fixture.requester.receive(), Bytes().text("/hello").text(",").str());
+  EXPECT_EQ(count_waiting(fixture.target), 0);
+  EXPECT_EQ(fixture.counters.sent, 3u);
 }
 
-TEST(Sender, AnswersComeFromTheSocketThatWasAsked) {
-  SenderDesk desk;
+TEST(Sender, RepliesFromReceivingSocket) {
+  SenderFixture fixture;
   const Result<system::UdpSocket> listening = system::open_udp({0x7f000001, 0});
   ASSERT_TRUE(listening.ok());
-  desk.reply_fd = listening->fd();
+  fixture.reply_fd = listening->fd();
   Endpoint from;
-  desk.sender.pong(origin_of(desk.asker), 1, 1);
-  ASSERT_TRUE(desk.asker.receive(kPatienceMs, &from));
+  fixture.sender.pong(origin_of(fixture.requester), 1, 1);
+  ASSERT_TRUE(fixture.requester.receive(kTimeoutMs, &from));
   EXPECT_EQ(from, listening->local());
-  desk.sender.send({Outgoing::To::direct, origin_of(desk.asker), {"/hello", {}}});
-  ASSERT_TRUE(desk.asker.receive(kPatienceMs, &from));
+  fixture.sender.send({Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
+  ASSERT_TRUE(fixture.requester.receive(kTimeoutMs, &from));
   EXPECT_NE(from, listening->local());
 }
 
-TEST(Sender, SceneMessagesGoToEveryTarget) {
-  SenderDesk desk;
-  desk.sender.send({Outgoing::To::targets, {}, {"/pulse", {Arg::of(2.0), Arg::of(true)}}});
+TEST(Sender, SendsSceneMessagesToAllTargets) {
+  SenderFixture fixture;
+  fixture.sender.send({Outgoing::Destination::targets, {}, {"/pulse", {Arg::of(2.0), Arg::of(true)}}});
   const std::string expected = Bytes().text("/pulse").text(",fi").f(2).u32(1).str();
-  EXPECT_EQ(desk.target.receive(), expected);
-  EXPECT_EQ(desk.watcher.receive(), expected);
-  desk.sender.send({Outgoing::To::event, {}, {"/transport/state", {}}});
-  EXPECT_EQ(waiting(desk.target), 1);
-  EXPECT_EQ(waiting(desk.watcher), 1);
+  EXPECT_EQ(fixture.target.receive(), expected);
+  EXPECT_EQ(fixture.error_target.receive(), expected);
+  fixture.sender.send({Outgoing::Destination::event, {}, {"/transport/state", {}}});
+  EXPECT_EQ(count_waiting(fixture.target), 1);
+  EXPECT_EQ(count_waiting(fixture.error_target), 1);
 }
 
-TEST(Sender, ErrorsGoToTheAskerAndToWhoWantsThem) {
-  SenderDesk desk;
-  desk.sender.send({Outgoing::To::error, origin_of(desk.asker), error_about("/physics/part/mas")});
+TEST(Sender, SendsErrorsToSenderAndErrorTargets) {
+  SenderFixture fixture;
+  fixture.sender.send({Outgoing::Destination::error, origin_of(fixture.requester), error_about("/physics/part/mas")});
   const std::string expected = Bytes().text("/error").text(",ss").text("/physics/part/mas").text("wrong").str();
-  EXPECT_EQ(desk.asker.receive(), expected);
-  EXPECT_EQ(desk.watcher.receive(), expected);
-  EXPECT_EQ(waiting(desk.target), 0);
+  EXPECT_EQ(fixture.requester.receive(), expected);
+  EXPECT_EQ(fixture.error_target.receive(), expected);
+  EXPECT_EQ(count_waiting(fixture.target), 0);
 }
 
-TEST(Sender, TenErrorsASecondPerSender) {
-  SenderDesk desk;
-  const auto err = [&](const Client& who) {
-    for (int i = 0; i < 100; i++) desk.sender.send({Outgoing::To::error, origin_of(who), error_about("/x")});
+TEST(Sender, LimitsErrorsToTenPerSecond) {
+  SenderFixture fixture;
+  const auto err = [&](const Client& client) {
+    for (int i = 0; i < 100; i++)
+      fixture.sender.send({Outgoing::Destination::error, origin_of(client), error_about("/x")});
   };
-  err(desk.asker);
-  EXPECT_EQ(waiting(desk.asker), 10);
-  desk.hand.turn(0.999);
-  err(desk.asker);
-  EXPECT_EQ(waiting(desk.asker), 0);
-  err(desk.listener);
-  EXPECT_EQ(waiting(desk.listener), 10) << "another sender has its own ten";
-  desk.hand.turn(0.001);
-  err(desk.asker);
-  EXPECT_EQ(waiting(desk.asker), 10);
-  EXPECT_EQ(waiting(desk.watcher), 30) << "one who wants errors sees what was answered";
+  err(fixture.requester);
+  EXPECT_EQ(count_waiting(fixture.requester), 10);
+  fixture.manual_clock.advance(0.999);
+  err(fixture.requester);
+  EXPECT_EQ(count_waiting(fixture.requester), 0);
+  err(fixture.listener);
+  EXPECT_EQ(count_waiting(fixture.listener), 10) << "another sender has its own ten";
+  fixture.manual_clock.advance(0.001);
+  err(fixture.requester);
+  EXPECT_EQ(count_waiting(fixture.requester), 10);
+  EXPECT_EQ(count_waiting(fixture.error_target), 30) << "targets with errors=on get all errors that were sent";
 }
 
-TEST(Sender, AnswersAndStreamsAreNeverAnswered) {
-  SenderDesk desk;
+TEST(Sender, NeverAnswersRepliesAndStreams) {
+  SenderFixture fixture;
   for (const char* address :
        {"/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos",
         "/physics/contact", "/transport/state", "/script/error", "/script/ok"}) {
-    desk.sender.send({Outgoing::To::error, origin_of(desk.asker), error_about(address)});
+    fixture.sender.send({Outgoing::Destination::error, origin_of(fixture.requester), error_about(address)});
   }
-  EXPECT_EQ(waiting(desk.asker), 0);
-  EXPECT_EQ(waiting(desk.watcher), 0);
-  EXPECT_EQ(desk.counters.sent, 0u);
+  EXPECT_EQ(count_waiting(fixture.requester), 0);
+  EXPECT_EQ(count_waiting(fixture.error_target), 0);
+  EXPECT_EQ(fixture.counters.sent, 0u);
 }
 
-TEST(Sender, WhatTheSystemDoesNotTakeIsCounted) {
+TEST(Sender, CountsFailedSends) {
   log_to_stderr(false);
-  SenderDesk desk;
-  // no datagram goes to port 0
-  StreamTarget wish;
-  desk.sender.set_targets({{wish, {0x7f000001, 0}}});
-  for (int i = 0; i < 3; i++) desk.sender.send({Outgoing::To::targets, {}, {"/a", {}}});
-  EXPECT_EQ(desk.counters.unsent, 3u);
-  EXPECT_EQ(desk.counters.sent, 0u);
+  SenderFixture fixture;
+  // datagrams can't be sent to port 0
+  StreamTarget target;
+  fixture.sender.set_targets({{target, {0x7f000001, 0}}});
+  for (int i = 0; i < 3; i++) fixture.sender.send({Outgoing::Destination::targets, {}, {"/a", {}}});
+  EXPECT_EQ(fixture.counters.unsent, 3u);
+  EXPECT_EQ(fixture.counters.sent, 0u);
   log_to_stderr(true);
 }
 
-TEST(Sender, NoAddressNoAnswer) {
-  SenderDesk desk;
-  desk.sender.send({Outgoing::To::sender, {Hand::panel, 0, 0}, {"/a", {}}});
-  EXPECT_EQ(desk.counters.sent, 0u);
+TEST(Sender, SkipsReplyWithoutAddress) {
+  SenderFixture fixture;
+  fixture.sender.send({Outgoing::Destination::sender, {CommandSource::panel, 0, 0}, {"/a", {}}});
+  EXPECT_EQ(fixture.counters.sent, 0u);
 }
 
-TEST(Sender, TooLargeIsSaidAndNotSent) {
+TEST(Sender, ReportsTooLargeMessage) {
   log_to_stderr(false);
-  SenderDesk desk;
+  SenderFixture fixture;
   const std::uint64_t before = log_count(LogLevel::warning);
   Message m{"/large", std::vector<Arg>(20000, Arg::of(1.0))};
-  desk.sender.send({Outgoing::To::targets, {}, m});
-  desk.sender.send({Outgoing::To::targets, {}, m});
-  EXPECT_EQ(desk.counters.sent, 0u);
+  fixture.sender.send({Outgoing::Destination::targets, {}, m});
+  fixture.sender.send({Outgoing::Destination::targets, {}, m});
+  EXPECT_EQ(fixture.counters.sent, 0u);
   EXPECT_EQ(log_count(LogLevel::warning), before + 1);
   log_to_stderr(true);
 }
 
-// 300 senders pass through a table of 256: each still gets its ten, none more
-TEST(ErrorLimit, ManySenders) {
-  ErrorLimit limit;
+// 300 senders pass through a table of 256 entries: each can still get ten errors and no more.
+TEST(ErrorRateLimit, HandlesManySenders) {
+  ErrorRateLimit limit;
   for (std::uint32_t s = 0; s < 300; s++) {
     int allowed = 0;
     for (int i = 0; i < 25; i++) allowed += limit.allow({s + 1, 9}, 1000 + s) ? 1 : 0;

@@ -1,4 +1,4 @@
-// Which senders are served in full, and how much others get: addresses are data here.
+// Limits per source address: trusted senders and the amount that others get. Addresses are only data here.
 #include "osc/source_limit.h"
 
 #include <gtest/gtest.h>
@@ -12,47 +12,47 @@ std::uint32_t ip(const char* text) { return system::parse_ipv4(text).value(); }
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-struct Sources {
+struct LimitFixture {
   std::vector<Cidr> connected = {{0x7f000000, 8}, {0xc0a80105, 24}};  // loopback, 192.168.1.5/24
-  int asked = 0;
+  int subnet_reads = 0;
   std::int64_t now = 5 * kSecond;
-  SourceLimit limit = make({});
+  AmplificationLimit limit = make({});
 
-  SourceLimit make(std::vector<Cidr> allow) {
-    return SourceLimit(std::move(allow),
-                       [this] {
-                         asked++;
-                         return connected;
-                       },
-                       {1, 2});
+  AmplificationLimit make(std::vector<Cidr> allow) {
+    return AmplificationLimit(std::move(allow),
+                              [this] {
+                                subnet_reads++;
+                                return connected;
+                              },
+                              {1, 2});
   }
-  // how many of those datagrams may be sent
-  int sent(const char* to, std::size_t bytes, int count) {
+  // Returns the number of these datagrams that may be sent.
+  int count_allowed(const char* to, std::size_t bytes, int count) {
     int sent = 0;
-    for (int i = 0; i < count; i++) sent += limit.allows(ip(to), bytes, now) ? 1 : 0;
+    for (int i = 0; i < count; i++) sent += limit.try_consume(ip(to), bytes, now) ? 1 : 0;
     return sent;
   }
 };
 
-TEST(SourceLimit, ThisMachineAndConnectedSubnetsAreServedInFull) {
-  Sources sources;
+TEST(AmplificationLimit, TrustsConnectedSubnets) {
+  LimitFixture sources;
   for (const char* near : {"127.0.0.1", "127.9.9.9", "192.168.1.5", "192.168.1.77", "192.168.1.255"}) {
-    EXPECT_EQ(sources.sent(near, 1'000'000, 100), 100) << near;
-    EXPECT_FALSE(sources.limit.token(ip(near), true, sources.now)) << near;
+    EXPECT_EQ(sources.count_allowed(near, 1'000'000, 100), 100) << near;
+    EXPECT_FALSE(sources.limit.make_challenge(ip(near), true, sources.now)) << near;
   }
   EXPECT_EQ(sources.limit.withheld(), 0u);
 }
 
-TEST(SourceLimit, OthersGetThreeBytesForEachOfTheirs) {
+TEST(AmplificationLimit, AllowsThreeBytesPerByte) {
   for (const char* far : {"192.168.2.5", "10.0.0.1", "203.0.113.9", "8.8.8.8"}) {
-    Sources sources;
-    EXPECT_EQ(sources.sent(far, 1, 10), 0) << far << " has sent nothing";
+    LimitFixture sources;
+    EXPECT_EQ(sources.count_allowed(far, 1, 10), 0) << far << " has sent nothing";
     std::size_t received = 0;
     int sent = 0;
     for (const std::size_t bytes : {20, 28, 1, 200}) {
-      sources.limit.received(ip(far), bytes, sources.now);
+      sources.limit.add_credit(ip(far), bytes, sources.now);
       received += bytes;
-      sent += sources.sent(far, 8, 1000);
+      sent += sources.count_allowed(far, 8, 1000);
       EXPECT_LE(sent * 8, static_cast<int>(3 * received));
       EXPECT_GT(sent * 8, static_cast<int>(3 * received) - 8);
     }
@@ -60,81 +60,81 @@ TEST(SourceLimit, OthersGetThreeBytesForEachOfTheirs) {
   }
 }
 
-TEST(SourceLimit, CreditIsBounded) {
-  Sources sources;
-  for (int i = 0; i < 1000; i++) sources.limit.received(ip("10.0.0.1"), 60'000, sources.now);
-  EXPECT_EQ(sources.sent("10.0.0.1", 1024, 1000), SourceLimit::kMostCredit / 1024);
+TEST(AmplificationLimit, LimitsCredit) {
+  LimitFixture sources;
+  for (int i = 0; i < 1000; i++) sources.limit.add_credit(ip("10.0.0.1"), 60'000, sources.now);
+  EXPECT_EQ(sources.count_allowed("10.0.0.1", 1024, 1000), AmplificationLimit::kMaxCredit / 1024);
 }
 
-TEST(SourceLimit, WhoReturnsTheTokenIsServedInFull) {
-  Sources sources;
+TEST(AmplificationLimit, ReturnedTokenLiftsLimit) {
+  LimitFixture sources;
   const std::uint32_t far = ip("10.0.0.1");
-  sources.limit.received(far, 28, sources.now);
-  EXPECT_FALSE(sources.limit.token(far, false, sources.now)) << "nothing was withheld";
-  const std::optional<std::string> token = sources.limit.token(far, true, sources.now);
+  sources.limit.add_credit(far, 28, sources.now);
+  EXPECT_FALSE(sources.limit.make_challenge(far, false, sources.now)) << "nothing was withheld";
+  const std::optional<std::string> token = sources.limit.make_challenge(far, true, sources.now);
   ASSERT_TRUE(token);
-  EXPECT_FALSE(sources.limit.token(far, true, sources.now + kSecond / 2)) << "one a second";
-  EXPECT_FALSE(sources.limit.accept(far, "0123456789abcdef", sources.now));
-  EXPECT_FALSE(sources.limit.accept(ip("10.0.0.2"), *token, sources.now)) << "it is another address's";
-  EXPECT_EQ(sources.sent("10.0.0.1", 1000, 10), 0);
-  EXPECT_TRUE(sources.limit.accept(far, *token, sources.now + SourceLimit::kTokenLasts));
-  sources.now += SourceLimit::kTokenLasts;
-  EXPECT_EQ(sources.sent("10.0.0.1", 1000, 10), 10);
-  EXPECT_EQ(sources.sent("10.0.0.2", 1000, 10), 0);
-  EXPECT_FALSE(sources.limit.token(far, true, sources.now));
-  sources.now += SourceLimit::kVerifiedLasts;
-  EXPECT_EQ(sources.sent("10.0.0.1", 1000, 10), 0) << "an address may have another owner by now";
-  EXPECT_TRUE(sources.limit.token(far, false, sources.now)) << "something was withheld";
+  EXPECT_FALSE(sources.limit.make_challenge(far, true, sources.now + kSecond / 2)) << "one a second";
+  EXPECT_FALSE(sources.limit.verify_token(far, "0123456789abcdef", sources.now));
+  EXPECT_FALSE(sources.limit.verify_token(ip("10.0.0.2"), *token, sources.now)) << "it is another address's";
+  EXPECT_EQ(sources.count_allowed("10.0.0.1", 1000, 10), 0);
+  EXPECT_TRUE(sources.limit.verify_token(far, *token, sources.now + AmplificationLimit::kTokenLifetime));
+  sources.now += AmplificationLimit::kTokenLifetime;
+  EXPECT_EQ(sources.count_allowed("10.0.0.1", 1000, 10), 10);
+  EXPECT_EQ(sources.count_allowed("10.0.0.2", 1000, 10), 0);
+  EXPECT_FALSE(sources.limit.make_challenge(far, true, sources.now));
+  sources.now += AmplificationLimit::kVerifiedLifetime;
+  EXPECT_EQ(sources.count_allowed("10.0.0.1", 1000, 10), 0) << "an address may have another owner by now";
+  EXPECT_TRUE(sources.limit.make_challenge(far, false, sources.now)) << "something was withheld";
 }
 
-TEST(SourceLimit, TokensOfOldAreWorthless) {
-  Sources sources;
+TEST(AmplificationLimit, RejectsExpiredTokens) {
+  LimitFixture sources;
   const std::uint32_t far = ip("10.0.0.1");
-  const std::optional<std::string> token = sources.limit.token(far, true, sources.now);
+  const std::optional<std::string> token = sources.limit.make_challenge(far, true, sources.now);
   ASSERT_TRUE(token);
-  EXPECT_FALSE(sources.limit.accept(far, *token, sources.now + 2 * SourceLimit::kTokenLasts));
+  EXPECT_FALSE(sources.limit.verify_token(far, *token, sources.now + 2 * AmplificationLimit::kTokenLifetime));
 }
 
-TEST(SourceLimit, ForgedSendersDoNotPushOutWhoHasReturnedTheToken) {
-  Sources sources;
+TEST(AmplificationLimit, ForgedSendersDoNotEvictVerifiedOnes) {
+  LimitFixture sources;
   const std::uint32_t far = ip("10.0.0.1");
-  ASSERT_TRUE(sources.limit.accept(far, *sources.limit.token(far, true, sources.now), sources.now));
+  ASSERT_TRUE(sources.limit.verify_token(far, *sources.limit.make_challenge(far, true, sources.now), sources.now));
   for (std::uint32_t i = 0; i < 100'000; i++) {
-    sources.limit.received(ip("20.0.0.0") + i, 100, sources.now);
-    (void)sources.limit.allows(ip("20.0.0.0") + i, 1000, sources.now);
+    sources.limit.add_credit(ip("20.0.0.0") + i, 100, sources.now);
+    (void)sources.limit.try_consume(ip("20.0.0.0") + i, 1000, sources.now);
   }
-  EXPECT_EQ(sources.sent("10.0.0.1", 1000, 10), 10);
+  EXPECT_EQ(sources.count_allowed("10.0.0.1", 1000, 10), 10);
 }
 
-TEST(SourceLimit, AllowedRangesAreServedInFull) {
-  Sources sources;
+TEST(AmplificationLimit, TrustsAllowedRanges) {
+  LimitFixture sources;
   sources.limit = sources.make(*parse_osc_allow("203.0.113.9,10.1.0.0/16"));
-  EXPECT_EQ(sources.sent("203.0.113.9", 1000, 10), 10);
-  EXPECT_EQ(sources.sent("10.1.200.3", 1000, 10), 10);
-  EXPECT_EQ(sources.sent("203.0.113.10", 1000, 10), 0);
-  EXPECT_EQ(sources.sent("10.2.0.1", 1000, 10), 0);
+  EXPECT_EQ(sources.count_allowed("203.0.113.9", 1000, 10), 10);
+  EXPECT_EQ(sources.count_allowed("10.1.200.3", 1000, 10), 10);
+  EXPECT_EQ(sources.count_allowed("203.0.113.10", 1000, 10), 0);
+  EXPECT_EQ(sources.count_allowed("10.2.0.1", 1000, 10), 0);
 }
 
-TEST(SourceLimit, NetworksThatComeLaterAreSeenSoonAndNotAskedForAllTheTime) {
-  Sources sources;
-  EXPECT_EQ(sources.sent("10.0.0.7", 100, 1000), 0);
-  EXPECT_EQ(sources.asked, 1);
+TEST(AmplificationLimit, CachesSubnets) {
+  LimitFixture sources;
+  EXPECT_EQ(sources.count_allowed("10.0.0.7", 100, 1000), 0);
+  EXPECT_EQ(sources.subnet_reads, 1);
   sources.connected.push_back({ip("10.0.0.0"), 24});
-  sources.now += SourceLimit::kSubnetsLast;
-  EXPECT_EQ(sources.sent("10.0.0.7", 100, 1000), 1000);
-  EXPECT_EQ(sources.asked, 2);
+  sources.now += AmplificationLimit::kSubnetsLifetime;
+  EXPECT_EQ(sources.count_allowed("10.0.0.7", 100, 1000), 1000);
+  EXPECT_EQ(sources.subnet_reads, 2);
 }
 
-// the reference's vector of 16 bytes, 00 to 0f, with the key 00 to 0f
-TEST(SipHash, AgreesWithTheReference) {
+// Test vector of the reference implementation: 16 bytes, 00 to 0f, with the key 00 to 0f.
+TEST(SipHash, MatchesReference) {
   EXPECT_EQ(sip_hash({0x0706050403020100, 0x0f0e0d0c0b0a0908}, 0x0706050403020100, 0x0f0e0d0c0b0a0908),
             0x3f2acc7f57c29bdbU);
 }
 
-TEST(ConnectedSubnets, LoopbackIsOne) {
+TEST(ConnectedSubnets, IncludeLoopback) {
   bool loopback = false;
   for (const Cidr& subnet : connected_subnets()) {
-    loopback = loopback || subnet.holds(0x7f000001);
+    loopback = loopback || subnet.contains(0x7f000001);
     EXPECT_GT(subnet.bits, 0);
     EXPECT_LE(subnet.bits, 32);
   }

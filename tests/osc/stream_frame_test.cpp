@@ -1,4 +1,4 @@
-// Stream frames: the exact bytes of hand-made snapshots, against a writer that knows only the specification.
+// Stream frames: the exact bytes of hand-made snapshots, compared with a writer based only on the specification.
 #include "osc/stream_frame.h"
 
 #include <gtest/gtest.h>
@@ -24,80 +24,80 @@ std::vector<std::string> datagrams(const StreamFrame& frame) {
   return list;
 }
 
-std::vector<std::string> framed(const Snapshot& snapshot, const StreamTarget& wish) {
+std::vector<std::string> framed(const Snapshot& snapshot, const StreamTarget& target) {
   StreamFrame frame(kTestOffsets);
-  frame.lay_out(snapshot.roster, wish);
+  frame.lay_out(snapshot.body_list, target);
   frame.fill(snapshot);
   return datagrams(frame);
 }
 
-// the message of one stream of one body, from the rule that numbers were made by
+// Returns the expected message of one stream and body, computed from the rule for the numbers.
 std::string message(const char* stream, const Snapshot& s, std::size_t body) {
-  const RosterBody& b = s.roster->bodies[body];
+  const BodyEntry& b = s.body_list->bodies[body];
   const std::string name = stream;
   const std::uint32_t offset = name == "pos" ? 1 : name == "rot" ? 4 : name == "relrot" ? 9 : 13;
   const std::uint32_t width = name == "rot" ? 4 : 3;
   Bytes bytes;
-  bytes.text("/physics/joint/" + name).text(",s" + std::string(b.joints.size() * width, 'f')).text(b.name);
-  for (const std::uint32_t joint : b.joints) {
+  bytes.text("/physics/joint/" + name).text(",s" + std::string(b.joint_offsets.size() * width, 'f')).text(b.name);
+  for (const std::uint32_t joint : b.joint_offsets) {
     for (std::uint32_t k = 0; k < width; k++) bytes.f(static_cast<float>(test_number(joint + offset + k)));
   }
   return bytes.str();
 }
 
-TEST(StreamFrame, OneMessageADatagram) {
+TEST(StreamFrame, SendsOneMessagePerDatagram) {
   const Snapshot s = test_world({{"arm", 2}, {"leg", 1}});
   EXPECT_EQ(framed(s, {}),
             (std::vector<std::string>{message("pos", s, 0), message("pos", s, 1), message("rot", s, 0),
                                       message("rot", s, 1), message("relrot", s, 0), message("relrot", s, 1)}));
 }
 
-// written out in full: one joint at (1, 2, 3)
-TEST(StreamFrame, OnePositionByHand) {
+// The expected bytes written out: one joint at (1, 2, 3).
+TEST(StreamFrame, WritesExactBytes) {
   Snapshot s = test_world({{"a", 1}});
-  s.live.assign(s.live.size(), 0);
-  s.live[s.roster->bodies[0].joints[0] + kTestOffsets.joint_position] = 1;
-  s.live[s.roster->bodies[0].joints[0] + kTestOffsets.joint_position + 1] = 2;
-  s.live[s.roster->bodies[0].joints[0] + kTestOffsets.joint_position + 2] = 3;
-  StreamTarget wish;
-  wish.rot = wish.relrot = false;
+  s.transient.assign(s.transient.size(), 0);
+  s.transient[s.body_list->bodies[0].joint_offsets[0] + kTestOffsets.joint_position] = 1;
+  s.transient[s.body_list->bodies[0].joint_offsets[0] + kTestOffsets.joint_position + 1] = 2;
+  s.transient[s.body_list->bodies[0].joint_offsets[0] + kTestOffsets.joint_position + 2] = 3;
+  StreamTarget target;
+  target.rot = target.relrot = false;
   const std::string expected("/physics/joint/pos\0\0,sfff\0\0\0a\0\0\0\x3f\x80\0\0\x40\0\0\0\x40\x40\0\0", 44);
-  EXPECT_EQ(framed(s, wish), std::vector<std::string>{expected});
+  EXPECT_EQ(framed(s, target), std::vector<std::string>{expected});
 }
 
-TEST(StreamFrame, StreamsThatAreWished) {
+TEST(StreamFrame, ContainsConfiguredStreams) {
   const Snapshot s = test_world({{"arm", 3}});
-  StreamTarget wish;
-  wish.pos = wish.rot = wish.relrot = false;
-  EXPECT_TRUE(framed(s, wish).empty());
-  wish.relpos = true;
-  EXPECT_EQ(framed(s, wish), std::vector<std::string>{message("relpos", s, 0)});
-  wish.rot = true;
-  EXPECT_EQ(framed(s, wish), (std::vector<std::string>{message("rot", s, 0), message("relpos", s, 0)}));
+  StreamTarget target;
+  target.pos = target.rot = target.relrot = false;
+  EXPECT_TRUE(framed(s, target).empty());
+  target.relpos = true;
+  EXPECT_EQ(framed(s, target), std::vector<std::string>{message("relpos", s, 0)});
+  target.rot = true;
+  EXPECT_EQ(framed(s, target), (std::vector<std::string>{message("rot", s, 0), message("relpos", s, 0)}));
 }
 
-TEST(StreamFrame, BodiesByPatternAndThoseWithJoints) {
+TEST(StreamFrame, SelectsBodiesByPattern) {
   const Snapshot s = test_world({{"arm1", 1}, {"box", 0}, {"leg", 2}, {"arm2", 1}});
-  StreamTarget wish;
-  wish.rot = wish.relrot = false;
-  EXPECT_EQ(framed(s, wish),
+  StreamTarget target;
+  target.rot = target.relrot = false;
+  EXPECT_EQ(framed(s, target),
             (std::vector<std::string>{message("pos", s, 0), message("pos", s, 2), message("pos", s, 3)}));
-  wish.bodies = "arm*";
-  EXPECT_EQ(framed(s, wish), (std::vector<std::string>{message("pos", s, 0), message("pos", s, 3)}));
-  wish.bodies = "leg";
-  EXPECT_EQ(framed(s, wish), std::vector<std::string>{message("pos", s, 2)});
-  wish.bodies = "box";
-  EXPECT_TRUE(framed(s, wish).empty());
+  target.bodies = "arm*";
+  EXPECT_EQ(framed(s, target), (std::vector<std::string>{message("pos", s, 0), message("pos", s, 3)}));
+  target.bodies = "leg";
+  EXPECT_EQ(framed(s, target), std::vector<std::string>{message("pos", s, 2)});
+  target.bodies = "box";
+  EXPECT_TRUE(framed(s, target).empty());
 }
 
-// 17 joints, names of six letters: 288, 372 and 292 bytes; a bundle of 1472 holds four, three and four, and what is
-// left of one stream shares its bundle with the next
-TEST(StreamFrame, BundlesHoldWholeMessages) {
+// 17 joints, names of six letters: 288, 372 and 292 bytes. A bundle of 1472 bytes holds four, three and four messages;
+// the last messages of a stream share a bundle with the first ones of the next.
+TEST(StreamFrame, BundlesContainWholeMessages) {
   std::vector<FakeBody> bodies(9);
   for (std::size_t i = 0; i < bodies.size(); i++) bodies[i] = {"body_" + std::to_string(i), 17};
   const Snapshot s = test_world(bodies);
-  StreamTarget wish;
-  wish.bundle = 1472;
+  StreamTarget target;
+  target.bundle = 1472;
   std::vector<std::string> pos, rot, relrot;
   for (std::size_t i = 0; i < 9; i++) {
     pos.push_back(message("pos", s, i));
@@ -108,7 +108,7 @@ TEST(StreamFrame, BundlesHoldWholeMessages) {
   EXPECT_EQ(rot[0].size(), 372u);
   EXPECT_EQ(relrot[0].size(), 292u);
   // 16 + 4 (4 + 288) = 1184; 16 + 292 + 3 · 376 = 1436; 16 + 3 · 376 + 296 = 1440; 16 + 4 · 296 = 1200
-  EXPECT_EQ(framed(s, wish),
+  EXPECT_EQ(framed(s, target),
             (std::vector<std::string>{
                 bundle(1, {pos[0], pos[1], pos[2], pos[3]}), bundle(1, {pos[4], pos[5], pos[6], pos[7]}),
                 bundle(1, {pos[8], rot[0], rot[1], rot[2]}), bundle(1, {rot[3], rot[4], rot[5]}),
@@ -116,8 +116,8 @@ TEST(StreamFrame, BundlesHoldWholeMessages) {
                 bundle(1, {relrot[5], relrot[6], relrot[7], relrot[8]})}));
 }
 
-// without a wish: single messages up to 20 bodies that stream, bundles of at most 1472 bytes above
-TEST(StreamFrame, BundlesComeWithTheTwentyFirstBody) {
+// Without a configured bundle size: single messages for up to 20 bodies, otherwise bundles of at most 1472 bytes.
+TEST(StreamFrame, BundlesMoreThanTwentyBodies) {
   std::vector<FakeBody> bodies = {{"still", 0}};
   for (int i = 0; i < 20; i++) bodies.push_back({"b" + std::to_string(i), 4});
   EXPECT_EQ(framed(test_world(bodies), {}).size(), 60u);
@@ -136,50 +136,50 @@ TEST(StreamFrame, BundlesComeWithTheTwentyFirstBody) {
   EXPECT_EQ(framed(test_world(bodies), off).size(), 63u);
 }
 
-// a message that is larger than the bundle's limit goes alone, and not as a bundle
-TEST(StreamFrame, LargeBodiesGoAlone) {
+// A message larger than the bundle limit is sent alone and without a bundle header.
+TEST(StreamFrame, SendsLargeBodiesAlone) {
   const Snapshot s = test_world({{"a", 3}, {"worm", 200}, {"b", 3}});
-  StreamTarget wish;
-  wish.bundle = 1472;
-  wish.rot = wish.relrot = false;
-  EXPECT_EQ(framed(s, wish),
+  StreamTarget target;
+  target.bundle = 1472;
+  target.rot = target.relrot = false;
+  EXPECT_EQ(framed(s, target),
             (std::vector<std::string>{message("pos", s, 0), message("pos", s, 1), message("pos", s, 2)}));
 }
 
-// pos of n joints: 20 + pad4(3 + 3 n) + 8 + 12 n bytes with this name; 4364 are the most that a datagram holds
-TEST(StreamFrame, TooLargeIsLeftOutAndNamed) {
+// pos of n joints: 20 + padded(3 + 3 n) + 8 + 12 n bytes with this name; a datagram holds at most 4364.
+TEST(StreamFrame, ReportsTooLargeBodies) {
   const Snapshot s = test_world({{"huge", 4400}, {"a", 1}});
   StreamFrame frame(kTestOffsets);
-  StreamTarget wish;
-  wish.rot = wish.relrot = false;
-  frame.lay_out(s.roster, wish);
+  StreamTarget target;
+  target.rot = target.relrot = false;
+  frame.lay_out(s.body_list, target);
   frame.fill(s);
   EXPECT_EQ(datagrams(frame), std::vector<std::string>{message("pos", s, 1)});
   EXPECT_EQ(frame.too_large(), std::vector<std::string>{"huge"});
   const Snapshot fits = test_world({{"huge", 4364}});
-  frame.lay_out(fits.roster, wish);
+  frame.lay_out(fits.body_list, target);
   frame.fill(fits);
   ASSERT_EQ(datagrams(frame).size(), 1u);
   EXPECT_LE(datagrams(frame)[0].size(), 65504u);
   EXPECT_GT(datagrams(frame)[0].size() + 15, 65504u);
 }
 
-// the same layout shows the next snapshot's numbers
-TEST(StreamFrame, NumbersAreNewEachFrame) {
+// The same layout is filled with the numbers of the next snapshot.
+TEST(StreamFrame, UpdatesNumbersPerFrame) {
   Snapshot s = test_world({{"arm", 2}});
   StreamFrame frame(kTestOffsets);
-  frame.lay_out(s.roster, {});
+  frame.lay_out(s.body_list, {});
   frame.fill(s);
   const std::vector<std::string> first = datagrams(frame);
-  for (double& v : s.live) v += 1000;
-  frame.lay_out(s.roster, {});
+  for (double& v : s.transient) v += 1000;
+  frame.lay_out(s.body_list, {});
   frame.fill(s);
   EXPECT_NE(datagrams(frame), first);
   const auto decoded = decode_packet(datagrams(frame)[0].data(), datagrams(frame)[0].size());
-  EXPECT_EQ(decoded->messages.at(0).args.at(1).number, 1000 + test_number(s.roster->bodies[0].joints[0] + 1));
+  EXPECT_EQ(decoded->messages.at(0).args.at(1).number, 1000 + test_number(s.body_list->bodies[0].joint_offsets[0] + 1));
 }
 
-TEST(StreamFrame, NoRosterNothing) {
+TEST(StreamFrame, IsEmptyWithoutBodies) {
   StreamFrame frame(kTestOffsets);
   frame.lay_out(nullptr, {});
   frame.fill({});

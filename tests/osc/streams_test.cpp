@@ -1,4 +1,4 @@
-// The streams' beat: deadlines do not drift, missed frames are left out, a paused world is still shown.
+// The schedule of streams: no drift, missed frames are skipped, a paused world is sent repeatedly.
 #include "osc/streams.h"
 
 #include <gtest/gtest.h>
@@ -20,161 +20,162 @@ system::UdpSender open_sender() {
   return sender;
 }
 
-struct StreamsDesk {
-  StreamsDesk() {
-    auto snapshot = engine.link.snapshots.spare();
+struct StreamsFixture {
+  StreamsFixture() {
+    auto snapshot = engine.link.snapshots.acquire_buffer();
     *snapshot = test_world({{"arm", 1}});
     engine.link.snapshots.publish(snapshot);
   }
-  Target target(const Client& client, double rate) {
-    StreamTarget wish;
-    wish.rate = rate;
-    wish.rot = wish.relrot = false;
-    return {wish, client.end()};
+  ResolvedTarget target(const Client& client, double rate) {
+    StreamTarget config;
+    config.rate = rate;
+    config.rot = config.relrot = false;
+    return {config, client.end()};
   }
   std::uint64_t sent() const { return engine.link.counters.sent; }
-  // sends what is due, as the loop does after its wait
+  // Waits for the timeout and sends the frames that are due, like the network thread's loop.
   void wait_and_send() {
-    hand.ns += streams.wait().value();
+    manual_clock.ns += streams.timeout().value();
     streams.send_due(sender);
   }
 
   FakeEngine engine;
-  HandClock hand;
-  NetClock clock = hand.clock();
+  ManualClock manual_clock;
+  NetClock clock = manual_clock.clock();
   system::UdpSender sender = open_sender();
   Streams streams{engine.link, kTestOffsets, clock};
   Client a, b;
 };
 
-TEST(Streams, OneFrameAPeriodWithoutDrift) {
-  StreamsDesk desk;
-  desk.streams.set_targets({desk.target(desk.a, 60)});
-  EXPECT_EQ(desk.streams.wait(), 0) << "the first frame comes at once";
-  const std::int64_t begin = desk.hand.ns;
+TEST(Streams, SendsFramesWithoutDrift) {
+  StreamsFixture fixture;
+  fixture.streams.set_targets({fixture.target(fixture.a, 60)});
+  EXPECT_EQ(fixture.streams.timeout(), 0) << "the first frame comes at once";
+  const std::int64_t begin = fixture.manual_clock.ns;
   for (int i = 0; i < 601; i++) {
-    desk.wait_and_send();
-    desk.hand.ns += i % 7 * std::int64_t{1'000'000};  // the loop had other things to do
+    fixture.wait_and_send();
+    fixture.manual_clock.ns += i % 7 * std::int64_t{1'000'000};  // the loop was delayed
   }
-  EXPECT_EQ(desk.sent(), 601u);
-  desk.hand.ns += desk.streams.wait().value();
-  // 601 periods of 16 666 666 ns, whatever happened in between
-  EXPECT_EQ(desk.hand.ns - begin, 601 * std::int64_t{16'666'666});
+  EXPECT_EQ(fixture.sent(), 601u);
+  fixture.manual_clock.ns += fixture.streams.timeout().value();
+  // 601 periods of 16 666 666 ns, regardless of the delays
+  EXPECT_EQ(fixture.manual_clock.ns - begin, 601 * std::int64_t{16'666'666});
 }
 
-TEST(Streams, SubscribersFramesPassTheGateAndOthersDoNot) {
-  StreamsDesk desk;
+TEST(Streams, GateAppliesOnlyToSubscribers) {
+  StreamsFixture fixture;
   std::size_t bytes = 0;
   int asked = 0;
   bool open = false;
-  Streams streams(desk.engine.link, kTestOffsets, desk.clock, [&](const Endpoint& to, std::size_t size, std::size_t) {
-    EXPECT_EQ(to, desk.b.end());
-    bytes = size;
-    asked++;
-    return open;
-  });
-  Target subscribed = desk.target(desk.b, 10);
+  Streams streams(fixture.engine.link, kTestOffsets, fixture.clock,
+                  [&](const Endpoint& to, std::size_t size, std::size_t) {
+                    EXPECT_EQ(to, fixture.b.end());
+                    bytes = size;
+                    asked++;
+                    return open;
+                  });
+  ResolvedTarget subscribed = fixture.target(fixture.b, 10);
   subscribed.subscribed = true;
-  streams.set_targets({desk.target(desk.a, 10), subscribed});
-  streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 1u);
-  EXPECT_EQ(desk.a.receive()->size(), bytes);
+  streams.set_targets({fixture.target(fixture.a, 10), subscribed});
+  streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 1u);
+  EXPECT_EQ(fixture.a.receive()->size(), bytes);
   open = true;
-  desk.hand.turn(0.1);
-  streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 3u);
+  fixture.manual_clock.advance(0.1);
+  streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 3u);
   EXPECT_EQ(asked, 2) << "a frame that was withheld is left out";
 }
 
-TEST(Streams, OneCallSendsASliceToSubscribersInTurn) {
-  StreamsDesk desk;
-  const auto snapshot = desk.engine.link.snapshots.spare();
+TEST(Streams, SendsSlicesToSubscribersInTurn) {
+  StreamsFixture fixture;
+  const auto snapshot = fixture.engine.link.snapshots.acquire_buffer();
   std::vector<FakeBody> bodies;
   bodies.reserve(300);
   for (int i = 0; i < 300; i++) bodies.push_back({"body" + std::to_string(i), 17});
   *snapshot = test_world(bodies);
-  desk.engine.link.snapshots.publish(snapshot);
+  fixture.engine.link.snapshots.publish(snapshot);
   std::vector<Endpoint> served;
-  Streams streams(desk.engine.link, kTestOffsets, desk.clock, [&](const Endpoint& to, std::size_t, std::size_t) {
+  Streams streams(fixture.engine.link, kTestOffsets, fixture.clock, [&](const Endpoint& to, std::size_t, std::size_t) {
     served.push_back(to);
     return true;
   });
-  std::vector<Target> targets;
+  std::vector<ResolvedTarget> targets;
   const std::array<Client, 6> clients;
   for (const Client& client : clients) {
-    targets.push_back(desk.target(client, 10));
+    targets.push_back(fixture.target(client, 10));
     targets.back().subscribed = true;
   }
   streams.set_targets(targets);
   for (std::size_t call = 1; call <= 3; call++) {
-    streams.send_due(desk.sender);
+    streams.send_due(fixture.sender);
     EXPECT_EQ(served.size(), 2 * call) << "two frames are more than a slice";
-    EXPECT_EQ(streams.wait() == 0, call < 3);
+    EXPECT_EQ(streams.timeout() == 0, call < 3);
   }
   for (std::size_t i = 0; i < clients.size(); i++) EXPECT_EQ(served[i], clients[i].end());
 }
 
-TEST(Streams, EarlySendsNothing) {
-  StreamsDesk desk;
-  desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender);
-  desk.hand.turn(0.0999);
-  desk.streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 1u);
-  desk.hand.turn(0.0001);
-  desk.streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 2u);
+TEST(Streams, SendsNothingEarly) {
+  StreamsFixture fixture;
+  fixture.streams.set_targets({fixture.target(fixture.a, 10)});
+  fixture.streams.send_due(fixture.sender);
+  fixture.manual_clock.advance(0.0999);
+  fixture.streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 1u);
+  fixture.manual_clock.advance(0.0001);
+  fixture.streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 2u);
 }
 
-// the machine slept for two and a half periods: one frame now, and the beat as before
-TEST(Streams, MissedFramesAreLeftOut) {
-  StreamsDesk desk;
-  desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender);
-  desk.hand.turn(0.25);
-  desk.streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 2u);
-  EXPECT_EQ(desk.streams.wait(), 50'000'000);
+// The machine slept for two and a half periods: one frame is sent now, and the schedule is unchanged.
+TEST(Streams, SkipsMissedFrames) {
+  StreamsFixture fixture;
+  fixture.streams.set_targets({fixture.target(fixture.a, 10)});
+  fixture.streams.send_due(fixture.sender);
+  fixture.manual_clock.advance(0.25);
+  fixture.streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 2u);
+  EXPECT_EQ(fixture.streams.timeout(), 50'000'000);
 }
 
-TEST(Streams, EachTargetHasItsRate) {
-  StreamsDesk desk;
-  desk.streams.set_targets({desk.target(desk.a, 100), desk.target(desk.b, 25)});
+TEST(Streams, TargetsHaveSeparateRates) {
+  StreamsFixture fixture;
+  fixture.streams.set_targets({fixture.target(fixture.a, 100), fixture.target(fixture.b, 25)});
   for (int i = 0; i <= 100; i++) {
-    desk.streams.send_due(desk.sender);
-    desk.hand.turn(0.01);
+    fixture.streams.send_due(fixture.sender);
+    fixture.manual_clock.advance(0.01);
   }
   int frames_a = 0;
   int frames_b = 0;
-  while (desk.a.receive(0)) frames_a++;
-  while (desk.b.receive(0)) frames_b++;
+  while (fixture.a.receive(0)) frames_a++;
+  while (fixture.b.receive(0)) frames_b++;
   EXPECT_EQ(frames_a, 101);
   EXPECT_EQ(frames_b, 26);
 }
 
-TEST(Streams, OldTargetsKeepTheirBeat) {
-  StreamsDesk desk;
-  desk.streams.set_targets({desk.target(desk.a, 10)});
-  desk.streams.send_due(desk.sender);
-  desk.hand.turn(0.04);
-  desk.streams.set_targets({desk.target(desk.b, 1), desk.target(desk.a, 10)});
-  EXPECT_EQ(desk.streams.wait(), 0) << "the new one begins at once";
-  desk.streams.send_due(desk.sender);
-  EXPECT_EQ(desk.sent(), 2u);
-  EXPECT_EQ(desk.streams.wait(), 60'000'000) << "the old one has 60 ms left";
-  desk.streams.set_targets({});
-  EXPECT_FALSE(desk.streams.wait());
+TEST(Streams, UnchangedTargetsKeepSchedule) {
+  StreamsFixture fixture;
+  fixture.streams.set_targets({fixture.target(fixture.a, 10)});
+  fixture.streams.send_due(fixture.sender);
+  fixture.manual_clock.advance(0.04);
+  fixture.streams.set_targets({fixture.target(fixture.b, 1), fixture.target(fixture.a, 10)});
+  EXPECT_EQ(fixture.streams.timeout(), 0) << "the new one begins at once";
+  fixture.streams.send_due(fixture.sender);
+  EXPECT_EQ(fixture.sent(), 2u);
+  EXPECT_EQ(fixture.streams.timeout(), 60'000'000) << "the old one has 60 ms left";
+  fixture.streams.set_targets({});
+  EXPECT_FALSE(fixture.streams.timeout());
 }
 
-TEST(Streams, TargetsWithoutStreamsCostNothing) {
-  StreamsDesk desk;
-  Target t = desk.target(desk.a, 10);
-  t.wish.pos = false;
-  desk.streams.set_targets({t});
-  EXPECT_FALSE(desk.streams.wait());
+TEST(Streams, IgnoresTargetsWithoutStreams) {
+  StreamsFixture fixture;
+  ResolvedTarget t = fixture.target(fixture.a, 10);
+  t.config.pos = false;
+  fixture.streams.set_targets({t});
+  EXPECT_FALSE(fixture.streams.timeout());
 }
 
-TEST(Streams, BeforeTheFirstSnapshotNothingIsSent) {
+TEST(Streams, SendsNothingBeforeFirstSnapshot) {
   FakeEngine engine;
   const NetClock clock;
   const Client client;
@@ -185,8 +186,8 @@ TEST(Streams, BeforeTheFirstSnapshotNothingIsSent) {
   EXPECT_EQ(engine.link.counters.sent, 0u);
 }
 
-// runs of equal and unequal sizes arrive as they were cut, whether the kernel cuts or we do
-TEST(Batch, DatagramsArriveWhole) {
+// Datagrams of equal and unequal sizes arrive unchanged, whether the kernel or our code segments them.
+TEST(UdpBatch, PreservesDatagrams) {
   system::UdpSender sender = open_sender();
   for (const bool segmentation : {true, false}) {
     const Client client;
@@ -209,12 +210,12 @@ TEST(Batch, DatagramsArriveWhole) {
       if (!datagram) break;
       ASSERT_EQ(*datagram, given[at]) << at;
     }
-    // all of them where the kernel grants the buffer, and never fewer than its default holds
+    // all of them if the kernel grants the buffer, otherwise at least as many as its default holds
     EXPECT_GE(at, 100u);
   }
 }
 
-TEST(Batch, ErrorIsAnAnswer) {
+TEST(UdpBatch, ReportsErrors) {
   system::UdpSender sender = open_sender();
   bool segmentation = true;
   const std::string bytes(std::size_t{2} * 65508, 'x');  // larger than UDP carries

@@ -1,4 +1,4 @@
-// The validator: good packets pass, each bad one is refused for its own reason, and no byte behind the end is read.
+// The validator accepts valid packets, rejects each malformed one for its own reason, and never reads past the end.
 #include "osc/validate.h"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ namespace {
 
 using namespace osc_test;
 
-// the bytes stand in an allocation of exactly their size, so that the sanitizer sees one read too many
+// Copies the bytes to an allocation of exact size, so that the sanitizer detects reads past the end.
 const char* fault_of(const std::string& bytes) {
-  const auto exact = std::make_unique<char[]>(bytes.size());
-  std::copy(bytes.begin(), bytes.end(), exact.get());
-  return packet_fault(exact.get(), bytes.size());
+  const auto buffer = std::make_unique<char[]>(bytes.size());
+  std::copy(bytes.begin(), bytes.end(), buffer.get());
+  return packet_fault(buffer.get(), bytes.size());
 }
 
-TEST(Validate, PassesWhatTheSpecificationAllows) {
+TEST(Validate, AcceptsValidPackets) {
   const std::vector<std::string> good = {
       Bytes().text("/a").str(),            // an old client without type tags
       Bytes().text("/a").text(",").str(),  // no arguments
@@ -49,11 +49,11 @@ TEST(Validate, PassesWhatTheSpecificationAllows) {
   for (const std::string& bytes : good) EXPECT_EQ(fault_of(bytes), nullptr) << testing::PrintToString(bytes);
 }
 
-TEST(Validate, RefusesEachMalformedPacket) {
-  for (const BadPacket& bad : bad_packets()) EXPECT_NE(fault_of(bad.bytes), nullptr) << bad.what;
+TEST(Validate, RejectsMalformedPackets) {
+  for (const BadPacket& bad : bad_packets()) EXPECT_NE(fault_of(bad.bytes), nullptr) << bad.description;
 }
 
-TEST(Validate, SaysWhatIsWrong) {
+TEST(Validate, ReportsReason) {
   EXPECT_STREQ(fault_of(from_hex("2f610000 2c626200 7fffff00")), "a blob larger than its message");
   EXPECT_STREQ(fault_of(from_hex("2362756e646c6500 0000000000000001 fffffffc")),
                "a bundle's element is larger than the bundle");
@@ -62,8 +62,8 @@ TEST(Validate, SaysWhatIsWrong) {
   EXPECT_STREQ(fault_of(nested(9)), "bundles nested deeper than 8");
 }
 
-// every prefix of a good packet is either whole itself or refused, never read beyond
-TEST(Validate, SurvivesEveryCut) {
+// Each prefix of a valid packet is either complete or rejected, and never read past its end.
+TEST(Validate, HandlesTruncatedPackets) {
   const std::string whole = bundle(
       1, {Bytes().text("/ab").text(",s[f]b").text("name").f(1).u32(5).raw("abcde").raw(std::string(3, '\0')).str(),
           numbered(7)});
@@ -72,13 +72,13 @@ TEST(Validate, SurvivesEveryCut) {
   for (std::size_t n = 0; n < whole.size(); n++) {
     if (fault_of(whole.substr(0, n)) == nullptr) passed.insert(n);
   }
-  // the bundle with none of its elements, and with the first: 4 + 8 + 8 + 4 + 4 + 8
+  // the bundle without elements, and with the first: 4 + 8 + 8 + 4 + 4 + 8
   const std::size_t first = 16 + 4 + (4 + 8 + 8 + 4 + 4 + 8);
   EXPECT_EQ(passed, (std::set<std::size_t>{16, first}));
 }
 
-// what passes can be decoded: the validator is at least as strict as the decoder behind it
-TEST(Validate, DecoderAgreesOnMutatedPackets) {
+// Accepted packets can be decoded: the validator is at least as strict as the decoder.
+TEST(Validate, IsAsStrictAsDecoder) {
   Random random(7);
   const std::string seeds[] = {
       Bytes().text("/physics/part/mass").text(",ssf").text("quadruped").text("foot_1").f(0.25f).str(),
@@ -99,8 +99,8 @@ TEST(Validate, DecoderAgreesOnMutatedPackets) {
   EXPECT_GT(passed, 1000);
 }
 
-// packets that are known to crash or hang decoders, where they are at hand; two of them are whole messages
-TEST(Validate, KnownBadPackets) {
+// Packets known to crash or hang decoders, if the files are available; two of them are valid messages.
+TEST(Validate, RejectsKnownBadPackets) {
   const std::filesystem::path folder = std::string(LIMBER_SOURCE_DIR) + "/../shared/data/osc_bad";
   std::error_code none;
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {

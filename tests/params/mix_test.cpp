@@ -1,4 +1,4 @@
-// Between two values of a row: both ends to the bit, straight, along arcs, or switched at one half.
+// Interpolation: exact at both ends, linear, along arcs, or switched at 0.5.
 #include "params/mix.h"
 
 #include <gtest/gtest.h>
@@ -14,27 +14,29 @@ namespace {
 
 using Values = std::array<double, 4>;
 
-// as Table makes them
-Row row_of(Row row) { return Table("toy", "/toy", "", {std::move(row)}).row(0); }
+// A property with the fields that PropertyTable computes.
+Property as_table_property(Property property) {
+  return PropertyTable("toy", "/toy", "", {std::move(property)}).property(0);
+}
 
-Values mixed(const Row& row, const Values& a, const Values& b, double amount) {
+Values mixed(const Property& property, const Values& a, const Values& b, double amount) {
   Values out{};
-  mix(row, a.data(), b.data(), amount, out.data());
+  mix(property, a.data(), b.data(), amount, out.data());
   return out;
 }
 
-TEST(Mix, BothEndsAreExactAndTheWayNeverTurns) {
-  const Row row = row_of(rows::number("x", "", 0, -1e300, 1e300, "A number."));
+TEST(Mix, EndsAreExactAndValuesMonotonic) {
+  const Property property = as_table_property(properties::number("x", "", 0, -1e300, 1e300, "A number."));
   Random random(3, "mix");
   for (int i = 0; i < 2000; i++) {
     const double scale = std::pow(10, random.uniform(-12, 12));
     const Values a{random.uniform(-1, 1) * scale};
     const Values b{random.uniform(-1, 1) * scale};
-    EXPECT_EQ(mixed(row, a, b, 0)[0], a[0]);
-    EXPECT_EQ(mixed(row, a, b, 1)[0], b[0]);
+    EXPECT_EQ(mixed(property, a, b, 0)[0], a[0]);
+    EXPECT_EQ(mixed(property, a, b, 1)[0], b[0]);
     double last = a[0];
     for (int k = 1; k <= 64; k++) {
-      const double v = mixed(row, a, b, k / 64.0)[0];
+      const double v = mixed(property, a, b, k / 64.0)[0];
       EXPECT_TRUE(a[0] <= b[0] ? v >= last : v <= last) << a[0] << " to " << b[0] << " at " << k;
       last = v;
     }
@@ -42,20 +44,20 @@ TEST(Mix, BothEndsAreExactAndTheWayNeverTurns) {
   }
 }
 
-TEST(Mix, EndsFurtherApartThanADoubleReaches) {
-  const Row row = row_of(rows::number("x", "", 0, -kUnbounded, kUnbounded, "A number."));
-  EXPECT_EQ(mixed(row, {-1.5e308}, {1.5e308}, 0.5)[0], 0);
-  EXPECT_NEAR(mixed(row, {-1.5e308}, {1.5e308}, 0.75)[0] / 7.5e307, 1, 1e-12);
+TEST(Mix, HandlesOverflowOfTheDifference) {
+  const Property property = as_table_property(properties::number("x", "", 0, -kUnbounded, kUnbounded, "A number."));
+  EXPECT_EQ(mixed(property, {-1.5e308}, {1.5e308}, 0.5)[0], 0);
+  EXPECT_NEAR(mixed(property, {-1.5e308}, {1.5e308}, 0.75)[0] / 7.5e307, 1, 1e-12);
 }
 
-TEST(Mix, WhatHasNothingBetweenSwitchesAtOneHalf) {
-  const Row flag = row_of(rows::boolean("b", false, "A truth."));
-  const Row flags = row_of(rows::flags3("f", {}, "Truths."));
-  const Row choice = row_of(rows::choice("c", {"one", "two", "three"}, 0, "A choice."));
+TEST(Mix, DiscreteValuesSwitchAtHalf) {
+  const Property flag = as_table_property(properties::boolean("b", false, "A truth."));
+  const Property flags = as_table_property(properties::flags3("f", {}, "Truths."));
+  const Property choice = as_table_property(properties::choice("c", {"one", "two", "three"}, 0, "A choice."));
   for (const double amount : {0.0, 0.2, 0.499999}) {
     EXPECT_EQ(mixed(flag, {0}, {1}, amount)[0], 0);
     EXPECT_EQ(mixed(flags, {1, 0, 1}, {0, 1, 1}, amount), (Values{1, 0, 1}));
-    EXPECT_EQ(mixed(choice, {0}, {2}, amount)[0], 0) << "never by way of the second";
+    EXPECT_EQ(mixed(choice, {0}, {2}, amount)[0], 0) << "never the second choice";
   }
   for (const double amount : {0.5, 0.7, 1.0}) {
     EXPECT_EQ(mixed(flag, {0}, {1}, amount)[0], 1);
@@ -64,9 +66,9 @@ TEST(Mix, WhatHasNothingBetweenSwitchesAtOneHalf) {
   }
 }
 
-// a rotation about an axis by an angle, so that what lies between is known without another slerp
-TEST(Mix, RotationsGoTheShorterArcAtAnEvenPace) {
-  const Row row = row_of(rows::quat("q", "A rotation."));
+// Rotates about an axis by an angle, so that the intermediate rotation is known without another slerp.
+TEST(Mix, RotationsFollowTheShorterArcAtConstantSpeed) {
+  const Property property = as_table_property(properties::quat("q", "A rotation."));
   Random random(4, "mix");
   for (int i = 0; i < 500; i++) {
     const Vec3 axis = random.direction();
@@ -76,17 +78,17 @@ TEST(Mix, RotationsGoTheShorterArcAtAnEvenPace) {
     Values a{};
     Values b{};
     put(a.data(), from);
-    put(b.data(), -to);  // the same rotation, written the other way round
+    put(b.data(), -to);  // the same rotation with the opposite sign
     for (const double amount : {0.25, 0.5, 0.9}) {
       const Quat expected = quat_axis(axis, angle * amount) * from;
-      const Quat got = quat_at(mixed(row, a, b, amount).data());
+      const Quat got = quat_at(mixed(property, a, b, amount).data());
       EXPECT_NEAR(std::abs(glm::dot(expected, got)), 1, 1e-12);
       EXPECT_NEAR(glm::dot(got, got), 1, 1e-14);
     }
   }
 }
 
-// Rx·Ry·Rz, written out
+// Rx·Ry·Rz, computed directly.
 Mat3 turn(const Values& degrees) {
   const auto about = [](int axis, double angle) {
     const double c = std::cos(angle * kPi / 180);
@@ -103,25 +105,27 @@ Mat3 turn(const Values& degrees) {
   return about(0, degrees[0]) * about(1, degrees[1]) * about(2, degrees[2]);
 }
 
-TEST(Mix, TurnsInDegreesAreRotationsToo) {
-  const Row row = row_of(rows::turns(rows::vec3("r", "deg", {}, -36000, 36000, "A turn.")));
-  // about z from 170 to 190 degrees: by way of 180, not back through 0
-  const Values half = mixed(row, {-80, 0, 170}, {-80, 0, -170}, 0.5);
+TEST(Mix, EulerAnglesInterpolateAsRotations) {
+  const Property property =
+      as_table_property(properties::euler_angles(properties::vec3("r", "deg", {}, -36000, 36000, "A turn.")));
+  // About z from 170 to 190 degrees: through 180, not back through 0.
+  const Values half = mixed(property, {-80, 0, 170}, {-80, 0, -170}, 0.5);
   const Mat3 expected = turn({-80, 0, 180});
   const Mat3 got = turn(half);
   for (int i = 0; i < 3; i++) {
     for (int k = 0; k < 3; k++) EXPECT_NEAR(got[i][k], expected[i][k], 1e-9);
   }
-  EXPECT_EQ(mixed(row, {-80, 0, 170}, {-80, 0, -170}, 1), (Values{-80, 0, -170}));
-  EXPECT_EQ(mixed(row, {-80, 0, 530}, {-80, 0, -170}, 0), (Values{-80, 0, 530}));
+  EXPECT_EQ(mixed(property, {-80, 0, 170}, {-80, 0, -170}, 1), (Values{-80, 0, -170}));
+  EXPECT_EQ(mixed(property, {-80, 0, 530}, {-80, 0, -170}, 0), (Values{-80, 0, 530}));
 }
 
-TEST(Mix, WhatLiesBetweenIsAValueOfTheRow) {
-  const Row whole = row_of(rows::integer("n", 0, 0, 9, "A whole number."));
+TEST(Mix, ResultsStayInTheRange) {
+  const Property whole = as_table_property(properties::integer("n", 0, 0, 9, "A whole number."));
   EXPECT_EQ(mixed(whole, {0}, {9}, 0.3)[0], 3);
   EXPECT_EQ(mixed(whole, {9}, {0}, 0.3)[0], 6);
-  // from 170 to -170 degrees about z the arc goes by 180, which this row does not take
-  const Row narrow = row_of(rows::turns(rows::vec3("r", "deg", {}, -175, 175, "A turn.")));
+  // From 170 to -170 degrees about z, the arc passes 180, which is outside the range.
+  const Property narrow =
+      as_table_property(properties::euler_angles(properties::vec3("r", "deg", {}, -175, 175, "A turn.")));
   EXPECT_EQ(std::abs(mixed(narrow, {0, 0, 170}, {0, 0, -170}, 0.4)[2]), 175);
 }
 

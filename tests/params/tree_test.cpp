@@ -1,4 +1,4 @@
-// The tree is the store's structure, and its walks find what the catalog's find.
+// TreeSnapshot: a copy of the store's structure; its lookups give the same results as the catalog's.
 #include "params/tree.h"
 
 #include <gtest/gtest.h>
@@ -10,41 +10,41 @@
 namespace limber {
 namespace {
 
-using namespace rows;
+using namespace properties;
 
-double far_away(const void*) { return 7; }
+double constant_value(const void*) { return 7; }
 
 struct Thing {
   void read_pair(double* out) const {
-    out[0] = far_away(this);
+    out[0] = constant_value(this);
     out[1] = out[2] = 0;
   }
 };
 
-const Table& toy_table() {
-  static const Table table(
+const PropertyTable& toy_table() {
+  static const PropertyTable table(
       "toy", "/room/toy/<toy>", "",
-      {number("weight", "kg", 1, 0, 10, "Mass."), live(readout(number("height", "m", 0, 0, 9, "z."))),
-       view<&Thing::read_pair>(readout(vec3("pair", "", {0, 0, 0}, -9, 9, "Computed."))),
-       view<&Thing::read_pair>(readout(vec3("other", "", {0, 0, 0}, -9, 9, "Computed."))),
-       live(state(boolean("on", true, "Whether."))), action("press", 0, 0, "Pressed.")});
+      {number("weight", "kg", 1, 0, 10, "Mass."), transient(readout(number("height", "m", 0, 0, 9, "z."))),
+       computed<&Thing::read_pair>(readout(vec3("pair", "", {0, 0, 0}, -9, 9, "Computed."))),
+       computed<&Thing::read_pair>(readout(vec3("other", "", {0, 0, 0}, -9, 9, "Computed."))),
+       transient(state(boolean("on", true, "Whether."))), action("press", 0, 0, "Pressed.")});
   return table;
 }
 
-struct Room {
+struct TreeFixture {
   Thing thing;
   Store store;
   NodeId group = store.add_group(store.add_group(store.root(), "room"), "toy");
   NodeId ball = store.add(toy_table(), group, "ball", &thing);
-  NodeId odd = store.add(toy_table(), group, "my ball/50%", &thing);
+  NodeId escaped = store.add(toy_table(), group, "my ball/50%", &thing);
   NodeId lid = store.add(toy_table(), ball, "lid", &thing);
 };
 
-TEST(Tree, HoldsEveryNodeInOrderWithItsPath) {
-  Room room;
-  const Tree tree(room.store);
+TEST(TreeSnapshot, HasAllNodesInOrderWithPaths) {
+  TreeFixture fixture;
+  const TreeSnapshot tree(fixture.store);
   std::vector<std::string> expected;
-  room.store.walk(room.store.root(), [&](NodeId id) { expected.push_back(room.store.path(id)); });
+  fixture.store.walk(fixture.store.root(), [&](NodeId id) { expected.push_back(fixture.store.path(id)); });
   std::vector<std::string> paths;
   for (std::uint32_t i = 0; i < tree.nodes().size(); i++) paths.push_back(tree.path(i));
   EXPECT_EQ(paths, expected);
@@ -58,73 +58,73 @@ TEST(Tree, HoldsEveryNodeInOrderWithItsPath) {
   EXPECT_EQ(toys, (std::vector<std::string>{"ball", "my ball/50%"}));
 }
 
-TEST(Tree, NumbersStandWhereTheStoreHasThem) {
-  Room room;
+TEST(TreeSnapshot, LocatesValuesLikeTheStore) {
+  TreeFixture fixture;
   const double height = 3;
-  *room.store.tell(room.odd, toy_table().at("height")) = height;
+  *fixture.store.mutable_values(fixture.escaped, toy_table().at("height")) = height;
   const double weight = 4;
-  ASSERT_TRUE(room.store.set(room.odd, "weight", {&weight, 1}).ok());
-  const Tree tree(room.store);
+  ASSERT_TRUE(fixture.store.set(fixture.escaped, "weight", {&weight, 1}).ok());
+  const TreeSnapshot tree(fixture.store);
   const auto at = [&](const std::string& path) {
-    return tree.numbers(*tree.find("/room/toy/my%20ball%2F50%25/" + path));
+    return tree.location(*tree.find("/room/toy/my%20ball%2F50%25/" + path));
   };
-  EXPECT_EQ(at("weight").block, TreeNumbers::Block::kept);
-  EXPECT_EQ(room.store.kept()[at("weight").at], 4);
-  EXPECT_EQ(at("height").block, TreeNumbers::Block::live);
-  EXPECT_EQ(room.store.live()[at("height").at], 3);
-  EXPECT_EQ(room.store.live()[at("on").at], 1);
-  // views stand one behind the other, thing after thing: two of three numbers each
-  EXPECT_EQ(tree.views_width(), 18u);
-  EXPECT_EQ(tree.numbers(*tree.find("/room/toy/ball/pair")).at, 0u);
-  EXPECT_EQ(tree.numbers(*tree.find("/room/toy/ball/other")).at, 3u);
-  EXPECT_EQ(tree.numbers(*tree.find("/room/toy/ball/lid/pair")).at, 6u);
-  EXPECT_EQ(at("other").at, 15u);
-  EXPECT_EQ(at("press").block, TreeNumbers::Block::none);
+  EXPECT_EQ(at("weight").block, ValueLocation::Block::persistent);
+  EXPECT_EQ(fixture.store.persistent_values()[at("weight").offset], 4);
+  EXPECT_EQ(at("height").block, ValueLocation::Block::transient);
+  EXPECT_EQ(fixture.store.transient_values()[at("height").offset], 3);
+  EXPECT_EQ(fixture.store.transient_values()[at("on").offset], 1);
+  // The block of computed properties has two properties of three numbers per node.
+  EXPECT_EQ(tree.computed_width(), 18u);
+  EXPECT_EQ(tree.location(*tree.find("/room/toy/ball/pair")).offset, 0u);
+  EXPECT_EQ(tree.location(*tree.find("/room/toy/ball/other")).offset, 3u);
+  EXPECT_EQ(tree.location(*tree.find("/room/toy/ball/lid/pair")).offset, 6u);
+  EXPECT_EQ(at("other").offset, 15u);
+  EXPECT_EQ(at("press").block, ValueLocation::Block::none);
 }
 
-// both walks are one: each of these finds the same, or says the same
-TEST(Tree, FindsAndMatchesAsTheCatalogDoes) {
-  Room room;
-  const Tree tree(room.store);
+// Both lookups have the same results and the same errors.
+TEST(TreeSnapshot, FindsAndMatchesLikeTheCatalog) {
+  TreeFixture fixture;
+  const TreeSnapshot tree(fixture.store);
   for (const char* path :
        {"/room/toy/ball/weight", "/Room/TOY/ball/Weight", "/room/toy/Ball/weight", "/room/toy/ball", "/roem",
         "/room/toy/ball/wait", "room", "", "/room/toy/my ball/x", "/room/toy/ball/lid/on/"}) {
-    const Result<Place> of_store = find_place(room.store, path);
-    const Result<TreePlace> of_tree = tree.find(path);
+    const Result<PropertyRef> of_store = find_property(fixture.store, path);
+    const Result<TreePropertyRef> of_tree = tree.find(path);
     ASSERT_EQ(of_store.ok(), of_tree.ok()) << path;
     if (!of_store) {
       EXPECT_EQ(of_tree.error(), of_store.error());
     } else {
       EXPECT_EQ(tree.nodes()[of_tree->node].id, of_store->node) << path;
-      EXPECT_EQ(of_tree->row, of_store->row) << path;
+      EXPECT_EQ(of_tree->property, of_store->property) << path;
     }
   }
   for (const char* pattern :
        {"/room/toy/*/weight", "//on", "/room/*/ball/*", "/room/toy/{ball,none}/he*", "//", "/room/toy/ball/pair"}) {
     PatternBudget budget;
     PatternBudget other;
-    const Result<std::vector<Place>> of_store = match_places(room.store, pattern, budget);
-    const Result<std::vector<TreePlace>> of_tree = tree.match(pattern, other, 1000);
-    EXPECT_EQ(budget.left, other.left);
+    const Result<std::vector<PropertyRef>> of_store = match_properties(fixture.store, pattern, budget);
+    const Result<std::vector<TreePropertyRef>> of_tree = tree.match(pattern, other, 1000);
+    EXPECT_EQ(budget.remaining, other.remaining);
     ASSERT_EQ(of_store->size(), of_tree->size()) << pattern;
     for (std::size_t i = 0; i < of_store->size(); i++) {
       EXPECT_EQ(tree.nodes()[(*of_tree)[i].node].id, (*of_store)[i].node) << pattern;
-      EXPECT_EQ((*of_tree)[i].row, (*of_store)[i].row) << pattern;
+      EXPECT_EQ((*of_tree)[i].property, (*of_store)[i].property) << pattern;
     }
   }
   PatternBudget budget;
   EXPECT_EQ(tree.match("//on", budget, 2)->size(), 2u);
   EXPECT_EQ(tree.find("/")->node, 0u);
-  EXPECT_EQ(tree.find("/")->row, nullptr);
+  EXPECT_EQ(tree.find("/")->property, nullptr);
 }
 
-TEST(Tree, StaysAsItWasWhileTheStoreChanges) {
-  Room room;
-  const Tree tree(room.store);
-  room.store.remove(room.ball);
+TEST(TreeSnapshot, DoesNotChangeWithTheStore) {
+  TreeFixture fixture;
+  const TreeSnapshot tree(fixture.store);
+  fixture.store.remove(fixture.ball);
   EXPECT_EQ(tree.nodes().size(), 6u);
   EXPECT_EQ(tree.path(*tree.find("/room/toy/ball/lid/weight")), "/room/toy/ball/lid/weight");
-  EXPECT_FALSE(Tree(room.store).find("/room/toy/ball").ok());
+  EXPECT_FALSE(TreeSnapshot(fixture.store).find("/room/toy/ball").ok());
 }
 
 }  // namespace

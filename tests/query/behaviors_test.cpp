@@ -1,5 +1,5 @@
-// Behaviours in the tree: built-in ones, Lua's, groups; their rows, and what is told when they come, go, change and
-// err.
+// Behaviors in the tree: built-in, Lua and group behaviors; their properties, and notifications when they are added,
+// removed, changed or fail.
 #include <filesystem>
 #include <fstream>
 
@@ -15,7 +15,7 @@ namespace limber::query_test {
 namespace {
 
 using Frames = std::vector<std::string>;
-using engine_test::image_of;
+using engine_test::make_value_snapshot;
 using nlohmann::json;
 
 constexpr const char* kScene = R"(
@@ -37,112 +37,112 @@ return behavior {
   doc = "Moves the motors a little.",
   params = { { "depth", 0.5, min = 0, max = 1, unit = "rad", doc = "How far." }, { "fails", false } },
   step = function(self)
-    if self.fails then error("I was told to") end
+    if self.fails then error("failed on request") end
     for motor in self.body:motors() do motor.target = self.depth end
   end,
 }
 )";
 
-// a show's folder: the scene, and behaviors_lua beside scripts
-struct Show {
-  Show() {
+// A folder with a scene, and behaviors_lua beside the scripts.
+struct BehaviorScene {
+  BehaviorScene() {
     std::filesystem::create_directories(folder + "/behaviors_lua");
     std::ofstream(folder + "/behaviors_lua/wobble.lua") << kWobble;
     std::ofstream(scene) << kScene;
     show = std::make_unique<engine_test::Show>(scene);
   }
-  ~Show() {
+  ~BehaviorScene() {
     show.reset();
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
   }
   json get(const std::string& path) const {
-    const auto image = image_of(*show);
-    const Result<TreePlace> place = image->tree->find(path);
-    EXPECT_TRUE(place.ok()) << path;
-    return place ? json::parse(node_json(*image, *place, 64)) : json();
+    const auto values = make_value_snapshot(*show);
+    const Result<TreePropertyRef> ref = values->tree->find(path);
+    EXPECT_TRUE(ref.ok()) << path;
+    return ref ? json::parse(node_json(*values, *ref, 64)) : json();
   }
   std::string folder = std::filesystem::path(::testing::TempDir()) / fmt::format("limber_query_{}", ::getpid());
   std::string scene = folder + "/scene.lua";
   std::unique_ptr<engine_test::Show> show;
 };
 
-TEST(BehaviorsInTheTree, ShowTheirRowsLikeAnything) {
-  const Show stage;
-  const json wind = stage.get("/physics/body/one/behavior/wind");
+TEST(BehaviorsInTheTree, HaveAttributesOfProperties) {
+  const BehaviorScene fixture;
+  const json wind = fixture.get("/physics/body/one/behavior/wind");
   EXPECT_EQ(wind["CONTENTS"]["max_amp"]["VALUE"], json::array({3.0}));
   EXPECT_EQ(wind["CONTENTS"]["max_amp"]["UNIT"], json::array({"N"}));
   EXPECT_EQ(wind["CONTENTS"]["min_dir"]["TYPE"], "fff");
   EXPECT_EQ(wind["CONTENTS"]["active"]["TYPE"], "T");
   EXPECT_EQ(wind["CONTENTS"]["remove"]["ACCESS"], 2);
   EXPECT_EQ(wind["CONTENTS"]["error"]["VALUE"], json::array({""}));
-  const json own = stage.get("/physics/body/one/behavior/own");
+  const json own = fixture.get("/physics/body/one/behavior/own");
   EXPECT_EQ(own["CONTENTS"]["depth"]["VALUE"], json::array({0.25}));
   EXPECT_EQ(own["CONTENTS"]["depth"]["RANGE"][0]["MAX"], 1.0);
   EXPECT_EQ(own["CONTENTS"]["depth"]["DESCRIPTION"], "How far");
-  const json swarm = stage.get("/physics/group/swarm");
+  const json swarm = fixture.get("/physics/group/swarm");
   EXPECT_EQ(swarm["CONTENTS"]["amount"]["VALUE"], json::array({2.0}));
-  EXPECT_EQ(stage.get("/physics/body/two/behavior/swarm")["CONTENTS"]["amount"]["VALUE"], json::array({2.0}));
+  EXPECT_EQ(fixture.get("/physics/body/two/behavior/swarm")["CONTENTS"]["amount"]["VALUE"], json::array({2.0}));
 }
 
-struct SortedLine : ClientLine {
+struct SortingSink : ClientSink {
   Frames texts;
   Frames values;
   void send(bool text, std::string frame) override { (text ? texts : values).push_back(std::move(frame)); }
-  std::size_t waiting() const override { return 0; }
+  std::size_t queued_bytes() const override { return 0; }
 };
 
-TEST(BehaviorsInTheTree, AreToldOfAsTheyComeGoChangeAndErr) {
-  const Show stage;
-  engine_test::Show& show = *stage.show;
-  const QueryDoors doors = fake_doors();
-  Hall hall(show.link, doors, {});
-  SortedLine line;
-  Client client({Hand::query, 0x7f000001, 5}, line, hall.doors());
-  hall.enter(client);
-  const auto look = [&] {
-    hall.hurry();
-    image_of(show);
-    hall.bell();
-    hall.hurry();
-    image_of(show);
-    hall.bell();
+TEST(BehaviorsInTheTree, SendPathEventsAndValues) {
+  const BehaviorScene fixture;
+  engine_test::Show& show = *fixture.show;
+  const QueryHost host = fake_query_host();
+  QueryHub hub(show.link, host, {});
+  SortingSink line;
+  Client client({CommandSource::oscquery, 0x7f000001, 5}, line, hub.host());
+  hub.add_client(client);
+  const auto update = [&] {
+    hub.request_values();
+    make_value_snapshot(show);
+    hub.on_link_event();
+    hub.request_values();
+    make_value_snapshot(show);
+    hub.on_link_event();
   };
   for (const char* path : {"/physics/group/swarm/amount", "/physics/body/two/behavior/swarm/amount",
                            "/physics/body/one/behavior/own/error", "/physics/body/two/behavior/late/speed"}) {
-    client.text(fmt::format(R"({{"COMMAND":"LISTEN","DATA":"{}"}})", path));
+    client.on_text(fmt::format(R"({{"COMMAND":"LISTEN","DATA":"{}"}})", path));
   }
-  look();
-  const auto taken = [](Frames& frames) {
+  update();
+  const auto consume = [](Frames& frames) {
     std::string all;
     for (const std::string& f : std::exchange(frames, {})) all += f + "\n";
     return all;
   };
-  const std::string first = taken(line.values);
+  const std::string first = consume(line.values);
   EXPECT_NE(first.find("/physics/group/swarm/amount"), std::string::npos) << first;
-  // the group's value goes to its members, and each is told once
+  // the group's value is applied to its members, and each change is sent once
   show.send("/physics/group/swarm/amount", 5);
-  look();
-  const std::string group = taken(line.values);
+  update();
+  const std::string group = consume(line.values);
   EXPECT_NE(group.find("/physics/group/swarm/amount"), std::string::npos) << group;
   EXPECT_NE(group.find("/physics/body/two/behavior/swarm/amount"), std::string::npos) << group;
-  EXPECT_EQ(taken(line.texts), "");
-  // one comes, with a value that was listened to before it was there; and goes
+  EXPECT_EQ(consume(line.texts), "");
+  // a behavior is added, with a value that was listened to before, and removed
   show.send("/more");
-  look();
-  EXPECT_EQ(taken(line.texts), R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/two/behavior/late"})"
-                               "\n");
-  EXPECT_NE(taken(line.values).find("/physics/body/two/behavior/late/speed"), std::string::npos);
+  update();
+  EXPECT_EQ(consume(line.texts), R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/two/behavior/late"})"
+                                 "\n");
+  EXPECT_NE(consume(line.values).find("/physics/body/two/behavior/late/speed"), std::string::npos);
   show.send("/less");
-  look();
-  EXPECT_EQ(taken(line.texts), R"({"COMMAND":"PATH_REMOVED","DATA":"/physics/body/two/behavior/late"})"
-                               "\n");
-  // an error is a value like others
-  taken(line.values);
+  update();
+  EXPECT_EQ(consume(line.texts), R"({"COMMAND":"PATH_REMOVED","DATA":"/physics/body/two/behavior/late"})"
+                                 "\n");
+  // an error is an ordinary value
+  consume(line.values);
   show.send("/physics/body/one/behavior/own/fails", true);
-  look();
-  EXPECT_NE(taken(line.values).find("I was told to"), std::string::npos);
-  hall.leave(client);
+  update();
+  EXPECT_NE(consume(line.values).find("failed on request"), std::string::npos);
+  hub.remove_client(client);
 }
 
 }  // namespace

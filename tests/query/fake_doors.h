@@ -1,4 +1,4 @@
-// Doors without the OSC room behind them: packets are text that a test can read.
+// A QueryHost without the OSC module: packets are readable text.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace limber::query_test {
 
-/// "address tags argument argument"; what is taken goes to `packets`.
-inline QueryDoors fake_doors(std::vector<std::pair<Origin, std::string>>* packets = nullptr) {
-  QueryDoors doors;
-  doors.encode = [](const Message& message, std::string_view tags) {
+/// Encodes messages as "address tags argument argument"; processed packets are appended to `packets`.
+inline QueryHost fake_query_host(std::vector<std::pair<CommandOrigin, std::string>>* packets = nullptr) {
+  QueryHost host;
+  host.encode = [](const Message& message, std::string_view tags) {
     std::string text = message.address + " " + std::string(tags);
     for (const Arg& a : message.args) text += " " + (a.is_text() ? a.text : number_text(a.number));
     return text;
   };
-  doors.take = [packets](const Origin& origin, std::string packet) {
+  host.process = [packets](const CommandOrigin& origin, std::string packet) {
     if (packets != nullptr) packets->emplace_back(origin, std::move(packet));
   };
-  return doors;
+  return host;
 }
 
 }  // namespace limber::query_test

@@ -1,4 +1,4 @@
-// Requests wait for an image, not for ever; clients are told on the beat.
+// Requests wait for a value snapshot until a timeout; clients are updated once per tick.
 #include "query/hall.h"
 
 #include <gtest/gtest.h>
@@ -12,177 +12,178 @@ namespace {
 
 using Frames = std::vector<std::string>;
 
-double the_time = 100;
-double read_time() { return the_time; }
+double current_time = 100;
+double fake_time() { return current_time; }
 
-struct FrameLine : ClientLine {
+struct FrameSink : ClientSink {
   Frames frames;
   void send(bool, std::string frame) override { frames.push_back(std::move(frame)); }
-  std::size_t waiting() const override { return 0; }
-  Frames take() { return std::exchange(frames, {}); }
+  std::size_t queued_bytes() const override { return 0; }
+  Frames consume_frames() { return std::exchange(frames, {}); }
 };
 
-struct HallStage {
+struct QueryHubFixture {
   engine_test::SceneFile file{engine_test::kEverything};
   engine_test::Show show{file.path()};
-  QueryDoors doors = fake_doors();
-  Hall hall{show.link, doors, {}, &read_time};
-  std::vector<HttpAnswer> answers;
+  QueryHost host = fake_query_host();
+  QueryHub hub{show.link, host, {}, &fake_time};
+  std::vector<HttpResponse> responses;
 
-  HallStage() { show.send("/transport/pause"); }
-  void ask(const std::string& target) {
+  QueryHubFixture() { show.send("/transport/pause"); }
+  void request(const std::string& target) {
     HttpRequest request;
     request.method = "GET";
     request.target = target;
     request.host = "localhost";
-    hall.ask(request, [this](HttpAnswer answer) { answers.push_back(std::move(answer)); });
+    hub.handle_request(request, [this](HttpResponse response) { responses.push_back(std::move(response)); });
   }
-  // the engine makes what was asked for, and the bell rings
-  void image() {
-    const std::uint64_t ask = show.link.image_asks.load();
+  // Runs the engine until it has made the requested snapshot, and notifies the hub.
+  void make_snapshot() {
+    const std::uint64_t ask = show.link.value_snapshot_requests.load();
     for (int i = 0; i < 1000000; i++) {
       show.ticks(1);
-      const auto made = show.link.images.read();
-      if (made != nullptr && made->asks >= ask) break;
+      const auto snapshot = show.link.value_snapshots.read();
+      if (snapshot != nullptr && snapshot->request >= ask) break;
     }
-    hall.bell();
+    hub.on_link_event();
   }
 };
 
-TEST(Hall, ARequestWaitsForAnImageOfAfterItCame) {
-  HallStage stage;
-  engine_test::image_of(stage.show);
-  stage.show.send("/scene/wind", 7);
-  stage.ask("/scene/wind?VALUE");
-  stage.hall.bell();
-  EXPECT_TRUE(stage.answers.empty()) << "the image that there is was made before";
-  EXPECT_TRUE(stage.hall.busy());
-  stage.image();
-  ASSERT_EQ(stage.answers.size(), 1u);
-  EXPECT_EQ(stage.answers[0].body, R"({"VALUE":[7]})");
-  EXPECT_FALSE(stage.hall.busy());
+TEST(QueryHub, RequestWaitsForNewerSnapshot) {
+  QueryHubFixture fixture;
+  engine_test::make_value_snapshot(fixture.show);
+  fixture.show.send("/scene/wind", 7);
+  fixture.request("/scene/wind?VALUE");
+  fixture.hub.on_link_event();
+  EXPECT_TRUE(fixture.responses.empty()) << "the existing snapshot is too old";
+  EXPECT_TRUE(fixture.hub.busy());
+  fixture.make_snapshot();
+  ASSERT_EQ(fixture.responses.size(), 1u);
+  EXPECT_EQ(fixture.responses[0].body, R"({"VALUE":[7]})");
+  EXPECT_FALSE(fixture.hub.busy());
 }
 
-TEST(Hall, WhatNeedsNoTreeIsAnsweredAtOnce) {
-  HallStage stage;
-  stage.ask("/?HOST_INFO");
-  stage.ask("/?NONSENSE");
-  ASSERT_EQ(stage.answers.size(), 2u);
-  EXPECT_EQ(stage.answers[0].status, 200);
-  EXPECT_EQ(stage.answers[1].status, 400);
-  EXPECT_EQ(stage.show.link.image_asks.load(), 0u);
+TEST(QueryHub, RespondsImmediatelyWithoutTree) {
+  QueryHubFixture fixture;
+  fixture.request("/?HOST_INFO");
+  fixture.request("/?NONSENSE");
+  ASSERT_EQ(fixture.responses.size(), 2u);
+  EXPECT_EQ(fixture.responses[0].status, 200);
+  EXPECT_EQ(fixture.responses[1].status, 400);
+  EXPECT_EQ(fixture.show.link.value_snapshot_requests.load(), 0u);
 }
 
-TEST(Hall, PatienceEnds) {
-  HallStage stage;
-  stage.ask("/scene/wind?VALUE");
-  the_time += Hall::kPatience - 0.01;
-  stage.hall.beat();
-  EXPECT_TRUE(stage.answers.empty());
-  the_time += 0.02;
-  stage.hall.beat();
-  ASSERT_EQ(stage.answers.size(), 1u);
-  EXPECT_EQ(stage.answers[0].status, 503);
-  // with an image from before, that one is better than nothing
-  engine_test::image_of(stage.show);
-  stage.ask("/scene/wind?VALUE");
-  the_time += Hall::kPatience + 0.01;
-  stage.hall.beat();
-  ASSERT_EQ(stage.answers.size(), 2u);
-  EXPECT_EQ(stage.answers[1].body, R"({"VALUE":[0]})");
+TEST(QueryHub, RequestTimesOut) {
+  QueryHubFixture fixture;
+  fixture.request("/scene/wind?VALUE");
+  current_time += QueryHub::kRequestTimeout - 0.01;
+  fixture.hub.tick();
+  EXPECT_TRUE(fixture.responses.empty());
+  current_time += 0.02;
+  fixture.hub.tick();
+  ASSERT_EQ(fixture.responses.size(), 1u);
+  EXPECT_EQ(fixture.responses[0].status, 503);
+  // an older snapshot is better than no response
+  engine_test::make_value_snapshot(fixture.show);
+  fixture.request("/scene/wind?VALUE");
+  current_time += QueryHub::kRequestTimeout + 0.01;
+  fixture.hub.tick();
+  ASSERT_EQ(fixture.responses.size(), 2u);
+  EXPECT_EQ(fixture.responses[1].body, R"({"VALUE":[0]})");
 }
 
-TEST(Hall, TooManyWaitingAreTurnedAway) {
-  HallStage stage;
-  for (std::size_t i = 0; i < Hall::kMostWaiting; i++) stage.ask("/scene/wind?VALUE");
-  EXPECT_TRUE(stage.answers.empty());
-  stage.ask("/scene/wind?VALUE");
-  ASSERT_EQ(stage.answers.size(), 1u);
-  EXPECT_EQ(stage.answers[0].status, 503);
-  stage.image();
-  EXPECT_EQ(stage.answers.size(), Hall::kMostWaiting + 1);
+TEST(QueryHub, LimitsPendingRequests) {
+  QueryHubFixture fixture;
+  for (std::size_t i = 0; i < QueryHub::kMaxRequests; i++) fixture.request("/scene/wind?VALUE");
+  EXPECT_TRUE(fixture.responses.empty());
+  fixture.request("/scene/wind?VALUE");
+  ASSERT_EQ(fixture.responses.size(), 1u);
+  EXPECT_EQ(fixture.responses[0].status, 503);
+  fixture.make_snapshot();
+  EXPECT_EQ(fixture.responses.size(), QueryHub::kMaxRequests + 1);
 }
 
-TEST(Hall, ClientsHearOnTheBeatAndNotMoreOften) {
-  HallStage stage;
-  FrameLine line;
-  Client client({Hand::query, 1, 1}, line, stage.hall.doors());
-  stage.hall.enter(client);
-  client.text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
-  stage.image();
-  EXPECT_EQ(line.take(), Frames{"/scene/wind f 0"});
-  // images that others ask for are not told
-  stage.show.send("/scene/wind", 1);
-  engine_test::image_of(stage.show);
-  stage.hall.bell();
-  EXPECT_EQ(line.take(), Frames{});
-  const std::uint64_t asks = stage.show.link.image_asks.load();
-  the_time += Hall::kBeat;
-  stage.hall.beat();
-  stage.hall.beat();
-  EXPECT_EQ(stage.show.link.image_asks.load(), asks + 1) << "one is on its way";
-  stage.image();
-  EXPECT_EQ(line.take(), Frames{"/scene/wind f 1"});
-  stage.hall.leave(client);
-  EXPECT_FALSE(stage.hall.busy());
+TEST(QueryHub, UpdatesClientsOncePerTick) {
+  QueryHubFixture fixture;
+  FrameSink line;
+  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  fixture.hub.add_client(client);
+  client.on_text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
+  fixture.make_snapshot();
+  EXPECT_EQ(line.consume_frames(), Frames{"/scene/wind f 0"});
+  // snapshots requested by others are not sent to clients
+  fixture.show.send("/scene/wind", 1);
+  engine_test::make_value_snapshot(fixture.show);
+  fixture.hub.on_link_event();
+  EXPECT_EQ(line.consume_frames(), Frames{});
+  const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
+  current_time += QueryHub::kTick;
+  fixture.hub.tick();
+  fixture.hub.tick();
+  EXPECT_EQ(fixture.show.link.value_snapshot_requests.load(), asks + 1) << "one is on its way";
+  fixture.make_snapshot();
+  EXPECT_EQ(line.consume_frames(), Frames{"/scene/wind f 1"});
+  fixture.hub.remove_client(client);
+  EXPECT_FALSE(fixture.hub.busy());
 }
 
-TEST(Hall, ThoseWhoOnlyAreThereCostFewImages) {
-  HallStage stage;
-  FrameLine line;
-  Client client({Hand::query, 1, 1}, line, stage.hall.doors());
-  stage.hall.enter(client);
-  const std::uint64_t asks = stage.show.link.image_asks.load();
+TEST(QueryHub, IdleClientsRequestFewSnapshots) {
+  QueryHubFixture fixture;
+  FrameSink line;
+  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  fixture.hub.add_client(client);
+  const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
   for (int i = 0; i < 60; i++) {
-    the_time += Hall::kBeat;
-    stage.hall.beat();
-    stage.image();
+    current_time += QueryHub::kTick;
+    fixture.hub.tick();
+    fixture.make_snapshot();
   }
-  EXPECT_LE(stage.show.link.image_asks.load() - asks, 11u) << "2 s, five a second";
-  // and yet they hear of what comes
-  ASSERT_TRUE(stage.show.engine.world().add_body("new").ok());
+  EXPECT_LE(fixture.show.link.value_snapshot_requests.load() - asks, 11u) << "2 s, five a second";
+  // they get path events nevertheless
+  ASSERT_TRUE(fixture.show.engine.world().add_body("new").ok());
   for (int i = 0; i < 7; i++) {
-    the_time += Hall::kBeat;
-    stage.hall.beat();
-    stage.image();
+    current_time += QueryHub::kTick;
+    fixture.hub.tick();
+    fixture.make_snapshot();
   }
-  EXPECT_EQ(line.take(), Frames{R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/new"})"});
-  stage.hall.leave(client);
+  EXPECT_EQ(line.consume_frames(), Frames{R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/new"})"});
+  fixture.hub.remove_client(client);
 }
 
-// one who asks again and again must not keep the others from their values
-TEST(Hall, HurryingDoesNotPutOffWhatIsOnItsWay) {
-  HallStage stage;
-  FrameLine line;
-  Client client({Hand::query, 1, 1}, line, stage.hall.doors());
-  stage.hall.enter(client);
-  client.text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
-  const std::uint64_t ask = stage.show.link.image_asks.load();
-  for (int i = 0; i < 100; i++) stage.hall.hurry();
-  EXPECT_EQ(stage.show.link.image_asks.load(), ask);
-  stage.image();
-  EXPECT_EQ(line.take(), Frames{"/scene/wind f 0"});
-  EXPECT_EQ(stage.show.link.image_asks.load(), ask + 1) << "one more for all who hurried";
-  stage.hall.leave(client);
+// A client that requests values repeatedly must not delay those of others.
+TEST(QueryHub, RepeatedRequestsDoNotDelayPendingOne) {
+  QueryHubFixture fixture;
+  FrameSink line;
+  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  fixture.hub.add_client(client);
+  client.on_text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
+  const std::uint64_t ask = fixture.show.link.value_snapshot_requests.load();
+  for (int i = 0; i < 100; i++) fixture.hub.request_values();
+  EXPECT_EQ(fixture.show.link.value_snapshot_requests.load(), ask);
+  fixture.make_snapshot();
+  EXPECT_EQ(line.consume_frames(), Frames{"/scene/wind f 0"});
+  EXPECT_EQ(fixture.show.link.value_snapshot_requests.load(), ask + 1) << "one more for all requests";
+  fixture.hub.remove_client(client);
 }
 
-TEST(Hall, AnswersGoToWhoAsked) {
-  HallStage stage;
-  FrameLine one;
-  FrameLine two;
-  Client first({Hand::query, 1, 1}, one, stage.hall.doors());
-  Client second({Hand::query, 1, 2}, two, stage.hall.doors());
-  stage.hall.enter(first);
-  stage.hall.enter(second);
-  stage.show.link.inbox.push({{engine_test::message("/get", "/scene/wind")}, second.origin()});
-  stage.show.link.inbox.push({{engine_test::message("/scene/wind", "much")}, first.origin()});
-  stage.show.link.inbox.push({{engine_test::message("/get", "/scene/wind")}, {Hand::query, 1, 3}});
-  stage.show.ticks(1);
-  stage.hall.bell();
-  EXPECT_EQ(two.take(), Frames{"/scene/wind  0"});
-  EXPECT_EQ(one.take(), Frames{"/error  /scene/wind takes 1 number, not 'much'"});
-  stage.hall.leave(first);
-  stage.hall.leave(second);
+TEST(QueryHub, SendsRepliesToOrigin) {
+  QueryHubFixture fixture;
+  FrameSink one;
+  FrameSink two;
+  Client first({CommandSource::oscquery, 1, 1}, one, fixture.hub.host());
+  Client second({CommandSource::oscquery, 1, 2}, two, fixture.hub.host());
+  fixture.hub.add_client(first);
+  fixture.hub.add_client(second);
+  fixture.show.link.command_queue.push({{engine_test::message("/get", "/scene/wind")}, second.origin()});
+  fixture.show.link.command_queue.push({{engine_test::message("/scene/wind", "much")}, first.origin()});
+  fixture.show.link.command_queue.push(
+      {{engine_test::message("/get", "/scene/wind")}, {CommandSource::oscquery, 1, 3}});
+  fixture.show.ticks(1);
+  fixture.hub.on_link_event();
+  EXPECT_EQ(two.consume_frames(), Frames{"/scene/wind  0"});
+  EXPECT_EQ(one.consume_frames(), Frames{"/error  /scene/wind takes 1 number, not 'much'"});
+  fixture.hub.remove_client(first);
+  fixture.hub.remove_client(second);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Requests and their answers, the ones that OSCQuery has statuses for and the ones that come from strangers.
+// HTTP requests and responses: OSCQuery's status codes, and requests of unknown origin.
 #include "query/request.h"
 
 #include <gtest/gtest.h>
@@ -24,24 +24,24 @@ HttpRequest request_for(std::string target, std::string accept = "*/*") {
   return request;
 }
 
-struct RequestStage {
+struct RequestFixture {
   engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('a b')\nsim:add_body('c/d')\n"};
   engine_test::Show show{file.path()};
-  std::shared_ptr<const Image> image = engine_test::image_of(show);
+  std::shared_ptr<const ValueSnapshot> snapshot = engine_test::make_value_snapshot(show);
 
-  HttpAnswer get(const std::string& target, const std::string& accept = "*/*") const {
+  HttpResponse get(const std::string& target, const std::string& accept = "*/*") const {
     const HttpRequest request = request_for(target, accept);
-    const std::optional<HttpAnswer> known = answer_at_once(request, kInfo);
-    return known ? *known : answer_from(request, *image);
+    const std::optional<HttpResponse> known = respond_without_tree(request, kInfo);
+    return known ? *known : respond_from_tree(request, *snapshot);
   }
 };
 
-TEST(Request, PathsAndAttributes) {
-  const RequestStage stage;
+TEST(Request, AnswersPathsAndAttributes) {
+  const RequestFixture fixture;
   struct Case {
     const char* target;
     int status;
-    const char* body;  // as JSON; empty: is not looked at
+    const char* body;  // as JSON; empty: not checked
   };
   const std::vector<Case> cases = {
       {"/scene/wind?VALUE", 200, R"({"VALUE":[0]})"},
@@ -56,7 +56,7 @@ TEST(Request, PathsAndAttributes) {
       {"/Scene/WIND?VALUE=1&x=2", 200, R"({"VALUE":[0]})"},
       {"/scene/wind?VALUE#part", 200, R"({"VALUE":[0]})"},
       {"http://127.0.0.1:9003/scene/wind?VALUE", 200, R"({"VALUE":[0]})"},
-      // what it has not
+      // attributes that it does not have
       {"/scene/lively?UNIT", 204, ""},
       {"/scene/lively?EXTENDED_TYPE", 204, ""},
       {"/scene/wind?CONTENTS", 204, ""},
@@ -78,50 +78,50 @@ TEST(Request, PathsAndAttributes) {
       {"//", 404, ""},
       {"/?ADD_NODE=x", 403, ""},
       {"/scene/wind?REMOVE_NODE", 403, ""},
-      // names with characters that addresses don't take, written in an address's way or in HTTP's
+      // names with characters that addresses don't allow, escaped for addresses or for HTTP
       {"/physics/body/a%20b?FULL_PATH", 200, R"({"FULL_PATH":"/physics/body/a%20b"})"},
       {"/physics/body/a%2520b?FULL_PATH", 200, R"({"FULL_PATH":"/physics/body/a%20b"})"},
       {"/physics/body/c%2Fd?FULL_PATH", 200, R"({"FULL_PATH":"/physics/body/c%2Fd"})"},
       {"/physics/body/c%252Fd?FULL_PATH", 200, R"({"FULL_PATH":"/physics/body/c%2Fd"})"},
       {"/physics/body/c/d?FULL_PATH", 404, ""},
       {"/%00?VALUE", 404, ""},
-      // levels, words
+      // depth and search
       {"/physics?LIMBER_DEPTH=0", 200, R"({"FULL_PATH":"/physics","ACCESS":0,"CONTENTS":{}})"},
       {"/physics?LIMBER_DEPTH=-1", 400, ""},
       {"/physics?LIMBER_DEPTH=many", 400, ""},
       {"/?LIMBER_FIND=", 200, R"({"FOUND":[],"MORE":false})"},
   };
   for (const Case& c : cases) {
-    const HttpAnswer answer = stage.get(c.target);
-    EXPECT_EQ(answer.status, c.status) << c.target << "\n" << answer.body;
+    const HttpResponse response = fixture.get(c.target);
+    EXPECT_EQ(response.status, c.status) << c.target << "\n" << response.body;
     if (*c.body != '\0') {
-      EXPECT_EQ(json::parse(answer.body, nullptr, false), json::parse(c.body)) << c.target;
+      EXPECT_EQ(json::parse(response.body, nullptr, false), json::parse(c.body)) << c.target;
     }
-    EXPECT_EQ(answer.body.empty(), c.status == 204) << "a refusal says why";
+    EXPECT_EQ(response.body.empty(), c.status == 204) << "rejections have a text";
   }
 }
 
-TEST(Request, RefusalsSayWhatThereIs) {
-  const RequestStage stage;
-  EXPECT_EQ(stage.get("/scene/wimd").body, "there is no 'wimd' in /scene; did you mean 'wind'?\n");
-  EXPECT_EQ(stage.get("/scene/wind?VALUES").body, "there is no attribute 'VALUES'; did you mean 'VALUE'?\n");
-  EXPECT_EQ(stage.get("/\x1b[31m").body.find('\x1b'), std::string::npos);
+TEST(Request, RejectionsSuggestNames) {
+  const RequestFixture fixture;
+  EXPECT_EQ(fixture.get("/scene/wimd").body, "there is no 'wimd' in /scene; did you mean 'wind'?\n");
+  EXPECT_EQ(fixture.get("/scene/wind?VALUES").body, "attribute 'VALUES' not found; did you mean 'VALUE'?\n");
+  EXPECT_EQ(fixture.get("/\x1b[31m").body.find('\x1b'), std::string::npos);
 }
 
-TEST(Request, ContentsAndWords) {
-  const RequestStage stage;
-  const json contents = json::parse(stage.get("/scene?CONTENTS").body);
+TEST(Request, AnswersContentsAndSearch) {
+  const RequestFixture fixture;
+  const json contents = json::parse(fixture.get("/scene?CONTENTS").body);
   EXPECT_EQ(contents.size(), 1u);
   EXPECT_EQ(contents["CONTENTS"]["wind"]["VALUE"], json::array({0}));
-  const json found = json::parse(stage.get("/?LIMBER_FIND=twin+hat%20mass").body);
+  const json found = json::parse(fixture.get("/?LIMBER_FIND=twin+hat%20mass").body);
   ASSERT_EQ(found["FOUND"].size(), 1u);
   EXPECT_EQ(found["FOUND"][0]["FULL_PATH"], "/physics/body/twin/part/hat/mass");
 }
 
-TEST(Request, HostInfo) {
-  const RequestStage stage;
+TEST(Request, AnswersHostInfo) {
+  const RequestFixture fixture;
   for (const char* target : {"/?HOST_INFO", "/scene/wind?HOST_INFO=1", "/nowhere?HOST_INFO"}) {
-    const json info = json::parse(stage.get(target).body);
+    const json info = json::parse(fixture.get(target).body);
     EXPECT_EQ(info["NAME"].get<std::string>().substr(0, 6), "Limber");
     EXPECT_EQ(info["OSC_PORT"], 9003);
     EXPECT_EQ(info["OSC_TRANSPORT"], "UDP");
@@ -133,31 +133,32 @@ TEST(Request, HostInfo) {
   EXPECT_FALSE(json::parse(host_info_json({{}, std::nullopt})).contains("OSC_PORT"));
 }
 
-TEST(Request, ABrowserGetsThePageOthersTheTree) {
-  const RequestStage stage;
-  const HttpAnswer page = stage.get("/", "text/html,application/xhtml+xml,*/*;q=0.8");
+TEST(Request, ServesPageToBrowsersOnly) {
+  const RequestFixture fixture;
+  const HttpResponse page = fixture.get("/", "text/html,application/xhtml+xml,*/*;q=0.8");
   EXPECT_EQ(page.type, "text/html; charset=utf-8");
   EXPECT_NE(page.policy.find("default-src 'none'"), std::string::npos);
   EXPECT_NE(page.policy.find("connect-src 'self' ws://127.0.0.1:9003"), std::string::npos);
-  EXPECT_EQ(json::parse(stage.get("/", "application/json").body)["FULL_PATH"], "/");
-  EXPECT_EQ(json::parse(stage.get("/", "*/*").body)["FULL_PATH"], "/");
-  EXPECT_EQ(json::parse(stage.get("/scene", "text/html").body)["FULL_PATH"], "/scene");
+  EXPECT_EQ(json::parse(fixture.get("/", "application/json").body)["FULL_PATH"], "/");
+  EXPECT_EQ(json::parse(fixture.get("/", "*/*").body)["FULL_PATH"], "/");
+  EXPECT_EQ(json::parse(fixture.get("/scene", "text/html").body)["FULL_PATH"], "/scene");
 }
 
-TEST(Request, OtherMethodsAreNotAnswered) {
+TEST(Request, RejectsOtherMethods) {
   for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "nonsense", ""}) {
     HttpRequest request = request_for("/scene/wind");
     request.method = method;
-    EXPECT_EQ(answer_at_once(request, kInfo)->status, 405) << method;
+    EXPECT_EQ(respond_without_tree(request, kInfo)->status, 405) << method;
   }
 }
 
-// a page of another site that knows of this port; a name of another site that leads here (DNS rebinding)
-TEST(Request, StrangersAreRefused) {
+// A page of another site that knows this port, and a name of another site that resolves to this machine (DNS
+// rebinding).
+TEST(Request, RejectsUnknownOrigins) {
   struct Case {
     std::optional<std::string> host;
     std::optional<std::string> origin;
-    int status;  // 0: let in
+    int status;  // 0: accepted
   };
   const std::vector<Case> cases = {
       {"127.0.0.1:9003", {}, 0},
@@ -190,10 +191,11 @@ TEST(Request, StrangersAreRefused) {
     HttpRequest request = request_for("/");
     request.host = c.host;
     request.origin = c.origin;
-    const std::optional<HttpAnswer> refused = refuse_stranger(request, kInfo);
-    EXPECT_EQ(refused ? refused->status : 0, c.status) << c.host.value_or("no host") << " " << c.origin.value_or("");
-    if (refused) {
-      EXPECT_EQ(answer_at_once(request, kInfo)->status, c.status);
+    const std::optional<HttpResponse> rejection = reject_unknown_origin(request, kInfo);
+    EXPECT_EQ(rejection ? rejection->status : 0, c.status)
+        << c.host.value_or("no host") << " " << c.origin.value_or("");
+    if (rejection) {
+      EXPECT_EQ(respond_without_tree(request, kInfo)->status, c.status);
     }
   }
 }

@@ -1,4 +1,4 @@
-// How rows show themselves: every class's rows, and one of each type against what OSCQuery asks for.
+// OSCQuery attributes: the properties of every class, and one property of each type compared with the specification.
 #include "query/row_face.h"
 
 #include <gtest/gtest.h>
@@ -14,16 +14,16 @@ namespace limber {
 namespace {
 
 using nlohmann::json;
-using namespace rows;
+using namespace properties;
 
-Row with_step(Row row, double step) {
-  row.step = step;
-  return row;
+Property with_step(Property property, double step) {
+  property.step = step;
+  return property;
 }
 
-// tables of the tests' own live as long as the program, as all do
-const Table& samples() {
-  static const Table table(
+// Property tables of tests live as long as the program, like all tables.
+const PropertyTable& samples() {
+  static const PropertyTable table(
       "sample", "/sample", "",
       {with_step(number("level", "kg", 1, 0, 10, "How full. More of it."), 0.5),
        number("free", "", 0, -kUnbounded, kUnbounded, "Any number: none is wrong."),
@@ -31,23 +31,23 @@ const Table& samples() {
        integer("count", 3, 0, 100, "How many."), state(integer("seed", 1, 0, 9007199254740992, "Big.")),
        readout(integer("tick", 0, 0, kUnbounded, "Counts.")), boolean("on", true, "Whether."),
        choice("style", {"calm", "wild \"one\""}, 1, "How."), vec3("where", "m", {0, 0, 1}, -1, 2, "A place."),
-       vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "Colour."), flags3("which", {true, false, true}, "Axes."),
-       state(quat("turn", "A rotation.")), action("press", 0, 0, "Pressed."), action("step", 0, 1, "Pressed or told."),
+       vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "Color."), flags3("which", {true, false, true}, "Axes."),
+       state(quat("turn", "A rotation.")), action("press", 0, 0, "Pressed."), action("step", 0, 1, "Pressed or sent."),
        action("push", 3, 6, "Pushed at a point."), text("fault", "Why it rests."),
        number("talk", "", 0, 0, 1, std::string(70, 'x') + " is a clause too long for a label.")});
   return table;
 }
 
-// the row's attributes as one object
-json face(const Row& row) {
+// Returns the property's attributes as one object.
+json attributes(const Property& property) {
   json object = json::object();
-  for (const auto& [name, text] : attributes_of(row)) object[std::string(name)] = json::parse(text);
-  EXPECT_EQ(json::parse("{\"X\":0" + attributes_text(row) + "}").size(), object.size() + 1);
+  for (const auto& [name, text] : attributes_of(property)) object[std::string(name)] = json::parse(text);
+  EXPECT_EQ(json::parse("{\"X\":0" + attributes_text(property) + "}").size(), object.size() + 1);
   return object;
 }
-json face(const char* name) { return face(samples().at(name)); }
+json attributes(const char* name) { return attributes(samples().at(name)); }
 
-TEST(RowFace, EachTypeAsItsTagsSay) {
+TEST(OscQueryAttributes, HaveTagsOfEachType) {
   const std::vector<std::pair<const char*, const char*>> expected = {{"level", "f"},   {"free", "f"},
                                                                      {"count", "i"},   {"seed", "h"},
                                                                      {"tick", "i"},    {"on", "T"},
@@ -59,29 +59,30 @@ TEST(RowFace, EachTypeAsItsTagsSay) {
   for (const auto& [name, tags] : expected) EXPECT_EQ(tags_of(samples().at(name)), tags) << name;
 }
 
-TEST(RowFace, Attributes) {
-  EXPECT_EQ(face("level"), json::parse(R"({"TYPE":"f","ACCESS":3,"DESCRIPTION":"How full","RANGE":[{"MIN":0,"MAX":10}],
+TEST(OscQueryAttributes, DescribeProperties) {
+  EXPECT_EQ(attributes("level"),
+            json::parse(R"({"TYPE":"f","ACCESS":3,"DESCRIPTION":"How full","RANGE":[{"MIN":0,"MAX":10}],
       "CLIPMODE":["both"],"UNIT":["kg"],"DEFAULT_VALUE":[1],"STEP_SIZE":[0.5],"DOC":"How full. More of it."})"));
-  EXPECT_EQ(face("free"), json::parse(R"({"TYPE":"f","ACCESS":3,"DESCRIPTION":"Any number","DEFAULT_VALUE":[0],
+  EXPECT_EQ(attributes("free"), json::parse(R"({"TYPE":"f","ACCESS":3,"DESCRIPTION":"Any number","DEFAULT_VALUE":[0],
       "DOC":"Any number: none is wrong."})"));
-  EXPECT_EQ(face("above")["RANGE"], json::parse(R"([{"MIN":0}])"));
-  EXPECT_EQ(face("above")["CLIPMODE"], json::parse(R"(["low"])"));
-  EXPECT_EQ(face("style"),
+  EXPECT_EQ(attributes("above")["RANGE"], json::parse(R"([{"MIN":0}])"));
+  EXPECT_EQ(attributes("above")["CLIPMODE"], json::parse(R"(["low"])"));
+  EXPECT_EQ(attributes("style"),
             json::parse(R"({"TYPE":"s","ACCESS":3,"DESCRIPTION":"How","RANGE":[{"VALS":["calm","wild \"one\""]}],
       "DEFAULT_VALUE":["wild \"one\""],"DOC":"How."})"));
-  EXPECT_EQ(face("where")["RANGE"], json::parse(R"([{"MIN":-1,"MAX":2},{"MIN":-1,"MAX":2},{"MIN":-1,"MAX":2}])"));
-  EXPECT_EQ(face("where")["UNIT"], json::parse(R"(["m","m","m"])"));
-  EXPECT_EQ(face("turn")["RANGE"][0].size(), 4u) << "nested as its tags are";
-  EXPECT_EQ(face("turn")["EXTENDED_TYPE"], json::parse(R"(["quaternion"])"));
-  EXPECT_EQ(face("diffuse_color")["EXTENDED_TYPE"], json::parse(R"(["hue","saturation","brightness"])"));
-  EXPECT_FALSE(face("which").contains("RANGE"));
-  EXPECT_FALSE(face("tick").contains("CLIPMODE")) << "nothing is clipped where nothing can be set";
-  EXPECT_EQ(face("tick")["ACCESS"], 1);
-  EXPECT_EQ(face("press")["ACCESS"], 2);
-  EXPECT_EQ(face("talk")["DESCRIPTION"], "talk");
+  EXPECT_EQ(attributes("where")["RANGE"], json::parse(R"([{"MIN":-1,"MAX":2},{"MIN":-1,"MAX":2},{"MIN":-1,"MAX":2}])"));
+  EXPECT_EQ(attributes("where")["UNIT"], json::parse(R"(["m","m","m"])"));
+  EXPECT_EQ(attributes("turn")["RANGE"][0].size(), 4u) << "nested as its tags are";
+  EXPECT_EQ(attributes("turn")["EXTENDED_TYPE"], json::parse(R"(["quaternion"])"));
+  EXPECT_EQ(attributes("diffuse_color")["EXTENDED_TYPE"], json::parse(R"(["hue","saturation","brightness"])"));
+  EXPECT_FALSE(attributes("which").contains("RANGE"));
+  EXPECT_FALSE(attributes("tick").contains("CLIPMODE")) << "nothing is clipped where nothing can be set";
+  EXPECT_EQ(attributes("tick")["ACCESS"], 1);
+  EXPECT_EQ(attributes("press")["ACCESS"], 2);
+  EXPECT_EQ(attributes("talk")["DESCRIPTION"], "talk");
 }
 
-TEST(RowFace, ValuesAreArraysAndMessagesSayTheSame) {
+TEST(OscQueryAttributes, ValuesMatchMessages) {
   const auto value = [](const char* name, std::array<double, 4> v) {
     return value_json(samples().at(name), {v.data(), {}});
   };
@@ -104,31 +105,31 @@ TEST(RowFace, ValuesAreArraysAndMessagesSayTheSame) {
   EXPECT_EQ(value_message("/s", samples().at("style"), {label, {}}).args.at(0).text, "wild \"one\"");
 }
 
-// the rows that Limber has: what a client may rely on
-TEST(RowFace, EveryRowOfEveryClass) {
-  int rows = 0;
-  for (const Table* table : {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table(),
-                             &Transport::table(), &CounterNode::table()}) {
-    for (const Row& row : table->rows()) {
-      const json attributes = face(row);
-      const std::string tags = attributes["TYPE"];
-      EXPECT_EQ(tags.find("ffff") != std::string::npos, tags == "[ffff]") << row.name;
-      EXPECT_LE(attributes["DESCRIPTION"].get<std::string>().size(), 60u) << row.name;
-      EXPECT_FALSE(attributes["DESCRIPTION"].get<std::string>().empty()) << row.name;
+// The properties of Limber must satisfy the assumptions of clients.
+TEST(OscQueryAttributes, CoverEveryProperty) {
+  int count = 0;
+  for (const PropertyTable* table : {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table(),
+                                     &Transport::table(), &CounterNode::table()}) {
+    for (const Property& property : table->properties()) {
+      const json found = attributes(property);
+      const std::string tags = found["TYPE"];
+      EXPECT_EQ(tags.find("ffff") != std::string::npos, tags == "[ffff]") << property.name;
+      EXPECT_LE(found["DESCRIPTION"].get<std::string>().size(), 60u) << property.name;
+      EXPECT_FALSE(found["DESCRIPTION"].get<std::string>().empty()) << property.name;
       const std::size_t elements = tags.front() == '[' ? 1 : tags.size();
       for (const char* each : {"RANGE", "UNIT", "CLIPMODE", "DEFAULT_VALUE"}) {
-        if (attributes.contains(each)) {
-          EXPECT_TRUE(attributes[each].is_array() && attributes[each].size() == elements) << row.name << " " << each;
+        if (found.contains(each)) {
+          EXPECT_TRUE(found[each].is_array() && found[each].size() == elements) << property.name << " " << each;
         }
       }
-      for (const auto& [name, unused] : attributes.items()) {
+      for (const auto& [name, unused] : found.items()) {
         const auto& known = known_attributes();
         EXPECT_NE(std::find(known.begin(), known.end(), name), known.end()) << name;
       }
-      rows++;
+      count++;
     }
   }
-  EXPECT_GT(rows, 90);
+  EXPECT_GT(count, 90);
 }
 
 }  // namespace

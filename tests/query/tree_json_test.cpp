@@ -1,4 +1,4 @@
-// The tree as JSON beside the store that it shows.
+// The tree as JSON, compared with the store.
 #include "query/tree_json.h"
 
 #include <gtest/gtest.h>
@@ -14,26 +14,26 @@
 namespace limber {
 namespace {
 
-using engine_test::image_of;
+using engine_test::make_value_snapshot;
 using engine_test::Show;
 using nlohmann::json;
 
-struct TreeStage {
+struct TreeFixture {
   engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('my body')\n"};
   Show show{file.path()};
-  std::shared_ptr<const Image> image;
+  std::shared_ptr<const ValueSnapshot> snapshot;
 
-  TreeStage() {
+  TreeFixture() {
     show.ticks(3);
-    image = image_of(show);
+    snapshot = make_value_snapshot(show);
   }
   json get(const std::string& path, int depth = 64) const {
-    return json::parse(node_json(*image, *image->tree->find(path), depth));
+    return json::parse(node_json(*snapshot, *snapshot->tree->find(path), depth));
   }
 };
 
-// the node of a path, going down the CONTENTS
-const json* below(const json& root, const std::string& path) {
+// Returns the node of a path by following CONTENTS.
+const json* find_node(const json& root, const std::string& path) {
   const json* at = &root;
   for (std::size_t begin = 1; begin < path.size();) {
     const std::size_t end = std::min(path.find('/', begin), path.size());
@@ -46,98 +46,100 @@ const json* below(const json& root, const std::string& path) {
   return at;
 }
 
-std::size_t leaves(const json& node) {
+std::size_t count_properties(const json& node) {
   if (!node.contains("CONTENTS")) return 1;
   std::size_t count = 0;
-  for (const auto& [name, child] : node["CONTENTS"].items()) count += leaves(child);
+  for (const auto& [name, child] : node["CONTENTS"].items()) count += count_properties(child);
   return count;
 }
 
-TEST(TreeJson, HoldsEveryRowOfTheCatalogWithItsValue) {
-  TreeStage stage;
-  const json root = stage.get("/");
+TEST(TreeJson, ContainsEveryProperty) {
+  TreeFixture fixture;
+  const json root = fixture.get("/");
   EXPECT_EQ(root["FULL_PATH"], "/");
-  const Store& store = stage.show.engine.store();
-  std::size_t rows = 0;
+  const Store& store = fixture.show.engine.store();
+  std::size_t property_count = 0;
   store.walk(store.root(), [&](NodeId id) {
-    for (const Row& row : store.table(id).rows()) {
-      rows++;
-      const std::string path = (id == store.root() ? "" : store.path(id)) + "/" + row.name;
-      const json* node = below(root, path);
+    for (const Property& property : store.table(id).properties()) {
+      property_count++;
+      const std::string path = (id == store.root() ? "" : store.path(id)) + "/" + property.name;
+      const json* node = find_node(root, path);
       ASSERT_NE(node, nullptr) << path;
       EXPECT_EQ(node->at("FULL_PATH"), path);
-      EXPECT_EQ(node->at("TYPE"), tags_of(row)) << path;
-      EXPECT_EQ(node->at("ACCESS"), row.kind == RowKind::action ? 2 : row.writable() ? 3 : 1) << path;
-      EXPECT_EQ(node->contains("VALUE"), row.kind != RowKind::action) << path;
-      if (row.type != RowType::number) continue;
+      EXPECT_EQ(node->at("TYPE"), tags_of(property)) << path;
+      EXPECT_EQ(node->at("ACCESS"), property.kind == PropertyKind::action ? 2 : property.writable() ? 3 : 1) << path;
+      EXPECT_EQ(node->contains("VALUE"), property.kind != PropertyKind::action) << path;
+      if (property.type != PropertyType::number) continue;
       double value = 0;
-      store.get(id, row, &value);
+      store.get(id, property, &value);
       EXPECT_EQ(node->at("VALUE"), json::array({value})) << path;
     }
   });
-  EXPECT_GT(rows, 500u);
-  EXPECT_EQ(leaves(root), rows) << "and nothing else";
+  EXPECT_GT(property_count, 500u);
+  EXPECT_EQ(count_properties(root), property_count) << "and nothing else";
 }
 
-TEST(TreeJson, ValuesOfEachKind) {
-  const TreeStage stage;
-  EXPECT_EQ(stage.get("/scene/style")["VALUE"], json::array({"calm"}));
-  EXPECT_EQ(stage.get("/scene/lively")["VALUE"], json::array({true}));
-  EXPECT_EQ(stage.get("/scene/where")["VALUE"], json::array({0, 0, 1}));
-  EXPECT_EQ(stage.get("/scene/wind")["UNIT"], json::array({"N"}));
-  EXPECT_EQ(stage.get("/physics/sim/gravity")["VALUE"], json::array({0, 0, -9.81}));
-  EXPECT_EQ(stage.get("/physics/body/arm/part/base/rotation")["VALUE"][0].size(), 4u);
-  EXPECT_EQ(stage.get("/physics/body/arm/motor/revolute/mode")["TYPE"], "s") << "computed rows too";
-  EXPECT_FALSE(stage.get("/transport/play").contains("VALUE"));
+TEST(TreeJson, WritesValuesOfEachType) {
+  const TreeFixture fixture;
+  EXPECT_EQ(fixture.get("/scene/style")["VALUE"], json::array({"calm"}));
+  EXPECT_EQ(fixture.get("/scene/lively")["VALUE"], json::array({true}));
+  EXPECT_EQ(fixture.get("/scene/where")["VALUE"], json::array({0, 0, 1}));
+  EXPECT_EQ(fixture.get("/scene/wind")["UNIT"], json::array({"N"}));
+  EXPECT_EQ(fixture.get("/physics/sim/gravity")["VALUE"], json::array({0, 0, -9.81}));
+  EXPECT_EQ(fixture.get("/physics/body/arm/part/base/rotation")["VALUE"][0].size(), 4u);
+  EXPECT_EQ(fixture.get("/physics/body/arm/motor/revolute/mode")["TYPE"], "s") << "computed properties too";
+  EXPECT_FALSE(fixture.get("/transport/play").contains("VALUE"));
 }
 
-TEST(TreeJson, NamesAreWrittenAsInAddresses) {
-  const TreeStage stage;
-  EXPECT_EQ(stage.get("/physics/body/my body")["FULL_PATH"], "/physics/body/my%20body");
-  EXPECT_TRUE(stage.get("/physics/body")["CONTENTS"].contains("my%20body"));
+TEST(TreeJson, EscapesNamesLikeAddresses) {
+  const TreeFixture fixture;
+  EXPECT_EQ(fixture.get("/physics/body/my body")["FULL_PATH"], "/physics/body/my%20body");
+  EXPECT_TRUE(fixture.get("/physics/body")["CONTENTS"].contains("my%20body"));
 }
 
-TEST(TreeJson, DepthLeavesOutWhatLiesDeeper) {
-  const TreeStage stage;
-  EXPECT_EQ(stage.get("/physics", 0), json::parse(R"({"FULL_PATH":"/physics","ACCESS":0,"CONTENTS":{}})"));
-  const json one = stage.get("/physics", 1);
+TEST(TreeJson, LimitsDepth) {
+  const TreeFixture fixture;
+  EXPECT_EQ(fixture.get("/physics", 0), json::parse(R"({"FULL_PATH":"/physics","ACCESS":0,"CONTENTS":{}})"));
+  const json one = fixture.get("/physics", 1);
   EXPECT_TRUE(one["CONTENTS"].contains("body"));
   EXPECT_TRUE(one["CONTENTS"]["body"]["CONTENTS"].empty());
-  EXPECT_FALSE(stage.get("/physics", 2)["CONTENTS"]["body"]["CONTENTS"].empty());
-  EXPECT_TRUE(stage.get("/scene", 1)["CONTENTS"]["wind"].contains("VALUE")) << "a thing's rows are one level below it";
+  EXPECT_FALSE(fixture.get("/physics", 2)["CONTENTS"]["body"]["CONTENTS"].empty());
+  EXPECT_TRUE(fixture.get("/scene", 1)["CONTENTS"]["wind"].contains("VALUE"))
+      << "properties are one level below their object";
 }
 
-TEST(TreeJson, AHugeTreeIsCutByWholeLevels) {
-  // more rows than an answer holds: nodes of eight rows in a store of our own
-  static const Table table = [] {
-    std::vector<Row> rows;
-    for (int i = 0; i < 8; i++) rows.push_back(rows::number("r" + std::to_string(i), "", 0, 0, 1, "A row."));
-    return Table("crowd", "/crowd/<crowd>", "", std::move(rows));
+TEST(TreeJson, OmitsDeepestLevelsOfHugeTree) {
+  // more properties than the limit of a response: nodes of eight properties in a separate store
+  static const PropertyTable table = [] {
+    std::vector<Property> properties;
+    for (int i = 0; i < 8; i++)
+      properties.push_back(properties::number("r" + std::to_string(i), "", 0, 0, 1, "A property."));
+    return PropertyTable("crowd", "/crowd/<crowd>", "", std::move(properties));
   }();
   Store store;
   const NodeId group = store.add_group(store.root(), "crowd");
-  for (std::size_t i = 0; i < kMostRows / 16; i++) {
+  for (std::size_t i = 0; i < kMaxProperties / 16; i++) {
     const NodeId one = store.add(table, group, "n" + std::to_string(i), nullptr);
     store.add(table, store.add_group(one, "in"), "x", nullptr);
   }
-  Image image;
-  image.tree = std::make_shared<const Tree>(store);
-  image.snapshot = std::make_shared<const Snapshot>();
-  image.kept.assign(store.kept().begin(), store.kept().end());
-  const json cut = json::parse(node_json(image, {}));
-  EXPECT_EQ(cut["CONTENTS"]["crowd"]["CONTENTS"].size(), kMostRows / 16);
+  ValueSnapshot values;
+  values.tree = std::make_shared<const TreeSnapshot>(store);
+  values.snapshot = std::make_shared<const Snapshot>();
+  values.persistent.assign(store.persistent_values().begin(), store.persistent_values().end());
+  const json cut = json::parse(node_json(values, {}));
+  EXPECT_EQ(cut["CONTENTS"]["crowd"]["CONTENTS"].size(), kMaxProperties / 16);
   const json& one = cut["CONTENTS"]["crowd"]["CONTENTS"]["n7"];
   EXPECT_TRUE(one["CONTENTS"].contains("r7"));
-  EXPECT_EQ(one["CONTENTS"]["in"]["CONTENTS"]["x"]["CONTENTS"], json::object()) << "who is there, but no rows";
-  // one of them is given whole
-  const json whole = json::parse(node_json(image, *image.tree->find("/crowd/n7")));
-  EXPECT_EQ(leaves(whole), 16u);
+  EXPECT_EQ(one["CONTENTS"]["in"]["CONTENTS"]["x"]["CONTENTS"], json::object()) << "the object without its properties";
+  // a single one of them is complete
+  const json whole = json::parse(node_json(values, *values.tree->find("/crowd/n7")));
+  EXPECT_EQ(count_properties(whole), 16u);
 }
 
-TEST(TreeJson, FindsByWordsOfThePath) {
-  const TreeStage stage;
+TEST(TreeJson, FindsPathsByWords) {
+  const TreeFixture fixture;
   const auto find = [&](const std::string& words, std::size_t limit = 100) {
-    return json::parse(find_json(*stage.image, words, limit));
+    return json::parse(find_json(*fixture.snapshot, words, limit));
   };
   const json wind = find("scene wind");
   ASSERT_EQ(wind["FOUND"].size(), 1u);
@@ -152,9 +154,11 @@ TEST(TreeJson, FindsByWordsOfThePath) {
   EXPECT_EQ(find("\"}<script>")["FOUND"].size(), 0u);
 }
 
-TEST(TreeJson, ValueAlone) {
-  const TreeStage stage;
-  const auto value = [&](const char* path) { return place_value_json(*stage.image, *stage.image->tree->find(path)); };
+TEST(TreeJson, WritesSingleValue) {
+  const TreeFixture fixture;
+  const auto value = [&](const char* path) {
+    return property_value_json(*fixture.snapshot, *fixture.snapshot->tree->find(path));
+  };
   EXPECT_EQ(value("/scene/where"), "[0,0,1]");
   EXPECT_EQ(value("/transport/play"), "");
   EXPECT_EQ(value("/scene"), "");

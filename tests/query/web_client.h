@@ -1,4 +1,4 @@
-// A client of HTTP and WebSocket on plain sockets, written from RFC 7230 and RFC 6455 without the code that is tested.
+// A client for HTTP and WebSocket on plain sockets, based only on RFC 7230 and RFC 6455.
 #pragma once
 
 #include <arpa/inet.h>
@@ -20,25 +20,25 @@
 
 namespace limber::query_test {
 
-/// Nothing waits longer than this; only a failing test waits as long.
-inline constexpr int kPatienceMs = 20000;
+/// Timeout of all waits; reached only by failing tests.
+inline constexpr int kTimeoutMs = 20000;
 
 struct Reply {
-  int status = 0;  ///< 0: nothing came.
+  int status = 0;  ///< 0: no response.
   std::string head;
   std::string body;
 
-  bool says(std::string_view line) const { return head.find(line) != std::string::npos; }
+  bool has_header(std::string_view line) const { return head.find(line) != std::string::npos; }
 };
 
 struct Frame {
-  int opcode = 0;  ///< 1 text, 2 binary, 8 the end, 10 an answer to a ping; 0: nothing came.
+  int opcode = 0;  ///< 1 text, 2 binary, 8 close, 10 pong; 0: no frame.
   std::string payload;
 };
 
 class WebClient {
  public:
-  /// `host`: the last byte of its own address, 127.0.0.1 and so on.
+  /// `host`: last byte of the client's own address, 127.0.0.1 and so on.
   explicit WebClient(std::uint16_t port, int receive_buffer = 0, std::uint32_t host = 1) : port_(port) {
     fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in own{};
@@ -54,7 +54,7 @@ class WebClient {
   }
   ~WebClient() { close(); }
   WebClient(WebClient&& other) noexcept
-      : fd_(std::exchange(other.fd_, -1)), port_(other.port_), got_(std::move(other.got_)) {}
+      : fd_(std::exchange(other.fd_, -1)), port_(other.port_), buffer_(std::move(other.buffer_)) {}
   WebClient(const WebClient&) = delete;
   WebClient& operator=(const WebClient&) = delete;
 
@@ -62,7 +62,7 @@ class WebClient {
     if (fd_ >= 0) ::close(std::exchange(fd_, -1));
   }
   int fd() const { return fd_; }
-  /// Its own port, by which the server knows it.
+  /// The local port, by which the server identifies it.
   std::uint16_t own_port() const {
     sockaddr_in at{};
     socklen_t length = sizeof at;
@@ -71,7 +71,7 @@ class WebClient {
   }
   std::string host() const { return "127.0.0.1:" + std::to_string(port_); }
 
-  /// False: the server took no more of it.
+  /// Returns false if the server accepted no more bytes.
   bool send(std::string_view bytes) const {
     while (!bytes.empty()) {
       const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -81,7 +81,7 @@ class WebClient {
     return true;
   }
 
-  /// A request and its answer; `more` are further lines of the head, each with its end.
+  /// Sends a request and returns the response; `more` are further header lines, each with its line end.
   Reply get(std::string_view target, const std::string& more = "", std::string_view method = "GET") {
     send(std::string(method) + " " + std::string(target) + " HTTP/1.1\r\nHost: " + host() + "\r\n" + more + "\r\n");
     return reply(method == "HEAD");
@@ -89,31 +89,30 @@ class WebClient {
   Reply reply(bool head_only = false) {
     Reply reply;
     std::size_t end = 0;
-    while ((end = got_.find("\r\n\r\n")) == std::string::npos) {
-      if (!more()) return reply;
+    while ((end = buffer_.find("\r\n\r\n")) == std::string::npos) {
+      if (!read_more()) return reply;
     }
-    reply.head = got_.substr(0, end + 2);
-    got_.erase(0, end + 4);
+    reply.head = buffer_.substr(0, end + 2);
+    buffer_.erase(0, end + 4);
     reply.status = std::atoi(reply.head.c_str() + std::string_view("HTTP/1.1 ").size());
     const std::size_t length = reply.head.find("Content-Length: ");
     const std::size_t size = length == std::string::npos || head_only ? 0 : std::stoul(reply.head.substr(length + 16));
-    while (got_.size() < size) {
-      if (!more()) break;
+    while (buffer_.size() < size) {
+      if (!read_more()) break;
     }
-    reply.body = got_.substr(0, size);
-    got_.erase(0, size);
+    reply.body = buffer_.substr(0, size);
+    buffer_.erase(0, size);
     return reply;
   }
 
-  /// Becomes a WebSocket; the answer, whose status is then 101. The key and what it must be answered with are RFC
-  /// 6455's own example.
+  /// Upgrades to a WebSocket; the expected status is 101. The key and the expected reply to it are those of RFC 6455.
   Reply upgrade(const std::string& more = "") {
     return get("/",
                "Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
                "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
                    more);
   }
-  /// A frame as a client sends it, masked.
+  /// Sends a masked frame, as required of clients.
   bool frame(int opcode, std::string_view payload, bool last = true) const {
     std::string bytes(1, static_cast<char>((last ? 0x80 : 0) | opcode));
     if (payload.size() < 126) {
@@ -138,22 +137,22 @@ class WebClient {
     return text(R"({"COMMAND":")" + std::string(word) + R"(","DATA":")" + std::string(path) + "\"}");
   }
 
-  /// The next frame; its opcode is 0 when none came within `ms`, or the connection ended.
-  Frame receive(int ms = kPatienceMs) {
+  /// Returns the next frame; its opcode is 0 on timeout or if the connection ended.
+  Frame receive(int ms = kTimeoutMs) {
     Frame frame;
-    while (!take_frame(frame)) {
-      if (!more(ms)) return {};
+    while (!parse_frame(frame)) {
+      if (!read_more(ms)) return {};
     }
     return frame;
   }
-  /// The next frame of that opcode that holds `part`; others are passed over.
+  /// Returns the next frame with this opcode that contains `part`, skipping others.
   Frame receive(int opcode, std::string_view part) {
     for (;;) {
       Frame frame = receive();
       if (frame.opcode == 0 || (frame.opcode == opcode && frame.payload.find(part) != std::string::npos)) return frame;
     }
   }
-  /// What binary frames come before an answer to this ping does: everything that was on its way.
+  /// Returns the binary frames that arrive before the pong of this ping, which are all that were on their way.
   std::vector<std::string> until_pong(const std::string& word) {
     frame(9, word);
     std::vector<std::string> values;
@@ -164,45 +163,45 @@ class WebClient {
       if (got.opcode == 2) values.push_back(std::move(got.payload));
     }
   }
-  /// Whether the server ends the connection.
-  bool ends() {
-    while (more()) got_.clear();
+  /// True if the server closes the connection.
+  bool is_closed() {
+    while (read_more()) buffer_.clear();
     return ended_;
   }
 
  private:
-  // reads some bytes; false: none come any more
-  bool more(int ms = kPatienceMs) {
+  // Reads some bytes; returns false if no more arrive.
+  bool read_more(int ms = kTimeoutMs) {
     pollfd p{fd_, POLLIN, 0};
     if (poll(&p, 1, ms) <= 0) return false;
     char buffer[65536];
     const ssize_t n = recv(fd_, buffer, sizeof buffer, 0);
     ended_ = n <= 0;
-    if (n > 0) got_.append(buffer, static_cast<std::size_t>(n));
+    if (n > 0) buffer_.append(buffer, static_cast<std::size_t>(n));
     return n > 0;
   }
 
-  bool take_frame(Frame& frame) {
-    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(got_[i]); };
-    if (got_.size() < 2) return false;
+  bool parse_frame(Frame& frame) {
+    const auto byte = [this](std::size_t i) { return static_cast<unsigned char>(buffer_[i]); };
+    if (buffer_.size() < 2) return false;
     std::size_t head = 2;
     std::size_t size = byte(1) & 127u;
     EXPECT_EQ(byte(1) & 128u, 0u) << "a server's frame is not masked";
     const std::size_t longer = size == 126 ? 2 : size == 127 ? 8 : 0;
-    if (got_.size() < head + longer) return false;
+    if (buffer_.size() < head + longer) return false;
     if (longer > 0) size = 0;
     for (std::size_t i = 0; i < longer; i++) size = size << 8 | byte(head + i);
     head += longer;
-    if (got_.size() < head + size) return false;
+    if (buffer_.size() < head + size) return false;
     frame.opcode = byte(0) & 15;
-    frame.payload = got_.substr(head, size);
-    got_.erase(0, head + size);
+    frame.payload = buffer_.substr(head, size);
+    buffer_.erase(0, head + size);
     return true;
   }
 
   int fd_ = -1;
   std::uint16_t port_ = 0;
-  std::string got_;
+  std::string buffer_;
   bool ended_ = false;
 };
 

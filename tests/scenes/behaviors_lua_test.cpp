@@ -1,4 +1,4 @@
-// The behaviours that ship in behaviors_lua/ beside the twins: each does what its first lines say.
+// The behaviors in behaviors_lua/ that have no built-in twin: each does as its first lines describe.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -11,20 +11,20 @@ namespace {
 
 constexpr double kTick = 1.0 / 60;
 
-// a scene of its own, played with the shipped behaviours
-struct Ballet {
-  explicit Ballet(const std::string& scene) : player(show.write("scripts/scene.lua", scene)) {}
-  ~Ballet() { EXPECT_EQ(player.engine->faults(), 0u); }
+// Plays a scene with the behaviors in behaviors_lua/; expects no faults.
+struct BehaviorPlayer {
+  explicit BehaviorPlayer(const std::string& scene) : player(show.write("scripts/scene.lua", scene)) {}
+  ~BehaviorPlayer() { EXPECT_EQ(player.engine->faults(), 0u); }
   ShowFolder show;
   Player player;
 };
 
-TEST(Breathe, TargetsFollowTheSineEachALittleLater) {
-  Ballet ballet(R"(
+TEST(Breathe, TargetsFollowTheSineWithIncreasingPhase) {
+  BehaviorPlayer lua_scene(R"(
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offset = 0.2 })
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   const Body& arm = player.body("arm");
   for (int tick = 1; tick <= 240; tick++) {
     player.engine->tick();
@@ -35,7 +35,7 @@ arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offs
           << "motor " << i + 1 << " at tick " << tick;
     }
   }
-  // another rate goes on from where it is: no motor is sent further at once than it moves in a tick
+  // a new rate continues from the current phase: no target jumps further than it moves in a tick
   const double before = player.value("/physics/body/arm/motor/joint_1/target");
   player.send("/physics/body/arm/behavior/breath/rate", {Arg::of(2.0)});
   player.engine->tick();
@@ -44,29 +44,29 @@ arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offs
 }
 
 TEST(Breathe, JointsSwingAsOftenAndAsDeep) {
-  Ballet ballet(R"(
+  BehaviorPlayer lua_scene(R"(
 sim.gravity = vec3()
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 arm:add_behavior("breathe", "breath", { rate = 0.4, depth = 0.35, motors = "joint_2" })
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   const Joint& joint = *player.body("arm").find_joint("joint_2");
   player.play(2.5);
-  double deepest = 0, before = joint.value();
-  std::vector<double> rises;  // when it passes the middle on its way up, s
+  double max_angle = 0, before = joint.value();
+  std::vector<double> rises;  // times of its upward crossings of the middle, s
   for (int tick = 0; tick < 900; tick++) {
     player.engine->tick();
     const double now = joint.value();
     if (before < 0 && now >= 0) rises.push_back((tick - now / (now - before)) * kTick);
-    deepest = std::max(deepest, std::abs(now));
+    max_angle = std::max(max_angle, std::abs(now));
     before = now;
   }
   ASSERT_EQ(rises.size(), 6u);
   EXPECT_NEAR((rises.back() - rises.front()) / 5, 1 / 0.4, 0.01);
-  EXPECT_NEAR(deepest, 0.35, 0.01);
+  EXPECT_NEAR(max_angle, 0.35, 0.01);
 }
 
-// how far a joint's swing of that frequency lags behind a cosine, from its angles at each tick
+// Returns the phase lag, rad, of a joint's oscillation at this frequency behind a cosine, from its angles at each tick.
 double lag_of(const std::vector<double>& angles, double frequency) {
   std::complex<double> sum = 0;
   for (std::size_t i = 0; i < angles.size(); i++) {
@@ -75,13 +75,13 @@ double lag_of(const std::vector<double>& angles, double frequency) {
   return -std::arg(sum);
 }
 
-TEST(Wave, CrestsTravelRateTimesLengthMotorsASecond) {
-  Ballet ballet(R"(
+TEST(Wave, CrestsTravelRateTimesLengthMotorsPerSecond) {
+  BehaviorPlayer lua_scene(R"(
 sim.gravity = vec3()
 local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm" })
 arm:add_behavior("wave", "crawl", { rate = 0.5, length = 8, depth = 0.2 })
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   const Body& arm = player.body("arm");
   player.play(4);  // until it swings evenly
   std::vector<std::vector<double>> angles(arm.joints().size());
@@ -89,7 +89,7 @@ arm:add_behavior("wave", "crawl", { rate = 0.5, length = 8, depth = 0.2 })
     player.engine->tick();
     for (std::size_t k = 0; k < angles.size(); k++) angles[k].push_back(arm.joints()[k]->value());
   }
-  // from one joint to the next the swing comes later by the same part of a turn: that is its speed
+  // the phase lag from one joint to the next gives the speed of the wave
   double turned = 0;
   for (std::size_t k = 1; k < angles.size(); k++) {
     const double step = lag_of(angles[k], 0.5) - lag_of(angles[k - 1], 0.5);
@@ -100,12 +100,12 @@ arm:add_behavior("wave", "crawl", { rate = 0.5, length = 8, depth = 0.2 })
 }
 
 TEST(Wave, GrowsTowardsTheTip) {
-  Ballet ballet(R"(
+  BehaviorPlayer lua_scene(R"(
 sim.gravity = vec3()
 local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm" })
 arm:add_behavior("wave", "crawl", { rate = 1, depth = 0.2, growth = 1 })
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   double root = 0, tip = 0;
   for (int i = 0; i < 120; i++) {
     player.engine->tick();
@@ -116,9 +116,9 @@ arm:add_behavior("wave", "crawl", { rate = 1, depth = 0.2, growth = 1 })
   EXPECT_NEAR(tip, 0.2, 0.001);
 }
 
-TEST(Follow, TheTipReachesATargetThatComesOverOsc) {
-  // an arm whose motors are off hangs; its tip is led by force alone
-  Ballet ballet(R"(
+TEST(Follow, TheTipReachesATargetSetByOsc) {
+  // an arm with its motors off hangs; its tip is moved by force alone
+  BehaviorPlayer lua_scene(R"(
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm", motors = "off", position = vec3(0, 0, 2),
   rotation = quat.euler(math.pi, 0, 0) })
 for motor in arm:motors() do motor.damping = 0.2 end
@@ -127,22 +127,22 @@ local ball = sim:add_body("ball")
 ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { mass = 0.5, position = vec3(3, 0, 1) })
 ball:add_behavior("follow", "ball")
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   const Part& tip = *player.body("arm").find_part("tip");
   const Part& ball = *player.body("ball").root();
   player.play(2);
-  const Vec3 aside(0, 2, 0);  // or they would meet
+  const Vec3 ball_offset(0, 2, 0);  // to avoid collisions
   for (const Vec3 target : {Vec3(0.5, 0.3, 0.9), Vec3(-0.6, 0.2, 1.1)}) {
-    const auto told = [](const Vec3& at) { return std::vector<Arg>{Arg::of(at.x), Arg::of(at.y), Arg::of(at.z)}; };
-    player.send("/physics/body/arm/behavior/hand/target", told(target));
-    player.send("/physics/body/ball/behavior/ball/target", told(target + aside));
+    const auto arguments = [](const Vec3& at) { return std::vector<Arg>{Arg::of(at.x), Arg::of(at.y), Arg::of(at.z)}; };
+    player.send("/physics/body/arm/behavior/hand/target", arguments(target));
+    player.send("/physics/body/ball/behavior/ball/target", arguments(target + ball_offset));
     double tip_before = glm::distance(tip.center(), target);
-    double ball_before = glm::distance(ball.center(), target + aside);
+    double ball_before = glm::distance(ball.center(), target + ball_offset);
     EXPECT_GT(tip_before, 0.3);
     for (int i = 0; i < 4; i++) {
       player.play(2);
       const double tip_now = glm::distance(tip.center(), target);
-      const double ball_now = glm::distance(ball.center(), target + aside);
+      const double ball_now = glm::distance(ball.center(), target + ball_offset);
       EXPECT_LT(tip_now, 0.7 * tip_before) << "after " << 2 * i + 2 << " s";
       EXPECT_LT(ball_now, 0.7 * ball_before) << "after " << 2 * i + 2 << " s";
       tip_before = tip_now;
@@ -154,7 +154,7 @@ ball:add_behavior("follow", "ball")
 }
 
 TEST(Orbit, ReachesItsRadiusAndSpeed) {
-  Ballet ballet(R"(
+  BehaviorPlayer lua_scene(R"(
 local ball = sim:add_sphere_shape("ball", 0.05)
 for i, place in ipairs { vec3(0.1, 0, 1), vec3(3, 0, 2), vec3(0, 0, 1) } do
   local moon = sim:add_body("moon" .. i)
@@ -162,7 +162,7 @@ for i, place in ipairs { vec3(0.1, 0, 1), vec3(3, 0, 2), vec3(0, 0, 1) } do
   moon:add_behavior("orbit", "round", { center = vec3(0, 0, 1), axis = vec3(0, 1, 4), radius = 0.8, speed = -1.5 })
 end
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   player.play(8);
   const Vec3 axis = normalized(Vec3(0, 1, 4));
   for (int tick = 0; tick < 240; tick++) {
@@ -179,8 +179,8 @@ end
   }
 }
 
-TEST(Balance, APoleThatIsPushedOverComesBack) {
-  Ballet ballet(R"(
+TEST(Balance, APushedPoleReturns) {
+  BehaviorPlayer lua_scene(R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { friction = 1 })
 local pole = sim:add_body("pole")
 pole:add_part("pole", sim:add_cylinder_shape("pole", 0.08, 1), { mass = 1, position = vec3(0, 0, 0.5) })
@@ -190,7 +190,7 @@ osc:on("/push", function(angle)
   pole.position = vec3(0, 0, 0.6)
 end)
 )");
-  Player& player = ballet.player;
+  Player& player = lua_scene.player;
   const Part& pole = *player.body("pole").root();
   const auto off_upright = [&] {
     return std::acos(std::clamp((pole.pose().rotation * Vec3(0, 0, 1)).z, -1.0, 1.0)) * 180 / kPi;
@@ -210,16 +210,16 @@ end)
   EXPECT_GT(off_upright(), 60);
 }
 
-// sixty birds with headings of their own, after so many seconds
+// Statistics of sixty birds that start with random headings.
 struct Birds {
-  double polarisation = 0;  // 1: all fly one way; about 0.1: each its own
+  double polarization = 0;  // 1: all fly in one direction; about 0.1: random directions
   double speed = 0;         // mean, m/s
   double nearest = 1e9;     // of any two, m
-  double spread = 0;        // mean distance from their middle, m
+  double spread = 0;        // mean distance from their center, m
 };
 
-Birds flown(const std::string& opts, double seconds) {
-  Ballet ballet(R"(
+Birds simulate_birds(const std::string& opts, double seconds) {
+  BehaviorPlayer lua_scene(R"(
 sim.gravity = vec3()
 local ball = sim:add_sphere_shape("ball", 0.05)
 local birds = {}
@@ -228,19 +228,19 @@ for i = 1, 60 do
   birds[i]:add_part("bird", ball, { mass = 0.1, position = rng:uniform(vec3(-1, -1, -1), vec3(1, 1, 1)) * 1.5 })
 end
 sim:add_group_behavior("flock", "swarm", { bodies = "bird*", )" +
-                opts + R"( })
+                           opts + R"( })
 sim:on_start(function() for _, bird in ipairs(birds) do bird.linear_velocity = rng:direction() end end)
 )");
-  ballet.player.play(seconds);
+  lua_scene.player.play(seconds);
   Birds now;
-  const auto& bodies = ballet.player.world().bodies();
-  Vec3 way(0), middle(0);
+  const auto& bodies = lua_scene.player.world().bodies();
+  Vec3 mean_direction(0), middle(0);
   for (const auto& bird : bodies) {
-    way += normalized(bird->root()->linear_velocity()) / 60.0;
+    mean_direction += normalized(bird->root()->linear_velocity()) / 60.0;
     middle += bird->root()->center() / 60.0;
     now.speed += glm::length(bird->root()->linear_velocity()) / 60;
   }
-  now.polarisation = glm::length(way);
+  now.polarization = glm::length(mean_direction);
   for (const auto& a : bodies) {
     now.spread += glm::distance(a->root()->center(), middle) / 60;
     for (const auto& b : bodies) {
@@ -250,33 +250,33 @@ sim:on_start(function() for _, bird in ipairs(birds) do bird.linear_velocity = r
   return now;
 }
 
-TEST(Flock, BirdsWithHeadingsOfTheirOwnComeToShareOne) {
-  const Birds at_first = flown("", 0.02), later = flown("", 20);
-  EXPECT_LT(at_first.polarisation, 0.35);
-  EXPECT_GT(later.polarisation, 0.9);
+TEST(Flock, BirdsAlignTheirHeadings) {
+  const Birds at_first = simulate_birds("", 0.02), later = simulate_birds("", 20);
+  EXPECT_LT(at_first.polarization, 0.35);
+  EXPECT_GT(later.polarization, 0.9);
   EXPECT_NEAR(later.speed, 1, 0.1);
   EXPECT_GT(later.nearest, 0.1);
   EXPECT_LT(later.spread, 2 * at_first.spread);
 }
 
-// what each rule gives is lost without it
-TEST(Flock, WithoutAlignmentTheyGoTheirOwnWays) {
-  const Birds birds = flown("alignment = 0", 20);
-  EXPECT_LT(birds.polarisation, 0.6);
+// Each rule of the flock is needed for its effect.
+TEST(Flock, WithoutAlignmentHeadingsDiffer) {
+  const Birds birds = simulate_birds("alignment = 0", 20);
+  EXPECT_LT(birds.polarization, 0.6);
 }
 
 TEST(Flock, WithoutCohesionTheyScatter) {
-  const Birds with = flown("", 20), without = flown("cohesion = 0", 20);
+  const Birds with = simulate_birds("", 20), without = simulate_birds("cohesion = 0", 20);
   EXPECT_GT(without.spread, 3 * with.spread);
 }
 
 TEST(Flock, WithoutSeparationTheyHuddle) {
-  const Birds with = flown("", 20), without = flown("separation = 0", 20);
+  const Birds with = simulate_birds("", 20), without = simulate_birds("separation = 0", 20);
   EXPECT_LT(without.spread, 0.5 * with.spread);
   EXPECT_LT(without.nearest, with.nearest);
 }
 
-// each says what it is for, and what each parameter means
+// Each behavior documents its purpose and its parameters.
 TEST(BehaviorsLua, AreDocumented) {
   std::string scene = "local arm = sim:load_urdf('urdf/arm6.urdf', { name = 'arm' })\n";
   std::vector<std::string> types;
@@ -293,14 +293,15 @@ TEST(BehaviorsLua, AreDocumented) {
                  : "arm:add_behavior('" + types.back() + "', '" + types.back() + "')\n";
   }
   EXPECT_GE(types.size(), 18u);
-  Ballet ballet(scene);
+  BehaviorPlayer lua_scene(scene);
   for (const std::string& name : types) {
-    const auto type = ballet.player.world().behaviors().types().find(name);
+    const auto type = lua_scene.player.world().behaviors().types().find(name);
     ASSERT_NE(type, nullptr) << name;
     EXPECT_GT(type->doc.size(), 20u) << name;
-    for (const Row& row : type->table->rows()) EXPECT_GT(row.doc.size(), 5u) << name << " " << row.name;
+    for (const Property& property : type->table->properties())
+      EXPECT_GT(property.doc.size(), 5u) << name << " " << property.name;
   }
-  ballet.player.play(2);
+  lua_scene.player.play(2);
 }
 
 }  // namespace

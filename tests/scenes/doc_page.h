@@ -1,4 +1,4 @@
-// A page of docs/ as tests read it: its blocks between ```, and its lines.
+// Reads a page of docs/ for tests: its code blocks and its lines.
 #pragma once
 
 #include <fstream>
@@ -10,13 +10,13 @@
 
 namespace limber {
 
-/// "```lua scripts/pushed.lua error" and what stands in it; text blocks behind it are what is said.
+/// A block such as "```lua scripts/pushed.lua error" and its text; the text blocks after it are the expected output.
 struct DocBlock {
   std::string language;  ///< lua, xml, console
-  std::string file;      ///< Which file it is; of a console the scene that it talks to.
-  std::string expected;  ///< nothing, error, fails
+  std::string file;      ///< File name of the block; for a console block the scene that it is connected to.
+  std::string expected;  ///< Empty, "error" (the scene is rejected) or "fails" (a callback fails).
   std::string text;
-  std::vector<std::string> said;
+  std::vector<std::string> output;
   int line = 0;
 };
 
@@ -30,16 +30,16 @@ inline std::vector<std::string> lines_of_page(const std::string& page) {
 
 inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
   std::vector<DocBlock> list;
-  std::string* into = nullptr;
+  std::string* target = nullptr;
   int number = 0;
   for (const std::string& line : lines_of_page(page)) {
     number++;
     if (!line.starts_with("```")) {
-      if (into != nullptr) *into += line + "\n";
+      if (target != nullptr) *target += line + "\n";
       continue;
     }
-    if (into != nullptr) {
-      into = nullptr;
+    if (target != nullptr) {
+      target = nullptr;
       continue;
     }
     const std::string where = page + ":" + std::to_string(number);
@@ -48,8 +48,8 @@ inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
     info >> language;
     if (language == "text") {
       if (list.empty()) list.emplace_back();
-      EXPECT_FALSE(list.back().language.empty()) << where << ": nothing before it could say that";
-      into = &list.back().said.emplace_back();
+      EXPECT_FALSE(list.back().language.empty()) << where << ": output without a block before it";
+      target = &list.back().output.emplace_back();
       continue;
     }
     EXPECT_TRUE(language == "lua" || language == "xml" || language == "console") << where << ": " << language;
@@ -57,10 +57,10 @@ inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
     block.language = language;
     info >> block.file >> block.expected;
     block.line = number;
-    EXPECT_FALSE(block.file.empty()) << where << ": a block says which file it is";
-    into = &block.text;
+    EXPECT_FALSE(block.file.empty()) << where << ": a block needs a file name";
+    target = &block.text;
   }
-  EXPECT_EQ(into, nullptr) << page << ": the last block is not closed";
+  EXPECT_EQ(target, nullptr) << page << ": the last block is not closed";
   return list;
 }
 

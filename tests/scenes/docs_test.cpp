@@ -1,5 +1,5 @@
-// The pages of docs/ and the README: every block of Lua is played, every error shown is the one that is said, every
-// example of a message is understood.
+// The pages of docs/ and the README: every block of Lua is played, every error shown is the actual one, every example
+// of a message is accepted.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -10,47 +10,48 @@
 #include "app/program.h"
 #include "doc_page.h"
 #include "player.h"
+#include "sim/behavior_type.h"
 
 namespace limber {
 namespace {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// first lines of what was said by such messages
-std::vector<std::string> told(Player& player, const std::string& address, std::size_t argument) {
+// first lines of the texts of these messages
+std::vector<std::string> texts_of_messages(Player& player, const std::string& address, std::size_t argument) {
   std::vector<std::string> texts;
   for (const Message& message : player.sent()) {
     if (message.address == address) texts.push_back(first_line(message.args.at(argument).text));
   }
   return texts;
 }
-std::vector<std::string> faults(Player& player) { return told(player, "/script/error", 2); }
-std::vector<std::string> refusals(Player& player) { return told(player, "/error", 1); }
+std::vector<std::string> faults(Player& player) { return texts_of_messages(player, "/script/error", 2); }
+std::vector<std::string> error_messages(Player& player) { return texts_of_messages(player, "/error", 1); }
 
-class PageOfLua : public testing::TestWithParam<const char*> {};
+class LuaPage : public testing::TestWithParam<const char*> {};
 
-TEST_P(PageOfLua, EveryBlockDoesWhatThePageSays) {
+TEST_P(LuaPage, EveryBlockBehavesAsDocumented) {
   const ShowFolder show;
   const std::vector<DocBlock> all = blocks_of_page(GetParam());
   int played = 0;
-  // behaviours and bodies come before the scenes that name them, in whatever order the page tells of them
+  // behaviors and bodies are written before the scenes that use them, regardless of their order on the page
   for (const DocBlock& block : all) show.write(block.file, block.text);
   for (const DocBlock& block : all) {
     if (!block.file.starts_with("scripts/")) continue;
     SCOPED_TRACE(GetParam() + (":" + std::to_string(block.line)) + " " + block.file);
     Player player(show.write(block.file, block.text), Player::MayFail{});
-    const std::string said = block.said.empty() ? "" : first_line(block.said.front());
+    const std::string expected_error = block.output.empty() ? "" : first_line(block.output.front());
     played++;
     if (block.expected == "error") {
       ASSERT_FALSE(player.started.ok());
-      EXPECT_EQ(first_line(player.started.error()), said);
+      EXPECT_EQ(first_line(player.started.error()), expected_error);
       continue;
     }
     ASSERT_TRUE(player.started.ok()) << player.started.error();
     for (int i = 0; i < 120; i++) player.engine->tick();
     const std::vector<std::string> wrong = faults(player);
     if (block.expected == "fails") {
-      EXPECT_EQ(wrong, std::vector<std::string>{said});
+      EXPECT_EQ(wrong, std::vector<std::string>{expected_error});
       EXPECT_EQ(player.world().tick(), 120u) << "the show plays on";
     } else {
       EXPECT_EQ(block.expected, "");
@@ -61,8 +62,8 @@ TEST_P(PageOfLua, EveryBlockDoesWhatThePageSays) {
   EXPECT_GT(played, 0);
 }
 
-// a block that nobody plays proves nothing
-TEST_P(PageOfLua, EveryBehaviorOnThePageIsPlayed) {
+// A behavior on a page is tested only if a scene on the page uses it.
+TEST_P(LuaPage, EveryBehaviorOnThePageIsPlayed) {
   std::string scenes;
   for (const DocBlock& block : blocks_of_page(GetParam())) {
     if (block.file.starts_with("scripts/")) scenes += block.text;
@@ -74,38 +75,38 @@ TEST_P(PageOfLua, EveryBehaviorOnThePageIsPlayed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Docs, PageOfLua,
+INSTANTIATE_TEST_SUITE_P(Docs, LuaPage,
                          testing::Values("docs/scripting.md", "docs/bodies.md", "docs/behaviors.md", "docs/presets.md"),
                          [](const auto& page) { return std::filesystem::path(page.param).stem().string(); });
 
-TEST(Docs, TheTutorialIsWhole) { EXPECT_GE(blocks_of_page("docs/scripting.md").size(), 12u); }
+TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/scripting.md").size(), 12u); }
 
 // ---- docs/bodies.md
 
-TEST(Docs, InspectSaysWhatThePageOfBodiesShows) {
-  const app_test::Folder folder;
+TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
+  const app_test::TempFolder folder;
   const std::vector<DocBlock> blocks = blocks_of_page("docs/bodies.md");
   const auto body = std::find_if(blocks.begin(), blocks.end(), [](const DocBlock& b) { return b.language == "xml"; });
   ASSERT_NE(body, blocks.end());
-  ASSERT_EQ(body->said.size(), 2u) << "what inspect says, and what it says of a comma";
+  ASSERT_EQ(body->output.size(), 2u) << "the output of inspect, and its error for a comma";
   folder.file(body->file, body->text);
-  const app_test::Ran ran = app_test::run({"inspect", body->file}, folder.path());
-  EXPECT_EQ(ran.code, 0);
-  EXPECT_EQ(ran.out + ran.err, body->said[0]);
+  const app_test::RunResult result = app_test::run({"inspect", body->file}, folder.path());
+  EXPECT_EQ(result.code, 0);
+  EXPECT_EQ(result.out + result.err, body->output[0]);
   const std::string mass = "mass value=\"0.5\"";
   std::string mistyped = body->text;
   ASSERT_NE(mistyped.find(mass), std::string::npos);
   mistyped.replace(mistyped.find(mass), mass.size(), "mass value=\"0,5\"");
   folder.file(body->file, mistyped);
-  const app_test::Ran wrong = app_test::run({"inspect", body->file}, folder.path());
-  EXPECT_NE((wrong.out + wrong.err).find(body->said[1]), std::string::npos) << wrong.out << wrong.err;
+  const app_test::RunResult wrong = app_test::run({"inspect", body->file}, folder.path());
+  EXPECT_NE((wrong.out + wrong.err).find(body->output[1]), std::string::npos) << wrong.out << wrong.err;
 }
 
 // ---- docs/behaviors.md
 
 bool is_number(const std::string& word) { return std::regex_match(word, std::regex("-?[0-9.]+")); }
 
-// words of a message: numbers are floats, the rest is text
+// arguments of a message: numbers are floats, the rest is text
 Message message_of(const std::string& line) {
   std::istringstream words(line);
   Message message;
@@ -116,7 +117,7 @@ Message message_of(const std::string& line) {
   return message;
 }
 
-// bodies that have what the page's examples name
+// bodies with the parts and joints of the page's examples
 constexpr const char* kExampleBodies = R"(
 local shape, place = sim:add_sphere_shape("ball", 0.05), 0
 local function chain(name, parts)
@@ -133,10 +134,10 @@ local creature = chain("creature", { "back", "left1", "right1", "left2", "right2
 local ball, fish = chain("ball", { "ball" }), { chain("fish1", { "fish" }), chain("fish2", { "fish" }) }
 )";
 
-TEST(Docs, EveryExampleOfABehaviourWorks) {
+TEST(Docs, EveryExampleOfABehaviorWorks) {
   const ShowFolder show;
   const std::vector<std::string> lines = lines_of_page("docs/behaviors.md");
-  int examples = 0;
+  std::size_t examples = 0;
   for (std::size_t i = 0; i + 1 < lines.size(); i++) {
     const std::string line = lines[i].substr(std::min<std::size_t>(4, lines[i].size()));
     if (!lines[i].starts_with("    ") || line.find(":add_") == std::string::npos) continue;
@@ -149,17 +150,17 @@ TEST(Docs, EveryExampleOfABehaviourWorks) {
     EXPECT_TRUE(message.address.starts_with("/physics/")) << lines[i + 1];
     player.send(message.address, message.args);
     player.play(0.1);
-    EXPECT_EQ(refusals(player), std::vector<std::string>{});
+    EXPECT_EQ(error_messages(player), std::vector<std::string>{});
     EXPECT_EQ(player.engine->faults(), 0u);
-    // as a misspelt one would be
+    // a misspelled address is rejected
     player.send(message.address + "s", message.args);
     player.play(0.1);
-    EXPECT_EQ(refusals(player).size(), 1u);
+    EXPECT_EQ(error_messages(player).size(), 1u);
   }
-  EXPECT_EQ(examples, 12) << "one for each built-in type";
+  EXPECT_EQ(examples, BehaviorTypes().all().size()) << "one for each built-in type";
 }
 
-TEST(Docs, TheFirstMessagesToBehavioursAreUnderstood) {
+TEST(Docs, TheFirstMessagesToBehaviorsAreAccepted) {
   const ShowFolder show;
   const DocBlock first = blocks_of_page("docs/behaviors.md").at(0);
   Player player(show.write(first.file, first.text));
@@ -170,10 +171,10 @@ TEST(Docs, TheFirstMessagesToBehavioursAreUnderstood) {
     if (!std::regex_match(line, match, call)) continue;
     SCOPED_TRACE(line);
     Message message = message_of(match[1].str() + " " + match[3].str());
-    message.args.resize(match[2].str().size());  // behind them stands what it does
+    message.args.resize(match[2].str().size());  // the description follows
     player.send(message.address, message.args);
     player.play(0.1);
-    EXPECT_EQ(refusals(player), std::vector<std::string>{});
+    EXPECT_EQ(error_messages(player), std::vector<std::string>{});
     sent++;
   }
   EXPECT_EQ(sent, 4);
@@ -186,15 +187,15 @@ TEST(Docs, TheFirstMessagesToBehavioursAreUnderstood) {
 
 Evaluation evaluate(Player& player, const std::string& text) {
   Evaluation answer;
-  auto wish = std::make_shared<Evaluate>();
-  wish->text = text;
-  wish->answer = [&](const Evaluation& evaluation) { answer = evaluation; };
-  player.link.inbox.push({{}, {Hand::console}, wish});
+  auto request = std::make_shared<EvaluationRequest>();
+  request->text = text;
+  request->on_result = [&](const Evaluation& evaluation) { answer = evaluation; };
+  player.link.command_queue.push({{}, {CommandSource::console}, request});
   player.engine->tick();
   return answer;
 }
 
-TEST(Docs, TheConsoleAnswersAsItsPageShows) {
+TEST(Docs, TheConsoleAnswersAsDocumented) {
   const std::vector<DocBlock> blocks = blocks_of_page("docs/console.md");
   ASSERT_EQ(blocks.size(), 1u);
   ASSERT_EQ(blocks[0].language, "console");
@@ -203,38 +204,38 @@ TEST(Docs, TheConsoleAnswersAsItsPageShows) {
   const std::string prompt = "limber> ";
   const std::string more = "     .. ";
   std::istringstream lines(blocks[0].text);
-  std::string asked;
+  std::string input;
   std::string shown;
   int evaluated = 0;
-  const auto ask = [&] {
-    if (asked.empty()) return;
-    const Evaluation answer = evaluate(player, asked);
-    EXPECT_EQ(answer.text.empty() ? "" : answer.text + "\n", shown) << asked;
-    EXPECT_EQ(answer.kind, shown.empty() ? Evaluation::Kind::done : Evaluation::Kind::value) << asked;
+  const auto check_input = [&] {
+    if (input.empty()) return;
+    const Evaluation answer = evaluate(player, input);
+    EXPECT_EQ(answer.text.empty() ? "" : answer.text + "\n", shown) << input;
+    EXPECT_EQ(answer.kind, shown.empty() ? Evaluation::Kind::done : Evaluation::Kind::value) << input;
     evaluated++;
   };
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with(prompt)) {
-      ask();
-      asked = line.substr(prompt.size());
+      check_input();
+      input = line.substr(prompt.size());
       shown.clear();
     } else if (line.starts_with(more)) {
-      asked += "\n" + line.substr(more.size());
+      input += "\n" + line.substr(more.size());
     } else {
       shown += line + "\n";
     }
   }
-  ask();
+  check_input();
   EXPECT_GE(evaluated, 3);
 }
 
-TEST(Docs, WhatIsSaidToAConsoleElsewhereIsUnderstood) {
+TEST(Docs, ConsoleLinesOnOtherPagesAreAccepted) {
   Player player("arms.lua");
   player.play(0.1);
-  const std::map<std::string, std::regex> said = {
+  const std::map<std::string, std::regex> patterns = {
       {"README.md", std::regex("`(sim[.:][^`]*)`")},
       {"docs/console.md", std::regex("-e '([^']*)'|\"evaluate\":\"([^\"]*)\"|printf '([^']*)'")}};
-  for (const auto& [page, pattern] : said) {
+  for (const auto& [page, pattern] : patterns) {
     int found = 0;
     for (const std::string& line : lines_of_page(page)) {
       for (std::sregex_iterator match(line.begin(), line.end(), pattern), end; match != end; ++match) {

@@ -1,4 +1,4 @@
-// A scene as it is played, without waiting: messages in, what goes out, values of rows. For the tests of scenes.
+// Plays a scene without waiting, for the tests of scenes: messages in, output, values of properties.
 #pragma once
 
 #include <unistd.h>
@@ -17,7 +17,7 @@
 
 namespace limber {
 
-/// A scene of scripts/, or the file of a path that begins with /.
+/// Plays a scene of scripts/, or a file given by its absolute path.
 struct Player {
   explicit Player(const std::string& scene) : started(begin(scene)) {
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
@@ -33,21 +33,23 @@ struct Player {
   World& world() const { return engine->world(); }
   Body& body(const std::string& name) const { return *world().find_body(name); }
 
-  void send(const std::string& address, std::vector<Arg> args) { link.inbox.push({{{address, std::move(args)}}, {}}); }
+  void send(const std::string& address, std::vector<Arg> args) {
+    link.command_queue.push({{{address, std::move(args)}}, {}});
+  }
   double value(const std::string& path, std::size_t index = 0) const {
-    const Result<Place> place = find_place(engine->store(), path);
-    if (!place || place->row == nullptr) {
-      ADD_FAILURE() << path << " is no value";
+    const Result<PropertyRef> place = find_property(engine->store(), path);
+    if (!place || place->property == nullptr) {
+      ADD_FAILURE() << path << " is not a property";
       return 0;
     }
     double values[4] = {};
-    engine->store().get(place->node, *place->row, values);
+    engine->store().get(place->node, *place->property, values);
     return values[index];
   }
-  /// What went out since the last call.
+  /// Returns the messages sent since the last call.
   std::vector<Message> sent() {
     std::vector<Outgoing> out;
-    link.outbox.drain(out);
+    link.output_queue.drain(out);
     std::vector<Message> messages;
     messages.reserve(out.size());
     for (Outgoing& each : out) messages.push_back(std::move(each.message));
@@ -71,7 +73,7 @@ struct Player {
   }
 };
 
-/// A folder with files of its own that goes when the test is over.
+/// A folder with files that is removed at the end of the test.
 class ShowFolder {
  public:
   ShowFolder() {

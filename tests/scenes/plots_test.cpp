@@ -1,4 +1,4 @@
-// docs/plots: the pictures of docs/behaviors.md are those that the program draws today.
+// docs/plots: the plots in docs/behaviors.md are equal to those that the program draws.
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -14,61 +14,61 @@
 namespace limber {
 namespace {
 
-using app_test::Ran;
+using app_test::RunResult;
 
-/// What stands between the numbers of a picture, and these.
-struct Picture {
+/// An SVG file split into its numbers and the text between them, in which each number is replaced by 0.
+struct Plot {
   std::string words;
   std::vector<double> numbers;
 };
 
-Picture read_picture(const std::string& svg) {
-  Picture picture;
+Plot read_plot(const std::string& svg) {
+  Plot plot;
   const auto digit = [&](std::size_t i) {
     return i < svg.size() && std::isdigit(static_cast<unsigned char>(svg[i])) != 0;
   };
   for (std::size_t i = 0; i < svg.size();) {
     const bool negative = svg[i] == '-' && digit(i + 1);
-    // digits behind a letter or in a colour belong to a word
+    // digits after a letter or in a color belong to a word
     const bool in_word = i > 0 && (svg[i - 1] == '#' || svg[i - 1] == '_' ||
                                    (std::isalnum(static_cast<unsigned char>(svg[i - 1])) != 0 &&
                                     std::string_view("MVH").find(svg[i - 1]) == std::string_view::npos));
     if (in_word || !(digit(i) || negative)) {
-      picture.words += svg[i++];
+      plot.words += svg[i++];
       continue;
     }
     char* end = nullptr;
-    picture.numbers.push_back(std::strtod(svg.c_str() + i, &end));
-    picture.words += '0';
+    plot.numbers.push_back(std::strtod(svg.c_str() + i, &end));
+    plot.words += '0';
     i = static_cast<std::size_t>(end - svg.c_str());
   }
-  return picture;
+  return plot;
 }
 
-// as docs/plots/make takes them apart: "<!-- name.svg -->", then the picture
-std::map<std::string, std::string> drawn() {
-  const Ran ran = app_test::run({"docs/plots/behaviors.lua", "--fast", "--ticks", "200", "--strict"});
-  EXPECT_EQ(ran.code, 0) << ran.err;
-  std::map<std::string, std::string> pictures;
-  std::string* into = nullptr;
-  std::istringstream lines(ran.out);
+// Draws all plots. Returns SVG texts by file name; the output has a line "<!-- name.svg -->" before each plot.
+std::map<std::string, std::string> draw_plots() {
+  const auto result = app_test::run({"docs/plots/behaviors.lua", "--fast", "--ticks", "200", "--strict"});
+  EXPECT_EQ(result.code, 0) << result.err;
+  std::map<std::string, std::string> plots;
+  std::string* plot = nullptr;
+  std::istringstream lines(result.out);
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("<!-- ")) {
-      into = &pictures[line.substr(5, line.size() - 9)];
-    } else if (into != nullptr) {
-      *into += line + "\n";
+      plot = &plots[line.substr(5, line.size() - 9)];
+    } else if (plot != nullptr) {
+      *plot += line + "\n";
     }
   }
-  return pictures;
+  return plots;
 }
 
-TEST(Plots, AreTodays) {
-  const std::map<std::string, std::string> pictures = drawn();
-  EXPECT_EQ(pictures.size(), 12u);
-  for (const auto& [name, svg] : pictures) {
-    SCOPED_TRACE("docs/plots/" + name + "; docs/plots/make draws it anew");
-    const Picture now = read_picture(svg);
-    const Picture committed = read_picture(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + name));
+TEST(Plots, AreUpToDate) {
+  const std::map<std::string, std::string> plots = draw_plots();
+  EXPECT_EQ(plots.size(), BehaviorTypes().all().size());
+  for (const auto& [name, svg] : plots) {
+    SCOPED_TRACE("docs/plots/" + name + "; docs/plots/make updates it");
+    const Plot now = read_plot(svg);
+    const Plot committed = read_plot(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + name));
     EXPECT_EQ(now.words, committed.words);
     ASSERT_EQ(now.numbers.size(), committed.numbers.size());
     ASSERT_GT(now.numbers.size(), 100u);
@@ -80,7 +80,7 @@ TEST(Plots, AreTodays) {
   }
 }
 
-TEST(Plots, EveryBuiltInTypeHasOneAndItIsOnThePage) {
+TEST(Plots, EveryBuiltInTypeHasAPlotOnThePage) {
   std::string page;
   for (const std::string& line : lines_of_page("docs/behaviors.md")) page += line + "\n";
   const BehaviorTypes built_in;
@@ -90,11 +90,10 @@ TEST(Plots, EveryBuiltInTypeHasOneAndItIsOnThePage) {
   }
 }
 
-// a curve that is off by half a grid line must be seen
-TEST(Plots, TheReaderSeesNumbersWhereTheyAre) {
-  const Picture picture = read_picture("<path d=\"M62.0 -3V16.5\" stroke=\"#5f3dc4\"/>x1 12,5.5");
-  EXPECT_EQ(picture.numbers, (std::vector<double>{62, -3, 16.5, 12, 5.5}));
-  EXPECT_EQ(picture.words, "<path d=\"M0 0V0\" stroke=\"#5f3dc4\"/>x1 0,0");
+TEST(Plots, TheParserFindsNumbers) {
+  const Plot plot = read_plot("<path d=\"M62.0 -3V16.5\" stroke=\"#5f3dc4\"/>x1 12,5.5");
+  EXPECT_EQ(plot.numbers, (std::vector<double>{62, -3, 16.5, 12, 5.5}));
+  EXPECT_EQ(plot.words, "<path d=\"M0 0V0\" stroke=\"#5f3dc4\"/>x1 0,0");
 }
 
 }  // namespace

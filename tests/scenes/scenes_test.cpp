@@ -1,4 +1,4 @@
-// The scenes that come with Limber do what their first lines say.
+// The scenes that ship with Limber behave as their first lines describe.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -11,15 +11,15 @@
 namespace limber {
 namespace {
 
-TEST(Scenes, TheQuadrupedStandsThenTrotsAsFastAsItsStrideSays) {
+TEST(Scenes, TheQuadrupedStandsThenTrotsAtTheSpeedOfItsStride) {
   Player player("quadruped.lua");
   const Part& trunk = *player.engine->world().find_body("dog")->root();
-  // it stands for the first second, its trunk 0.35 m and the foot's radius of 0.032 m above the ground
+  // it stays upright in the first second, its trunk 0.35 m and the foot's radius of 0.032 m above the ground
   player.play(1);
   EXPECT_NEAR(trunk.pose().position.z, 0.382, 0.01);
   EXPECT_NEAR(trunk.pose().position.x, 0, 0.02);
   player.play(1);
-  double way = 0;  // step by step, since it may drift off its heading
+  double distance = 0;  // summed over steps, because it may drift off its heading
   Vec3 before = trunk.pose().position;
   while (player.engine->world().time() < 10) {
     for (int tick = 0; tick < 30; tick++) {
@@ -27,18 +27,19 @@ TEST(Scenes, TheQuadrupedStandsThenTrotsAsFastAsItsStrideSays) {
       ASSERT_GT(trunk.pose().position.z, 0.35) << "at " << player.engine->world().time() << " s";
       ASSERT_GT((trunk.pose().rotation * Vec3(0, 0, 1)).z, 0.966) << "more than 15 degrees off upright";
     }
-    way += glm::length(trunk.pose().position - before);
+    distance += glm::length(trunk.pose().position - before);
     before = trunk.pose().position;
   }
-  EXPECT_NEAR(way / 8, 0.12 * 2 / 0.6, 0.08) << "stride times pace, in the part of a step that a foot stands";
+  EXPECT_NEAR(distance / 8, 0.12 * 2 / 0.6, 0.08)
+      << "stride times pace, per fraction of a step with the foot on the ground";
   EXPECT_GT(trunk.pose().position.x, 2);
   EXPECT_LT(std::abs(trunk.pose().position.y), 1);
   EXPECT_EQ(player.engine->faults(), 0u);
 }
 
-// Left and right, in stride and on the spot, it turns as it is told, if a little slower where feet slip, and stays on
-// its feet.
-TEST(Scenes, TheQuadrupedTurnsAsItIsTold) {
+// Left and right, while walking and on the spot, it turns at the commanded rate, a little slower when feet slip, and
+// stays on its feet.
+TEST(Scenes, TheQuadrupedTurnsAtTheCommandedRate) {
   for (const auto& [turn, stride] : {std::pair(0.6, 0.12), std::pair(-1.0, 0.12), std::pair(1.0, 0.0)}) {
     Player player("quadruped.lua");
     const Part& trunk = *player.engine->world().find_body("dog")->root();
@@ -47,7 +48,7 @@ TEST(Scenes, TheQuadrupedTurnsAsItIsTold) {
     player.send("/scene/turn", {Arg::of(turn)});
     double turned = 0;
     double heading = euler_of(trunk.pose().rotation).z;
-    constexpr int kSeconds = 24;  // feet slip, now more and now less
+    constexpr int kSeconds = 24;  // feet slip irregularly
     for (int tick = 0; tick < 60 * kSeconds; tick++) {
       player.engine->tick();
       const double now = euler_of(trunk.pose().rotation).z;
@@ -72,7 +73,7 @@ TEST(Scenes, SixteenArmsStandInTwoRingsAndSway) {
     // the lower ring points up, the upper one down
     EXPECT_NEAR((body->pose().rotation * Vec3(0, 0, 1)).z, i <= 8 ? 1 : -1, 1e-5);
   }
-  // every tip travels, none breaks
+  // every tip moves, none is disabled
   const auto tip = [&](std::size_t i) { return world.bodies()[i]->parts().back()->pose().position; };
   std::vector<Vec3> before;
   for (std::size_t i = 0; i < world.bodies().size(); i++) before.push_back(tip(i));
@@ -115,7 +116,7 @@ const std::vector<std::pair<std::string, std::string>> kArmBehaviors = {{"random
                                                                         {"evasion", "cohesion"},
                                                                         {"alignment", "alignment"}};
 
-TEST(Scenes, EachArmHasTwentyOneBehaviorsThatWait) {
+TEST(Scenes, EachArmHasTwentyOneInactiveBehaviors) {
   Player player("arms.lua");
   ASSERT_EQ(kArmBehaviors.size(), 21u);
   for (const auto& body : player.world().bodies()) {
@@ -140,7 +141,7 @@ TEST(Scenes, EachArmHasTwentyOneBehaviorsThatWait) {
   EXPECT_LT(player.value("/physics/body/arm7/behavior/evasion/amount"), 0) << "or it would not evade";
 }
 
-// the farthest that tips come from where they were, each by itself, in so many seconds
+// maximum distance of each tip from its start within a number of seconds
 std::vector<double> travel(Player& player, double seconds) {
   std::vector<Vec3> before;
   for (const auto& body : player.world().bodies()) before.push_back(body->parts().back()->center());
@@ -173,7 +174,7 @@ TEST(Scenes, ABehaviorOfAnArmIsSwitchedOnOverOsc) {
   EXPECT_EQ(player.engine->faults(), 0u);
 }
 
-TEST(Scenes, AGustBendsTheArmsDeeperAndDiesDown) {
+TEST(Scenes, AGustBendsTheArmsAndDiesDown) {
   Player player("arms.lua");
   player.play(2);
   const auto depth = [&](int arm) {
@@ -188,41 +189,41 @@ TEST(Scenes, AGustBendsTheArmsDeeperAndDiesDown) {
   EXPECT_NEAR(depth(3), 0.6 * (1 + 0.5 * std::exp(-1)), 0.01);
   player.play(8);
   EXPECT_NEAR(depth(3), 0.6, 1e-9);
-  // a slider is for all
+  // a slider applies to all
   player.send("/scene/depth", {Arg::of(0.3)});
   player.engine->tick();
   EXPECT_NEAR(depth(1), 0.3, 1e-9);
   EXPECT_NEAR(depth(16), 0.3, 1e-9);
 }
 
-TEST(Scenes, TheSwarmComesToShareAWayAndStaysInItsArena) {
+TEST(Scenes, TheSwarmAlignsAndStaysInItsArena) {
   Player player("swarm.lua");
   std::vector<const Part*> heads;
   for (const auto& body : player.world().bodies()) {
     if (body->name().starts_with("bug")) heads.push_back(body->root());
   }
   ASSERT_EQ(heads.size(), 100u);
-  // of the headings of those around, since a swarm that turns back at the edge has none as a whole
-  const auto polarisation = [&] {
+  // mean over the neighborhoods of all heads, because a swarm that turns back at the edge has no common heading
+  const auto local_polarization = [&] {
     double sum = 0;
     for (const Part* a : heads) {
-      Vec3 way(0);
+      Vec3 distance(0);
       double near = 0;
       for (const Part* b : heads) {
         if (glm::distance(a->center(), b->center()) > 1) continue;
-        way += normalized(b->linear_velocity());
+        distance += normalized(b->linear_velocity());
         near++;
       }
-      sum += glm::length(way) / near;
+      sum += glm::length(distance) / near;
     }
     return sum / static_cast<double>(heads.size());
   };
   player.engine->tick();
-  const double before = polarisation();
+  const double before = local_polarization();
   double later = 0;
   for (int second = 0; second < 30; second++) {
     player.play(1);
-    if (second >= 15) later += polarisation() / 15;
+    if (second >= 15) later += local_polarization() / 15;
     for (const Part* head : heads) {
       ASSERT_LT(std::hypot(head->center().x, head->center().y), 7) << "after " << second << " s";
       ASSERT_GT((head->pose().rotation * Vec3(0, 0, 1)).z, 0.7) << "after " << second << " s";
@@ -237,7 +238,7 @@ TEST(Scenes, LivePlaysAMinuteWithoutAFault) {
   Player player("live.lua");
   player.play(60);
   EXPECT_EQ(player.engine->faults(), 0u);
-  // the arm breathes, balls are thrown up at each beat
+  // the arm breathes, balls are thrown up at each interval
   double highest = 0;
   for (int tick = 0; tick < 240; tick++) {
     player.engine->tick();

@@ -6,7 +6,7 @@
 namespace limber {
 namespace {
 
-// balls at x = 1, 2, 3 … m, each a body; a group of the type "test" on all
+// bodies with one ball each at x = 1, 2, 3 … m; a group of the type "test" on all of them
 std::string row_of_balls(int count, const std::string& opts = "{}") {
   return "sim.gravity = vec3()\nlocal ball = sim:add_sphere_shape('ball', 0.1)\nfor i = 1, " + std::to_string(count) +
          " do sim:add_body('b' .. i):add_part('ball', ball, { mass = i, position = vec3(i, 0, 0) }) end\n"
@@ -18,65 +18,69 @@ std::string group(const std::string& step) {
   return "return behavior { group = true, params = { { 'radius', 1.5 } }, step = function(self)\n" + step + "\nend }";
 }
 
-std::vector<std::string> said(const std::string& step, const std::string& opts = "{}") {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua", group(step));
-  EXPECT_EQ(stage.play(row_of_balls(4, opts), 1), "");
-  for (const auto& body : stage.world.bodies()) {
+std::vector<std::string> output_of_step(const std::string& step, const std::string& opts = "{}") {
+  BehaviorFixture fixture;
+  fixture.write("behaviors_lua/test.lua", group(step));
+  EXPECT_EQ(fixture.play(row_of_balls(4, opts), 1), "");
+  for (const auto& body : fixture.world.bodies()) {
     for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
   }
-  return stage.host.printed;
+  return fixture.host.printed;
 }
 
 using Lines = std::vector<std::string>;
 
-TEST(BehaviorNeighbors, AreThoseWithinTheRadiusInOrder) {
-  EXPECT_EQ(said("local text = self.body.name .. ':' for other, offset, distance in self:neighbors(self.parts[1], "
-                 "self.radius) do text = text .. ' ' .. other.body.name .. ' ' .. offset.x .. ' ' .. distance end "
-                 "print(text)"),
-            (Lines{"b1: b2 1 1", "b2: b1 -1 1 b3 1 1", "b3: b2 -1 1 b4 1 1", "b4: b3 -1 1"}));
+TEST(BehaviorNeighbors, AreSortedAndWithinTheRadius) {
+  EXPECT_EQ(
+      output_of_step("local text = self.body.name .. ':' for other, offset, distance in self:neighbors(self.parts[1], "
+                     "self.radius) do text = text .. ' ' .. other.body.name .. ' ' .. offset.x .. ' ' .. distance end "
+                     "print(text)"),
+      (Lines{"b1: b2 1 1", "b2: b1 -1 1 b3 1 1", "b3: b2 -1 1 b4 1 1", "b4: b3 -1 1"}));
 }
 
-TEST(BehaviorNeighbors, ARadiusOfNothingFindsNobody) {
-  EXPECT_EQ(said("local n = 0 for _ in self:neighbors(self.parts[1], -1) do n = n + 1 end print(n)"),
+TEST(BehaviorNeighbors, RadiusZeroFindsNone) {
+  EXPECT_EQ(output_of_step("local n = 0 for _ in self:neighbors(self.parts[1], -1) do n = n + 1 end print(n)"),
             (Lines{"0", "0", "0", "0"}));
 }
 
-TEST(BehaviorNeighbors, LoopsStandInsideEachOther) {
-  // of each neighbour the neighbours, own body left out at every level
+TEST(BehaviorNeighbors, LoopsCanBeNested) {
+  // the neighbors of each neighbor, excluding its own body at both levels
   EXPECT_EQ(
-      said("if self.body.name ~= 'b2' then return end local names = {}\n"
-           "for other in self:neighbors(self.parts[1], 1.5) do\n"
-           "  for next in self:neighbors(other, 1.5) do names[#names + 1] = other.body.name .. next.body.name end\n"
-           "end print(table.concat(names, ' '))"),
+      output_of_step(
+          "if self.body.name ~= 'b2' then return end local names = {}\n"
+          "for other in self:neighbors(self.parts[1], 1.5) do\n"
+          "  for next in self:neighbors(other, 1.5) do names[#names + 1] = other.body.name .. next.body.name end\n"
+          "end print(table.concat(names, ' '))"),
       (Lines{"b1b2 b3b2 b3b4"}));
 }
 
-TEST(BehaviorNeighbors, NeighborPartsAreThoseOfTheOthers) {
-  EXPECT_EQ(said("local names = {} for i, part in ipairs(self.neighbor_parts) do names[i] = part.body.name end "
-                 "print(#self.neighbor_parts, table.concat(names, ' '))",
-                 "{ bodies = { 'b1', 'b2', 'b4' } }"),
-            (Lines{"2\tb2 b4", "2\tb1 b4", "2\tb1 b2"}));
+TEST(BehaviorNeighbors, NeighborPartsExcludeTheOwnBody) {
+  EXPECT_EQ(
+      output_of_step("local names = {} for i, part in ipairs(self.neighbor_parts) do names[i] = part.body.name end "
+                     "print(#self.neighbor_parts, table.concat(names, ' '))",
+                     "{ bodies = { 'b1', 'b2', 'b4' } }"),
+      (Lines{"2\tb2 b4", "2\tb1 b4", "2\tb1 b2"}));
 }
 
-TEST(BehaviorNeighbors, FollowBodiesThatComeAndGo) {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua",
-              group("local text = self.body.name .. ':' for other in self:neighbors(self.parts[1], 1.5) do text = text "
-                    ".. ' ' .. other.body.name end print(text .. ' of ' .. #self.neighbor_parts)"));
-  ASSERT_EQ(stage.play(row_of_balls(2) + R"(
+TEST(BehaviorNeighbors, FollowAddedAndRemovedBodies) {
+  BehaviorFixture fixture;
+  fixture.write(
+      "behaviors_lua/test.lua",
+      group("local text = self.body.name .. ':' for other in self:neighbors(self.parts[1], 1.5) do text = text "
+            ".. ' ' .. other.body.name end print(text .. ' of ' .. #self.neighbor_parts)"));
+  ASSERT_EQ(fixture.play(row_of_balls(2) + R"(
 sim:after(0.01, function() sim:body("b2"):copy("b3", { position = vec3(3, 0, 0) }) end)
 sim:after(0.03, function() sim:body("b2"):remove() end)
 )",
-                       3),
+                         3),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"b1: b2 of 1", "b2: b1 of 1",                    //
-                                       "b1: b2 of 2", "b2: b1 b3 of 2", "b3: b2 of 2",  //
-                                       "b1: of 1", "b3: of 1"}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"b1: b2 of 1", "b2: b1 of 1",                    //
+                                         "b1: b2 of 2", "b2: b1 b3 of 2", "b3: b2 of 2",  //
+                                         "b1: of 1", "b3: of 1"}));
 }
 
-// what neighbor_means and neighbor_push say, beside sums over a walk
-constexpr const char* kMeansBesideAWalk = R"(
+// compares neighbor_means and neighbor_push with sums over an iteration
+constexpr const char* kCompareMeans = R"(
 local part, wrong = self.parts[1], {}
 local function same(what, a, b) if (a - b):length() > 1e-4 then wrong[#wrong + 1] = what end end
 local asked = 0
@@ -101,10 +105,10 @@ for _, range in ipairs { vec3(0, 1.5, 0), vec3(0.5, 2.2, 0), vec3(0, 100, 0), ve
 end
 print(self.body.name .. ' ' .. asked .. ' ' .. table.concat(wrong, ' ')))";
 
-Lines beside_a_walk(const std::string& opts) {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua", group(kMeansBesideAWalk));
-  EXPECT_EQ(stage.play(R"(
+Lines compare_with_iteration(const std::string& opts) {
+  BehaviorFixture fixture;
+  fixture.write("behaviors_lua/test.lua", group(kCompareMeans));
+  EXPECT_EQ(fixture.play(R"(
 sim.gravity = vec3()
 local ball = sim:add_sphere_shape('ball', 0.1)
 for i = 1, 4 do
@@ -115,35 +119,35 @@ for i = 1, 4 do
   end
 end
 sim:add_group_behavior('test', 'swarm', )" +
-                           opts + ")",
-                       2),
+                             opts + ")",
+                         2),
             "");
-  for (const auto& body : stage.world.bodies()) EXPECT_EQ(body->behaviors()[0]->error(), "");
-  return stage.host.printed;
+  for (const auto& body : fixture.world.bodies()) EXPECT_EQ(body->behaviors()[0]->error(), "");
+  return fixture.host.printed;
 }
 
-TEST(BehaviorNeighbors, MeansAreThoseOfAWalk) {
+TEST(BehaviorNeighbors, MeansMatchAnIteration) {
   for (const std::string opts : {"{ parts = 'ball' }", "{}"}) {
-    const Lines all = beside_a_walk(opts);
+    const Lines all = compare_with_iteration(opts);
     ASSERT_EQ(all.size(), 8u);
     for (const std::string& line : all) EXPECT_TRUE(line.ends_with(" ") && !line.ends_with(" 0 ")) << line;
   }
-  // one that is no neighbour of others itself
-  const Lines eyes = beside_a_walk("{ parts = 'ball', neighbor_parts = 'eye' }");
+  // a part that is not a neighbor of others itself
+  const Lines eyes = compare_with_iteration("{ parts = 'ball', neighbor_parts = 'eye' }");
   ASSERT_EQ(eyes.size(), 8u);
   for (const std::string& line : eyes) EXPECT_TRUE(line.ends_with(" ")) << line;
 }
 
-// balls of two bodies by two, each with an eye; two groups look at them, one for balls, one for eyes
+// two bodies with two balls each, and an eye on each; two groups use them as neighbors, one the balls, one the eyes
 Lines seen_by_two_groups(const std::string& step) {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua", "local seen = {}\n" + group(R"(
+  BehaviorFixture fixture;
+  fixture.write("behaviors_lua/test.lua", "local seen = {}\n" + group(R"(
 local function show(of)
   local n, way = of:neighbor_means(of.parts[1], 0, 2.5)
   print(string.format('%s/%s %d %.17g %.17g', of.name, of.body.name, n, way.x, way.y))
 end
 )" + step));
-  EXPECT_EQ(stage.play(R"(
+  EXPECT_EQ(fixture.play(R"(
 sim.gravity = vec3()
 local ball = sim:add_sphere_shape('ball', 0.1)
 for i = 1, 5 do
@@ -154,22 +158,22 @@ end
 sim:add_group_behavior('test', 'balls', { parts = 'ball' })
 sim:add_group_behavior('test', 'eyes', { parts = 'ball', neighbor_parts = 'eye' })
 )",
-                       2),
+                         2),
             "");
-  for (const auto& body : stage.world.bodies()) {
+  for (const auto& body : fixture.world.bodies()) {
     for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
   }
-  return stage.host.printed;
+  return fixture.host.printed;
 }
 
-TEST(BehaviorNeighbors, MeansStandWhereTheyWereTold) {
+TEST(BehaviorNeighbors, MeansAreReadFromTheCachedGroupResult) {
   const Lines lines = seen_by_two_groups("show(self)");
   ASSERT_EQ(lines.size(), 20u);
   EXPECT_NE(lines[0].substr(lines[0].find(' ')), lines[5].substr(lines[5].find(' ')));
-  // who asks something else before is told by a call
+  // a query with other arguments calls the API
   EXPECT_EQ(seen_by_two_groups("self:neighbor_means(self.parts[1], 0, 1) show(self)"), lines);
   EXPECT_EQ(seen_by_two_groups("self:neighbor_push(self.parts[1], 0, 2.5) show(self)"), lines);
-  // one that is asked by another keeps to its own group
+  // a query by another member uses its own group
   const Lines mixed = seen_by_two_groups(
       "seen[self.name .. self.body.name] = self show(self) "
       "if self.name == 'eyes' then show(seen['balls' .. self.body.name]) end");
@@ -180,26 +184,26 @@ TEST(BehaviorNeighbors, MeansStandWhereTheyWereTold) {
   }
 }
 
-TEST(BehaviorNeighbors, MeansOfOneThatHasGoneAreNotTold) {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua", "local first\n" + group(R"(
+TEST(BehaviorNeighbors, MeansOfARemovedPartAreErrors) {
+  BehaviorFixture fixture;
+  fixture.write("behaviors_lua/test.lua", "local first\n" + group(R"(
 first = first or self.parts[1]
 self:neighbor_means(self.parts[1], 0, 2)
 if self.body.name == 'b2' then sim:body('b1'):remove() end
 if self.body.name == 'b3' then self:neighbor_means(first, 0, 2) end
 )"));
-  EXPECT_EQ(stage.play(row_of_balls(3), 1), "");
-  EXPECT_EQ(first_line(stage.world.find_body("b3")->find_behavior("swarm")->error()),
-            "behaviors_lua/test.lua:7: part 'b1/ball' no longer exists (thing.alive tells)");
-  EXPECT_EQ(stage.world.find_body("b2")->find_behavior("swarm")->error(), "");
+  EXPECT_EQ(fixture.play(row_of_balls(3), 1), "");
+  EXPECT_EQ(first_line(fixture.world.find_body("b3")->find_behavior("swarm")->error()),
+            "behaviors_lua/test.lua:7: part 'b1/ball' no longer exists (check its .alive)");
+  EXPECT_EQ(fixture.world.find_body("b2")->find_behavior("swarm")->error(), "");
 }
 
 TEST(BehaviorNeighbors, MistakesAreExplained) {
   const auto error = [](const std::string& step) {
-    BehaviorStage stage;
-    stage.write("behaviors_lua/test.lua", group(step));
-    EXPECT_EQ(stage.play(row_of_balls(1), 1), "");
-    return first_line(stage.world.find_body("b1")->find_behavior("swarm")->error());
+    BehaviorFixture fixture;
+    fixture.write("behaviors_lua/test.lua", group(step));
+    EXPECT_EQ(fixture.play(row_of_balls(1), 1), "");
+    return first_line(fixture.world.find_body("b1")->find_behavior("swarm")->error());
   };
   const std::string at = "behaviors_lua/test.lua:2: ";
   EXPECT_EQ(error("self:neighbors(3, 1)"), at + "behavior 'b1/swarm': neighbors are those of a part, not of 3");
@@ -215,9 +219,9 @@ TEST(BehaviorNeighbors, MistakesAreExplained) {
             at + "behavior 'b1/swarm': neighbors are those of a part, not of behavior 'b1/swarm'");
   EXPECT_EQ(error("self.neighbors(self.parts[1], 1)"),
             at + "neighbors is a method of a behavior: write it with a colon, behavior:neighbors(…), not with a dot");
-  EXPECT_EQ(step_says("self:neighbors(self.parts[1], 1)").substr(0, 72),
+  EXPECT_EQ(step_output("self:neighbors(self.parts[1], 1)").substr(0, 72),
             "behaviors_lua/test.lua:2: behavior 'ball/it' has no property 'neighbors'")
-      << "one that is no group's member sees nobody";
+      << "only members of a group have neighbors";
 }
 
 }  // namespace

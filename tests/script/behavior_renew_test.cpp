@@ -1,4 +1,4 @@
-// A behaviour's type is renewed: its instances go on in another Lua state.
+// Reload of a behavior type: its instances continue in another Lua state.
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"
@@ -6,23 +6,23 @@
 namespace limber {
 namespace {
 
-// the world of one scene, with behaviours of a second one that has loaded the file anew
-class Renewed : public ::testing::Test {
+// plays a scene with a behavior, then reloads the behavior's file with a second scene in the same world
+class BehaviorReload : public ::testing::Test {
  protected:
-  void play(const std::string& file, int ticks) { ASSERT_EQ(stage.play_one(file, ticks), ""); }
-  // saved with another text, and run
+  void play(const std::string& file, int ticks) { ASSERT_EQ(fixture.play_one(file, ticks), ""); }
+  // reloads the behavior type from another text
   void save(const std::string& file) {
-    stage.write("behaviors_lua/test.lua", file);
-    stage.write("scripts/next.lua",
-                "sim:add_body('next" + std::to_string(count_++) + "'):add_behavior('test', 'x', { active = false })");
-    scenes_.push_back(std::make_unique<Scene>(stage.world, host, SceneOptions{}));
-    const Result<void> ran = scenes_.back()->run((stage.folder / "scripts" / "next.lua").string());
-    ASSERT_TRUE(ran.ok()) << ran.error();
-    stage.world.behaviors().renew("test");
+    fixture.write("behaviors_lua/test.lua", file);
+    fixture.write("scripts/next.lua",
+                  "sim:add_body('next" + std::to_string(count_++) + "'):add_behavior('test', 'x', { active = false })");
+    scenes_.push_back(std::make_unique<Scene>(fixture.world, host, SceneOptions{}));
+    const Result<void> result = scenes_.back()->run((fixture.folder / "scripts" / "next.lua").string());
+    ASSERT_TRUE(result.ok()) << result.error();
+    fixture.world.behaviors().replace_instances("test");
   }
-  std::vector<std::string> take_printed() { return std::exchange(host.printed, {}); }
+  std::vector<std::string> consume_printed() { return std::exchange(host.printed, {}); }
 
-  BehaviorStage stage;
+  BehaviorFixture fixture;
   RecordingHost host;
 
  private:
@@ -37,17 +37,18 @@ constexpr const char* kCounts =
 
 using Lines = std::vector<std::string>;
 
-TEST_F(Renewed, StateAndValuesStayAndStartIsNotCalled) {
+TEST_F(BehaviorReload, StateAndValuesStayAndStartIsNotCalled) {
   play(std::string(kCounts) + "}", 3);
-  stage.set("amp", 4);
+  fixture.set("amp", 4);
   save(std::string(kCounts) + "doc = 'Another.' }");
-  stage.tick(2);
-  EXPECT_EQ(take_printed(), (Lines{"4\t4", "5\t4"}));
-  EXPECT_EQ(stage.it().type().doc, "Another.");
-  EXPECT_EQ(stage.host.printed, (Lines{"start", "1\t1", "2\t1", "3\t1"})) << "the old one does nothing more";
+  fixture.tick(2);
+  EXPECT_EQ(consume_printed(), (Lines{"4\t4", "5\t4"}));
+  EXPECT_EQ(fixture.it().type().doc, "Another.");
+  EXPECT_EQ(fixture.host.printed, (Lines{"start", "1\t1", "2\t1", "3\t1"}))
+      << "the old instance is not stepped any more";
 }
 
-TEST_F(Renewed, MigrateBringsTheStateOver) {
+TEST_F(BehaviorReload, MigrateConvertsTheState) {
   play(std::string(kCounts) + "}", 3);
   save(R"(
 return behavior {
@@ -55,89 +56,90 @@ return behavior {
   step = function(self) self.state.count = self.state.count + 10 print(self.state.count) end,
   migrate = function(self, old) print(self.name, old.n) return { count = old.n * 100 } end,
 })");
-  stage.tick(2);
-  EXPECT_EQ(take_printed(), (Lines{"it\t3", "310", "320"}));
+  fixture.tick(2);
+  EXPECT_EQ(consume_printed(), (Lines{"it\t3", "310", "320"}));
 }
 
-TEST_F(Renewed, TheSameFileIsNotMigrated) {
+TEST_F(BehaviorReload, TheSameFileIsNotMigrated) {
   const std::string file = std::string(kCounts) + "migrate = function(self, old) print('migrate') return old end }";
   play(file, 1);
   save(file);
-  stage.tick();
-  EXPECT_EQ(take_printed(), (Lines{"2\t1"}));
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), (Lines{"2\t1"}));
 }
 
-TEST_F(Renewed, AFailingMigrateSuspends) {
+TEST_F(BehaviorReload, AFailingMigrateSuspends) {
   play(std::string(kCounts) + "}", 1);
   save(std::string(kCounts) + "migrate = function(self, old)\n  return old.x.y end }");
-  stage.tick(2);
-  EXPECT_EQ(first_line(stage.it().error()), "behaviors_lua/test.lua:5: attempt to index field 'x' (a nil value)");
-  EXPECT_EQ(take_printed(), Lines{});
-  // mended, it goes on with the state that it had
+  fixture.tick(2);
+  EXPECT_EQ(first_line(fixture.it().error()), "behaviors_lua/test.lua:5: attempt to index field 'x' (a nil value)");
+  EXPECT_EQ(consume_printed(), Lines{});
+  // after a fix it continues with its previous state
   save(std::string(kCounts) + "migrate = function(self, old) old.n = old.n + 1000 return old end }");
-  stage.tick();
-  EXPECT_EQ(take_printed(), (Lines{"1002\t1"}));
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), (Lines{"1002\t1"}));
 }
 
-TEST_F(Renewed, MigrateMustReturnATable) {
+TEST_F(BehaviorReload, MigrateMustReturnATable) {
   play(std::string(kCounts) + "}", 1);
   save(std::string(kCounts) + "migrate = function(self, old) end }");
-  stage.tick();
-  EXPECT_EQ(first_line(stage.it().error()),
+  fixture.tick();
+  EXPECT_EQ(first_line(fixture.it().error()),
             "behaviors_lua/test.lua:4: behavior 'ball/it': migrate returns the new state, a table, not nothing");
-  EXPECT_EQ(stage.it().fault().file, "behaviors_lua/test.lua");
+  EXPECT_EQ(fixture.it().fault().file, "behaviors_lua/test.lua");
 }
 
-TEST_F(Renewed, StateThatCantBeKeptBeginsAnew) {
+TEST_F(BehaviorReload, UnserializableStateStartsEmpty) {
   play("return behavior { start = function(self) self.state.f = print end, step = function(self) end }", 1);
   save("return behavior { start = function(self) print('start') end, step = function(self) print(self.state.f) end }");
-  stage.tick();
-  EXPECT_EQ(take_printed(), (Lines{"start", "nil"}));
-  EXPECT_EQ(stage.logged().back(),
-            "behavior 'ball/it' begins anew: state.f is a function; state holds numbers, text, true and false, vec3, "
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), (Lines{"start", "nil"}));
+  EXPECT_EQ(fixture.logged().back(),
+            "behavior 'ball/it' restarts with an empty state: state.f is a function; state can have numbers, text, "
+            "true and false, vec3, "
             "quat, timers, and tables of them");
 }
 
-TEST_F(Renewed, ASuspendedOneTriesAgain) {
+TEST_F(BehaviorReload, ASuspendedInstanceIsRetried) {
   play("return behavior { step = function(self)\n  error('no') end }", 2);
-  EXPECT_NE(stage.it().error(), "");
+  EXPECT_NE(fixture.it().error(), "");
   save("return behavior { step = function(self) print('yes') end }");
-  stage.tick();
-  EXPECT_EQ(take_printed(), Lines{"yes"});
-  EXPECT_EQ(stage.it().error(), "");
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), Lines{"yes"});
+  EXPECT_EQ(fixture.it().error(), "");
 }
 
-TEST_F(Renewed, TwiceBetweenTwoTicksKeepsTheState) {
+TEST_F(BehaviorReload, TwoReloadsBetweenTicksKeepTheState) {
   play(std::string(kCounts) + "}", 2);
   save(std::string(kCounts) + "doc = '1' }");
   save(std::string(kCounts) + "doc = '2' }");
-  stage.tick();
-  EXPECT_EQ(take_printed(), (Lines{"3\t1"}));
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), (Lines{"3\t1"}));
 }
 
-TEST_F(Renewed, TheGeneratorGoesOn) {
+TEST_F(BehaviorReload, TheGeneratorContinues) {
   const std::string file = "return behavior { step = function(self) print(self.rng:uniform()) end ";
   play(file + "}", 2);
-  Random expected(stage.world.seed(), "/physics/body/ball/behavior/it");
+  Random expected(fixture.world.seed(), "/physics/body/ball/behavior/it");
   expected.next();
   expected.next();
   save(file + ", doc = 'x' }");
-  stage.tick();
-  EXPECT_EQ(take_printed(), Lines{fmt::format("{:.14g}", expected.uniform())});
+  fixture.tick();
+  EXPECT_EQ(consume_printed(), Lines{fmt::format("{:.14g}", expected.uniform())});
 }
 
-TEST(BehaviorOutlives, ItsScene) {
-  BehaviorStage stage;
-  auto scene = std::make_unique<Scene>(stage.world, stage.host, SceneOptions{});
-  stage.write("behaviors_lua/test.lua", "return behavior { step = function() print('step') end }");
-  stage.write("scripts/short.lua", std::string(kBall) + "ball:add_behavior('test', 'it')");
-  ASSERT_TRUE(scene->run((stage.folder / "scripts" / "short.lua").string()).ok());
-  stage.world.step();
-  EXPECT_EQ(stage.host.printed, std::vector<std::string>{"step"});
+TEST(BehaviorLifetime, OutlivesTheScene) {
+  BehaviorFixture fixture;
+  auto scene = std::make_unique<Scene>(fixture.world, fixture.host, SceneOptions{});
+  fixture.write("behaviors_lua/test.lua", "return behavior { step = function() print('step') end }");
+  fixture.write("scripts/short.lua", std::string(kBall) + "ball:add_behavior('test', 'it')");
+  ASSERT_TRUE(scene->run((fixture.folder / "scripts" / "short.lua").string()).ok());
+  fixture.world.step();
+  EXPECT_EQ(fixture.host.printed, std::vector<std::string>{"step"});
   scene.reset();
-  stage.world.step();  // nobody is there to ask
-  EXPECT_EQ(stage.host.printed, std::vector<std::string>{"step"});
-  EXPECT_EQ(stage.it().error(), "the scene no longer names this type; name it once at the top level");
+  fixture.world.step();  // there is no script to call
+  EXPECT_EQ(fixture.host.printed, std::vector<std::string>{"step"});
+  EXPECT_EQ(fixture.it().error(), "the scene no longer uses this type; use it once at the top level");
 }
 
 }  // namespace

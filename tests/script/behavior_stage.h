@@ -1,4 +1,4 @@
-// What tests of behaviours in Lua share: a stage with a ball, a file of behaviors_lua/, a behaviour of it.
+// BehaviorFixture, for tests of behaviors in Lua: a ball with a behavior from a file of behaviors_lua/.
 #pragma once
 
 #include <string>
@@ -21,40 +21,40 @@ inline SceneOptions with_data(const std::filesystem::path& folder) {
   return options;
 }
 
-/// A ball with the behaviour "it" of the type "test", whose file has this text; `opts` as in Lua.
-class BehaviorStage : public Stage {
+/// A ball with the behavior "it" of the type "test" with this file text; `opts` as in Lua.
+class BehaviorFixture : public ScriptFixture {
  public:
-  using Stage::Stage;
+  using ScriptFixture::ScriptFixture;
   std::string play_one(const std::string& file, int ticks = 0, const std::string& opts = "{}") {
     write("behaviors_lua/test.lua", file);
     return play(std::string(kBall) + "ball:add_behavior('test', 'it', " + opts + ")", ticks);
   }
   Behavior& it() const { return *world.find_body("ball")->find_behavior("it"); }
-  const Row& row(std::string_view name) const { return it().type().table->at(name); }
-  double value(std::string_view name) const { return store.values(it().id(), row(name))[0]; }
+  const Property& property_at(std::string_view name) const { return it().type().table->at(name); }
+  double value(std::string_view name) const { return store.values(it().id(), property_at(name))[0]; }
   void set(std::string_view name, double v) const { (void)store.set(it().id(), name, {&v, 1}); }
 };
 
-/// A behaviour whose step is this text; parameters `speed` (1, 0 .. 10) and `way` (a vec3).
-inline std::string stepping(const std::string& step) {
+/// A behavior with this text as its step; parameters `speed` (1, 0 .. 10) and `way` (a vec3).
+inline std::string behavior_with_step(const std::string& step) {
   return "return behavior { params = { { 'speed', 1, min = 0, max = 10 }, { 'way', vec3(1, 0, 0) } },\n"
          "step = function(self, dt) " +
          step + " end }";
 }
 
-/// What print writes in the first step of a behaviour, or the first line of what goes wrong.
-inline std::string step_says(const std::string& step, const std::string& opts = "{}") {
-  BehaviorStage stage;
-  const std::string fault = stage.play_one(stepping(step), 1, opts);
+/// Returns the output of the first step of a behavior, or the first line of its error.
+inline std::string step_output(const std::string& step, const std::string& opts = "{}") {
+  BehaviorFixture fixture;
+  const std::string fault = fixture.play_one(behavior_with_step(step), 1, opts);
   if (!fault.empty()) return first_line(fault);
-  if (!stage.it().error().empty()) return first_line(stage.it().error());
-  return stage.host.printed.empty() ? "nothing printed" : stage.host.printed.back();
+  if (!fixture.it().error().empty()) return first_line(fixture.it().error());
+  return fixture.host.printed.empty() ? "nothing printed" : fixture.host.printed.back();
 }
 
-/// The first line of the error of a scene that names a type with this file, or "no error".
+/// Returns the first line of the error of a scene that uses a type with this file, or "no error".
 inline std::string load_error(const std::string& file) {
-  BehaviorStage stage;
-  const std::string fault = stage.play_one(file);
+  BehaviorFixture fixture;
+  const std::string fault = fixture.play_one(file);
   return fault.empty() ? "no error" : first_line(fault);
 }
 

@@ -1,5 +1,5 @@
-// Behaviours that a failing call of a script removed, reset or switched on again: they play on, bit for bit, with their
-// draws, beats and state.
+// Rollback of behaviors that a failing script call removed, reset or reactivated: they continue bit for bit, with
+// random draws, intervals and state.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -9,16 +9,16 @@
 namespace limber {
 namespace {
 
-constexpr double kUndoQuick = 5 * kBudgetScale;
+constexpr double kUndoCallMs = 5 * kBudgetScale;
 
-SceneOptions undo_quick() {
+SceneOptions undo_limits() {
   SceneOptions options;
-  options.limits.call_ms = kUndoQuick;
+  options.limits.call_ms = kUndoCallMs;
   options.limits.memory = std::size_t{16} << 20u;
   return options;
 }
 
-// a behaviour that draws, keeps a beat and remembers; a group that looks at its neighbours
+// a behavior with random draws, an interval and state; a group that uses its neighbors
 constexpr const char* kDrawing = R"(
 return behavior {
   params = { { "pause", 40, min = 0, max = 1000, unit = "ms" } },
@@ -55,30 +55,31 @@ sim:add_group_behavior("near", "near")
 sim:add_group_behavior("cohesion", "cohesion")
 )";
 
-struct Left {
+struct RunResult {
   std::uint64_t hash = 0;
   std::vector<std::string> printed, order;
-  bool operator==(const Left&) const = default;
+  bool operator==(const RunResult&) const = default;
 };
 
-// the scene with more in it, and a behaviour "guest" of the body a with this step
-Left play(const std::string& more, const std::string& guest, std::size_t faults) {
-  Stage stage(undo_quick());
-  std::size_t said = 0;
-  stage.world.behaviors().on_fault([&](const Behavior&) { said++; });
-  stage.write("behaviors_lua/drawing.lua", kDrawing);
-  stage.write("behaviors_lua/near.lua", kNear);
-  stage.write("behaviors_lua/guest.lua", "return behavior { step = function(self)\n" + guest + "\nend }");
-  EXPECT_EQ(stage.play(kUndoScene + std::string("a:add_behavior('guest', 'guest')\n") + more, 40), "");
-  EXPECT_EQ(stage.host.faults.size() + said, faults) << more << guest;
-  Left left{stage.scene.state_hash(stage.world.state_hash()), stage.host.printed, stage.world.behaviors().order()};
-  stage.world.behaviors().on_fault({});
-  return left;
+// the scene with additional code, and a behavior "guest" of body a with this step
+RunResult play(const std::string& more, const std::string& guest, std::size_t faults) {
+  ScriptFixture fixture(undo_limits());
+  std::size_t fault_count = 0;
+  fixture.world.behaviors().on_fault([&](const Behavior&) { fault_count++; });
+  fixture.write("behaviors_lua/drawing.lua", kDrawing);
+  fixture.write("behaviors_lua/near.lua", kNear);
+  fixture.write("behaviors_lua/guest.lua", "return behavior { step = function(self)\n" + guest + "\nend }");
+  EXPECT_EQ(fixture.play(kUndoScene + std::string("a:add_behavior('guest', 'guest')\n") + more, 40), "");
+  EXPECT_EQ(fixture.host.faults.size() + fault_count, faults) << more << guest;
+  RunResult result{fixture.scene.state_hash(fixture.world.state_hash()), fixture.host.printed,
+                   fixture.world.behaviors().order()};
+  fixture.world.behaviors().on_fault({});
+  return result;
 }
 
 const char* const kEnds[] = {"error('x')", "while true do end", "local t = {} for i = 1, 1e9 do t[i] = { i } end"};
 
-const char* const kDeeds[] = {
+const char* const kActions[] = {
     "sim:body('a'):behavior('wind'):remove()",
     "sim:body('a'):behavior('drawing'):remove()",
     "sim:body('b'):behavior('near'):remove()",
@@ -90,65 +91,66 @@ const char* const kDeeds[] = {
     "sim:body('a'):behavior('drawing').pause = 0 sim:body('a'):behavior('drawing'):remove()",
 };
 
-TEST(BehaviorsUndone, ACallbackThatFailsHasRemovedNothing) {
-  const Left alone = play("", "", 0);
-  EXPECT_EQ(alone.printed.size(), 34u) << "40 ticks of 1/60 s have 17 beats of 40 ms";
-  for (const char* deed : kDeeds) {
+TEST(BehaviorsUndone, AFailedCallbackRemovesNothing) {
+  const RunResult alone = play("", "", 0);
+  EXPECT_EQ(alone.printed.size(), 34u) << "40 ticks of 1/60 s have 17 intervals of 40 ms";
+  for (const char* action : kActions) {
     for (const char* end : kEnds) {
-      EXPECT_EQ(play(fmt::format("sim:at(0.2, function() {} {} end)", deed, end), "", 1), alone) << deed << " " << end;
+      EXPECT_EQ(play(fmt::format("sim:at(0.2, function() {} {} end)", action, end), "", 1), alone)
+          << action << " " << end;
     }
-    EXPECT_NE(play(fmt::format("sim:at(0.2, function() {} end)", deed), "", 0), alone) << deed;
+    EXPECT_NE(play(fmt::format("sim:at(0.2, function() {} end)", action), "", 0), alone) << action;
   }
-  // what it made, and what found it, is forgotten
+  // objects that it created or looked up are rolled back
   EXPECT_EQ(play("sim:at(0.2, function() a:add_part('more', shape) local n = #a:behavior('drawing').parts "
                  "if n == 2 then error('x') end end)",
                  "", 1),
             alone);
-  // nor has one that made them first
+  // the same if they were created first
   EXPECT_EQ(play("sim:at(0.2, function() a:copy('c'):behavior('drawing'):remove() a:behavior('wind'):remove() "
                  "a:add_behavior('force', 'wind'):remove() error('x') end)",
                  "", 1),
             alone);
 }
 
-TEST(BehaviorsUndone, ABehaviourThatFailsHasRemovedNothing) {
-  // one that does nothing but fail is the measure: suspended, it is part of the hash
-  const Left suspended = play("", "if sim.tick == 12 then error('x') end", 1);
-  for (const char* deed : kDeeds) {
+TEST(BehaviorsUndone, AFailedBehaviorRemovesNothing) {
+  // Reference: a behavior that only fails; suspended, it is part of the hash.
+  const RunResult suspended = play("", "if sim.tick == 12 then error('x') end", 1);
+  for (const char* action : kActions) {
     for (const char* end : kEnds) {
-      EXPECT_EQ(play("", fmt::format("if sim.tick == 12 then {} {} end", deed, end), 1), suspended)
-          << deed << " " << end;
+      EXPECT_EQ(play("", fmt::format("if sim.tick == 12 then {} {} end", action, end), 1), suspended)
+          << action << " " << end;
     }
   }
   EXPECT_EQ(play("", "if sim.tick == 12 then self.rng:uniform() math.random() error('x') end", 1), suspended);
-  // without a fault they go, itself too
-  EXPECT_NE(play("", fmt::format("if sim.tick == 12 then {} end", kDeeds[3]), 0), suspended);
+  // without an error all are removed, including itself
+  EXPECT_NE(play("", fmt::format("if sim.tick == 12 then {} end", kActions[3]), 0), suspended);
 }
 
-TEST(BehaviorsUndone, ABeatThatFailedComesAgain) {
-  BehaviorStage stage;
-  ASSERT_EQ(stage.play_one("return behavior { params = { { 'pause', 1000 }, { 'bad', true } },\n"
-                           "step = function(self) if self:due('pause') then\n"
-                           "  if self.bad then error('x') end print('beat') end end }",
-                           3),
+TEST(BehaviorsUndone, AnIntervalOfAFailedStepRepeats) {
+  BehaviorFixture fixture;
+  ASSERT_EQ(fixture.play_one("return behavior { params = { { 'pause', 1000 }, { 'bad', true } },\n"
+                             "step = function(self) if self:due('pause') then\n"
+                             "  if self.bad then error('x') end print('beat') end end }",
+                             3),
             "");
-  ASSERT_NE(stage.it().error(), "");
-  stage.set("bad", 0);
-  stage.set("active", 1);
-  stage.tick(3);
-  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"beat"}));
+  ASSERT_NE(fixture.it().error(), "");
+  fixture.set("bad", 0);
+  fixture.set("active", 1);
+  fixture.tick(3);
+  EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"beat"}));
 }
 
-TEST(BehaviorsUndone, AnErrorStaysWhenTheOneWhoWantedToMendItFails) {
-  BehaviorStage stage;
-  stage.write("behaviors_lua/test.lua", "return behavior { step = function() error('ill') end }");
-  ASSERT_EQ(stage.play(std::string(kBall) + R"(
+TEST(BehaviorsUndone, AFailedReactivationKeepsTheError) {
+  BehaviorFixture fixture;
+  fixture.write("behaviors_lua/test.lua", "return behavior { step = function() error('ill') end }");
+  ASSERT_EQ(fixture.play(std::string(kBall) + R"(
 ball:add_behavior('test', 'it')
 sim:at(0.1, function() ball:behavior('it').active = true error('x') end)
 )",
-                       10),
+                         10),
             "");
-  EXPECT_EQ(first_line(stage.it().error()), "behaviors_lua/test.lua:1: ill");
+  EXPECT_EQ(first_line(fixture.it().error()), "behaviors_lua/test.lua:1: ill");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Behaviours in a scene: attaching, options, handles, groups, errors.
+// Behaviors in a scene: attaching, options, handles, groups, errors.
 #include <gtest/gtest.h>
 
 #include "script/stage.h"
@@ -19,7 +19,7 @@ std::string value(const std::string& expression, const std::string& before = "")
 }
 std::string error(const std::string& text) { return error_of(std::string(kBehavingArm) + text); }
 
-TEST(LuaBehaviors, AHandleHasParametersAndWhatItIs) {
+TEST(LuaBehaviors, AHandleHasParametersNameTypeAndBody) {
   const std::string before = R"(local b = arm:add_behavior("RandomForceBehavior", "wind",
     { parts = "tip", max_amp = 3, min_dir = { 1, 2, 3 }, active = false }))";
   EXPECT_EQ(value("b.max_amp, b.min_dir, b.active, b.rand_interval", before), "3\tvec3(1, 2, 3)\tfalse\t1000");
@@ -32,7 +32,7 @@ TEST(LuaBehaviors, AHandleHasParametersAndWhatItIs) {
   EXPECT_EQ(value("b.time", before), "0");
 }
 
-TEST(LuaBehaviors, TargetsAreNamesPatternsThingsAndListsOfThese) {
+TEST(LuaBehaviors, TargetsAreNamesPatternsObjectsOrLists) {
   const auto of = [](const std::string& key, const std::string& wanted) {
     return value("table.concat(names, ' ')", "local names = {}\nlocal b = arm:add_behavior('rotation_target', 'f', { " +
                                                  key + " = " + wanted + " })\nfor _, x in ipairs(b." +
@@ -51,7 +51,7 @@ TEST(LuaBehaviors, TargetsAreNamesPatternsThingsAndListsOfThese) {
   EXPECT_EQ(of("motors", "{ arm:motor('j_mid') }"), "j_mid");
 }
 
-TEST(LuaBehaviors, ListsOfABehaviourAreListsLikeAnyOther) {
+TEST(LuaBehaviors, TargetListsBehaveLikeOtherLists) {
   const std::string before = "local b = arm:add_behavior('force', 'f', { parts = { 'base', 'tip' } })\n";
   EXPECT_EQ(value("#names, names[1], names[2]",
                   before + "local names = {} for part in b:parts('t*') do names[#names + 1] = part.name end"),
@@ -60,7 +60,7 @@ TEST(LuaBehaviors, ListsOfABehaviourAreListsLikeAnyOther) {
             "2\tpart 'arm/tip'");
 }
 
-TEST(LuaBehaviors, ErrorsNameWhatExists) {
+TEST(LuaBehaviors, ErrorsSuggestExistingNames) {
   EXPECT_EQ(error("arm:add_behavior('forse', 'f')"),
             "scripts/scene.lua:7: there is no behavior type 'forse'; did you mean 'force'?");
   EXPECT_EQ(error("arm:add_behavior('force', 'f', { parts = 'tipp' })"),
@@ -91,7 +91,7 @@ TEST(LuaBehaviors, ErrorsNameWhatExists) {
             "sim:on_start(function() … end)");
 }
 
-TEST(LuaBehaviors, AGroupWritesToEveryMember) {
+TEST(LuaBehaviors, AGroupSetsAllMembers) {
   const std::string before = R"(
     local twin = arm:copy("twin", { position = vec3(0, 3, 0) })
     local g = sim:add_group_behavior("cohesion", "swarm", { bodies = { arm, "twin" }, parts = "tip", amount = 2 })
@@ -110,9 +110,9 @@ TEST(LuaBehaviors, AGroupWritesToEveryMember) {
             "active, amount, max_dist, min_dist, place");
 }
 
-TEST(LuaBehaviors, ARemovedOneIsGone) {
-  Stage stage;
-  EXPECT_EQ(stage.play(std::string(kBehavingArm) + R"(
+TEST(LuaBehaviors, ARemovedBehaviorNoLongerExists) {
+  ScriptFixture fixture;
+  EXPECT_EQ(fixture.play(std::string(kBehavingArm) + R"(
     local b = arm:add_behavior("force", "push", { amp = 6, parts = "tip" })
     local g = sim:add_group_behavior("cohesion", "swarm")
     sim:on_start(function()
@@ -121,30 +121,30 @@ TEST(LuaBehaviors, ARemovedOneIsGone) {
       print(b.alive, g.alive, #arm.behaviors, (pcall(function() return b.amp end)))
     end)
   )",
-                       2),
+                         2),
             "");
-  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"false\tfalse\t0\tfalse"}));
-  EXPECT_TRUE(stage.host.faults.empty());
+  EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"false\tfalse\t0\tfalse"}));
+  EXPECT_TRUE(fixture.host.faults.empty());
 }
 
-TEST(LuaBehaviors, ActBeforePhysicsAndAfterTheScenesCallbacks) {
-  Stage stage;
-  // the callback's value is what the behaviour applies in the same tick: F·dt/m = 6/60
-  EXPECT_EQ(stage.play(R"(
+TEST(LuaBehaviors, RunAfterTheScenesCallbacksAndBeforePhysics) {
+  ScriptFixture fixture;
+  // the callback's value is used by the behavior in the same tick: F·dt/m = 6/60
+  EXPECT_EQ(fixture.play(R"(
     sim.gravity = vec3(0, 0, 0)
     local ball = sim:add_body("ball")
     ball:add_part("ball", sim:add_sphere_shape("s", 0.1))
     local push = ball:add_behavior("force", "push")
     sim:on_step(function() push.amp = 6 print(ball.linear_velocity.x) end)
   )",
-                       2),
+                         2),
             "");
-  ASSERT_EQ(stage.host.printed.size(), 2U);
-  EXPECT_EQ(stage.host.printed[0], "0");
-  EXPECT_NEAR(std::stod(stage.host.printed[1]), 0.1, 1e-6);
+  ASSERT_EQ(fixture.host.printed.size(), 2U);
+  EXPECT_EQ(fixture.host.printed[0], "0");
+  EXPECT_NEAR(std::stod(fixture.host.printed[1]), 0.1, 1e-6);
 }
 
-TEST(LuaBehaviors, ACopyHasThemAndPairsVisitsThemInOrder) {
+TEST(LuaBehaviors, ACopyHasTheBehaviorsAndPairsVisitsThemInOrder) {
   EXPECT_EQ(value("#twin.behaviors, twin:behavior('a').amp, twin:behavior('a').body",
                   "arm:add_behavior('force', 'a', { amp = 4 }) local twin = arm:copy('twin')"),
             "1\t4\tbody 'twin'");

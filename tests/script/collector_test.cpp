@@ -1,4 +1,4 @@
-// The collector: it rests while scripts run, keeps up with what they leave behind, and clears up after a memory stop.
+// The garbage collector: pauses while scripts run, keeps up with their garbage, and cleans up after a memory stop.
 #include "script/collector.h"
 
 #include <gtest/gtest.h>
@@ -26,34 +26,34 @@ struct CollectorTest : testing::Test {
     lua_close(state);
   }
   void run(const std::string& text) { ASSERT_EQ(luaL_dostring(state, text.c_str()), 0) << lua_tostring(state, -1); }
-  // so many tables that nobody keeps, about 40 bytes each
+  // unreferenced tables of about 40 bytes each
   void litter(int count) { run("for i = 1, " + std::to_string(count) + " do local t = {} x = t end x = nil"); }
 
   lua_State* state = luaL_newstate();
-  Memory memory{16 * kMegabyte, [](void*) {}, nullptr};
-  std::optional<Collector> collector;
+  LuaMemory memory{16 * kMegabyte, [](void*) {}, nullptr};
+  std::optional<GarbageCollector> collector;
 };
 
-TEST_F(CollectorTest, RestsDuringCalls) {
+TEST_F(CollectorTest, PausesDuringCalls) {
   collector->begin_calls();
   const std::size_t before = memory.used();
   litter(100000);
-  EXPECT_GT(memory.used(), before + 2 * kMegabyte);  // all of it is still there
+  EXPECT_GT(memory.used(), before + 2 * kMegabyte);  // all of it is still allocated
 }
 
-TEST_F(CollectorTest, RestsBetweenSlicesToo) {
-  run("kept = {} for i = 1, 20000 do kept[i] = { i } end");
+TEST_F(CollectorTest, PausesBetweenSlices) {
+  run("stored = {} for i = 1, 20000 do stored[i] = { i } end");
   litter(20000);
-  collector->after_tick();  // to its end or not: how much a slice can do is the machine's affair
+  collector->after_tick();  // may complete the cycle or not, depending on the machine
   collector->begin_calls();
   const std::size_t before = memory.used();
   ASSERT_LT(before, 5 * kMegabyte);
-  litter(200000);  // a collector that works waits for twice as much at most
+  litter(200000);  // an active collector would wait until twice as much is allocated
   EXPECT_GT(memory.used(), before + 6 * kMegabyte);
 }
 
-TEST_F(CollectorTest, WorksDuringCallsWhenMemoryIsScarce) {
-  run("kept = {} for i = 1, 150000 do kept[i] = { i } end");
+TEST_F(CollectorTest, RunsDuringCallsWhenMemoryIsScarce) {
+  run("stored = {} for i = 1, 150000 do stored[i] = { i } end");
   ASSERT_GT(memory.used(), 8 * kMegabyte);
   const std::size_t before = memory.used();
   collector->begin_calls();
@@ -61,32 +61,32 @@ TEST_F(CollectorTest, WorksDuringCallsWhenMemoryIsScarce) {
   EXPECT_LT(memory.used(), before + 16 * kMegabyte);
 }
 
-TEST_F(CollectorTest, WhatARunMadeIsNoGarbageOfTheTicks) {
+TEST_F(CollectorTest, AllocationsOfARunDoNotCountAsGrowth) {
   collector->begin_run();
-  run("kept = {} for i = 1, 100000 do kept[i] = { i } end");
+  run("stored = {} for i = 1, 100000 do stored[i] = { i } end");
   collector->end_run();
   const std::size_t made = memory.used();
   ASSERT_GT(made, 4 * kMegabyte);
-  std::size_t before = 0;
-  for (int tick = 0; memory.used() < made + kMegabyte; tick++) {
+  litter(1000);
+  const std::size_t before = memory.used();
+  // a cycle that began by mistake would have ended after that many ticks, however slow the machine is
+  for (int tick = 0; tick < 20000; tick++) {
     collector->begin_calls();
-    litter(1000);
-    before = memory.used();
     collector->after_tick();
-    EXPECT_EQ(memory.used(), before) << "tick " << tick << ": nothing to collect yet";
+    ASSERT_EQ(memory.used(), before) << "tick " << tick << ": nothing to collect yet";
   }
 }
 
-TEST_F(CollectorTest, KeepsUpWithWhatTicksLeave) {
+TEST_F(CollectorTest, KeepsUpWithTheGarbageOfTicks) {
   for (int tick = 0; tick < 3000; tick++) {
     collector->begin_calls();
-    litter(2000);  // 240 MB in all
+    litter(2000);  // 240 MB in total
     collector->after_tick();
     ASSERT_LT(memory.used(), 12 * kMegabyte) << tick;
   }
 }
 
-TEST_F(CollectorTest, DoesNothingWhileThereIsLittle) {
+TEST_F(CollectorTest, DoesNothingWithLittleGarbage) {
   collector->after_tick();
   litter(5000);
   const std::size_t before = memory.used();
@@ -94,7 +94,7 @@ TEST_F(CollectorTest, DoesNothingWhileThereIsLittle) {
   EXPECT_EQ(memory.used(), before);
 }
 
-TEST_F(CollectorTest, ClearsUpInSlices) {
+TEST_F(CollectorTest, RunsFullCyclesInSlices) {
   const std::size_t before = memory.used();
   litter(300000);
   collector->collect_all();

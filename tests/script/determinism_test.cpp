@@ -1,4 +1,4 @@
-// The same scene gives the same run, bit for bit: compiled or interpreted, in another world, after other scenes.
+// The same scene gives bit-identical runs: compiled or interpreted, in another world, after other scenes.
 #include <gtest/gtest.h>
 
 #include <lua.hpp>
@@ -34,10 +34,10 @@ end)
 )";
 
 std::uint64_t hash_of(bool fresh, int ticks, const std::string& extra = "") {
-  Stage stage({}, fresh);
-  EXPECT_EQ(stage.play(kRepeatedScene + extra, ticks), "");
-  EXPECT_TRUE(stage.host.faults.empty()) << stage.host.faults[0].text;
-  return stage.scene.state_hash(stage.world.state_hash());
+  ScriptFixture fixture({}, fresh);
+  EXPECT_EQ(fixture.play(kRepeatedScene + extra, ticks), "");
+  EXPECT_TRUE(fixture.host.faults.empty()) << fixture.host.faults[0].text;
+  return fixture.scene.state_hash(fixture.world.state_hash());
 }
 
 TEST(Determinism, TheSameSceneGivesTheSameHash) {
@@ -46,7 +46,7 @@ TEST(Determinism, TheSameSceneGivesTheSameHash) {
   EXPECT_NE(hash_of(true, 241), first);
 }
 
-TEST(Determinism, GeneratorAndParametersCount) {
+TEST(Determinism, TheHashIncludesGeneratorAndParameters) {
   const std::uint64_t plain = hash_of(true, 10);
   EXPECT_NE(hash_of(true, 10, "\nmath.random()"), plain);
   EXPECT_NE(hash_of(true, 10, "\nsim:at(9 / 60, function() params.depth = 0.7000001 end)"), plain);
@@ -59,14 +59,14 @@ std::string run_plain(const std::string& text, bool compiled) {
   luaL_openlibs(L);
   luaJIT_setmode(L, 0, LUAJIT_MODE_ENGINE | (compiled ? LUAJIT_MODE_ON : LUAJIT_MODE_OFF));
   const bool ok = luaL_dostring(L, text.c_str()) == 0;
-  const char* said = lua_tostring(L, -1);
-  std::string result = said == nullptr ? "nothing" : said;
+  const char* output = lua_tostring(L, -1);
+  std::string result = output == nullptr ? "nothing" : output;
   EXPECT_TRUE(ok) << result;
   lua_close(L);
   return result;
 }
 
-TEST(Determinism, CompiledArithmeticHasTheInterpretersBits) {
+TEST(Determinism, CompiledArithmeticMatchesTheInterpreter) {
   for (const char* expression : {"x ^ 2",
                                  "x ^ 3",
                                  "x ^ 0.5",

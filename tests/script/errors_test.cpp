@@ -1,4 +1,4 @@
-// Errors: file:line, what, the source line, the way there; of runs, callbacks, syntax, files that are not there.
+// Error messages with file:line, source line and traceback: of runs, callbacks, syntax errors, missing files.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -9,11 +9,11 @@
 namespace limber {
 namespace {
 
-TEST(Errors, ARunTellsPlaceSourceLineAndTraceback) {
-  Stage stage;
+TEST(Errors, ARunReportsPlaceSourceLineAndTraceback) {
+  ScriptFixture fixture;
   EXPECT_EQ(
-      stage.run("local function swing(arm)\n  return arm.speed\nend\n\nlocal function all()\n  local x = swing(nil)\n"
-                "  return x\nend\nall()\n"),
+      fixture.run("local function swing(arm)\n  return arm.speed\nend\n\nlocal function all()\n  local x = swing(nil)\n"
+                  "  return x\nend\nall()\n"),
       "scripts/scene.lua:2: attempt to index local 'arm' (a nil value)\n"
       "  2 |   return arm.speed\n"
       "stack traceback:\n"
@@ -22,34 +22,34 @@ TEST(Errors, ARunTellsPlaceSourceLineAndTraceback) {
       "  scripts/scene.lua:9: in the main chunk");
 }
 
-TEST(Errors, ACallbackTellsThemToo) {
-  Stage stage;
-  ASSERT_EQ(
-      stage.play("local function deep()\n  error('too deep')\nend\nsim:on_start(function()\n  local x = deep()\nend)"),
-      "");
-  ASSERT_EQ(stage.host.faults.size(), 1u);
-  EXPECT_EQ(stage.host.faults[0].text,
+TEST(Errors, ACallbackReportsPlaceSourceLineAndTraceback) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(
+                "local function deep()\n  error('too deep')\nend\nsim:on_start(function()\n  local x = deep()\nend)"),
+            "");
+  ASSERT_EQ(fixture.host.faults.size(), 1u);
+  EXPECT_EQ(fixture.host.faults[0].text,
             "scripts/scene.lua:2: too deep\n"
             "  2 |   error('too deep')\n"
             "stack traceback:\n"
             "  scripts/scene.lua:2: in function 'deep'\n"
             "  scripts/scene.lua:5: in the function of line 4");
-  EXPECT_EQ(stage.host.faults[0].line, 2);
+  EXPECT_EQ(fixture.host.faults[0].line, 2);
 }
 
 TEST(Errors, SyntaxErrorsHaveTheirLine) {
-  Stage stage;
-  EXPECT_EQ(stage.run("local x = 1\nlocal y = = 2\n"),
+  ScriptFixture fixture;
+  EXPECT_EQ(fixture.run("local x = 1\nlocal y = = 2\n"),
             "scripts/scene.lua:2: unexpected symbol near '='\n  2 | local y = = 2");
 }
 
-TEST(Errors, AMissingEndIsLookedForWhereItShouldBe) {
+TEST(Errors, SuggestsWhereAnEndIsMissing) {
   const auto hint = [](const std::string& text) {
     const std::string fault = error_of(text);
     const std::size_t at = fault.find("; ");
     return at == std::string::npos ? "none: " + fault : fault.substr(at + 2);
   };
-  // the compiler itself stumbles over the comma
+  // the compiler reports the error at the comma
   EXPECT_EQ(
       error_of("t = {\n  step = function(self)\n    for i = 1, 3 do\n      print(i)\n  end,\n}"),
       "scripts/scene.lua:5: unexpected symbol near ','; the 'end' in line 5 closes the 'for' of line 3: is an 'end' "
@@ -61,10 +61,10 @@ TEST(Errors, AMissingEndIsLookedForWhereItShouldBe) {
             "the 'end' in line 4 closes the 'while' of line 2" + missing);
   EXPECT_EQ(hint("local function f()\n  local g = function()\n  return 1\nend\nprint(1)\n"),
             "the 'end' in line 4 closes the 'function' of line 2" + missing);
-  EXPECT_EQ(hint("if a then\n  b = 1\nend\nend"), "the 'end' in line 4 closes nothing: one is too many");
+  EXPECT_EQ(hint("if a then\n  b = 1\nend\nend"), "the 'end' in line 4 closes no block");
   EXPECT_EQ(hint("repeat\n  for i = 1, 2 do\n    x = i\nuntil x\n"),
             "the 'until' in line 4 closes the 'for' of line 2" + missing);
-  // words in comments and texts are none, and what stands well is not blamed
+  // words in comments and strings are ignored, and correct code is not blamed
   EXPECT_EQ(hint("-- end\n--[==[ end\nend ]==]\nx = 'end' .. \"\\\" end\" .. [[\nend]]\nfor i = 1, 2 do\n  if x then "
                  "y() end\nend\n"
                  "x = = 2"),
@@ -76,7 +76,7 @@ TEST(Errors, AMissingEndIsLookedForWhereItShouldBe) {
   EXPECT_EQ(hint("x = 'open"), "none: scripts/scene.lua:1: unfinished string near '<eof>'");
 }
 
-TEST(Errors, AMissingCommaIsLookedFor) {
+TEST(Errors, SuggestsAMissingComma) {
   EXPECT_EQ(error_of("params {\n  { 'a', 1 }\n  { 'b', 2 },\n}"),
             "scripts/scene.lua:3: '}' expected (to close '{' at line 1) near '{'; is a comma missing before it?");
   EXPECT_EQ(error_of("params {\n  { 'a', 1, max = 2 doc = 'x' },\n}"),
@@ -85,14 +85,14 @@ TEST(Errors, AMissingCommaIsLookedFor) {
             "scripts/scene.lua:3: '}' expected (to close '{' at line 1) near 'b'; is a comma missing before it?");
 }
 
-TEST(Errors, WhatIsThrownMayBeAnything) {
-  EXPECT_EQ(error_of("error({})"), "scripts/scene.lua:1: an error that is no text but a table");
-  EXPECT_EQ(error_of("error()"), "scripts/scene.lua:1: an error that is no text but a nil");
-  EXPECT_EQ(error_of("error(vec3())"), "scripts/scene.lua:1: an error that is no text but a cdata");
+TEST(Errors, AnyValueCanBeThrown) {
+  EXPECT_EQ(error_of("error({})"), "scripts/scene.lua:1: an error that is not text but a table");
+  EXPECT_EQ(error_of("error()"), "scripts/scene.lua:1: an error that is not text but a nil");
+  EXPECT_EQ(error_of("error(vec3())"), "scripts/scene.lua:1: an error that is not text but a cdata");
   EXPECT_EQ(error_of("error('without a place', 0)"), "scripts/scene.lua:1: without a place");
   EXPECT_EQ(error_of("error('elsewhere:7: x', 0)"), "scripts/scene.lua:1: elsewhere:7: x");
   EXPECT_EQ(error_of("error(setmetatable({}, { __tostring = function() while true do end end }))"),
-            "scripts/scene.lua:1: an error that is no text but a table");
+            "scripts/scene.lua:1: an error that is not text but a table");
   EXPECT_EQ(error_of("assert(false)"), "scripts/scene.lua:1: assertion failed!");
   EXPECT_EQ(error_of("assert(nil, 'so it is')"), "scripts/scene.lua:1: so it is");
 }
@@ -100,52 +100,53 @@ TEST(Errors, WhatIsThrownMayBeAnything) {
 TEST(Errors, DeepRecursionIsAnError) {
   const std::string fault = error_of("local function f() return 1 + f() end\nf()");
   EXPECT_NE(fault.find("stack overflow"), std::string::npos) << fault;
-  Stage stage;
-  ASSERT_EQ(stage.play("sim:on_step(function() local function f() return 1 + f() end f() end) "
-                       "sim:on_step(function() print('still here') end)",
-                       2),
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play("sim:on_step(function() local function f() return 1 + f() end f() end) "
+                         "sim:on_step(function() print('still here') end)",
+                         2),
             "");
-  EXPECT_EQ(stage.host.faults.size(), 1u);
-  EXPECT_EQ(stage.host.printed.size(), 2u);
+  EXPECT_EQ(fixture.host.faults.size(), 1u);
+  EXPECT_EQ(fixture.host.printed.size(), 2u);
 }
 
-TEST(Errors, FaultsInsideThePreludeStandAtTheScript) {
-  EXPECT_EQ(error_of("math.clamp(nil, 1, 2)"), "scripts/scene.lua:1: math.clamp takes three numbers: what, from, to");
+TEST(Errors, ErrorsInsideThePreludeHaveTheScriptsLine) {
+  EXPECT_EQ(error_of("math.clamp(nil, 1, 2)"),
+            "scripts/scene.lua:1: math.clamp takes three numbers: value, minimum, maximum");
   EXPECT_EQ(
       error_of("math.randomseed(3)"),
       "scripts/scene.lua:1: math.randomseed is not available; sim.seed (or --seed) seeds every generator of a scene");
   EXPECT_EQ(error_of("table.sort({ 1, {} })"), "scripts/scene.lua:1: attempt to compare table with number");
 }
 
-TEST(Errors, AMissingFileSaysWhereItLooked) {
-  Stage stage;
-  const std::string fault = stage.run("sim:load_urdf('urdf/nobody.urdf')");
-  EXPECT_EQ(first_line(fault), "scripts/scene.lua:1: there is no file 'urdf/nobody.urdf'; looked for");
-  EXPECT_NE(fault.find("\n  " + (stage.folder / "scripts/urdf/nobody.urdf").string()), std::string::npos) << fault;
-  EXPECT_NE(fault.find("\n  " + (stage.folder / "urdf/nobody.urdf").string()), std::string::npos) << fault;
+TEST(Errors, AMissingFileListsTheSearchedPlaces) {
+  ScriptFixture fixture;
+  const std::string fault = fixture.run("sim:load_urdf('urdf/missing.urdf')");
+  EXPECT_EQ(first_line(fault), "scripts/scene.lua:1: there is no file 'urdf/missing.urdf'; looked for");
+  EXPECT_NE(fault.find("\n  " + (fixture.folder / "scripts/urdf/missing.urdf").string()), std::string::npos) << fault;
+  EXPECT_NE(fault.find("\n  " + (fixture.folder / "urdf/missing.urdf").string()), std::string::npos) << fault;
   std::set<std::string> places;
   std::istringstream lines(fault.substr(0, fault.find("\n  1 |")));
   std::string line;
   while (std::getline(lines, line)) EXPECT_TRUE(places.insert(line).second) << "twice: " << line;
   EXPECT_GT(places.size(), 2u);
-  Stage other;
-  const Result<void> ran = other.scene.run((other.folder / "scripts/none.lua").string());
-  ASSERT_FALSE(ran.ok());
-  EXPECT_EQ(ran.error(), "there is no file '" + (other.folder / "scripts/none.lua").string() + "'");
+  ScriptFixture other;
+  const Result<void> result = other.scene.run((other.folder / "scripts/none.lua").string());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error(), "there is no file '" + (other.folder / "scripts/none.lua").string() + "'");
 }
 
-TEST(Errors, LongNamesAreWhole) {
-  Stage stage;
+TEST(Errors, LongNamesAreComplete) {
+  ScriptFixture fixture;
   const std::string name = "scripts/a_folder_with_a_long_name/another_folder_with_a_long_name/the_scene_itself.lua";
-  stage.write(name, "local x = {}\nlocal y = x.z.w");
-  const Result<void> ran = stage.scene.run((stage.folder / name).string());
-  ASSERT_FALSE(ran.ok());
-  EXPECT_EQ(first_line(ran.error()), name + ":2: attempt to index field 'z' (a nil value)");
+  fixture.write(name, "local x = {}\nlocal y = x.z.w");
+  const Result<void> result = fixture.scene.run((fixture.folder / name).string());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(first_line(result.error()), name + ":2: attempt to index field 'z' (a nil value)");
 }
 
-TEST(Errors, BytecodeIsRefused) {
-  Stage stage;
-  EXPECT_NE(stage.run(std::string("\x1bLJ\x02\x00", 5)), "");
+TEST(Errors, BytecodeIsRejected) {
+  ScriptFixture fixture;
+  EXPECT_NE(fixture.run(std::string("\x1bLJ\x02\x00", 5)), "");
 }
 
 }  // namespace

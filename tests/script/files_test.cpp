@@ -1,4 +1,4 @@
-// Where a scene's files are found.
+// The search for a scene's files.
 #include <gtest/gtest.h>
 
 #include "script/files.h"
@@ -8,50 +8,51 @@
 namespace limber {
 namespace {
 
-TEST(Files, TheShowIsTheNearestFolderWithScripts) {
-  Stage stage;
-  stage.write("show/scripts/deep/scene.lua", "");
-  stage.write("show/other/scene.lua", "");
+TEST(Files, TheShowFolderIsTheNearestWithScripts) {
+  ScriptFixture fixture;
+  fixture.write("show/scripts/deep/scene.lua", "");
+  fixture.write("show/other/scene.lua", "");
   const auto show = [&](const std::string& scene) {
-    return ScriptFiles((stage.folder / scene).string(), "").show_folder();
+    return ScriptFiles((fixture.folder / scene).string(), "").show_folder();
   };
-  EXPECT_EQ(show("show/scripts/deep/scene.lua"), (stage.folder / "show").string());
-  EXPECT_EQ(show("show/other/scene.lua"), (stage.folder / "show").string());
-  EXPECT_EQ(show("scene.lua"), stage.folder.string());
+  EXPECT_EQ(show("show/scripts/deep/scene.lua"), (fixture.folder / "show").string());
+  EXPECT_EQ(show("show/other/scene.lua"), (fixture.folder / "show").string());
+  EXPECT_EQ(show("scene.lua"), fixture.folder.string());
   EXPECT_EQ(ScriptFiles("/nowhere/at/all.lua", "").show_folder(), "/nowhere/at");
 }
 
 TEST(Files, TheNearerFileWinsAndInstalledDataComesLast) {
-  Stage stage;
-  stage.write("data/urdf/a.urdf", "");
-  stage.write("data/urdf/b.urdf", "");
-  stage.write("show/urdf/b.urdf", "");
-  stage.write("show/scripts/urdf/c.urdf", "");
-  stage.write("show/urdf/c.urdf", "");
-  const ScriptFiles files((stage.folder / "show/scripts/scene.lua").string(), (stage.folder / "data").string());
-  EXPECT_EQ(files.find("urdf/a.urdf").value(), (stage.folder / "data/urdf/a.urdf").string());
-  EXPECT_EQ(files.find("urdf/b.urdf").value(), (stage.folder / "show/urdf/b.urdf").string());
-  EXPECT_EQ(files.find("urdf/c.urdf").value(), (stage.folder / "show/scripts/urdf/c.urdf").string());
-  EXPECT_EQ(files.find((stage.folder / "data/urdf/b.urdf").string()).value(),
-            (stage.folder / "data/urdf/b.urdf").string());
-  EXPECT_FALSE(files.find("urdf").ok());  // a folder is no file
+  ScriptFixture fixture;
+  fixture.write("data/urdf/a.urdf", "");
+  fixture.write("data/urdf/b.urdf", "");
+  fixture.write("show/urdf/b.urdf", "");
+  fixture.write("show/scripts/urdf/c.urdf", "");
+  fixture.write("show/urdf/c.urdf", "");
+  const ScriptFiles files((fixture.folder / "show/scripts/scene.lua").string(), (fixture.folder / "data").string());
+  EXPECT_EQ(files.find("urdf/a.urdf").value(), (fixture.folder / "data/urdf/a.urdf").string());
+  EXPECT_EQ(files.find("urdf/b.urdf").value(), (fixture.folder / "show/urdf/b.urdf").string());
+  EXPECT_EQ(files.find("urdf/c.urdf").value(), (fixture.folder / "show/scripts/urdf/c.urdf").string());
+  EXPECT_EQ(files.find((fixture.folder / "data/urdf/b.urdf").string()).value(),
+            (fixture.folder / "data/urdf/b.urdf").string());
+  EXPECT_FALSE(files.find("urdf").ok());  // a folder is not a file
   EXPECT_FALSE(files.find("").ok());
 }
 
-TEST(Files, NamesAreShownFromTheShowOn) {
-  Stage stage;
-  stage.write("show/scripts/scene.lua", "");
-  const ScriptFiles files((stage.folder / "show/scripts/scene.lua").string(), "");
-  EXPECT_EQ(files.shown((stage.folder / "show/scripts/scene.lua").string()), "scripts/scene.lua");
-  EXPECT_EQ(files.shown("/etc/hosts"), "/etc/hosts");
+TEST(Files, NamesAreRelativeToTheShow) {
+  ScriptFixture fixture;
+  fixture.write("show/scripts/scene.lua", "");
+  const ScriptFiles files((fixture.folder / "show/scripts/scene.lua").string(), "");
+  EXPECT_EQ(files.display_path((fixture.folder / "show/scripts/scene.lua").string()), "scripts/scene.lua");
+  EXPECT_EQ(files.display_path("/etc/hosts"), "/etc/hosts");
 }
 
 TEST(Files, AScriptHasAtMostAMegabyte) {
-  Stage stage;
-  stage.write("big.lua", std::string((1u << 20) + 1, ' '));
-  stage.write("bom.lua", "\xef\xbb\xbfprint(1)");
-  EXPECT_NE(read_script((stage.folder / "big.lua").string()).error().find("a script may have 1 MB"), std::string::npos);
-  EXPECT_EQ(Sources().text((stage.folder / "bom.lua").string()).value(), "print(1)");
+  ScriptFixture fixture;
+  fixture.write("big.lua", std::string((1u << 20) + 1, ' '));
+  fixture.write("bom.lua", "\xef\xbb\xbfprint(1)");
+  EXPECT_NE(read_script((fixture.folder / "big.lua").string()).error().find("a script can have at most 1 MB"),
+            std::string::npos);
+  EXPECT_EQ(Sources().text((fixture.folder / "bom.lua").string()).value(), "print(1)");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// sim:add_gear and URDF mimic from scripts: names, lists, properties, errors, the motors of followers.
+// sim:add_gear and URDF mimic joints in scripts: names, lists, properties, errors, motors of followers.
 #include <gtest/gtest.h>
 
 #include "stage.h"
@@ -23,12 +23,12 @@ local left, right = train("left"), train("right")
 )";
 
 std::string gear_value(const std::string& lines, const std::string& expression) {
-  Stage stage;
-  const std::string fault = stage.run(kGearTrain + lines + "\nprint(" + expression + ")");
-  return fault.empty() ? stage.host.printed.back() : first_line(fault);
+  ScriptFixture fixture;
+  const std::string fault = fixture.run(kGearTrain + lines + "\nprint(" + expression + ")");
+  return fault.empty() ? fixture.host.printed.back() : first_line(fault);
 }
 
-TEST(Gears, AreNamedByTheirJointsUnlessToldOtherwise) {
+TEST(Gears, AreNamedByTheirJointsByDefault) {
   EXPECT_EQ(gear_value("local g = sim:add_gear(left:joint('j1'), left:joint('j2'), 2)\n"
                        "local h = sim:add_gear(right:joint('j1'), right:joint('j2'), 2)\n"
                        "local k = sim:add_gear(left:joint('j1'), right:joint('j1'), 1, { name = 'bridge' })",
@@ -36,14 +36,14 @@ TEST(Gears, AreNamedByTheirJointsUnlessToldOtherwise) {
             "gear 'j1_j2'\tgear 'j1_j2_2'\tgear 'bridge'\t3\ttrue\ttrue");
 }
 
-TEST(Gears, TellTheirJointsAndProperties) {
+TEST(Gears, HaveJointsAndProperties) {
   EXPECT_EQ(
       gear_value("local g = sim:add_gear(left:joint('j1'), right:joint('j2'), -3, { offset = 0.5, max_force = 4 })",
                  "g.joint_a, g.joint_b, g.ratio, g.offset, g.max_force, g.enabled, g.alive"),
       "joint 'left/j1'\tjoint 'right/j2'\t-3\t0.5\t4\ttrue\ttrue");
 }
 
-TEST(Gears, SayWhatIsWrong) {
+TEST(Gears, RejectInvalidArguments) {
   const auto fault = [&](const std::string& call) { return gear_value(call, "''"); };
   EXPECT_NE(fault("sim:add_gear('j1', left:joint('j2'), 1)").find("add_gear: joint_a is a joint"), std::string::npos);
   EXPECT_NE(fault("sim:add_gear(left:joint('j1'), left:joint('j2'))").find("add_gear: the ratio"), std::string::npos);
@@ -56,8 +56,8 @@ TEST(Gears, SayWhatIsWrong) {
 }
 
 TEST(Gears, CoupleMoveAndAreRemoved) {
-  Stage stage;
-  ASSERT_EQ(stage.play(std::string(kGearTrain) + R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(std::string(kGearTrain) + R"(
 local g = sim:add_gear(left:joint("j1"), right:joint("j2"), -2)
 left:motor("j1").mode = "servo"
 left:motor("j1").target = 0.3
@@ -67,16 +67,16 @@ sim:at(1, function()
   print(g.alive, #sim.gears)
 end)
 )",
-                       70),
+                         70),
             "");
-  ASSERT_EQ(stage.host.printed.size(), 2u);
-  EXPECT_EQ(stage.host.printed[0], "0.300 -0.600");
-  EXPECT_EQ(stage.host.printed[1], "false\t0");
+  ASSERT_EQ(fixture.host.printed.size(), 2u);
+  EXPECT_EQ(fixture.host.printed[0], "0.300 -0.600");
+  EXPECT_EQ(fixture.host.printed[1], "false\t0");
 }
 
-TEST(Gears, AFailedCallbackLeavesThemAsTheyWere) {
-  Stage stage;
-  ASSERT_EQ(stage.play(std::string(kGearTrain) + R"(
+TEST(Gears, AreRestoredAfterAFailedCallback) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(std::string(kGearTrain) + R"(
 local g = sim:add_gear(left:joint("j1"), right:joint("j2"), -2)
 sim:at(0.1, function()
   g.ratio = 5
@@ -86,14 +86,14 @@ sim:at(0.1, function()
 end)
 sim:at(0.2, function() print(g.alive, g.ratio, #sim.gears) end)
 )",
-                       20),
+                         20),
             "");
-  EXPECT_EQ(stage.host.printed.back(), "true\t-2\t1");
+  EXPECT_EQ(fixture.host.printed.back(), "true\t-2\t1");
 }
 
 TEST(MimicGear, AFollowerHasNoServoAndEffortsAddUp) {
-  Stage stage;
-  stage.write("urdf/jaw.urdf", R"(<?xml version="1.0"?>
+  ScriptFixture fixture;
+  fixture.write("urdf/jaw.urdf", R"(<?xml version="1.0"?>
 <robot name="jaw">
   <link name="post"/>
   <link name="jaw"><inertial><mass value="0.3"/><inertia ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.001"/></inertial></link>
@@ -101,7 +101,7 @@ TEST(MimicGear, AFollowerHasNoServoAndEffortsAddUp) {
   <joint name="lead" type="revolute"><origin xyz="0 0.1 1"/><parent link="post"/><child link="jaw"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="2" velocity="5"/></joint>
   <joint name="follow" type="revolute"><origin xyz="0 -0.1 1"/><parent link="post"/><child link="jaw2"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="2" velocity="5"/><mimic joint="lead" multiplier="-1"/></joint>
 </robot>)");
-  ASSERT_EQ(stage.play(R"(
+  ASSERT_EQ(fixture.play(R"(
 sim.gravity = vec3()
 local jaw = sim:load_urdf("urdf/jaw.urdf")
 print(jaw:motor("lead").mode, jaw:motor("follow").mode)
@@ -118,13 +118,13 @@ sim:at(1, function()
 end)
 sim:at(2, function() print(math.abs(jaw:joint("lead").value) < 0.01) end)
 )",
-                       130),
+                         130),
             "");
-  ASSERT_EQ(stage.host.printed.size(), 4u);
-  EXPECT_EQ(stage.host.printed[0], "servo\toff");
-  EXPECT_EQ(stage.host.printed[1], "true");         // 1.8 N·m of the leader's 2
-  EXPECT_EQ(stage.host.printed[2], "false\ttrue");  // 3 are too much
-  EXPECT_EQ(stage.host.printed[3], "true");         // but not for both motors
+  ASSERT_EQ(fixture.host.printed.size(), 4u);
+  EXPECT_EQ(fixture.host.printed[0], "servo\toff");
+  EXPECT_EQ(fixture.host.printed[1], "true");         // 1.8 N·m of the leader's 2
+  EXPECT_EQ(fixture.host.printed[2], "false\ttrue");  // 3 N·m is too much
+  EXPECT_EQ(fixture.host.printed[3], "true");         // but not for both motors
 }
 
 }  // namespace

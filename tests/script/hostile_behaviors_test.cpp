@@ -1,5 +1,5 @@
-// HostileCase behaviours: whatever one does, it alone is suspended, what it had written is taken back, and its
-// neighbours move as if it had been switched off in that tick.
+// Hostile behaviors: only the failing behavior is suspended, its changes are rolled back, and its neighbors move as if
+// it had been switched off in that tick.
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"
@@ -9,25 +9,25 @@ namespace {
 
 struct HostileCase {
   const char* name;
-  const char* step;  // at tick 30; before, it pushes its own body
-  const char* said;  // the error has this
+  const char* step;           // runs at tick 30; before, it pushes its own body
+  const char* expected_text;  // part of the error text
   int line = 4;
 };
 
 std::ostream& operator<<(std::ostream& out, const HostileCase& hostile) { return out << hostile.name; }
 
-// some releases of LuaJIT call no message handler when the stack of compiled code overflows: then the place is the line
-// of the function that was called
+// Some releases of LuaJIT call no message handler when the stack of compiled code overflows. Then the place is the
+// start of the called function.
 constexpr int kAnyLine = 0;
 
 constexpr HostileCase kHostile[] = {
     {"Errs", "local x = nil + 1", "attempt to perform arithmetic on a nil value"},
-    {"ThrowsATable", "error({})", "an error that is no text but a table"},
-    {"LoopsForEver", "while true do end", " ms of computing; look for a loop without an end"},
+    {"ThrowsATable", "error({})", "an error that is not text but a table"},
+    {"LoopsForEver", "while true do end", " ms of computing; check for an infinite loop"},
     {"LoopsOverParts", "while true do for _, part in ipairs(self.parts) do part:apply_force(vec3(1, 0, 0)) end end",
-     " ms of computing; look for a loop without an end"},
+     " ms of computing; check for an infinite loop"},
     {"CatchesItsStop", "pcall(function() while true do end end) while true do pcall(error) end",
-     " ms of computing; look for a loop without an end"},
+     " ms of computing; check for an infinite loop"},
     {"EatsMemory", "local t = {} while true do t[#t + 1] = ('x'):rep(1000) .. #t end", "stopped"},
     {"RecursesForEver", "local function f() return 1 + f() end f()", "stack overflow", kAnyLine},
     {"WritesOthers",
@@ -48,21 +48,20 @@ constexpr HostileCase kHostile[] = {
     {"RemovesItsBody", "self.body:remove() error('done')", "done"},
     {"SwitchesItselfOff", "self.active = false error('done')", "done"},
     {"WritesNaN", "self.parts[1]:apply_force(vec3(0 / 0, 0, 0))", "takes finite numbers, not nan"},
-    {"MakesThings", "sim:add_body('more')", "makes or registers something"},
-    {"SpoilsLists", "local _, list = ipairs(self.parts) list[1] = 3", "can't be changed by hand"},
+    {"MakesThings", "sim:add_body('more')", "creates or registers something"},
+    {"SpoilsLists", "local _, list = ipairs(self.parts) list[1] = 3", "is read-only"},
     {"SpoilsNeighbors", "local f, walk = self:neighbors(self.parts[1], 5) walk.at = 7", "has no member named"},
-    {"CallsAWalkAnew",
+    {"ReusesAnIterator",
      "local f, walk = self:neighbors(self.parts[1], 5) for i = 1, 100 do f(walk) end "
      "for i = 1, 17 do self:neighbors(self.parts[1], 5) end f(walk)",
-     "more than 16 inside each other"},
-    {"SpoilsItsSelf", "self.slot_ = 3", "this member never changes"},
+     "nested more than 16 deep"},
+    {"SpoilsItsSelf", "self.slot_ = 3", "this member is read-only"},
     {"ForgesASelf", "self.due({ slot_ = 1e9, generation_ = 1 }, 'push')", "due is a method of a behavior"},
     {"DrawsFromItsFile", "for i = 1, 5 do math.random() end error('done')", "done"},
-    {"AsksForTooManyDraws", "while true do self.rng:uniform() end", " ms of computing; look for a loop without an end"},
+    {"AsksForTooManyDraws", "while true do self.rng:uniform() end", " ms of computing; check for an infinite loop"},
 };
 
-// a group of one kind on three bodies, the middle one hostile, beside which a healthy body is pushed about by a
-// built-in behaviour
+// A group on three bodies, the middle one hostile, next to a healthy body that is moved by a built-in behavior.
 std::string scene() {
   return R"(
 local ball = sim:add_sphere_shape("ball", 0.1)
@@ -87,8 +86,8 @@ std::string file(const HostileCase& hostile) {
          "end }";
 }
 
-std::uint64_t hash_of(const Stage& stage, const char* body) {
-  return stage.world.find_body(body)->state_hash(hash_bytes("test"));
+std::uint64_t hash_of(const ScriptFixture& fixture, const char* body) {
+  return fixture.world.find_body(body)->state_hash(hash_bytes("test"));
 }
 
 class HostileBehaviors : public ::testing::TestWithParam<HostileCase> {};
@@ -100,36 +99,36 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
   options.limits.memory = std::size_t{24} << 20u;
   std::vector<std::uint64_t> hashes;
   for (const bool acts : {true, false}) {
-    BehaviorStage stage(options, true);
-    stage.write("behaviors_lua/test.lua", file(hostile));
-    ASSERT_EQ(stage.play(scene(), 30), "");
-    Behavior& bad = *stage.world.find_body("bad")->find_behavior("bad");
+    BehaviorFixture fixture(options, true);
+    fixture.write("behaviors_lua/test.lua", file(hostile));
+    ASSERT_EQ(fixture.play(scene(), 30), "");
+    Behavior& bad = *fixture.world.find_body("bad")->find_behavior("bad");
     EXPECT_EQ(bad.error(), "");
     if (!acts) {
       const double off = 0;
-      ASSERT_TRUE(stage.store.set(bad.id(), "active", {&off, 1}).ok());
+      ASSERT_TRUE(fixture.store.set(bad.id(), "active", {&off, 1}).ok());
     }
-    stage.tick(30);
+    fixture.tick(30);
     if (acts) {
-      EXPECT_NE(bad.error().find(hostile.said), std::string::npos) << bad.error();
+      EXPECT_NE(bad.error().find(hostile.expected_text), std::string::npos) << bad.error();
       EXPECT_EQ(bad.fault().file, "behaviors_lua/test.lua");
       EXPECT_GT(bad.fault().line, 0);
       if (hostile.line != kAnyLine) {
         EXPECT_EQ(bad.fault().line, hostile.line);
       }
       EXPECT_TRUE(bad.active());
-      EXPECT_EQ(stage.host.resets, 0);
+      EXPECT_EQ(fixture.host.resets, 0);
     }
     for (const char* other : {"before", "behind"}) {
-      EXPECT_EQ(stage.world.find_body(other)->find_behavior("bad")->error(), "");
+      EXPECT_EQ(fixture.world.find_body(other)->find_behavior("bad")->error(), "");
     }
-    hashes.push_back(hash_of(stage, "healthy"));
-    hashes.push_back(hash_bytes("before", hash_of(stage, "before") ^ hash_of(stage, "behind")));
+    hashes.push_back(hash_of(fixture, "healthy"));
+    hashes.push_back(hash_bytes("before", hash_of(fixture, "before") ^ hash_of(fixture, "behind")));
     const auto& words = bad.random().state();
     hashes.push_back(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}));
-    const Part& part = *stage.world.find_body("bad")->root();
-    hashes.push_back(hash_bytes({reinterpret_cast<const char*>(stage.store.live_block(part.id())),
-                                 Part::table().live_width() * sizeof(double)}));
+    const Part& part = *fixture.world.find_body("bad")->root();
+    hashes.push_back(hash_bytes({reinterpret_cast<const char*>(fixture.store.transient_block(part.id())),
+                                 Part::table().transient_width() * sizeof(double)}));
   }
   EXPECT_EQ(hashes[0], hashes[4]) << "the healthy body";
   EXPECT_EQ(hashes[1], hashes[5]) << "the other members";
@@ -140,38 +139,39 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
 INSTANTIATE_TEST_SUITE_P(, HostileBehaviors, ::testing::ValuesIn(kHostile),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// its file is saved anew, and loaded by a scene beside
-void mend(BehaviorStage& stage, ScriptHost& host, std::unique_ptr<Scene>& beside, const std::string& text) {
-  stage.write("behaviors_lua/test.lua", text);
-  stage.write("scripts/next.lua", "sim:add_group_behavior('test', 'next', { bodies = 'nobody*' })");
-  beside = std::make_unique<Scene>(stage.world, host, SceneOptions{});
-  const Result<void> ran = beside->run((stage.folder / "scripts" / "next.lua").string());
-  ASSERT_TRUE(ran.ok()) << ran.error();
-  stage.world.behaviors().remove_group(*stage.world.behaviors().find_group("next"));
-  stage.world.behaviors().renew("test");
+// its file is edited and loaded by a detached scene
+void fix_file(BehaviorFixture& fixture, ScriptHost& host, std::unique_ptr<Scene>& detached_scene,
+              const std::string& text) {
+  fixture.write("behaviors_lua/test.lua", text);
+  fixture.write("scripts/next.lua", "sim:add_group_behavior('test', 'next', { bodies = 'none*' })");
+  detached_scene = std::make_unique<Scene>(fixture.world, host, SceneOptions{});
+  const Result<void> result = detached_scene->run((fixture.folder / "scripts" / "next.lua").string());
+  ASSERT_TRUE(result.ok()) << result.error();
+  fixture.world.behaviors().remove_group(*fixture.world.behaviors().find_group("next"));
+  fixture.world.behaviors().replace_instances("test");
 }
 
-TEST_P(HostileBehaviors, AreRevivedByAMendedFile) {
+TEST_P(HostileBehaviors, ContinueAfterTheFileIsFixed) {
   const HostileCase& hostile = GetParam();
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;
   options.limits.memory = std::size_t{24} << 20u;
-  BehaviorStage stage(options, true);
-  stage.write("behaviors_lua/test.lua", file(hostile));
-  ASSERT_EQ(stage.play(scene(), 32), "");
-  const auto bad = [&]() -> const Behavior& { return *stage.world.find_body("bad")->find_behavior("bad"); };
+  BehaviorFixture fixture(options, true);
+  fixture.write("behaviors_lua/test.lua", file(hostile));
+  ASSERT_EQ(fixture.play(scene(), 32), "");
+  const auto bad = [&]() -> const Behavior& { return *fixture.world.find_body("bad")->find_behavior("bad"); };
   ASSERT_NE(bad().error(), "");
   RecordingHost host;
-  std::unique_ptr<Scene> beside;
-  mend(stage, host, beside,
-       "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } },\n"
-       "step = function(self) if self.hostile then print(self.body.name) end end }");
-  stage.tick(2);
+  std::unique_ptr<Scene> detached_scene;
+  fix_file(fixture, host, detached_scene,
+           "return behavior { group = true, params = { { 'push', 1, unit = 'ms' }, { 'hostile', true } },\n"
+           "step = function(self) if self.hostile then print(self.body.name) end end }");
+  fixture.tick(2);
   EXPECT_EQ(bad().error(), "");
   EXPECT_EQ(host.printed, (std::vector<std::string>{"bad", "bad"}));
 }
 
-TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndKeepTheirState) {
+TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndRetainTheirState) {
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;
   const std::string good =
@@ -181,50 +181,50 @@ TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndKeepTheirState) {
   for (const std::string migrate :
        {"while true do end", "error('no')", "local t = {} while true do t[#t + 1] = #t .. '' end"}) {
     SCOPED_TRACE(migrate);
-    BehaviorStage stage(options, true);
-    stage.write("behaviors_lua/test.lua", good + "}");
-    ASSERT_EQ(stage.play(scene(), 3), "");
+    BehaviorFixture fixture(options, true);
+    fixture.write("behaviors_lua/test.lua", good + "}");
+    ASSERT_EQ(fixture.play(scene(), 3), "");
     RecordingHost host, later_host;
-    std::unique_ptr<Scene> beside, later;
-    mend(stage, host, beside,
-         good + "migrate = function(self, old)\n  if self.hostile then " + migrate + " end\nreturn old end }");
-    stage.tick(2);
-    const Behavior* bad = stage.world.find_body("bad")->find_behavior("bad");
+    std::unique_ptr<Scene> detached_scene, later_scene;
+    fix_file(fixture, host, detached_scene,
+             good + "migrate = function(self, old)\n  if self.hostile then " + migrate + " end\nreturn old end }");
+    fixture.tick(2);
+    const Behavior* bad = fixture.world.find_body("bad")->find_behavior("bad");
     EXPECT_EQ(bad->fault().line, 5) << bad->error();
     EXPECT_EQ(bad->fault().file, "behaviors_lua/test.lua");
-    EXPECT_EQ(stage.world.find_body("behind")->find_behavior("bad")->error(), "");
+    EXPECT_EQ(fixture.world.find_body("behind")->find_behavior("bad")->error(), "");
     EXPECT_EQ(host.printed, std::vector<std::string>{});
-    mend(stage, later_host, later, good + "}");
-    stage.tick();
-    EXPECT_EQ(later_host.printed, std::vector<std::string>{"4"}) << "it goes on with the state that it had";
+    fix_file(fixture, later_host, later_scene, good + "}");
+    fixture.tick();
+    EXPECT_EQ(later_host.printed, std::vector<std::string>{"4"}) << "continues with its previous state";
   }
 }
 
 TEST(HostileBehaviorsInStart, AreSuspendedAloneToo) {
   SceneOptions options;
   options.limits.call_ms = 4 * kBudgetScale;
-  BehaviorStage stage(options);
-  stage.write("behaviors_lua/test.lua",
-              "return behavior { start = function(self)\n"
-              "  self.parts[1]:apply_force(vec3(0, 50, 0))\n"
-              "  while true do end\n"
-              "end, step = function() print('step') end }");
-  stage.write("behaviors_lua/good.lua",
-              "return behavior { step = function(self) self.parts[1]:apply_force(vec3(1, 0, 0)) end }");
-  ASSERT_EQ(stage.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:add_behavior('good', 'good')", 5),
+  BehaviorFixture fixture(options);
+  fixture.write("behaviors_lua/test.lua",
+                "return behavior { start = function(self)\n"
+                "  self.parts[1]:apply_force(vec3(0, 50, 0))\n"
+                "  while true do end\n"
+                "end, step = function() print('step') end }");
+  fixture.write("behaviors_lua/good.lua",
+                "return behavior { step = function(self) self.parts[1]:apply_force(vec3(1, 0, 0)) end }");
+  ASSERT_EQ(fixture.play(std::string(kBall) + "ball:add_behavior('test', 'it') ball:add_behavior('good', 'good')", 5),
             "");
-  EXPECT_EQ(stage.it().fault().line, 3);
-  EXPECT_TRUE(stage.host.printed.empty());
-  const Vec3 velocity = stage.world.find_body("ball")->root()->linear_velocity();
+  EXPECT_EQ(fixture.it().fault().line, 3);
+  EXPECT_TRUE(fixture.host.printed.empty());
+  const Vec3 velocity = fixture.world.find_body("ball")->root()->linear_velocity();
   EXPECT_NEAR(velocity.x, 5.0 / 60 / 2, 1e-6);
   EXPECT_EQ(velocity.y, 0);
 }
 
-TEST(HostileBehaviorsAtLoad, RefuseTheScene) {
+TEST(HostileBehaviorsAtLoad, RejectTheScene) {
   SceneOptions options;
   options.limits.run_ms = 30 * kBudgetScale;
-  BehaviorStage stage(options);
-  const std::string fault = stage.play_one("while true do end");
+  BehaviorFixture fixture(options);
+  const std::string fault = fixture.play_one("while true do end");
   EXPECT_EQ(fault.find("behaviors_lua/test.lua:1: stopped after 0."), 0u) << fault;
 }
 

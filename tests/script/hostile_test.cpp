@@ -1,5 +1,5 @@
-// The hostile suite: each file of tests/script/hostile plays beside a healthy body for 600 ticks. The healthy one moves
-// as if it were alone, bit for bit, and each fault names the culprit's file and line.
+// The hostile suite: each file of tests/script/hostile plays next to a healthy body for 600 ticks. The healthy body
+// moves bit for bit as if it were alone, and each fault names file and line of its cause.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Two bodies that move, one of them driven; the guest comes in between, and prints go to nobody's harm.
+// Two moving bodies, one of them driven; the guest script runs between them, and prints are discarded.
 constexpr const char* kHealthyScene = R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local ball = sim:add_sphere_shape("ball", 0.2)
@@ -38,12 +38,12 @@ sim:on_step(function()
 end)
 )";
 
-// the first lines of a file: "-- key: value"
-struct Head {
+// options in the first lines of a file: "-- key: value"
+struct FileHeader {
   struct Expected {
     int first = 0;
     int last = 0;
-    std::vector<std::string> texts;  // one of them is in the fault
+    std::vector<std::string> texts;  // one of them must be in the fault
   };
   std::vector<Expected> expected;
   ScriptLimits limits;
@@ -52,12 +52,12 @@ struct Head {
   int printed = -1;
 };
 
-Head head_of(const std::string& text) {
-  Head head;
-  // A short budget for scripts that the watchdog must stop; scripts that end by themselves, or that another limit
-  // stops, have a budget that no machine exceeds, however slow.
+FileHeader header_of(const std::string& text) {
+  FileHeader header;
+  // A short budget for scripts that the watchdog must stop; scripts that end by themselves or by another limit get a
+  // budget that no machine exceeds.
   const bool to_be_stopped = text.find(": stopped") != std::string::npos || text.find("|stopped") != std::string::npos;
-  head.limits.call_ms = (to_be_stopped ? 4 : 10000) * kBudgetScale;
+  header.limits.call_ms = (to_be_stopped ? 4 : 10000) * kBudgetScale;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line) && line.starts_with("-- ");) {
     const auto value = [&](std::string_view key) -> std::string {
@@ -65,7 +65,7 @@ Head head_of(const std::string& text) {
       return line.starts_with(start) ? line.substr(start.size()) : "";
     };
     if (const std::string v = value("expect"); !v.empty()) {
-      Head::Expected expected;
+      FileHeader::Expected expected;
       const std::size_t colon = v.find(": ");
       const std::string place = v.substr(0, colon);
       expected.first = std::stoi(place);
@@ -73,48 +73,48 @@ Head head_of(const std::string& text) {
           place.find('-') == std::string::npos ? expected.first : std::stoi(place.substr(place.find('-') + 1));
       for (const std::string_view one : split(std::string_view(v).substr(colon + 2), '|'))
         expected.texts.emplace_back(one);
-      head.expected.push_back(expected);
+      header.expected.push_back(expected);
     }
     if (const std::string v = value("limits"); !v.empty()) {
       for (const std::string_view word : split(v, ' ')) {
         const double number = std::stod(std::string(word.substr(word.find('=') + 1)));
-        if (word.starts_with("call_ms")) head.limits.call_ms = number * kBudgetScale;
-        if (word.starts_with("memory")) head.limits.memory = static_cast<std::size_t>(number) << 20u;
+        if (word.starts_with("call_ms")) header.limits.call_ms = number * kBudgetScale;
+        if (word.starts_with("memory")) header.limits.memory = static_cast<std::size_t>(number) << 20u;
       }
     }
-    if (const std::string v = value("messages"); !v.empty()) head.messages = std::stoi(v);
-    if (const std::string v = value("sent"); !v.empty()) head.sent = std::stoi(v);
-    if (const std::string v = value("printed"); !v.empty()) head.printed = std::stoi(v);
+    if (const std::string v = value("messages"); !v.empty()) header.messages = std::stoi(v);
+    if (const std::string v = value("sent"); !v.empty()) header.sent = std::stoi(v);
+    if (const std::string v = value("printed"); !v.empty()) header.printed = std::stoi(v);
   }
-  return head;
+  return header;
 }
 
-// how the healthy body moves, tick by tick
-struct Track {
+// the motion of the healthy body, tick by tick
+struct MotionTrack {
   std::vector<std::uint64_t> hashes;
   std::vector<RecordingHost::Fault> faults;
   std::size_t sent = 0;
   std::size_t printed = 0;
 };
 
-Track play(const std::string& guest, const Head& head) {
+MotionTrack play(const std::string& guest, const FileHeader& header) {
   SceneOptions options;
-  options.limits = head.limits;
-  Stage stage(options);
-  stage.write("scripts/lib/guest.lua", guest);
-  EXPECT_EQ(stage.play(kHealthyScene), "");
-  Track trajectory;
+  options.limits = header.limits;
+  ScriptFixture fixture(options);
+  fixture.write("scripts/lib/guest.lua", guest);
+  EXPECT_EQ(fixture.play(kHealthyScene), "");
+  MotionTrack trajectory;
   for (int tick = 0; tick < 600; tick++) {
-    if (tick % 100 == 50 && tick / 100 < head.messages) stage.scene.message({"/hit", {}}, {});
-    stage.tick();
-    const Body* const healthy = stage.world.find_body("healthy");
+    if (tick % 100 == 50 && tick / 100 < header.messages) fixture.scene.handle_message({"/hit", {}}, {});
+    fixture.tick();
+    const Body* const healthy = fixture.world.find_body("healthy");
     EXPECT_NE(healthy, nullptr) << "tick " << tick;
     if (healthy == nullptr) break;
     trajectory.hashes.push_back(healthy->state_hash(0));
   }
-  trajectory.faults = stage.host.faults;
-  trajectory.sent = stage.host.sent.size() + stage.host.replies.size();
-  trajectory.printed = stage.host.printed.size();
+  trajectory.faults = fixture.host.faults;
+  trajectory.sent = fixture.host.sent.size() + fixture.host.replies.size();
+  trajectory.printed = fixture.host.printed.size();
   return trajectory;
 }
 
@@ -130,25 +130,25 @@ std::string text_of_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-const Track& alone() {
-  static const Track trajectory = play("-- nobody", head_of(""));
+const MotionTrack& alone() {
+  static const MotionTrack trajectory = play("-- empty", header_of(""));
   return trajectory;
 }
 
 class HostileScript : public testing::TestWithParam<fs::path> {};
 
-TEST_P(HostileScript, HarmsNobody) {
+TEST_P(HostileScript, DoesNotAffectTheHealthyBody) {
   const std::string text = text_of_file(GetParam());
-  const Head head = head_of(text);
-  const Track trajectory = play(text, head);
+  const FileHeader header = header_of(text);
+  const MotionTrack trajectory = play(text, header);
   const auto [mine, theirs] = std::ranges::mismatch(trajectory.hashes, alone().hashes);
   EXPECT_TRUE(mine == trajectory.hashes.end() && theirs == alone().hashes.end())
       << "the healthy body differs from tick " << mine - trajectory.hashes.begin();
-  for (std::size_t i = 0; i < std::max(trajectory.faults.size(), head.expected.size()); i++) {
-    ASSERT_LT(i, trajectory.faults.size()) << "a fault less than expected";
+  for (std::size_t i = 0; i < std::max(trajectory.faults.size(), header.expected.size()); i++) {
+    ASSERT_LT(i, trajectory.faults.size()) << "one fault fewer than expected";
     const RecordingHost::Fault& fault = trajectory.faults[i];
-    ASSERT_LT(i, head.expected.size()) << "a fault that nobody expected: " << fault.text;
-    const Head::Expected& expected = head.expected[i];
+    ASSERT_LT(i, header.expected.size()) << "unexpected fault: " << fault.text;
+    const FileHeader::Expected& expected = header.expected[i];
     EXPECT_EQ(fault.file, "scripts/lib/guest.lua") << fault.text;
     EXPECT_TRUE(fault.line >= expected.first && fault.line <= expected.last) << fault.text;
     const std::string line = first_line(fault.text);
@@ -157,26 +157,26 @@ TEST_P(HostileScript, HarmsNobody) {
         << line;
     EXPECT_LT(fault.text.size(), 10000u);
   }
-  if (head.sent >= 0) {
-    EXPECT_EQ(trajectory.sent, static_cast<std::size_t>(head.sent));
+  if (header.sent >= 0) {
+    EXPECT_EQ(trajectory.sent, static_cast<std::size_t>(header.sent));
   }
-  if (head.printed >= 0) {
-    EXPECT_EQ(trajectory.printed, static_cast<std::size_t>(head.printed));
+  if (header.printed >= 0) {
+    EXPECT_EQ(trajectory.printed, static_cast<std::size_t>(header.printed));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, HostileScript, testing::ValuesIn(hostile_files()),
                          [](const auto& file) { return file.param.stem().string(); });
 
-TEST(HostileSuite, IsLargeEnough) {
+TEST(HostileSuite, HasEnoughScripts) {
   std::size_t endless = 0;
   for (const fs::path& file : hostile_files()) endless += file.stem().string().starts_with("endless") ? 1 : 0;
   EXPECT_GE(hostile_files().size(), 60u);
   EXPECT_GE(endless, 30u);
 }
 
-TEST(HostileSuite, TheHealthyOneMoves) {
-  // else nothing above would be worth anything
+TEST(HostileSuite, TheHealthyBodyMoves) {
+  // otherwise the other tests would be meaningless
   std::vector<std::uint64_t> hashes = alone().hashes;
   ASSERT_EQ(hashes.size(), 600u);
   std::sort(hashes.begin(), hashes.end());

@@ -1,4 +1,4 @@
-// Functions of Lua's libraries give one result, compiled or interpreted, on every machine: LuaJIT's own differ.
+// Functions of Lua's libraries give the same result compiled and interpreted, on every machine, unlike LuaJIT's own.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,12 +19,12 @@ namespace {
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Plays a scene whose loop is compiled after some 60 rounds, and returns its printed lines.
+// Plays a scene with a loop that is compiled after some 60 iterations, and returns its printed lines.
 std::vector<std::string> lines_of(const std::string& text) {
-  Stage stage;
-  EXPECT_EQ(stage.play(text, 1), "");
-  EXPECT_TRUE(stage.host.faults.empty()) << stage.host.faults[0].text;
-  return stage.host.printed;
+  ScriptFixture fixture;
+  EXPECT_EQ(fixture.play(text, 1), "");
+  EXPECT_TRUE(fixture.host.faults.empty()) << fixture.host.faults[0].text;
+  return fixture.host.printed;
 }
 
 std::string shown(double x) {
@@ -43,9 +43,9 @@ local values = { 0, -1 / math.huge, 1, -1, 0.5, -2, 1 / 0, -1 / 0, 0 / 0 }
 )";
 const std::vector<double> kValues = {0, -0.0, 1, -1, 0.5, -2, kInf, -kInf, kNan};
 
-// as standard Lua's C code
-double least(double x, double y) { return y < x ? y : x; }
-double most(double x, double y) { return y > x ? y : x; }
+// like standard Lua's C code
+double lua_min(double x, double y) { return y < x ? y : x; }
+double lua_max(double x, double y) { return y > x ? y : x; }
 
 TEST(Library, CeilKeepsMinusZero) {
   std::vector<std::string> expected(kValues.size());
@@ -69,7 +69,8 @@ TEST(Library, MinAndMaxKeepNaNAndMinusZero) {
   std::vector<std::string> expected;
   for (const double x : kValues) {
     for (const double y : kValues) {
-      expected.push_back(fmt::format("{} {} {}", shown(least(x, y)), shown(most(x, y)), shown(most(least(1, x), y))));
+      expected.push_back(
+          fmt::format("{} {} {}", shown(lua_min(x, y)), shown(lua_max(x, y)), shown(lua_max(lua_min(1, x), y))));
     }
   }
   const std::vector<std::string> lines = lines_of(std::string(kShowNumber) + R"(
@@ -91,7 +92,7 @@ for _, line in ipairs(lines) do print(line) end)");
   EXPECT_EQ(lines, expected);
 }
 
-TEST(Library, MinAndMaxTakeWhatLuaTakes) {
+TEST(Library, MinAndMaxAcceptTheSameArgumentsAsLua) {
   const std::vector<std::string> lines = lines_of(R"(
 print(math.min(3), math.min(3, 1, 2), math.max("3", 4), math.max(1, 2, 7, 5), math.min(2, "-1"))
 print(select(2, pcall(math.min)))
@@ -105,7 +106,7 @@ print(select(2, pcall(math.max, 1, 2, nil)))
   EXPECT_NE(lines[3].find("math.max takes numbers, not nothing"), std::string::npos) << lines[3];
 }
 
-// Standard Lua's rule: negative positions count from the end, and positions outside are moved to the ends.
+// Standard Lua's rule: negative positions count from the end, and positions outside are clamped.
 std::string text_part(const std::string& text, double first, double last) {
   const auto n = static_cast<double>(text.size());
   if (first < 0) first = std::max(n + first + 1, 1.0);
@@ -116,7 +117,7 @@ std::string text_part(const std::string& text, double first, double last) {
   return text.substr(static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last - first) + 1);
 }
 
-TEST(Library, PartsOfTextsMayLieOutside) {
+TEST(Library, SubstringPositionsAreClamped) {
   const std::vector<double> positions = {0, 1, 2, 3, 5, 6, 100, -1, -2, -5, -6, -100, 1e300, -1e300, kInf, -kInf};
   std::vector<std::string> expected;
   for (const char* text : {"", "a", "hello"}) {
@@ -156,7 +157,7 @@ struct Unary {
   double low, high;
 };
 
-TEST(Library, MathIsThatOfTheProgram) {
+TEST(Library, MathUsesTheFixedFunctions) {
   const std::vector<Unary> functions = {
       {"sin", fixed::sin, -40, 40},   {"cos", fixed::cos, -40, 40},   {"tan", fixed::tan, -40, 40},
       {"asin", fixed::asin, -1, 1},   {"acos", fixed::acos, -1, 1},   {"atan", fixed::atan, -9, 9},

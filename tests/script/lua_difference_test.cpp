@@ -1,6 +1,6 @@
-// Random Lua programs give one result, compiled or interpreted: each runs in a scene that LuaJIT compiles, and in one
-// that it only interprets, both in processes of their own. LIMBER_LUA_PROGRAMS and LIMBER_LUA_SEED choose how many
-// programs run, and from which seed on.
+// Random Lua programs give the same result compiled and interpreted: each runs in a scene that LuaJIT compiles, and in
+// one that it only interprets, both in separate processes. LIMBER_LUA_PROGRAMS and LIMBER_LUA_SEED set the number of
+// programs and the first seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ using script_test::run_texts;
 
 using Results = std::vector<std::string>;
 
-// Loops are compiled after two rounds, so that short programs are.
+// Loops are compiled after two iterations, so that short programs are compiled.
 Results results_of(const std::vector<std::string>& texts, bool compiled) { return run_texts(texts, {compiled, 2}); }
 
 bool differs(const LuaProgram& program) {
@@ -39,19 +39,19 @@ std::uint64_t number_of(const char* variable, std::uint64_t missing) {
   return text == nullptr ? missing : std::strtoull(text, nullptr, 10);
 }
 
-// The program of a seed that differs, as small as it becomes, with both results.
+// Returns the minimized program of a seed that differs, with both results.
 std::string report(std::uint64_t seed, const std::string& compiled, const std::string& interpreted) {
   constexpr const char* kFormat = "program {}:\n{}--- compiled:\n{}\n--- interpreted:\n{}\n";
   LuaProgram program = make_program(seed);
   if (!differs(program)) {
-    return "behind the programs before it only, " + fmt::format(kFormat, seed, program.text(), compiled, interpreted);
+    return "only after the preceding programs, " + fmt::format(kFormat, seed, program.text(), compiled, interpreted);
   }
   program = script_test::shrink(program, differs, 400);
   const std::vector<std::string> texts{program.text()};
   return fmt::format(kFormat, seed, texts[0], results_of(texts, true)[0], results_of(texts, false)[0]);
 }
 
-// What differs first in a batch, or nothing.
+// Returns the first difference in a batch, or nothing.
 std::optional<std::uint64_t> first_difference(std::uint64_t first, std::uint64_t count, std::string& text) {
   std::vector<std::string> texts;
   for (std::uint64_t i = 0; i < count; i++) texts.push_back(make_program(first + i).text());
@@ -65,14 +65,14 @@ std::optional<std::uint64_t> first_difference(std::uint64_t first, std::uint64_t
   return first + same;
 }
 
-TEST(LuaDifference, CompiledProgramsGiveTheInterpretedResults) {
+TEST(LuaDifference, CompiledProgramsMatchTheInterpreter) {
   const std::uint64_t first = number_of("LIMBER_LUA_SEED", 1);
   const std::uint64_t end = first + number_of("LIMBER_LUA_PROGRAMS", kSanitized ? 20 : 800);
-  const std::uint64_t most = number_of("LIMBER_LUA_REPORTS", 1);
+  const std::uint64_t max_reports = number_of("LIMBER_LUA_REPORTS", 1);
   const char* const progress = std::getenv("LIMBER_LUA_PROGRESS");
-  constexpr std::uint64_t kBatch = script_test::kProgramsAlike;
+  constexpr std::uint64_t kBatch = script_test::kSeriesLength;
   std::uint64_t found = 0;
-  for (std::uint64_t seed = first; seed < end && found < most;) {
+  for (std::uint64_t seed = first; seed < end && found < max_reports;) {
     const std::uint64_t count = std::min(kBatch, end - seed);
     std::string text;
     const std::optional<std::uint64_t> difference = first_difference(seed, count, text);
@@ -83,7 +83,7 @@ TEST(LuaDifference, CompiledProgramsGiveTheInterpretedResults) {
   }
 }
 
-// The results are not all errors of the first line: most programs come to their end.
+// Checks that most programs run to their end, rather than failing in the first line.
 TEST(LuaDifference, MostProgramsRunToTheirEnd) {
   std::vector<std::string> texts;
   for (std::uint64_t seed = 1; seed <= 100; seed++) texts.push_back(make_program(seed).text());

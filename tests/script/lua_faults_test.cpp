@@ -1,5 +1,5 @@
-// Known faults of LuaJIT: each file of luajit_faults/ shows one in a plain Lua state, and none in a scene.
-// docs/luajit.md has a row for each, with the releases that have it and the protection.
+// Known faults of LuaJIT: each file of luajit_faults/ reproduces one in a plain Lua state, and not in a scene.
+// docs/luajit.md has a table row for each, with the affected releases and the protection.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ std::map<std::string, std::string> fault_texts() {
   return texts;
 }
 
-// The rows of the table: cells by the name of the file, which is in the first one.
-std::map<std::string, std::vector<std::string>> rows() {
+// The rows of the table: cells by the file name in the first cell.
+std::map<std::string, std::vector<std::string>> table_rows() {
   std::map<std::string, std::vector<std::string>> rows;
   std::istringstream lines(content(LIMBER_SOURCE_DIR "/docs/luajit.md"));
   for (std::string line; std::getline(lines, line);) {
@@ -51,13 +51,13 @@ std::map<std::string, std::vector<std::string>> rows() {
   return rows;
 }
 
-// Cells of a row, behind the name: the fault, the releases, the protection.
+// Cells of a row after the name: the fault, the releases, the protection.
 constexpr std::size_t kDebian12 = 1, kFork = 2, kDebian13 = 3, kProtection = 4;
 
 bool is_protected(const std::vector<std::string>& cells) { return !cells.at(kProtection).starts_with("none"); }
 
-// The column of the LuaJIT that this program runs with.
-std::optional<std::size_t> installed() {
+// The table's column for the LuaJIT of this program.
+std::optional<std::size_t> installed_column() {
   const std::string version = run_plainly("(...)(jit.arch, jit.version, (pcall(require, 'table.nkeys')))", {});
   if (version.starts_with("x64 LuaJIT 2.1.1737090214 ")) return kDebian13;
   if (version.starts_with("x64 LuaJIT 2.1.0-beta3 true")) return kFork;
@@ -65,8 +65,8 @@ std::optional<std::size_t> installed() {
   return std::nullopt;
 }
 
-TEST(LuaFaults, TheTableHasARowForEach) {
-  const auto table = rows();
+TEST(LuaFaults, TheTableListsEveryFault) {
+  const auto table = table_rows();
   const auto texts = fault_texts();
   for (const auto& [name, text] : texts) EXPECT_TRUE(table.count(name) == 1) << name;
   for (const auto& [name, cells] : table) {
@@ -77,8 +77,8 @@ TEST(LuaFaults, TheTableHasARowForEach) {
   }
 }
 
-TEST(LuaFaults, ScenesHaveNone) {
-  const auto table = rows();
+TEST(LuaFaults, ScenesAreNotAffected) {
+  const auto table = table_rows();
   std::vector<std::string> names, texts;
   for (const auto& [name, text] : fault_texts()) {
     if (!is_protected(table.at(name))) continue;
@@ -96,12 +96,12 @@ TEST(LuaFaults, ScenesHaveNone) {
   }
 }
 
-// What an installed LuaJIT does without protection. Other releases, and processors other than x64, have other faults; a
-// sanitizer reports a crash by itself.
-TEST(LuaFaults, TheInstalledVersionHasThoseOfItsColumn) {
-  const std::optional<std::size_t> column = installed();
+// Faults of the installed LuaJIT without protection. Other releases, and processors other than x64, have other faults;
+// sanitizers report crashes themselves.
+TEST(LuaFaults, TheInstalledVersionHasTheFaultsOfItsColumn) {
+  const std::optional<std::size_t> column = installed_column();
   if (kSanitized || !column) return;
-  const auto table = rows();
+  const auto table = table_rows();
   for (const auto& [name, text] : fault_texts()) {
     const std::string expected = run_plainly(text, {false, 0});
     std::string found = expected.starts_with("crashed") ? "crash" : "no";

@@ -1,5 +1,5 @@
-// Random Lua programs from a grammar. It favors what LuaJIT has compiled to wrong code before: constructors in loops,
-// tables with two names, nil stores, lengths, `...`, metamethods, -0, NaN, and integers near 2^31.
+// Random Lua programs from a grammar. It favors constructs that LuaJIT has compiled to wrong code before: constructors
+// in loops, tables with two names, nil stores, lengths, `...`, metamethods, -0, NaN, and integers near 2^31.
 #include "lua_program.h"
 
 #include <random>
@@ -19,12 +19,12 @@ enum Needs : unsigned { nothing = 0, loop = 1, varargs = 2, object = 4, function
 
 struct Rule {
   int weight;
-  const char* text;  ///< `$` and a letter stand for another part: see Maker::part().
+  const char* text;  ///< `$` and a letter are replaced by another part: see Maker::part().
   unsigned needs = nothing;
 };
 
-// Variables: numbers n1 to n3, texts s0 and s1, b0 true or false, v0 and v1 anything; lists t0 to t2, whose length is
-// defined because they have no gaps; tables h0 and h1 with any keys; m0 with a metatable; i1, i2, … of loops.
+// Variables: numbers n1 to n3, texts s0 and s1, b0 true or false, v0 and v1 anything; lists t0 to t2 without gaps, so
+// that their length is defined; tables h0 and h1 with any keys; m0 with a metatable; i1, i2, … of loops.
 constexpr Rule kConstants[] = {
     {1, "0"},          {1, "1"},          {1, "2"},           {2, "3"},     {1, "-1"},     {1, "-2"},      {1, "0.5"},
     {1, "-0.5"},       {1, "7"},          {1, "10"},          {1, "1e9"},   {1, "255"},    {1, "1/0"},     {1, "-1/0"},
@@ -197,18 +197,19 @@ constexpr Rule kLoops[] = {
     {1, "for $j = -1, $r / 2, 0.5 do"},
     {1, "local $j = 0 while $j < $r do $j = $j + 1"},
 };
-constexpr Rule kWalks[] = {{1, "for $j, v in ipairs($l) do"}, {1, "for $j, v in pairs($t) do $j = tonumber($j) or 1"}};
+constexpr Rule kIterations[] = {{1, "for $j, v in ipairs($l) do"},
+                                {1, "for $j, v in pairs($t) do $j = tonumber($j) or 1"}};
 
-// or lengths, which go with stored elements
+// true if a rule's text contains tables or lengths
 bool uses_tables(std::string_view text) {
   for (const std::string_view part : {"$t", "$l", "$h", "$T", "$L", "t0", "t1", "t2", "{ 1", "#$"})
     if (text.find(part) != text.npos) return true;
   return false;
 }
 
-class Maker {
+class ProgramGenerator {
  public:
-  explicit Maker(std::uint64_t seed, bool tables) : random_(seed), tables_(tables) {}
+  explicit ProgramGenerator(std::uint64_t seed, bool tables) : random_(seed), tables_(tables) {}
 
   LuaProgram program() {
     LuaProgram out;
@@ -271,7 +272,7 @@ class Maker {
     return out;
   }
 
-  // What a letter stands for; `depth`: how often expressions may still be nested.
+  // Returns the replacement of a letter; `depth`: remaining nesting depth of expressions.
   std::string part(char letter, int depth) {
     switch (letter) {
       case 'n':
@@ -325,10 +326,10 @@ class Maker {
     }
   }
 
-  std::string constructor(std::span<const Rule> elements, int most, int fields) {
+  std::string constructor(std::span<const Rule> elements, int max_elements, int fields) {
     const int depth = names_ ? 1 : 0;
     std::string out = "{ ";
-    for (int i = below(most); i > 0; i--) out += choose(elements, depth) + ", ";
+    for (int i = below(max_elements); i > 0; i--) out += choose(elements, depth) + ", ";
     for (int i = below(fields + 1); i > 0; i--) out += choose(kKeys, 0) + " = " + choose(kFields, depth) + ", ";
     return out + "}";
   }
@@ -366,11 +367,11 @@ class Maker {
 
   LuaNode loop_of(int rounds, int depth) {
     rounds_ = rounds;
-    LuaNode node{rounds < 6 && tables_ && chance(40) ? choose(kWalks, 0) : choose(kLoops, 0), {}, "end"};
+    LuaNode node{rounds < 6 && tables_ && chance(40) ? choose(kIterations, 0) : choose(kLoops, 0), {}, "end"};
     depth_++;
     for (int i = 1 + below(5); i > 0; i--) node.body.push_back(statement(depth));
     depth_--;
-    // the variable of a `while` is of a block
+    // the variable of a `while` is local to a block
     if (node.head.starts_with("local")) return {"do", {node}, "end"};
     return node;
   }
@@ -385,7 +386,7 @@ class Maker {
     }
     if (kind < 4 && depth > 0 && depth_ < 3) return loop_of(1 + below(5), depth - 1);
     if (kind < 5) {
-      // `break` and `...` don't reach into it
+      // `break` and `...` can't be used across it
       const int depth_before = std::exchange(depth_, 0);
       const bool varargs_before = std::exchange(varargs_, false);
       LuaNode node{"local ok, what = pcall(function(a)", {statement(depth - 1)}, "end, 1) out(ok, what)"};
@@ -398,8 +399,8 @@ class Maker {
 
   std::mt19937_64 random_;
   int functions_ = 0;     // that can be called
-  int depth_ = 0;         // of loops
-  int rounds_ = 0;        // of the loop that is made
+  int depth_ = 0;         // nesting depth of loops
+  int rounds_ = 0;        // iterations of the loop being generated
   bool tables_ = true;    // whether there are t0, h0, …
   bool names_ = false;    // whether variables exist
   bool varargs_ = false;  // whether there is `...`
@@ -433,7 +434,9 @@ std::string LuaProgram::text() const {
   return out;
 }
 
-LuaProgram make_program(std::uint64_t seed) { return Maker(seed, (seed - 1) / kProgramsAlike % 4 != 3).program(); }
+LuaProgram make_program(std::uint64_t seed) {
+  return ProgramGenerator(seed, (seed - 1) / kSeriesLength % 4 != 3).program();
+}
 
 LuaProgram shrink(LuaProgram program, const std::function<bool(const LuaProgram&)>& differs, int tries) {
   const auto make_smaller = [&](bool keep_body) {

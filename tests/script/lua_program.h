@@ -22,10 +22,10 @@ struct LuaProgram {
   std::string text() const;
 };
 
-/// Of four times as many programs in a row, the last ones have no tables.
-inline constexpr std::uint64_t kProgramsAlike = 200;
+/// Number of consecutive seeds with the same kind of program: three series with tables are followed by one without.
+inline constexpr std::uint64_t kSeriesLength = 200;
 
-/// Errors are results, too. Runs for about a millisecond.
+/// Returns the program of a seed. It runs for about a millisecond; errors that it raises are part of its results.
 LuaProgram make_program(std::uint64_t seed);
 
 /// Removes statements as long as `differs` holds. At most `tries` calls.

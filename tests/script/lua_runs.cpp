@@ -1,4 +1,4 @@
-// Scenes and plain Lua states in child processes, which send what their texts did through a pipe.
+// Runs scenes and plain Lua states in child processes, which send results through a pipe.
 #include "lua_runs.h"
 
 #include <fcntl.h>
@@ -20,8 +20,8 @@ namespace limber::script_test {
 
 namespace {
 
-// `/run` runs a text and prints what it passed to `out`, and how it ended. It takes no length, so that programs without
-// tables are compiled with all optimizations (src/script/prelude/16_compiled.lua).
+// `/run` runs a text and prints the values that it passed to `out`, and how it ended. It uses no length operator, so
+// that programs without tables are compiled with all optimizations (src/script/prelude/16_compiled.lua).
 constexpr const char* kScene = R"(
 local concat = table.concat
 local lines, count
@@ -70,7 +70,7 @@ out(pcall(assert(loadstring(text, "=program")), out))
 return table.concat(lines, "\n")
 )";
 
-// Calls f(send) in a child process: what it sent, and how it ended.
+// Calls f(send) in a child process. Returns the sent data, and how the process ended.
 std::pair<std::string, std::string> in_child(
     const std::function<void(const std::function<bool(const std::string&)>&)>& f) {
   int ends[2] = {-1, -1};
@@ -95,13 +95,13 @@ std::pair<std::string, std::string> in_child(
   return {all, WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with {}", WEXITSTATUS(status))};
 }
 
-std::string result_of(Stage& stage, const std::string& text) {
-  stage.host.printed.clear();
-  stage.host.faults.clear();
-  stage.scene.message({"/run", {Arg::of(text)}}, {});
-  stage.scene.collect_garbage();
-  if (!stage.host.faults.empty()) return "fault: " + stage.host.faults.back().text;
-  return stage.host.printed.empty() ? "no result" : stage.host.printed.back();
+std::string result_of(ScriptFixture& fixture, const std::string& text) {
+  fixture.host.printed.clear();
+  fixture.host.faults.clear();
+  fixture.scene.handle_message({"/run", {Arg::of(text)}}, {});
+  fixture.scene.collect_garbage();
+  if (!fixture.host.faults.empty()) return "fault: " + fixture.host.faults.back().text;
+  return fixture.host.printed.empty() ? "no result" : fixture.host.printed.back();
 }
 
 }  // namespace
@@ -112,15 +112,15 @@ std::vector<std::string> run_texts(const std::vector<std::string>& texts, const 
     options.limits.compiled = run.compiled;
     options.limits.hot_loop = run.hot_loop;
     options.limits.call_ms = 60000;
-    options.limits.memory = std::size_t{1} << 30u;  // garbage of a call is collected behind it
-    std::optional<Stage> stage;
+    options.limits.memory = std::size_t{1} << 30u;  // garbage of a call is collected after it
+    std::optional<ScriptFixture> fixture;
     for (const std::string& text : texts) {
       // a handler that was stopped is disabled
-      if (!stage || !stage->host.faults.empty()) {
-        stage.reset();
-        if (!stage.emplace(options, true).play(kScene).empty()) return;
+      if (!fixture || !fixture->host.faults.empty()) {
+        fixture.reset();
+        if (!fixture.emplace(options, true).play(kScene).empty()) return;
       }
-      const std::string result = result_of(*stage, text);
+      const std::string result = result_of(*fixture, text);
       if (!send(fmt::format("{} {}", result.size(), result))) return;
     }
   });

@@ -1,4 +1,4 @@
-// Lua texts run in scenes of their own, compiled or interpreted, in processes of their own: some would crash.
+// Runs Lua texts in separate scenes, compiled or interpreted, in child processes, because some would crash.
 #pragma once
 
 #include <string>
@@ -11,8 +11,9 @@ struct LuaRun {
   int hot_loop = 0;  ///< ScriptLimits::hot_loop.
 };
 
-/// What each text passed to `out`, and how it ended. A text is a chunk that receives `out`, `dump` (a table's entries)
-/// and `num` (1 for what is no number). A process that crashes ends the list with "crashed by signal N".
+/// Returns the values that each text passed to `out`, and how it ended. A text is a chunk that receives `out`, `dump`
+/// (a table's entries) and `num` (1 if the argument is not a number). If a process crashes the list ends with "crashed
+/// by signal N".
 std::vector<std::string> run_texts(const std::vector<std::string>& texts, const LuaRun& run);
 
 /// The same in a plain Lua state, without Limber's prelude; the text receives `out` only.

@@ -1,5 +1,5 @@
-// A reader of LuaCATS annotations, strict where the editors' are lenient: what is documented, and every line that is
-// not well-formed. For the test of the definitions.
+// A reader of LuaCATS annotations that is stricter than those of editors: collects the documentation and reports
+// malformed lines. For the test of the definitions.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ struct Function {
   std::string doc;
 };
 struct Class {
-  std::map<std::string, std::string> fields;  ///< Name to the text behind it.
+  std::map<std::string, std::string> fields;  ///< Name to the text after it.
   std::map<std::string, Function> functions;
-  std::string opens;  ///< The variable behind the class's lines, `body_` say.
+  std::string variable;  ///< The variable after the class's lines, for example `body_`.
 };
 
-/// One type, as far as it goes; what it names is gathered.
+/// Parses one type and collects the names in it.
 class TypeReader {
  public:
   explicit TypeReader(std::string_view text) : text_(text) {}
@@ -108,8 +108,8 @@ class Reader {
   std::vector<std::string> complaints;
   std::map<std::string, Class> classes;
   std::set<std::string> globals;
-  std::map<std::string, Function> functions;  ///< Of no class: vec3, math.clamp.
-  std::string comments;                       ///< Plain comments, each with a blank around its words.
+  std::map<std::string, Function> functions;  ///< Outside of classes: vec3, math.clamp.
+  std::string comments;                       ///< Plain comments, with a blank around each word.
 
  private:
   void complain(int line, const std::string& why) { complaints.push_back(std::to_string(line) + ": " + why); }
@@ -228,7 +228,7 @@ class Reader {
     const std::size_t dot = name.find_first_of(".:");
     const std::string owner = name.substr(0, dot);
     const auto holder =
-        std::find_if(classes.begin(), classes.end(), [&](const auto& each) { return each.second.opens == owner; });
+        std::find_if(classes.begin(), classes.end(), [&](const auto& each) { return each.second.variable == owner; });
     const Function made{params_, doc_};
     if (dot != std::string::npos && holder != classes.end()) {
       holder->second.functions[name.substr(dot + 1)] = made;
@@ -246,7 +246,7 @@ class Reader {
     const std::string name = line.substr(is_local ? 6 : 0, line.find(" = ") - (is_local ? 6 : 0));
     if (!line.ends_with(" = {}") || !is_word(name)) return complain(number, "neither a stub nor a table: " + line);
     if (!is_local) globals.insert(name);
-    if (!class_.empty()) classes[class_].opens = name;
+    if (!class_.empty()) classes[class_].variable = name;
   }
 
   std::set<std::string> known_ = {"number", "integer", "boolean", "string", "any", "nil", "table", "false"};

@@ -1,4 +1,4 @@
-// Patterns: the same answers as Lua's own for a table of random patterns and texts; an end where Lua's has none.
+// Patterns: the same results as Lua's matcher for random patterns and texts, and a step limit.
 #include "script/match.h"
 
 #include <gtest/gtest.h>
@@ -16,16 +16,16 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-// Lua's own library on the same text: what it prints
+// runs Lua's own library on the same text and returns its output
 Lines native_lines(const std::string& text) {
   const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), lua_close);
   lua_State* const L = state.get();
   luaL_openlibs(L);
   const std::string whole = "local out = {} local function print(x) out[#out + 1] = x end " + text + " return out";
-  const bool fine = luaL_loadbuffer(L, whole.data(), whole.size(), "native") == 0 && lua_pcall(L, 0, 1, 0) == 0;
-  EXPECT_TRUE(fine) << lua_tostring(L, -1);
+  const bool success = luaL_loadbuffer(L, whole.data(), whole.size(), "native") == 0 && lua_pcall(L, 0, 1, 0) == 0;
+  EXPECT_TRUE(success) << lua_tostring(L, -1);
   Lines lines;
-  for (int i = 1; fine; i++) {
+  for (int i = 1; success; i++) {
     lua_rawgeti(L, 1, i);
     std::size_t size = 0;
     const char* line = lua_tolstring(L, -1, &size);
@@ -36,9 +36,9 @@ Lines native_lines(const std::string& text) {
   return lines;
 }
 
-std::string random_text(Random& random, std::string_view letters, int most) {
+std::string random_text(Random& random, std::string_view letters, int max_length) {
   std::string text;
-  const int length = static_cast<int>(random.uniform(0, most + 1));
+  const int length = static_cast<int>(random.uniform(0, max_length + 1));
   for (int i = 0; i < length; i++) {
     text += letters[static_cast<std::size_t>(random.uniform(0, static_cast<double>(letters.size())))];
   }
@@ -62,7 +62,7 @@ std::string random_pattern(Random& random) {
   return pattern;
 }
 
-// one chunk that prints a line for each case, in words that both sides share
+// a chunk that prints one line per case, in a format shared by both sides
 std::string cases(std::uint64_t seed, int count) {
   Random random(seed);
   std::string text = R"(
@@ -71,7 +71,7 @@ local function show(...)
   for i = 1, select("#", ...) do list[i] = type(list[i]) .. ":" .. tostring(list[i]) end
   return table.concat(list, ",")
 end
--- of errors only that there is one: ours stand at the script's line
+-- an error is compared without its text, which has the script's line here
 local function try(f, ...)
   local function result(ok, ...) return ok and show(...) or "error" end
   return result(pcall(f, ...))
@@ -105,29 +105,29 @@ end
   return text;
 }
 
-TEST(Match, AnswersAsLuaDoes) {
+TEST(Match, MatchesLikeLua) {
   for (std::uint64_t seed = 1; seed <= 12; seed++) {
     const std::string text = cases(seed, 300);
     const Lines native = native_lines(text);
     ASSERT_EQ(native.size(), 2700u);
-    Stage stage;
-    ASSERT_EQ(stage.run(text), "");
-    ASSERT_EQ(stage.host.printed.size(), native.size());
+    ScriptFixture fixture;
+    ASSERT_EQ(fixture.run(text), "");
+    ASSERT_EQ(fixture.host.printed.size(), native.size());
     int wrong = 0;
     for (std::size_t i = 0; i < native.size() && wrong < 5; i++) {
-      if (stage.host.printed[i] == native[i]) continue;
+      if (fixture.host.printed[i] == native[i]) continue;
       wrong++;
       const std::string from = text.substr(text.find("case(\""));
       std::istringstream lines(from);
       std::string line;
       for (std::size_t k = 0; k <= i / 9; k++) std::getline(lines, line);
-      ADD_FAILURE() << "seed " << seed << ", " << line << ", call " << i % 9 << ": " << stage.host.printed[i]
+      ADD_FAILURE() << "seed " << seed << ", " << line << ", call " << i % 9 << ": " << fixture.host.printed[i]
                     << " instead of " << native[i];
     }
   }
 }
 
-TEST(Match, AnswersInTheSameWords) {
+TEST(Match, ReportsResultsLikeLua) {
   for (const char* expression : {"string.find('abc', 'b')",
                                  "string.find('a.c', '.', 1, true)",
                                  "string.find('abc', '')",
@@ -149,17 +149,17 @@ TEST(Match, AnswersInTheSameWords) {
                                  "string.gsub('THE (quick) fox', '%f[%a]%a+', function(w) return w:lower() end)",
                                  "string.find('f(a(b)c)d', '%b()')",
                                  "string.match('  trim  ', '^%s*(.-)%s*$')"}) {
-    Stage stage;
-    ASSERT_EQ(stage.run(fmt::format("print({})", expression)), "") << expression;
+    ScriptFixture fixture;
+    ASSERT_EQ(fixture.run(fmt::format("print({})", expression)), "") << expression;
     const Lines native = native_lines(
         fmt::format("local list = {{ {0} }} for i = 1, select('#', {0}) do list[i] = tostring(list[i]) end "
                     "print(table.concat(list, '\\t'))",
                     expression));
-    EXPECT_EQ(stage.host.printed, native) << expression;
+    EXPECT_EQ(fixture.host.printed, native) << expression;
   }
 }
 
-TEST(Match, FaultsOfPatternsAreLuas) {
+TEST(Match, ReportsPatternFaultsLikeLua) {
   for (const auto& [pattern, fault] : std::vector<std::pair<std::string, std::string>>{
            {"%", "malformed pattern (ends with '%')"},
            {"[a", "malformed pattern (missing ']')"},
@@ -170,38 +170,38 @@ TEST(Match, FaultsOfPatternsAreLuas) {
            {std::string(33, '(') + "a" + std::string(33, ')'), "too many captures"}}) {
     Match match;
     MatchSearch search([] { return false; });
-    EXPECT_EQ(search.find("aaaa", pattern, 0, true, match), Found::fault) << pattern;
+    EXPECT_EQ(search.find("aaaa", pattern, 0, true, match), SearchResult::bad_pattern) << pattern;
     EXPECT_STREQ(search.fault(), fault.c_str()) << pattern;
   }
   EXPECT_EQ(error_of("('aaa'):find('[a')"), "scripts/scene.lua:1: string.find: malformed pattern (missing ']')");
   EXPECT_EQ(error_of("('aaa'):find(nil)"), "scripts/scene.lua:1: string.find takes text, not nothing");
 }
 
-TEST(Match, PatternsThatTakeForEverEnd) {
+TEST(Match, EndsExponentialPatterns) {
   MatchSearch search([] { return false; });
   Match match;
   const std::string text(1000, 'a');
   std::string stars;
   for (int i = 0; i < 20; i++) stars += "a*";
-  EXPECT_EQ(search.find(text, stars + "b", 0, true, match), Found::too_long);
-  EXPECT_EQ(search.find(text, ".-.-.-.-.-.-b", 0, true, match), Found::too_long);
-  // a long text is walked to its end
+  EXPECT_EQ(search.find(text, stars + "b", 0, true, match), SearchResult::too_long);
+  EXPECT_EQ(search.find(text, ".-.-.-.-.-.-b", 0, true, match), SearchResult::too_long);
+  // a long text is searched to its end
   const std::string long_text(6'000'000, 'x');
-  EXPECT_EQ(search.find(long_text, "%d", 0, true, match), Found::no);
+  EXPECT_EQ(search.find(long_text, "%d", 0, true, match), SearchResult::not_found);
   EXPECT_EQ(error_of("(('a'):rep(1000)):find(('a*'):rep(20) .. 'b')"),
             "scripts/scene.lua:1: string.find: this pattern takes too many steps on this text; make it simpler (fewer "
             "* + - next to each other), or the text shorter");
 }
 
-TEST(Match, AnEndIsAskedFor) {
-  int asked = 0;
-  MatchSearch search([&] { return ++asked == 3; });
+TEST(Match, PollsForAStop) {
+  int polls = 0;
+  MatchSearch search([&] { return ++polls == 3; });
   Match match;
-  EXPECT_EQ(search.find(std::string(1 << 20, 'x'), "%d", 0, true, match), Found::too_long);
-  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(search.find(std::string(1 << 20, 'x'), "%d", 0, true, match), SearchResult::too_long);
+  EXPECT_EQ(polls, 3);
 }
 
-TEST(Match, PlainTextIsFoundInALongOne) {
+TEST(Match, FindsPlainTextInALongText) {
   MatchSearch search([] { return false; });
   std::string text(300'000, 'a');
   const std::string wanted = "aab" + std::string(100, 'a');

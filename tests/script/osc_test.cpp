@@ -1,4 +1,4 @@
-// osc: handlers and patterns, what goes out, what a scene declares about ports.
+// osc: handlers and patterns, outgoing messages, declared ports.
 #include <gtest/gtest.h>
 
 #include "stage.h"
@@ -18,9 +18,9 @@ std::string text_of(const Message& message) {
   return text;
 }
 
-TEST(Osc, HandlersHearWhatFits) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Osc, HandlersReceiveMatchingMessages) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 local function say(name) return function(...) print(name, select("#", ...), ...) end end
 osc:on("/a/b", say("exact"))
 osc:on("/a/*", say("star"))
@@ -29,43 +29,43 @@ osc:on("//b", say("deep"))
 osc:on("/c", say("other"))
 )"),
             "");
-  EXPECT_TRUE(stage.scene.listens());
-  EXPECT_TRUE(stage.scene.message({"/a/b", {Arg::of(1.5), Arg::of("x"), Arg::of(true), {}}}, {}));
-  EXPECT_EQ(stage.host.printed, (Lines{"exact\t4\t1.5\tx\ttrue\tnil", "star\t4\t1.5\tx\ttrue\tnil",
-                                       "brace\t4\t1.5\tx\ttrue\tnil", "deep\t4\t1.5\tx\ttrue\tnil"}));
-  stage.host.printed.clear();
-  EXPECT_TRUE(stage.scene.message({"/k/l/b", {}}, {}));
-  EXPECT_EQ(stage.host.printed, Lines{"deep\t0"});
-  stage.host.printed.clear();
-  // what comes in may be a pattern too
-  EXPECT_TRUE(stage.scene.message({"/?", {Arg::of(2.0)}}, {}));
-  EXPECT_EQ(stage.host.printed, Lines{"other\t1\t2"});
-  EXPECT_FALSE(stage.scene.message({"/nobody", {}}, {}));
-  EXPECT_FALSE(stage.scene.message({"/a/b/c", {}}, {}));
+  EXPECT_TRUE(fixture.scene.has_handlers());
+  EXPECT_TRUE(fixture.scene.handle_message({"/a/b", {Arg::of(1.5), Arg::of("x"), Arg::of(true), {}}}, {}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"exact\t4\t1.5\tx\ttrue\tnil", "star\t4\t1.5\tx\ttrue\tnil",
+                                         "brace\t4\t1.5\tx\ttrue\tnil", "deep\t4\t1.5\tx\ttrue\tnil"}));
+  fixture.host.printed.clear();
+  EXPECT_TRUE(fixture.scene.handle_message({"/k/l/b", {}}, {}));
+  EXPECT_EQ(fixture.host.printed, Lines{"deep\t0"});
+  fixture.host.printed.clear();
+  // the incoming address may be a pattern too
+  EXPECT_TRUE(fixture.scene.handle_message({"/?", {Arg::of(2.0)}}, {}));
+  EXPECT_EQ(fixture.host.printed, Lines{"other\t1\t2"});
+  EXPECT_FALSE(fixture.scene.handle_message({"/unknown", {}}, {}));
+  EXPECT_FALSE(fixture.scene.handle_message({"/a/b/c", {}}, {}));
 }
 
-TEST(Osc, AddressSenderAndReply) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Osc, HandlersHaveAddressSenderAndReply) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 print(osc.address, osc.sender)
 osc:on("/ask", function(x) print(osc.address, osc.sender) osc:reply("/answer", x * 2) end)
 )"),
             "");
-  const Origin origin{Hand::osc, 0x0a000102u, 5000};
-  EXPECT_TRUE(stage.scene.message({"/ask", {Arg::of(21.0)}}, origin));
-  EXPECT_EQ(stage.host.printed, (Lines{"nil\tnil", "/ask\t10.0.1.2:5000"}));
-  ASSERT_EQ(stage.host.replies.size(), 1u);
-  EXPECT_EQ(stage.host.replies[0].first.ip, origin.ip);
-  EXPECT_EQ(stage.host.replies[0].first.port, 5000);
-  EXPECT_EQ(text_of(stage.host.replies[0].second), "/answer 42");
+  const CommandOrigin origin{CommandSource::osc, 0x0a000102u, 5000};
+  EXPECT_TRUE(fixture.scene.handle_message({"/ask", {Arg::of(21.0)}}, origin));
+  EXPECT_EQ(fixture.host.printed, (Lines{"nil\tnil", "/ask\t10.0.1.2:5000"}));
+  ASSERT_EQ(fixture.host.replies.size(), 1u);
+  EXPECT_EQ(fixture.host.replies[0].first.ip, origin.ip);
+  EXPECT_EQ(fixture.host.replies[0].first.port, 5000);
+  EXPECT_EQ(text_of(fixture.host.replies[0].second), "/answer 42");
   EXPECT_EQ(
       callback_error_of("", "osc:reply('/a')"),
       "scripts/scene.lua:1: osc:reply answers the message that is being handled: call it inside an osc:on function");
 }
 
 TEST(Osc, SendsNumbersTextBooleansAndVectors) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim:on_start(function()
   osc:send("/a", 1, "two", true, false, vec3(3, 4, 5), { 6, 7, 8 })
   osc:to("127.0.0.1:7000"):send("/b")
@@ -73,28 +73,28 @@ sim:on_start(function()
 end)
 )"),
             "");
-  ASSERT_EQ(stage.host.sent.size(), 1u);
-  EXPECT_EQ(text_of(stage.host.sent[0]), "/a 1 'two' true false 3 4 5 6 7 8");
-  ASSERT_EQ(stage.host.direct.size(), 2u);
-  EXPECT_EQ(stage.host.direct[0].first.ip, 0x7f000001u);
-  EXPECT_EQ(stage.host.direct[0].first.port, 7000);
-  EXPECT_EQ(text_of(stage.host.direct[1].second), "/c 1");
+  ASSERT_EQ(fixture.host.sent.size(), 1u);
+  EXPECT_EQ(text_of(fixture.host.sent[0]), "/a 1 'two' true false 3 4 5 6 7 8");
+  ASSERT_EQ(fixture.host.direct.size(), 2u);
+  EXPECT_EQ(fixture.host.direct[0].first.ip, 0x7f000001u);
+  EXPECT_EQ(fixture.host.direct[0].first.port, 7000);
+  EXPECT_EQ(text_of(fixture.host.direct[1].second), "/c 1");
 }
 
 TEST(Osc, AWrongMessageIsNotSentAtAll) {
   for (const char* bad :
        {"osc:send('/a', 1, print)", "osc:send('/a', 1, 0 / 0)", "osc:send('a', 1)", "osc:send('/a', nil)",
         "osc:send('/ä')", "osc:send(1)", "osc:to('127.0.0.1:1'):send('/a', {})"}) {
-    Stage stage;
-    ASSERT_EQ(stage.play(std::string("sim:on_start(function() ") + bad + " end)"), "");
-    EXPECT_EQ(stage.host.faults.size(), 1u) << bad;
-    EXPECT_TRUE(stage.host.sent.empty() && stage.host.direct.empty()) << bad;
+    ScriptFixture fixture;
+    ASSERT_EQ(fixture.play(std::string("sim:on_start(function() ") + bad + " end)"), "");
+    EXPECT_EQ(fixture.host.faults.size(), 1u) << bad;
+    EXPECT_TRUE(fixture.host.sent.empty() && fixture.host.direct.empty()) << bad;
   }
 }
 
 TEST(Osc, ASceneDeclaresPortsAndStreams) {
-  Stage stage;
-  ASSERT_EQ(stage.run(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run(R"(
 osc:listen(9100)
 osc:listen(9101)
 osc:stream_to("10.0.0.5:9005", { rate = 30, streams = "pos+relpos", bodies = "arm*", bundle = 1472, errors = true })
@@ -102,55 +102,54 @@ osc:stream_to("studio.local:9006", { streams = { "rot" }, bundle = "off" })
 osc:stream_to("127.0.0.1:9007")
 )"),
             "");
-  EXPECT_EQ(stage.host.plans, 1);
-  EXPECT_EQ(stage.host.plan.listen, (std::vector<ListenAddress>{{"127.0.0.1", 9100}, {"127.0.0.1", 9101}}));
-  ASSERT_EQ(stage.host.plan.targets.size(), 3u);
-  EXPECT_EQ(stage.host.plan.targets[0],
+  EXPECT_EQ(fixture.host.plan_count, 1);
+  EXPECT_EQ(fixture.host.plan.listen, (std::vector<ListenAddress>{{"127.0.0.1", 9100}, {"127.0.0.1", 9101}}));
+  ASSERT_EQ(fixture.host.plan.targets.size(), 3u);
+  EXPECT_EQ(fixture.host.plan.targets[0],
             (StreamTarget{"10.0.0.5", 9005, 30, true, false, false, true, "arm*", 1472, true}));
-  EXPECT_EQ(stage.host.plan.targets[1],
+  EXPECT_EQ(fixture.host.plan.targets[1],
             (StreamTarget{"studio.local", 9006, 60, false, true, false, false, "*", 0, false}));
-  EXPECT_EQ(stage.host.plan.targets[2], (StreamTarget{"127.0.0.1", 9007, 60, true, true, true, false, "*", -1, false}));
+  EXPECT_EQ(fixture.host.plan.targets[2],
+            (StreamTarget{"127.0.0.1", 9007, 60, true, true, true, false, "*", -1, false}));
 }
 
-TEST(Osc, AFailingRunPlansNothing) {
-  Stage stage;
-  EXPECT_NE(stage.run("osc:listen(9100) error('no')"), "");
-  EXPECT_EQ(stage.host.plans, 0);
+TEST(Osc, AFailingRunConfiguresNothing) {
+  ScriptFixture fixture;
+  EXPECT_NE(fixture.run("osc:listen(9100) error('no')"), "");
+  EXPECT_EQ(fixture.host.plan_count, 0);
 }
 
-TEST(Osc, Mistakes) {
+TEST(Osc, ReportsMistakes) {
   const std::string at = "scripts/scene.lua:1: ";
   const std::pair<const char*, const char*> cases[] = {
-      {"osc:on('a', print)", "osc:on: 'a' is no address: it must begin with /"},
+      {"osc:on('a', print)", "osc:on: 'a' is not an address; it must begin with /"},
       {"osc:on('/a')", "osc:on takes a function, not nothing"},
       {"osc.on('/a', print)", "on is a method of osc: write osc:on(…), with a colon"},
       {"osc:sned('/a')", "osc has no member 'sned'; did you mean 'send'?"},
       {"osc.address = 1", "osc: 'address' can't be set"},
       {"osc:listen(70000)", "osc:listen takes a port 1 .. 65535, not 70000"},
-      {"osc:stream_to('10.0.0.5')", "'10.0.0.5' is no address; write \"host:port\", such as \"127.0.0.1:9000\""},
+      {"osc:stream_to('10.0.0.5')", "'10.0.0.5' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
       {"osc:stream_to('a:1', { rate = 0 })", "osc:stream_to: rate is 0.1 .. 1000, not 0"},
       {"osc:stream_to('a:1', { streams = 'poss' })", "osc:stream_to: there is no stream 'poss'; did you mean 'pos'?"},
       {"osc:stream_to('a:1', { bundle = 99 })", "osc:stream_to: bundle is 'off', 1472, 8192 or 65504, not 99"},
       {"osc:stream_to('a:1', { bodie = 'x' })", "osc:stream_to: opts has no 'bodie'; did you mean 'bodies'?"},
-      {"osc:to('studio:9000')",
-       "'studio' is a name, and a script must not wait for a name server; write the address in numbers"},
-      {"osc:to('1.2.3.400:9000')",
-       "'1.2.3.400' is a name, and a script must not wait for a name server; write the address in numbers"},
+      {"osc:to('studio:9000')", "'studio' is a host name, which scripts can't resolve; write a numeric address"},
+      {"osc:to('1.2.3.400:9000')", "'1.2.3.400' is a host name, which scripts can't resolve; write a numeric address"},
   };
   for (const auto& [text, expected] : cases) EXPECT_EQ(error_of(text), at + expected) << text;
   EXPECT_EQ(callback_error_of("", "osc:listen(9000)"),
             at + "osc:listen declares something about the scene; write it at the top level");
 }
 
-TEST(Osc, AMessageWithMoreArgumentsThanLuaTakesIsNotHeard) {
-  Stage stage;
-  ASSERT_EQ(stage.play("osc:on('/a', function(...) print(select('#', ...)) end)"), "");
-  EXPECT_TRUE(stage.scene.message({"/a", std::vector<Arg>(4000, Arg::of(1.0))}, {}));
-  EXPECT_FALSE(stage.scene.message({"/a", std::vector<Arg>(60000, Arg::of(1.0))}, {}));
-  EXPECT_TRUE(stage.scene.message({"/a", {Arg::of(1.0)}}, {}));
-  EXPECT_EQ(stage.host.printed, (std::vector<std::string>{"4000", "1"}));
-  ASSERT_EQ(stage.logged().size(), 1u);
-  EXPECT_EQ(stage.logged()[0], "/a: 60000 arguments are more than a script's handler takes (4000)");
+TEST(Osc, AMessageWithTooManyArgumentsIsNotHandled) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play("osc:on('/a', function(...) print(select('#', ...)) end)"), "");
+  EXPECT_TRUE(fixture.scene.handle_message({"/a", std::vector<Arg>(4000, Arg::of(1.0))}, {}));
+  EXPECT_FALSE(fixture.scene.handle_message({"/a", std::vector<Arg>(60000, Arg::of(1.0))}, {}));
+  EXPECT_TRUE(fixture.scene.handle_message({"/a", {Arg::of(1.0)}}, {}));
+  EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"4000", "1"}));
+  ASSERT_EQ(fixture.logged().size(), 1u);
+  EXPECT_EQ(fixture.logged()[0], "/a: 60000 arguments are more than a script's handler can receive (4000)");
 }
 
 }  // namespace

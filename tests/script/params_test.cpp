@@ -1,4 +1,4 @@
-// params: rows of /scene from a scene's declaration, read, set and clamped.
+// params: properties of /scene declared by a scene; reading, setting, clamping.
 #include <gtest/gtest.h>
 
 #include "params/catalog.h"
@@ -17,31 +17,32 @@ params {
 }
 )";
 
-TEST(Params, BecomeRowsOfScene) {
-  Stage stage;
-  ASSERT_EQ(stage.run(std::string(kParams) + "print(params.wind, params.loud, params.place, params.mood, params.free)"),
-            "");
-  EXPECT_EQ(stage.host.printed, std::vector<std::string>{"1.5\ttrue\tvec3(1, 2, 3)\tcalm\t-7"});
-  const NodeId node = stage.store.child(stage.store.root(), "scene");
-  ASSERT_TRUE(stage.store.alive(node));
-  const Row& wind = stage.store.table(node).at("wind");
+TEST(Params, BecomePropertiesOfScene) {
+  ScriptFixture fixture;
+  ASSERT_EQ(
+      fixture.run(std::string(kParams) + "print(params.wind, params.loud, params.place, params.mood, params.free)"),
+      "");
+  EXPECT_EQ(fixture.host.printed, std::vector<std::string>{"1.5\ttrue\tvec3(1, 2, 3)\tcalm\t-7"});
+  const NodeId node = fixture.store.child(fixture.store.root(), "scene");
+  ASSERT_TRUE(fixture.store.alive(node));
+  const Property& wind = fixture.store.table(node).at("wind");
   EXPECT_EQ(wind.min, 0);
   EXPECT_EQ(wind.max, 10);
   EXPECT_EQ(wind.initial[0], 1.5);
   EXPECT_EQ(wind.unit, "N");
   EXPECT_EQ(wind.doc, "How hard the wind blows.");
-  EXPECT_EQ(wind.kind, RowKind::property);
-  EXPECT_EQ(stage.store.table(node).at("mood").choices, (std::vector<std::string>{"calm", "wild"}));
-  EXPECT_EQ(stage.store.table(node).row_names(),
+  EXPECT_EQ(wind.kind, PropertyKind::setting);
+  EXPECT_EQ(fixture.store.table(node).at("mood").choices, (std::vector<std::string>{"calm", "wild"}));
+  EXPECT_EQ(fixture.store.table(node).property_names(),
             (std::vector<std::string_view>{"wind", "loud", "place", "mood", "free"}));
-  const Result<Place> place = find_place(stage.store, "/scene/wind");
+  const Result<PropertyRef> place = find_property(fixture.store, "/scene/wind");
   ASSERT_TRUE(place.ok());
-  EXPECT_EQ(place->row, &wind);
+  EXPECT_EQ(place->property, &wind);
 }
 
 TEST(Params, TheLiveValueIsReadAndSet) {
-  Stage stage;
-  ASSERT_EQ(stage.play(std::string(kParams) + R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(std::string(kParams) + R"(
 sim:on_step(function()
   print(params.wind, params.place)
   params.wind = params.wind + 4
@@ -50,61 +51,62 @@ sim:on_step(function()
 end)
 )"),
             "");
-  const NodeId node = stage.store.child(stage.store.root(), "scene");
+  const NodeId node = fixture.store.child(fixture.store.root(), "scene");
   const double wind = 3;
-  ASSERT_TRUE(stage.store.set(node, "wind", {&wind, 1}).ok());
+  ASSERT_TRUE(fixture.store.set(node, "wind", {&wind, 1}).ok());
   const double place[] = {9, 0, 4};  // each axis has its own range
-  ASSERT_TRUE(stage.store.set(node, "place", place).ok());
-  stage.world.settle();
-  stage.tick(3);
-  EXPECT_EQ(stage.host.printed,
+  ASSERT_TRUE(fixture.store.set(node, "place", place).ok());
+  fixture.world.flush();
+  fixture.tick(3);
+  EXPECT_EQ(fixture.host.printed,
             (std::vector<std::string>{"3\tvec3(5, 1, 4)", "7\tvec3(5, 1, 4)", "10\tvec3(5, 1, 4)"}));
-  EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("mood"))[0], 1);
-  EXPECT_EQ(stage.store.values(node, stage.store.table(node).at("loud"))[0], 0);
-  // 7 + 4 and 10 + 4 are outside: said once
-  ASSERT_EQ(stage.logged().size(), 1u);
-  EXPECT_NE(stage.logged()[0].find("params: 'wind' takes 0 .. 10 N; 11 is outside and was clamped"), std::string::npos);
+  EXPECT_EQ(fixture.store.values(node, fixture.store.table(node).at("mood"))[0], 1);
+  EXPECT_EQ(fixture.store.values(node, fixture.store.table(node).at("loud"))[0], 0);
+  // 7 + 4 and 10 + 4 are out of range: reported once
+  ASSERT_EQ(fixture.logged().size(), 1u);
+  EXPECT_NE(fixture.logged()[0].find("params: 'wind' takes 0 .. 10 N; 11 is outside and was clamped"),
+            std::string::npos);
 }
 
 TEST(Params, AVectorsAxesHaveTheirOwnRanges) {
-  Stage stage;
-  ASSERT_EQ(stage.play(std::string(kParams) + R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(std::string(kParams) + R"(
 sim:on_step(function() params.place = vec3(-1, 9, 3) end)
 )"),
             "");
-  const NodeId node = stage.store.child(stage.store.root(), "scene");
-  const Row& place = stage.store.table(node).at("place");
+  const NodeId node = fixture.store.child(fixture.store.root(), "scene");
+  const Property& place = fixture.store.table(node).at("place");
   EXPECT_EQ(place.axis_min, (std::vector<double>{0, 1, 2}));
   EXPECT_EQ(place.axis_max, (std::vector<double>{5, 5, 5}));
-  EXPECT_TRUE(stage.store.table(node).at("wind").axis_min.empty());
-  // the door itself clamps, and says so
+  EXPECT_TRUE(fixture.store.table(node).at("wind").axis_min.empty());
+  // the setter clamps, too, and reports it
   const double low[] = {1, 0, 3};
-  const Result<SetOutcome> set = stage.store.set(node, place, low);
+  const Result<SetOutcome> set = fixture.store.set(node, place, low);
   ASSERT_TRUE(set.ok());
   EXPECT_TRUE(set->clamped);
-  EXPECT_EQ(stage.store.values(node, place)[1], 1);
-  stage.tick(1);
-  EXPECT_EQ(stage.store.values(node, place)[0], 0);
-  EXPECT_EQ(stage.store.values(node, place)[1], 5);
-  EXPECT_EQ(stage.store.values(node, place)[2], 3);
-  ASSERT_EQ(stage.logged().size(), 1u);
-  EXPECT_NE(stage.logged()[0].find("'place' takes 0 1 2 .. 5 5 5 m; -1, 9, 3 is outside"), std::string::npos)
-      << stage.logged()[0];
+  EXPECT_EQ(fixture.store.values(node, place)[1], 1);
+  fixture.tick(1);
+  EXPECT_EQ(fixture.store.values(node, place)[0], 0);
+  EXPECT_EQ(fixture.store.values(node, place)[1], 5);
+  EXPECT_EQ(fixture.store.values(node, place)[2], 3);
+  ASSERT_EQ(fixture.logged().size(), 1u);
+  EXPECT_NE(fixture.logged()[0].find("'place' takes 0 1 2 .. 5 5 5 m; -1, 9, 3 is outside"), std::string::npos)
+      << fixture.logged()[0];
 }
 
-TEST(Params, StepIsKept) {
-  Stage stage;
-  ASSERT_EQ(stage.run("params { { 'wind', 1, step = 0.25 }, { 'free', 2 } }"), "");
-  const Table& table = stage.store.table(stage.store.child(stage.store.root(), "scene"));
+TEST(Params, StoresTheStep) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run("params { { 'wind', 1, step = 0.25 }, { 'free', 2 } }"), "");
+  const PropertyTable& table = fixture.store.table(fixture.store.child(fixture.store.root(), "scene"));
   EXPECT_EQ(table.at("wind").step, 0.25);
   EXPECT_EQ(table.at("free").step, 0);
 }
 
-TEST(Params, TheNodeGoesWithTheScene) {
+TEST(Params, TheNodeIsRemovedWithTheScene) {
   Store store;
   World world(store);
   RecordingHost host;
-  Stage files;
+  ScriptFixture files;
   files.write("scripts/scene.lua", kParams);
   for (int i = 0; i < 3; i++) {
     Scene scene(world, host, {});
@@ -114,7 +116,7 @@ TEST(Params, TheNodeGoesWithTheScene) {
   EXPECT_TRUE(store.child(store.root(), "scene").null());
 }
 
-TEST(Params, Mistakes) {
+TEST(Params, ReportsMistakes) {
   const std::string at = "scripts/scene.lua:1: ";
   const std::pair<const char*, const char*> cases[] = {
       {"params { 5 }", "params: entry 1 is a table { \"name\", default, … }, not 5"},

@@ -1,4 +1,4 @@
-// A behaviour's state as text, out of one Lua state and into another.
+// A behavior's state as text, passed from one Lua state to another.
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"
@@ -6,36 +6,36 @@
 namespace limber {
 namespace {
 
-// the state of a behaviour whose start is this text, as text or the error
+// the state, as text or the error, of a behavior with this text as its start
 std::string state_of(const std::string& start) {
-  BehaviorStage stage;
-  EXPECT_EQ(stage.play_one("return behavior { start = function(self) local s = self.state " + start +
-                               " end, step = function() end }",
-                           1),
+  BehaviorFixture fixture;
+  EXPECT_EQ(fixture.play_one("return behavior { start = function(self) local s = self.state " + start +
+                                 " end, step = function() end }",
+                             1),
             "");
-  EXPECT_EQ(stage.it().error(), "");
-  const Result<std::string> state = static_cast<LuaBehavior&>(stage.it()).state();
+  EXPECT_EQ(fixture.it().error(), "");
+  const Result<std::string> state = static_cast<LuaBehavior&>(fixture.it()).state();
   return state ? *state : state.error();
 }
 
-constexpr const char* kOnly = "; state holds numbers, text, true and false, vec3, quat, timers, and tables of them";
+constexpr const char* kOnly = "; state can have numbers, text, true and false, vec3, quat, timers, and tables of them";
 
-TEST(PlainData, WhatIsNoneNamesTheKey) {
+TEST(PlainData, OtherValuesAreReportedWithTheirKey) {
   EXPECT_EQ(state_of("s.f = print"), std::string("state.f is a function") + kOnly);
   EXPECT_EQ(state_of("s.list = { 1, { part = self.parts[1] } }"),
             std::string("state.list[2].part is part 'ball/ball'") + kOnly);
   EXPECT_EQ(state_of("s['two words'] = { [0.5] = coroutine.create(print) }"),
             std::string("state['two words'][0.5] is a thread") + kOnly);
   EXPECT_EQ(state_of("s.t = { [print] = 1 }"), std::string("state.t has a key that is a function") + kOnly);
-  EXPECT_EQ(state_of("s.me = s"), std::string("state.me is a table inside itself") + kOnly);
+  EXPECT_EQ(state_of("s.me = s"), std::string("state.me is a table that contains itself") + kOnly);
   EXPECT_EQ(state_of("s.object = setmetatable({}, {})"),
             std::string("state.object is a table with a metatable") + kOnly);
   EXPECT_EQ(state_of("for i = 1, 120 do s.t = {} s = s.t end").substr(0, 7), "state.t");
 }
 
-TEST(PlainData, ComesBackAsItWas) {
-  // a second scene on the same world renews the type: its instance has the state of the first
-  BehaviorStage first;
+TEST(PlainData, SurvivesARoundTrip) {
+  // a second scene on the same world reloads the type: its instance has the state of the first
+  BehaviorFixture first;
   const std::string file =
       "return behavior { start = function(self)\n"
       "  local s = self.state\n"
@@ -55,7 +55,7 @@ TEST(PlainData, ComesBackAsItWas) {
   Scene second(first.world, host, {});
   first.write("scripts/second.lua", "sim:add_body('x'):add_behavior('test', 'it')");
   ASSERT_TRUE(second.run((first.folder / "scripts" / "second.lua").string()).ok());
-  first.world.behaviors().renew("test");
+  first.world.behaviors().replace_instances("test");
   first.tick();
   EXPECT_EQ(host.printed.front(), before[0]);
   EXPECT_EQ(host.printed.at(1), before[1]);

@@ -1,5 +1,5 @@
-// Lua's heap as an image: what scripts do after it was brought back is what they did before, compiled or not; guards
-// and counts go on.
+// Checkpoints of Lua's heap: after a restore scripts repeat their actions exactly, compiled or not; guards and counters
+// continue.
 #include "script/scene_key.h"
 
 #include <gtest/gtest.h>
@@ -14,31 +14,32 @@
 namespace limber {
 namespace {
 
-// what a scene has printed after each tick, and the world's hash
-struct Kept {
+// a checkpoint of a world and its scene
+struct Saved {
   PageStore pages;
-  KeyBytes scratch;
-  WorldKey world;
-  SceneKey scene;
+  Archive scratch;
+  WorldCheckpoint world;
+  SceneCheckpoint scene;
 
-  void take(Stage& stage) {
-    world.take(stage.world, pages, nullptr, scratch);
-    scene.take(stage.scene, pages, nullptr, scratch);
+  void capture(ScriptFixture& fixture) {
+    world.capture(fixture.world, pages, nullptr, scratch);
+    scene.capture(fixture.scene, pages, nullptr, scratch);
   }
-  void bring_back(Stage& stage) {
-    world.bring_back(stage.world, pages, scratch);
-    scene.bring_back(stage.scene, pages, scratch);
+  void restore(ScriptFixture& fixture) {
+    world.restore(fixture.world, pages, scratch);
+    scene.restore(fixture.scene, pages, scratch);
   }
 };
 
-std::vector<std::string> prints(Stage& stage, int ticks) {
-  stage.host.printed.clear();
-  stage.tick(ticks);
-  stage.host.printed.push_back(std::to_string(stage.scene.state_hash(stage.world.state_hash())));
-  return stage.host.printed;
+// runs the scene and returns its output, followed by the state hash
+std::vector<std::string> output_of_ticks(ScriptFixture& fixture, int ticks) {
+  fixture.host.printed.clear();
+  fixture.tick(ticks);
+  fixture.host.printed.push_back(std::to_string(fixture.scene.state_hash(fixture.world.state_hash())));
+  return fixture.host.printed;
 }
 
-// loops that are compiled, tables that grow and shrink, strings, coroutines, closures, metatables, timers
+// compiled loops, tables that grow and shrink, strings, coroutines, closures, metatables, timers
 constexpr const char* kBusy = R"(
 local ball = sim:add_body("ball"):add_part("p", sim:add_sphere_shape("s", 0.1))
 local list, words, count = {}, setmetatable({}, { __index = function(t, k) return #k end }), 0
@@ -61,150 +62,150 @@ end)
 sim:every(0.2, function() state.beats = (state.beats or 0) + 1; print("beat", state.beats, rng:uniform(0, 1)) end)
 )";
 
-TEST(SceneKey, ScriptsGoOnAsTheyDid) {
-  Stage stage({}, true);
-  ASSERT_EQ(stage.play(kBusy, 40), "");
-  ASSERT_EQ(stage.scene.mode(), VmMode::live);
-  Kept kept;
-  kept.take(stage);
-  const std::vector<std::string> first = prints(stage, 120);
+TEST(SceneCheckpoint, ScriptsRepeatAfterARestore) {
+  ScriptFixture fixture({}, true);
+  ASSERT_EQ(fixture.play(kBusy, 40), "");
+  ASSERT_EQ(fixture.scene.mode(), VmMode::live);
+  Saved saved;
+  saved.capture(fixture);
+  const std::vector<std::string> first = output_of_ticks(fixture, 120);
   for (int round = 0; round < 5; round++) {
-    stage.tick(37 * round);
-    kept.bring_back(stage);
-    EXPECT_EQ(prints(stage, 120), first) << "round " << round;
+    fixture.tick(37 * round);
+    saved.restore(fixture);
+    EXPECT_EQ(output_of_ticks(fixture, 120), first) << "round " << round;
   }
-  EXPECT_TRUE(stage.host.faults.empty());
+  EXPECT_TRUE(fixture.host.faults.empty());
 }
 
-// what a behaviour's file draws for all of its instances
-TEST(SceneKey, FilesGeneratorsGoBackToo) {
-  Stage stage({}, true);
-  stage.write("behaviors_lua/dice.lua", R"(local dice = rng
+// random draws of a behavior file for all of its instances
+TEST(SceneCheckpoint, RestoresGeneratorsOfBehaviorFiles) {
+  ScriptFixture fixture({}, true);
+  fixture.write("behaviors_lua/dice.lua", R"(local dice = rng
 return behavior { doc = "Throws.", step = function(self, dt) print("thrown", dice:uniform(0, 1)) end }
 )");
-  ASSERT_EQ(stage.play(R"(
+  ASSERT_EQ(fixture.play(R"(
 sim:add_body("one"):add_behavior("dice", "it", {})
 )",
-                       5),
+                         5),
             "");
-  Kept kept;
-  kept.take(stage);
-  const std::vector<std::string> first = prints(stage, 10);
+  Saved saved;
+  saved.capture(fixture);
+  const std::vector<std::string> first = output_of_ticks(fixture, 10);
   ASSERT_GE(first.size(), 10u);
   EXPECT_NE(first[0], first[1]);
-  stage.tick(7);
-  kept.bring_back(stage);
-  EXPECT_EQ(prints(stage, 10), first);
+  fixture.tick(7);
+  saved.restore(fixture);
+  EXPECT_EQ(output_of_ticks(fixture, 10), first);
 }
 
-// a copy in the middle of a garbage collection, of a heap that is compiled and that is not
-TEST(SceneKey, AnyMomentWillDo) {
-  Stage stage({}, true);
-  ASSERT_EQ(stage.play(kBusy, 5), "");
+// checkpoints in the middle of a garbage collection, of a compiled and an interpreted heap
+TEST(SceneCheckpoint, CapturesDuringGarbageCollection) {
+  ScriptFixture fixture({}, true);
+  ASSERT_EQ(fixture.play(kBusy, 5), "");
   for (int at = 0; at < 30; at++) {
-    Kept kept;
-    kept.take(stage);
-    const std::vector<std::string> first = prints(stage, 11);
-    stage.tick(at);
-    for (int i = 0; i < at; i++) stage.scene.collect_garbage();
-    kept.bring_back(stage);
-    ASSERT_EQ(prints(stage, 11), first) << at;
+    Saved saved;
+    saved.capture(fixture);
+    const std::vector<std::string> first = output_of_ticks(fixture, 11);
+    fixture.tick(at);
+    for (int i = 0; i < at; i++) fixture.scene.collect_garbage();
+    saved.restore(fixture);
+    ASSERT_EQ(output_of_ticks(fixture, 11), first) << at;
   }
 }
 
-TEST(SceneKey, WhatIsStoppedIsStoppedAfterwardsToo) {
+TEST(SceneCheckpoint, StopsStillWorkAfterARestore) {
   SceneOptions options;
-  // memory is out in a twentieth of the time that a call has, where the system gives pages slowly, too
+  // uses up the memory in a twentieth of a call's time budget, even where the system provides pages slowly
   options.limits.memory = std::size_t{8} << 20u;
   options.limits.call_ms = 100 * kBudgetScale;
-  Stage stage(options, true);
-  ASSERT_EQ(stage.play(R"(
-local kept, at = {}, {}
+  ScriptFixture fixture(options, true);
+  ASSERT_EQ(fixture.play(R"(
+local stored, at = {}, {}
 local function due(name, when)
   at[name] = (at[name] or 0) + 1
   return at[name] == when
 end
 sim:on_step(function() if due("long", 5) then while true do end end end)
-sim:on_step(function() if due("much", 7) then while true do kept[#kept + 1] = ("x"):rep(1e5 - #kept) end end end)
+sim:on_step(function() if due("much", 7) then while true do stored[#stored + 1] = ("x"):rep(1e5 - #stored) end end end)
 sim:on_step(function() if due("wrong", 9) then error("nine") end end)
 )",
-                       2),
+                         2),
             "");
-  Kept kept;
-  kept.take(stage);
+  Saved saved;
+  saved.capture(fixture);
   const auto faults = [&] {
-    stage.host.faults.clear();
-    stage.tick(12);
+    fixture.host.faults.clear();
+    fixture.tick(12);
     std::vector<std::string> texts;
-    for (const auto& fault : stage.host.faults) texts.push_back(fault.text.substr(0, 48));
+    for (const auto& fault : fixture.host.faults) texts.push_back(fault.text.substr(0, 48));
     return texts;
   };
   const std::vector<std::string> first = faults();
   ASSERT_EQ(first.size(), 3u);
   EXPECT_NE(first[0].find("stopped after"), std::string::npos) << first[0];
-  EXPECT_NE(first[1].find("may hold"), std::string::npos) << first[1];
+  EXPECT_NE(first[1].find("scripts can use"), std::string::npos) << first[1];
   EXPECT_NE(first[2].find("nine"), std::string::npos) << first[2];
   for (int round = 0; round < 3; round++) {
-    kept.bring_back(stage);
+    saved.restore(fixture);
     EXPECT_EQ(faults(), first);
   }
 }
 
-// the count of what Lua holds goes back with it, or the cap would stop the innocent
-TEST(SceneKey, MemoryIsCountedAsItWas) {
+// the memory count is restored with the heap, otherwise the cap would stop innocent calls
+TEST(SceneCheckpoint, RestoresTheMemoryCount) {
   SceneOptions options;
   options.limits.memory = std::size_t{24} << 20u;
-  Stage stage(options, true);
-  ASSERT_EQ(stage.play(R"(
-local kept, round = {}, 0
+  ScriptFixture fixture(options, true);
+  ASSERT_EQ(fixture.play(R"(
+local stored, round = {}, 0
 sim:on_step(function()
   round = round + 1
-  for i = 1, 60 do kept[#kept + 1] = ("x"):rep(5000) .. #kept .. round end
+  for i = 1, 60 do stored[#stored + 1] = ("x"):rep(5000) .. #stored .. round end
 end)
 )",
-                       2),
+                         2),
             "");
-  Kept kept;
-  kept.take(stage);
+  Saved saved;
+  saved.capture(fixture);
   for (int round = 0; round < 12; round++) {
-    stage.tick(20);  // 6 MB
-    EXPECT_TRUE(stage.host.faults.empty()) << "round " << round << ": " << stage.host.faults[0].text;
-    kept.bring_back(stage);
+    fixture.tick(20);  // 6 MB
+    EXPECT_TRUE(fixture.host.faults.empty()) << "round " << round << ": " << fixture.host.faults[0].text;
+    saved.restore(fixture);
   }
 }
 
-// while it is done again nothing is stopped but what the ledger says
-TEST(SceneKey, DoneAgainWithoutLimits) {
+// during a repetition nothing is stopped except calls in the log
+TEST(SceneCheckpoint, RepeatsWithoutLimits) {
   SceneOptions options;
   options.limits.call_ms = 5 * kBudgetScale;
-  Stage stage(options, true);
-  ASSERT_EQ(stage.play("local n = 0\nsim:on_step(function() local s = 0; for i = 1, 3e7 do s = s + i % 7 end; "
-                       "n = n + 1; print(n, s) end)"),
+  ScriptFixture fixture(options, true);
+  ASSERT_EQ(fixture.play("local n = 0\nsim:on_step(function() local s = 0; for i = 1, 3e7 do s = s + i % 7 end; "
+                         "n = n + 1; print(n, s) end)"),
             "");
-  stage.scene.do_again(true);
-  stage.tick(2);
-  EXPECT_TRUE(stage.host.faults.empty());
-  EXPECT_EQ(stage.host.printed.size(), 2u);
+  fixture.scene.set_replaying(true);
+  fixture.tick(2);
+  EXPECT_TRUE(fixture.host.faults.empty());
+  EXPECT_EQ(fixture.host.printed.size(), 2u);
 }
 
-TEST(SceneKey, CopiesShareWhatRests) {
-  Stage stage({}, true);
+TEST(SceneCheckpoint, CheckpointsShareUnchangedPages) {
+  ScriptFixture fixture({}, true);
   ASSERT_EQ(
-      stage.play("local big = {}\nfor i = 1, 200000 do big[i] = i end\nsim:on_step(function() big[7] = sim.tick end)",
-                 3),
+      fixture.play("local big = {}\nfor i = 1, 200000 do big[i] = i end\nsim:on_step(function() big[7] = sim.tick end)",
+                   3),
       "");
   PageStore pages;
-  KeyBytes scratch;
-  std::vector<SceneKey> keys(10);
-  keys[0].take(stage.scene, pages, nullptr, scratch);
+  Archive scratch;
+  std::vector<SceneCheckpoint> checkpoints(10);
+  checkpoints[0].capture(fixture.scene, pages, nullptr, scratch);
   const std::size_t one = pages.bytes();
   EXPECT_GT(one, std::size_t{3} << 19u);
-  for (std::size_t i = 1; i < keys.size(); i++) {
-    stage.tick(1);
-    keys[i].take(stage.scene, pages, &keys[i - 1], scratch);
+  for (std::size_t i = 1; i < checkpoints.size(); i++) {
+    fixture.tick(1);
+    checkpoints[i].capture(fixture.scene, pages, &checkpoints[i - 1], scratch);
   }
   EXPECT_LT(pages.bytes(), one + one / 2);
-  for (SceneKey& key : keys) key.release(pages);
+  for (SceneCheckpoint& checkpoint : checkpoints) checkpoint.release(pages);
   EXPECT_EQ(pages.bytes(), 0u);
 }
 

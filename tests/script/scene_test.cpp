@@ -1,4 +1,4 @@
-// Scenes: callbacks and their order, timers, contacts, what a run may do and a callback may not, reset of the seed.
+// Scenes: callbacks and their order, timers, contacts, differences between runs and callbacks, reset of the seed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@ namespace {
 using Lines = std::vector<std::string>;
 
 TEST(Scene, CallbacksRunInTheOrderOfATick) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim:on_step(function(dt) print("step 1", dt == sim.timestep) end)
 sim:after(0, function() print("after") end)
 sim:on_step(function() print("step 2") end)
@@ -24,73 +24,73 @@ osc:on("/a", function() print("osc") end)
 print("top")
 )"),
             "");
-  stage.scene.message({"/a", {}}, {});
-  stage.tick();
-  EXPECT_EQ(stage.host.printed,
+  fixture.scene.handle_message({"/a", {}}, {});
+  fixture.tick();
+  EXPECT_EQ(fixture.host.printed,
             (Lines{"top", "start 1\t0", "start 2", "osc", "after", "at", "step 1\ttrue", "step 2"}));
-  stage.host.printed.clear();
-  stage.tick();
-  EXPECT_EQ(stage.host.printed, (Lines{"step 1\ttrue", "step 2"}));
+  fixture.host.printed.clear();
+  fixture.tick();
+  EXPECT_EQ(fixture.host.printed, (Lines{"step 1\ttrue", "step 2"}));
 }
 
-TEST(Scene, EveryKeepsTheBeatOfTheClock) {
-  // at 60 ticks a second a tenth passes at ticks 6, 12, 18 …, whenever it was asked for
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, EveryFiresAtMultiplesOfThePeriod) {
+  // at 60 ticks per second a tenth of a second passes at ticks 6, 12, 18 …, whenever the timer was set
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim:every(0.1, function() print("tenth", math.floor(sim.time * 60 + 0.5)) end)
 sim:after(0.15, function()
   sim:every(0.1, function() print("late", math.floor(sim.time * 60 + 0.5)) end)
 end)
 )",
-                       31),
+                         31),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"tenth\t6", "tenth\t12", "late\t12", "tenth\t18", "late\t18", "tenth\t24",
-                                       "late\t24", "tenth\t30", "late\t30"}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"tenth\t6", "tenth\t12", "late\t12", "tenth\t18", "late\t18", "tenth\t24",
+                                         "late\t24", "tenth\t30", "late\t30"}));
 }
 
-TEST(Scene, ABeatNeverDrifts) {
-  // 600 s in ticks of 1/60: the time is a sum, whose error must neither lose nor double a beat
-  Stage stage;
-  ASSERT_EQ(stage.play("beats = 0 sim:every(1, function() beats = beats + 1 end) "
-                       "sim:every(600, function() print(beats) end)",
-                       0),
+TEST(Scene, EveryDoesNotDrift) {
+  // 600 s in ticks of 1/60: the time is a sum, and its error must neither skip nor repeat a period
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play("beats = 0 sim:every(1, function() beats = beats + 1 end) "
+                         "sim:every(600, function() print(beats) end)",
+                         0),
             "");
-  stage.tick(36001);
-  EXPECT_EQ(stage.host.printed, Lines{"600"});
+  fixture.tick(36001);
+  EXPECT_EQ(fixture.host.printed, Lines{"600"});
 }
 
 TEST(Scene, AfterAndAtFireOnce) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 local function say(what) return function() print(what, math.floor(sim.time * 60 + 0.5)) end end
 sim:after(0.5, say("after"))
 sim:at(0.25, say("at"))
 local never = sim:after(0.1, say("never"))
 sim:on_start(function() never:cancel() end)
 )",
-                       60),
+                         60),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"at\t15", "after\t30"}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"at\t15", "after\t30"}));
 }
 
-TEST(Scene, ATimerMayCancelItselfAndOthers) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, ATimerCanCancelItselfAndOthers) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 local a, b
 local n = 0
 a = sim:every(1 / 60, function() n = n + 1 print("a", n) if n == 3 then a:cancel() b:cancel() end end)
 b = sim:every(1 / 60, function() print("b", n) end)
 )",
-                       10),
+                         10),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"a\t1", "b\t1", "a\t2", "b\t2", "a\t3"}));
-  EXPECT_TRUE(stage.host.faults.empty());
+  EXPECT_EQ(fixture.host.printed, (Lines{"a\t1", "b\t1", "a\t2", "b\t2", "a\t3"}));
+  EXPECT_TRUE(fixture.host.faults.empty());
 }
 
-TEST(Scene, ContactsAreToldOnceWhenTheyBegin) {
-  // dropped from 0.5 m above the floor: falls sqrt(2·0.5/9.81) = 0.319 s, 19.2 ticks; told in the tick after
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, ContactsAreReportedOnceWhenTheyBegin) {
+  // dropped from 0.5 m above the floor: falls sqrt(2·0.5/9.81) = 0.319 s, 19.2 ticks; reported in the next tick
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local ball = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 0.1),
   { position = { 1, 2, 0.6 }, report_contacts = true, mass = 2 })
@@ -100,20 +100,20 @@ sim:on_contact(function(part, other, impulse, position)
 end)
 sim:at(1, function() print(hit > 0, (where - vec3(1, 2, 0)):length() < 0.02) end)
 )",
-                       90),
+                         90),
             "");
-  ASSERT_EQ(stage.host.printed.size(), 2u);
-  EXPECT_EQ(stage.host.printed[0].substr(0, 35), "part 'ball/ball'\tpart 'floor/floor'");
-  const int tick = std::stoi(stage.host.printed[0].substr(stage.host.printed[0].rfind('\t')));
+  ASSERT_EQ(fixture.host.printed.size(), 2u);
+  EXPECT_EQ(fixture.host.printed[0].substr(0, 35), "part 'ball/ball'\tpart 'floor/floor'");
+  const int tick = std::stoi(fixture.host.printed[0].substr(fixture.host.printed[0].rfind('\t')));
   EXPECT_GE(tick, 19);
   EXPECT_LE(tick, 21);
-  EXPECT_EQ(stage.host.printed[1], "true\ttrue");
+  EXPECT_EQ(fixture.host.printed[1], "true\ttrue");
 }
 
 TEST(Scene, ForcesAndImpulsesMove) {
   // without gravity: 6 N on 2 kg for 30 ticks of 1/60 s gives 1.5 m/s; an impulse of 1 N·s gives 0.5 m/s
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim.gravity = vec3()
 local box = sim:add_box_shape("box", { 0.1, 0.1, 0.1 })
 local a = sim:add_body("a"):add_part("p", box, { mass = 2 })
@@ -122,71 +122,72 @@ sim:on_step(function() a:apply_force(vec3(0, 6, 0)) end)
 sim:on_start(function() b:apply_impulse({ 0, 0, 1 }) end)
 sim:at(0.5, function() print(string.format("%.4f %.4f", a.linear_velocity.y, b.linear_velocity.z)) end)
 )",
-                       31),
+                         31),
             "");
-  EXPECT_EQ(stage.host.printed, Lines{"1.5000 0.5000"});
+  EXPECT_EQ(fixture.host.printed, Lines{"1.5000 0.5000"});
 }
 
-TEST(Scene, ACallbackThatErrsIsSwitchedOffAndTold) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, AFailingCallbackIsDisabledAndReported) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 sim:on_step(function() print("one") error("broken") end)
 sim:on_step(function() print("two") end)
 osc:on("/a", function() print("heard") nothing() end)
 )",
-                       3),
+                         3),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"one", "two", "two", "two"}));
-  ASSERT_EQ(stage.host.faults.size(), 1u);
-  EXPECT_EQ(stage.host.faults[0].file, "scripts/scene.lua");
-  EXPECT_EQ(stage.host.faults[0].line, 2);
-  EXPECT_EQ(first_line(stage.host.faults[0].text), "scripts/scene.lua:2: broken");
+  EXPECT_EQ(fixture.host.printed, (Lines{"one", "two", "two", "two"}));
+  ASSERT_EQ(fixture.host.faults.size(), 1u);
+  EXPECT_EQ(fixture.host.faults[0].file, "scripts/scene.lua");
+  EXPECT_EQ(fixture.host.faults[0].line, 2);
+  EXPECT_EQ(first_line(fixture.host.faults[0].text), "scripts/scene.lua:2: broken");
 }
 
 TEST(Scene, AHandlerThatFailsIsDisabledAndReportedOnce) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 osc:on("/a", function() print("one") nothing() end)
 osc:on("/*", function() print("two") end)
 )"),
             "");
-  for (int i = 0; i < 3; i++) EXPECT_TRUE(stage.scene.message({"/a", {}}, {})) << "a disabled handler still counts";
-  EXPECT_EQ(stage.host.printed, (Lines{"one", "two", "two", "two"}));
-  ASSERT_EQ(stage.host.faults.size(), 1u);
-  EXPECT_EQ(stage.host.faults[0].line, 2);
-  EXPECT_EQ(stage.scene.disabled_handlers(), 1u);
+  for (int i = 0; i < 3; i++)
+    EXPECT_TRUE(fixture.scene.handle_message({"/a", {}}, {})) << "a disabled handler still counts";
+  EXPECT_EQ(fixture.host.printed, (Lines{"one", "two", "two", "two"}));
+  ASSERT_EQ(fixture.host.faults.size(), 1u);
+  EXPECT_EQ(fixture.host.faults[0].line, 2);
+  EXPECT_EQ(fixture.scene.disabled_handlers(), 1u);
 }
 
-TEST(Scene, WhatIsRegisteredMeanwhileHasItsTurnNextTime) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, CallbacksRegisteredMeanwhileRunNextTime) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 local n = 0
 sim:on_step(function()
   n = n + 1
   if n == 1 then sim:on_step(function() print("new", n) end) end
 end)
 )",
-                       3),
+                         3),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"new\t2", "new\t3"}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"new\t2", "new\t3"}));
 }
 
-TEST(Scene, MistakesInRegistering) {
+TEST(Scene, ReportsMistakesInRegistering) {
   const std::string at = "scripts/scene.lua:1: ";
   EXPECT_EQ(error_of("sim:on_step(5)"), at + "sim:on_step takes a function, not 5");
   EXPECT_EQ(error_of("sim:on_start()"), at + "sim:on_start takes a function, not nothing");
   EXPECT_EQ(error_of("sim:every(0, print)"), at + "sim:every takes seconds above 0, not 0");
   EXPECT_EQ(error_of("sim:every('1', print)"), at + "sim:every takes a number, not '1'");
-  EXPECT_EQ(error_of("sim:after(-1, print)"), at + "sim:after takes seconds from 0 on, not -1");
+  EXPECT_EQ(error_of("sim:after(-1, print)"), at + "sim:after takes seconds of 0 or more, not -1");
   EXPECT_EQ(error_of("sim:at(0 / 0, print)").substr(0, 45), at + "sim:at takes a finite nu");
   EXPECT_EQ(error_of("sim.on_step(print)"),
             at + "on_step is a method of a sim: write it with a colon, sim:on_step(…), not with a dot");
   EXPECT_EQ(error_of("sim:after(1, print):stop()"), at + "a timer has no member 'stop'; there are: cancel");
 }
 
-TEST(Scene, BodiesMadeInCallbacksLive) {
-  Stage stage;
-  ASSERT_EQ(stage.play(R"(
+TEST(Scene, CallbacksCanCreateBodies) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
 local box = sim:add_box_shape("box", { 1, 1, 1 })
 local first = sim:add_body("first")
 first:add_part("p", box, { mass = 3, friction = 0.25 })
@@ -202,14 +203,14 @@ sim:on_start(function()
 end)
 )"),
             "");
-  EXPECT_TRUE(stage.host.faults.empty());
-  EXPECT_EQ(stage.host.printed, (Lines{"3\t0.25\tvec3(0, 0, 4)", "3\t0", "2\tnil"}));
-  EXPECT_EQ(stage.host.resets, 1);
+  EXPECT_TRUE(fixture.host.faults.empty());
+  EXPECT_EQ(fixture.host.printed, (Lines{"3\t0.25\tvec3(0, 0, 4)", "3\t0", "2\tnil"}));
+  EXPECT_EQ(fixture.host.resets, 1);
 }
 
-TEST(Scene, AllShapes) {
-  Stage stage;
-  ASSERT_EQ(stage.run(R"(
+TEST(Scene, CreatesAllShapes) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run(R"(
 sim:add_plane_shape("plane")
 sim:add_plane_shape("wall", { 1, 0, 0 })
 sim:add_sphere_shape("sphere", 0.5)
@@ -229,22 +230,22 @@ end
 print(body:part("hull").center, body:part("both").shape)
 )"),
             "");
-  EXPECT_EQ(stage.world.shapes().size(), 9u);
-  EXPECT_EQ(stage.world.find_shape("wall")->model().normal, Vec3(1, 0, 0));
-  EXPECT_EQ(stage.world.find_shape("box")->model().size, Vec3(1, 2, 3));
-  EXPECT_EQ(stage.world.find_shape("capsule")->model().height, 1.5);
-  EXPECT_EQ(stage.world.find_shape("hull")->model().mesh->hull.size(), 8u);
-  EXPECT_NEAR(stage.world.find_shape("hull")->model().mesh->solid.mass, 8, 1e-9);  // a cube of 2 m
-  EXPECT_EQ(stage.world.find_shape("both")->placed().size(), 2u);
-  // the cube's corner is its origin, at x = 24: its centre is a metre away on each axis
-  EXPECT_EQ(stage.host.printed, Lines{"vec3(25, 1, 1)\tshape 'both'"});
+  EXPECT_EQ(fixture.world.shapes().size(), 9u);
+  EXPECT_EQ(fixture.world.find_shape("wall")->model().normal, Vec3(1, 0, 0));
+  EXPECT_EQ(fixture.world.find_shape("box")->model().size, Vec3(1, 2, 3));
+  EXPECT_EQ(fixture.world.find_shape("capsule")->model().height, 1.5);
+  EXPECT_EQ(fixture.world.find_shape("hull")->model().mesh->hull.size(), 8u);
+  EXPECT_NEAR(fixture.world.find_shape("hull")->model().mesh->unit_inertial.mass, 8, 1e-9);  // a cube of 2 m
+  EXPECT_EQ(fixture.world.find_shape("both")->placed().size(), 2u);
+  // the cube's corner is its origin, at x = 24: its center is one meter away on each axis
+  EXPECT_EQ(fixture.host.printed, Lines{"vec3(25, 1, 1)\tshape 'both'"});
 }
 
-TEST(Scene, TheSeedDecidesAndTheCommandLineWins) {
+TEST(Scene, TheCommandLineOverridesTheSeed) {
   const std::string draw = "sim.seed = 7 print(rng:uniform(), math.random(1000), sim.seed)";
-  Stage plain;
+  ScriptFixture plain;
   ASSERT_EQ(plain.run(draw), "");
-  Stage again;
+  ScriptFixture again;
   ASSERT_EQ(again.run(draw), "");
   EXPECT_EQ(plain.host.printed, again.host.printed);
   limber::Random expected(7, "scene.lua");
@@ -253,27 +254,27 @@ TEST(Scene, TheSeedDecidesAndTheCommandLineWins) {
   EXPECT_EQ(plain.host.printed.back(),
             value_of("string.format('%.14g', " + std::to_string(0) + " + " + fmt::format("{:.17g}", first) + ")") +
                 "\t" + std::to_string(1 + static_cast<int>(second * 1000)) + "\t7");
-  Stage other{SceneOptions{"", {}, 8, {}}};
+  ScriptFixture other{SceneOptions{"", {}, 8, {}}};
   ASSERT_EQ(other.run(draw), "");
   EXPECT_NE(other.host.printed, plain.host.printed);
   EXPECT_EQ(other.host.printed.back().substr(other.host.printed.back().rfind('\t')), "\t8");
 }
 
-TEST(Scene, ASeedThatComesLaterCountsFromTheNextStart) {
+TEST(Scene, ALaterSeedTakesEffectAtTheNextStart) {
   const std::string draw = "sim.seed = 7 sim:on_start(function() {} print(rng:uniform()) end)";
   const auto first_draw = [&](const std::string& before) {
-    Stage stage;
+    ScriptFixture fixture;
     std::string text = draw;
     text.replace(text.find("{}"), 2, before);
-    EXPECT_EQ(stage.play(text), "");
-    return stage.host.printed;
+    EXPECT_EQ(fixture.play(text), "");
+    return fixture.host.printed;
   };
   EXPECT_EQ(first_draw("sim.seed = 8"), first_draw(""));
 }
 
-TEST(Scene, RandomnessHasItsShape) {
-  Stage stage;
-  ASSERT_EQ(stage.run(R"(
+TEST(Scene, RandomNumbersHaveTheirDistribution) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run(R"(
 local n, low, high, sum, squares = 20000, 9, -9, 0, 0
 for i = 1, n do
   local u = rng:uniform(-2, 6)
@@ -297,15 +298,15 @@ for i = 1, 1000 do seen[math.random(6)] = true seen[math.random(-1, 0)] = true e
 print(#seen, seen[0], seen[-1], seen[7], seen[-2])
 )"),
             "");
-  EXPECT_EQ(stage.host.printed, (Lines{"true", "true\ttrue", "true", "true", "6\ttrue\ttrue\tnil\tnil"}));
+  EXPECT_EQ(fixture.host.printed, (Lines{"true", "true\ttrue", "true", "true", "6\ttrue\ttrue\tnil\tnil"}));
 }
 
 TEST(Scene, StateIsATable) { EXPECT_EQ(value_of("state.hits", "state.hits = (state.hits or 0) + 1"), "1"); }
 
-TEST(Scene, SimTellsItsTime) {
-  Stage stage;
-  ASSERT_EQ(stage.play("sim.timestep = 0.01 sim:at(0.05, function() print(sim.tick, sim.time) end)", 8), "");
-  EXPECT_EQ(stage.host.printed, Lines{"5\t0.05"});
+TEST(Scene, SimHasTimeAndTick) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play("sim.timestep = 0.01 sim:at(0.05, function() print(sim.tick, sim.time) end)", 8), "");
+  EXPECT_EQ(fixture.host.printed, Lines{"5\t0.05"});
 }
 
 }  // namespace

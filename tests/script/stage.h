@@ -1,4 +1,4 @@
-// Stage: a world, a host that remembers, and a folder of its own to run scenes in. For the tests of this room.
+// ScriptFixture: a world, a host that records requests, and a temporary folder, for running scenes in tests.
 #pragma once
 
 #include <unistd.h>
@@ -17,7 +17,7 @@
 
 namespace limber {
 
-/// What a scene asked of the outside.
+/// Records the requests of a scene to its host.
 struct RecordingHost : ScriptHost {
   struct Fault {
     std::string file;
@@ -26,35 +26,35 @@ struct RecordingHost : ScriptHost {
   };
 
   void send(Message message) override { sent.push_back(std::move(message)); }
-  void reply(const Origin& to, Message message) override { replies.emplace_back(to, std::move(message)); }
-  void send_direct(const Origin& to, Message message) override { direct.emplace_back(to, std::move(message)); }
-  void plan_osc(const OscPlan& p) override {
+  void reply(const CommandOrigin& to, Message message) override { replies.emplace_back(to, std::move(message)); }
+  void send_direct(const CommandOrigin& to, Message message) override { direct.emplace_back(to, std::move(message)); }
+  void configure_osc(const OscConfig& p) override {
     plan = p;
-    plans++;
+    plan_count++;
   }
-  void ask_reset() override { resets++; }
+  void request_reset() override { resets++; }
   void script_error(std::string_view file, int line, std::string_view text) override {
     faults.push_back({std::string(file), line, std::string(text)});
   }
   void print(std::string_view text) override { printed.emplace_back(text); }
 
   std::vector<Message> sent;
-  std::vector<std::pair<Origin, Message>> replies, direct;
-  OscPlan plan;
-  int plans = 0;
+  std::vector<std::pair<CommandOrigin, Message>> replies, direct;
+  OscConfig plan;
+  int plan_count = 0;
   int resets = 0;
   std::vector<Fault> faults;
   std::vector<std::string> printed;
 };
 
-class Stage {
+class ScriptFixture {
  public:
-  /// On the room's one world, emptied: a world takes a while to make. `fresh`: on a world of its own.
-  explicit Stage(SceneOptions options = {}, bool fresh = false)
-      : own_(fresh ? std::make_unique<Ground>() : nullptr),
-        store(ground().store),
-        world(ground().world),
-        scene(empty(world), host, std::move(options)) {
+  /// Uses the tests' shared world after clearing it, because creating a world is slow. `fresh`: creates a new one.
+  explicit ScriptFixture(SceneOptions options = {}, bool fresh = false)
+      : own_world_(fresh ? std::make_unique<SharedWorld>() : nullptr),
+        store(shared_world().store),
+        world(shared_world().world),
+        scene(clear_world(world), host, std::move(options)) {
     static int count = 0;
     folder = std::filesystem::temp_directory_path() /
              ("limber_script_" + std::to_string(::getpid()) + "_" + std::to_string(count++));
@@ -62,7 +62,7 @@ class Stage {
     log_to_stderr(false);
     seen_ = log_count(LogLevel::warning) + log_count(LogLevel::error) + log_count(LogLevel::info);
   }
-  ~Stage() {
+  ~ScriptFixture() {
     std::error_code ignored;
     std::filesystem::remove_all(folder, ignored);
   }
@@ -72,17 +72,17 @@ class Stage {
     std::ofstream(folder / name, std::ios::binary) << text;
   }
 
-  /// Runs the text as scripts/scene.lua: the error, or empty.
+  /// Runs the text as scripts/scene.lua. Returns the error, or an empty text.
   std::string run(const std::string& text) {
     write("scripts/scene.lua", text);
-    const Result<void> ran = scene.run((folder / "scripts" / "scene.lua").string());
-    return ran ? "" : ran.error();
+    const Result<void> result = scene.run((folder / "scripts" / "scene.lua").string());
+    return result ? "" : result.error();
   }
-  /// Runs, settles, starts; then so many ticks as the engine makes them.
+  /// Runs the text, flushes the world, calls on_start; then ticks as the engine does.
   std::string play(const std::string& text, int ticks = 0) {
     std::string fault = run(text);
     if (!fault.empty()) return fault;
-    world.settle();
+    world.flush();
     scene.start();
     tick(ticks);
     return "";
@@ -95,7 +95,7 @@ class Stage {
     }
   }
 
-  /// Texts of the log since the stage was made.
+  /// Returns the log lines since the fixture was created.
   std::vector<std::string> logged() const {
     std::vector<std::string> texts;
     for (const LogLine& line : log_since(seen_)) texts.push_back(line.text);
@@ -103,23 +103,24 @@ class Stage {
   }
 
  private:
-  struct Ground {
+  struct SharedWorld {
     Store store;
     World world{store};
   };
-  Ground& ground() {
-    static Ground shared;
-    return own_ != nullptr ? *own_ : shared;
+  SharedWorld& shared_world() {
+    static SharedWorld shared;
+    return own_world_ != nullptr ? *own_world_ : shared;
   }
-  static World& empty(World& world) {
+  static World& clear_world(World& world) {
     world.clear();
     world.restart_time();
-    for (const Row& row : World::table().rows()) {
-      if (row.writable()) (void)world.store().set(world.id(), row, std::span(row.initial.data(), row.width));
+    for (const Property& property : World::table().properties()) {
+      if (property.writable())
+        (void)world.store().set(world.id(), property, std::span(property.initial.data(), property.width));
     }
     return world;
   }
-  std::unique_ptr<Ground> own_;
+  std::unique_ptr<SharedWorld> own_world_;
 
  public:
   std::filesystem::path folder;
@@ -134,27 +135,27 @@ class Stage {
 
 inline std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// What `print(expression)` writes in a scene of its own, or the first line of its error.
+/// Returns the output of `print(expression)` in a new scene, or the first line of its error.
 inline std::string value_of(const std::string& expression, const std::string& before = "") {
-  Stage stage;
-  const std::string fault = stage.run(before + "\nprint(" + expression + ")");
+  ScriptFixture fixture;
+  const std::string fault = fixture.run(before + "\nprint(" + expression + ")");
   if (!fault.empty()) return first_line(fault);
-  return stage.host.printed.empty() ? "nothing printed" : stage.host.printed.back();
+  return fixture.host.printed.empty() ? "nothing printed" : fixture.host.printed.back();
 }
 
-/// The first line of the error of a scene, or "no error".
+/// Returns the first line of the error of a scene, or "no error".
 inline std::string error_of(const std::string& text) {
-  Stage stage;
-  const std::string fault = stage.run(text);
+  ScriptFixture fixture;
+  const std::string fault = fixture.run(text);
   return fault.empty() ? "no error" : first_line(fault);
 }
 
-/// The first line of what goes wrong with it in on_start.
+/// Returns the first line of the error of a text that runs in on_start.
 inline std::string callback_error_of(const std::string& before, const std::string& text) {
-  Stage stage;
-  const std::string fault = stage.play(before + " sim:on_start(function() " + text + " end)");
+  ScriptFixture fixture;
+  const std::string fault = fixture.play(before + " sim:on_start(function() " + text + " end)");
   if (!fault.empty()) return first_line(fault);
-  return stage.host.faults.empty() ? "no error" : first_line(stage.host.faults.back().text);
+  return fixture.host.faults.empty() ? "no error" : first_line(fixture.host.faults.back().text);
 }
 
 }  // namespace limber

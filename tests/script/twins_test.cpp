@@ -1,4 +1,4 @@
-// The built-in behaviours and their twins in Lua: the same rows, the same motion. The twins prove that the interface of
+// The built-in behaviors and their counterparts in Lua: same properties, same motion. This proves that the interface of
 // behaviors_lua/ is complete.
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace limber {
 namespace {
 
-// what each type is given, other than the defaults; `group`: attached to all bodies
+// non-default settings for each type; `group`: attached to all bodies
 struct Twin {
   const char* type;
   std::vector<const char*> sets;
@@ -64,7 +64,7 @@ const std::vector<Twin>& twins() {
        true},
       {"alignment",
        {"min_dist = 0.1, max_dist = 4, linear_amount = 0.8, angular_amount = 0.02, amount = 0.5",
-        "max_dist = 3, linear_amount = 1e4, angular_amount = 1e4",  // far more than is needed
+        "max_dist = 3, linear_amount = 1e4, angular_amount = 1e4",  // far more than necessary
         "max_dist = 5, linear_amount = -0.02, angular_amount = 0.0002",
         "parts = 'part_[13]', angular_amount = 1, amount = 0.3"},
        true},
@@ -76,7 +76,7 @@ const std::vector<Twin>& twins() {
   return list;
 }
 
-// Three bodies of four free parts each, that drift and turn, and two arms: of servos, and of springs on one joint.
+// Three bodies of four free parts each that drift and rotate, and two arms: one with servos, one with springs.
 constexpr const char* kTwinScene = R"(
 sim.gravity = vec3()
 local shapes = { sim:add_box_shape("brick", vec3(0.2, 0.1, 0.05)), sim:add_sphere_shape("ball", 0.06) }
@@ -105,19 +105,19 @@ end)
 
 using Trajectory = std::vector<Vec3>;
 
-// where all parts are every ten ticks, and a point aside of each, which shows how it is turned
+// the position of all parts every ten ticks, and of a point off center of each, which shows the rotation
 Trajectory played(const std::string& type, const std::string& opts, bool group) {
-  BehaviorStage stage(with_data(LIMBER_SOURCE_DIR), true);
+  BehaviorFixture fixture(with_data(LIMBER_SOURCE_DIR), true);
   const std::string attach =
       group ? "local function attach() end\n"
             : "local function attach(body) body:add_behavior('" + type + "', 'it', { " + opts + " }) end\n";
   const std::string all = group ? "\nsim:add_group_behavior('" + type + "', 'it', { " + opts + " })" : "";
-  const std::string fault = stage.play(attach + kTwinScene + all);
+  const std::string fault = fixture.play(attach + kTwinScene + all);
   EXPECT_EQ(fault, "");
   Trajectory places;
   for (int i = 0; fault.empty() && i < 60; i++) {
-    stage.tick(10);
-    for (const auto& body : stage.world.bodies()) {
+    fixture.tick(10);
+    for (const auto& body : fixture.world.bodies()) {
       for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
       for (const auto& part : body->parts()) {
         places.push_back(part->center());
@@ -130,18 +130,18 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
 
 class Twins : public ::testing::TestWithParam<Twin> {};
 
-// all sets are compared where that is quick; under the address sanitizer each type moves by its first
-constexpr std::size_t kSets = kWatchesAddresses ? 1 : 100;
+// all settings are compared if that is fast; with the address sanitizer only the first of each type
+constexpr std::size_t kSets = kAddressSanitizer ? 1 : 100;
 
-// how far apart the twins come, and how far they come from where they began
+// the distance between the twins, and the distance that they moved
 std::pair<double, double> deviation(const Trajectory& a, const Trajectory& b) {
-  double farthest = 0, way = 0;
+  double max_deviation = 0, max_travel = 0;
   const std::size_t parts = a.size() / 60;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); i++) {
-    farthest = std::max(farthest, glm::distance(a[i], b[i]));
-    way = std::max(way, glm::distance(a[i], a[i % parts]));
+    max_deviation = std::max(max_deviation, glm::distance(a[i], b[i]));
+    max_travel = std::max(max_travel, glm::distance(a[i], a[i % parts]));
   }
-  return {farthest, way};
+  return {max_deviation, max_travel};
 }
 
 TEST_P(Twins, MoveAlike) {
@@ -153,31 +153,31 @@ TEST_P(Twins, MoveAlike) {
     const Trajectory built_in = played(twin.type, opts, twin.group);
     const Trajectory lua = played(std::string("lua_") + twin.type, opts, twin.group);
     ASSERT_EQ(built_in.size(), lua.size());
-    const auto [apart, way] = deviation(built_in, lua);
-    EXPECT_LT(apart, 1e-4) << "of " << way << " m";
-    // the first set shows what the type does
+    const auto [max_distance, max_travel] = deviation(built_in, lua);
+    EXPECT_LT(max_distance, 1e-4) << "of " << max_travel << " m";
+    // the first settings must cause a visible effect
     if (set == 0) {
       EXPECT_GT(deviation(built_in, alone).first, 0.05);
     }
   }
 }
 
-TEST_P(Twins, HaveTheSameRows) {
+TEST_P(Twins, HaveTheSameProperties) {
   const Twin& twin = GetParam();
-  BehaviorStage stage(with_data(LIMBER_SOURCE_DIR));
+  BehaviorFixture fixture(with_data(LIMBER_SOURCE_DIR));
   const std::string type = std::string("lua_") + twin.type;
-  ASSERT_EQ(stage.run(kBall + std::string(twin.group ? "sim:add_group_behavior('" + type + "', 'it', {})"
-                                                     : "ball:add_behavior('" + type + "', 'it')")),
+  ASSERT_EQ(fixture.run(kBall + std::string(twin.group ? "sim:add_group_behavior('" + type + "', 'it', {})"
+                                                       : "ball:add_behavior('" + type + "', 'it')")),
             "");
-  const auto& types = stage.world.behaviors().types();
+  const auto& types = fixture.world.behaviors().types();
   const auto built_in = types.find(twin.type);
   const auto lua = types.find(type);
   ASSERT_NE(lua, nullptr);
   EXPECT_EQ(built_in->is_group, lua->is_group);
-  ASSERT_EQ(built_in->table->row_names(), lua->table->row_names());
-  for (std::uint32_t i = kCommonBehaviorRows; i < built_in->table->rows().size(); i++) {
-    const Row& a = built_in->table->row(i);
-    const Row& b = lua->table->row(i);
+  ASSERT_EQ(built_in->table->property_names(), lua->table->property_names());
+  for (std::uint32_t i = kCommonBehaviorProperties; i < built_in->table->properties().size(); i++) {
+    const Property& a = built_in->table->property(i);
+    const Property& b = lua->table->property(i);
     SCOPED_TRACE(a.name);
     EXPECT_EQ(a.type, b.type);
     EXPECT_EQ(a.kind, b.kind);
@@ -190,10 +190,10 @@ TEST_P(Twins, HaveTheSameRows) {
   }
 }
 
-// a built-in type without a twin shows a gap in the interface
-TEST(TwinList, IsWhole) {
-  BehaviorStage stage;
-  for (const auto& type : stage.world.behaviors().types().all()) {
+// a built-in type without a counterpart indicates a gap in the interface
+TEST(TwinList, IncludesEveryBuiltInType) {
+  BehaviorFixture fixture;
+  for (const auto& type : fixture.world.behaviors().types().all()) {
     if (!type->is_built_in) continue;
     EXPECT_TRUE(std::ranges::any_of(twins(), [&](const Twin& t) { return t.type == type->name; })) << type->name;
   }

@@ -1,4 +1,4 @@
-// sim:load_urdf: options, poses, merged links, what a callback may load, what goes wrong.
+// sim:load_urdf: options, poses, merged links, loading in callbacks, errors.
 #include <gtest/gtest.h>
 
 #include "stage.h"
@@ -8,7 +8,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-// a base, a link 0.5 m above it that turns about x within ±1, and a hand fixed 0.25 m above the link's end
+// a base, a link 0.5 m above it that turns about x within ±1, and a gripper fixed 0.25 m above the link's end
 constexpr const char* kUrdf = R"(<?xml version="1.0"?>
 <robot name="crane">
   <link name="base"><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
@@ -28,13 +28,13 @@ constexpr const char* kUrdf = R"(<?xml version="1.0"?>
 )";
 
 struct Crane : testing::Test {
-  Crane() { stage.write("urdf/crane.urdf", kUrdf); }
+  Crane() { fixture.write("urdf/crane.urdf", kUrdf); }
   std::string value(const std::string& options, const std::string& expression) {
     const std::string fault =
-        stage.run("local crane = sim:load_urdf('urdf/crane.urdf'" + options + ")\nprint(" + expression + ")");
-    return fault.empty() ? stage.host.printed.back() : first_line(fault);
+        fixture.run("local crane = sim:load_urdf('urdf/crane.urdf'" + options + ")\nprint(" + expression + ")");
+    return fault.empty() ? fixture.host.printed.back() : first_line(fault);
   }
-  Stage stage;
+  ScriptFixture fixture;
 };
 
 TEST_F(Crane, IsFoundAboveTheSceneAndNamedAsTheRobot) {
@@ -46,12 +46,12 @@ TEST_F(Crane, ServosHoldWithTheFilesEffortAndVelocity) {
   EXPECT_EQ(value("", "crane.motors[1].mode, crane:motor('lift').max_angular_force.z, crane:motor(1).speed"),
             "servo\t30\t2");
 }
-TEST_F(Crane, TakesANameAndAPlace) {
+TEST_F(Crane, AcceptsANameAndAPosition) {
   EXPECT_EQ(value(", { name = 'c1', position = { 1, 2, 3 } }", "crane, crane.position, crane:part('jib').position"),
             "body 'c1'\tvec3(1, 2, 3)\tvec3(1, 2, 3.5)");
 }
-TEST_F(Crane, TurnsWithItsRotation) {
-  // a half turn about y: what stood up hangs down
+TEST_F(Crane, IsRotated) {
+  // half a turn about y: the upright link hangs down
   EXPECT_EQ(value(", { rotation = quat(0, 1, 0, 0) }",
                   "string.format('%.6f %.6f', crane:part('jib').position.z, crane:part('jib').position.x + 1)"),
             "-0.500000 1.000000");
@@ -72,21 +72,21 @@ TEST_F(Crane, StartsInAPose) {
                   "string.format('%.4f %.4f', crane:joint('lift').value, crane:motor('lift').target)"),
             "0.5000 0.5000");
 }
-TEST_F(Crane, TheSamePartsOfTwoAreTwo) {
-  ASSERT_EQ(stage.run(R"(
+TEST_F(Crane, TwoLoadsGiveTwoBodies) {
+  ASSERT_EQ(fixture.run(R"(
 local a = sim:load_urdf("urdf/crane.urdf", { name = "a" })
 local b = sim:load_urdf("urdf/crane.urdf", { name = "b", position = { 3, 0, 0 } })
 a:part("jib").friction = 0.9
 print(a:part("jib").friction, b:part("jib").friction, a:part("jib") == b:part("jib"))
 )"),
             "");
-  EXPECT_EQ(stage.host.printed, Lines{"0.9\t0.5\tfalse"});
-  EXPECT_EQ(stage.world.find_body("a")->model(), stage.world.find_body("b")->model());
+  EXPECT_EQ(fixture.host.printed, Lines{"0.9\t0.5\tfalse"});
+  EXPECT_EQ(fixture.world.find_body("a")->model(), fixture.world.find_body("b")->model());
 }
 
-TEST_F(Crane, CallbacksLoadWhatTheRunLoaded) {
-  stage.write("urdf/other.urdf", kUrdf);
-  ASSERT_EQ(stage.play(R"(
+TEST_F(Crane, CallbacksLoadFilesOfTheRun) {
+  fixture.write("urdf/other.urdf", kUrdf);
+  ASSERT_EQ(fixture.play(R"(
 sim:load_urdf("urdf/crane.urdf")
 sim:on_start(function()
   print(sim:load_urdf("urdf/crane.urdf", { name = "again" }))
@@ -94,30 +94,29 @@ sim:on_start(function()
 end)
 )"),
             "");
-  EXPECT_EQ(stage.host.printed, Lines{"body 'again'"});
-  ASSERT_EQ(stage.host.faults.size(), 1u);
-  EXPECT_EQ(first_line(stage.host.faults[0].text),
-            "scripts/scene.lua:5: 'urdf/other.urdf' was not loaded like this when the scene ran; a callback must not "
-            "wait for a "
-            "disk, so load it once at the top level");
+  EXPECT_EQ(fixture.host.printed, Lines{"body 'again'"});
+  ASSERT_EQ(fixture.host.faults.size(), 1u);
+  EXPECT_EQ(first_line(fixture.host.faults[0].text),
+            "scripts/scene.lua:5: 'urdf/other.urdf' was not loaded with these options when the scene ran; callbacks "
+            "can't read files, so load it once at the top level");
 }
 
-TEST_F(Crane, Mistakes) {
+TEST_F(Crane, ReportsMistakes) {
   const std::string at = "scripts/scene.lua:1: ";
   const auto crane_fault = [](const std::string& options) {
-    Stage own;
+    ScriptFixture own;
     own.write("urdf/crane.urdf", kUrdf);
     return first_line(own.run("sim:load_urdf('urdf/crane.urdf', " + options + ")"));
   };
   EXPECT_EQ(crane_fault("{ motors = 'on' }"), at + "load_urdf: motors is 'servo' or 'off', not 'on'");
   EXPECT_EQ(crane_fault("{ fixed_base = 1 }"), at + "load_urdf: fixed_base is true or false, not 1");
   EXPECT_EQ(crane_fault("{ fixed_bas = true }"), at + "load_urdf: opts has no 'fixed_bas'; did you mean 'fixed_base'?");
-  const std::string posed = crane_fault("{ pose = { lfit = 1, lift = 1 } }");
-  EXPECT_NE(posed.find("pose: 'crane' has no joint 'lfit' that moves; did you mean 'lift'?"), std::string::npos)
-      << posed;
+  const std::string pose_fault = crane_fault("{ pose = { lfit = 1, lift = 1 } }");
+  EXPECT_NE(pose_fault.find("pose: 'crane' has no movable joint 'lfit'; did you mean 'lift'?"), std::string::npos)
+      << pose_fault;
   EXPECT_EQ(crane_fault("{ pose = { lift = 'up' } }"), at + "load_urdf: pose, lift takes a number, not 'up'");
   EXPECT_EQ(crane_fault("5"), at + "load_urdf: opts is a table, not 5");
-  Stage broken;
+  ScriptFixture broken;
   broken.write("urdf/broken.urdf", "<robot name='x'>");
   const std::string fault = broken.run("sim:load_urdf('urdf/broken.urdf')");
   EXPECT_NE(fault.find("broken.urdf:"), std::string::npos) << fault;

@@ -1,4 +1,4 @@
-// vec3, quat, colours, what math has beside Lua's own: numbers worked out by hand.
+// vec3, quat, colors, additions to math: compared with values calculated by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ void expect_values(std::initializer_list<Case> cases) {
   for (const Case& c : cases) EXPECT_EQ(value_of(c.expression), c.result) << c.expression;
 }
 
-TEST(Values, Vec3) {
+TEST(Values, Vec3MatchesHandCalculation) {
   expect_values({
       {"vec3()", "vec3(0, 0, 0)"},
       {"vec3(1)", "vec3(1, 0, 0)"},
@@ -47,7 +47,7 @@ TEST(Values, Vec3) {
   });
 }
 
-TEST(Values, Quat) {
+TEST(Values, QuatMatchesHandCalculation) {
   expect_values({
       {"quat()", "quat(0, 0, 0, 1)"},
       {"quat(0.5, -0.5, 0.5, 0.5)", "quat(0.5, -0.5, 0.5, 0.5)"},
@@ -56,7 +56,7 @@ TEST(Values, Quat) {
       {"quat() == vec3()", "false"},
       // q first, then p
       {"quat(0, 0, 1, 0) * quat(1, 0, 0, 0)", "quat(0, 1, 0, 0)"},
-      // a half turn about z takes x to -x; three halves about x y z are the identity's negative
+      // half a turn about z maps x to -x; half turns about x, y and z in sequence give the negative identity
       {"quat(0, 0, 1, 0) * vec3(1, 2, 3)", "vec3(-1, -2, 3)"},
       {"quat(0, 0, 0.6, 0.8) * vec3(1, 0, 0)", "vec3(0.28, 0.96, 0)"},
       {"quat(0, 0, 0.6, 0.8):inverse() * vec3(0.28, 0.96, 0)", "vec3(1, 0, 0)"},
@@ -69,7 +69,7 @@ double number_of(const std::string& expression) {
   return std::stod(text);
 }
 
-TEST(Values, RotationsAgreeWithTheHouse) {
+TEST(Values, RotationsMatchTheEngine) {
   const Quat house = quat_euler(0.3, -0.8, 2.1);
   EXPECT_NEAR(number_of("quat.euler(0.3, -0.8, 2.1).x"), house.x, 1e-15);
   EXPECT_NEAR(number_of("quat.euler(0.3, -0.8, 2.1).y"), house.y, 1e-15);
@@ -79,16 +79,16 @@ TEST(Values, RotationsAgreeWithTheHouse) {
   EXPECT_NEAR(number_of("(quat.euler(0.3, -0.8, 2.1) * vec3(1, 2, 3)).x"), turned.x, 1e-14);
   EXPECT_NEAR(number_of("(quat.euler(0.3, -0.8, 2.1) * vec3(1, 2, 3)).y"), turned.y, 1e-14);
   EXPECT_NEAR(number_of("(quat.euler(0.3, -0.8, 2.1) * vec3(1, 2, 3)).z"), turned.z, 1e-14);
-  // the axis need not have length 1
+  // the axis need not be normalized
   EXPECT_NEAR(number_of("quat.axis(vec3(0, 0, 5), math.pi / 2).z"), std::sqrt(0.5), 1e-15);
   EXPECT_NEAR(number_of("quat.axis(vec3(0, 0, 5), math.pi / 2).w"), std::sqrt(0.5), 1e-15);
-  // a quarter of a third of a turn, the short way although the signs differ
+  // a quarter of a third of a turn, along the shortest arc although the signs differ
   EXPECT_NEAR(number_of("quat():slerp(quat.axis(vec3(0, 0, 1), 2 * math.pi / 3), 0.25).z"), std::sin(kPi / 12), 1e-14);
   EXPECT_NEAR(number_of("quat(0, 0, 0, -1):slerp(quat.axis(vec3(0, 0, 1), 2 * math.pi / 3), 0.25).w"),
               -std::cos(kPi / 12), 1e-14);
 }
 
-TEST(Values, MathAndColours) {
+TEST(Values, MathAndColorsMatchHandCalculation) {
   expect_values({
       {"math.clamp(5, 0, 1)", "1"},
       {"math.clamp(-5, 0, 1)", "0"},
@@ -106,8 +106,8 @@ TEST(Values, MathAndColours) {
   });
 }
 
-// A loop is compiled while it runs: what is within stays as it is to the bit, sign of zero and all.
-TEST(Values, WhatIsClampedIsTheSameCompiled) {
+// A loop is compiled while it runs: values within the range are unchanged bit for bit, including the sign of zero.
+TEST(Values, ClampIsTheSameWhenCompiled) {
   EXPECT_EQ(value_of("(function() local seen = {} for i = 1, 3000 do "
                      "for _, x in ipairs { -1 / math.huge, 1 / math.huge } do "
                      "for _, lo in ipairs { -1, -1 / math.huge, 1 / math.huge } do "
@@ -117,8 +117,8 @@ TEST(Values, WhatIsClampedIsTheSameCompiled) {
             "-inf-inf-inf-inf-inf-infinfinfinfinfinfinf");
 }
 
-TEST(Values, NoiseIsPerlins) {
-  // zero on the lattice, bounded, and the classic implementation's values between
+TEST(Values, NoiseMatchesPerlin) {
+  // zero on the lattice, bounded, and equal to the reference implementation between
   expect_values({{"math.noise(3)", "0"}, {"math.noise(3, -4, 250)", "0"}});
   EXPECT_NEAR(number_of("math.noise(3.14, 42, 7)"), 0.13691995878400012, 1e-15);
   EXPECT_NEAR(number_of("math.noise(-4.2, 1.7, 9.3)"), number_of("math.noise(251.8, 257.7, 265.3)"), 1e-9);
@@ -132,13 +132,13 @@ TEST(Values, NoiseIsPerlins) {
 TEST(Values, MistakesAreExplained) {
   const std::string at = "scripts/scene.lua:1: ";
   EXPECT_EQ(error_of("local v = vec3(1, 2, 3) v.x = 5"),
-            at + "this member never changes; of a vec3 or quat set the whole value");
-  EXPECT_EQ(error_of("local v = vec3() v.w = 5"), at + "a vec3 never changes; set the whole value");
+            at + "this member is read-only; of a vec3 or quat assign the whole value");
+  EXPECT_EQ(error_of("local v = vec3() v.w = 5"), at + "a vec3 is immutable; assign the whole value");
   EXPECT_EQ(error_of("local v = vec3().lenght"), at + "a vec3 has no member 'lenght'; did you mean 'length'?");
   EXPECT_EQ(error_of("local v = vec3(1, 2, 3) + 1"), at + "can't add vec3(1, 2, 3) and 1");
   EXPECT_EQ(error_of("local v = vec3(1, 2, 3) * quat()"), at + "can't multiply vec3(1, 2, 3) and quat(0, 0, 0, 1)");
   EXPECT_EQ(error_of("local v = quat() * 2"),
-            at + "can't multiply quat(0, 0, 0, 1) and 2; a quat turns what stands on its right");
+            at + "can't multiply quat(0, 0, 0, 1) and 2; a quat rotates its right operand");
   EXPECT_EQ(error_of("vec3('a', 2)"), at + "vec3 takes three numbers, not 'a', 2, nothing");
   EXPECT_EQ(error_of("quat(1, 2)"), at + "quat takes four numbers x, y, z, w, or none");
   EXPECT_EQ(error_of("quat.axis(vec3(), 1)"), at + "quat.axis: the axis must not be zero");

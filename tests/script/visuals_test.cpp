@@ -1,4 +1,4 @@
-// Lua's `visuals`: the background, the camera in its two ways, materials by a shape's name.
+// Lua's `visuals`: background, both ways to set the camera, materials by shape name.
 #include <gtest/gtest.h>
 
 #include "params/catalog.h"
@@ -7,19 +7,19 @@
 namespace limber {
 namespace {
 
-struct Picture : testing::Test {
-  Stage stage;
+struct VisualsTest : testing::Test {
+  ScriptFixture fixture;
   std::vector<double> read(const std::string& path) {
-    const Result<Place> place = find_place(stage.store, path);
+    const Result<PropertyRef> place = find_property(fixture.store, path);
     EXPECT_TRUE(place.ok()) << path;
-    std::vector<double> out(place->row->width);
-    stage.store.get(place->node, *place->row, out.data());
+    std::vector<double> out(place->property->width);
+    fixture.store.get(place->node, *place->property, out.data());
     return out;
   }
 };
 
-TEST_F(Picture, IsSetFromAScene) {
-  const std::string fault = stage.run(R"(
+TEST_F(VisualsTest, CanBeSetFromAScene) {
+  const std::string fault = fixture.run(R"(
     local ball = sim:add_sphere_shape("ball", 0.1)
     visuals.background = rgb(0, 0, 0.5)
     visuals:shape("ball").transparency = 0.25
@@ -43,14 +43,14 @@ TEST_F(Picture, IsSetFromAScene) {
   }
 }
 
-TEST_F(Picture, IsReadInAScene) {
+TEST_F(VisualsTest, CanBeReadInAScene) {
   EXPECT_EQ(value_of("visuals.camera.projection[1], visuals.camera.aspect"), "40\t0");
   EXPECT_EQ(value_of("visuals.camera == visuals.camera, visuals.alive, tostring(visuals.camera)"),
             "true\ttrue\tvisuals.camera");
 }
 
-TEST_F(Picture, TheCameraGlidesAndGoesWithAThing) {
-  ASSERT_EQ(stage.play(R"(
+TEST_F(VisualsTest, TheCameraGlidesAndFollows) {
+  ASSERT_EQ(fixture.play(R"(
     local ball = sim:add_body("ball")
     ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { position = vec3(0, 0, 5) })
     local camera = visuals.camera
@@ -58,20 +58,20 @@ TEST_F(Picture, TheCameraGlidesAndGoesWithAThing) {
     sim:after(1, function() camera:follow(ball:part("ball")) end)
     sim:after(2, function() camera:follow(nil) end)
   )",
-                       31),
+                         31),
             "");
   EXPECT_NEAR(read("/visuals/camera/eye")[1], -4, 1e-9);
-  stage.tick(80);
-  const double height = stage.world.find_body("ball")->pose().position.z;
+  fixture.tick(80);
+  const double height = fixture.world.find_body("ball")->pose().position.z;
   EXPECT_LT(height, 2);
   EXPECT_NEAR(read("/visuals/camera/target")[2], height, 1e-9);
   EXPECT_NEAR(read("/visuals/camera/eye")[1], -4, 1e-9);
-  stage.tick(40);
-  EXPECT_GT(read("/visuals/camera/target")[2], stage.world.find_body("ball")->pose().position.z + 1)
-      << "it goes with nothing now";
+  fixture.tick(40);
+  EXPECT_GT(read("/visuals/camera/target")[2], fixture.world.find_body("ball")->pose().position.z + 1)
+      << "it follows nothing now";
 }
 
-TEST_F(Picture, WhatIsWrongIsSaid) {
+TEST_F(VisualsTest, RejectsInvalidArguments) {
   EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 0)").find("seconds above 0, not 0"),
             std::string::npos);
   EXPECT_NE(error_of("visuals.camera:look_at(vec3(1, 0, 0), vec3(), 1)").find("use sim:on_start"), std::string::npos);
@@ -79,13 +79,14 @@ TEST_F(Picture, WhatIsWrongIsSaid) {
       value_of("pcall(function() visuals.camera:look_at(vec3(1, 0, 0), vec3(0, 0, 0), 0 / 0) end)").find("finite"),
       std::string::npos);
   EXPECT_NE(error_of("visuals.camera:follow(sim)").find("use sim:on_start"), std::string::npos);
-  ASSERT_EQ(stage.play("sim:on_start(function() visuals.camera:follow(sim) end)\n"
-                       "sim:on_start(function() visuals.camera:look_at(vec3(0 / 0, 0, 1), vec3(), 1) end)"),
+  ASSERT_EQ(fixture.play("sim:on_start(function() visuals.camera:follow(sim) end)\n"
+                         "sim:on_start(function() visuals.camera:look_at(vec3(0 / 0, 0, 1), vec3(), 1) end)"),
             "");
-  ASSERT_EQ(stage.host.faults.size(), 2u);
-  EXPECT_NE(stage.host.faults[1].text.find("look_at takes finite numbers"), std::string::npos);
-  EXPECT_NE(stage.host.faults[0].text.find("a body, a part, or nil, not sim"), std::string::npos);
-  EXPECT_NE(error_of("visuals.camera.projection = { 40, 1, 10, 5 }").find("must be further away"), std::string::npos);
+  ASSERT_EQ(fixture.host.faults.size(), 2u);
+  EXPECT_NE(fixture.host.faults[1].text.find("look_at takes finite numbers"), std::string::npos);
+  EXPECT_NE(fixture.host.faults[0].text.find("a body, a part, or nil, not sim"), std::string::npos);
+  EXPECT_NE(error_of("visuals.camera.projection = { 40, 1, 10, 5 }").find("far must be greater than near"),
+            std::string::npos);
   EXPECT_NE(error_of("visuals.camera.projection = 40").find("takes { fovy, aspect, near, far }"), std::string::npos);
   EXPECT_NE(error_of("visuals.camera.fov = 40").find("did you mean 'fovy'?"), std::string::npos);
   EXPECT_NE(error_of("visuals:shape('ball')").find("there is no shape 'ball'"), std::string::npos);

@@ -1,4 +1,4 @@
-// The watchdog: a call that computes too long hears of it, one that waits does not, and a late signal harms nobody.
+// The watchdog: stops calls that compute too long, not those that wait, and late signals do no harm.
 #include "script/watchdog.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ std::int64_t cpu_now() {
   return std::int64_t{time.tv_sec} * 1'000'000'000 + time.tv_nsec;
 }
 
-// computes until `end` says so, or for a second
+// computes until `end` is set, at most for a second
 template <class F>
 bool compute_until(F&& end) {
   const std::int64_t begin = cpu_now();
@@ -44,25 +44,25 @@ struct WatchdogTest : testing::Test {
   int stops = 0;
 };
 
-TEST_F(WatchdogTest, StopsWhatComputesTooLong) {
+TEST_F(WatchdogTest, StopsCallsThatComputeTooLong) {
   const std::int64_t begin = cpu_now();
   watch.begin(3 * kMillisecond);
-  EXPECT_FALSE(watch.stop_asked());
+  EXPECT_FALSE(watch.stop_requested());
   EXPECT_TRUE(compute_until([&] { return stopped(); }));
-  EXPECT_TRUE(watch.stop_asked());
+  EXPECT_TRUE(watch.stop_requested());
   watch.end();
-  EXPECT_FALSE(watch.stop_asked());
-  EXPECT_GE(cpu_now() - begin, 3 * kMillisecond);  // never early
+  EXPECT_FALSE(watch.stop_requested());
+  EXPECT_GE(cpu_now() - begin, 3 * kMillisecond);  // never too early
 }
 
-TEST_F(WatchdogTest, IsAskedAgainUntilTheCallReturns) {
+TEST_F(WatchdogTest, RepeatsTheStopUntilTheCallReturns) {
   watch.begin(kMillisecond);
   EXPECT_TRUE(compute_until([&] { return *static_cast<volatile int*>(&stops) >= 3; }));
   watch.end();
 }
 
-TEST_F(WatchdogTest, EachCallHasItsOwnTime) {
-  // many short ones, each long enough to be looked at, that take longer together than one may
+TEST_F(WatchdogTest, EachCallHasItsOwnBudget) {
+  // many short calls, each long enough to be noticed, that together exceed the budget of one
   for (int i = 0; i < 60; i++) {
     const std::int64_t begin = cpu_now();
     watch.begin(30 * kMillisecond);
@@ -72,8 +72,8 @@ TEST_F(WatchdogTest, EachCallHasItsOwnTime) {
   EXPECT_EQ(stops, 0);
 }
 
-TEST_F(WatchdogTest, WaitingIsNotComputing) {
-  // this thread waits while another one computes ten times what the call may
+TEST_F(WatchdogTest, WaitingDoesNotCount) {
+  // this thread waits while another one computes ten times the budget
   watch.begin(3 * kMillisecond);
   std::thread([] {
     const std::int64_t begin = cpu_now();
@@ -83,8 +83,8 @@ TEST_F(WatchdogTest, WaitingIsNotComputing) {
   watch.end();
 }
 
-// a virtual machine's processor that is taken away goes on to count as computing, but hears no signal
-TEST_F(WatchdogTest, WhoWasAwayIsNotStopped) {
+// A virtual machine's processor that is taken away continues to count as computing, but receives no signals.
+TEST_F(WatchdogTest, ASuspendedProcessorIsNotStopped) {
   sigset_t signal, before;
   sigemptyset(&signal);
   sigaddset(&signal, SIGURG);
@@ -92,10 +92,10 @@ TEST_F(WatchdogTest, WhoWasAwayIsNotStopped) {
   const std::int64_t begin = cpu_now();
   watch.begin(100 * kMillisecond);
   compute_until([&] { return cpu_now() - begin > 300 * kMillisecond; });
-  EXPECT_FALSE(watch.stop_asked());
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);  // back again: it answers
+  EXPECT_FALSE(watch.stop_requested());
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);  // available again: answers the ping
   EXPECT_FALSE(stopped());
-  // and is stopped when it computes on for half of its budget
+  // stopped if it continues to compute for half of its budget
   const std::int64_t back = cpu_now();
   EXPECT_TRUE(compute_until([&] { return stopped(); }));
   EXPECT_GE(cpu_now() - back, 50 * kMillisecond);
@@ -109,14 +109,14 @@ TEST_F(WatchdogTest, FollowsTheThreadOfTheCall) {
     watch.end();
   });
   other.join();
-  // the thread has gone; the watch goes on with the next one
+  // the thread has ended; the watch continues with the next one
   stops = 0;
   watch.begin(2 * kMillisecond);
   EXPECT_TRUE(compute_until([&] { return stopped(); }));
   watch.end();
 }
 
-TEST_F(WatchdogTest, TwoWatchesDoNotMeet) {
+TEST_F(WatchdogTest, TwoWatchesAreIndependent) {
   Watch second;
   second.owner = this;
   second.stop = [](Watch&) { ADD_FAILURE() << "the other one was stopped"; };
@@ -129,7 +129,7 @@ TEST_F(WatchdogTest, TwoWatchesDoNotMeet) {
   dog->remove(second);
 }
 
-TEST(Watchdog, IsOneAndEndsWithItsLastHolder) {
+TEST(Watchdog, ExistsOnceUntilItsLastReference) {
   auto one = Watchdog::instance();
   const auto two = Watchdog::instance();
   EXPECT_EQ(one, two);

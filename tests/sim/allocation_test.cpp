@@ -1,4 +1,4 @@
-// Memory: no allocation of ours while ticks go by, a bounded size per part, and spawning without waste.
+// Memory: ticks don't allocate, memory per part is bounded, and creating bodies wastes none.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -12,20 +12,20 @@ namespace {
 
 using namespace test;
 
-TEST(Allocation, NoneDuringATick) {
-  Stage s;
+TEST(Allocation, TicksDoNotAllocate) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   s.floor();
   Body& arm = make_arm(s, "arm1", {6, {0, 0, 0.05}});
   for (int i = 2; i <= 16; i++) {
-    Body& twin = **s.world.copy_body(arm, "arm" + std::to_string(i));
-    twin.set_pose({{0.7 * (i % 4), 0.7 * (i / 4), 0.05}, quat_identity()});
+    Body& copy = **s.world.copy_body(arm, "arm" + std::to_string(i));
+    copy.set_pose({{0.7 * (i % 4), 0.7 * (i / 4), 0.05}, quat_identity()});
   }
-  Part& ball = s.lone(sphere_model(0.2), 1, {{-2, 0, 0.3}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.2), 1, {{-2, 0, 0.3}, quat_identity()});
   s.set(ball.id(), "report_contacts", {1});
-  const Row& target = Motor::table().at("target");
+  const Property& target = Motor::table().at("target");
   const auto tick = [&](int i) {
-    // the door is part of a tick's work: every motor gets a new target
+    // setting properties is part of a tick's work: every motor gets a new target
     const double value = 0.3 * std::sin(0.05 * i);
     for (const auto& body : s.world.bodies()) {
       for (const auto& motor : body->motors()) (void)s.store.set(motor->id(), target, {&value, 1});
@@ -37,37 +37,37 @@ TEST(Allocation, NoneDuringATick) {
   const std::size_t before = allocations();
   for (int i = 60; i < 160; i++) tick(i);
   EXPECT_EQ(allocations() - before, 0u);
-  EXPECT_GT(before, 100u);  // it does count
+  EXPECT_GT(before, 100u);  // the counter works
 }
 
-std::size_t used() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
+std::size_t used_memory() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
 
-// What a link with a joint weighs in a bare Bullet world.
+// Memory of a link with a joint in a bare Bullet world.
 double bytes_in_bullet(int arms, int links) {
-  const auto weight = [&](int n) {
-    const std::size_t before = used();
+  const auto memory_of = [&](int n) {
+    const std::size_t before = used_memory();
     const RawLoop loop(ArmScene{.arms = n, .parts = links});
-    return static_cast<double>(used() - before);
+    return static_cast<double>(used_memory() - before);
   };
-  return (weight(arms) - weight(1)) / ((arms - 1) * links);
+  return (memory_of(arms) - memory_of(1)) / ((arms - 1) * links);
 }
 
-// Sanitizers keep a malloc of their own, of which mallinfo tells nothing: there the bound holds of itself.
-TEST(Allocation, APartWithItsJointAndMotorStaysSmall) {
+// Sanitizers have their own malloc, which mallinfo doesn't report; under them this test passes trivially.
+TEST(Allocation, MemoryPerPartIsBounded) {
   constexpr int kCopies = 200;
   constexpr int kLinks = 16;
-  const double bullets = bytes_in_bullet(kCopies, kLinks);
-  Stage s;
+  const double bullet_bytes = bytes_in_bullet(kCopies, kLinks);
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {kLinks});
   s.ticks(1);
-  const std::size_t before = used();
+  const std::size_t before = used_memory();
   const std::size_t count = allocations();
   for (int i = 0; i < kCopies; i++) {
-    Body& twin = **s.world.copy_body(arm, "arm" + std::to_string(i));
-    twin.set_pose({{5.0 * (i + 1), 0, 0}, quat_identity()});
+    Body& copy = **s.world.copy_body(arm, "arm" + std::to_string(i));
+    copy.set_pose({{5.0 * (i + 1), 0, 0}, quat_identity()});
   }
-  s.world.settle();
-  EXPECT_LT(static_cast<double>(used() - before) / (kCopies * kLinks) - bullets, 3000);
+  s.world.flush();
+  EXPECT_LT(static_cast<double>(used_memory() - before) / (kCopies * kLinks) - bullet_bytes, 3000);
   const double news_per_part = static_cast<double>(allocations() - count) / (kCopies * kLinks);
   EXPECT_LT(news_per_part, 20);
   EXPECT_GT(news_per_part, 1);

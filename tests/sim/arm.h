@@ -1,4 +1,4 @@
-// Arm: a chain of boxes on a fixed base, a servo at each joint, axes x and y in turn. Predictable and cheap.
+// Arm: a chain of boxes on a fixed base, with a servo at each joint and joint axes alternating between x and y.
 #pragma once
 
 #include <string>
@@ -7,31 +7,31 @@
 
 namespace limber::test {
 
-struct ArmPlan {
+struct ArmSpec {
   int links = 5;
   Vec3 base{0, 0, 0};
   bool fixed = true;     ///< false: the base has mass 1 and floats.
   double mirror = 1;     ///< -1: mirrored at the plane y = 0.
-  double side_step = 0;  ///< Each link stands so far aside (y) of the one before.
+  double side_step = 0;  ///< offset (y) of each link from the previous one
 };
 
 /// Links `link0` (the base) to `linkN`, joints `joint1` to `jointN`.
-inline Body& make_arm(Stage& s, const std::string& name, const ArmPlan& plan = {}) {
+inline Body& make_arm(WorldFixture& s, const std::string& name, const ArmSpec& spec = {}) {
   Body& arm = s.body(name);
   const auto shape = [&](const std::string& key, const Vec3& size) -> Shape& {
-    Shape* known = s.world.find_shape(key);
-    return known != nullptr ? *known : *s.world.add_shape(key, box_model(size)).value();
+    Shape* existing = s.world.find_shape(key);
+    return existing != nullptr ? *existing : *s.world.add_shape(key, box_model(size)).value();
   };
   Shape& box = shape("arm link", {0.1, 0.08, 0.2});
   Part* below =
-      arm.add_part("link0", shape("arm base", {0.2, 0.2, 0.1}), plan.fixed ? 0 : 1, {plan.base, quat_identity()})
+      arm.add_part("link0", shape("arm base", {0.2, 0.2, 0.1}), spec.fixed ? 0 : 1, {spec.base, quat_identity()})
           .value();
-  for (int i = 1; i <= plan.links; i++) {
-    const Vec3 at = plan.base + Vec3(0, plan.mirror * plan.side_step * i, 0.25 * i);
+  for (int i = 1; i <= spec.links; i++) {
+    const Vec3 at = spec.base + Vec3(0, spec.mirror * spec.side_step * i, 0.25 * i);
     Part* link = arm.add_part("link" + std::to_string(i), box, 0.5, {at, quat_identity()}).value();
-    // an axis is a pseudovector: mirrored at y = 0 it keeps its y and turns x and z round
+    // an axis is a pseudovector: the mirror image at y = 0 keeps y and negates x and z
     const Vec3 axis = i % 2 == 0 ? normalized({1, 0.2, 0}) : Vec3(0, 1, 0);
-    const Vec3 mirrored(plan.mirror * axis.x, axis.y, plan.mirror * axis.z);
+    const Vec3 mirrored(spec.mirror * axis.x, axis.y, spec.mirror * axis.z);
     Joint* joint =
         arm.add_joint("joint" + std::to_string(i), *below, *link, JointType::revolute, at - Vec3(0, 0, 0.125), mirrored)
             .value();
@@ -41,14 +41,14 @@ inline Body& make_arm(Stage& s, const std::string& name, const ArmPlan& plan = {
   return arm;
 }
 
-/// All servos along a wave of half a radian.
-inline void wave(Stage& s, Body& arm, double time) {
+/// Sets all servos to a wave of half a radian.
+inline void set_wave_targets(WorldFixture& s, Body& arm, double time) {
   int i = 0;
   for (const auto& motor : arm.motors()) s.set(motor->id(), "target", {0.5 * std::sin(3 * time + 0.7 * i++)});
 }
 
-/// Bits of a body's poses and velocities, as Bullet has them.
-inline std::vector<float> bits(const Body& body) {
+/// Poses and velocities of a body's parts in Bullet, for bitwise comparison.
+inline std::vector<float> motion_values(const Body& body) {
   std::vector<float> out;
   for (const auto& part : body.parts()) {
     const btRigidBody& r = part->rigid();

@@ -1,4 +1,4 @@
-// The list: order, attaching and its errors, removing, copies, bodies that go.
+// The behavior list: order, attaching and its errors, removing, copies, removed bodies.
 #include "sim/behavior_list.h"
 
 #include "sim/behavior_rig.h"
@@ -8,7 +8,7 @@ namespace {
 
 using namespace test;
 
-TEST(BehaviorList, StepsInTheOrderOfMakingAcrossBodiesAndGroups) {
+TEST(BehaviorList, StepsInOrderOfCreationAcrossBodiesAndGroups) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
@@ -16,75 +16,76 @@ TEST(BehaviorList, StepsInTheOrderOfMakingAcrossBodiesAndGroups) {
   s.group("flock");
   s.probe(a, "two");
   s.ticks(1);
-  BehaviorRig::take_diary();
+  BehaviorRig::consume_calls();
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/one", "step a/flock", "step b/flock", "step a/two"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/one", "step a/flock", "step b/flock", "step a/two"}));
 }
 
-TEST(BehaviorList, RefusesWithWhatExists) {
+TEST(BehaviorList, ErrorsSuggestExistingNames) {
   BehaviorRig s;
   Body& body = s.chain("arm", {"base", "tip"});
   s.probe(body, "p");
-  EXPECT_EQ(s.refusal(body, "prob", "q"), "there is no behavior type 'prob'; did you mean 'probe'?");
-  EXPECT_EQ(s.refusal(body, "probe_group", "q"),
+  EXPECT_EQ(s.add_error(body, "prob", "q"), "there is no behavior type 'prob'; did you mean 'probe'?");
+  EXPECT_EQ(s.add_error(body, "probe_group", "q"),
             "'probe_group' acts on several bodies: attach it with sim:add_group_behavior");
-  EXPECT_EQ(s.refusal(body, "probe", "p"), "body 'arm' has a behavior 'p' already; names are unique");
-  EXPECT_EQ(s.refusal(body, "probe", "q", on_parts({"tipp"})), "body 'arm' has no part 'tipp'; did you mean 'tip'?");
+  EXPECT_EQ(s.add_error(body, "probe", "p"), "body 'arm' has a behavior 'p' already; names are unique");
+  EXPECT_EQ(s.add_error(body, "probe", "q", on_parts({"tipp"})), "body 'arm' has no part 'tipp'; did you mean 'tip'?");
   BehaviorSetup setup;
   setup.joints = Selection({"to_tpi"});
-  EXPECT_EQ(s.refusal(body, "probe", "q", setup), "body 'arm' has no joint 'to_tpi'; did you mean 'to_tip'?");
+  EXPECT_EQ(s.add_error(body, "probe", "q", setup), "body 'arm' has no joint 'to_tpi'; did you mean 'to_tip'?");
   setup = {};
   setup.motors = Selection({"base"});
-  EXPECT_EQ(s.refusal(body, "probe", "q", setup), "body 'arm' has no motor 'base'; there are: to_tip");
-  EXPECT_NE(s.refusal(body, "probe", ""), "");
-  // nothing of a refused one stays
+  EXPECT_EQ(s.add_error(body, "probe", "q", setup), "body 'arm' has no motor 'base'; there are: to_tip");
+  EXPECT_NE(s.add_error(body, "probe", ""), "");
+  // a rejected behavior leaves nothing behind
   EXPECT_EQ(names_in(body.behaviors()), (Words{"p"}));
   EXPECT_EQ(s.store.children(s.store.child(body.id(), "behavior")).size(), 1U);
-  EXPECT_EQ(s.group_refusal("probe", "g"), "'probe' acts on one body: attach it with body:add_behavior");
+  EXPECT_EQ(s.add_group_error("probe", "g"), "'probe' acts on one body: attach it with body:add_behavior");
 }
 
-TEST(BehaviorList, WhatATypeLeavesAsideIsSaid) {
+TEST(BehaviorList, WarnsAboutUnusedTargets) {
   BehaviorRig s;
-  ASSERT_TRUE(s.types().add(BehaviorType::of<Probe>("pusher", "Pushes.", BehaviorTargets::parts, probe_rows())).ok());
+  ASSERT_TRUE(
+      s.types().add(BehaviorType::create<Probe>("pusher", "Pushes.", BehaviorTargets::parts, probe_properties())).ok());
   Body& body = s.chain("arm", {"base", "tip"});
   BehaviorSetup setup;
   setup.joints = Selection({"to_tip"});
-  const std::uint64_t seen = log_count(LogLevel::warning);
+  const std::uint64_t warnings_before = log_count(LogLevel::warning);
   ASSERT_TRUE(s.list().add(body, "pusher", "push", setup).ok());
-  EXPECT_EQ(log_count(LogLevel::warning), seen + 1);
+  EXPECT_EQ(log_count(LogLevel::warning), warnings_before + 1);
 }
 
-TEST(BehaviorList, ARemovedOneIsGone) {
+TEST(BehaviorList, RemovedBehaviorStopsAndFreesItsName) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base"});
   Probe& one = s.probe(body, "one");
   s.probe(body, "two");
   s.ticks(1);
   const NodeId id = one.id();
-  BehaviorRig::take_diary();
-  ASSERT_TRUE(s.store.table(id).at("remove").act(&one, {}).ok());
+  BehaviorRig::consume_calls();
+  ASSERT_TRUE(s.store.table(id).at("remove").invoke(&one, {}).ok());
   EXPECT_FALSE(s.store.alive(id));
   EXPECT_EQ(body.find_behavior("one"), nullptr);
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/two"}));
-  // its name is free
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/two"}));
+  // its name is free again
   s.probe(body, "one");
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/two", "start b/one", "step b/one"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/two", "start b/one", "step b/one"}));
 }
 
-/// Removes whatever it is told to while behaviours step.
+/// Calls a function while behaviors are stepped, to remove something.
 class Remover : public Behavior {
  public:
-  static inline std::function<void()> act;
+  static inline std::function<void()> action;
   void step(double) override {
-    if (act) std::exchange(act, {})();
+    if (action) std::exchange(action, {})();
   }
 };
 
-TEST(BehaviorList, ThingsMayGoWhileItSteps) {
+TEST(BehaviorList, AllowsRemovalWhileStepping) {
   BehaviorRig s;
-  ASSERT_TRUE(s.types().add(BehaviorType::of<Remover>("remover", "Removes.", BehaviorTargets::any, {})).ok());
+  ASSERT_TRUE(s.types().add(BehaviorType::create<Remover>("remover", "Removes.", BehaviorTargets::any, {})).ok());
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
   Probe& before = s.probe(a, "before");
@@ -93,11 +94,11 @@ TEST(BehaviorList, ThingsMayGoWhileItSteps) {
   BehaviorGroup& group = s.group("flock");
   s.probe(b, "last");
   s.ticks(1);
-  const auto tick_with = [&](std::function<void()> act) {
-    BehaviorRig::take_diary();
-    Remover::act = std::move(act);
+  const auto tick_with = [&](std::function<void()> action) {
+    BehaviorRig::consume_calls();
+    Remover::action = std::move(action);
     s.ticks(1);
-    return BehaviorRig::take_diary();
+    return BehaviorRig::consume_calls();
   };
   EXPECT_EQ(tick_with([&] { s.list().remove(after); }),
             (Words{"step a/before", "step a/flock", "step b/flock", "step b/last"}));
@@ -110,7 +111,7 @@ TEST(BehaviorList, ThingsMayGoWhileItSteps) {
   s.ticks(1);
 }
 
-TEST(BehaviorList, ACopyHasTheBehavioursWithTheirValues) {
+TEST(BehaviorList, CopyHasTheBehaviorsWithTheirValues) {
   BehaviorRig s;
   Body& arm = s.chain("arm", {"base", "tip"});
   Probe& p = s.probe(arm, "p", on_parts({"tip"}));
@@ -128,7 +129,7 @@ TEST(BehaviorList, ACopyHasTheBehavioursWithTheirValues) {
   EXPECT_EQ(s.number(copy.id(), "active"), 0);
   EXPECT_EQ(names_in(copy.parts()), (Words{"tip"}));
   EXPECT_EQ(&copy.parts()[0]->body(), &twin);
-  // membership too, though the group names the original alone
+  // group membership is copied too, although the group names only the original
   EXPECT_EQ(s.number(twin.find_behavior("named")->id(), "amount"), -4);
   EXPECT_EQ(twin.find_behavior("named")->group(), &named);
   EXPECT_EQ(twin.find_behavior("pattern")->group(), &pattern);
@@ -136,12 +137,12 @@ TEST(BehaviorList, ACopyHasTheBehavioursWithTheirValues) {
   EXPECT_EQ(named.members().size(), 2U);
   EXPECT_EQ(pattern.members().size(), 2U);
   EXPECT_EQ(named.neighbor_parts().size(), 2U);
-  // a copy's values are its own
+  // a copy has its own values
   s.set(p.id(), "amount", {1});
   EXPECT_EQ(s.number(copy.id(), "amount"), 7);
 }
 
-TEST(BehaviorList, ABodyTakesItsBehavioursAlong) {
+TEST(BehaviorList, RemovingABodyRemovesItsBehaviors) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
@@ -149,18 +150,18 @@ TEST(BehaviorList, ABodyTakesItsBehavioursAlong) {
   s.probe(b, "p");
   BehaviorGroup& group = s.group("flock");
   s.ticks(1);
-  BehaviorRig::take_diary();
+  BehaviorRig::consume_calls();
   s.world.remove_body(a);
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/p", "step b/flock"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/p", "step b/flock"}));
   EXPECT_EQ(group.members().size(), 1U);
   s.world.clear();
   EXPECT_EQ(s.list().groups().size(), 0U);
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  EXPECT_EQ(BehaviorRig::consume_calls(), Words{});
 }
 
-TEST(BehaviorList, TwoRunsAreTheSameToTheBit) {
+TEST(BehaviorList, RunsAreRepeatableBitForBit) {
   const auto run = [] {
     BehaviorRig s;
     Body& a = s.chain("a", {"base", "tip"});

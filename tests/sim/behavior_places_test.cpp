@@ -1,4 +1,4 @@
-// Places: behaviours are put elsewhere in the order in which they act.
+// Behavior places: moving behaviors in the step order.
 #include "sim/behavior_rig.h"
 
 namespace limber {
@@ -16,9 +16,9 @@ struct PlacesRig : BehaviorRig {
   Probe& b_two = probe(b, "two");
 
   Words tick() {
-    take_diary();
+    consume_calls();
     ticks(1);
-    return take_diary();
+    return consume_calls();
   }
   Words after_start() {
     ticks(1);
@@ -26,15 +26,15 @@ struct PlacesRig : BehaviorRig {
   }
 };
 
-TEST(BehaviorPlaces, RowsTellThem) {
+TEST(BehaviorPlaces, ArePublishedAsProperties) {
   PlacesRig s;
   EXPECT_EQ(s.number(s.a_one.id(), "place"), 1);
-  EXPECT_EQ(s.number(s.a_two.id(), "place"), 3) << "the group acts on its body, too";
+  EXPECT_EQ(s.number(s.a_two.id(), "place"), 3) << "the group counts, since it acts on this body";
   EXPECT_EQ(s.number(s.b_two.id(), "place"), 3);
   EXPECT_EQ(s.number(s.flock.id(), "place"), 2) << "one, flock, two";
 }
 
-TEST(BehaviorPlaces, OneOfABodyGoesPastTheOthersOfThatBody) {
+TEST(BehaviorPlaces, MovesABehaviorAmongThoseOfItsBody) {
   PlacesRig s;
   s.set(s.a_two.id(), "place", {1});
   EXPECT_EQ(s.after_start(),
@@ -43,11 +43,11 @@ TEST(BehaviorPlaces, OneOfABodyGoesPastTheOthersOfThatBody) {
   EXPECT_EQ(s.number(s.a_one.id(), "place"), 2);
   s.set(s.a_one.id(), "place", {1000});
   EXPECT_EQ(s.tick(), (Words{"step a/two", "step b/one", "step a/flock", "step b/flock", "step a/one", "step b/two"}))
-      << "right behind the last that acts on its body";
+      << "directly after the last behavior of its body";
   EXPECT_EQ(s.number(s.a_one.id(), "place"), 3);
 }
 
-TEST(BehaviorPlaces, AGroupGoesPastNames) {
+TEST(BehaviorPlaces, MovesAGroupAmongNames) {
   PlacesRig s;
   s.set(s.flock.id(), "place", {1});
   EXPECT_EQ(s.after_start(),
@@ -57,7 +57,7 @@ TEST(BehaviorPlaces, AGroupGoesPastNames) {
   EXPECT_EQ(s.number(s.flock.id(), "place"), 3);
 }
 
-TEST(BehaviorPlaces, AMemberActsWhereItsGroupDoes) {
+TEST(BehaviorPlaces, MembersHaveThePlaceOfTheirGroup) {
   PlacesRig s;
   const Behavior& member = *s.flock.members()[0];
   const double first = 1;
@@ -66,24 +66,24 @@ TEST(BehaviorPlaces, AMemberActsWhereItsGroupDoes) {
   EXPECT_NE(set.error().find("set /physics/group/flock/place"), std::string::npos) << set.error();
 }
 
-TEST(BehaviorPlaces, AFailedCallHasChangedNothing) {
+TEST(BehaviorPlaces, FailedCallRestoresTheOrder) {
   PlacesRig s;
   const Words before = s.list().order();
-  s.world.undo().begin();
+  s.world.transaction().begin();
   s.set(s.a_two.id(), "place", {1});
   s.list().remove(s.a_one);
   s.set(s.flock.id(), "place", {1});
   EXPECT_NE(s.list().order(), before);
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_EQ(s.list().order(), before);
   EXPECT_EQ(s.number(s.a_two.id(), "place"), 3);
 }
 
-TEST(BehaviorPlaces, WhatIsKeptOfThePastBeginsAnew) {
+TEST(BehaviorPlaces, ChangedOrderRestartsTheHistory) {
   PlacesRig s;
   const std::uint64_t before = s.store.structure_version();
   s.set(s.a_two.id(), "place", {3});
-  EXPECT_EQ(s.store.structure_version(), before) << "it is there already";
+  EXPECT_EQ(s.store.structure_version(), before) << "its place is unchanged";
   s.set(s.a_two.id(), "place", {2});
   EXPECT_NE(s.store.structure_version(), before);
 }

@@ -1,4 +1,4 @@
-// BehaviorRig: a stage that knows two types of behaviour, a probe that writes down what happens to it and a group's.
+// BehaviorRig: a world with two behavior types, one for single bodies and one for groups, that log their calls.
 #pragma once
 
 #include <memory>
@@ -10,42 +10,44 @@
 
 namespace limber::test {
 
-/// Writes into `diary`: "start b/name", "step b/name"; errs when its parameter `broken` is set.
+/// Logs its calls to `calls`: "start b/name", "step b/name"; fails if its parameter `broken` is set.
 class Probe : public Behavior {
  public:
   enum Parameter : std::uint32_t { amount, broken, way, beat };
-  static inline std::vector<std::string> diary;
+  static inline std::vector<std::string> calls;
 
-  void start() override { diary.push_back("start " + label()); }
+  void start() override { calls.push_back("start " + label()); }
   void step(double) override {
-    diary.push_back("step " + label());
-    if (due(beat)) beats++;
+    calls.push_back("step " + label());
+    if (interval_elapsed(beat)) elapsed_count++;
     if (flag(broken)) fail({"it is broken", "probe.lua", 7});
     last = random().uniform();
   }
-  void take_over(Behavior& before) override { beats = 100 + static_cast<Probe&>(before).beats; }
+  void adopt_state(Behavior& previous) override { elapsed_count = 100 + static_cast<Probe&>(previous).elapsed_count; }
   std::string label() const { return body().name() + "/" + name(); }
 
-  int beats = 0;
+  int elapsed_count = 0;
   double last = 0;
 };
 
-inline std::vector<Row> probe_rows() {
-  return {rows::number("amount", "N", 2, -10, 10, "A number."), rows::boolean("broken", false, "Whether it errs."),
-          rows::vec3("way", "m", {1, 2, 3}, -100, 100, "A vector."),
-          rows::number("beat", "ms", 100, 0, 1e6, "An interval.")};
+inline std::vector<Property> probe_properties() {
+  return {properties::number("amount", "N", 2, -10, 10, "A number."),
+          properties::boolean("broken", false, "Whether it errs."),
+          properties::vec3("way", "m", {1, 2, 3}, -100, 100, "A vector."),
+          properties::number("beat", "ms", 100, 0, 1e6, "An interval.")};
 }
 
-struct BehaviorRig : Stage {
+struct BehaviorRig : WorldFixture {
   BehaviorRig() {
-    Probe::diary.clear();
-    EXPECT_TRUE(types().add(BehaviorType::of<Probe>("probe", "A probe.", BehaviorTargets::any, probe_rows())).ok());
-    EXPECT_TRUE(types().add(BehaviorType::of_group<Probe>("probe_group", "Probes.", probe_rows())).ok());
+    Probe::calls.clear();
+    EXPECT_TRUE(
+        types().add(BehaviorType::create<Probe>("probe", "A probe.", BehaviorTargets::any, probe_properties())).ok());
+    EXPECT_TRUE(types().add(BehaviorType::create_group<Probe>("probe_group", "Probes.", probe_properties())).ok());
   }
   BehaviorTypes& types() { return world.behaviors().types(); }
   BehaviorList& list() { return world.behaviors(); }
 
-  /// A body of balls with these names, a joint between each and the one before.
+  /// A body of balls with these names, each jointed to the previous one.
   Body& chain(const std::string& name, const std::vector<std::string>& parts, double first_mass = 1) {
     Body& b = body(name);
     if (ball_ == nullptr) ball_ = &shape(sphere_model(0.05));
@@ -60,24 +62,24 @@ struct BehaviorRig : Stage {
     return b;
   }
   Probe& probe(Body& body, const std::string& name = "probe", BehaviorSetup setup = {}) {
-    Result<Behavior*> made = list().add(body, "probe", name, std::move(setup));
-    EXPECT_TRUE(made.ok()) << made.error();
-    return static_cast<Probe&>(**made);
+    Result<Behavior*> added = list().add(body, "probe", name, std::move(setup));
+    EXPECT_TRUE(added.ok()) << added.error();
+    return static_cast<Probe&>(**added);
   }
   BehaviorGroup& group(const std::string& name, GroupSetup setup = {}) {
-    Result<BehaviorGroup*> made = list().add_group("probe_group", name, std::move(setup));
-    EXPECT_TRUE(made.ok()) << made.error();
-    return **made;
+    Result<BehaviorGroup*> added = list().add_group("probe_group", name, std::move(setup));
+    EXPECT_TRUE(added.ok()) << added.error();
+    return **added;
   }
-  std::string refusal(Body& body, const std::string& type, const std::string& name, BehaviorSetup setup = {}) {
-    const Result<Behavior*> made = list().add(body, type, name, std::move(setup));
-    return made ? "" : made.error();
+  std::string add_error(Body& body, const std::string& type, const std::string& name, BehaviorSetup setup = {}) {
+    const Result<Behavior*> added = list().add(body, type, name, std::move(setup));
+    return added ? "" : added.error();
   }
-  std::string group_refusal(const std::string& type, const std::string& name, GroupSetup setup = {}) {
-    const Result<BehaviorGroup*> made = list().add_group(type, name, std::move(setup));
-    return made ? "" : made.error();
+  std::string add_group_error(const std::string& type, const std::string& name, GroupSetup setup = {}) {
+    const Result<BehaviorGroup*> added = list().add_group(type, name, std::move(setup));
+    return added ? "" : added.error();
   }
-  static std::vector<std::string> take_diary() { return std::exchange(Probe::diary, {}); }
+  static std::vector<std::string> consume_calls() { return std::exchange(Probe::calls, {}); }
 
  private:
   Shape* ball_ = nullptr;
@@ -99,9 +101,9 @@ inline GroupSetup group_of(Words bodies, Words parts) {
 }
 
 template <class List>
-Words names_in(const List& things) {
+Words names_in(const List& objects) {
   Words names;
-  for (const auto& thing : things) names.push_back(thing->name());
+  for (const auto& object : objects) names.push_back(object->name());
   return names;
 }
 

@@ -1,4 +1,4 @@
-// What every behaviour has: targets, start, intervals, generator, errors, time.
+// Common features of behaviors: targets, start, intervals, random generator, errors, time.
 #include "sim/behavior.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-TEST(Behavior, TargetsAreInStreamOrderEachOnce) {
+TEST(Behavior, TargetsAreInStreamOrderWithoutDuplicates) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base", "left", "right", "tip"});
   const auto parts = [&](Words words) {
@@ -30,7 +30,7 @@ TEST(Behavior, TargetsAreInStreamOrderEachOnce) {
   EXPECT_EQ(names_in(all.motors()), (Words{"to_left", "to_right", "to_tip"}));
 }
 
-TEST(Behavior, AllLeavesOutPartsWithoutMass) {
+TEST(Behavior, AllExcludesStaticParts) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base", "tip"}, 0);
   EXPECT_EQ(names_in(s.probe(body, "p").parts()), (Words{"tip"}));
@@ -39,98 +39,98 @@ TEST(Behavior, AllLeavesOutPartsWithoutMass) {
   EXPECT_EQ(names_in(s.probe(body, "t", on_parts({"*"})).parts()), (Words{"base", "tip"}));
 }
 
-TEST(Behavior, StartsBeforeItsFirstStepAndWhenItsTargetsHaveChanged) {
+TEST(Behavior, StartsBeforeTheFirstStepAndAfterTargetsChange) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base"});
   s.probe(body, "all");
   s.probe(body, "named", on_parts({"base"}));
   s.ticks(2);
-  EXPECT_EQ(BehaviorRig::take_diary(),
+  EXPECT_EQ(BehaviorRig::consume_calls(),
             (Words{"start b/all", "step b/all", "start b/named", "step b/named", "step b/all", "step b/named"}));
   ASSERT_TRUE(body.add_part("tip", s.shape(sphere_model(0.1)), 1, Pose{}).ok());
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/all", "step b/all", "step b/named"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"start b/all", "step b/all", "step b/named"}));
   body.reset();
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/all", "step b/all", "start b/named", "step b/named"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"start b/all", "step b/all", "start b/named", "step b/named"}));
 }
 
-TEST(Behavior, RestsWhileInactiveOrItsBodyIsOut) {
+TEST(Behavior, DoesNotStepWhileInactiveOrBodyIsDisabled) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base"});
   Probe& p = s.probe(body, "p");
   s.set(p.id(), "active", {0});
   s.ticks(2);
-  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  EXPECT_EQ(BehaviorRig::consume_calls(), Words{});
   s.set(p.id(), "active", {1});
   body.set_enabled(false);
   s.ticks(2);
-  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  EXPECT_EQ(BehaviorRig::consume_calls(), Words{});
   body.set_enabled(true);
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"start b/p", "step b/p"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"start b/p", "step b/p"}));
 }
 
-TEST(Behavior, AnErrorSuspendsItAloneAndIsSaidOnce) {
+TEST(Behavior, ErrorSuspendsOnlyItAndIsReportedOnce) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base"});
   Probe& one = s.probe(body, "one");
   s.probe(body, "two");
-  std::vector<std::string> said;
-  s.list().on_fault([&](const Behavior& b) { said.push_back(b.name() + ": " + b.fault().file + " " + b.error()); });
+  std::vector<std::string> reports;
+  s.list().on_fault([&](const Behavior& b) { reports.push_back(b.name() + ": " + b.fault().file + " " + b.error()); });
   s.set(one.id(), "broken", {1});
   s.ticks(3);
-  EXPECT_EQ(said, (Words{"one: probe.lua it is broken"}));
+  EXPECT_EQ(reports, (Words{"one: probe.lua it is broken"}));
   EXPECT_EQ(one.error(), "it is broken");
   EXPECT_EQ(one.fault().line, 7);
   EXPECT_TRUE(one.active());
   EXPECT_FALSE(one.runs());
-  EXPECT_EQ(std::count(Probe::diary.begin(), Probe::diary.end(), "step b/two"), 3);
-  // any write to `active` tries again, also the value that it has; start is not called again
-  BehaviorRig::take_diary();
+  EXPECT_EQ(std::count(Probe::calls.begin(), Probe::calls.end(), "step b/two"), 3);
+  // setting `active` to any value clears the error; start() isn't called again
+  BehaviorRig::consume_calls();
   s.set(one.id(), "broken", {0});
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/two"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/two"}));
   s.set(one.id(), "active", {1});
   EXPECT_EQ(one.error(), "");
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/one", "step b/two"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/one", "step b/two"}));
 }
 
-// 250 ticks of 4 ms: an interval of 10 ms fires 100 times; one that is shorter than a tick at every tick
-TEST(Behavior, IntervalsAreSimulatedTimeWithTheirPhaseKept) {
-  for (const auto& [interval, beats] : std::vector<std::pair<double, int>>{
+// 250 ticks of 4 ms: an interval of 10 ms elapses 100 times, one shorter than a tick at every tick
+TEST(Behavior, IntervalsUseSimulatedTimeWithoutDrift) {
+  for (const auto& [interval, expected_count] : std::vector<std::pair<double, int>>{
            {10, 100}, {4, 250}, {0, 250}, {0.1, 250}, {4.1, 243}, {33, 31}, {500, 2}, {1000, 1}}) {
     BehaviorRig s;
     s.set(s.world.id(), "timestep", {0.004});
     Probe& p = s.probe(s.chain("b", {"base"}), "p");
     s.set(p.id(), "beat", {interval});
     s.ticks(250);
-    EXPECT_EQ(p.beats, beats) << interval;
+    EXPECT_EQ(p.elapsed_count, expected_count) << interval;
   }
 }
 
-TEST(Behavior, AnIntervalThatChangesCountsFromTheLastBeat) {
+TEST(Behavior, ChangedIntervalCountsFromTheLastElapsedTime) {
   BehaviorRig s;
   s.set(s.world.id(), "timestep", {0.01});
   Probe& p = s.probe(s.chain("b", {"base"}), "p");  // 100 ms: at 0, 100, 200 …
   s.ticks(15);                                      // 0 .. 140 ms
-  EXPECT_EQ(p.beats, 2);
-  s.set(p.id(), "beat", {30});  // from 100 on: 130 has passed, 160, 190, 220
+  EXPECT_EQ(p.elapsed_count, 2);
+  s.set(p.id(), "beat", {30});  // counted from 100: elapsed at 130, then at 160, 190, 220
   s.ticks(1);
-  EXPECT_EQ(p.beats, 3);
+  EXPECT_EQ(p.elapsed_count, 3);
   s.ticks(1);  // 160
-  EXPECT_EQ(p.beats, 4);
+  EXPECT_EQ(p.elapsed_count, 4);
   s.ticks(3);  // .. 190
-  EXPECT_EQ(p.beats, 5);
+  EXPECT_EQ(p.elapsed_count, 5);
   s.set(p.id(), "beat", {1000});
   s.ticks(99);  // .. 1180; from 190 on: 1190
-  EXPECT_EQ(p.beats, 5);
+  EXPECT_EQ(p.elapsed_count, 5);
   s.ticks(1);
-  EXPECT_EQ(p.beats, 6);
+  EXPECT_EQ(p.elapsed_count, 6);
 }
 
-TEST(Behavior, ItsGeneratorIsOfTheSeedAndItsPath) {
+TEST(Behavior, RandomGeneratorDependsOnSeedAndPath) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
@@ -150,7 +150,7 @@ TEST(Behavior, ItsGeneratorIsOfTheSeedAndItsPath) {
   EXPECT_NE(two.last, Random(77, "/physics/body/b/behavior/one").uniform());
 }
 
-TEST(Behavior, ParametersGeneratorAndBeatsAreInTheHash) {
+TEST(Behavior, HashCoversParametersGeneratorAndTimers) {
   const auto hash = [](const std::function<void(BehaviorRig&, Probe&)>& change) {
     BehaviorRig s;
     Probe& p = s.probe(s.chain("b", {"base"}), "p");
@@ -166,13 +166,13 @@ TEST(Behavior, ParametersGeneratorAndBeatsAreInTheHash) {
   EXPECT_NE(plain, hash([](BehaviorRig& s, Probe& p) { s.list().remove(p); }));
 }
 
-TEST(Behavior, TellsTheTimeThatItTook) {
+TEST(Behavior, PublishesItsStepTime) {
   BehaviorRig s;
   Probe& p = s.probe(s.chain("b", {"base"}), "p");
   s.ticks(1);
   const double took = s.number(p.id(), "time");
   EXPECT_GT(took, 0);
-  EXPECT_EQ(took, p.microseconds());
+  EXPECT_EQ(took, p.step_microseconds());
   EXPECT_GE(s.world.times().behaviors, 1e-6 * took);
 }
 

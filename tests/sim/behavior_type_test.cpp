@@ -1,4 +1,4 @@
-// Types: the naming rule, adding, replacing, removing, renewing instances.
+// Behavior types: the naming rule; adding, replacing and removing types; replacing instances.
 #include "sim/behavior_type.h"
 
 #include "sim/behavior_rig.h"
@@ -8,11 +8,11 @@ namespace {
 
 using namespace test;
 
-BehaviorType probe_type(std::string name, std::vector<Row> rows = probe_rows()) {
-  return BehaviorType::of<Probe>(std::move(name), "A probe.", BehaviorTargets::any, std::move(rows));
+BehaviorType probe_type(std::string name, std::vector<Property> properties = probe_properties()) {
+  return BehaviorType::create<Probe>(std::move(name), "A probe.", BehaviorTargets::any, std::move(properties));
 }
 
-TEST(BehaviorTypes, AreFoundWithoutCaseUnderscoresAndTheSeedsEnding) {
+TEST(BehaviorTypes, LookupIgnoresCaseUnderscoresAndSuffix) {
   BehaviorTypes types;
   ASSERT_TRUE(types.add(probe_type("random_force")).ok());
   for (const char* name :
@@ -24,7 +24,7 @@ TEST(BehaviorTypes, AreFoundWithoutCaseUnderscoresAndTheSeedsEnding) {
             "there is no behavior type 'RandomFroceBehavior'; did you mean 'random_force'?");
 }
 
-TEST(BehaviorTypes, ANameIsReplacedAndRemoved) {
+TEST(BehaviorTypes, ReplacesAndRemovesTypes) {
   BehaviorTypes types;
   ASSERT_TRUE(types.add(probe_type("wave")).ok());
   const auto first = types.find("wave");
@@ -35,22 +35,22 @@ TEST(BehaviorTypes, ANameIsReplacedAndRemoved) {
   EXPECT_EQ(types.find("wave"), nullptr);
 }
 
-TEST(BehaviorTypes, ABuiltInNameIsTaken) {
+TEST(BehaviorTypes, BuiltInNamesCannotBeReplaced) {
   static const BuiltInBehavior registered([] { return probe_type("test_built_in"); });
   BehaviorTypes types;
   EXPECT_EQ(types.add(probe_type("TestBuiltIn")).error(),
-            "'TestBuiltIn' is a built-in behavior type ('test_built_in'); call the file something else");
+            "'TestBuiltIn' is a built-in behavior type ('test_built_in'); rename the file");
   types.remove("test_built_in");
   EXPECT_NE(types.find("test_built_in"), nullptr);
   EXPECT_FALSE(types.add(probe_type("")).ok());
 }
 
-TEST(BehaviorTypes, EqualTablesAreOne) {
+TEST(BehaviorTypes, EqualTablesAreShared) {
   EXPECT_EQ(probe_type("same").table, probe_type("same").table);
   EXPECT_NE(probe_type("same").table, probe_type("other").table);
 }
 
-TEST(BehaviorTypes, RenewedInstancesKeepWhatBothTablesHave) {
+TEST(BehaviorTypes, ReplacedInstancesKeepCommonProperties) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base", "tip"});
   Probe& before = s.probe(body, "p", on_parts({"tip"}));
@@ -62,15 +62,15 @@ TEST(BehaviorTypes, RenewedInstancesKeepWhatBothTablesHave) {
   s.ticks(3);
   const auto generator = before.random().state();
   const NodeId id_before = before.id();
-  // amount's range is narrower, way is a number now, a row came, beat stays
+  // the range of amount is narrower, way is a number now, there is a new property, beat is unchanged
   ASSERT_TRUE(s.types()
-                  .add(probe_type("probe", {rows::number("amount", "N", 1, -5, 5, "A number."),
-                                            rows::boolean("broken", false, "Whether it errs."),
-                                            rows::number("way", "m", 8, -100, 100, "A number now."),
-                                            rows::number("beat", "ms", 100, 0, 1e6, "An interval."),
-                                            rows::number("fresh", "", 3, 0, 9, "A new one.")}))
+                  .add(probe_type("probe", {properties::number("amount", "N", 1, -5, 5, "A number."),
+                                            properties::boolean("broken", false, "Whether it errs."),
+                                            properties::number("way", "m", 8, -100, 100, "A number now."),
+                                            properties::number("beat", "ms", 100, 0, 1e6, "An interval."),
+                                            properties::number("fresh", "", 3, 0, 9, "A new one.")}))
                   .ok());
-  s.list().renew("probe");
+  s.list().replace_instances("probe");
   Behavior& after = *body.find_behavior("p");
   EXPECT_EQ(s.number(after.id(), "amount"), 5);
   EXPECT_EQ(s.number(after.id(), "way"), 8);
@@ -79,35 +79,35 @@ TEST(BehaviorTypes, RenewedInstancesKeepWhatBothTablesHave) {
   EXPECT_EQ(after.random().state(), generator);
   EXPECT_EQ(names_in(after.parts()), (Words{"tip"}));
   EXPECT_EQ(names_in(body.behaviors()), (Words{"p", "other"}));
-  EXPECT_EQ(static_cast<Probe&>(after).beats, 101);
-  BehaviorRig::take_diary();
+  EXPECT_EQ(static_cast<Probe&>(after).elapsed_count, 101);
+  BehaviorRig::consume_calls();
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step b/p", "step b/other"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/p", "step b/other"}));
 }
 
-TEST(BehaviorTypes, RenewingWithTheSameRowsKeepsTheThing) {
+TEST(BehaviorTypes, ReplacingWithTheSamePropertiesKeepsTheNode) {
   BehaviorRig s;
   Body& body = s.chain("b", {"base"});
   Probe& before = s.probe(body, "p");
   s.set(before.id(), "amount", {9});
   const NodeId id = before.id();
   ASSERT_TRUE(s.types().add(probe_type("probe")).ok());
-  s.list().renew("probe");
+  s.list().replace_instances("probe");
   EXPECT_EQ(body.find_behavior("p")->id(), id);
   EXPECT_EQ(s.number(id, "amount"), 9);
 }
 
-TEST(BehaviorTypes, GroupsAreRenewedWithTheirMembers) {
+TEST(BehaviorTypes, GroupsAreReplacedWithTheirMembers) {
   BehaviorRig s;
   s.chain("a", {"base"});
   s.chain("b", {"base"});
   BehaviorGroup& group = s.group("g");
   s.set(group.id(), "amount", {7});
   s.set(s.world.find_body("a")->find_behavior("g")->id(), "amount", {8});
-  std::vector<Row> rows = probe_rows();
-  rows.push_back(rows::number("fresh", "", 3, 0, 9, "A new one."));
-  ASSERT_TRUE(s.types().add(BehaviorType::of_group<Probe>("probe_group", "Probes.", rows)).ok());
-  s.list().renew("probe_group");
+  std::vector<Property> properties = probe_properties();
+  properties.push_back(properties::number("fresh", "", 3, 0, 9, "A new one."));
+  ASSERT_TRUE(s.types().add(BehaviorType::create_group<Probe>("probe_group", "Probes.", properties)).ok());
+  s.list().replace_instances("probe_group");
   EXPECT_EQ(s.number(group.id(), "amount"), 7);
   s.set(group.id(), "fresh", {5});
   for (const char* name : {"a", "b"}) {

@@ -1,4 +1,5 @@
-// Behaviours in guarded calls: what a failing one removed, started or drew is as it was, and steps on.
+// Rollback of behaviors: after a failed call, removed behaviors, start flags and random draws are as before, and
+// stepping continues.
 #include "sim/behavior_undo.h"
 
 #include <functional>
@@ -10,101 +11,104 @@ namespace {
 
 using namespace test;
 
-struct Cast {
+struct UndoScene {
   BehaviorRig& s;
   Body &a, &b, &bare;
   Probe &one, &two, &three;
   BehaviorGroup& flock;
 };
 
-/// What is left of a play: the bits of poses, rows, generators and beats, who stepped, in which order they stand.
-struct Left {
+/// The final state of a run: a hash of poses, values, generators and timers, the logged steps, and the step order.
+struct RunResult {
   std::uint64_t hash = 0;
   Words steps, order;
-  bool operator==(const Left&) const = default;
+  bool operator==(const RunResult&) const = default;
 };
 
-// ten ticks, the call, ten ticks more
-Left play(const std::function<void(Cast&)>& call, bool good) {
+// Runs ten ticks, the call, and ten more ticks.
+RunResult run_with_call(const std::function<void(UndoScene&)>& call, bool commit) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base", "tip"});
   Body& b = s.chain("b", {"base"});
   Body& bare = s.body("bare");
   Probe& one = s.probe(a, "one");
   BehaviorGroup& flock = s.group("flock");
-  Cast cast{s, a, b, bare, one, s.probe(a, "two"), s.probe(b, "three"), flock};
+  UndoScene scene{s, a, b, bare, one, s.probe(a, "two"), s.probe(b, "three"), flock};
   s.ticks(10);
-  BehaviorRig::take_diary();
-  s.world.undo().begin();
-  call(cast);
-  if (good) {
-    s.world.undo().end();
+  BehaviorRig::consume_calls();
+  s.world.transaction().begin();
+  call(scene);
+  if (commit) {
+    s.world.transaction().commit();
   } else {
-    s.world.undo().take_back();
+    s.world.transaction().rollback();
   }
   s.ticks(10);
-  return {s.world.state_hash(), BehaviorRig::take_diary(), s.list().order()};
+  return {s.world.state_hash(), BehaviorRig::consume_calls(), s.list().order()};
 }
 
-struct ListDeed {
+struct ListChange {
   const char* name;
-  std::function<void(Cast&)> call;
+  std::function<void(UndoScene&)> call;
 };
 
-const std::vector<ListDeed>& list_deeds() {
-  static const std::vector<ListDeed> list = {
-      {"the first", [](Cast& c) { c.s.list().remove(c.one); }},
-      {"one in the middle", [](Cast& c) { c.s.list().remove(c.two); }},
-      {"two of one body", [](Cast& c) { c.s.list().remove(c.two), c.s.list().remove(c.one); }},
-      {"all that are no members",
-       [](Cast& c) { c.s.list().remove(c.one), c.s.list().remove(c.three), c.s.list().remove(c.two); }},
-      {"a group", [](Cast& c) { c.s.list().remove_group(c.flock); }},
-      {"a member", [](Cast& c) { c.s.list().remove(*c.flock.members()[0]); }},
-      {"a member, then the group",
-       [](Cast& c) { c.s.list().remove(*c.flock.members()[1]), c.s.list().remove_group(c.flock); }},
-      {"one, then its body", [](Cast& c) { c.s.list().remove(c.one), c.s.world.remove_body(c.a); }},
-      {"a body, then the group it was in",
-       [](Cast& c) { c.s.world.remove_body(c.a), c.s.list().remove_group(c.flock); }},
-      {"the group, then a body of it", [](Cast& c) { c.s.list().remove_group(c.flock), c.s.world.remove_body(c.b); }},
-      {"one, and another under its name", [](Cast& c) { c.s.list().remove(c.one), c.s.probe(c.a, "one"); }},
-      {"one that the call has made",
-       [](Cast& c) { c.s.list().remove(c.s.probe(c.b, "new")), c.s.list().remove(c.two); }},
-      {"a copy's",
-       [](Cast& c) {
+const std::vector<ListChange>& list_changes() {
+  static const std::vector<ListChange> list = {
+      {"remove the first behavior", [](UndoScene& c) { c.s.list().remove(c.one); }},
+      {"remove a behavior in the middle", [](UndoScene& c) { c.s.list().remove(c.two); }},
+      {"remove two behaviors of a body", [](UndoScene& c) { c.s.list().remove(c.two), c.s.list().remove(c.one); }},
+      {"remove all behaviors that are not group members",
+       [](UndoScene& c) { c.s.list().remove(c.one), c.s.list().remove(c.three), c.s.list().remove(c.two); }},
+      {"remove a group", [](UndoScene& c) { c.s.list().remove_group(c.flock); }},
+      {"remove a member", [](UndoScene& c) { c.s.list().remove(*c.flock.members()[0]); }},
+      {"remove a member, then its group",
+       [](UndoScene& c) { c.s.list().remove(*c.flock.members()[1]), c.s.list().remove_group(c.flock); }},
+      {"remove a behavior, then its body", [](UndoScene& c) { c.s.list().remove(c.one), c.s.world.remove_body(c.a); }},
+      {"remove a body, then its group",
+       [](UndoScene& c) { c.s.world.remove_body(c.a), c.s.list().remove_group(c.flock); }},
+      {"remove a group, then the body of a member",
+       [](UndoScene& c) { c.s.list().remove_group(c.flock), c.s.world.remove_body(c.b); }},
+      {"replace a behavior by one with the same name",
+       [](UndoScene& c) { c.s.list().remove(c.one), c.s.probe(c.a, "one"); }},
+      {"remove a behavior that the call added",
+       [](UndoScene& c) { c.s.list().remove(c.s.probe(c.b, "new")), c.s.list().remove(c.two); }},
+      {"remove behaviors of a copied body",
+       [](UndoScene& c) {
          Body& copy = **c.s.world.copy_body(c.a, "copy");
          c.s.list().remove(*copy.behaviors()[0]);
          c.s.list().remove(c.one);
          c.s.list().remove(*copy.behaviors()[0]);
        }},
-      {"a part that it acts on, too",
-       [](Cast& c) {
+      {"add a part that behaviors act on",
+       [](UndoScene& c) {
          ASSERT_TRUE(c.a.add_part("more", c.s.shape(sphere_model(0.1)), 1, {{9, 0, 0}, quat_identity()}));
-         c.s.list().follow_bodies();
+         c.s.list().update_members();
          ASSERT_EQ(c.one.parts().size(), 3u);
        }},
-      {"a member more, which goes at once",
-       [](Cast& c) {
+      {"add a member, then remove another one",
+       [](UndoScene& c) {
          ASSERT_TRUE(c.bare.add_part("first", c.s.shape(sphere_model(0.1)), 1, {{9, 0, 0}, quat_identity()}));
-         c.s.list().follow_bodies();
+         c.s.list().update_members();
          ASSERT_EQ(c.flock.members().size(), 3u);
          c.s.list().remove(*c.flock.members()[0]);
        }},
-      {"a start anew", [](Cast& c) { c.a.reset(); }},
-      {"parameters, then away", [](Cast& c) { c.s.set(c.one.id(), "amount", {7}), c.s.list().remove(c.one); }},
+      {"reset a body", [](UndoScene& c) { c.a.reset(); }},
+      {"set a parameter, then remove the behavior",
+       [](UndoScene& c) { c.s.set(c.one.id(), "amount", {7}), c.s.list().remove(c.one); }},
   };
   return list;
 }
 
-TEST(BehaviorUndo, AFailingCallHasNotRemovedThem) {
-  const Left alone = play([](Cast&) {}, true);
-  EXPECT_EQ(play([](Cast&) {}, false), alone);
-  for (const ListDeed& deed : list_deeds()) {
-    EXPECT_EQ(play(deed.call, false), alone) << deed.name;
-    EXPECT_NE(play(deed.call, true), alone) << deed.name;
+TEST(BehaviorTransaction, FailedCallRestoresRemovedBehaviors) {
+  const RunResult expected = run_with_call([](UndoScene&) {}, true);
+  EXPECT_EQ(run_with_call([](UndoScene&) {}, false), expected);
+  for (const ListChange& change : list_changes()) {
+    EXPECT_EQ(run_with_call(change.call, false), expected) << change.name;
+    EXPECT_NE(run_with_call(change.call, true), expected) << change.name;
   }
 }
 
-TEST(BehaviorUndo, InTheCallTheyAreGone) {
+TEST(BehaviorTransaction, RemovedBehaviorsAreHiddenDuringTheCall) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Probe& one = s.probe(a, "one");
@@ -113,23 +117,23 @@ TEST(BehaviorUndo, InTheCallTheyAreGone) {
   const NodeId id = one.id();
   const NodeId group = flock.id();
   const NodeId member = flock.members()[0]->id();
-  s.world.undo().begin();
+  s.world.transaction().begin();
   s.list().remove(one);
   s.list().remove_group(flock);
-  for (const NodeId gone : {id, group, member}) EXPECT_FALSE(s.store.alive(gone));
+  for (const NodeId node : {id, group, member}) EXPECT_FALSE(s.store.alive(node));
   EXPECT_EQ(a.find_behavior("one"), nullptr);
   EXPECT_EQ(s.list().find_group("flock"), nullptr);
   EXPECT_TRUE(a.behaviors().empty());
   EXPECT_TRUE(s.list().order().empty());
-  s.world.undo().take_back();
-  for (const NodeId back : {id, group, member}) EXPECT_TRUE(s.store.alive(back));
+  s.world.transaction().rollback();
+  for (const NodeId node : {id, group, member}) EXPECT_TRUE(s.store.alive(node));
   EXPECT_EQ(a.find_behavior("one"), &one);
   EXPECT_EQ(s.list().find_group("flock"), &flock);
   EXPECT_EQ(names_in(a.behaviors()), (Words{"one", "flock"}));
   EXPECT_EQ(s.list().order(), (Words{"a/one", "/flock"}));
 }
 
-TEST(BehaviorUndo, AGoodRemovalIsForGood) {
+TEST(BehaviorTransaction, CommittedRemovalIsFinal) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
@@ -137,52 +141,53 @@ TEST(BehaviorUndo, AGoodRemovalIsForGood) {
   BehaviorGroup& flock = s.group("flock");
   s.ticks(1);
   const std::size_t slots = s.store.view()->slot_count;
-  s.world.undo().begin();
+  s.world.transaction().begin();
   s.list().remove(*a.find_behavior("one"));
   s.list().remove(*b.find_behavior("flock"));
-  s.world.undo().end();
-  BehaviorRig::take_diary();
+  s.world.transaction().commit();
+  BehaviorRig::consume_calls();
   s.ticks(2);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step a/flock", "step a/flock"})) << "nor does the member come again";
-  s.world.undo().begin();
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/flock", "step a/flock"}))
+      << "the removed member is not added again";
+  s.world.transaction().begin();
   s.list().remove_group(flock);
-  s.world.undo().end();
+  s.world.transaction().commit();
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), Words{});
+  EXPECT_EQ(BehaviorRig::consume_calls(), Words{});
   s.probe(b, "next");
   s.group("next flock");
-  EXPECT_EQ(s.store.view()->slot_count, slots) << "in slots of those that have gone";
+  EXPECT_EQ(s.store.view()->slot_count, slots) << "released slots are reused";
 }
 
-// a behaviour that acts in its step as a guarded call would
-struct Guarded : Behavior {
-  static inline std::function<void(Guarded&)> act;
-  static inline bool good = true;
+// A behavior that changes the list in its step, as in a guarded call.
+struct GuardedBehavior : Behavior {
+  static inline std::function<void(GuardedBehavior&)> action;
+  static inline bool commit = true;
   void step(double) override {
-    WorldUndo& undo = world().undo();
+    WorldTransaction& undo = world().transaction();
     undo.begin();
-    act(*this);
-    good ? undo.end() : undo.take_back();
+    action(*this);
+    commit ? undo.commit() : undo.rollback();
   }
 };
 
-TEST(BehaviorUndo, WhileTheyStep) {
+TEST(BehaviorTransaction, RollsBackChangesDuringStep) {
   BehaviorRig s;
-  ASSERT_TRUE(s.types().add(BehaviorType::of<Guarded>("guarded", "Acts.", BehaviorTargets::any, {})).ok());
+  ASSERT_TRUE(s.types().add(BehaviorType::create<GuardedBehavior>("guarded", "Acts.", BehaviorTargets::any, {})).ok());
   Body& a = s.chain("a", {"base"});
   s.probe(a, "before");
   ASSERT_TRUE(s.list().add(a, "guarded", "g").ok());
   s.group("flock");
   s.probe(a, "after");
-  Guarded::act = [](Guarded&) {};
+  GuardedBehavior::action = [](GuardedBehavior&) {};
   s.ticks(1);
-  const auto tick_with = [&](bool good) {
-    BehaviorRig::take_diary();
-    Guarded::good = good;
+  const auto tick_with = [&](bool commit) {
+    BehaviorRig::consume_calls();
+    GuardedBehavior::commit = commit;
     s.ticks(1);
-    return BehaviorRig::take_diary();
+    return BehaviorRig::consume_calls();
   };
-  Guarded::act = [](Guarded& self) {
+  GuardedBehavior::action = [](GuardedBehavior& self) {
     BehaviorList& list = self.world().behaviors();
     for (const char* name : {"after", "before"}) list.remove(*self.body().find_behavior(name));
     list.remove_group(*list.find_group("flock"));
@@ -196,7 +201,7 @@ TEST(BehaviorUndo, WhileTheyStep) {
   s.ticks(1);
 }
 
-TEST(BehaviorUndo, DrawsBeatsAndErrorsAreAsTheyWere) {
+TEST(BehaviorTransaction, RestoresGeneratorsTimersAndErrors) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Probe& one = s.probe(a, "one");
@@ -204,32 +209,32 @@ TEST(BehaviorUndo, DrawsBeatsAndErrorsAreAsTheyWere) {
   s.set(broken.id(), "broken", {1});
   s.ticks(1);
   ASSERT_NE(broken.error(), "");
-  const Row& beat = one.type().table->at("beat");
+  const Property& beat = one.type().table->at("beat");
   const std::uint64_t before = one.state_hash(0);
-  s.world.undo().begin();
-  s.list().undo().keep(one);
+  s.world.transaction().begin();
+  s.list().transaction().save(one);
   (void)one.random().uniform();
   s.set(one.id(), "beat", {1});
-  EXPECT_TRUE(one.due(beat)) << "every tick";
+  EXPECT_TRUE(one.interval_elapsed(beat)) << "every tick";
   s.set(broken.id(), "active", {1});
-  EXPECT_EQ(broken.error(), "") << "tried again";
-  s.world.undo().take_back();
+  EXPECT_EQ(broken.error(), "") << "the error is cleared";
+  s.world.transaction().rollback();
   EXPECT_EQ(one.state_hash(0), before);
   EXPECT_EQ(broken.error(), "it is broken");
-  BehaviorRig::take_diary();
+  BehaviorRig::consume_calls();
   s.ticks(1);
-  EXPECT_EQ(BehaviorRig::take_diary(), (Words{"step a/one"}));
+  EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/one"}));
 }
 
-TEST(BehaviorUndo, ARefusedGroupInACallLeavesNothing) {
+TEST(BehaviorTransaction, RejectedGroupLeavesNothingBehind) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
   s.probe(b, "taken");
-  s.world.undo().begin();
-  EXPECT_EQ(s.group_refusal("probe_group", "taken"), "body 'b' has a behavior 'taken' already; names are unique");
+  s.world.transaction().begin();
+  EXPECT_EQ(s.add_group_error("probe_group", "taken"), "body 'b' has a behavior 'taken' already; names are unique");
   EXPECT_TRUE(a.behaviors().empty());
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_TRUE(a.behaviors().empty());
   s.ticks(1);
 }

@@ -1,4 +1,4 @@
-// Bodies: made, copied, moved, reset, removed; names and stale ids.
+// Bodies: creating, copying, moving, resetting, removing; names and stale ids.
 #include "sim/body.h"
 
 #include <gtest/gtest.h>
@@ -13,48 +13,49 @@ namespace {
 
 using namespace test;
 
-// Every number of every row that can be read, of a body and all below it.
-std::vector<double> all_rows(Stage& s, const Body& body) {
+// All readable values of a body and its descendants.
+std::vector<double> all_values(WorldFixture& s, const Body& body) {
   std::vector<double> out;
   s.store.walk(body.id(), [&](NodeId id) {
-    for (const Row& row : s.store.table(id).rows()) {
-      // what was applied is of the last step, which a copy has not made yet
-      if (row.kind == RowKind::action || row.name.find("applied") != std::string::npos) continue;
-      const std::vector<double> v = s.get(id, row.name);
+    for (const Property& property : s.store.table(id).properties()) {
+      // applied forces are those of the last step, which a copy hasn't had yet
+      if (property.kind == PropertyKind::action || property.name.find("applied") != std::string::npos) continue;
+      const std::vector<double> v = s.get(id, property.name);
       out.insert(out.end(), v.begin(), v.end());
     }
   });
   return out;
 }
 
-// Moves every kept row of a body's nodes away from its default.
-void scramble(Stage& s, Body& body) {
+// Changes every persistent value of a body's nodes from its default.
+void change_all_settings(WorldFixture& s, Body& body) {
   int n = 1;
   s.store.walk(body.id(), [&](NodeId id) {
-    for (const Row& row : s.store.table(id).rows()) {
-      if (row.kind != RowKind::property || !row.stored()) continue;
-      std::vector<double> v(row.width);
-      for (std::uint32_t i = 0; i < row.width; i++) {
+    for (const Property& property : s.store.table(id).properties()) {
+      if (property.kind != PropertyKind::setting || !property.stored()) continue;
+      std::vector<double> v(property.width);
+      for (std::uint32_t i = 0; i < property.width; i++) {
         const double sample = 0.001 + 0.01 * (n++ % 37);
-        v[i] =
-            row.type == RowType::flags3 || row.type == RowType::boolean ? n % 2 : std::clamp(sample, row.min, row.max);
+        v[i] = property.type == PropertyType::flags3 || property.type == PropertyType::boolean
+                   ? n % 2
+                   : std::clamp(sample, property.min, property.max);
       }
-      (void)s.store.set(id, row, v);
+      (void)s.store.set(id, property, v);
     }
   });
 }
 
-TEST(BodyTest, ACopyHasEverything) {
-  Stage s;
+TEST(BodyTest, CopyHasAllValues) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm");
-  scramble(s, arm);
-  wave(s, arm, 0.3);
+  change_all_settings(s, arm);
+  set_wave_targets(s, arm, 0.3);
   s.ticks(20);
   Body& twin = **s.world.copy_body(arm, "twin");
-  s.world.settle();
-  EXPECT_EQ(all_rows(s, twin), all_rows(s, arm));
-  EXPECT_EQ(bits(twin), bits(arm));
+  s.world.flush();
+  EXPECT_EQ(all_values(s, twin), all_values(s, arm));
+  EXPECT_EQ(motion_values(twin), motion_values(arm));
   ASSERT_EQ(twin.parts().size(), arm.parts().size());
   for (std::size_t i = 0; i < arm.parts().size(); i++) {
     EXPECT_EQ(twin.parts()[i]->name(), arm.parts()[i]->name());
@@ -75,7 +76,7 @@ TEST(BodyTest, ACopyHasEverything) {
   }
 }
 
-TEST(BodyTest, ACopyOfAnImportedBodyKeepsItsModelAndFollowers) {
+TEST(BodyTest, CopyOfAnImportedBodyKeepsItsModelAndMimicJoints) {
   auto model = std::make_shared<BodyModel>();
   model->name = "pair";
   for (const char* name : {"base", "a", "b"}) {
@@ -102,7 +103,7 @@ TEST(BodyTest, ACopyOfAnImportedBodyKeepsItsModelAndFollowers) {
     model->joints.push_back(joint);
   }
   model->merged.push_back({"tool", 1, {{0, 0, 0.5}, quat_identity()}});
-  Stage s;
+  WorldFixture s;
   Body& body = **s.world.add_body(model, "body", {});
   Body& twin = **s.world.copy_body(body, "twin");
   twin.set_pose({{0, 5, 0}, quat_identity()});
@@ -117,8 +118,8 @@ TEST(BodyTest, ACopyOfAnImportedBodyKeepsItsModelAndFollowers) {
   EXPECT_EQ(twin.link_pose("tol").error(), "body 'twin' has no link 'tol'; did you mean 'tool'?");
 }
 
-TEST(BodyTest, ACopyOfASwitchedOffBodyIsSwitchedOff) {
-  Stage s;
+TEST(BodyTest, CopyOfADisabledBodyIsDisabled) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm");
   s.set(arm.id(), "enabled", {0});
@@ -126,34 +127,34 @@ TEST(BodyTest, ACopyOfASwitchedOffBodyIsSwitchedOff) {
   Body& twin = **s.world.copy_body(arm, "twin");
   s.ticks(10);
   EXPECT_FALSE(twin.enabled());
-  EXPECT_EQ(bits(twin), bits(arm));
+  EXPECT_EQ(motion_values(twin), motion_values(arm));
 }
 
-// The original in one run; in another its copy, where it stood.
-TEST(BodyTest, ACopyInItsPlaceMovesLikeTheOriginalToTheBit) {
+// Compares a run with the original to one with a copy in its place.
+TEST(BodyTest, CopyMovesLikeTheOriginalBitForBit) {
   std::vector<float> last[2];
   for (int run = 0; run < 2; run++) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -9.81});
     s.floor();
     Body* arm = &make_arm(s, "arm", {5, {0.3, -0.2, 0.5}, false});
-    wave(s, *arm, 0.1);
+    set_wave_targets(s, *arm, 0.1);
     if (run == 1) {
       Body& twin = **s.world.copy_body(*arm, "twin");
       s.world.remove_body(*arm);
       arm = &twin;
     }
     for (int i = 0; i < 240; i++) {
-      wave(s, *arm, 0.1 + s.world.time());
+      set_wave_targets(s, *arm, 0.1 + s.world.time());
       s.ticks(1);
     }
-    last[run] = bits(*arm);
+    last[run] = motion_values(*arm);
   }
   EXPECT_EQ(last[0], last[1]);
 }
 
-TEST(BodyTest, CopiesElsewhereMoveAlike) {
-  Stage s;
+TEST(BodyTest, CopiesAtOtherPlacesMoveAlike) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm");
   std::vector<Body*> twins;
@@ -162,22 +163,22 @@ TEST(BodyTest, CopiesElsewhereMoveAlike) {
     twins.push_back(*s.world.copy_body(arm, "twin" + std::to_string(twins.size())));
     twins.back()->set_pose({place, quat_identity()});
   }
-  double most = 0;
+  double max_error = 0;
   for (int i = 0; i < 600; i++) {
-    wave(s, arm, s.world.time());
-    for (Body* twin : twins) wave(s, *twin, s.world.time());
+    set_wave_targets(s, arm, s.world.time());
+    for (Body* twin : twins) set_wave_targets(s, *twin, s.world.time());
     s.ticks(1);
     for (std::size_t t = 0; t < twins.size(); t++) {
       const Vec3 a = arm.parts().back()->pose().position;
       const Vec3 b = twins[t]->parts().back()->pose().position;
-      most = std::max(most, glm::length(b - a - places[t]));
+      max_error = std::max(max_error, glm::length(b - a - places[t]));
     }
   }
-  EXPECT_LT(most, 1e-5);
+  EXPECT_LT(max_error, 1e-5);
 }
 
-TEST(BodyTest, ACopyNeverCollidesWithItsOriginalOnceItIsPlaced) {
-  Stage s;
+TEST(BodyTest, MovedCopyNeverCollidesWithItsOriginal) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {5, {0, 0, 0}, false});
   for (const auto& part : arm.parts()) s.set(part->id(), "report_contacts", {1});
   for (int i = 0; i < 20; i++) {
@@ -191,11 +192,11 @@ TEST(BodyTest, ACopyNeverCollidesWithItsOriginalOnceItIsPlaced) {
   EXPECT_LT(glm::length(arm.root()->linear_velocity()), 1e-6);
 }
 
-TEST(BodyTest, MovesRigidlyItsJointsKeepTheirAngles) {
-  Stage s;
+TEST(BodyTest, SetPoseMovesItRigidlyAndKeepsJointAngles) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm");
   for (int i = 0; i < 60; i++) {
-    wave(s, arm, s.world.time());
+    set_wave_targets(s, arm, s.world.time());
     s.ticks(1);
   }
   std::vector<double> angles;
@@ -204,24 +205,24 @@ TEST(BodyTest, MovesRigidlyItsJointsKeepTheirAngles) {
   for (const auto& part : arm.parts()) speeds.push_back(part->linear_velocity());
   const Pose to{{3, -2, 7}, quat_axis(normalized({1, 1, 0.3}), 2)};
   arm.set_pose(to);
-  s.world.settle();
+  s.world.flush();
   for (std::size_t i = 0; i < angles.size(); i++) {
     EXPECT_NEAR(arm.joints()[i]->value(), angles[i], 2e-6);
     EXPECT_NEAR(s.number(arm.joints()[i]->id(), "value"), angles[i], 2e-6);
   }
   for (std::size_t i = 0; i < speeds.size(); i++) EXPECT_EQ(arm.parts()[i]->linear_velocity(), speeds[i]);
   EXPECT_LT(glm::length(arm.pose().position - to.position), 1e-12);
-  // a static base is moved too, and what hangs on it stays on it
+  // a static base moves too, and its children stay attached
   s.ticks(60);
   EXPECT_LT(glm::length(arm.parts()[1]->pose().position - to.position), 0.3);
 }
 
-TEST(BodyTest, ResetGoesBackToTheStartTurnsIncluded) {
-  Stage s;
+TEST(BodyTest, ResetRestoresTheStartPoseWithFullTurns) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {2, {0, 0, 0}, true});
   const std::vector<double> start = [&] {
     s.ticks(1);
-    return all_rows(s, arm);
+    return all_values(s, arm);
   }();
   Motor& motor = *arm.motors()[0];
   s.set(motor.id(), "mode", {1});
@@ -232,35 +233,35 @@ TEST(BodyTest, ResetGoesBackToTheStartTurnsIncluded) {
   s.set(motor.id(), "speed", {0});
   arm.parts()[1]->apply_force({1000, 0, 0});
   arm.reset();
-  s.world.settle();
+  s.world.flush();
   for (const auto& joint : arm.joints()) EXPECT_NEAR(joint->value(), 0, 1e-6);
   for (const auto& part : arm.parts()) {
     EXPECT_EQ(glm::length(part->linear_velocity()) + glm::length(part->angular_velocity()), 0);
   }
   s.ticks(10);
   EXPECT_LT(glm::length(arm.parts()[2]->pose().position - Vec3(0, 0, 0.5)), 1e-5);
-  EXPECT_EQ(all_rows(s, arm).size(), start.size());
+  EXPECT_EQ(all_values(s, arm).size(), start.size());
 }
 
-TEST(BodyTest, TheStartIsWhereABodyStoodBeforeItsFirstStep) {
-  Stage s;
-  Part& ball = s.lone(sphere_model(0.1), 1);
+TEST(BodyTest, StartPoseIsThePoseBeforeTheFirstStep) {
+  WorldFixture s;
+  Part& ball = s.add_single_part(sphere_model(0.1), 1);
   ball.body().set_pose({{1, 2, 3}, quat_identity()});
   s.set(ball.id(), "linear_velocity", {1, 0, 0});
   s.ticks(30);
   ball.body().reset();
-  s.world.settle();
+  s.world.flush();
   EXPECT_LT(glm::length(ball.pose().position - Vec3(1, 2, 3)), 1e-12);
 }
 
 TEST(BodyTest, NamesAreUniqueAndPrintable) {
-  Stage s;
+  WorldFixture s;
   Body& arm = make_arm(s, "arm");
   const auto text = [](const auto& result) { return result ? std::string("none") : result.error(); };
   EXPECT_EQ(text(s.world.add_body("arm")), "there is a body 'arm' already; names are unique");
   EXPECT_EQ(text(s.world.copy_body(arm, "arm")), "there is a body 'arm' already; names are unique");
   EXPECT_EQ(text(s.world.add_body("")), "body: a name must not be empty");
-  EXPECT_EQ(text(s.world.add_body("a\x1b")), "body: the name 'a\\x1b' holds characters that can't be printed");
+  EXPECT_EQ(text(s.world.add_body("a\x1b")), "body: the name 'a\\x1b' contains unprintable characters");
   Shape& ball = s.shape(sphere_model(0.1));
   EXPECT_EQ(text(arm.add_part("link1", ball, 1, {})), "there is a part 'link1' already; names are unique");
   Part& a = *arm.parts()[1];
@@ -269,14 +270,14 @@ TEST(BodyTest, NamesAreUniqueAndPrintable) {
             "there is a joint 'joint1' already; names are unique");
   EXPECT_EQ(text(s.world.add_shape("arm link", sphere_model(1))),
             "there is a shape 'arm link' already; names are unique");
-  // the same names within another body, and names that differ in case, are others
+  // the same names in another body, and names that differ in case, are free
   EXPECT_TRUE(s.world.add_body("Arm"));
   EXPECT_EQ(s.world.bodies().size(), 2u);
   EXPECT_EQ(s.world.body_names(), (std::vector<std::string_view>{"arm", "Arm"}));
 }
 
-TEST(BodyTest, RefusesWhatCannotBe) {
-  Stage s;
+TEST(BodyTest, RejectsInvalidPartsAndJoints) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm");
   Body& other = s.body("other");
   Part& base = *arm.parts()[0];
@@ -287,14 +288,14 @@ TEST(BodyTest, RefusesWhatCannotBe) {
     const auto r = arm.add_joint("new", p, c, JointType::revolute, Vec3(0), axis);
     return r ? std::string("none") : r.error();
   };
-  EXPECT_EQ(joint(link, link, {0, 0, 1}), "joint 'arm/new': a part can't hang on itself");
+  EXPECT_EQ(joint(link, link, {0, 0, 1}), "joint 'arm/new': parent and child must be different parts");
   EXPECT_EQ(joint(link, foreign, {0, 0, 1}), "joint 'arm/new': both parts must be of this body");
   EXPECT_EQ(joint(base, link, Vec3(0)), "joint 'arm/new': the axis must not be zero");
   EXPECT_EQ(joint(base, stone, {0, 0, 1}), "joint 'arm/new': both parts are static; one must have mass");
   EXPECT_EQ(arm.add_motor(*arm.joints()[0]).error(), "joint 'arm/joint1' has a motor already");
   EXPECT_EQ(other.add_motor(*arm.joints()[0]).error(), "joint 'arm/joint1' belongs to another body");
   EXPECT_EQ(other.add_part("floor", s.shape(plane_model()), 1, {}).error(),
-            "part 'other/floor' is a plane, which has mass 0 and never moves, not 1 kg");
+            "part 'other/floor' is a plane: its mass must be 0, not 1 kg");
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
   Shape& empty = *s.world.add_shape("empty", compound).value();
@@ -302,7 +303,7 @@ TEST(BodyTest, RefusesWhatCannotBe) {
             "compound 'empty' is empty; add its children before a part is made of it");
   const double nan = std::nan("");
   EXPECT_EQ(other.add_part("x", s.shape(sphere_model(1)), -1, {}).error(),
-            "part 'other/x' needs a mass of 0.001 .. 1000000 kg, or 0 to never move, not -1");
+            "part 'other/x' needs a mass of 0.001 .. 1000000 kg, or 0 for a static part, not -1");
   EXPECT_FALSE(other.add_part("x", s.shape(sphere_model(1)), nan, {}));
   EXPECT_EQ(other.add_part("x", s.shape(sphere_model(1)), 1, {{0, nan, 0}, quat_identity()}).error(),
             "part 'other/x' needs a position of three numbers and a rotation that is not zero");
@@ -310,19 +311,19 @@ TEST(BodyTest, RefusesWhatCannotBe) {
   EXPECT_EQ(joint(base, link, {0, nan, 1}), "joint 'arm/new': position and axis must be numbers");
   const double one = 1;
   EXPECT_EQ(s.store.set(base.id(), Part::table().at("mass"), {&one, 1}).error(),
-            "/physics/body/arm/part/link0/mass: it was made with mass 0 and never moves; make it with a mass instead");
+            "/physics/body/arm/part/link0/mass: the part was created static (mass 0); create it with a mass instead");
   EXPECT_EQ(other.parts().size(), 1u);
   EXPECT_EQ(arm.joints().size(), 5u);
 }
 
-TEST(BodyTest, GoesInAnyOrderWhileTouching) {
+TEST(BodyTest, CanBeRemovedInAnyOrderWhileTouching) {
   for (int order = 0; order < 4; order++) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -9.81});
     s.floor();
     std::vector<std::string> names;
     for (int i = 0; i < 12; i++) {
-      Body& arm = make_arm(s, "arm" + std::to_string(i), {3, {0.12 * i, 0, 0.2}, false});  // into each other
+      Body& arm = make_arm(s, "arm" + std::to_string(i), {3, {0.12 * i, 0, 0.2}, false});  // interpenetrating
       for (const auto& part : arm.parts()) s.set(part->id(), "report_contacts", {1});
       names.push_back(arm.name());
     }
@@ -330,9 +331,9 @@ TEST(BodyTest, GoesInAnyOrderWhileTouching) {
     std::size_t events = 0;
     while (!names.empty()) {
       const std::size_t at = order == 0 ? 0 : order == 1 ? names.size() - 1 : (names.size() * 7 / 3) % names.size();
-      const NodeId gone = s.world.find_body(names[at])->id();
+      const NodeId removed = s.world.find_body(names[at])->id();
       s.world.remove_body(*s.world.find_body(names[at]));
-      EXPECT_FALSE(s.store.alive(gone));
+      EXPECT_FALSE(s.store.alive(removed));
       EXPECT_EQ(s.world.find_body(names[at]), nullptr);
       names.erase(names.begin() + static_cast<std::ptrdiff_t>(at));
       s.ticks(order == 3 ? 0 : 2);
@@ -347,8 +348,8 @@ TEST(BodyTest, GoesInAnyOrderWhileTouching) {
   }
 }
 
-TEST(BodyTest, HundredsStandSideBySide) {
-  Stage s;
+TEST(BodyTest, SupportsHundredsOfBodies) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm", {2});
   std::vector<std::uint64_t> hashes;

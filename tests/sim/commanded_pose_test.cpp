@@ -1,6 +1,6 @@
-// Robots from URDF files, held at their root, without weight: sent to a pose by their servos, every link gets there.
-// What is expected comes from frames multiplied by hand; and where there are robots beside the checkout, from another
-// reader's figures.
+// Robots from URDF files with a fixed root, without gravity: their servos move every link to a commanded pose. The
+// expected poses are products of frames, and for robots outside of the repository, if there are any, the results of
+// another URDF reader.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -20,68 +20,68 @@ using nlohmann::json;
 const fs::path kRepo = LIMBER_SOURCE_DIR;
 const fs::path kData = kRepo / "../shared/data";
 
-bool moves(const JointModel& joint) {
+bool is_movable(const JointModel& joint) {
   return joint.type == JointType::revolute || joint.type == JointType::continuous || joint.type == JointType::prismatic;
 }
 
-double in_limits(const JointModel& joint, double q) {
+double clamped_to_limits(const JointModel& joint, double q) {
   return joint.limited ? std::clamp(q, joint.lower, joint.upper) : q;
 }
 
-// links in the root's frame, joint by joint
-std::vector<Pose> forward(const BodyModel& model, const std::vector<double>& q) {
+// Computes the links' poses in the root's frame, joint by joint.
+std::vector<Pose> forward_kinematics(const BodyModel& model, const std::vector<double>& q) {
   std::vector<Pose> pose(model.links.size());
   for (std::size_t i = 0; i < model.joints.size(); i++) {
     const JointModel& joint = model.joints[i];
-    Pose move;
-    if (joint.type == JointType::prismatic) move.position = {0, 0, q[i]};
+    Pose motion;
+    if (joint.type == JointType::prismatic) motion.position = {0, 0, q[i]};
     if (joint.type == JointType::revolute || joint.type == JointType::continuous) {
-      move.rotation = quat_axis({0, 0, 1}, q[i]);
+      motion.rotation = quat_axis({0, 0, 1}, q[i]);
     }
     pose[static_cast<std::size_t>(joint.child)] =
-        pose[static_cast<std::size_t>(joint.parent)] * joint.frame_in_parent * move * joint.frame_in_child.inverse();
+        pose[static_cast<std::size_t>(joint.parent)] * joint.frame_in_parent * motion * joint.frame_in_child.inverse();
   }
   return pose;
 }
 
 double angle_of(const Quat& q) { return 2 * std::atan2(glm::length(Vec3(q.x, q.y, q.z)), std::fabs(q.w)); }
 
-// Half of what is asked, so that it does not just pass by.
+// True if all links are within half the tested tolerance; half, so that a link that is still moving doesn't count.
 bool has_arrived(const Body& body, const BodyModel& model, const std::vector<Pose>& expected) {
   for (std::size_t i = 0; i < model.links.size(); i++) {
     const Part* part = body.find_part(model.links[i].name);
-    const Pose is = body.pose().inverse() * part->pose();
-    if (glm::length(is.position - expected[i].position) > 5e-5) return false;
-    if (angle_of(glm::inverse(expected[i].rotation) * is.rotation) > 5e-5) return false;
+    const Pose actual = body.pose().inverse() * part->pose();
+    if (glm::length(actual.position - expected[i].position) > 5e-5) return false;
+    if (angle_of(glm::inverse(expected[i].rotation) * actual.rotation) > 5e-5) return false;
   }
   return true;
 }
 
-// Every link within 1e-4 m and rad of where its joints' angles put it.
+// Checks that every link is within 1e-4 m and rad of the pose given by its joint positions.
 void expect_arrival(const std::shared_ptr<const BodyModel>& model, std::vector<double> targets,
-                    const json* posed = nullptr) {
-  Stage s;
+                    const json* reference = nullptr) {
+  WorldFixture s;
   s.gravity({0, 0, 0});
   s.iterations(150);
   s.substeps(8);
   Body& body = **s.world.add_body(model, "robot", BuildOptions{});
   ASSERT_EQ(body.parts().size(), model->links.size());
-  // what is asked is the pose, not the way there: some of these robots would stand in their own way
+  // only the final pose is tested; on the way, some of these robots would collide with themselves
   s.set(body.id(), "self_collision", {0});
   for (std::size_t i = 0; i < model->joints.size(); i++) {
     const JointModel& joint = model->joints[i];
-    if (!moves(joint)) continue;
-    targets[i] = in_limits(joint, targets[i]);
-    Joint* made = body.find_joint(joint.name);
-    ASSERT_NE(made, nullptr) << joint.name;
+    if (!is_movable(joint)) continue;
+    targets[i] = clamped_to_limits(joint, targets[i]);
+    Joint* joint_of_body = body.find_joint(joint.name);
+    ASSERT_NE(joint_of_body, nullptr) << joint.name;
     if (joint.mimic >= 0) continue;
-    made->motor()->set_target(targets[i]);
-    // some files say 1 N·m where 35 kg are to be turned: true, but a matter of minutes
-    s.set(made->motor()->id(), "max_angular_force", {1e4, 1e4, 1e4});
+    joint_of_body->motor()->set_target(targets[i]);
+    // some files limit the effort to 1 N·m for a load of 35 kg, which is possible but takes minutes
+    s.set(joint_of_body->motor()->id(), "max_angular_force", {1e4, 1e4, 1e4});
   }
-  const std::vector<Pose> expected = forward(*model, targets);
+  const std::vector<Pose> expected = forward_kinematics(*model, targets);
   for (int i = 0; i < 30 && !has_arrived(body, *model, expected); i++) {
-    if (i == 5) {  // as much as it needs
+    if (i == 5) {  // as much force as necessary
       s.iterations(400);
       s.substeps(16);
     }
@@ -91,16 +91,17 @@ void expect_arrival(const std::shared_ptr<const BodyModel>& model, std::vector<d
   for (std::size_t i = 0; i < model->links.size(); i++) {
     Part* part = body.find_part(model->links[i].name);
     ASSERT_NE(part, nullptr);
-    const Pose is = root.inverse() * part->pose();
-    EXPECT_LT(glm::length(is.position - expected[i].position), 1e-4) << model->name << " " << part->name();
-    EXPECT_LT(angle_of(glm::inverse(expected[i].rotation) * is.rotation), 1e-4) << model->name << " " << part->name();
-    if (posed == nullptr) continue;
-    const json& xyz = posed->at(model->links[i].name).at("xyz");
-    EXPECT_LT(glm::length(is.position - Vec3(xyz.at(0), xyz.at(1), xyz.at(2))), 1.1e-4) << part->name();
+    const Pose actual = root.inverse() * part->pose();
+    EXPECT_LT(glm::length(actual.position - expected[i].position), 1e-4) << model->name << " " << part->name();
+    EXPECT_LT(angle_of(glm::inverse(expected[i].rotation) * actual.rotation), 1e-4)
+        << model->name << " " << part->name();
+    if (reference == nullptr) continue;
+    const json& xyz = reference->at(model->links[i].name).at("xyz");
+    EXPECT_LT(glm::length(actual.position - Vec3(xyz.at(0), xyz.at(1), xyz.at(2))), 1.1e-4) << part->name();
   }
 }
 
-std::shared_ptr<const BodyModel> read(const fs::path& file) {
+std::shared_ptr<const BodyModel> import_fixed(const fs::path& file) {
   ImportOptions options;
   options.fixed_base = true;
   auto model = import_urdf(file.string(), options);
@@ -108,22 +109,22 @@ std::shared_ptr<const BodyModel> read(const fs::path& file) {
   return *model;
 }
 
-TEST(CommandedPose, OurRobotsGoWhereTheyAreSent) {
+TEST(CommandedPose, RobotsOfTheRepositoryReachTheCommandedPose) {
   for (const char* name : {"arm6", "arm17", "worm"}) {
-    const auto model = read(kRepo / "urdf" / (std::string(name) + ".urdf"));
+    const auto model = import_fixed(kRepo / "urdf" / (std::string(name) + ".urdf"));
     std::vector<double> targets;
     for (std::size_t i = 0; i < model->joints.size(); i++) targets.push_back(i % 2 == 0 ? 0.2 : -0.15);
     expect_arrival(model, targets);
   }
 }
 
-TEST(CommandedPose, RobotsBesideTheCheckoutGoWhereAnotherReaderHasThem) {
+TEST(CommandedPose, ExternalRobotsReachThePoseOfAnotherReader) {
   for (const char* set : {"arms", "urdf_synthetic"}) {
-    std::error_code fault;
-    for (const auto& entry : fs::directory_iterator(kData / set / "expected", fault)) {
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(kData / set / "expected", error)) {
       const std::string name = entry.path().stem().string();
       const auto model =
-          read(std::string(set) == "arms" ? kData / set / name / "robot.urdf" : kData / set / (name + ".urdf"));
+          import_fixed(std::string(set) == "arms" ? kData / set / name / "robot.urdf" : kData / set / (name + ".urdf"));
       const json expected = json::parse(std::ifstream(entry.path()));
       std::vector<double> targets;
       bool all_within = true;
@@ -131,7 +132,7 @@ TEST(CommandedPose, RobotsBesideTheCheckoutGoWhereAnotherReaderHasThem) {
         const json& posed_q = expected.at("posed_q");
         const double q = posed_q.contains(joint.name) ? posed_q.at(joint.name).get<double>() : 0;
         targets.push_back(q);
-        all_within = all_within && (!moves(joint) || in_limits(joint, q) == q);
+        all_within = all_within && (!is_movable(joint) || clamped_to_limits(joint, q) == q);
       }
       expect_arrival(model, targets, all_within ? &expected.at("posed") : nullptr);
     }

@@ -1,4 +1,4 @@
-// Contact friction: the same at every heading, in both solvers; rolling and spinning; anisotropic.
+// Contact friction: isotropic friction in both solvers; rolling and spinning friction; anisotropic friction.
 #include "sim/contact_friction.h"
 
 #include <cmath>
@@ -17,32 +17,32 @@ constexpr int kHeadings = 12;
 
 Vec3 direction(double heading) { return {std::cos(heading), std::sin(heading), 0}; }
 
-enum class Kind { iterative, direct, joined };  // joined: with another part, by a lock, in the direct solver
+enum class Kind { iterative, direct, joined };  // joined: locked to another part, in the direct solver
 constexpr Kind kKinds[] = {Kind::iterative, Kind::direct, Kind::joined};
 
 // A block on a plane.
-struct Sliding : Stage {
-  explicit Sliding(Kind kind, double mu, const Vec3& g = {0, 0, -kG}) {
+struct SlidingBlock : WorldFixture {
+  explicit SlidingBlock(Kind kind, double mu, const Vec3& g = {0, 0, -kG}) {
     set(world.id(), "solver", {kind == Kind::iterative ? 0.0 : 1.0});
     gravity(g);
     floor();
-    Body& of = body("block");
-    block = &part(of, box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+    Body& body_of_block = body("block");
+    block = &part(body_of_block, box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
     set(block->id(), "friction", {mu});
     if (kind != Kind::joined) return;
-    Part& rider = part(of, box_model({0.1, 0.1, 0.02}), 1, {{0, 0, 0.06}, quat_identity()});
-    (void)of.add_joint("lock", *block, rider, JointType::fixed, {0, 0, 0.05}, {0, 0, 1}).value();
+    Part& attached = part(body_of_block, box_model({0.1, 0.1, 0.02}), 1, {{0, 0, 0.06}, quat_identity()});
+    (void)body_of_block.add_joint("lock", *block, attached, JointType::fixed, {0, 0, 0.05}, {0, 0, 1}).value();
   }
   Part* block;
 };
 
-TEST(ContactFriction, BrakesAsMuchAtEveryHeading) {
+TEST(ContactFriction, SlidingFrictionIsIsotropic) {
   const double mu = 0.4;
   for (const Kind kind : kKinds) {
     for (int i = 0; i < kHeadings; i++) {
       const double heading = 2 * kPi * i / kHeadings;
       SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " heading " << heading);
-      Sliding s(kind, mu);
+      SlidingBlock s(kind, mu);
       for (const auto& part : s.block->body().parts()) part->set_velocity(3.0 * direction(heading), Vec3(0));
       s.ticks(30);
       const Vec3 v = s.block->linear_velocity();
@@ -53,28 +53,29 @@ TEST(ContactFriction, BrakesAsMuchAtEveryHeading) {
   }
 }
 
-// On a slope of 0.98 of what friction holds it stays, on one of 1.05 times it slides, at every heading.
-TEST(ContactFriction, HoldsAsMuchAtEveryHeading) {
+// A block rests on a slope of 0.98 times the friction limit and slides on one of 1.05 times, at every heading.
+TEST(ContactFriction, StaticFrictionIsIsotropic) {
   const double mu = 0.5;
   for (const Kind kind : kKinds) {
     for (int i = 0; i < kHeadings; i++) {
       const double heading = 2 * kPi * i / kHeadings + 0.1;
-      for (const double part : {0.98, 1.05}) {
+      for (const double factor : {0.98, 1.05}) {
         SCOPED_TRACE(::testing::Message()
-                     << "kind " << static_cast<int>(kind) << " heading " << heading << ' ' << part);
-        const double slope = std::atan(part * mu);
-        Sliding s(kind, mu, kG * (std::sin(slope) * direction(heading) - Vec3(0, 0, std::cos(slope))));
+                     << "kind " << static_cast<int>(kind) << " heading " << heading << ' ' << factor);
+        const double slope = std::atan(factor * mu);
+        SlidingBlock s(kind, mu, kG * (std::sin(slope) * direction(heading) - Vec3(0, 0, std::cos(slope))));
         s.ticks(60);
-        const double expected = part < 1 ? 0 : kG * (std::sin(slope) - mu * std::cos(slope));
+        const double expected = factor < 1 ? 0 : kG * (std::sin(slope) - mu * std::cos(slope));
         EXPECT_NEAR(glm::dot(s.block->linear_velocity(), direction(heading)), expected, 0.02 * expected + 5e-3);
       }
     }
   }
 }
 
-// What slides has no hold left across: across a slope that would hold it at rest it turns downhill. Compared with the
-// equation of motion, dv/dt = g·sin·down - mu·g·cos·v/|v|, in small steps.
-TEST(ContactFriction, DoesNotHoldAcrossTheSlip) {
+// A sliding block has no static friction across the slip: moving across a slope on which it could rest, it turns
+// downhill.
+// Compared with the equation of motion, dv/dt = g·sin·down - mu·g·cos·v/|v|, in small steps.
+TEST(ContactFriction, SlidingBlockTurnsDownhill) {
   const double mu = 0.5;
   const double slope = 0.3;
   for (const Kind kind : kKinds) {
@@ -82,7 +83,7 @@ TEST(ContactFriction, DoesNotHoldAcrossTheSlip) {
       SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " heading " << heading);
       const Vec3 down = direction(heading);
       const Vec3 across = direction(heading + kPi / 2);
-      Sliding s(kind, mu, kG * (std::sin(slope) * down - Vec3(0, 0, std::cos(slope))));
+      SlidingBlock s(kind, mu, kG * (std::sin(slope) * down - Vec3(0, 0, std::cos(slope))));
       for (const auto& part : s.block->body().parts()) part->set_velocity(4.0 * across, Vec3(0));
       Vec3 expected = 4.0 * across;
       for (int i = 0; i < 5000; i++) {
@@ -97,20 +98,20 @@ TEST(ContactFriction, DoesNotHoldAcrossTheSlip) {
   }
 }
 
-// A ball that rolls on a floor loses mu·g/(1.4·r) a second, whatever the heading, straight on; one on a slope that
-// rolling friction holds (tan < mu/r) stays.
-TEST(ContactFriction, RollingLosesAsMuchAtEveryHeading) {
+// A ball that rolls on a floor decelerates by mu·g/(1.4·r), straight at any heading; one on a slope within the limit of
+// rolling friction (tan < mu/r) stays.
+TEST(ContactFriction, RollingFrictionIsIsotropic) {
   const double r = 0.2;
   const double mu = 0.02;
   for (const Kind kind : {Kind::iterative, Kind::direct}) {
     for (int i = 0; i < kHeadings; i++) {
       const double heading = 2 * kPi * i / kHeadings + 0.1;
       SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " heading " << heading);
-      Stage s;
+      WorldFixture s;
       s.set(s.world.id(), "solver", {kind == Kind::iterative ? 0.0 : 1.0});
       s.floor();
       s.gravity({0, 0, -kG});
-      Part& ball = s.lone(sphere_model(r), 100, {{0, 0, r}, quat_identity()});
+      Part& ball = s.add_single_part(sphere_model(r), 100, {{0, 0, r}, quat_identity()});
       s.set(ball.id(), "friction", {1});
       s.set(ball.id(), "rolling_friction", {mu});
       const Vec3 ahead = direction(heading);
@@ -118,27 +119,27 @@ TEST(ContactFriction, RollingLosesAsMuchAtEveryHeading) {
       s.ticks(60);
       EXPECT_NEAR(glm::dot(ball.linear_velocity(), ahead), 2 - mu * kG / (1.4 * r), 0.01);
       EXPECT_NEAR(glm::dot(ball.linear_velocity(), direction(heading + kPi / 2)), 0, 0.005);
-      for (const double part : {0.95, 1.1}) {
+      for (const double factor : {0.95, 1.1}) {
         ball.set_pose({{0, 0, r}, quat_identity()});
         ball.set_velocity(Vec3(0), Vec3(0));
-        const double slope = std::atan(part * mu / r);
+        const double slope = std::atan(factor * mu / r);
         s.gravity(kG * (std::sin(slope) * ahead - Vec3(0, 0, std::cos(slope))));
         s.ticks(60);
-        const double expected = part < 1 ? 0 : kG * (std::sin(slope) - mu / r * std::cos(slope)) / 1.4;
-        EXPECT_NEAR(glm::dot(ball.linear_velocity(), ahead), expected, 0.05 * expected + 1e-3) << part;
+        const double expected = factor < 1 ? 0 : kG * (std::sin(slope) - mu / r * std::cos(slope)) / 1.4;
+        EXPECT_NEAR(glm::dot(ball.linear_velocity(), ahead), expected, 0.05 * expected + 1e-3) << factor;
       }
     }
   }
 }
 
-// A ball that spins on its spot: torque mu·m·g against I = 2/5·m·r².
-TEST(ContactFriction, SpinningFrictionBrakesSpin) {
+// A ball that spins in place: torque mu·m·g against I = 2/5·m·r².
+TEST(ContactFriction, SpinningFrictionDeceleratesSpin) {
   const double r = 0.2;
   for (const double mu : {0.0, 0.005, 0.01}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -kG});
-    Part& ball = s.lone(sphere_model(r), 50, {{0, 0, r}, quat_identity()});
+    Part& ball = s.add_single_part(sphere_model(r), 50, {{0, 0, r}, quat_identity()});
     s.set(ball.id(), "friction", {1});
     s.set(ball.id(), "spinning_friction", {mu});
     ball.set_velocity(Vec3(0), {0, 0, 20});
@@ -147,14 +148,14 @@ TEST(ContactFriction, SpinningFrictionBrakesSpin) {
   }
 }
 
-// A sledge: little friction along its runners, all of it across; its direction turns with it.
-TEST(ContactFriction, AnisotropicFrictionBrakesLessAlongItsDirection) {
+// A sledge: little friction along its runners, full friction across; the direction rotates with it.
+TEST(ContactFriction, AnisotropicFrictionIsWeakerAlongItsDirection) {
   const double mu = 0.5;
   for (const Kind kind : kKinds) {
     for (const double turned : {0.0, 0.6}) {
       for (const double angle : {0.0, kPi / 2}) {
         SCOPED_TRACE(::testing::Message() << "kind " << static_cast<int>(kind) << " turned " << turned << ' ' << angle);
-        Sliding s(kind, mu);
+        SlidingBlock s(kind, mu);
         s.set(s.block->id(), "friction_direction", {2, 0, 0});
         s.set(s.block->id(), "friction_factor", {0.1});
         for (const auto& part : s.block->body().parts()) {
@@ -170,10 +171,10 @@ TEST(ContactFriction, AnisotropicFrictionBrakesLessAlongItsDirection) {
   }
 }
 
-// At a slant the force of most dissipation acts: -N·(mu1²·v1, mu2²·v2)/√(mu1²·v1² + mu2²·v2²).
+// In other directions the force of maximum dissipation acts: -N·(mu1²·v1, mu2²·v2)/√(mu1²·v1² + mu2²·v2²).
 TEST(ContactFriction, AnisotropicFrictionIsAnEllipse) {
   for (const Kind kind : kKinds) {
-    Sliding s(kind, 0.4);
+    SlidingBlock s(kind, 0.4);
     s.set(s.block->id(), "friction_direction", {1, 0, 0});
     s.set(s.block->id(), "friction_factor", {0.5});
     Vec3 expected = 3.0 * direction(0.8);

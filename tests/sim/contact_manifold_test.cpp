@@ -1,4 +1,4 @@
-// Contact manifolds: complete in one step for every shape, on planes and on boxes, at rest and while sliding.
+// Contact manifolds: complete in one step for every shape, on planes and boxes, at rest and sliding.
 #include "sim/contact_manifold.h"
 
 #include <cmath>
@@ -17,9 +17,9 @@ constexpr double kG = 9.81;
 ShapeModel hull_model(const std::vector<Vec3>& points, const Vec3& box) {
   auto mesh = std::make_shared<MeshModel>();
   mesh->hull = mesh->vertices = points;
-  mesh->solid = {1, Vec3(0), Mat3(0)};
+  mesh->unit_inertial = {1, Vec3(0), Mat3(0)};
   const Vec3 moments = box_inertia(1, box);
-  for (int i = 0; i < 3; i++) mesh->solid.tensor[i][i] = moments[i];
+  for (int i = 0; i < 3; i++) mesh->unit_inertial.tensor[i][i] = moments[i];
   mesh->closed = true;
   ShapeModel m;
   m.kind = ShapeKind::mesh;
@@ -55,12 +55,12 @@ ShapeModel round_model(ShapeKind kind, double radius, double height) {
 struct Solid {
   const char* name;
   ShapeModel model;
-  double half;  // height of its center above what it stands on
+  double half;  // height of its center above the surface
 };
 
 std::vector<Solid> standing_solids() {
   return {{"box", box_model({0.4, 0.4, 0.1}), 0.05},
-          {"hull", hull_box({0.4, 0.4, 0.1}), 0.051},  // hulls are a margin of 1 mm larger
+          {"hull", hull_box({0.4, 0.4, 0.1}), 0.051},  // hulls are larger by a margin of 1 mm
           {"prism of 24 sides", hull_prism(0.2, 0.1, 24), 0.051},
           {"cylinder", round_model(ShapeKind::cylinder, 0.2, 0.1), 0.05}};
 }
@@ -68,11 +68,11 @@ std::vector<Solid> standing_solids() {
 enum class Floor { plane, box, hull };
 constexpr Floor kFloors[] = {Floor::plane, Floor::box, Floor::hull};
 
-void add_floor(Stage& s, Floor floor, double friction) {
+void add_floor(WorldFixture& s, Floor floor, double friction) {
   const Vec3 size(40, 40, 1);
   Part& part = floor == Floor::plane ? s.floor()
-               : floor == Floor::box ? s.lone(box_model(size), 0, {{0, 0, -0.5}, quat_identity()})
-                                     : s.lone(hull_box(size), 0, {{0, 0, -0.501}, quat_identity()});
+               : floor == Floor::box ? s.add_single_part(box_model(size), 0, {{0, 0, -0.5}, quat_identity()})
+                                     : s.add_single_part(hull_box(size), 0, {{0, 0, -0.501}, quat_identity()});
   s.set(part.id(), "friction", {friction});
 }
 
@@ -80,66 +80,66 @@ double tilt_degrees(const Part& part) {
   return std::acos(std::min(1.0, (part.pose().rotation * Vec3(0, 0, 1)).z)) * 180 / kPi;
 }
 
-// Dropped from heights that let the step of the impact begin at any distance.
-TEST(ContactManifold, SolidsThatFallFlatStayLevel) {
+// Dropped from heights for which the step of the impact starts at any distance.
+TEST(ContactManifold, SolidsLandingFlatStayLevel) {
   for (const Solid& solid : standing_solids()) {
     for (const Floor floor : kFloors) {
       for (const double height : {0.05, 0.497, 1.0, 1.009}) {
         SCOPED_TRACE(::testing::Message()
                      << solid.name << " on floor " << static_cast<int>(floor) << " from " << height);
-        Stage s;
+        WorldFixture s;
         s.gravity({0, 0, -kG});
         add_floor(s, floor, 1);
-        Part& part = s.lone(solid.model, 1, {{0, 0, height + solid.half}, quat_axis({0, 0, 1}, 0.3)});
+        Part& part = s.add_single_part(solid.model, 1, {{0, 0, height + solid.half}, quat_axis({0, 0, 1}, 0.3)});
         double lowest = 0;
-        double most_tilt = 0;
+        double max_tilt = 0;
         for (int i = 0; i < 40; i++) {
           s.ticks(1);
           lowest = std::min(lowest, part.pose().position.z - solid.half);
-          most_tilt = std::max(most_tilt, tilt_degrees(part));
+          max_tilt = std::max(max_tilt, tilt_degrees(part));
         }
         EXPECT_GT(lowest, -0.003);
-        EXPECT_LT(most_tilt, 0.1);
+        EXPECT_LT(max_tilt, 0.1);
         EXPECT_NEAR(part.pose().position.z, solid.half, 1e-3);
       }
     }
   }
 }
 
-// Pushed along a level floor they come to rest after v²/(2·mu·g), straight on, neither turned nor sunk.
-TEST(ContactManifold, SlidingSolidsNeitherSinkNorTurn) {
+// Pushed along a level floor they stop after v²/(2·mu·g), straight, without rotation or penetration.
+TEST(ContactManifold, SlidingSolidsDoNotSinkOrTurn) {
   const double mu = 0.5;
   for (const Solid& solid : standing_solids()) {
     for (const Floor floor : kFloors) {
       for (const double v : {1.0, 5.0, 10.0}) {
         SCOPED_TRACE(::testing::Message() << solid.name << " on floor " << static_cast<int>(floor) << " at " << v);
-        Stage s;
+        WorldFixture s;
         s.gravity({0, 0, -kG});
         add_floor(s, floor, mu);
-        Part& part = s.lone(solid.model, 1, {{0, 0, solid.half}, quat_identity()});
+        Part& part = s.add_single_part(solid.model, 1, {{0, 0, solid.half}, quat_identity()});
         s.set(part.id(), "friction", {1});
         s.set(part.id(), "linear_velocity", {v, 0, 0});
         double lowest = 0;
-        double most_tilt = 0;
+        double max_tilt = 0;
         const int ticks = static_cast<int>(60 * v / (mu * kG)) + 10;
         for (int i = 0; i < ticks; i++) {
           s.ticks(1);
           lowest = std::min(lowest, part.pose().position.z - solid.half);
-          most_tilt = std::max(most_tilt, tilt_degrees(part));
+          max_tilt = std::max(max_tilt, tilt_degrees(part));
         }
-        const double way = v * v / (2 * mu * kG);
-        EXPECT_NEAR(part.pose().position.x, way, 0.01 * way + 0.01);
-        EXPECT_NEAR(part.pose().position.y, 0, 0.002 * way + 0.001);
+        const double distance = v * v / (2 * mu * kG);
+        EXPECT_NEAR(part.pose().position.x, distance, 0.01 * distance + 0.01);
+        EXPECT_NEAR(part.pose().position.y, 0, 0.002 * distance + 0.001);
         const Vec3 ahead = part.pose().rotation * Vec3(1, 0, 0);
         EXPECT_NEAR(std::atan2(ahead.y, ahead.x), 0, 0.005);
         EXPECT_GT(lowest, -1e-3);
-        EXPECT_LT(most_tilt, 0.1);
+        EXPECT_LT(max_tilt, 0.1);
       }
     }
   }
 }
 
-// Gravity tilted instead of the floor: they slide with g·(sin t - mu·cos t).
+// Gravity is tilted instead of the floor: they slide with g·(sin t - mu·cos t).
 TEST(ContactManifold, HullsSlideDownSlopes) {
   for (const Floor floor : kFloors) {
     for (const double degrees : {10.0, 20.0, 30.0, 40.0}) {
@@ -148,10 +148,10 @@ TEST(ContactManifold, HullsSlideDownSlopes) {
                      << solid.name << " on floor " << static_cast<int>(floor) << " at " << degrees);
         const double slope = degrees * kPi / 180;
         const double mu = 0.5 * std::tan(slope);
-        Stage s;
+        WorldFixture s;
         s.gravity({kG * std::sin(slope), 0, -kG * std::cos(slope)});
         add_floor(s, floor, mu);
-        Part& part = s.lone(solid.model, 1, {{0, 0, solid.half}, quat_identity()});
+        Part& part = s.add_single_part(solid.model, 1, {{0, 0, solid.half}, quat_identity()});
         s.set(part.id(), "friction", {1});
         s.ticks(10);
         const double before = part.linear_velocity().x;
@@ -163,17 +163,17 @@ TEST(ContactManifold, HullsSlideDownSlopes) {
   }
 }
 
-// A cylinder on its side, and a cone, touch along a line: they roll straight, and at any heading.
+// A cylinder on its side and a cone touch along a line: they roll straight at any heading.
 TEST(ContactManifold, CylindersRollStraight) {
   for (const Floor floor : kFloors) {
     for (const double heading : {0.0, 0.4, 1.1}) {
       SCOPED_TRACE(::testing::Message() << static_cast<int>(floor) << " heading " << heading);
-      Stage s;
+      WorldFixture s;
       s.gravity({0, 0, -kG});
       add_floor(s, floor, 1);
       const Quat turn = quat_axis({0, 0, 1}, heading);
-      Part& part =
-          s.lone(round_model(ShapeKind::cylinder, 0.1, 0.3), 1, {{0, 0, 0.1}, turn * quat_axis({1, 0, 0}, kPi / 2)});
+      Part& part = s.add_single_part(round_model(ShapeKind::cylinder, 0.1, 0.3), 1,
+                                     {{0, 0, 0.1}, turn * quat_axis({1, 0, 0}, kPi / 2)});
       s.set(part.id(), "friction", {1});
       const Vec3 ahead = turn * Vec3(1, 0, 0);
       part.set_velocity(2.0 * ahead, turn * Vec3(0, 20, 0));
@@ -185,8 +185,8 @@ TEST(ContactManifold, CylindersRollStraight) {
   }
 }
 
-// A manifold keeps the deepest point, and those that span the largest area.
-TEST(ContactManifold, KeepsTheDeepestAndTheWidestPoints) {
+// A manifold contains the deepest point and those that span the largest area.
+TEST(ContactManifold, SelectsTheDeepestAndTheWidestPoints) {
   btSphereShape shape(1);
   btRigidBody a(1, nullptr, &shape, btVector3(1, 1, 1));
   btRigidBody b(0, nullptr, &shape);
@@ -198,22 +198,22 @@ TEST(ContactManifold, KeepsTheDeepestAndTheWidestPoints) {
     points.add({std::cos(angle), std::sin(angle), 0}, up, i == 3 ? -0.002F : -0.001F);
   }
   points.add({0, 0, 0}, up, -0.001F);
-  points.add({3, 3, 0}, up, 0.5F);  // out of reach
-  points.finish();
+  points.add({3, 3, 0}, up, 0.5F);  // beyond max_distance()
+  points.write();
   ASSERT_EQ(manifold.getNumContacts(), 4);
   EXPECT_FLOAT_EQ(manifold.getContactPoint(0).getDistance(), -0.002F);
-  double least = 10;
+  double min_distance = 10;
   for (int i = 0; i < 4; i++) {
     for (int k = 0; k < i; k++) {
-      const double away = static_cast<double>(
+      const double distance = static_cast<double>(
           (manifold.getContactPoint(i).m_positionWorldOnB - manifold.getContactPoint(k).m_positionWorldOnB).length());
-      least = std::min(least, away);
+      min_distance = std::min(min_distance, distance);
     }
   }
-  EXPECT_NEAR(least, std::sqrt(2.0), 1e-3);  // a square
+  EXPECT_NEAR(min_distance, std::sqrt(2.0), 1e-3);  // a square
 }
 
-TEST(ContactManifold, PointsKeepTheirImpulses) {
+TEST(ContactManifold, TransfersImpulsesOfMatchingPoints) {
   btSphereShape shape(1);
   btRigidBody a(1, nullptr, &shape, btVector3(1, 1, 1));
   btRigidBody b(0, nullptr, &shape);
@@ -222,7 +222,7 @@ TEST(ContactManifold, PointsKeepTheirImpulses) {
   const auto add_all = [&](float x) {
     ContactManifold points(manifold, 0.01F);
     for (int i = 0; i < 4; i++) points.add({x + static_cast<float>(i % 2), static_cast<float>(i / 2), 0}, up, 0);
-    points.finish();
+    points.write();
   };
   add_all(0);
   for (int i = 0; i < 4; i++) manifold.getContactPoint(i).m_appliedImpulse = static_cast<float>(i + 1);
@@ -235,7 +235,7 @@ TEST(ContactManifold, PointsKeepTheirImpulses) {
   };
   const float corner = impulse_at(1, 1);
   EXPECT_GT(corner, 0);
-  a.getWorldTransform().setOrigin({5, 0, 0});  // it slides far, its corners stay its corners
+  a.getWorldTransform().setOrigin({5, 0, 0});  // it slides far, and its corners remain the same points
   add_all(5);
   ASSERT_EQ(manifold.getNumContacts(), 4);
   EXPECT_EQ(impulse_at(1, 1), corner);

@@ -1,5 +1,5 @@
-// ContactSweep beside Bullet's own sweeps, over rows drawn at random: the same to the bit along normals; friction
-// within the disc, opposite to the slip.
+// ContactSweep compared with Bullet's sweeps on random rows: identical to the bit along normals; friction within the
+// disc, opposite to the slip.
 #include "sim/contact_sweep.h"
 
 #include <cmath>
@@ -11,13 +11,13 @@
 namespace limber {
 namespace {
 
-constexpr int kBodyCount = 12;  // the first stands
+constexpr int kBodyCount = 12;  // the first one is static
 constexpr int kPairs = 40;
 
-// Bullet's solver with rows of our choice in its pools.
-class Bullet : public btSequentialImpulseConstraintSolver {
+// Bullet's solver with given rows in its pools.
+class BulletSolver : public btSequentialImpulseConstraintSolver {
  public:
-  explicit Bullet(unsigned seed, float coefficient = 0) : generator_(seed), coefficient_(coefficient) {
+  explicit BulletSolver(unsigned seed, float coefficient = 0) : generator_(seed), coefficient_(coefficient) {
     info_.m_numIterations = 1;
     info_.m_splitImpulse = 1;
     info_.m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
@@ -32,7 +32,7 @@ class Bullet : public btSequentialImpulseConstraintSolver {
       m_orderFrictionConstraintPool.push_back(i);
     }
   }
-  void push_apart() {
+  void solve_split_impulses() {
     solveGroupCacheFriendlySplitImpulseIterations(nullptr, 0, nullptr, 0, nullptr, 0, info_, nullptr);
   }
   void sweep() { solveSingleIteration(0, nullptr, 0, nullptr, 0, nullptr, 0, info_, nullptr); }
@@ -56,8 +56,8 @@ class Bullet : public btSequentialImpulseConstraintSolver {
     body.m_linearFactor = body.m_angularFactor = btVector3(1, 1, 1);
     if (!moves) return;
     body.m_originalBody = &part_;
-    const float lightness = draw(0.2F, 3);
-    body.m_invMass = btVector3(lightness, lightness, lightness);
+    const float inverse_mass = draw(0.2F, 3);
+    body.m_invMass = btVector3(inverse_mass, inverse_mass, inverse_mass);
     body.m_deltaLinearVelocity = draw_vector();
     body.m_deltaAngularVelocity = draw_vector();
     body.m_pushVelocity = draw_vector();
@@ -106,16 +106,16 @@ class Bullet : public btSequentialImpulseConstraintSolver {
   btRigidBody part_{btRigidBody::btRigidBodyConstructionInfo(1, nullptr, nullptr)};
 };
 
-bool same(const btVector3& x, const btVector3& y) { return std::memcmp(&x, &y, 3 * sizeof(float)) == 0; }
+bool same_bits(const btVector3& x, const btVector3& y) { return std::memcmp(&x, &y, 3 * sizeof(float)) == 0; }
 
-void expect_same(Bullet& ours, Bullet& theirs) {
+void expect_same(BulletSolver& ours, BulletSolver& theirs) {
   for (int i = 0; i < kBodyCount; ++i) {
     const btSolverBody& x = ours.bodies()[i];
     const btSolverBody& y = theirs.bodies()[i];
-    EXPECT_TRUE(x.m_originalBody == nullptr || same(x.m_deltaLinearVelocity, y.m_deltaLinearVelocity)) << i;
-    EXPECT_TRUE(x.m_originalBody == nullptr || same(x.m_deltaAngularVelocity, y.m_deltaAngularVelocity)) << i;
-    EXPECT_TRUE(x.m_originalBody == nullptr || same(x.m_pushVelocity, y.m_pushVelocity)) << i;
-    EXPECT_TRUE(x.m_originalBody == nullptr || same(x.m_turnVelocity, y.m_turnVelocity)) << i;
+    EXPECT_TRUE(x.m_originalBody == nullptr || same_bits(x.m_deltaLinearVelocity, y.m_deltaLinearVelocity)) << i;
+    EXPECT_TRUE(x.m_originalBody == nullptr || same_bits(x.m_deltaAngularVelocity, y.m_deltaAngularVelocity)) << i;
+    EXPECT_TRUE(x.m_originalBody == nullptr || same_bits(x.m_pushVelocity, y.m_pushVelocity)) << i;
+    EXPECT_TRUE(x.m_originalBody == nullptr || same_bits(x.m_turnVelocity, y.m_turnVelocity)) << i;
   }
   for (int i = 0; i < ours.contacts().size(); ++i) {
     EXPECT_EQ(ours.contacts()[i].m_appliedImpulse, theirs.contacts()[i].m_appliedImpulse) << i;
@@ -126,16 +126,16 @@ void expect_same(Bullet& ours, Bullet& theirs) {
   }
 }
 
-TEST(ContactSweep, ComesToBulletsImpulsesToTheBit) {
+TEST(ContactSweep, MatchesBulletsNormalImpulses) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    Bullet ours(seed);
-    Bullet theirs(seed);
+    BulletSolver ours(seed);
+    BulletSolver theirs(seed);
     ContactSweep contacts;
     contacts.begin(ours.bodies(), ours.contacts(), ours.friction());
     for (int i = 0; i < 10; ++i) {
-      EXPECT_GT(contacts.push_apart(), 0);
+      EXPECT_GT(contacts.sweep_split_impulse(), 0);
       EXPECT_GT(contacts.sweep(), 0);
-      theirs.push_apart();
+      theirs.solve_split_impulses();
       theirs.sweep();
     }
     contacts.finish();
@@ -145,26 +145,26 @@ TEST(ContactSweep, ComesToBulletsImpulsesToTheBit) {
 
 TEST(ContactSweep, FrictionStaysWithinTheDisc) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    Bullet rows(seed, 0.4F);
+    BulletSolver rows(seed, 0.4F);
     ContactSweep contacts;
     contacts.begin(rows.bodies(), rows.contacts(), rows.friction());
     for (int i = 0; i < 5; ++i) contacts.sweep();
     contacts.finish();
-    int slide = 0;
+    int sliding = 0;
     for (int i = 0; i < rows.contacts().size(); ++i) {
-      const float pressing = rows.contacts()[i].m_appliedImpulse;
-      if (!(pressing > 0)) continue;
+      const float normal_impulse = rows.contacts()[i].m_appliedImpulse;
+      if (!(normal_impulse > 0)) continue;
       const float force =
           std::hypot(rows.friction()[2 * i].m_appliedImpulse, rows.friction()[2 * i + 1].m_appliedImpulse);
-      EXPECT_LE(force, 0.4F * pressing * 1.0001F);
-      if (force > 0.4F * pressing * 0.9999F) ++slide;
+      EXPECT_LE(force, 0.4F * normal_impulse * 1.0001F);
+      if (force > 0.4F * normal_impulse * 0.9999F) ++sliding;
     }
-    EXPECT_GT(slide, 5);
+    EXPECT_GT(sliding, 5);
   }
 }
 
-// A ball that presses with 6 N·s on the floor and slides at 3 m/s: friction is opposite to the slip, also where the two
-// rows have responses of their own (it turns about one axis more easily).
+// A ball that presses with 6 N·s on the floor and slides at 3 m/s: friction is opposite to the slip, even if the two
+// rows have different responses (it rotates about one axis more easily).
 TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
   btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(2, nullptr, nullptr));
   for (const double heading : {0.0, 0.4, 0.8, 1.2, 2.0}) {
@@ -201,9 +201,9 @@ TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
   }
 }
 
-// A ball that falls on the floor at 3 m/s, 2 kg, sliding at 0.5 m/s with a friction of 0.4: 6 N·s stop its fall, and of
-// the 1 N·s that would stop its slide all are within 0.4 · 6. A second sweep finds nothing to do.
-TEST(ContactSweep, StopsABallInOneSweepAndRestsInTheNext) {
+// A ball of 2 kg hits the floor at 3 m/s, sliding at 0.5 m/s with a friction of 0.4: 6 N·s stop its fall, and the 1 N·s
+// that stops its slide is within 0.4 · 6. A second sweep changes nothing.
+TEST(ContactSweep, ConvergesInOneSweepForABall) {
   btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(2, nullptr, nullptr));
   btAlignedObjectArray<btSolverBody> bodies;
   btConstraintArray contacts;
@@ -226,7 +226,7 @@ TEST(ContactSweep, StopsABallInOneSweepAndRestsInTheNext) {
   EXPECT_FLOAT_EQ(sweep.sweep(), 36);
   EXPECT_FLOAT_EQ(sweep.impulse(0), 6);
   EXPECT_EQ(sweep.sweep(), 0);
-  EXPECT_EQ(sweep.push_apart(), 0);  // it does not penetrate
+  EXPECT_EQ(sweep.sweep_split_impulse(), 0);  // no penetration
   sweep.finish();
   EXPECT_FLOAT_EQ(contacts[0].m_appliedImpulse, 6);
   EXPECT_FLOAT_EQ(friction[0].m_appliedImpulse, -1);

@@ -1,4 +1,4 @@
-// The whole test program allocates through these, so that a test can count.
+// Counts all allocations of the test program.
 #include "sim/counted_new.h"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// Rows chosen and let go, over and over: each solution against the matrix itself.
+// IncrementalLdlt: changes the selection repeatedly and compares each solution with the matrix itself.
 #include "sim/free_factor.h"
 
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 namespace limber {
 namespace {
 
-// G·G' + a little; row `hollow` and its column are zeros
-std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, int hollow) {
+// Returns G·G' + a small diagonal, with one row and its column set to zero.
+std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, int zero_row) {
   std::uniform_real_distribution<double> draw(-1, 1);
   const auto at = [&](int i, int k) {
     const int place = i * stride + k;
@@ -23,7 +23,7 @@ std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, 
   std::vector<double> out(g.size(), 0);
   for (int i = 0; i < n; ++i) {
     for (int k = 0; k < n; ++k) {
-      if (i == hollow || k == hollow) continue;
+      if (i == zero_row || k == zero_row) continue;
       if (i == k) out[at(i, k)] = 0.1;
       for (int m = 0; m < n; ++m) out[at(i, k)] += g[at(i, m)] * g[at(k, m)];
     }
@@ -31,29 +31,29 @@ std::vector<double> positive_matrix(int n, int stride, std::mt19937& generator, 
   return out;
 }
 
-TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
+TEST(IncrementalLdlt, SolvesForAnySelection) {
   constexpr int kRows = 15;
   constexpr int kStride = 16;
-  constexpr int kHollow = 7;
+  constexpr int kZeroRow = 7;
   std::mt19937 generator(3);
-  const std::vector<double> matrix = positive_matrix(kRows, kStride, generator, kHollow);
-  Effort effort;
-  FreeFactor factor(effort);
-  factor.start(matrix, kStride);
+  const std::vector<double> matrix = positive_matrix(kRows, kStride, generator, kZeroRow);
+  WorkBudget budget;
+  IncrementalLdlt factor(budget);
+  factor.reset(matrix, kStride);
   std::vector<unsigned char> free(kRows, 0);
-  int refused = 0;
+  int rejected = 0;
   for (int round = 0; round < 400; ++round) {
-    // few change at a time, so that much is kept
+    // few rows change at a time, so that most of the factor is reused
     for (unsigned change = generator() % 4; change > 0; --change) free[generator() % kRows] ^= 1;
-    const bool positive = factor.choose(free, kRows);
-    EXPECT_EQ(positive, free[kHollow] == 0) << round;
-    refused += positive ? 0 : 1;
+    const bool positive = factor.select(free, kRows);
+    EXPECT_EQ(positive, free[kZeroRow] == 0) << round;
+    rejected += positive ? 0 : 1;
     if (!positive) continue;
     const std::vector<int> rows(factor.rows().begin(), factor.rows().end());
     EXPECT_EQ(static_cast<long>(rows.size()), std::count(free.begin(), free.end(), 1)) << round;
-    std::vector<double> missing(rows.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) missing[i] = std::sin(1.0 * rows[i] + round);
-    std::vector<double> impulses = missing;
+    std::vector<double> rates(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rates[i] = std::sin(1.0 * rows[i] + round);
+    std::vector<double> impulses = rates;
     factor.solve(impulses);
     for (std::size_t i = 0; i < rows.size(); ++i) {
       double rate = 0;
@@ -61,19 +61,19 @@ TEST(FreeFactor, SolvesForWhateverRowsAreChosen) {
         const int place = rows[i] * kStride + rows[k];
         rate += matrix[static_cast<std::size_t>(place)] * impulses[k];
       }
-      EXPECT_NEAR(rate, missing[i], 1e-9) << "round " << round << ", row " << rows[i];
+      EXPECT_NEAR(rate, rates[i], 1e-9) << "round " << round << ", row " << rows[i];
     }
   }
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(rejected, 0);
 }
 
-TEST(FreeFactor, ChoosesNoMoreThanItMay) {
+TEST(IncrementalLdlt, RejectsTooManyRows) {
   const std::vector<double> matrix{2, 1, 1, 2};
-  Effort effort;
-  FreeFactor factor(effort);
-  factor.start(matrix, 2);
-  EXPECT_FALSE(factor.choose(std::vector<unsigned char>{1, 1}, 1));
-  ASSERT_TRUE(factor.choose(std::vector<unsigned char>{0, 1}, 1));
+  WorkBudget budget;
+  IncrementalLdlt factor(budget);
+  factor.reset(matrix, 2);
+  EXPECT_FALSE(factor.select(std::vector<unsigned char>{1, 1}, 1));
+  ASSERT_TRUE(factor.select(std::vector<unsigned char>{0, 1}, 1));
   std::vector<double> one{3};
   factor.solve(one);
   EXPECT_DOUBLE_EQ(one[0], 1.5);

@@ -9,8 +9,8 @@ namespace {
 constexpr double kGearMass = 2;
 constexpr Vec3 kGearSize{0.4, 0.6, 0.5};
 
-// Two equal boxes on hinges, a with a servo, b limp, and a gear between them.
-struct GearedBoxes : Stage {
+// Two equal boxes on hinges, a with a servo, b without a motor, and a gear between them.
+struct GearedBoxes : WorldFixture {
   GearedBoxes() : robot(body("robot")), base(part(robot, sphere_model(0.05), 0)), a(hinge("a", -1)), b(hinge("b", 1)) {
     set(b.motor()->id(), "mode", {0});
     gear = world.add_gear("gear", a, b, 1).value();
@@ -22,7 +22,7 @@ struct GearedBoxes : Stage {
     (void)robot.add_motor(joint).value();
     return joint;
   }
-  void pushed_ticks(int n, double torque) {
+  void ticks_with_torque(int n, double torque) {
     for (int i = 0; i < n; i++) {
       b.child().apply_torque({0, 0, torque});
       world.step();
@@ -55,18 +55,18 @@ void measure_gear_offset() {
 void measure_gear_enabled() {
   GearedBoxes g;
   g.set(g.gear->id(), "enabled", {0});
-  g.pushed_ticks(30, 0.3);
+  g.ticks_with_torque(30, 0.3);
   EXPECT_NEAR(g.number(g.b.id(), "speed"), 0.3 * 0.5 / box_inertia(kGearMass, kGearSize).z, 1e-3);
   g.set(g.gear->id(), "enabled", {1});
   g.ticks(60);
   EXPECT_NEAR(g.b.value(), g.a.value(), 1e-4);
 }
 
-// Beyond it the rest of the load accelerates b.
+// Beyond the limit the remaining load accelerates b.
 void measure_gear_max_force() {
   GearedBoxes g;
   g.set(g.gear->id(), "max_force", {0.2});
-  g.pushed_ticks(30, 0.5);
+  g.ticks_with_torque(30, 0.5);
   EXPECT_NEAR(g.number(g.b.id(), "speed"), (0.5 - 0.2) * 0.5 / box_inertia(kGearMass, kGearSize).z, 1e-3);
   EXPECT_NEAR(g.number(g.gear->id(), "force"), -0.2, 1e-6);
   EXPECT_NEAR(g.number(g.gear->id(), "error"), -g.b.value(), 1e-3);
@@ -74,7 +74,7 @@ void measure_gear_max_force() {
 
 }  // namespace
 
-void add_gear_effects(RowEffects& effects) {
+void add_gear_effects(PropertyEffects& effects) {
   effects[{"Gear", "ratio"}] = measure_gear_ratio;
   effects[{"Gear", "offset"}] = measure_gear_offset;
   effects[{"Gear", "enabled"}] = measure_gear_enabled;

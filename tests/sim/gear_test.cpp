@@ -30,7 +30,7 @@ std::string gear_log_since(std::uint64_t seen) {
 }
 
 // Two boxes on a static ball, each on a joint through its center; motors off.
-struct GearedPair : Stage {
+struct GearedPair : WorldFixture {
   explicit GearedPair(bool direct = true, JointType type_a = JointType::revolute,
                       JointType type_b = JointType::revolute)
       : robot(body("robot")), base(part(robot, sphere_model(0.05), 0)) {
@@ -56,7 +56,7 @@ struct GearedPair : Stage {
     set(motor, "target", {target});
     set_one(motor, "max_angular_force", 2, torque);
   }
-  // a torque or a force along z on the child of a joint, in every tick
+  // applies a torque or a force along z to the child of a joint, in every tick
   void loaded_ticks(int n, double on_a, double on_b) {
     const auto load = [](Joint& joint, double value) {
       const Vec3 z(0, 0, value);
@@ -87,7 +87,7 @@ class GearSolvers : public testing::TestWithParam<bool> {
 INSTANTIATE_TEST_SUITE_P(Both, GearSolvers, testing::Bool(),
                          [](const auto& p) { return std::string(p.param ? "direct" : "iterative"); });
 
-// tau_a + ratio·tau_b = 0 is a balance.
+// Static equilibrium: tau_a + ratio·tau_b = 0.
 TEST_P(GearSolvers, TorquesBalanceByTheRatio) {
   for (const double ratio : {2.0, -1.0, 0.3}) {
     GearedPair s(direct());
@@ -99,7 +99,7 @@ TEST_P(GearSolvers, TorquesBalanceByTheRatio) {
   }
 }
 
-// The load of a sees b's inertia times the square of the ratio.
+// The inertia of b acts on a, times the square of the ratio.
 TEST_P(GearSolvers, InertiaIsReflectedByTheSquareOfTheRatio) {
   for (const double ratio : {2.0, -1.0, 0.3}) {
     GearedPair s(direct());
@@ -110,12 +110,12 @@ TEST_P(GearSolvers, InertiaIsReflectedByTheSquareOfTheRatio) {
     EXPECT_NEAR(s.number(s.a->id(), "speed"), expected, 2e-3 * std::abs(expected)) << ratio;
     EXPECT_NEAR(s.number(s.b->id(), "speed"), ratio * expected, 2e-3 * std::abs(ratio * expected)) << ratio;
     EXPECT_NEAR(s.b->value(), ratio * s.a->value(), tolerance()) << ratio;
-    // b is accelerated by the gear alone
+    // only the gear accelerates b
     EXPECT_NEAR(s.number(gear.id(), "force"), s.inertia_b * ratio * expected / 0.5, 0.01 * torque) << ratio;
   }
 }
 
-TEST_P(GearSolvers, AnOutputIsBackdrivable) {
+TEST_P(GearSolvers, OutputIsBackdrivable) {
   GearedPair s(direct());
   const double ratio = 4;
   s.gear(ratio);
@@ -124,7 +124,7 @@ TEST_P(GearSolvers, AnOutputIsBackdrivable) {
   EXPECT_NEAR(s.number(s.b->id(), "speed"), expected, 2e-3 * expected);
 }
 
-TEST_P(GearSolvers, ARackFollowsItsPinion) {
+TEST_P(GearSolvers, RackFollowsItsPinion) {
   GearedPair s(direct(), JointType::revolute, JointType::prismatic);
   const double radius = 0.05;
   s.gear(radius);
@@ -134,7 +134,7 @@ TEST_P(GearSolvers, ARackFollowsItsPinion) {
   EXPECT_NEAR(s.b->value(), radius * s.a->value(), tolerance());
 }
 
-TEST_P(GearSolvers, AServoMovesBothUnderLoad) {
+TEST_P(GearSolvers, ServoMovesBothJointsUnderLoad) {
   GearedPair s(direct());
   s.gear(2, 0.1);
   s.servo(*s.a, 0.5, 50);
@@ -143,8 +143,8 @@ TEST_P(GearSolvers, AServoMovesBothUnderLoad) {
   EXPECT_NEAR(s.b->value(), 2 * s.a->value() + 0.1, direct() ? 1e-4 : 1e-3);
 }
 
-// a gives 1 N·m, b through the ratio -2 gives 2 more: 2.9 are held, 3.1 are not.
-TEST_P(GearSolvers, EffortsOfBothMotorsAddUp) {
+// a provides 1 N·m, b through the ratio -2 provides 2 more: a load of 2.9 is supported, 3.1 is not.
+TEST_P(GearSolvers, TorquesOfBothMotorsAddUp) {
   for (const double load : {2.9, 3.1}) {
     GearedPair s(direct());
     s.gear(-2);
@@ -158,7 +158,7 @@ TEST_P(GearSolvers, EffortsOfBothMotorsAddUp) {
   }
 }
 
-TEST_P(GearSolvers, AFollowersLimitStopsItsLeader) {
+TEST_P(GearSolvers, LimitOfTheFollowerStopsTheLeader) {
   GearedPair s(direct());
   s.set(s.b->id(), "angular_lower_limit", {0, 0, -0.2});
   s.set(s.b->id(), "angular_upper_limit", {0, 0, 0.2});
@@ -170,7 +170,7 @@ TEST_P(GearSolvers, AFollowersLimitStopsItsLeader) {
   EXPECT_EQ(s.fallbacks(), 0);
 }
 
-TEST_P(GearSolvers, MaxForceLetsItSlip) {
+TEST_P(GearSolvers, SlipsBeyondMaxForce) {
   for (const double load : {0.9, 1.1}) {
     GearedPair s(direct());
     Gear& gear = s.gear(1);
@@ -182,8 +182,8 @@ TEST_P(GearSolvers, MaxForceLetsItSlip) {
 }
 
 // A gear is an internal force: a floating body keeps its momentum while its motor works.
-TEST_P(GearSolvers, AGearOfAFloatingBodyKeepsItsMomentum) {
-  Stage s;
+TEST_P(GearSolvers, ConservesMomentumOfAFloatingBody) {
+  WorldFixture s;
   s.set(s.world.id(), "solver", {direct() ? 1.0 : 0.0});
   Body& robot = s.body("robot");
   Part& base = s.part(robot, box_model({0.4, 0.4, 0.2}), 3);
@@ -218,7 +218,7 @@ TEST_P(GearSolvers, AGearOfAFloatingBodyKeepsItsMomentum) {
 // Joints of one chain: four bodies, one of them twice where the joints are neighbors.
 TEST(Gear, CouplesJointsOfOneChainExactly) {
   for (const int other : {2, 3, 5}) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -9.81});
     Body& arm = make_arm(s, "arm");
     for (const auto& motor : arm.motors()) s.set(motor->id(), "mode", {0});
@@ -238,7 +238,7 @@ TEST(Gear, CouplesJointsOfOneChainExactly) {
 }
 
 TEST(Gear, UnitesTheIslandsOfTwoBodies) {
-  Stage s;
+  WorldFixture s;
   Body& left = make_arm(s, "left", {2});
   Body& right = make_arm(s, "right", {2, {5, 0, 0}});
   for (const auto& motor : right.motors()) s.set(motor->id(), "mode", {0});
@@ -249,7 +249,7 @@ TEST(Gear, UnitesTheIslandsOfTwoBodies) {
   EXPECT_NEAR(right.joints()[1]->value(), 0.6, 2e-3);
 }
 
-TEST(Gear, ARepeatedGearIsReportedAndIgnored) {
+TEST(Gear, ReportsAndIgnoresARedundantGear) {
   GearedPair s;
   s.gear(2);
   Gear& again = s.gear(2);
@@ -265,7 +265,7 @@ TEST(Gear, ARepeatedGearIsReportedAndIgnored) {
   EXPECT_FALSE(again.redundant());
 }
 
-TEST(Gear, AContradictoryGearIsReportedAndIgnored) {
+TEST(Gear, ReportsAndIgnoresAContradictoryGear) {
   GearedPair s;
   s.gear(2);
   s.gear(2, 0.5);
@@ -287,7 +287,7 @@ TEST_P(GearSolvers, TwoRatiosLockBothJoints) {
   EXPECT_EQ(s.fallbacks(), 0);
 }
 
-TEST_P(GearSolvers, BetweenLockedJointsItDoesNothingAndIsReported) {
+TEST_P(GearSolvers, ReportsLockedJoints) {
   GearedPair s(direct());
   for (Joint* joint : {s.a, s.b}) {
     s.set(joint->id(), "angular_lower_limit", {0, 0, 0});
@@ -305,8 +305,8 @@ TEST_P(GearSolvers, BetweenLockedJointsItDoesNothingAndIsReported) {
   EXPECT_NEAR(s.b->value(), 0, 1e-4);
 }
 
-TEST(Gear, GoesWithTheBodyOfAJoint) {
-  Stage s;
+TEST(Gear, IsRemovedWithTheBodyOfAJoint) {
+  WorldFixture s;
   Body& left = make_arm(s, "left", {1});
   Body& right = make_arm(s, "right", {1, {5, 0, 0}});
   const NodeId id = s.world.add_gear("g", *left.joints()[0], *right.joints()[0], 1).value()->id();
@@ -318,7 +318,7 @@ TEST(Gear, GoesWithTheBodyOfAJoint) {
   EXPECT_EQ(s.world.bullet().getNumConstraints(), 1);
 }
 
-TEST(Gear, IsOutOfTheWorldWhileDisabledOrItsBodyIs) {
+TEST(Gear, IsInactiveWhileItOrItsBodyIsDisabled) {
   GearedPair s;
   Gear& gear = s.gear(1);
   s.set(gear.id(), "enabled", {0});
@@ -333,7 +333,7 @@ TEST(Gear, IsOutOfTheWorldWhileDisabledOrItsBodyIs) {
   EXPECT_EQ(s.world.bullet().getNumConstraints(), 3);
 }
 
-TEST(Gear, RejectsWhatCannotBeCoupled) {
+TEST(Gear, RejectsUnsuitableJoints) {
   GearedPair s;
   Part& ball = s.part(s.robot, sphere_model(0.1), 1, {{0, 0, 3}, quat_identity()});
   Joint& spherical = *s.robot.add_joint("ball", s.base, ball, JointType::spherical, {0, 0, 3}, {0, 0, 1}).value();
@@ -348,7 +348,7 @@ TEST(Gear, RejectsWhatCannotBeCoupled) {
 }
 
 // A checkpoint restores warm impulses and whether the gear is in the world.
-TEST_P(GearSolvers, ComesBackToTheBit) {
+TEST_P(GearSolvers, CheckpointRestoresItExactly) {
   GearedPair s(direct());
   Gear& gear = s.gear(-0.6);
   s.servo(*s.a, 0.8, 2);
@@ -363,31 +363,31 @@ TEST_P(GearSolvers, ComesBackToTheBit) {
   };
   (void)play(10);
   PageStore pages;
-  KeyBytes scratch;
-  WorldKey key;
-  key.take(s.world, pages, nullptr, scratch);
+  Archive scratch;
+  WorldCheckpoint checkpoint;
+  checkpoint.capture(s.world, pages, nullptr, scratch);
   const std::vector<std::uint64_t> first = play(50);
-  key.bring_back(s.world, pages, scratch);
+  checkpoint.restore(s.world, pages, scratch);
   EXPECT_EQ(play(50), first);
-  key.release(pages);
+  checkpoint.release(pages);
 }
 
-TEST(Gear, AFailedCallTakesItBack) {
-  const auto hash = [](int what) {
+TEST(Gear, IsRolledBackByAFailedCall) {
+  const auto hash = [](int change) {
     GearedPair s;
     Gear& gear = s.gear(2);
     s.loaded_ticks(10, 1, 0);
-    s.world.undo().begin();
-    if (what == 1) (void)s.world.add_gear("new", *s.b, *s.a, -1, 0.5);
-    if (what == 2) s.world.remove_gear(gear);
-    if (what == 3) s.world.remove_body(s.robot);
-    if (what == 4) s.set(gear.id(), "ratio", {3});
-    s.world.undo().take_back();
+    s.world.transaction().begin();
+    if (change == 1) (void)s.world.add_gear("new", *s.b, *s.a, -1, 0.5);
+    if (change == 2) s.world.remove_gear(gear);
+    if (change == 3) s.world.remove_body(s.robot);
+    if (change == 4) s.set(gear.id(), "ratio", {3});
+    s.world.transaction().rollback();
     s.loaded_ticks(10, 1, 0);
     EXPECT_EQ(s.world.gears().size(), 1u);
     return s.world.state_hash();
   };
-  for (int what = 1; what <= 4; what++) EXPECT_EQ(hash(what), hash(0)) << what;
+  for (int change = 1; change <= 4; change++) EXPECT_EQ(hash(change), hash(0)) << change;
 }
 
 }  // namespace

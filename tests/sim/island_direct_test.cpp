@@ -1,4 +1,4 @@
-// The direct solver against physics: what servos hold, stall at and reach, what joints keep together, what stands.
+// DirectSolver against physics: servo loads and stall torques, joint gaps, standing bodies.
 #include "sim/island_direct.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace limber {
 namespace {
 
-// An arm of boxes, x and y in turn, standing on a base at the floor's height, without a floor.
+// An arm of boxes, x and y alternating, on a base at the floor's height, without a floor.
 RawScene arm(int parts, double ratio = 1) {
   RawScene s = raw_arm(parts, ratio, 10000, 0, false);
   s.floor = false;
@@ -22,21 +22,21 @@ RawScene arm(int parts, double ratio = 1) {
   return s;
 }
 
-RawFigures play(RawPlayer& player, int steps) {
-  RawFigures all;
+RawMeasurements play(RawSimulation& player, int steps) {
+  RawMeasurements all;
   for (int i = 0; i < steps; ++i) {
     player.step();
-    all.take(player.figures());
+    all.accumulate_max(player.measurements());
   }
   return all;
 }
 
-TEST(IslandDirect, AnArmOfSeventeenPartsFollowsItsServosWhateverItsMasses) {
+TEST(DirectSolver, LongArmOfAnyMassesFollowsItsServos) {
   for (const double ratio : {1.0, 13.0, 129.0}) {
     RawScene s = arm(17, ratio);
     for (RawJoint& j : s.joints) j.amplitude = 0.3;
-    const auto player = RawPlayer::make(s, RawSolver::direct);
-    const RawFigures f = play(*player, 360);
+    const auto player = RawSimulation::make(s, RawSolver::direct);
+    const RawMeasurements f = play(*player, 360);
     EXPECT_LT(f.gap, 1.4e-3) << ratio;
     EXPECT_LT(f.servo_error, 0.07) << ratio;
     EXPECT_LT(player->direct().locked, 1e-6) << ratio;
@@ -45,15 +45,15 @@ TEST(IslandDirect, AnArmOfSeventeenPartsFollowsItsServosWhateverItsMasses) {
   }
 }
 
-// 35 kg; links and parts of 13:1 in turn, the last part on a tip plate of 129:1.
-TEST(IslandDirect, ThePredecessorsRobotKeepsTogetherAndFollowsItsServos) {
+// 35 kg; links and parts with alternating mass ratios of 13:1, and a tip plate with 129:1.
+TEST(DirectSolver, PredecessorsRobotFollowsItsServos) {
   RawScene s = raw_robot(10000, 0.3);
   s.measure = true;
   double mass = 0;
   for (const RawPart& p : s.parts) mass += p.mass;
   EXPECT_NEAR(mass, 34.882, 1e-3);
-  const auto player = RawPlayer::make(s, RawSolver::direct);
-  const RawFigures f = play(*player, 120);
+  const auto player = RawSimulation::make(s, RawSolver::direct);
+  const RawMeasurements f = play(*player, 120);
   EXPECT_LT(f.gap, 1.5e-3);
   EXPECT_LT(f.servo_error, 0.07);
   EXPECT_LT(player->direct().locked, 1e-6);
@@ -61,25 +61,26 @@ TEST(IslandDirect, ThePredecessorsRobotKeepsTogetherAndFollowsItsServos) {
   EXPECT_EQ(player->direct().fallbacks, 0);
 }
 
-TEST(IslandDirect, AnUprightArmStandsForAMinute) {
-  const auto player = RawPlayer::make(arm(17), RawSolver::direct);
-  const RawFigures f = play(*player, 3600);
+TEST(DirectSolver, UprightArmStandsForAMinute) {
+  const auto player = RawSimulation::make(arm(17), RawSolver::direct);
+  const RawMeasurements f = play(*player, 3600);
   EXPECT_LT(f.servo_error, 0.005);
   EXPECT_LT(f.gap, 1e-4);
 }
 
-TEST(IslandDirect, ATreeOnAFloatingHubHoldsTogether) {
+TEST(DirectSolver, FloatingTreeKeepsItsJointsClosed) {
   RawScene s = raw_tree(true);
   s.measure = true;
-  const auto player = RawPlayer::make(s, RawSolver::direct);
-  const RawFigures f = play(*player, 360);
+  const auto player = RawSimulation::make(s, RawSolver::direct);
+  const RawMeasurements f = play(*player, 360);
   EXPECT_LT(f.gap, 0.9e-3);
   EXPECT_LT(f.servo_error, 0.07);
   EXPECT_EQ(player->direct().fallbacks, 0);
 }
 
-// A beam of mass m on a hinge that is too weak to hold it: falling through the horizontal, the servo gives all it has.
-TEST(IslandDirect, AServoStallsAtItsTorqueAndOneThatHoldsGivesTheLoads) {
+// A beam of mass m on a hinge that is too weak to hold it: while it falls through the horizontal, the servo applies its
+// full torque.
+TEST(DirectSolver, ServoAppliesTheLoadOrItsLimit) {
   constexpr double kLoad = 2 * 9.81 * 0.5;  // m·g·l
   for (const double force : {100.0, 0.5 * kLoad}) {
     Rig rig;
@@ -87,7 +88,7 @@ TEST(IslandDirect, AServoStallsAtItsTorqueAndOneThatHoldsGivesTheLoads) {
     rig.world.setGravity(btVector3(0, 0, btScalar(-9.81)));
     btRigidBody& base = rig.ground();
     btRigidBody& beam = rig.part(2, Vec3(0.1, 0.1, 0.1), {{0.5, 0, 0}, quat_identity()});
-    // the own axis, z of the frames, lies along the world's y
+    // the own axis, z of the frames, is along the world's y
     const Pose frame{{0, 0, 0}, quat_axis({1, 0, 0}, -kPi / 2)};
     JointConstraint& hinge = rig.joint(base, beam, frame, {{-0.5, 0, 0}, frame.rotation});
     hinge.set_axis(5, servo_axis(free_axis(), 0, 1, force));
@@ -96,7 +97,7 @@ TEST(IslandDirect, AServoStallsAtItsTorqueAndOneThatHoldsGivesTheLoads) {
   }
 }
 
-TEST(IslandDirect, ALimitStopsAndAServoDrivenPastItStaysThere) {
+TEST(DirectSolver, LimitStopsAServo) {
   RawScene s = arm(8);
   for (RawJoint& j : s.joints) {
     j.lower = -0.2;
@@ -104,57 +105,57 @@ TEST(IslandDirect, ALimitStopsAndAServoDrivenPastItStaysThere) {
     j.amplitude = 0.6;
     j.square = true;
   }
-  const auto player = RawPlayer::make(s, RawSolver::direct);
-  EXPECT_LT(play(*player, 240).limit_passed, 0.01);
+  const auto player = RawSimulation::make(s, RawSolver::direct);
+  EXPECT_LT(play(*player, 240).limit_violation, 0.01);
 }
 
-// Without drives, friction or damping nothing gives a chain energy.
-TEST(IslandDirect, APassiveChainDoesNotGainEnergy) {
+// Without drives, friction and damping a chain never gains energy.
+TEST(DirectSolver, PassiveChainDoesNotGainEnergy) {
   RawScene s = arm(8);
   s.gravity = {9.81, 0, 0};
   for (RawJoint& j : s.joints) j.force = 0;
-  const double swing = 9.81 * 8 * 0.8;  // the chain's fall from lying to hanging
+  const double swing = 9.81 * 8 * 0.8;  // energy between the lying and the hanging chain
   for (const int rate : {60, 240}) {
     s.step = 1.0 / rate;
-    const auto player = RawPlayer::make(s, RawSolver::direct);
-    const double begun = player->energy().potential;
+    const auto player = RawSimulation::make(s, RawSolver::direct);
+    const double start_energy = player->energy().potential;
     player->step();
     RawEnergyMeter meter(*player);
     double highest = -swing;
-    RawFigures f;
+    RawMeasurements f;
     for (int i = 0; i < 10 * rate; ++i) {
       player->step();
-      f.take(player->figures());
-      highest = std::max(highest, meter.take());
+      f.accumulate_max(player->measurements());
+      highest = std::max(highest, meter.measure());
     }
     EXPECT_LT(f.gap, rate == 60 ? 0.02 : 4e-3) << rate;
-    EXPECT_LT(highest - begun, 0.002 * swing) << rate;
-    EXPECT_GT(highest - begun, -0.002 * swing) << rate;
+    EXPECT_LT(highest - start_energy, 0.002 * swing) << rate;
+    EXPECT_GT(highest - start_energy, -0.002 * swing) << rate;
   }
 }
 
-// Motors that let go of a lying arm several at a time, so that the responses between its contacts change step by step:
-// no contact misses its law by much more than what is near may.
-TEST(IslandDirect, WhereManyMotorsGiveWayContactsStillHold) {
+// Several motors of a lying arm yield at a time, so that the responses of its contacts change step by step: no contact
+// may violate its conditions by much more than the relaxed tolerance.
+TEST(DirectSolver, ContactsHoldWhileManyMotorsYield) {
   for (const double force : {1.0, 2.0, 5.0, 50.0}) {
     RawScene s = raw_arm(17, 1, force, 0.6, true);
     s.measure = true;
-    const auto player = RawPlayer::make(s, RawSolver::direct);
-    const RawFigures f = play(*player, 360);
+    const auto player = RawSimulation::make(s, RawSolver::direct);
+    const RawMeasurements f = play(*player, 360);
     EXPECT_LT(player->direct().contact, 0.2) << force;
     EXPECT_LT(f.gap, 0.02) << force;
     EXPECT_EQ(player->direct().fallbacks, 0) << force;
   }
 }
 
-// Four legs of three joints each: they stand, every contact obeys its law.
-TEST(IslandDirect, AHeavyTrunkStandsOnLightFeet) {
+// Four legs of three joints each stand, and every contact satisfies its conditions.
+TEST(DirectSolver, HeavyTrunkStandsOnLightFeet) {
   const double masses[][2] = {{10, 0.5}, {50, 1}, {50, 0.1}};
   for (const auto& [trunk, leg] : masses) {
     RawScene s = raw_legs(trunk, leg, false);
     s.measure = true;
-    const auto player = RawPlayer::make(s, RawSolver::direct);
-    const RawFigures f = play(*player, 240);
+    const auto player = RawSimulation::make(s, RawSolver::direct);
+    const RawMeasurements f = play(*player, 240);
     EXPECT_LT(f.gap, 2e-4) << trunk;
     EXPECT_LT(f.servo_error, 0.005) << trunk;
     EXPECT_LT(player->direct().contact, 1e-3) << trunk;
@@ -163,8 +164,8 @@ TEST(IslandDirect, AHeavyTrunkStandsOnLightFeet) {
   }
 }
 
-// Eight links closed to a ring: one joint of it is held around the tree that the others make.
-TEST(IslandDirect, ARingStaysClosed) {
+// Eight links closed to a ring: one joint is a coupled row around the tree of the others.
+TEST(DirectSolver, RingStaysClosed) {
   RawScene s;
   s.measure = true;
   s.parts.push_back({{0.1, 0.1, 0.1}, 0, {{0, 0, 0.5}, quat_identity()}});
@@ -177,105 +178,110 @@ TEST(IslandDirect, ARingStaysClosed) {
     j.axis = {1, 0, 0};
     j.parent = i;
     j.child = i + 1;
-    j.place = corner(i);
+    j.position = corner(i);
     s.joints.push_back(j);
   }
   RawJoint last = s.joints.back();
   last.parent = 8;
   last.child = 1;
-  last.place = corner(8);
+  last.position = corner(8);
   s.joints.push_back(last);
-  const auto player = RawPlayer::make(s, RawSolver::direct);
-  const RawFigures f = play(*player, 240);
+  const auto player = RawSimulation::make(s, RawSolver::direct);
+  const RawMeasurements f = play(*player, 240);
   EXPECT_LT(f.gap, 0.02);
-  EXPECT_GT(f.speed, 0.5);  // it does move
+  EXPECT_GT(f.speed, 0.5);  // it is not stuck
   EXPECT_LT(player->direct().contact, 1e-3);
   EXPECT_EQ(player->direct().fallbacks, 0);
 }
 
-// two bodies of 1 kg and 0.01 kg·m², 0.2 m apart on a free hinge half-way, that spin against each other
-struct Whip {
-  Whip(double spin, bool stands) : parent(rig.part(stands ? 0 : 1, Vec3(stands ? 0 : 0.01))) {
+// two bodies of 1 kg and 0.01 kg·m², 0.2 m apart, with a free hinge between them, rotating in opposite directions
+struct SpinningPair {
+  SpinningPair(double spin, bool parent_is_static)
+      : parent(rig.part(parent_is_static ? 0 : 1, Vec3(parent_is_static ? 0 : 0.01))) {
     rig.world.set_direct(true);
     joint.set_axis(5, free_axis());
-    if (!stands) move(parent, -0.1, spin);
-    move(child, 0.1, -spin, stands ? -spin * 0.1 : 0);
+    if (!parent_is_static) move(parent, -0.1, spin);
+    move(child, 0.1, -spin, parent_is_static ? -spin * 0.1 : 0);
   }
-  // all go at (1, 2, 0) m/s and turn at 3 rad/s about their middle, but where one stands
+  // with a floating parent, both also move at (1, 2, 0) m/s and rotate at 3 rad/s about their common center
   void move(btRigidBody& body, double arm, double spin, double along = 0) {
     const double all = along == 0 ? 1 : 0;
     body.setLinearVelocity(to_bt(all * Vec3(1, 2 + 3 * arm, 0) + Vec3(0, along, 0)));
     body.setAngularVelocity(to_bt(Vec3(0, 0, all * 3 + spin)));
   }
   Vec3 momentum() const { return from_bt(parent.getLinearVelocity() + child.getLinearVelocity()); }
-  Vec3 middle() const { return from_bt(parent.getCenterOfMassPosition() + child.getCenterOfMassPosition()) / 2.0; }
-  // about their middle, seen from where they stood at first: that is where impulses of the first step act
+  Vec3 common_center() const {
+    return from_bt(parent.getCenterOfMassPosition() + child.getCenterOfMassPosition()) / 2.0;
+  }
+  // about the initial common center, where the impulses of the first step act
   Vec3 spin() const {
     return from_bt(btVector3(to_scalar(0.1), 0, 0).cross(child.getLinearVelocity() - parent.getLinearVelocity()) +
                    (parent.getAngularVelocity() + child.getAngularVelocity()) * to_scalar(0.01));
   }
-  double opening() const { return from_bt(parent.getAngularVelocity() - child.getAngularVelocity()).z; }
+  double relative_spin() const { return from_bt(parent.getAngularVelocity() - child.getAngularVelocity()).z; }
   Rig rig;
   btRigidBody& parent;
   btRigidBody& child = rig.part(1, Vec3(0.01), {{0.2, 0, 0}, quat_identity()});
   JointConstraint& joint = rig.joint(parent, child, {{0.1, 0, 0}, quat_identity()}, {{-0.1, 0, 0}, quat_identity()});
 };
 
-// What is faster than a quarter of pi in a step Bullet turns by less. Beyond that the inner motion is less, as far as
-// needed; what the whole does stays: 2 kg at (1, 2, 0) m/s, and 3 rad/s times 2·(0.01 + 1·0.1²) kg·m².
-TEST(IslandDirect, WhatWhipsKeepsItsMomentum) {
+// Bullet clamps rotations beyond a quarter of pi per step. Beyond it the solver scales down the inner motion only; the
+// rigid motion of the whole stays: 2 kg at (1, 2, 0) m/s, and 3 rad/s times 2·(0.01 + 1·0.1²) kg·m².
+TEST(DirectSolver, SpinClampConservesMomentum) {
   constexpr double kStep = 1.0 / 60;
   for (const double spin : {40.0, 100.0, 1000.0}) {
     SCOPED_TRACE(spin);
-    Whip whip(spin, false);
-    EXPECT_NEAR(whip.opening(), 2 * spin, 1e-3);
-    whip.rig.steps(1, kStep);
-    EXPECT_NEAR(glm::length(whip.momentum() - Vec3(2, 4, 0)), 0, 1e-4);
-    EXPECT_NEAR(glm::length(whip.spin() - Vec3(0, 0, 0.12)), 0, 1e-4);
-    EXPECT_NEAR(glm::length(whip.middle() - Vec3(0.1, 0, 0) - Vec3(1, 2, 0) * kStep), 0, 1e-5);
-    const double most = kPi / 4 / kStep;
-    EXPECT_NEAR(whip.opening() / 2, std::min(spin, most), 0.02 * most) << "slower ones as they are";
+    SpinningPair pair(spin, false);
+    EXPECT_NEAR(pair.relative_spin(), 2 * spin, 1e-3);
+    pair.rig.steps(1, kStep);
+    EXPECT_NEAR(glm::length(pair.momentum() - Vec3(2, 4, 0)), 0, 1e-4);
+    EXPECT_NEAR(glm::length(pair.spin() - Vec3(0, 0, 0.12)), 0, 1e-4);
+    EXPECT_NEAR(glm::length(pair.common_center() - Vec3(0.1, 0, 0) - Vec3(1, 2, 0) * kStep), 0, 1e-5);
+    const double max_rate = kPi / 4 / kStep;
+    EXPECT_NEAR(pair.relative_spin() / 2, std::min(spin, max_rate), 0.02 * max_rate)
+        << "slower rotations are not changed";
   }
 }
 
-TEST(IslandDirect, WhatWhipsOnSomethingThatStandsIsCalmedToo) {
+TEST(DirectSolver, ClampsSpinOfAttachedTrees) {
   constexpr double kStep = 1.0 / 60;
-  Whip whip(200, true);
-  EXPECT_NEAR(whip.opening(), 200, 1e-3);
-  whip.rig.steps(1, kStep);
-  EXPECT_NEAR(whip.opening(), kPi / 4 / kStep, 0.01 * kPi / 4 / kStep);
+  SpinningPair pair(200, true);
+  EXPECT_NEAR(pair.relative_spin(), 200, 1e-3);
+  pair.rig.steps(1, kStep);
+  EXPECT_NEAR(pair.relative_spin(), kPi / 4 / kStep, 0.01 * kPi / 4 / kStep);
 }
 
-// It turns by more in the step than bends know of. Its parts are moved together where the step ends, without a
-// velocity: the middle of all goes where it was going.
-TEST(IslandDirect, JointsMeetWhereWhatWhipsArrives) {
+// The rotation is clamped, so the drift correction doesn't apply. The parts are moved together at the end of the step
+// without a velocity: the common center continues on its path.
+TEST(DirectSolver, ClosesJointsOfClampedBodies) {
   constexpr double kStep = 1.0 / 60;
   for (const double spin : {100.0, 1000.0}) {
     SCOPED_TRACE(spin);
-    Whip whip(spin, false);
+    SpinningPair pair(spin, false);
     const auto middle = [&] {
-      return from_bt(whip.parent.getCenterOfMassPosition() + whip.child.getCenterOfMassPosition()) * 0.5;
+      return from_bt(pair.parent.getCenterOfMassPosition() + pair.child.getCenterOfMassPosition()) * 0.5;
     };
     const Vec3 before = middle();
-    whip.rig.steps(1, kStep);
-    EXPECT_NEAR(glm::length(whip.joint.offsets()), 0, 2e-4);
+    pair.rig.steps(1, kStep);
+    EXPECT_NEAR(glm::length(pair.joint.offsets()), 0, 2e-4);
     EXPECT_NEAR(glm::length(middle() - before - Vec3(1, 2, 0) * kStep), 0, 1e-5);
   }
 }
 
-// 300 such trees are in `limber bench solver`. Where nobody closes their joints seven of these part by more than 10 cm,
-// stock's nearly all.
-TEST(IslandDirect, RandomTreesOverAFloorArePartedLessThanStocks) {
+// `limber bench solver` runs 300 such trees. Without closing the joints, seven of these drift apart by more than 10 cm,
+// and nearly all of stock Bullet's.
+TEST(DirectSolver, RandomTreesKeepTheirJointsClosed) {
   for (unsigned seed = 500; seed < 530; ++seed) {
-    const RawScene s = raw_at_step(raw_random_tree(seed, true), 1.0 / 30);
-    const double a = play(*RawPlayer::make(s, RawSolver::stock), 60).gap;
-    const double b = play(*RawPlayer::make(s, RawSolver::direct), 60).gap;
+    const RawScene s = raw_with_step(raw_random_tree(seed, true), 1.0 / 30);
+    const double a = play(*RawSimulation::make(s, RawSolver::stock), 60).gap;
+    const double b = play(*RawSimulation::make(s, RawSolver::direct), 60).gap;
     EXPECT_LE(b, std::min(0.1, 1.1 * a + 2e-3)) << seed;
   }
 }
 
-// One end of a beam is deep in the floor, the other is on a heavy part: pushed out, it turns, by 0.05 rad at most.
-TEST(IslandDirect, RepairOfPenetrationTurnsLittleAndLeavesJointsClosed) {
+// One end of a beam is deep in the floor, the other one is on a heavy part: the repair may rotate it by at most 0.05
+// rad.
+TEST(DirectSolver, RepairOfPenetrationKeepsJointsClosed) {
   RawScene s;
   s.floor = true;
   s.gravity = Vec3(0);
@@ -285,26 +291,26 @@ TEST(IslandDirect, RepairOfPenetrationTurnsLittleAndLeavesJointsClosed) {
   j.axis = {0, 1, 0};
   j.parent = 0;
   j.child = 1;
-  j.place = {0.2 * std::cos(1.2), 0, 0.06};
+  j.position = {0.2 * std::cos(1.2), 0, 0.06};
   s.joints.push_back(j);
-  const auto player = RawPlayer::make(s, RawSolver::direct);
+  const auto player = RawSimulation::make(s, RawSolver::direct);
   const Quat before = player->pose(1).rotation;
   player->step();
   const Quat turned = player->pose(1).rotation * glm::conjugate(before);
   EXPECT_GT(2 * std::fabs(turned.y), 0.04);
   EXPECT_LT(2 * std::fabs(turned.y), 0.051);
-  EXPECT_LT(player->figures().gap, 3e-4);
+  EXPECT_LT(player->measurements().gap, 3e-4);
 }
 
-// Where parts are moved together limits hold: without that these pass them by 0.4 rad.
-TEST(IslandDirect, ClosingJointsDoesNotPassTheirLimits) {
+// Closing joints respects limits; otherwise they would be exceeded by 0.4 rad.
+TEST(DirectSolver, ClosingJointsRespectsLimits) {
   for (const unsigned seed : {520u, 544u, 552u}) {
-    const RawScene s = raw_at_step(raw_random_tree(seed, true), 1.0 / 30);
-    EXPECT_LT(play(*RawPlayer::make(s, RawSolver::direct), 90).limit_passed, 0.2) << seed;
+    const RawScene s = raw_with_step(raw_random_tree(seed, true), 1.0 / 30);
+    EXPECT_LT(play(*RawSimulation::make(s, RawSolver::direct), 90).limit_violation, 0.2) << seed;
   }
 }
 
-TEST(IslandDirect, RepeatsBitForBit) {
+TEST(DirectSolver, IsDeterministic) {
   std::vector<Vec3> first;
   for (int run = 0; run < 2; ++run) {
     RawScene s = arm(9);
@@ -314,7 +320,7 @@ TEST(IslandDirect, RepeatsBitForBit) {
       j.amplitude = 0.9;
       j.square = true;
     }
-    const auto player = RawPlayer::make(s, RawSolver::direct);
+    const auto player = RawSimulation::make(s, RawSolver::direct);
     play(*player, 180);
     for (int i = 0; i <= 9; ++i) {
       const Vec3 place = player->pose(i).position;
@@ -327,14 +333,14 @@ TEST(IslandDirect, RepeatsBitForBit) {
   }
 }
 
-// A cube of 1 kg on a floor, and a heavy one on it: without joints, up to the mass that sweeps cannot carry.
-TEST(IslandDirect, HeavyBodiesStandOnALightOne) {
+// A cube of 1 kg on a floor with a heavy one on it, without joints, up to a mass that sweeps can't support.
+TEST(DirectSolver, HeavyBodiesStandOnALightOne) {
   for (const double mass : {10.0, 100.0, 1000.0}) {
-    test::Stage s;
+    test::WorldFixture s;
     s.gravity({0, 0, -9.81});
     s.floor();
-    Part& low = s.lone(test::box_model(Vec3(1)), 1, {{0, 0, 0.5}, quat_identity()});
-    Part& top = s.lone(test::box_model(Vec3(1)), mass, {{0, 0, 1.5}, quat_identity()});
+    Part& low = s.add_single_part(test::box_model(Vec3(1)), 1, {{0, 0, 0.5}, quat_identity()});
+    Part& top = s.add_single_part(test::box_model(Vec3(1)), mass, {{0, 0, 1.5}, quat_identity()});
     s.set(low.body().id(), "can_sleep", {0});
     s.ticks(300);
     EXPECT_LT(glm::length(low.pose().position - Vec3(0, 0, 0.5)), 1e-4) << mass;
@@ -345,13 +351,14 @@ TEST(IslandDirect, HeavyBodiesStandOnALightOne) {
   }
 }
 
-// 27 boxes that touch are more rows than an island without joints may have.
-TEST(IslandDirect, PilesStayWithTheIterativeSolver) {
-  test::Stage s;
+// 27 touching boxes have more rows than the direct solver accepts for an island without joints.
+TEST(DirectSolver, LeavesPilesToTheIterativeSolver) {
+  test::WorldFixture s;
   s.gravity({0, 0, -9.81});
   s.floor();
   for (int i = 0; i < 27; i++) {
-    s.lone(test::box_model(Vec3(0.2)), 1, {{i % 3 * 0.2, i / 3 % 3 * 0.2, 0.1 + i / 9 * 0.2}, quat_identity()});
+    s.add_single_part(test::box_model(Vec3(0.2)), 1,
+                      {{i % 3 * 0.2, i / 3 % 3 * 0.2, 0.1 + i / 9 * 0.2}, quat_identity()});
   }
   s.ticks(10);
   EXPECT_EQ(s.number(s.world.id(), "islands_direct"), 0);

@@ -1,5 +1,5 @@
-// IslandWorld: an island moves alike alone and among others, joints keep their order, substeps are a resolution, joined
-// parts don't collide, nothing is allocated per step.
+// IslandWorld: islands are independent of each other, joints keep their order, substeps only change the resolution,
+// joined parts don't collide, and steps don't allocate.
 #include "sim/island_world.h"
 
 #include <gtest/gtest.h>
@@ -15,19 +15,19 @@ namespace {
 constexpr double kTick = 1.0 / 60.0;
 
 // A world with a floor, boxes that collide, and arms of boxes.
-struct IslandStage {
-  IslandStage() {
+struct IslandFixture {
+  IslandFixture() {
     world.setGravity(btVector3(0, 0, -9.81f));
     add(0, plane, {{0, 0, 0}, quat_identity()});
   }
-  ~IslandStage() {
+  ~IslandFixture() {
     for (auto& joint : joints) world.removeConstraint(joint.get());
     for (auto& body : bodies) {
       if (body->isInWorld()) world.removeRigidBody(body.get());
     }
   }
-  IslandStage(const IslandStage&) = delete;
-  IslandStage& operator=(const IslandStage&) = delete;
+  IslandFixture(const IslandFixture&) = delete;
+  IslandFixture& operator=(const IslandFixture&) = delete;
 
   btRigidBody& add(double mass, btCollisionShape& shape, const Pose& pose) {
     btVector3 inertia(0, 0, 0);
@@ -40,7 +40,7 @@ struct IslandStage {
     world.addRigidBody(bodies.back().get());
     return *bodies.back();
   }
-  // A servo arm that lies down on the floor, `parts` boxes long, and a heap of three boxes on its way.
+  // A servo arm of `parts` boxes that lies down on the floor, and a heap of three boxes in its way.
   std::vector<btRigidBody*> arm(const Vec3& at, int parts) {
     std::vector<btRigidBody*> all;
     for (int i = 0; i < parts; ++i) {
@@ -74,31 +74,31 @@ bool same_bits(const btRigidBody& a, const btRigidBody& b) {
          std::memcmp(a.getAngularVelocity(), b.getAngularVelocity(), 12) == 0;
 }
 
-TEST(IslandWorld, AnIslandMovesTheSameAloneAndAmongOthers) {
-  IslandStage alone;
-  IslandStage crowd;
+TEST(IslandWorld, IslandsAreIndependent) {
+  IslandFixture alone;
+  IslandFixture crowd;
   const Vec3 at(1, 2, 0);
-  // others before it, after it, and one that comes and goes
+  // others before it, after it, and one that is added and removed
   for (int i = 0; i < 6; ++i) crowd.arm({10.0 + 2 * i, -5, 0}, 2 + i);
   const auto in_crowd = crowd.arm(at, 6);
   for (int i = 0; i < 6; ++i) crowd.arm({10.0 + 2 * i, 5, 0}, 7 - i);
-  btRigidBody& guest = crowd.add(1, crowd.box, {{-20, 0, 0.5}, quat_identity()});
+  btRigidBody& temporary = crowd.add(1, crowd.box, {{-20, 0, 0.5}, quat_identity()});
   const auto single = alone.arm(at, 6);
   for (int tick = 0; tick < 300; ++tick) {
     alone.world.step(kTick / 4, 4);
     crowd.world.step(kTick / 4, 4);
-    if (tick == 50) crowd.world.removeRigidBody(&guest);
-    if (tick == 90) crowd.world.addRigidBody(&guest);
+    if (tick == 50) crowd.world.removeRigidBody(&temporary);
+    if (tick == 90) crowd.world.addRigidBody(&temporary);
     for (std::size_t i = 0; i < single.size(); ++i)
       ASSERT_TRUE(same_bits(*single[i], *in_crowd[i])) << tick << ' ' << i;
   }
-  // it did move, and it did touch
+  // the arm moved and had contacts
   EXPECT_GT(glm::length(from_bt(single[5]->getCenterOfMassPosition()) - (at + Vec3(0, 0, 1.35))), 0.1);
 }
 
-TEST(IslandWorld, BatchesOfIslandsChangeNoResult) {
-  IslandStage one;
-  IslandStage many;
+TEST(IslandWorld, ResultDoesNotDependOnBatches) {
+  IslandFixture one;
+  IslandFixture many;
   one.world.getSolverInfo().m_minimumSolverBatchSize = 1;
   many.world.getSolverInfo().m_minimumSolverBatchSize = 1000;
   std::vector<btRigidBody*> a;
@@ -114,7 +114,7 @@ TEST(IslandWorld, BatchesOfIslandsChangeNoResult) {
   for (std::size_t i = 0; i < a.size(); ++i) EXPECT_TRUE(same_bits(*a[i], *b[i])) << i;
 }
 
-TEST(IslandWorld, JointsKeepTheirOrderWhenOneBetweenThemGoes) {
+TEST(IslandWorld, RemovingAJointKeepsTheOrder) {
   Rig rig;
   btRigidBody* parent = &rig.ground();
   for (int i = 0; i < 6; ++i) {
@@ -128,8 +128,8 @@ TEST(IslandWorld, JointsKeepTheirOrderWhenOneBetweenThemGoes) {
   for (int i = 0; i < 5; ++i) EXPECT_EQ(rig.world.getConstraint(i), rig.joints[static_cast<std::size_t>(i)].get());
 }
 
-TEST(IslandWorld, FreeFallIsTheDiscreteSumAtAnyNumberOfSubsteps) {
-  // z(n) = z0 - g h² n(n+1)/2: substeps are a resolution
+TEST(IslandWorld, FreeFallMatchesTheDiscreteSum) {
+  // z(n) = z0 - g h² n(n+1)/2: substeps only change the resolution
   for (const int substeps : {1, 4, 7}) {
     Rig rig;
     rig.world.setGravity(btVector3(0, 0, -9.81f));
@@ -141,7 +141,7 @@ TEST(IslandWorld, FreeFallIsTheDiscreteSumAtAnyNumberOfSubsteps) {
   }
 }
 
-TEST(IslandWorld, AForceActsOnEveryInternalStepOfItsTickAndNoLonger) {
+TEST(IslandWorld, ForceActsDuringItsTickOnly) {
   for (const int substeps : {1, 4, 7}) {
     Rig rig;
     btRigidBody& part = rig.part(2, Vec3(0.1));
@@ -153,7 +153,7 @@ TEST(IslandWorld, AForceActsOnEveryInternalStepOfItsTickAndNoLonger) {
   }
 }
 
-TEST(IslandWorld, AppliedForcesAreTheMeanOverTheTick) {
+TEST(IslandWorld, AppliedForceIsTheMeanOfTheTick) {
   // a brake of 1 N stops 1 kg at 1/240 m/s within the first of four steps
   Rig rig;
   btRigidBody& part = rig.part(1, Vec3(0.1));
@@ -165,7 +165,7 @@ TEST(IslandWorld, AppliedForcesAreTheMeanOverTheTick) {
   EXPECT_NEAR(joint.rate(0), 0, 1e-6);
 }
 
-TEST(IslandWorld, AnArmOfTenPartsFollowsItsServosWithTenIterations) {
+TEST(IslandWorld, LongArmFollowsItsServosWithTenIterations) {
   // nine hinges, ±0.3 rad at 0.5 Hz under gravity: the error stays below 3 degrees (stock Bullet: 1.2 rad)
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
@@ -189,7 +189,7 @@ TEST(IslandWorld, AnArmOfTenPartsFollowsItsServosWithTenIterations) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(IslandWorld, BulletsOwnConstraintsWorkBesideOurs) {
+TEST(IslandWorld, SupportsBulletsOwnConstraints) {
   Rig rig;
   btRigidBody& first = rig.part(1, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
   btRigidBody& second = rig.part(1, Vec3(0.1), {{1.5, 0, 0}, quat_identity()});
@@ -205,7 +205,7 @@ TEST(IslandWorld, BulletsOwnConstraintsWorkBesideOurs) {
   rig.world.removeConstraint(&weld);
 }
 
-TEST(IslandWorld, NothingHappensWithoutTime) {
+TEST(IslandWorld, StepOfNoLengthDoesNothing) {
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
   btRigidBody& part = rig.part(1, Vec3(0.1));
@@ -215,8 +215,9 @@ TEST(IslandWorld, NothingHappensWithoutTime) {
   EXPECT_EQ(part.getCenterOfMassPosition().z(), 0);
 }
 
-// Two boxes that overlap by 2 cm: apart after a second if they collide.
-double pushed_apart(IslandStage& stage, btRigidBody& a, btRigidBody& b) {
+// Simulates two boxes that overlap by 2 cm for a second. Returns the increase of their distance, m: 0 if they don't
+// collide.
+double separation_after_a_second(IslandFixture& fixture, btRigidBody& a, btRigidBody& b) {
   for (btRigidBody* body : {&a, &b}) {
     body->clearForces();
     body->setLinearVelocity(btVector3(0, 0, 0));
@@ -224,50 +225,50 @@ double pushed_apart(IslandStage& stage, btRigidBody& a, btRigidBody& b) {
   }
   a.setWorldTransform(to_bt(Pose{{0, 0, 1}, quat_identity()}));
   b.setWorldTransform(to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
-  for (int i = 0; i < 60; ++i) stage.world.step(kTick, 1);
+  for (int i = 0; i < 60; ++i) fixture.world.step(kTick, 1);
   return static_cast<double>((b.getCenterOfMassPosition() - a.getCenterOfMassPosition()).x()) - 0.08;
 }
 
-TEST(IslandWorld, JoinedPartsDoNotCollideUntilTheirLastJointGoes) {
-  IslandStage stage;
-  stage.world.setGravity(btVector3(0, 0, 0));
-  btRigidBody& a = stage.add(1, stage.box, {{0, 0, 1}, quat_identity()});
-  btRigidBody& b = stage.add(1, stage.box, {{0.08, 0, 1}, quat_identity()});
-  EXPECT_GT(pushed_apart(stage, a, b), 0.01);
+TEST(IslandWorld, JoinedPartsCollideOnlyWithoutJoints) {
+  IslandFixture fixture;
+  fixture.world.setGravity(btVector3(0, 0, 0));
+  btRigidBody& a = fixture.add(1, fixture.box, {{0, 0, 1}, quat_identity()});
+  btRigidBody& b = fixture.add(1, fixture.box, {{0.08, 0, 1}, quat_identity()});
+  EXPECT_GT(separation_after_a_second(fixture, a, b), 0.01);
 
-  // joints of six free axes: only the collision changes; the boxes overlap and have contacts when they are joined
+  // joints of six free axes affect collision only; the boxes overlap and have contacts when they are joined
   a.setWorldTransform(to_bt(Pose{{0, 0, 1}, quat_identity()}));
   b.setWorldTransform(to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
-  stage.world.step(1e-4, 1);
+  fixture.world.step(1e-4, 1);
   JointConstraint first(a, b, btTransform::getIdentity(), btTransform::getIdentity());
   JointConstraint second(b, a, btTransform::getIdentity(), btTransform::getIdentity());
   for (int i = 0; i < 6; ++i) {
     first.set_axis(i, free_axis());
     second.set_axis(i, free_axis());
   }
-  stage.world.addConstraint(&first);
-  stage.world.addConstraint(&second);
-  EXPECT_NEAR(pushed_apart(stage, a, b), 0, 1e-6);
-  stage.world.removeConstraint(&first);
-  EXPECT_NEAR(pushed_apart(stage, a, b), 0, 1e-6);
-  stage.world.removeConstraint(&second);
-  EXPECT_GT(pushed_apart(stage, a, b), 0.01);
-  stage.world.addConstraint(&first);
-  EXPECT_NEAR(pushed_apart(stage, a, b), 0, 1e-6);
-  stage.world.removeConstraint(&first);
+  fixture.world.addConstraint(&first);
+  fixture.world.addConstraint(&second);
+  EXPECT_NEAR(separation_after_a_second(fixture, a, b), 0, 1e-6);
+  fixture.world.removeConstraint(&first);
+  EXPECT_NEAR(separation_after_a_second(fixture, a, b), 0, 1e-6);
+  fixture.world.removeConstraint(&second);
+  EXPECT_GT(separation_after_a_second(fixture, a, b), 0.01);
+  fixture.world.addConstraint(&first);
+  EXPECT_NEAR(separation_after_a_second(fixture, a, b), 0, 1e-6);
+  fixture.world.removeConstraint(&first);
 }
 
-TEST(IslandWorld, ABallBouncesToRestitutionSquaredTimesItsHeight) {
-  IslandStage stage;
+TEST(IslandWorld, BallBouncesByItsRestitution) {
+  IslandFixture fixture;
   btSphereShape ball(0.1f);
-  btRigidBody& part = stage.add(1, ball, {{0, 0, 2.1}, quat_identity()});
+  btRigidBody& part = fixture.add(1, ball, {{0, 0, 2.1}, quat_identity()});
   part.setRestitution(0.5f);
-  part.setContactProcessingThreshold(0);  // contacts ahead would brake it
-  stage.bodies.front()->setRestitution(1);
+  part.setContactProcessingThreshold(0);  // speculative contacts would decelerate it
+  fixture.bodies.front()->setRestitution(1);
   double highest = 0;
   bool landed = false;
   for (int i = 0; i < 480; ++i) {
-    stage.world.step(kTick / 4, 1);
+    fixture.world.step(kTick / 4, 1);
     const double z = part.getCenterOfMassPosition().z() - 0.1;
     if (z < 0.02) landed = true;
     if (landed) highest = std::max(highest, z);
@@ -275,7 +276,7 @@ TEST(IslandWorld, ABallBouncesToRestitutionSquaredTimesItsHeight) {
   EXPECT_NEAR(highest, 0.5, 0.015);
 }
 
-// Counts what Bullet and IslandWorld take from the heap.
+// Counts heap allocations of Bullet and IslandWorld.
 int bullet_allocations = 0;
 void* counting_alloc(std::size_t size) {
   ++bullet_allocations;
@@ -283,13 +284,13 @@ void* counting_alloc(std::size_t size) {
 }
 void plain_free(void* memory) { std::free(memory); }
 
-TEST(IslandWorld, NoStepAllocatesOnceTheSceneStands) {
-  IslandStage stage;
-  for (int i = 0; i < 5; ++i) stage.arm({2.0 * i, 0, 0}, 6);
-  for (int i = 0; i < 120; ++i) stage.world.step(kTick / 4, 4);
+TEST(IslandWorld, StepsDoNotAllocate) {
+  IslandFixture fixture;
+  for (int i = 0; i < 5; ++i) fixture.arm({2.0 * i, 0, 0}, 6);
+  for (int i = 0; i < 120; ++i) fixture.world.step(kTick / 4, 4);
   btAlignedAllocSetCustom(counting_alloc, plain_free);
   bullet_allocations = 0;
-  for (int i = 0; i < 120; ++i) stage.world.step(kTick / 4, 4);
+  for (int i = 0; i < 120; ++i) fixture.world.step(kTick / 4, 4);
   const int counted = bullet_allocations;
   btAlignedAllocSetCustom(nullptr, nullptr);
   EXPECT_EQ(counted, 0);

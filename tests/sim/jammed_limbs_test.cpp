@@ -1,4 +1,4 @@
-// Limbs of one body that strong servos press against each other: on a base that doesn't move each is a tree of its own.
+// Limbs of one body that strong servos press against each other: on a static base each is a tree of its own.
 #include "sim/stage.h"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 namespace limber::test {
 namespace {
 
-/// Legs of two links hang from a base, in a circle; their servos want to cross.
-class Legs : public Stage {
+/// Legs of two links hang from a base, in a circle; their servos push them across each other.
+class Legs : public WorldFixture {
  public:
   Legs(int count, double base_mass) : robot_(body("legs")) {
     gravity({0, 0, -9.81});
@@ -32,13 +32,13 @@ class Legs : public Stage {
   }
 
   double gap() const { return widest_gap(robot_); }
-  /// The largest angle of a hip, which the servos want to be kHip, rad.
+  /// Largest angle of a hip, whose servo target is kHip, rad.
   double widest_hip() const {
-    double most = 0;
+    double max_angle = 0;
     for (std::size_t i = 0; i < robot_.joints().size(); i += 2) {
-      most = std::max(most, robot_.joints()[i]->constraint().value(5));
+      max_angle = std::max(max_angle, robot_.joints()[i]->constraint().value(5));
     }
-    return most;
+    return max_angle;
   }
 
  private:
@@ -49,7 +49,7 @@ class Legs : public Stage {
 
 class JammedLimbs : public ::testing::TestWithParam<int> {};
 
-TEST_P(JammedLimbs, StayAtTheirJoints) {
+TEST_P(JammedLimbs, KeepTheirJointsClosed) {
   for (const double base_mass : {0.0, 5.0}) {
     Legs legs(GetParam(), base_mass);
     double gap = 0;
@@ -58,7 +58,7 @@ TEST_P(JammedLimbs, StayAtTheirJoints) {
       gap = std::max(gap, legs.gap());
     }
     EXPECT_LE(gap, 1e-3) << "base of " << base_mass << " kg";
-    EXPECT_LT(legs.widest_hip(), 0.8) << "nothing held them back";
+    EXPECT_LT(legs.widest_hip(), 0.8) << "the limbs did not block each other";
     EXPECT_EQ(legs.number(legs.world.id(), "islands_iterative"), 0);
     EXPECT_EQ(legs.number(legs.world.id(), "solver_fallbacks"), 0);
     EXPECT_EQ(legs.world.health_events(), 0u);

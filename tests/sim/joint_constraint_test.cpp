@@ -1,4 +1,4 @@
-// The joint's geometry against rotations multiplied by hand: orders, signs, turns, rates, inertia.
+// Geometry of joints compared with explicit rotations: orders, signs, turns, rates, inertia.
 #include "sim/joint_constraint.h"
 
 #include <gtest/gtest.h>
@@ -12,13 +12,13 @@ const Pose kOblique{{0.1, -0.2, 0.3}, quat_euler(0.4, -0.7, 1.1)};
 const Pose kChildFrame{{-0.3, 0.1, 0.2}, quat_euler(-1.2, 0.5, 0.3)};
 const Pose kParent{{1, 2, 3}, quat_euler(0.3, 0.2, -0.9)};
 
-// Places the child so that the joint's frames differ by `motion`.
+// Moves the child so that the joint's frames differ by `motion`.
 void place(btRigidBody& parent, btRigidBody& child, const Pose& motion) {
   const Pose pose = from_bt(parent.getWorldTransform()) * kOblique * motion * kChildFrame.inverse();
   child.setWorldTransform(to_bt(pose));
 }
 
-Quat turn(int axis, double angle) { return quat_axis(unit(axis), angle); }
+Quat rotation_about(int axis, double angle) { return quat_axis(unit(axis), angle); }
 
 struct Pair : Rig {
   btRigidBody& parent = part(2, Vec3(0.5), kParent);
@@ -26,7 +26,7 @@ struct Pair : Rig {
   JointConstraint& hinge = joint(parent, child, kOblique, kChildFrame);
 };
 
-TEST(JointConstraint, MiddleAxisIsALockedOneWhereverThereIsOne) {
+TEST(JointConstraint, MiddleAxisIsALockedOne) {
   struct Case {
     bool x, y, z;
     std::array<int, 3> order;
@@ -44,7 +44,7 @@ TEST(JointConstraint, MiddleAxisIsALockedOneWhereverThereIsOne) {
   }
 }
 
-TEST(JointConstraint, AmongThreeMovingAxesTheNarrowestIsTheMiddle) {
+TEST(JointConstraint, MiddleAxisHasTheSmallestRange) {
   Pair rig;
   rig.hinge.set_axis(3, limited_axis(-0.5, 0.4));
   rig.hinge.set_axis(4, limited_axis(-3, 3));
@@ -52,21 +52,21 @@ TEST(JointConstraint, AmongThreeMovingAxesTheNarrowestIsTheMiddle) {
   EXPECT_EQ(rig.hinge.order(), (std::array<int, 3>{2, 0, 1}));
 }
 
-TEST(JointConstraint, OneFreeAxisReadsItsAngleWithItsSign) {
+TEST(JointConstraint, ReadsTheAngleOfOneFreeAxis) {
   for (int axis = 3; axis < 6; ++axis) {
     for (const double angle : {-3.0, -1.7, -0.4, 0.0, 0.2, 1.6, 3.1}) {
       Pair rig;
       rig.hinge.set_axis(axis, free_axis());
-      place(rig.parent, rig.child, {Vec3(0), turn(axis, angle)});
+      place(rig.parent, rig.child, {Vec3(0), rotation_about(axis, angle)});
       rig.hinge.reset();
       for (int i = 3; i < 6; ++i) EXPECT_NEAR(rig.hinge.value(i), i == axis ? angle : 0, 2e-6) << axis << i;
     }
   }
 }
 
-TEST(JointConstraint, OffsetsAreTheChildsPlaceAlongTheParentsAxes) {
+TEST(JointConstraint, OffsetsAreAlongTheParentsAxes) {
   Pair rig;
-  place(rig.parent, rig.child, {{0.4, -0.5, 0.6}, turn(2, 1.0)});
+  place(rig.parent, rig.child, {{0.4, -0.5, 0.6}, rotation_about(2, 1.0)});
   rig.hinge.refresh();
   const Vec3 d = rig.hinge.offsets();
   EXPECT_NEAR(d.x, 0.4, 2e-6);
@@ -74,7 +74,7 @@ TEST(JointConstraint, OffsetsAreTheChildsPlaceAlongTheParentsAxes) {
   EXPECT_NEAR(d.z, 0.6, 2e-6);
 }
 
-TEST(JointConstraint, ThreeAnglesRebuildTheRotationInTheirOrder) {
+TEST(JointConstraint, AnglesRebuildTheRotation) {
   const std::array<std::array<bool, 3>, 3> freedoms{{{true, true, true}, {false, true, true}, {true, true, false}}};
   for (const auto& f : freedoms) {
     Pair rig;
@@ -82,7 +82,8 @@ TEST(JointConstraint, ThreeAnglesRebuildTheRotationInTheirOrder) {
       if (f[static_cast<std::size_t>(i)]) rig.hinge.set_axis(3 + i, free_axis());
     }
     const auto [outer, middle, inner] = rig.hinge.order();
-    place(rig.parent, rig.child, {Vec3(0), turn(outer, 2.2) * turn(middle, -0.8) * turn(inner, -1.9)});
+    place(rig.parent, rig.child,
+          {Vec3(0), rotation_about(outer, 2.2) * rotation_about(middle, -0.8) * rotation_about(inner, -1.9)});
     rig.hinge.reset();
     EXPECT_NEAR(rig.hinge.value(3 + outer), 2.2, 2e-6);
     EXPECT_NEAR(rig.hinge.value(3 + middle), -0.8, 2e-6);
@@ -90,7 +91,7 @@ TEST(JointConstraint, ThreeAnglesRebuildTheRotationInTheirOrder) {
   }
 }
 
-TEST(JointConstraint, RelrotIsRollPitchYawWhateverTheOrder) {
+TEST(JointConstraint, RelrotIsRollPitchYawForAnyOrder) {
   Pair rig;
   rig.hinge.set_axis(4, free_axis());
   rig.hinge.set_axis(5, free_axis());
@@ -102,11 +103,11 @@ TEST(JointConstraint, RelrotIsRollPitchYawWhateverTheOrder) {
   EXPECT_NEAR(rig.hinge.relrot().z, 2.5, 2e-6);
 }
 
-TEST(JointConstraint, TurnsAreCountedAndRelrotFollows) {
+TEST(JointConstraint, CountsFullTurns) {
   Pair rig;
   rig.hinge.set_axis(5, free_axis());
   for (int i = 0; i <= 100; ++i) {
-    place(rig.parent, rig.child, {Vec3(0), turn(2, -0.2 * i)});
+    place(rig.parent, rig.child, {Vec3(0), rotation_about(2, -0.2 * i)});
     rig.hinge.refresh();
   }
   EXPECT_NEAR(rig.hinge.angles().z, -20, 1e-5);
@@ -117,13 +118,14 @@ TEST(JointConstraint, TurnsAreCountedAndRelrotFollows) {
   EXPECT_NEAR(rig.hinge.angles().z, -20 + 16 * kPi, 1e-5);
 }
 
-TEST(JointConstraint, ThreeFreeAxesReadOnBeyondThePole) {
+TEST(JointConstraint, ReadsAnglesContinuouslyBeyondThePole) {
   Pair rig;
   for (int i = 3; i < 6; ++i) rig.hinge.set_axis(i, free_axis());
   place(rig.parent, rig.child, {});
   rig.hinge.reset();
   for (int i = 0; i <= 40; ++i) {
-    place(rig.parent, rig.child, {Vec3(0), turn(2, 0.3) * turn(1, 0.1 * i + 0.013) * turn(0, -0.2)});
+    place(rig.parent, rig.child,
+          {Vec3(0), rotation_about(2, 0.3) * rotation_about(1, 0.1 * i + 0.013) * rotation_about(0, -0.2)});
     rig.hinge.refresh();
   }
   EXPECT_NEAR(rig.hinge.angles().x, -0.2, 1e-5);
@@ -132,7 +134,7 @@ TEST(JointConstraint, ThreeFreeAxesReadOnBeyondThePole) {
 }
 
 TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
-  // constant velocities of both parts for a time dt: the change of the readings is the rate times dt
+  // constant velocities of both parts for a time dt: the change of the readouts is the rate times dt
   for (const int locked : {-1, 3, 4, 5}) {
     Pair rig;
     for (int i = 3; i < 6; ++i) {
@@ -140,7 +142,8 @@ TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
     }
     const auto [outer, middle, inner] = rig.hinge.order();
     const double bend = locked < 0 ? 0.9 : 0.0;
-    place(rig.parent, rig.child, {{0.2, 0.1, -0.3}, turn(outer, 1.3) * turn(middle, bend) * turn(inner, -0.6)});
+    place(rig.parent, rig.child,
+          {{0.2, 0.1, -0.3}, rotation_about(outer, 1.3) * rotation_about(middle, bend) * rotation_about(inner, -0.6)});
     rig.parent.setAngularVelocity(btVector3(0.3f, -0.5f, 0.2f));
     rig.parent.setLinearVelocity(btVector3(0.1f, 0.2f, -0.4f));
     rig.child.setAngularVelocity(btVector3(-0.4f, 0.7f, 1.1f));
@@ -164,7 +167,7 @@ TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
   }
 }
 
-TEST(JointConstraint, InertiaOfAHingeIsThatAboutItsAxis) {
+TEST(JointConstraint, ComputesTheEffectiveInertiaOfAHinge) {
   // I_zz + m r² about the hinge, r = 0.5 across the axis
   Rig rig;
   btRigidBody& child = rig.part(2, {0.1, 0.2, 0.3}, {{0.5, 0, 0.7}, quat_identity()});
@@ -173,7 +176,7 @@ TEST(JointConstraint, InertiaOfAHingeIsThatAboutItsAxis) {
   EXPECT_NEAR(hinge.effective_inertia(5), 0.3 + 2 * 0.25, 1e-5);
 }
 
-TEST(JointConstraint, InertiaOfASliderIsItsMassAndOfTwoFreePartsTheReduced) {
+TEST(JointConstraint, ComputesTheEffectiveInertiaOfASliderAndOfFreeParts) {
   Rig rig;
   btRigidBody& child = rig.part(2, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
   JointConstraint& slider = rig.joint(rig.ground(), child, {{0.5, 0, 0}, quat_identity()});
@@ -187,11 +190,11 @@ TEST(JointConstraint, InertiaOfASliderIsItsMassAndOfTwoFreePartsTheReduced) {
   EXPECT_NEAR(loose.effective_inertia(3), 0.05, 1e-6);
 }
 
-TEST(JointConstraint, ATurnedAxisThatBecomesLimitedKeepsItsPlace) {
+TEST(JointConstraint, LimitingAnAxisDoesNotUnwindIt) {
   Pair rig;
   rig.hinge.set_axis(5, free_axis());
   for (int i = 0; i <= 100; ++i) {
-    place(rig.parent, rig.child, {Vec3(0), turn(2, 0.2 * i)});
+    place(rig.parent, rig.child, {Vec3(0), rotation_about(2, 0.2 * i)});
     rig.hinge.refresh();
   }
   rig.hinge.set_axis(5, limited_axis(0.5, 1.5));

@@ -1,4 +1,4 @@
-// Targets that change from tick to tick: how fast the joint moves in each internal step.
+// Targets that change from tick to tick: speed of the joint in each internal step.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,19 +16,19 @@ constexpr double kGoalTick = 1.0 / 60;
 constexpr double kGoalMass = 2;
 constexpr double kGoalInertia = 0.5;
 
-// One part on the ground, one axis moving; the axis's speed after each internal step.
+// One part attached to the ground with one free axis; records the axis's speed after each internal step.
 struct Follower : Rig {
   Follower(int axis, const AxisSettings& settings, bool direct = true) : axis(axis), settings(settings) {
     world.set_direct(direct);
     hinge.set_axis(axis, settings);
-    world.setInternalTickCallback(&Follower::note, this, false);
+    world.setInternalTickCallback(&Follower::record_speed, this, false);
   }
-  static void note(btDynamicsWorld* world, btScalar) {
+  static void record_speed(btDynamicsWorld* world, btScalar) {
     Follower& f = *static_cast<Follower*>(world->getWorldUserInfo());
     f.hinge.refresh();
     f.speeds.push_back(f.hinge.rate(f.axis));
   }
-  // One tick towards this target (a servo's) and rest (a spring's); its speeds are those of the tick alone.
+  // One tick towards this target (of a servo) and rest position (of a spring); records the speeds of this tick only.
   void tick(double target, int substeps = 4, double length = kGoalTick) {
     speeds.clear();
     hinge.set_goal(axis, target, target, static_cast<double>(settings.velocity));
@@ -46,7 +46,7 @@ struct Follower : Rig {
   std::vector<double> speeds;
 };
 
-TEST(JointGoals, ARampOfTargetsMovesTheJointAtItsSpeedInEveryInternalStep) {
+TEST(JointGoals, RampMovesTheJointAtItsSpeedInEveryStep) {
   const double speed = 0.5;
   for (const bool direct : {true, false}) {
     for (int axis = 0; axis < 6; ++axis) {
@@ -66,7 +66,7 @@ TEST(JointGoals, ARampOfTargetsMovesTheJointAtItsSpeedInEveryInternalStep) {
   }
 }
 
-TEST(JointGoals, AWeakMotorFollowsARampOnceItHasItsSpeed) {
+TEST(JointGoals, WeakMotorFollowsARamp) {
   for (const double limit : {0.0, 2.0}) {
     Follower f(5, servo_axis(free_axis(), 0, limit, 5));
     f.tick(0);
@@ -78,7 +78,7 @@ TEST(JointGoals, AWeakMotorFollowsARampOnceItHasItsSpeed) {
   }
 }
 
-TEST(JointGoals, ARampStaysSteadyWhenTheTickOrItsStepsChange) {
+TEST(JointGoals, RampIsSteadyWhenTheStepChanges) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
   double time = 0;
   f.tick(0);
@@ -90,8 +90,8 @@ TEST(JointGoals, ARampStaysSteadyWhenTheTickOrItsStepsChange) {
   }
 }
 
-TEST(JointGoals, ARampIsAsSteadyAfterThousandsOfTurns) {
-  // there a number of single precision would be too coarse for a slow ramp
+TEST(JointGoals, RampIsSteadyAfterThousandsOfTurns) {
+  // single precision would be too coarse for a slow ramp there
   const double start = 2000 * kPi;
   Follower f(5, servo_axis(free_axis(), start, 0, 10000));
   f.hinge.reset(Vec3(0, 0, start));
@@ -102,7 +102,7 @@ TEST(JointGoals, ARampIsAsSteadyAfterThousandsOfTurns) {
   }
 }
 
-TEST(JointGoals, AStepOfTheTargetIsDelayedByATickAtMost) {
+TEST(JointGoals, JumpIsDelayedByATickAtMost) {
   for (const bool direct : {true, false}) {
     Follower quick(5, servo_axis(free_axis(), 0, 0, 10000), direct);
     quick.tick(0);
@@ -110,7 +110,7 @@ TEST(JointGoals, AStepOfTheTargetIsDelayedByATickAtMost) {
     EXPECT_NEAR(quick.x(), 0.2, 1e-2);
     quick.tick(0.2);
     EXPECT_NEAR(quick.x(), 0.2, 2e-3);
-    // as fast as it may from the first internal step on
+    // as fast as possible from the first internal step on
     Follower limited(5, servo_axis(free_axis(), 0, 1, 10000), direct);
     limited.tick(0);
     for (int i = 0; i < 30; ++i) {
@@ -120,7 +120,7 @@ TEST(JointGoals, AStepOfTheTargetIsDelayedByATickAtMost) {
   }
 }
 
-TEST(JointGoals, AStepThatTheForceCannotFollowDoesNotOvershoot) {
+TEST(JointGoals, JumpDoesNotOvershootWithAWeakMotor) {
   for (const double force : {0.5, 5.0, 50.0, 500.0}) {
     for (const double limit : {0.0, 5.0}) {
       Follower f(5, servo_axis(free_axis(), 0, limit, force));
@@ -136,7 +136,7 @@ TEST(JointGoals, AStepThatTheForceCannotFollowDoesNotOvershoot) {
   }
 }
 
-TEST(JointGoals, ARampThatEndsStopsTheJoint) {
+TEST(JointGoals, EndOfARampStopsTheJoint) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
   for (int i = 0; i <= 30; ++i) f.tick(i * kGoalTick);
   for (int i = 0; i < 10; ++i) {
@@ -145,9 +145,9 @@ TEST(JointGoals, ARampThatEndsStopsTheJoint) {
   }
 }
 
-TEST(JointGoals, ARampOfRestsMovesASpringAtItsSpeed) {
+TEST(JointGoals, SpringFollowsARamp) {
   for (int axis : {0, 5}) {
-    // critically damped, 4 rad/s: it lags by a constant way once it has its speed
+    // critically damped, 4 rad/s: at constant speed it lags by a constant distance
     const double inertia = axis < 3 ? kGoalMass : kGoalInertia;
     Follower f(axis, spring_axis(free_axis(), 0, 16 * inertia, 8 * inertia));
     f.tick(0);
@@ -158,8 +158,8 @@ TEST(JointGoals, ARampOfRestsMovesASpringAtItsSpeed) {
   }
 }
 
-TEST(JointGoals, AStiffSpringFollowsARampOfRestsWithoutRipple) {
-  // 25 rad/s: without interpolation the ripple of a ramp at 60 ticks a second is 10 % here
+TEST(JointGoals, StiffSpringFollowsARampWithoutRipple) {
+  // 25 rad/s: without interpolation the ripple of a ramp at 60 ticks a second is 10 %
   Follower f(5, spring_axis(free_axis(), 0, 625 * kGoalInertia, 50 * kGoalInertia));
   f.tick(0);
   for (int i = 1; i <= 120; ++i) {
@@ -168,28 +168,28 @@ TEST(JointGoals, AStiffSpringFollowsARampOfRestsWithoutRipple) {
   }
 }
 
-TEST(JointGoals, AServoSwitchedOnWhereTheJointIsDoesNotMove) {
+TEST(JointGoals, EnablingAServoAtItsTargetDoesNotMoveTheJoint) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
   f.tick(0);
   AxisSettings off = f.settings;
   off.drive = AxisDrive::off;
   f.hinge.set_axis(5, off);
-  kick(f.child, 5, 2);
+  set_axis_rate(f.child, 5, 2);
   for (int i = 0; i < 60; ++i) f.tick(0);
   f.child.setAngularVelocity(btVector3(0, 0, 0));
-  const double there = f.x();
-  ASSERT_GT(there, 1);
-  f.hinge.set_axis(5, servo_axis(free_axis(), there, 0, 10000));
-  f.tick(there);
+  const double position = f.x();
+  ASSERT_GT(position, 1);
+  f.hinge.set_axis(5, servo_axis(free_axis(), position, 0, 10000));
+  f.tick(position);
   for (const double v : f.speeds) EXPECT_NEAR(v, 0, 1e-4);
-  // the same after the part was moved by hand
+  // the same after the part was teleported
   f.child.setWorldTransform(btTransform::getIdentity());
   f.hinge.reset();
   f.tick(0);
   for (const double v : f.speeds) EXPECT_NEAR(v, 0, 1e-4);
 }
 
-TEST(JointGoals, AContinuousServoCountsTurns) {
+TEST(JointGoals, ContinuousServoCountsTurns) {
   Follower f(5, servo_axis(free_axis(), 0, 10, 10000));
   const int ticks = static_cast<int>(60 * (2 * kPi + 0.2));
   for (int i = 0; i < ticks; ++i) f.tick(20 * kPi);
@@ -198,7 +198,7 @@ TEST(JointGoals, AContinuousServoCountsTurns) {
   EXPECT_NEAR(f.x(), -20 * kPi, 1e-3);
 }
 
-// Numbers between -1 and 1 that are the same everywhere.
+// Numbers between -1 and 1 that are the same on every machine.
 struct Jitter {
   std::uint32_t state;
   double next() {
@@ -207,8 +207,9 @@ struct Jitter {
   }
 };
 
-// Each tick has the newest target of a ramp that is sent `frequency` times a second and arrives up to 5 ms off.
-std::vector<double> streamed(double frequency, double speed, int ticks, std::uint32_t seed) {
+// Each tick uses the newest target of a ramp that is sent `frequency` times a second and arrives up to 5 ms early or
+// late.
+std::vector<double> streamed_targets(double frequency, double speed, int ticks, std::uint32_t seed) {
   Jitter jitter{seed};
   std::vector<double> targets;
   double newest = 0;
@@ -224,14 +225,14 @@ std::vector<double> streamed(double frequency, double speed, int ticks, std::uin
   return targets;
 }
 
-TEST(JointGoals, SmoothingOverTwoPeriodsOfAStreamKeepsTheRippleWithinTenPercent) {
+TEST(JointGoals, SmoothingLimitsTheRippleOfAStream) {
   for (const double frequency : {25.0, 30.0, 50.0, 100.0}) {
     for (const double limit : {0.0, 10.0}) {
       for (const std::uint32_t seed : {1u, 2u, 3u}) {
         SCOPED_TRACE(testing::Message() << frequency << ' ' << limit << ' ' << seed);
         Follower f(5, servo_axis(free_axis(), 0, limit, 10000));
         f.hinge.set_smoothing(2 / frequency);
-        const std::vector<double> targets = streamed(frequency, 0.5, 360, seed);
+        const std::vector<double> targets = streamed_targets(frequency, 0.5, 360, seed);
         double farthest = 0;
         for (std::size_t i = 0; i < targets.size(); ++i) {
           f.tick(targets[i]);
@@ -244,7 +245,7 @@ TEST(JointGoals, SmoothingOverTwoPeriodsOfAStreamKeepsTheRippleWithinTenPercent)
   }
 }
 
-TEST(JointGoals, SmoothingDelaysARampByWhatItsPropertySays) {
+TEST(JointGoals, SmoothingDelaysARampAsDocumented) {
   for (const double time : {0.02, 0.1, 1.0}) {
     Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
     f.hinge.set_smoothing(time);
@@ -255,7 +256,7 @@ TEST(JointGoals, SmoothingDelaysARampByWhatItsPropertySays) {
   }
 }
 
-TEST(JointGoals, SmoothingReachesAStepWithoutOvershoot) {
+TEST(JointGoals, SmoothingDoesNotOvershoot) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
   f.hinge.set_smoothing(0.1);
   f.tick(0);
@@ -268,7 +269,7 @@ TEST(JointGoals, SmoothingReachesAStepWithoutOvershoot) {
   EXPECT_LT(farthest, 1 + 1e-4);
 }
 
-TEST(JointGoals, AMotorPressesAgainstItsStopWithItsForce) {
+TEST(JointGoals, MotorPressesAgainstItsLimitWithItsForce) {
   for (const bool direct : {true, false}) {
     for (int axis = 0; axis < 6; ++axis) {
       for (const double sign : {1.0, -1.0}) {
@@ -294,14 +295,14 @@ TEST(JointGoals, AMotorPressesAgainstItsStopWithItsForce) {
   }
 }
 
-TEST(JointGoals, AServoAtItsLimitThatIsToldNoFurtherAppliesItsLoadOnly) {
+TEST(JointGoals, ServoWithTargetAtItsLimitAppliesItsLoadOnly) {
   Follower f(5, servo_axis(limited_axis(-0.3, 0.3), 0.3, 2, 1000));
   for (int i = 0; i < 120; ++i) f.tick(static_cast<double>(f.settings.upper));
   EXPECT_NEAR(f.hinge.applied_torque().z, 0, 0.05);
   EXPECT_FALSE(f.hinge.target_outside());
 }
 
-TEST(JointGoals, AMotorBendsALimitThatYieldsByItsForce) {
+TEST(JointGoals, MotorDeflectsACompliantLimit) {
   for (const bool direct : {true, false}) {
     AxisSettings limits = limited_axis(-0.3, 0.3);
     limits.stop_cfm = 0.01f;
@@ -314,15 +315,15 @@ TEST(JointGoals, AMotorBendsALimitThatYieldsByItsForce) {
   }
 }
 
-// A platform on a prismatic joint, told x = v·t from tick to tick, carries a box.
-TEST(JointGoals, ABoxTravelsWithItsPlatform) {
+// A platform on a prismatic joint, with the target x = v·t in each tick, carries a box.
+TEST(JointGoals, BoxTravelsWithItsPlatform) {
   for (const double limit : {0.0, 0.5, 1.0, 10.0}) {
-    test::Stage s;
+    test::WorldFixture s;
     s.gravity({0, 0, -9.81});
     Body& rig = s.body("rig");
     Part& rail = s.part(rig, test::box_model({0.1, 0.1, 0.1}), 0, {{0, 0, 0.3}, quat_identity()});
     Part& platform = s.part(rig, test::box_model({4, 1, 0.2}), 20, {{0, 0, 1}, quat_identity()});
-    Part& box = s.lone(test::box_model({0.2, 0.2, 0.2}), 1, {{0, 0, 1.2}, quat_identity()});
+    Part& box = s.add_single_part(test::box_model({0.2, 0.2, 0.2}), 1, {{0, 0, 1.2}, quat_identity()});
     for (const Part* p : {&platform, &box}) s.set(p->id(), "friction", {0.8});
     Joint& joint = *rig.add_joint("j", rail, platform, JointType::prismatic, Vec3(0, 0, 1), Vec3(1, 0, 0)).value();
     Motor& motor = *rig.add_motor(joint).value();
@@ -337,9 +338,9 @@ TEST(JointGoals, ABoxTravelsWithItsPlatform) {
   }
 }
 
-// A body without contacts whose smoothed target takes 10 s sleeps only when it is there.
-TEST(JointGoals, AJointSleepsOnlyWhenItsSmoothedTargetIsReached) {
-  test::Stage s;
+// A body without contacts whose smoothed target takes 10 s sleeps only when it has arrived.
+TEST(JointGoals, JointSleepsOnceItsSmoothedTargetIsReached) {
+  test::WorldFixture s;
   Body& robot = s.body("robot");
   Part& base = s.part(robot, test::sphere_model(0.05), 0);
   Part& child = s.part(robot, test::box_model({0.2, 0.3, 0.4}), 1);
@@ -357,8 +358,8 @@ int goal_warnings(const std::string& text, std::uint64_t since) {
                                         [&](const LogLine& l) { return l.text.find(text) != std::string::npos; }));
 }
 
-TEST(JointGoals, ATargetOutsideTheLimitsIsReportedOnce) {
-  test::Stage s;
+TEST(JointGoals, ReportsATargetOutsideTheLimitsOnce) {
+  test::WorldFixture s;
   Body& robot = s.body("robot");
   Part& base = s.part(robot, test::sphere_model(0.05), 0);
   Part& child = s.part(robot, test::box_model({0.2, 0.3, 0.4}), 1);

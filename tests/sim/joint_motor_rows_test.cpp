@@ -1,4 +1,4 @@
-// What motors, servos and springs do to a joint's axis, each against a formula.
+// Effects of motors, servos and springs on a joint's axis, each compared with a formula.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ constexpr double kInertia = 0.5;
 
 double inertia_of(int axis) { return axis < 3 ? kMass : kInertia; }
 
-// One part on the ground, one axis moving.
+// One part attached to the ground with one free axis.
 struct Drive : Rig {
   Drive(int axis, const AxisSettings& settings) : axis(axis) { hinge.set_axis(axis, settings); }
   double x() const { return hinge.value(axis); }
@@ -35,7 +35,7 @@ struct Drive : Rig {
   JointConstraint& hinge = joint(ground(), child);
 };
 
-TEST(JointMotorRows, ASpinAcceleratesByForceOverInertiaUpToItsSpeed) {
+TEST(JointMotorRows, SpinAcceleratesByForceOverInertia) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       Drive d(axis, spin_axis(free_axis(), sign * 2, 1.5));
@@ -50,10 +50,10 @@ TEST(JointMotorRows, ASpinAcceleratesByForceOverInertiaUpToItsSpeed) {
   }
 }
 
-TEST(JointMotorRows, ASpinOfSpeedZeroBrakes) {
+TEST(JointMotorRows, SpinOfSpeedZeroBrakes) {
   for (int axis = 0; axis < 6; ++axis) {
     Drive d(axis, spin_axis(free_axis(), 0, 0.8));
-    kick(d.child, axis, 2);
+    set_axis_rate(d.child, axis, 2);
     d.steps(30);
     EXPECT_NEAR(d.v(), 2 - 0.8 / inertia_of(axis) * 30 * kRigStep, 1e-4) << axis;
     d.steps(2400);
@@ -61,7 +61,7 @@ TEST(JointMotorRows, ASpinOfSpeedZeroBrakes) {
   }
 }
 
-TEST(JointMotorRows, ASpinStopsAtTheLimitWithoutPassingIt) {
+TEST(JointMotorRows, SpinStopsAtTheLimit) {
   for (const double force : {0.5, 10.0, 10000.0}) {
     Drive d(5, spin_axis(limited_axis(-1, 4), 3, force));
     double farthest = 0;
@@ -76,16 +76,16 @@ TEST(JointMotorRows, ASpinStopsAtTheLimitWithoutPassingIt) {
   }
 }
 
-TEST(JointMotorRows, AMotorDoesNothingOnALockedAxis) {
+TEST(JointMotorRows, LockedAxisIgnoresItsMotor) {
   Drive d(5, spin_axis(limited_axis(0, 0), 3, 1000));
   d.steps(100);
   EXPECT_NEAR(d.x(), 0, 1e-6);
 }
 
-TEST(JointMotorRows, AServoArrivesAfterWayOverSpeedAndStaysThere) {
+TEST(JointMotorRows, ServoMovesAtItsSpeedAndStays) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double target : {0.9, -0.7}) {
-      for (const double speed : {1.0, -1.0}) {  // the sign of the speed does not matter
+      for (const double speed : {1.0, -1.0}) {  // the sign of the speed is ignored
         Drive d(axis, servo_axis(limited_axis(-1.5, 1.5), target, speed, 10000));
         int arrived = 0;
         for (int i = 1; i <= 480; ++i) {
@@ -101,7 +101,7 @@ TEST(JointMotorRows, AServoArrivesAfterWayOverSpeedAndStaysThere) {
   }
 }
 
-TEST(JointMotorRows, AServoHoldsALoadBelowItsForceAndGivesWayToMore) {
+TEST(JointMotorRows, ServoHoldsALoadUpToItsForce) {
   for (int axis = 0; axis < 6; ++axis) {
     Drive d(axis, servo_axis(free_axis(), 0, 1, 5));
     for (int i = 0; i < 240; ++i) {
@@ -119,12 +119,12 @@ TEST(JointMotorRows, AServoHoldsALoadBelowItsForceAndGivesWayToMore) {
   }
 }
 
-TEST(JointMotorRows, AServoWithoutSpeedSettlesWithoutOvershootWhateverItsForce) {
+TEST(JointMotorRows, ServoWithoutSpeedLimitDoesNotOvershoot) {
   for (int axis : {0, 5}) {
     for (const double force : {0.05, 0.5, 5.0, 50.0, 10000.0}) {
       Drive d(axis, servo_axis(limited_axis(-2, 2), 1, 0, force));
       double farthest = 0;
-      // the fastest way at full force takes 2·sqrt(J·1/F) s
+      // the time-optimal motion at full force takes 2·sqrt(J·1/F) s
       const double fastest = 2 * std::sqrt(inertia_of(axis) / force);
       const int steps = static_cast<int>((2 * fastest + 0.5) * 240);
       for (int i = 0; i < steps; ++i) {
@@ -137,8 +137,8 @@ TEST(JointMotorRows, AServoWithoutSpeedSettlesWithoutOvershootWhateverItsForce) 
   }
 }
 
-TEST(JointMotorRows, AServoThatMovesMoreThanItsTwoPartsBrakesInTime) {
-  // a light first part carries a heavy one on a locked joint: the servo must learn what it moves
+TEST(JointMotorRows, ServoEstimatesItsInertia) {
+  // a light first part carries a heavy one on a locked joint: the servo must estimate the inertia that it moves
   for (const double force : {1.0, 10.0, 100.0}) {
     Rig rig;
     btRigidBody& first = rig.part(0.5, Vec3(0.005));
@@ -156,7 +156,7 @@ TEST(JointMotorRows, AServoThatMovesMoreThanItsTwoPartsBrakesInTime) {
   }
 }
 
-TEST(JointMotorRows, ALimitedServoGoesTheAllowedWayRound) {
+TEST(JointMotorRows, LimitedServoTakesTheAllowedDirection) {
   Drive d(5, servo_axis(limited_axis(-3, 3), -2.9, 4, 1000));
   d.steps(480);
   ASSERT_NEAR(d.x(), -2.9, 1e-4);
@@ -167,7 +167,7 @@ TEST(JointMotorRows, ALimitedServoGoesTheAllowedWayRound) {
   EXPECT_NEAR(d.x(), 2.9, 1e-4);
 }
 
-TEST(JointMotorRows, AFreeServoGoesToItsTargetAndNotTheShortWayRound) {
+TEST(JointMotorRows, FreeServoCountsFullTurns) {
   Drive d(5, servo_axis(free_axis(), 2.9, 4, 1000));
   d.steps(480);
   d.hinge.set_axis(5, servo_axis(free_axis(), -2.9, 4, 1000));
@@ -176,7 +176,7 @@ TEST(JointMotorRows, AFreeServoGoesToItsTargetAndNotTheShortWayRound) {
   EXPECT_NEAR(d.x(), -2.9, 1e-4);
 }
 
-TEST(JointMotorRows, ServoTargetsBeyondAHalfTurnAndBeyondLimits) {
+TEST(JointMotorRows, ServoReachesTargetsBeyondAHalfTurn) {
   for (int axis = 3; axis < 6; ++axis) {
     Drive d(axis, servo_axis(limited_axis(-8, 8), 7, 5, 1000));
     d.steps(480);
@@ -189,8 +189,8 @@ TEST(JointMotorRows, ServoTargetsBeyondAHalfTurnAndBeyondLimits) {
   }
 }
 
-TEST(JointMotorRows, ASpringSwingsWithItsPeriod) {
-  // T = 2 pi sqrt(J/k) = 0.5 s, counted over ten swings
+TEST(JointMotorRows, SpringOscillatesWithItsPeriod) {
+  // T = 2 pi sqrt(J/k) = 0.5 s, measured over ten periods
   for (int axis = 0; axis < 6; ++axis) {
     const double j = inertia_of(axis);
     const double k = j * std::pow(2 * kPi / 0.5, 2);
@@ -213,8 +213,8 @@ TEST(JointMotorRows, ASpringSwingsWithItsPeriod) {
   }
 }
 
-TEST(JointMotorRows, AHingeSpringSwingsWithTheInertiaAboutItsAxis) {
-  // a rod's end on a hinge: J = 0.5 + 2·0.3²; the pivot is not the centre of mass
+TEST(JointMotorRows, HingeSpringOscillatesWithItsPeriod) {
+  // a rod's end on a hinge: J = 0.5 + 2·0.3²; the pivot is not the center of mass
   Rig rig;
   btRigidBody& child = rig.part(kMass, Vec3(kInertia), {{0.3, 0, 0}, quat_identity()});
   JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.3, 0, 0}, quat_identity()});
@@ -227,7 +227,7 @@ TEST(JointMotorRows, AHingeSpringSwingsWithTheInertiaAboutItsAxis) {
   EXPECT_NEAR(hinge.value(5), 0, 0.002);
 }
 
-TEST(JointMotorRows, ASpringSagsByLoadOverStiffness) {
+TEST(JointMotorRows, SpringDeflectsByLoadOverStiffness) {
   for (int axis = 0; axis < 6; ++axis) {
     Drive d(axis, spring_axis(free_axis(), 0.2, 50, 8));
     for (int i = 0; i < 1200; ++i) {
@@ -240,16 +240,16 @@ TEST(JointMotorRows, ASpringSagsByLoadOverStiffness) {
   }
 }
 
-TEST(JointMotorRows, ASpringsDampingIsTheImplicitStep) {
+TEST(JointMotorRows, SpringDampingIsImplicit) {
   for (const double damping : {0.5, 40.0, 1e6}) {
     Drive d(5, spring_axis(free_axis(), 0, 0, damping));
-    kick(d.child, 5, 2);
+    set_axis_rate(d.child, 5, 2);
     d.steps(10);
     EXPECT_NEAR(d.v(), 2 * std::pow(1 + damping * kRigStep / kInertia, -10), 2e-5);
   }
 }
 
-TEST(JointMotorRows, ATooStiffSpringIsCappedAndSaysSo) {
+TEST(JointMotorRows, LimitsAndReportsTooStiffASpring) {
   for (int axis = 0; axis < 6; ++axis) {
     Drive d(axis, spring_axis(free_axis(), 0.1, 1e9));
     d.steps(1);
@@ -260,17 +260,17 @@ TEST(JointMotorRows, ATooStiffSpringIsCappedAndSaysSo) {
       d.steps(1);
       farthest = std::max(farthest, std::fabs(d.x()));
     }
-    EXPECT_NEAR(farthest, 0.2, 0.01) << axis;  // it swings about 0.1 and keeps its energy
+    EXPECT_NEAR(farthest, 0.2, 0.01) << axis;  // it oscillates about 0.1 and conserves its energy
   }
 }
 
-TEST(JointMotorRows, ASpringCountsTurns) {
+TEST(JointMotorRows, SpringCountsFullTurns) {
   Drive d(5, spring_axis(free_axis(), 9, 20, 6));
   d.steps(1200);
   EXPECT_NEAR(d.x(), 9, 1e-3);
 }
 
-TEST(JointMotorRows, APendulumSwingsWithItsPeriod) {
+TEST(JointMotorRows, PendulumSwingsWithItsPeriod) {
   // T = 2 pi sqrt(J/(m g r)) (1 + a²/16), a = 0.4
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
@@ -299,8 +299,8 @@ TEST(JointMotorRows, APendulumSwingsWithItsPeriod) {
   EXPECT_NEAR((last - first) / 5 / period, 1, 1e-3);
 }
 
-TEST(JointMotorRows, OneJointIsExactAfterOneIteration) {
-  // the motor and the five locks are one block: more iterations find nothing to mend, saturated or not
+TEST(JointMotorRows, OneJointConvergesInOneIteration) {
+  // the motor and the five locks are one block: more iterations change nothing, saturated or not
   for (const double force : {0.5, 1000.0}) {
     Vec3 place[2];
     for (int many = 0; many < 2; ++many) {
@@ -320,8 +320,8 @@ TEST(JointMotorRows, OneJointIsExactAfterOneIteration) {
   }
 }
 
-TEST(JointMotorRows, AMirroredRobotMovesMirrored) {
-  // mirrored in the plane x z: y, and turns about x and z, change sign
+TEST(JointMotorRows, MirroredRobotMovesMirrored) {
+  // mirrored in the plane x z: y and rotations about x and z change sign
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
   JointConstraint* hinges[2][4];
@@ -331,7 +331,7 @@ TEST(JointMotorRows, AMirroredRobotMovesMirrored) {
     btRigidBody* parent = &rig.part(0, Vec3(0), {{0, m * 2, 0}, quat_identity()});
     for (int i = 0; i < 4; ++i) {
       btRigidBody& child = rig.part(1, {0.02, 0.03, 0.01}, {{0, m * (2 + 0.3 * (i + 1)), 0}, quat_identity()});
-      // axes x, z, y, x: a mirrored axis along y turns the other way round, one along x or z the same
+      // axes x, z, y, x: a mirrored axis along y reverses its rotation, one along x or z doesn't
       const Quat axis = i == 1   ? quat_identity()
                         : i == 2 ? quat_axis({1, 0, 0}, -kPi / 2)
                                  : quat_axis({0, 1, 0}, kPi / 2);

@@ -11,7 +11,7 @@ namespace limber {
 
 inline constexpr double kRigStep = 1.0 / 240.0;
 
-/// Parts have no contacts with anything. Gravity is off until asked for.
+/// Parts don't collide. Gravity is zero by default.
 struct Rig {
   Rig() { world.setGravity(btVector3(0, 0, 0)); }
   ~Rig() {
@@ -32,7 +32,7 @@ struct Rig {
   }
   btRigidBody& ground() { return part(0, Vec3(0)); }
 
-  /// Frames in the centre-of-mass frames. Every axis is locked at 0.
+  /// Frames relative to the parts' centers of mass. Every axis is locked at 0.
   JointConstraint& joint(btRigidBody& parent, btRigidBody& child, const Pose& in_parent = {},
                          const Pose& in_child = {}) {
     joints.push_back(std::make_unique<JointConstraint>(parent, child, to_bt(in_parent), to_bt(in_child)));
@@ -84,8 +84,8 @@ inline AxisSettings spring_axis(AxisSettings s, double rest, double stiffness, d
 /// Unit vector of an axis 0..2 or 3..5.
 inline Vec3 unit(int axis) { return {axis % 3 == 0 ? 1.0 : 0.0, axis % 3 == 1 ? 1.0 : 0.0, axis % 3 == 2 ? 1.0 : 0.0}; }
 
-/// Gives the child of a joint to a resting parent the rate of one axis.
-inline void kick(btRigidBody& child, int axis, double rate) {
+/// Sets the velocity of a joint's child so that one axis has this rate; the parent must be at rest.
+inline void set_axis_rate(btRigidBody& child, int axis, double rate) {
   if (axis < 3) {
     child.setLinearVelocity(to_bt(unit(axis) * rate));
   } else {

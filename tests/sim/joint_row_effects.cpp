@@ -1,4 +1,4 @@
-// What the rows of joints do on each of the six axes, as numbers measured in the world.
+// The effects of the properties of joints on each of the six axes, measured in the world.
 #include "sim/row_effects.h"
 #include "sim/stage.h"
 
@@ -6,55 +6,55 @@ namespace limber::test {
 
 namespace {
 
-// A limit stops what presses against it, from below for the lower one, and moves with its row.
+// A limit stops a motion towards it, the lower one from below, and follows its property.
 void limit(bool linear, bool upper) {
   for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
     for (const double at : {-0.4, 0.3}) {
-      OneAxis a(axis);
+      OneAxisFixture a(axis);
       upper ? a.limits(-0.8, at) : a.limits(at, 0.8);
-      a.pushed_ticks(120, upper ? 2.0 : -2.0);
+      a.ticks_with_load(120, upper ? 2.0 : -2.0);
       EXPECT_NEAR(a.x(), at, 1e-3) << axis;
       EXPECT_NEAR(a.v(), 0, 1e-3) << axis;
     }
     // equal: locked there; crossed: free
-    OneAxis locked(axis);
+    OneAxisFixture locked(axis);
     locked.limits(0.2, 0.2);
-    locked.pushed_ticks(120, 2);
+    locked.ticks_with_load(120, 2);
     EXPECT_NEAR(locked.x(), 0.2, 1e-3) << axis;
-    OneAxis free(axis);
+    OneAxisFixture free(axis);
     free.limits(0.5, -0.5);
-    free.pushed_ticks(30, 0.3);
+    free.ticks_with_load(30, 0.3);
     EXPECT_NEAR(free.v(), 0.3 / free.inertia() * 0.5, 1e-3) << axis;
   }
 }
 
-// A lock's error falls by erp in each internal step.
+// A lock's error decreases by the share erp in each internal step.
 void stop_erp(bool linear) {
   for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
     for (const double erp : {0.05, 0.2, 0.6}) {
-      OneAxis a(axis);
+      OneAxisFixture a(axis);
       a.limits(0, 0);
-      a.of_joint("stop_erp", erp);
-      a.put(0.01);
+      a.set_joint("stop_erp", erp);
+      a.set_value(0.01);
       a.ticks(1);
       EXPECT_NEAR(a.x(), 0.01 * std::pow(1 - erp, 4), 1e-5) << axis << " " << erp;
     }
   }
 }
 
-// A loaded lock, and a limit that is pressed on, yield by cfm·load.
+// A loaded lock or limit yields by cfm·load.
 void stop_cfm(bool linear) {
   for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
     for (const double cfm : {0.0, 0.002, 0.01}) {
-      OneAxis lock(axis);
+      OneAxisFixture lock(axis);
       lock.limits(0, 0);
-      lock.of_joint("stop_cfm", cfm);
-      lock.pushed_ticks(600, 5);
+      lock.set_joint("stop_cfm", cfm);
+      lock.ticks_with_load(600, 5);
       EXPECT_NEAR(lock.x(), 5 * cfm, 5 * cfm * 0.01 + 1e-5) << axis << " " << cfm;
-      OneAxis stop(axis);
+      OneAxisFixture stop(axis);
       stop.limits(-0.5, 0.1);
-      stop.of_joint("stop_cfm", cfm);
-      stop.pushed_ticks(600, 5);
+      stop.set_joint("stop_cfm", cfm);
+      stop.ticks_with_load(600, 5);
       EXPECT_NEAR(stop.x(), 0.1 + 5 * cfm, 5 * cfm * 0.01 + 1e-3) << axis << " " << cfm;
     }
   }
@@ -62,7 +62,7 @@ void stop_cfm(bool linear) {
 
 }  // namespace
 
-void add_joint_effects(RowEffects& effects) {
+void add_joint_effects(PropertyEffects& effects) {
   for (const bool linear : {true, false}) {
     const std::string side = linear ? "linear_" : "angular_";
     effects[{"Joint", side + "lower_limit"}] = [=] { limit(linear, false); };

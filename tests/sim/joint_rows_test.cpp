@@ -1,4 +1,4 @@
-// What the joint's rows do, each against a formula: limits, locks, damping, friction.
+// Effects of a joint's rows, each compared with a formula: limits, locks, damping, friction.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,13 +8,13 @@
 namespace limber {
 namespace {
 
-// A part of 2 kg and 0.5 kg·m² about every axis, on the ground, one axis moving.
+// A part of 2 kg and 0.5 kg·m² about every axis, attached to the ground with one free axis.
 struct Slider : Rig {
   explicit Slider(int axis, AxisSettings settings = free_axis()) : axis(axis) { hinge.set_axis(axis, settings); }
   double inertia() const { return axis < 3 ? 2.0 : 0.5; }
   double x() const { return hinge.value(axis); }
   double v() const { return hinge.rate(axis); }
-  // A force or torque along the axis for the next tick.
+  // Applies a force or torque along the axis during the next tick.
   void push(double load) {
     if (axis < 3) {
       child.applyCentralForce(to_bt(unit(axis) * load));
@@ -27,11 +27,11 @@ struct Slider : Rig {
   JointConstraint& hinge = joint(ground(), child);
 };
 
-TEST(JointRows, AFreeAxisKeepsItsSpeedAndLockedOnesStay) {
+TEST(JointRows, FreeAxisKeepsItsSpeed) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double rate : {1.5, -1.5}) {
       Slider s(axis);
-      kick(s.child, axis, rate);
+      set_axis_rate(s.child, axis, rate);
       s.steps(240);
       for (int i = 0; i < 6; ++i) {
         EXPECT_NEAR(s.hinge.value(i), i == axis ? rate : 0, 2e-5) << axis << i;
@@ -41,11 +41,11 @@ TEST(JointRows, AFreeAxisKeepsItsSpeedAndLockedOnesStay) {
   }
 }
 
-TEST(JointRows, ALimitStopsEachAxisOnEachSide) {
+TEST(JointRows, LimitStopsEachAxisOnEachSide) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       Slider s(axis, limited_axis(-0.3, 0.4));
-      kick(s.child, axis, sign * 2);
+      set_axis_rate(s.child, axis, sign * 2);
       s.steps(240);
       EXPECT_NEAR(s.x(), sign > 0 ? 0.4 : -0.3, 1e-4) << axis;
       EXPECT_NEAR(s.v(), 0, 1e-4) << axis;
@@ -53,7 +53,7 @@ TEST(JointRows, ALimitStopsEachAxisOnEachSide) {
   }
 }
 
-TEST(JointRows, LimitsHoldBeyondAHalfTurnAndBeyondAFullOne) {
+TEST(JointRows, LimitsHoldBeyondFullTurns) {
   struct Case {
     double lower, upper;
   };
@@ -71,25 +71,25 @@ TEST(JointRows, LimitsHoldBeyondAHalfTurnAndBeyondAFullOne) {
   }
 }
 
-TEST(JointRows, ALimitFarFromZeroHoldsAJointThatStartsThere) {
+TEST(JointRows, LimitFarFromZeroHolds) {
   Slider s(5, limited_axis(2.5, 4.5));
   s.child.setWorldTransform(to_bt(Pose{Vec3(0), quat_axis({0, 0, 1}, 3.5)}));
   s.hinge.reset({0, 0, 3.5});
-  kick(s.child, 5, 3);
+  set_axis_rate(s.child, 5, 3);
   s.steps(240);
   EXPECT_NEAR(s.x(), 4.5, 1e-4);
-  kick(s.child, 5, -3);
+  set_axis_rate(s.child, 5, -3);
   s.steps(240);
   EXPECT_NEAR(s.x(), 2.5, 1e-4);
 }
 
-TEST(JointRows, ALimitMetAtTwoRadiansPerSecondIsLeftAtBounceTimesThat) {
+TEST(JointRows, LimitBouncesByItsFactor) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double sign : {1.0, -1.0}) {
       for (const double bounce : {0.0, 0.25, 0.5, 1.0}) {
         Slider s(axis, limited_axis(-0.5, 0.5));
         s.hinge.set_bounce(bounce);
-        kick(s.child, axis, 2 * sign);
+        set_axis_rate(s.child, axis, 2 * sign);
         s.steps(90);  // 0.5 / 2 s = 60 steps to the limit
         EXPECT_NEAR(s.v(), -sign * bounce * 2, 1e-4) << axis;
       }
@@ -97,7 +97,7 @@ TEST(JointRows, ALimitMetAtTwoRadiansPerSecondIsLeftAtBounceTimesThat) {
   }
 }
 
-TEST(JointRows, AHeldLimitDoesNotBounceByItself) {
+TEST(JointRows, PressedLimitDoesNotBounce) {
   Slider s(5, limited_axis(-0.1, 0.1));
   s.hinge.set_bounce(0.9);
   double fastest = 0;
@@ -110,10 +110,10 @@ TEST(JointRows, AHeldLimitDoesNotBounceByItself) {
   EXPECT_NEAR(s.x(), 0.1, 1e-3);
 }
 
-TEST(JointRows, StopErpIsThePartOfTheErrorThatOneStepRepairs) {
+TEST(JointRows, StopErpRepairsItsPartOfTheErrorPerStep) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const float erp : {0.1f, 0.2f, 0.8f}) {
-      // a limit, started 0.01 beyond; and a lock, started 0.01 beside
+      // a limit, started 0.01 beyond it; and a lock, started 0.01 off
       for (AxisSettings settings : {limited_axis(0.01, 1), limited_axis(0.01, 0.01)}) {
         settings.stop_erp = erp;
         Slider s(axis, settings);
@@ -128,7 +128,7 @@ TEST(JointRows, StopErpIsThePartOfTheErrorThatOneStepRepairs) {
   }
 }
 
-TEST(JointRows, AJointTornApartComesBackWithoutABang) {
+TEST(JointRows, RepairSpeedIsLimited) {
   // 0.2·1 m / (1/240 s) would be 48 m/s
   Slider limited(0, limited_axis(1, 2));
   limited.steps(1);
@@ -138,7 +138,7 @@ TEST(JointRows, AJointTornApartComesBackWithoutABang) {
   EXPECT_NEAR(locked.v(), 20, 1e-3);
 }
 
-TEST(JointRows, StopCfmIsTheYieldPerLoadOfLimitsAndLocks) {
+TEST(JointRows, StopCfmIsTheComplianceOfLimitsAndLocks) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double cfm : {1e-4, 0.02, 1.0}) {
       for (const float erp : {0.2f, 0.9f}) {
@@ -146,7 +146,7 @@ TEST(JointRows, StopCfmIsTheYieldPerLoadOfLimitsAndLocks) {
           settings.stop_erp = erp;
           settings.stop_cfm = static_cast<float>(cfm);
           Slider s(axis, settings);
-          s.child.setDamping(0.8f, 0.8f);  // lets the softest come to rest
+          s.child.setDamping(0.8f, 0.8f);  // makes the softest come to rest
           const double load = 0.3 / std::max(cfm, 0.1);
           for (int i = 0; i < 1200; ++i) {
             s.push(load);
@@ -159,14 +159,14 @@ TEST(JointRows, StopCfmIsTheYieldPerLoadOfLimitsAndLocks) {
   }
 }
 
-TEST(JointRows, PassiveDampingDecaysAsTheImplicitStep) {
+TEST(JointRows, PassiveDampingIsImplicit) {
   // v(n+1) = v(n) / (1 + d h / J)
   for (int axis = 0; axis < 6; ++axis) {
     for (const AxisSettings& settings : {free_axis(), limited_axis(-100, 100)}) {
       for (const double damping : {0.1, 3.0, 500.0}) {
         Slider s(axis, settings);
         s.hinge.set_damping(damping);
-        kick(s.child, axis, 2);
+        set_axis_rate(s.child, axis, 2);
         s.steps(20);
         const double expected = 2 * std::pow(1 + damping * kRigStep / s.inertia(), -20);
         EXPECT_NEAR(s.v(), expected, 2e-5) << axis << ' ' << damping;
@@ -175,14 +175,14 @@ TEST(JointRows, PassiveDampingDecaysAsTheImplicitStep) {
   }
 }
 
-TEST(JointRows, PassiveDampingActsBesideEveryDrive) {
+TEST(JointRows, PassiveDampingActsWithEveryDrive) {
   const double damping = 2;
   for (int axis = 0; axis < 6; ++axis) {
     for (const AxisSettings& settings :
          {spin_axis(free_axis(), 3, 0), servo_axis(free_axis(), 1, 1, 0), spring_axis(free_axis(), 0, 0)}) {
       Slider s(axis, settings);
       s.hinge.set_damping(damping);
-      kick(s.child, axis, 2);
+      set_axis_rate(s.child, axis, 2);
       s.steps(20);
       EXPECT_NEAR(s.v(), 2 * std::pow(1 + damping * kRigStep / s.inertia(), -20), 2e-5) << axis;
     }
@@ -207,15 +207,15 @@ TEST(JointRows, AnyDampingIsStableInAChain) {
   }
 }
 
-TEST(JointRows, CoulombFrictionTakesItsTorqueFromTheSpeed) {
+TEST(JointRows, CoulombFrictionDeceleratesByItsTorque) {
   for (int axis = 0; axis < 6; ++axis) {
     AxisSettings settings = free_axis();
     settings.friction = 0.4f;
     Slider s(axis, settings);
-    kick(s.child, axis, 2);
+    set_axis_rate(s.child, axis, 2);
     s.steps(60);
     EXPECT_NEAR(s.v(), 2 - 0.4 / s.inertia() * 0.25, 1e-4) << axis;
-    // in the end it holds, also against a load below it
+    // finally it sticks, even against a load below the limit
     s.steps(2400);
     EXPECT_NEAR(s.v(), 0, 1e-5) << axis;
     s.push(0.39);
@@ -227,7 +227,7 @@ TEST(JointRows, CoulombFrictionTakesItsTorqueFromTheSpeed) {
   }
 }
 
-TEST(JointRows, ALimitFarAwayCostsNoRow) {
+TEST(JointRows, DistantLimitHasNoRow) {
   Slider far(5, limited_axis(-2, 2));
   Slider near(5, limited_axis(-2, 0.04));
   btTypedConstraint::btConstraintInfo1 info{};
@@ -241,8 +241,8 @@ TEST(JointRows, ALimitFarAwayCostsNoRow) {
   EXPECT_EQ(info.m_numConstraintRows, 0);
 }
 
-TEST(JointRows, AFreePairKeepsItsMomentum) {
-  // a slider's and a hinge's rows act at one point of both parts: linear and angular momentum stay
+TEST(JointRows, ConservesMomentumOfAFreePair) {
+  // the rows of a slider and a hinge act at one point of both parts: linear and angular momentum are conserved
   for (int axis = 0; axis < 6; ++axis) {
     Rig rig;
     btRigidBody& a = rig.part(3, Vec3(0.2), {{-0.4, 0.1, 0}, quat_identity()});
@@ -267,7 +267,7 @@ TEST(JointRows, AFreePairKeepsItsMomentum) {
   }
 }
 
-TEST(JointRows, APlanarJointSlidesAndTurnsInItsPlaneOnly) {
+TEST(JointRows, PlanarJointMovesInItsPlaneOnly) {
   Rig rig;
   btRigidBody& child = rig.part(1, Vec3(0.3));
   JointConstraint& planar = rig.joint(rig.ground(), child);

@@ -1,4 +1,4 @@
-// What the rows of motors do on each of the six axes, as numbers measured in the world.
+// The effects of the properties of motors on each of the six axes, measured in the world.
 #include "sim/row_effects.h"
 #include "sim/stage.h"
 
@@ -9,147 +9,149 @@ namespace {
 template <class F>
 void on_axes(bool linear, F&& measure) {
   for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
-    OneAxis a(axis);
+    OneAxisFixture a(axis);
     SCOPED_TRACE(axis);
     measure(a);
   }
 }
 
-void active(OneAxis& a) {
-  a.of_motor("velocity", 1);
+void active(OneAxisFixture& a) {
+  a.set_motor("velocity", 1);
   a.ticks(30);
   EXPECT_EQ(a.v(), 0);
-  a.of_motor("active", 1);
+  a.set_motor("active", 1);
   a.ticks(30);
   EXPECT_NEAR(a.v(), 1, 1e-4);
-  a.of_motor("active", 0);
-  a.push(0.6);
+  a.set_motor("active", 0);
+  a.apply_force(0.6);
   a.ticks(1);
   EXPECT_NEAR(a.v(), 1 + 0.6 / a.inertia() / 60, 1e-3);
 }
 
-void velocity(OneAxis& a) {
-  a.of_motor("active", 1);
+void velocity(OneAxisFixture& a) {
+  a.set_motor("active", 1);
   for (const double v : {0.7, -1.3, 0.0}) {
-    a.of_motor("velocity", v);
+    a.set_motor("velocity", v);
     a.ticks(30);
     EXPECT_NEAR(a.v(), v, 1e-4);
   }
 }
 
-void max_force(OneAxis& a) {
-  a.of_motor("active", 1);
-  a.of_motor("velocity", 100);
+void max_force(OneAxisFixture& a) {
+  a.set_motor("active", 1);
+  a.set_motor("velocity", 100);
   for (const double force : {0.05, 0.4}) {
     const double before = a.v();
-    a.of_motor("max_force", force);
+    a.set_motor("max_force", force);
     a.ticks(15);
     EXPECT_NEAR(a.v() - before, force / a.inertia() / 4, 1e-3);
-    const Vec3 told = a.vec(a.motor.id(), a.axis < 3 ? "applied_force" : "applied_torque");
-    EXPECT_NEAR(told[a.axis % 3], force, 1e-3 * force);
+    const Vec3 applied = a.vec(a.motor.id(), a.axis < 3 ? "applied_force" : "applied_torque");
+    EXPECT_NEAR(applied[a.axis % 3], force, 1e-3 * force);
   }
 }
 
-void servo_active(OneAxis& a) {
-  a.of_motor("active", 1);
-  a.of_motor("velocity", 2);
-  a.of_motor("servo_position", 0.5);
+void servo_active(OneAxisFixture& a) {
+  a.set_motor("active", 1);
+  a.set_motor("velocity", 2);
+  a.set_motor("servo_position", 0.5);
   a.ticks(60);
-  EXPECT_NEAR(a.v(), 2, 1e-4);  // a spin does not look at the position
-  a.put(0);
-  a.of_motor("servo_active", 1);
+  EXPECT_NEAR(a.v(), 2, 1e-4);  // a spin ignores the position
+  a.set_value(0);
+  a.set_motor("servo_active", 1);
   a.ticks(6);
-  EXPECT_NEAR(a.x(), 0.2, 0.02);  // on its way, at its speed
+  EXPECT_NEAR(a.x(), 0.2, 0.02);  // moving at its speed
   a.ticks(114);
   EXPECT_NEAR(a.x(), 0.5, 1e-4);
 }
 
-void servo_position(OneAxis& a) {
-  a.of_motor("active", 1);
-  a.of_motor("servo_active", 1);
+void servo_position(OneAxisFixture& a) {
+  a.set_motor("active", 1);
+  a.set_motor("servo_active", 1);
   for (const double target : {0.6, -1.2, 0.0}) {
-    a.of_motor("servo_position", target);
+    a.set_motor("servo_position", target);
     a.ticks(120);
     EXPECT_NEAR(a.x(), target, 1e-4);
     EXPECT_NEAR(a.v(), 0, 1e-3);
   }
 }
 
-// Half a period from where it is let go, a spring is at the other end: pi·sqrt(inertia/stiffness).
-void spring_active(OneAxis& a) {
-  const double k = a.inertia() * kPi * kPi;  // half a period lasts a second
-  a.of_motor("spring_stiffness", k);
-  a.put(0.2);
+// Half a period after its release, a spring is at the opposite end: pi·sqrt(inertia/stiffness).
+void spring_active(OneAxisFixture& a) {
+  const double k = a.inertia() * kPi * kPi;  // half a period is one second
+  a.set_motor("spring_stiffness", k);
+  a.set_value(0.2);
   a.ticks(60);
   EXPECT_NEAR(a.x(), 0.2, 1e-5);
-  a.of_motor("spring_active", 1);
+  a.set_motor("spring_active", 1);
   a.ticks(60);
   EXPECT_NEAR(a.x(), -0.2, 2e-3);
-  a.of_motor("active", 1);  // spring before spin: nothing changes
-  a.of_motor("velocity", 5);
+  a.set_motor("active", 1);  // spring has priority over spin: no change
+  a.set_motor("velocity", 5);
   a.ticks(60);
   EXPECT_NEAR(a.x(), 0.2, 4e-3);
 }
 
-void spring_rest(OneAxis& a) {
+void spring_rest(OneAxisFixture& a) {
   const double k = a.inertia() * 40;
-  a.of_motor("spring_active", 1);
-  a.of_motor("spring_stiffness", k);
-  a.of_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));  // critical
+  a.set_motor("spring_active", 1);
+  a.set_motor("spring_stiffness", k);
+  a.set_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));  // critical
   for (const double rest : {0.5, -0.3}) {
-    a.of_motor("spring_rest_length", rest);
+    a.set_motor("spring_rest_length", rest);
     a.ticks(240);
     EXPECT_NEAR(a.x(), rest, 1e-3);
   }
 }
 
 // Static sag: load over stiffness.
-void spring_stiffness(OneAxis& a) {
-  a.of_motor("spring_active", 1);
+void spring_stiffness(OneAxisFixture& a) {
+  a.set_motor("spring_active", 1);
   for (const double per_inertia : {50.0, 200.0}) {
     const double k = a.inertia() * per_inertia;
-    a.of_motor("spring_stiffness", k);
-    a.of_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));
-    a.pushed_ticks(240, 0.1 * k);
+    a.set_motor("spring_stiffness", k);
+    a.set_motor("spring_damping", 2 * std::sqrt(k * a.inertia()));
+    a.ticks_with_load(240, 0.1 * k);
     EXPECT_NEAR(a.x(), 0.1, 1e-3);
-    const double told = a.get(a.motor.id(), a.side("spring_stiffness_applied"))[static_cast<std::size_t>(a.axis % 3)];
-    EXPECT_NEAR(told, k, 1e-5 * k);
+    const double applied =
+        a.get(a.motor.id(), a.prefixed("spring_stiffness_applied"))[static_cast<std::size_t>(a.axis % 3)];
+    EXPECT_NEAR(applied, k, 1e-5 * k);
   }
 }
 
-// Without stiffness the speed falls by 1/(1 + c·h/inertia) in each internal step (implicit Euler).
-void spring_damping(OneAxis& a) {
-  a.of_motor("spring_active", 1);
+// Without stiffness, the speed decreases by the factor 1 + c·h/inertia in each internal step (implicit Euler).
+void spring_damping(OneAxisFixture& a) {
+  a.set_motor("spring_active", 1);
   const double c = 3 * a.inertia();
-  a.of_motor("spring_damping", c);
-  a.kick(1);
+  a.set_motor("spring_damping", c);
+  a.set_rate(1);
   a.ticks(30);
   EXPECT_NEAR(a.v(), std::pow(1 / (1 + 3 * a.h()), 120), 1e-3);
-  EXPECT_NEAR(a.get(a.motor.id(), a.side("spring_damping_applied"))[static_cast<std::size_t>(a.axis % 3)], c, 1e-5 * c);
+  EXPECT_NEAR(a.get(a.motor.id(), a.prefixed("spring_damping_applied"))[static_cast<std::size_t>(a.axis % 3)], c,
+              1e-5 * c);
 }
 
-// The same law as a spring's damping, on every axis that is not locked and in any mode.
+// The same law as for a spring's damping, for every axis that isn't locked, in any mode.
 void damping() {
   for (int axis = 0; axis < 6; axis++) {
-    OneAxis a(axis);
+    OneAxisFixture a(axis);
     SCOPED_TRACE(axis);
     a.set(a.motor.id(), "damping", {3 * a.inertia()});
-    a.kick(1);
+    a.set_rate(1);
     a.ticks(30);
     EXPECT_NEAR(a.v(), std::pow(1 / (1 + 3 * a.h()), 120), 1e-3);
-    // beside a spring's own
-    OneAxis both(axis);
-    both.of_motor("spring_active", 1);
-    both.of_motor("spring_damping", both.inertia());
+    // in addition to a spring's own damping
+    OneAxisFixture both(axis);
+    both.set_motor("spring_active", 1);
+    both.set_motor("spring_damping", both.inertia());
     both.set(both.motor.id(), "damping", {2 * both.inertia()});
-    both.kick(1);
+    both.set_rate(1);
     both.ticks(30);
     EXPECT_NEAR(both.v(), std::pow(1 / (1 + 3 * both.h()), 120), 2e-3);
-    // a spin against it falls behind where its force ends: v = force/damping
-    OneAxis spin(axis);
-    spin.of_motor("active", 1);
-    spin.of_motor("velocity", 100);
-    spin.of_motor("max_force", 6 * spin.inertia());
+    // a spin against it is limited to v = force/damping
+    OneAxisFixture spin(axis);
+    spin.set_motor("active", 1);
+    spin.set_motor("velocity", 100);
+    spin.set_motor("max_force", 6 * spin.inertia());
     spin.set(spin.motor.id(), "damping", {3 * spin.inertia()});
     spin.ticks(300);
     EXPECT_NEAR(spin.v(), 2, 0.01);
@@ -160,10 +162,10 @@ void bounce() {
   for (int axis = 0; axis < 6; axis++) {
     for (const double e : {0.0, 0.4, 1.0}) {
       for (const double way : {1.0, -1.0}) {
-        OneAxis a(axis);
+        OneAxisFixture a(axis);
         a.limits(-0.1, 0.1);
         a.set(a.motor.id(), "bounce", {e});
-        a.kick(way);
+        a.set_rate(way);
         a.ticks(9);
         EXPECT_NEAR(a.v(), -e * way, 0.02) << axis << " " << e;
       }
@@ -172,8 +174,8 @@ void bounce() {
 }
 
 // The own axis of a revolute and of a prismatic joint.
-struct Own : Stage {
-  explicit Own(JointType type) : joint(*robot.add_joint("joint", base, child, type, Vec3(0), {0, 0, 1}).value()) {}
+struct OwnAxis : WorldFixture {
+  explicit OwnAxis(JointType type) : joint(*robot.add_joint("joint", base, child, type, Vec3(0), {0, 0, 1}).value()) {}
   double x() const { return joint.value(); }
   double v() const { return number(joint.id(), "speed"); }
   Body& robot = body("robot");
@@ -185,8 +187,8 @@ struct Own : Stage {
 
 void mode() {
   for (const JointType type : {JointType::revolute, JointType::prismatic}) {
-    Own o(type);
-    EXPECT_EQ(o.number(o.motor.id(), "mode"), 2);  // made as a servo that holds
+    OwnAxis o(type);
+    EXPECT_EQ(o.number(o.motor.id(), "mode"), 2);  // created as a servo that holds
     o.set(o.motor.id(), "target", {0.4});
     o.ticks(60);
     EXPECT_NEAR(o.x(), 0.4, 1e-4);
@@ -197,7 +199,7 @@ void mode() {
     o.set(o.motor.id(), "mode", {0});
     o.set(o.motor.id(), "speed", {-3});
     o.ticks(30);
-    EXPECT_NEAR(o.v(), 3, 1e-3);  // off: it goes on
+    EXPECT_NEAR(o.v(), 3, 1e-3);  // off: it coasts
     const char* stiffness = type == JointType::revolute ? "angular_spring_stiffness" : "linear_spring_stiffness";
     o.set_one(o.motor.id(), stiffness, 2, 0.5);
     const double before = o.x();
@@ -215,7 +217,7 @@ void mode() {
 void target() {
   for (const JointType type : {JointType::revolute, JointType::prismatic}) {
     const std::string side = type == JointType::revolute ? "angular_" : "linear_";
-    Own o(type);
+    OwnAxis o(type);
     o.set(o.motor.id(), "target", {0.7});
     EXPECT_EQ(o.get(o.motor.id(), side + "servo_position")[2], 0.7);
     EXPECT_EQ(o.get(o.motor.id(), side + "spring_rest_length")[2], 0.7);
@@ -226,11 +228,11 @@ void target() {
 
 void speed() {
   for (const JointType type : {JointType::revolute, JointType::prismatic}) {
-    Own o(type);
+    OwnAxis o(type);
     o.set(o.motor.id(), "speed", {0.5});
     o.set(o.motor.id(), "target", {2});
     o.ticks(60);
-    EXPECT_NEAR(o.x(), 0.5, 0.01);  // as fast as it may: half a radian a second
+    EXPECT_NEAR(o.x(), 0.5, 0.01);  // at its maximal speed: half a radian per second
     EXPECT_NEAR(o.v(), 0.5, 1e-3);
     o.set(o.motor.id(), "mode", {1});
     o.set(o.motor.id(), "speed", {-2});
@@ -239,10 +241,10 @@ void speed() {
   }
 }
 
-// A ramp of targets comes out as the same ramp, later by 1.5 times the smoothing and three ticks.
+// A ramp of targets results in the same ramp, delayed by 1.5 times the smoothing plus three ticks.
 void target_smoothing() {
   for (const JointType type : {JointType::revolute, JointType::prismatic}) {
-    Own o(type);
+    OwnAxis o(type);
     o.set(o.motor.id(), "target_smoothing", {0.1});
     for (int i = 1; i <= 120; i++) {
       o.set(o.motor.id(), "target", {0.5 * i / 60});
@@ -255,11 +257,11 @@ void target_smoothing() {
 
 }  // namespace
 
-void add_motor_effects(RowEffects& effects) {
+void add_motor_effects(PropertyEffects& effects) {
   for (const bool linear : {true, false}) {
     const std::string side = linear ? "linear_" : "angular_";
-    const auto add = [&](const std::string& row, void (*measure)(OneAxis&)) {
-      effects[{"Motor", row}] = [=] { on_axes(linear, measure); };
+    const auto add = [&](const std::string& property, void (*measure)(OneAxisFixture&)) {
+      effects[{"Motor", property}] = [=] { on_axes(linear, measure); };
     };
     add(side + "active", active);
     add(side + "velocity", velocity);

@@ -1,4 +1,4 @@
-// Sums over pairs: against sums in double precision, and to the bit the same by all lanes.
+// Sums over pairs: compared with sums in double precision, and bit for bit between all vector widths.
 #include "sim/neighbor_sums.h"
 
 #include <gtest/gtest.h>
@@ -10,12 +10,12 @@
 namespace limber {
 namespace {
 
-constexpr std::uint32_t kSummed = 60;
+constexpr std::uint32_t kPointCount = 60;
 
 std::vector<NeighborMotion> moving_points() {
   std::mt19937 dice(3);
   std::uniform_real_distribution<float> any(-5, 5);
-  std::vector<NeighborMotion> points(kSummed);
+  std::vector<NeighborMotion> points(kPointCount);
   for (NeighborMotion& point : points) {
     for (int a = 0; a < 3; a++) {
       point.position[a] = any(dice);
@@ -27,58 +27,59 @@ std::vector<NeighborMotion> moving_points() {
   return points;
 }
 
-// some of those behind each
-std::vector<std::uint32_t> found_by(std::uint32_t place) {
+// Selects some of the points behind each point.
+std::vector<std::uint32_t> neighbors_of(std::uint32_t index) {
   std::vector<std::uint32_t> found;
-  for (std::uint32_t other = place + 1; other < kSummed; other++) {
-    if ((place * 31 + other * 17) % 5 < 2) found.push_back(other);
+  for (std::uint32_t other = index + 1; other < kPointCount; other++) {
+    if ((index * 31 + other * 17) % 5 < 2) found.push_back(other);
   }
   return found;
 }
 
-std::vector<NeighborSum> sums_by(PointLanes lanes, bool motions) {
+std::vector<NeighborSum> sums_by(VectorWidth width, bool motions) {
   const std::vector<NeighborMotion> points = moving_points();
-  std::vector<NeighborSum> sums(kSummed);
-  const AddPairs add = add_pairs_by(lanes, motions);
-  for (std::uint32_t place = 0; place < kSummed; place++) add(place, found_by(place), points.data(), sums.data());
+  std::vector<NeighborSum> sums(kPointCount);
+  const AddPairs add = select_add_pairs(width, motions);
+  for (std::uint32_t index = 0; index < kPointCount; index++)
+    add(index, neighbors_of(index), points.data(), sums.data());
   return sums;
 }
 
-TEST(NeighborSums, AreOverBothOfEachPair) {
+TEST(NeighborSums, IncludeBothPointsOfEachPair) {
   const std::vector<NeighborMotion> points = moving_points();
-  std::vector<std::vector<std::uint32_t>> near(kSummed);
-  for (std::uint32_t place = 0; place < kSummed; place++) {
-    for (const std::uint32_t other : found_by(place)) {
-      near[place].push_back(other);
-      near[other].push_back(place);
+  std::vector<std::vector<std::uint32_t>> near(kPointCount);
+  for (std::uint32_t index = 0; index < kPointCount; index++) {
+    for (const std::uint32_t other : neighbors_of(index)) {
+      near[index].push_back(other);
+      near[other].push_back(index);
     }
   }
   const std::vector<NeighborSum> sums = sums_by(PointFinder::widest(), true);
-  for (std::uint32_t place = 0; place < kSummed; place++) {
-    EXPECT_EQ(sums[place].offset[3], static_cast<float>(near[place].size()));
+  for (std::uint32_t index = 0; index < kPointCount; index++) {
+    EXPECT_EQ(sums[index].offset[3], static_cast<float>(near[index].size()));
     for (int a = 0; a < 3; a++) {
       double offset = 0, velocity = 0, spin = 0;
-      for (const std::uint32_t other : near[place]) {
-        offset += double{points[other].position[a]} - points[place].position[a];
+      for (const std::uint32_t other : near[index]) {
+        offset += double{points[other].position[a]} - points[index].position[a];
         velocity += points[other].velocity[a];
         spin += points[other].spin[a];
       }
-      EXPECT_NEAR(sums[place].offset[a], offset, 1e-4);
-      EXPECT_NEAR(sums[place].velocity[a], velocity, 1e-4);
-      EXPECT_NEAR(sums[place].spin[a], spin, 1e-4);
+      EXPECT_NEAR(sums[index].offset[a], offset, 1e-4);
+      EXPECT_NEAR(sums[index].velocity[a], velocity, 1e-4);
+      EXPECT_NEAR(sums[index].spin[a], spin, 1e-4);
     }
   }
 }
 
-TEST(NeighborSums, AreTheSameToTheBitByAllLanes) {
-  const std::vector<NeighborSum> plain = sums_by(PointLanes::four, true);
-  for (const PointLanes lanes : {PointLanes::eight, PointLanes::sixteen}) {
-    const std::vector<NeighborSum> wide = sums_by(lanes, true);
-    EXPECT_EQ(std::memcmp(wide.data(), plain.data(), kSummed * sizeof(NeighborSum)), 0);
+TEST(NeighborSums, AreEqualForAllVectorWidths) {
+  const std::vector<NeighborSum> plain = sums_by(VectorWidth::four, true);
+  for (const VectorWidth width : {VectorWidth::eight, VectorWidth::sixteen}) {
+    const std::vector<NeighborSum> wide = sums_by(width, true);
+    EXPECT_EQ(std::memcmp(wide.data(), plain.data(), kPointCount * sizeof(NeighborSum)), 0);
   }
-  const std::vector<NeighborSum> still = sums_by(PointLanes::four, false);
-  for (std::uint32_t place = 0; place < kSummed; place++) {
-    EXPECT_EQ(std::memcmp(still[place].offset, plain[place].offset, sizeof still[place].offset), 0) << place;
+  const std::vector<NeighborSum> still = sums_by(VectorWidth::four, false);
+  for (std::uint32_t index = 0; index < kPointCount; index++) {
+    EXPECT_EQ(std::memcmp(still[index].offset, plain[index].offset, sizeof still[index].offset), 0) << index;
   }
 }
 

@@ -1,4 +1,4 @@
-// Contacts never create energy: parts of one body that overlap, whatever holds them against each other.
+// Contacts never create energy: parts of one body that overlap and are pressed against each other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ double kinetic(const Part& part) {
 }
 
 // A hub with two boxes on hinges beside each other, which overlap by `depth` and are held by servos; without gravity.
-struct Siblings : Stage {
+struct Siblings : WorldFixture {
   Siblings(double depth, double torque, bool fixed, unsigned seed) : random(seed), robot(body("robot")) {
     set(world.id(), "timestep", {1.0 / 240});
     substeps(1);
@@ -37,8 +37,8 @@ struct Siblings : Stage {
     if (!fixed) {
       const Vec3 spin(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
       for (const auto& p : robot.parts()) {
-        set(p->id(), "linear_velocity", OneAxis::as_list(glm::cross(spin, p->center())));
-        set(p->id(), "angular_velocity", OneAxis::as_list(spin));
+        set(p->id(), "linear_velocity", OneAxisFixture::as_list(glm::cross(spin, p->center())));
+        set(p->id(), "angular_velocity", OneAxisFixture::as_list(spin));
       }
     }
   }
@@ -48,7 +48,7 @@ struct Siblings : Stage {
     for (const auto& p : robot.parts()) sum += kinetic(*p);
     return sum;
   }
-  // Work that the motors did in the last step, J.
+  // Work of the motors in the last step, J.
   double work(const std::vector<double>& rates_before) const {
     double sum = 0;
     for (std::size_t i = 0; i < robot.joints().size(); i++) {
@@ -62,8 +62,8 @@ struct Siblings : Stage {
   Body& robot;
 };
 
-// A part that is turned while its velocity stays changes its energy: a fifth is left for that.
-TEST(OverlapEnergy, OverlappingSiblingsNeverGainMoreThanTheirMotorsDo) {
+// A part that is rotated without its velocity changes its energy: a fifth is allowed for that.
+TEST(OverlapEnergy, OverlappingSiblingsGainNoEnergy) {
   unsigned seed = 1;
   for (const double depth : {1e-4, 5e-4, 2e-3, 1e-2, 0.025}) {
     for (const double torque : {0.01, 1.0, 100.0, 1e4}) {

@@ -1,4 +1,4 @@
-// A panic: how fast the energy goes, how slowly things sink, and that nothing of what was set is lost.
+// Panic: decay of the energy, terminal speed, and preservation of all settings.
 #include "sim/panic.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kTick = 1.0 / 60;
 
-// of all that moves, J
-double moving_energy(const Stage& s) {
+// Kinetic energy of all movable parts, J.
+double moving_energy(const WorldFixture& s) {
   double sum = 0;
   for (const auto& body : s.world.bodies()) {
     for (const auto& part : body->parts()) {
@@ -26,7 +26,7 @@ double moving_energy(const Stage& s) {
   return sum;
 }
 
-double moving_mass(const Stage& s) {
+double moving_mass(const WorldFixture& s) {
   double sum = 0;
   for (const auto& body : s.world.bodies()) {
     for (const auto& part : body->parts()) sum += part->mass();
@@ -34,15 +34,16 @@ double moving_mass(const Stage& s) {
   return sum;
 }
 
-// what panic.h promises
-double most_energy(double at_first, double moved_mass, double time) {
-  const double root = std::sqrt(at_first) * std::exp(-Panic::kBrake * time) + Panic::kSink * std::sqrt(moved_mass / 2);
+// The bound documented in panic.h.
+double energy_bound(double at_first, double moved_mass, double time) {
+  const double root =
+      std::sqrt(at_first) * std::exp(-Panic::kDamping * time) + Panic::kTerminalSpeed * std::sqrt(moved_mass / 2);
   return root * root;
 }
 
-// two arms that thrash on a floor among spinning balls; one hangs free, one has springs
-struct Wild : Stage {
-  Wild() {
+// Two arms that thrash on a floor among spinning balls; one hangs freely, one has springs.
+struct ThrashingScene : WorldFixture {
+  ThrashingScene() {
     gravity({0, 0, -9.81});
     floor();
     make_arm(*this, "fixed");
@@ -52,71 +53,71 @@ struct Wild : Stage {
       set_one(motor->id(), "angular_spring_stiffness", 2, 50);
     }
     for (int i = 0; i < 6; i++) {
-      Part& ball = lone(sphere_model(0.1), 1, {{0.3 * i, 3, 1.0 + i}, quat_identity()});
+      Part& ball = add_single_part(sphere_model(0.1), 1, {{0.3 * i, 3, 1.0 + i}, quat_identity()});
       ball.set_velocity({6.0 - i, 2.0 * i, 3}, {20, -30, 10.0 * i});
     }
     for (int i = 0; i < 40; i++) {
-      wave(*this, *world.find_body("fixed"), 4 * i * kTick);
+      set_wave_targets(*this, *world.find_body("fixed"), 4 * i * kTick);
       for (const auto& part : free.parts()) part->apply_torque({3 * std::sin(i), 2, -2 * std::cos(2 * i)});
       world.step();
     }
   }
 };
 
-TEST(Panic, SpeedsFallAlikeAndAsFastAsItSays) {
-  Stage s;
-  Part& ball = s.lone(sphere_model(0.1), 2);
+TEST(Panic, SpeedsDecayAtTheDocumentedRate) {
+  WorldFixture s;
+  Part& ball = s.add_single_part(sphere_model(0.1), 2);
   ball.set_velocity({3, -4, 12}, {5, 6, -7});
   s.ticks(1);
   s.world.panic().begin();
   s.ticks(30);
-  const double left = std::exp(-Panic::kBrake * 30 * kTick);
+  const double left = std::exp(-Panic::kDamping * 30 * kTick);
   for (int i = 0; i < 3; i++) {
     EXPECT_NEAR(ball.linear_velocity()[i], left * Vec3(3, -4, 12)[i], 1e-4);
     EXPECT_NEAR(ball.angular_velocity()[i], left * Vec3(5, 6, -7)[i], 1e-4);
   }
 }
 
-// v := (v − g·h)·e with g = kBrake·kSink at most: comes to rest at −g·h·e/(1 − e)
-TEST(Panic, WhatFallsSinksAtOneSpeedWhateverGravityIs) {
+// v := (v − g·h)·e with g <= kDamping·kTerminalSpeed: converges to −g·h·e/(1 − e).
+TEST(Panic, FallingPartsReachTheTerminalSpeedAtAnyGravity) {
   for (const double gravity : {9.81, 1000.0, 0.3}) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -gravity});
-    Part& ball = s.lone(sphere_model(0.1), 2, {{0, 0, 50}, quat_identity()});
+    Part& ball = s.add_single_part(sphere_model(0.1), 2, {{0, 0, 50}, quat_identity()});
     s.ticks(10);
     s.world.panic().begin();
     s.ticks(180);
-    const double e = std::exp(-Panic::kBrake * s.h());
-    const double weight = std::min(gravity, Panic::kBrake * Panic::kSink);
+    const double e = std::exp(-Panic::kDamping * s.h());
+    const double weight = std::min(gravity, Panic::kDamping * Panic::kTerminalSpeed);
     EXPECT_NEAR(ball.linear_velocity().z, -weight * s.h() * e / (1 - e), 1e-4) << gravity;
-    EXPECT_LT(std::abs(ball.linear_velocity().z), Panic::kSink);
+    EXPECT_LT(std::abs(ball.linear_velocity().z), Panic::kTerminalSpeed);
     s.world.panic().end();
     const double before = ball.linear_velocity().z;
     s.ticks(1);
-    EXPECT_NEAR(ball.linear_velocity().z, before - gravity * kTick, 1e-3) << "all of it again";
+    EXPECT_NEAR(ball.linear_velocity().z, before - gravity * kTick, 1e-3) << "full gravity again";
   }
 }
 
-TEST(Panic, TheEnergyStaysBelowTheBoundWhateverMotorsDo) {
+TEST(Panic, EnergyStaysBelowTheBoundWithAnyMotors) {
   for (const double motors : {0.0, 1.0}) {
-    Wild s;
+    ThrashingScene s;
     s.set(s.world.id(), "panic_motors", {motors});
     const double before = moving_energy(s);
     ASSERT_GT(before, 50);
     s.world.panic().begin();
     for (int i = 1; i <= 120; i++) {
-      wave(s, *s.world.find_body("fixed"), 4 * i * kTick);  // who goes on playing changes nothing
+      set_wave_targets(s, *s.world.find_body("fixed"), 4 * i * kTick);  // animating the motors changes nothing
       for (const auto& part : s.world.find_body("free")->parts()) part->apply_force({100, 0, 200});
       s.ticks(1);
-      EXPECT_LE(moving_energy(s), 1.01 * most_energy(before, moving_mass(s), i * kTick)) << i;
+      EXPECT_LE(moving_energy(s), 1.01 * energy_bound(before, moving_mass(s), i * kTick)) << i;
     }
     EXPECT_LT(moving_energy(s), 0.01 * before) << motors;
   }
 }
 
-TEST(Panic, HeldMotorsKeepThePoseLimpOnesGiveWay) {
+TEST(Panic, HeldMotorsKeepThePoseLimpOnesDoNot) {
   for (const double motors : {0.0, 1.0}) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -9.81});
     Body& arm = make_arm(s, "arm");
     s.set(arm.motors()[0]->id(), "target", {1.2});
@@ -129,23 +130,23 @@ TEST(Panic, HeldMotorsKeepThePoseLimpOnesGiveWay) {
     s.ticks(motors == 0 ? 1200 : 120);
     const double moved = arm.joints()[0]->value() - before;
     if (motors == 0) {
-      EXPECT_NEAR(moved, 0, 0.005) << "for as long as it takes";
+      EXPECT_NEAR(moved, 0, 0.005) << "held for any time";
     } else {
       EXPECT_GT(moved, 0.1) << "it sinks";
     }
     s.world.panic().end();
     s.ticks(240);
     EXPECT_NEAR(std::remainder(arm.joints()[0]->value() + 1, 2 * kPi), 0, 0.05)
-        << "what was set meanwhile counts from the end on";
+        << "values set during the panic apply after it";
   }
 }
 
-TEST(Panic, ThingsStandOnThings) {
-  Stage s;
+TEST(Panic, StacksRemainStanding) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   s.floor();
-  Part& below = s.lone(box_model({0.4, 0.4, 0.2}), 2, {{0, 0, 0.1}, quat_identity()});
-  Part& above = s.lone(box_model({0.2, 0.2, 0.2}), 1, {{0, 0, 0.3}, quat_identity()});
+  Part& below = s.add_single_part(box_model({0.4, 0.4, 0.2}), 2, {{0, 0, 0.1}, quat_identity()});
+  Part& above = s.add_single_part(box_model({0.2, 0.2, 0.2}), 1, {{0, 0, 0.3}, quat_identity()});
   s.ticks(60);
   const double heights[] = {below.pose().position.z, above.pose().position.z};
   s.world.panic().begin();
@@ -154,38 +155,40 @@ TEST(Panic, ThingsStandOnThings) {
   EXPECT_NEAR(above.pose().position.z, heights[1], 1e-3);
 }
 
-TEST(Panic, NothingThatWasSetIsChanged) {
-  Wild s;
-  const auto kept = [&] { return std::vector<double>(s.store.kept().begin(), s.store.kept().end()); };
-  const std::vector<double> before = kept();
+TEST(Panic, KeepsAllSettings) {
+  ThrashingScene s;
+  const auto settings = [&] {
+    return std::vector<double>(s.store.persistent_values().begin(), s.store.persistent_values().end());
+  };
+  const std::vector<double> before = settings();
   const std::uint64_t hash = s.world.state_hash();
   s.world.panic().begin();
   EXPECT_EQ(s.number(s.world.id(), "panicked"), 1);
-  EXPECT_NE(s.world.state_hash(), hash) << "the same world goes on otherwise";
+  EXPECT_NE(s.world.state_hash(), hash) << "the panic is part of the state";
   s.world.panic().end();
   EXPECT_EQ(s.number(s.world.id(), "panicked"), 0);
   EXPECT_EQ(s.world.state_hash(), hash);
   s.world.panic().begin();
   s.ticks(30);
-  EXPECT_EQ(kept(), before);
+  EXPECT_EQ(settings(), before);
 }
 
-TEST(Panic, BehaviorsRestAndGoOn) {
+TEST(Panic, BehaviorsPauseAndContinue) {
   BehaviorRig rig;
   Body& body = rig.chain("b", {"ball"});
   Behavior& probe = *rig.list().add(body, "probe", "probe").value();
   rig.ticks(3);
-  const double drawn = static_cast<Probe&>(probe).last;
+  const double last_draw = static_cast<Probe&>(probe).last;
   rig.world.panic().begin();
   body.parts()[0]->apply_impulse({5, 0, 0});
   rig.ticks(60);
-  EXPECT_EQ(std::ranges::count(Probe::diary, "step b/probe"), 3);
-  EXPECT_EQ(static_cast<Probe&>(probe).last, drawn);
+  EXPECT_EQ(std::ranges::count(Probe::calls, "step b/probe"), 3);
+  EXPECT_EQ(static_cast<Probe&>(probe).last, last_draw);
   EXPECT_EQ(rig.number(probe.id(), "active"), 1);
-  EXPECT_EQ(rig.vec(body.parts()[0]->id(), "linear_velocity").x, 0) << "a blow is lost";
+  EXPECT_EQ(rig.vec(body.parts()[0]->id(), "linear_velocity").x, 0) << "impulses are discarded";
   rig.world.panic().end();
   rig.ticks(1);
-  EXPECT_EQ(std::ranges::count(Probe::diary, "step b/probe"), 4);
+  EXPECT_EQ(std::ranges::count(Probe::calls, "step b/probe"), 4);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Loads: what waits is handed over once, to parts in the world only; places are used again.
+// Force accumulators: applied once, only to parts in the world; released elements are reused.
 #include "sim/part_loads.h"
 
 #include "sim/stage.h"
@@ -8,9 +8,9 @@ namespace {
 
 using namespace test;
 
-TEST(PartLoads, WhatWaitsActsInOneTick) {
-  Stage s;
-  Part& part = s.lone(sphere_model(0.5), 2);
+TEST(ForceAccumulators, ForcesActInOneTick) {
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.5), 2);
   part.apply_force({6, 0, 0});
   part.apply_force({0, 12, 0});
   part.apply_torque({0, 0, 1});
@@ -25,9 +25,9 @@ TEST(PartLoads, WhatWaitsActsInOneTick) {
   EXPECT_EQ(part.linear_velocity(), before);
 }
 
-TEST(PartLoads, ABodyThatIsOutLosesWhatWaited) {
-  Stage s;
-  Part& part = s.lone(sphere_model(0.5), 2);
+TEST(ForceAccumulators, DisabledBodyLosesPendingForces) {
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.5), 2);
   s.ticks(1);
   part.body().set_enabled(false);
   part.apply_force({6, 0, 0});
@@ -37,9 +37,9 @@ TEST(PartLoads, ABodyThatIsOutLosesWhatWaited) {
   EXPECT_EQ(part.linear_velocity(), Vec3(0));
 }
 
-TEST(PartLoads, AResetForgetsThem) {
-  Stage s;
-  Part& part = s.lone(sphere_model(0.5), 2);
+TEST(ForceAccumulators, ResetClearsThem) {
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.5), 2);
   s.ticks(1);
   part.apply_force({6, 0, 0});
   part.apply_impulse({0, 6, 0});
@@ -48,16 +48,16 @@ TEST(PartLoads, AResetForgetsThem) {
   EXPECT_EQ(part.linear_velocity(), Vec3(0));
 }
 
-TEST(PartLoads, PlacesAreUsedAgain) {
-  Stage s;
-  Part& one = s.lone(sphere_model(0.5), 2);
-  Part& two = s.lone(sphere_model(0.5), 2, {{5, 0, 0}, quat_identity()});
-  const std::uint32_t place = one.load_place();
+TEST(ForceAccumulators, ReusesReleasedElements) {
+  WorldFixture s;
+  Part& one = s.add_single_part(sphere_model(0.5), 2);
+  Part& two = s.add_single_part(sphere_model(0.5), 2, {{5, 0, 0}, quat_identity()});
+  const std::uint32_t place = one.accumulator_index();
   one.apply_force({6, 0, 0});
   s.world.remove_body(one.body());
-  Part& three = s.lone(sphere_model(0.5), 2, {{0, 5, 0}, quat_identity()});
-  EXPECT_EQ(three.load_place(), place);
-  EXPECT_NE(two.load_place(), place);
+  Part& three = s.add_single_part(sphere_model(0.5), 2, {{0, 5, 0}, quat_identity()});
+  EXPECT_EQ(three.accumulator_index(), place);
+  EXPECT_NE(two.accumulator_index(), place);
   s.ticks(1);
   EXPECT_EQ(three.linear_velocity(), Vec3(0));
 }

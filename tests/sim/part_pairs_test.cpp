@@ -1,5 +1,5 @@
-// Which parts of a body don't collide with each other: those that overlapped at the start, those that a script names;
-// beside joints, collision groups and self_collision.
+// Pairs of parts of a body that don't collide: those that overlap at the start and those that a script excludes;
+// independent of joints, collision groups and self_collision.
 #include "sim/part_pairs.h"
 
 #include <gtest/gtest.h>
@@ -25,16 +25,16 @@ std::vector<std::string> lines_since(std::uint64_t seen) {
   return lines;
 }
 
-/// Two boxes of one body side by side, 0.2 m each, with a gap between them (negative: overlap), without gravity.
-struct TwoBoxes : Stage {
+/// Two boxes of one body beside each other, 0.2 m each, with a gap between them (negative: overlap), without gravity.
+struct TwoBoxes : WorldFixture {
   explicit TwoBoxes(double gap)
       : pair(body("pair")), a(part(pair, box_model(Vec3(0.2)), 1)), b(box_beside(pair, gap)) {}
 
   Part& box_beside(Body& body, double gap) {
     return part(body, box_model(Vec3(0.2)), 1, {{0.2 + gap, 0, 0}, quat_identity()});
   }
-  /// The boxes are thrown at each other from 0.4 m; whether they pass through each other.
-  bool pass() {
+  /// Throws the boxes at each other from 0.4 m. Returns true if they pass through each other.
+  bool throw_at_each_other() {
     b.set_pose({{0.6, 0, 0}, quat_identity()});
     a.set_pose({});
     a.set_velocity({1, 0, 0}, Vec3(0));
@@ -55,13 +55,13 @@ TEST(PartPairs, OverlapAtTheFirstTickExcludes) {
     EXPECT_TRUE(s.pair.pairs().list.empty()) << gap;  // not before the first tick
     s.ticks(1);
     EXPECT_EQ(s.pair.excludes(s.a, s.b), excluded) << gap;
-    EXPECT_EQ(s.pass(), excluded) << gap;
+    EXPECT_EQ(s.throw_at_each_other(), excluded) << gap;
   }
 }
 
-TEST(PartPairs, TouchingTurnedBoxesCollide) {
+TEST(PartPairs, TouchingRotatedBoxesCollide) {
   for (int i = 0; i < 8; i++) {
-    Stage s;
+    WorldFixture s;
     const Pose frame{{1.3 * i, -0.7 * i, 2}, quat_euler(0.4 * i, 1.1 * i, -0.3 * i)};
     Body& body = s.body("pair");
     Part& a = s.part(body, box_model(Vec3(0.2)), 1, frame);
@@ -71,21 +71,21 @@ TEST(PartPairs, TouchingTurnedBoxesCollide) {
   }
 }
 
-// excluded boxes feel nothing of each other: what penetrates is not pushed apart
-TEST(PartPairs, ExcludedPartsStayWhereTheyAre) {
+// excluded boxes don't interact: penetration is not repaired
+TEST(PartPairs, ExcludedPartsAreNotSeparated) {
   TwoBoxes s(-0.1);
   s.ticks(60);
   EXPECT_EQ(s.a.pose().position, Vec3(0));
   EXPECT_EQ(s.b.linear_velocity(), Vec3(0));
 }
 
-TEST(PartPairs, MovingLaterChangesNothing) {
-  TwoBoxes apart(0.3);
-  apart.ticks(1);
-  apart.b.set_pose({{0.1, 0, 0}, quat_identity()});
-  apart.ticks(5);
-  EXPECT_FALSE(apart.pair.excludes(apart.a, apart.b));
-  EXPECT_GT(glm::length(apart.b.pose().position - apart.a.pose().position), 0.1);  // pushed apart
+TEST(PartPairs, LaterOverlapsDoNotExclude) {
+  TwoBoxes separate(0.3);
+  separate.ticks(1);
+  separate.b.set_pose({{0.1, 0, 0}, quat_identity()});
+  separate.ticks(5);
+  EXPECT_FALSE(separate.pair.excludes(separate.a, separate.b));
+  EXPECT_GT(glm::length(separate.b.pose().position - separate.a.pose().position), 0.1);  // pushed apart
   TwoBoxes together(-0.1);
   together.ticks(1);
   together.b.set_pose({{5, 0, 0}, quat_identity()});
@@ -97,24 +97,24 @@ TEST(PartPairs, EditsActAtTheNextStep) {
   TwoBoxes s(0.01);
   s.ticks(1);
   ASSERT_TRUE(s.pair.edit_pair(s.b, s.a, PairEdit::excluded).ok());
-  EXPECT_TRUE(s.pass());
+  EXPECT_TRUE(s.throw_at_each_other());
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
-  EXPECT_FALSE(s.pass());
+  EXPECT_FALSE(s.throw_at_each_other());
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::none).ok());
   EXPECT_TRUE(s.pair.pairs().list.empty());
-  // before the first tick, too: an overlap does not change what was decided
+  // also before the first tick: an overlap doesn't override an edit
   TwoBoxes early(-0.0005);
   ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::included).ok());
   early.ticks(1);
   EXPECT_FALSE(early.pair.excludes(early.a, early.b));
   ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::none).ok());
   EXPECT_TRUE(early.pair.excludes(early.a, early.b));
-  EXPECT_TRUE(early.pass());
+  EXPECT_TRUE(early.throw_at_each_other());
 }
 
 // an existing contact ends at the next step
 TEST(PartPairs, ExcludingDropsTheContact) {
-  Stage s;
+  WorldFixture s;
   s.gravity({0, 0, -10});
   Body& body = s.body("two");
   Part& table = s.part(body, box_model(Vec3(0.2)), 0);
@@ -129,25 +129,25 @@ TEST(PartPairs, ExcludingDropsTheContact) {
 
 TEST(PartPairs, RejectsForeignParts) {
   TwoBoxes s(0.01);
-  Part& other = s.lone(sphere_model(0.1), 1);
+  Part& other = s.add_single_part(sphere_model(0.1), 1);
   EXPECT_NE(s.pair.edit_pair(s.a, other, PairEdit::excluded).error().find("of this body"), std::string::npos);
   EXPECT_NE(s.pair.edit_pair(s.a, s.a, PairEdit::excluded).error().find("different"), std::string::npos);
 }
 
-// a joint and an exclusion are independent: neither ends the other
+// a joint and an exclusion are independent: neither cancels the other
 TEST(PartPairs, JointsAndExclusionsAreIndependent) {
   TwoBoxes s(0.05);
   (void)s.pair.add_joint("j", s.a, s.b, JointType::floating, {0.1, 0, 0}, {0, 0, 1}).value();
   s.ticks(1);
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
-  EXPECT_TRUE(s.pass());
+  EXPECT_TRUE(s.throw_at_each_other());
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
-  EXPECT_TRUE(s.pass()) << "the joint still keeps them apart";
+  EXPECT_TRUE(s.throw_at_each_other()) << "the joint still keeps them apart";
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
-  s.pair.joints().front()->leave();  // as when a body leaves the world
-  EXPECT_TRUE(s.pass()) << "the exclusion still does";
+  s.pair.joints().front()->remove_from_world();  // as when a body is removed from the world
+  EXPECT_TRUE(s.throw_at_each_other()) << "the exclusion still does";
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
-  EXPECT_FALSE(s.pass());
+  EXPECT_FALSE(s.throw_at_each_other());
 }
 
 TEST(PartPairs, JointedPartsAreNotListed) {
@@ -173,7 +173,7 @@ TEST(PartPairs, CopiesKeepTheList) {
   EXPECT_EQ(copy.parts()[1]->pose().position, before);
 }
 
-TEST(PartPairs, PartsAddedLaterAreCheckedWhenTheyCome) {
+TEST(PartPairs, ChecksPartsThatAreAddedLater) {
   TwoBoxes s(0.05);
   s.ticks(1);
   Part& c = s.part(s.pair, sphere_model(0.05), 1);
@@ -189,36 +189,36 @@ TEST(PartPairs, UndoRestoresThem) {
   ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::excluded).ok());
   s.ticks(1);
   const std::uint64_t hash = s.world.state_hash();
-  s.world.undo().begin();
+  s.world.transaction().begin();
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
   Part& c = s.part(s.pair, sphere_model(0.05), 1);
   ASSERT_TRUE(s.pair.edit_pair(s.a, c, PairEdit::excluded).ok());
   ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::included).ok());
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_EQ(s.world.state_hash(), hash);
   ASSERT_EQ(s.pair.pairs().list.size(), 2u);
   EXPECT_EQ(s.pair.pairs().list[0].edit, PairEdit::none);
   EXPECT_TRUE(s.pair.excludes(s.a, far));
-  EXPECT_TRUE(s.pass());
+  EXPECT_TRUE(s.throw_at_each_other());
 }
 
 TEST(PartPairs, CheckpointsRestoreThem) {
   TwoBoxes s(-0.0005);
   s.ticks(2);
   PageStore pages;
-  KeyBytes scratch;
-  WorldKey excluded, included;
-  excluded.take(s.world, pages, nullptr, scratch);
+  Archive scratch;
+  WorldCheckpoint excluded, included;
+  excluded.capture(s.world, pages, nullptr, scratch);
   ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
-  included.take(s.world, pages, nullptr, scratch);
-  EXPECT_FALSE(s.pass());
+  included.capture(s.world, pages, nullptr, scratch);
+  EXPECT_FALSE(s.throw_at_each_other());
   const std::uint64_t hash = s.world.state_hash();
-  excluded.bring_back(s.world, pages, scratch);
+  excluded.restore(s.world, pages, scratch);
   EXPECT_TRUE(s.pair.excludes(s.a, s.b));
-  EXPECT_TRUE(s.pass());
-  included.bring_back(s.world, pages, scratch);
-  EXPECT_FALSE(s.pass());
+  EXPECT_TRUE(s.throw_at_each_other());
+  included.restore(s.world, pages, scratch);
+  EXPECT_FALSE(s.throw_at_each_other());
   EXPECT_EQ(s.world.state_hash(), hash);
   excluded.release(pages);
   included.release(pages);
@@ -226,7 +226,7 @@ TEST(PartPairs, CheckpointsRestoreThem) {
 
 // one message for all bodies of a tick
 TEST(PartPairs, OverlapsAreReportedOnce) {
-  Stage s;
+  WorldFixture s;
   for (int i = 0; i < 10; i++) {
     Body& body = s.body("body" + std::to_string(i));
     s.part(body, sphere_model(0.1), 1, {{2.0 * i, 0, 0}, quat_identity()});
@@ -241,11 +241,11 @@ TEST(PartPairs, OverlapsAreReportedOnce) {
       << lines[0];
 }
 
-/// Two boxes of two bodies that meet, with groups and masks; whether they pass through each other.
-bool strangers_pass(const std::function<void(Stage&, Part&, Part&)>& prepare) {
-  Stage s;
-  Part& a = s.lone(box_model(Vec3(0.2)), 1);
-  Part& b = s.lone(box_model(Vec3(0.2)), 1, {{0.6, 0, 0}, quat_identity()});
+/// Throws two boxes of different bodies at each other. Returns true if they pass through each other.
+bool different_bodies_pass(const std::function<void(WorldFixture&, Part&, Part&)>& prepare) {
+  WorldFixture s;
+  Part& a = s.add_single_part(box_model(Vec3(0.2)), 1);
+  Part& b = s.add_single_part(box_model(Vec3(0.2)), 1, {{0.6, 0, 0}, quat_identity()});
   a.set_velocity({1, 0, 0}, Vec3(0));
   b.set_velocity({-1, 0, 0}, Vec3(0));
   prepare(s, a, b);
@@ -253,16 +253,16 @@ bool strangers_pass(const std::function<void(Stage&, Part&, Part&)>& prepare) {
   return a.pose().position.x > b.pose().position.x;
 }
 
-TEST(CollisionGroups, BothMustAgree) {
+TEST(CollisionGroups, BothMasksMustInclude) {
   const auto with = [](double group_a, double mask_a, double group_b, double mask_b) {
-    return strangers_pass([=](Stage& s, Part& a, Part& b) {
+    return different_bodies_pass([=](WorldFixture& s, Part& a, Part& b) {
       s.set(a.id(), "collision_group", {group_a});
       s.set(a.id(), "collision_mask", {mask_a});
       s.set(b.id(), "collision_group", {group_b});
       s.set(b.id(), "collision_mask", {mask_b});
     });
   };
-  EXPECT_FALSE(strangers_pass([](Stage&, Part&, Part&) {}));
+  EXPECT_FALSE(different_bodies_pass([](WorldFixture&, Part&, Part&) {}));
   EXPECT_FALSE(with(1, 65535, 1, 65535));
   EXPECT_FALSE(with(2, 4, 4, 2));
   EXPECT_FALSE(with(32768, 32768, 32768, 32768));
@@ -274,10 +274,10 @@ TEST(CollisionGroups, BothMustAgree) {
 }
 
 TEST(CollisionGroups, CopiesKeepThem) {
-  Stage s;
+  WorldFixture s;
   s.gravity({0, 0, -10});
   s.floor();
-  Part& ghost = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
+  Part& ghost = s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
   s.set(ghost.id(), "collision_mask", {2});
   Body& copy = **s.world.copy_body(ghost.body(), "copy");
   copy.set_pose({{1, 0, 0.1}, quat_identity()});
@@ -286,8 +286,8 @@ TEST(CollisionGroups, CopiesKeepThem) {
   EXPECT_LT(copy.pose().position.z, -0.5);
 }
 
-TEST(StaticParts, AVelocityIsReported) {
-  Stage s;
+TEST(StaticParts, ReportAVelocity) {
+  WorldFixture s;
   const std::uint64_t seen = log_newest();
   Part& floor = s.floor();
   s.ticks(1);

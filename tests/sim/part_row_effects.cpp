@@ -1,4 +1,4 @@
-// What the rows of parts do, as numbers measured in the world.
+// The effects of the properties of parts, measured in the world.
 #include <functional>
 
 #include "sim/row_effects.h"
@@ -13,8 +13,8 @@ constexpr double kG = 9.81;
 void mass() {
   const Vec3 size(0.2, 0.4, 0.6);
   for (const double m : {0.5, 1.0, 20.0}) {
-    Stage s;
-    Part& part = s.lone(box_model(size), 1);
+    WorldFixture s;
+    Part& part = s.add_single_part(box_model(size), 1);
     s.set(part.id(), "mass", {m});
     for (int i = 0; i < 30; i++) {
       part.apply_force({3, 0, 0});
@@ -29,8 +29,8 @@ void mass() {
 
 void linear_damping() {
   for (const double d : {0.0, 0.3, 0.9}) {
-    Stage s;
-    Part& part = s.lone(sphere_model(0.1), 1);
+    WorldFixture s;
+    Part& part = s.add_single_part(sphere_model(0.1), 1);
     s.set(part.id(), "linear_damping", {d});
     s.set(part.id(), "linear_velocity", {4, 0, 0});
     s.ticks(120);
@@ -40,8 +40,8 @@ void linear_damping() {
 
 void angular_damping() {
   for (const double d : {0.0, 0.3, 0.9}) {
-    Stage s;
-    Part& part = s.lone(sphere_model(0.1), 1);
+    WorldFixture s;
+    Part& part = s.add_single_part(sphere_model(0.1), 1);
     s.set(part.id(), "angular_damping", {d});
     s.set(part.id(), "angular_velocity", {0, 4, 0});
     s.ticks(120);
@@ -49,32 +49,32 @@ void angular_damping() {
   }
 }
 
-// A flat box on a floor, gravity tilted instead of the floor: it slides with g·(sin - mu·cos), or not at all.
+// A flat box on a floor with tilted gravity: it slides with g·(sin - mu·cos), or not at all.
 void friction() {
   const double slope = 0.4;
   for (const double mu : {0.0, 0.1, 0.3, 0.41, 0.44, 2.0}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
-    Part& box = s.lone(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+    Part& box = s.add_single_part(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
     s.set(box.id(), "friction", {mu});
     s.gravity({kG * std::sin(slope), 0, -kG * std::cos(slope)});
     s.ticks(30);
     const double before = box.linear_velocity().x;
     s.ticks(60);
     const double expected = std::max(0.0, kG * (std::sin(slope) - mu * std::cos(slope)));  // tan 0.4 = 0.4228
-    // within 3 % of the friction: a box's four contact points take turns
+    // within 3 % of the friction: the box's four contact points alternate
     EXPECT_NEAR(box.linear_velocity().x - before, expected, 0.03 * mu * kG * std::cos(slope) + 1e-3) << mu;
   }
 }
 
-// A ball that rolls on a floor: torque mu·m·g against it and I = 2/5·m·r² slow it by mu·g/(1.4·r).
+// A rolling ball: the torque mu·m·g against it and I = 2/5·m·r² decelerate it by mu·g/(1.4·r).
 void rolling_friction() {
   const double r = 0.2;
   for (const double mu : {0.0, 0.005, 0.02}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -kG});
-    Part& ball = s.lone(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
+    Part& ball = s.add_single_part(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
     s.set(ball.id(), "rolling_friction", {mu});
     s.set(ball.id(), "linear_velocity", {2, 0, 0});
     s.set(ball.id(), "angular_velocity", {0, 2 / r, 0});
@@ -85,14 +85,14 @@ void rolling_friction() {
   }
 }
 
-// A ball that spins on its spot: torque mu·m·g against I = 2/5·m·r².
+// A ball that spins in place: torque mu·m·g against I = 2/5·m·r².
 void spinning_friction() {
   const double r = 0.2;
   for (const double mu : {0.0, 0.005, 0.01}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -kG});
-    Part& ball = s.lone(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
+    Part& ball = s.add_single_part(sphere_model(r), 1, {{0, 0, r}, quat_identity()});
     s.set(ball.id(), "friction", {1});
     s.set(ball.id(), "spinning_friction", {mu});
     s.set(ball.id(), "angular_velocity", {0, 0, 20});
@@ -101,12 +101,12 @@ void spinning_friction() {
   }
 }
 
-// Friction of a box that slides along x, with friction scaled by the factor in that direction.
+// Friction of a box sliding along x, with the friction in this direction scaled by the factor.
 double speed_lost(const Vec3& direction, double factor) {
-  Stage s;
+  WorldFixture s;
   s.floor();
   s.gravity({0, 0, -kG});
-  Part& box = s.lone(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+  Part& box = s.add_single_part(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
   s.set(box.id(), "friction", {0.4});
   s.set(box.id(), "friction_direction", {direction.x, direction.y, direction.z});
   s.set(box.id(), "friction_factor", {factor});
@@ -129,11 +129,11 @@ void friction_factor() {
 }
 
 double height_after_bounce(double restitution, double drop) {
-  Stage s;
+  WorldFixture s;
   s.floor();
   s.substeps(16);
   s.gravity({0, 0, -kG});
-  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1 + drop}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.1 + drop}, quat_identity()});
   s.set(ball.id(), "restitution", {restitution});
   double highest = 0;
   bool rising = false;
@@ -153,10 +153,10 @@ void restitution() {
 
 void report_contacts() {
   for (const bool on : {false, true}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -kG});
-    Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
+    Part& ball = s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
     s.set(ball.id(), "report_contacts", {on ? 1. : 0.});
     std::size_t events = 0;
     for (int i = 0; i < 60; i++) {
@@ -168,8 +168,8 @@ void report_contacts() {
 }
 
 void position() {
-  Stage s;
-  Part& part = s.lone(sphere_model(0.1), 1);
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.1), 1);
   s.set(part.id(), "linear_velocity", {1, 0, 0});
   s.ticks(6);
   s.set(part.id(), "position", {5, -6, 7});
@@ -179,11 +179,11 @@ void position() {
   EXPECT_NEAR(part.pose().position.z, 7, 1e-5);
 }
 
-// A turned box answers a torque about a world axis with the inertia that now lies there.
+// A rotated box responds to a torque about a world axis with the inertia about that axis.
 void rotation() {
   const Vec3 size(0.1, 0.4, 0.8);
-  Stage s;
-  Part& part = s.lone(box_model(size), 2);
+  WorldFixture s;
+  Part& part = s.add_single_part(box_model(size), 2);
   const double half = std::sqrt(0.5);
   s.set(part.id(), "rotation", {0, half, 0, half});  // +90 degrees about y: the box's x points to -z
   part.apply_torque({0, 0, 0.06});
@@ -193,8 +193,8 @@ void rotation() {
 }
 
 void linear_velocity() {
-  Stage s;
-  Part& part = s.lone(sphere_model(0.1), 1);
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.1), 1);
   s.set(part.id(), "linear_velocity", {1, -2, 3});
   s.ticks(60);
   for (int i = 0; i < 3; i++) EXPECT_NEAR(part.pose().position[i], Vec3(1, -2, 3)[i], 1e-5);
@@ -202,8 +202,8 @@ void linear_velocity() {
 
 void angular_velocity() {
   for (int axis = 0; axis < 3; axis++) {
-    Stage s;
-    Part& part = s.lone(box_model(Vec3(0.2)), 1);
+    WorldFixture s;
+    Part& part = s.add_single_part(box_model(Vec3(0.2)), 1);
     Vec3 omega(0);
     omega[axis] = 0.8;
     s.set(part.id(), "angular_velocity", {omega.x, omega.y, omega.z});
@@ -215,14 +215,14 @@ void angular_velocity() {
   }
 }
 
-// a ball falls on a ball below; `prepare` keeps the two from colliding
-bool falls_through(bool one_body, const std::function<void(Stage&, Part& ball, Part& below)>& prepare) {
-  Stage s;
+// Drops a ball on another ball. Returns true if they don't collide, as set up by `prepare`.
+bool falls_through(bool one_body, const std::function<void(WorldFixture&, Part& ball, Part& below)>& prepare) {
+  WorldFixture s;
   s.gravity({0, 0, -10});
   Body& body = s.body("two");
   Part& below = s.part(body, sphere_model(0.1), 0);
   Part& ball = one_body ? s.part(body, sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()})
-                        : s.lone(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
+                        : s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.3}, quat_identity()});
   prepare(s, ball, below);
   s.ticks(30);
   // half a second: 1.25 m of free fall
@@ -232,31 +232,33 @@ bool falls_through(bool one_body, const std::function<void(Stage&, Part& ball, P
 }
 
 void part_self_collision() {
-  const auto none = [](Stage& s, Part& ball, Part&) { s.set(ball.id(), "self_collision", {0}); };
+  const auto none = [](WorldFixture& s, Part& ball, Part&) { s.set(ball.id(), "self_collision", {0}); };
   EXPECT_TRUE(falls_through(true, none));
   EXPECT_FALSE(falls_through(false, none));
-  EXPECT_TRUE(falls_through(true, [](Stage& s, Part&, Part& below) { s.set(below.id(), "self_collision", {0}); }));
-  EXPECT_FALSE(falls_through(true, [](Stage&, Part&, Part&) {}));
+  EXPECT_TRUE(
+      falls_through(true, [](WorldFixture& s, Part&, Part& below) { s.set(below.id(), "self_collision", {0}); }));
+  EXPECT_FALSE(falls_through(true, [](WorldFixture&, Part&, Part&) {}));
 }
 
 void collision_group() {
-  EXPECT_TRUE(falls_through(false, [](Stage& s, Part& ball, Part& below) {
+  EXPECT_TRUE(falls_through(false, [](WorldFixture& s, Part& ball, Part& below) {
     s.set(ball.id(), "collision_group", {4});
     s.set(below.id(), "collision_mask", {1 + 2 + 8});
   }));
-  EXPECT_FALSE(falls_through(false, [](Stage& s, Part& ball, Part& below) {
+  EXPECT_FALSE(falls_through(false, [](WorldFixture& s, Part& ball, Part& below) {
     s.set(ball.id(), "collision_group", {4});
     s.set(below.id(), "collision_mask", {4});
   }));
 }
 
-// a change while the ball rests on the other one acts at the next step
+// A change while the ball rests on the other one takes effect in the next step.
 void collision_mask() {
-  EXPECT_TRUE(falls_through(false, [](Stage& s, Part& ball, Part&) { s.set(ball.id(), "collision_mask", {0}); }));
-  Stage s;
+  EXPECT_TRUE(
+      falls_through(false, [](WorldFixture& s, Part& ball, Part&) { s.set(ball.id(), "collision_mask", {0}); }));
+  WorldFixture s;
   s.gravity({0, 0, -10});
   s.floor();
-  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.1}, quat_identity()});
   s.ticks(20);
   EXPECT_NEAR(ball.pose().position.z, 0.1, 0.002);
   const double rest = ball.pose().position.z;
@@ -267,7 +269,7 @@ void collision_mask() {
 
 }  // namespace
 
-void add_part_effects(RowEffects& effects) {
+void add_part_effects(PropertyEffects& effects) {
   effects[{"Part", "mass"}] = mass;
   effects[{"Part", "linear_damping"}] = linear_damping;
   effects[{"Part", "angular_damping"}] = angular_damping;

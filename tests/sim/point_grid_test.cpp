@@ -1,4 +1,4 @@
-// The grid against looking at every point: the same comparisons, in the same single precision, so exactly equal.
+// The grid compared with brute force: the same comparisons in the same single precision, so results must be equal.
 #include "sim/point_grid.h"
 
 #include <gtest/gtest.h>
@@ -12,18 +12,20 @@
 namespace limber {
 namespace {
 
-/// A way to spread points.
-struct Spread {
+/// A distribution of points.
+struct PointDistribution {
   const char* name;
   int points;
   std::function<float(std::mt19937&)> coordinate;
-  int bodies;  // points a body
+  int bodies;  // points per body
 };
 
-float uniform(std::mt19937& dice, float a, float b) { return std::uniform_real_distribution<float>(a, b)(dice); }
+float uniform(std::mt19937& generator, float a, float b) {
+  return std::uniform_real_distribution<float>(a, b)(generator);
+}
 
-const std::vector<Spread>& spreads() {
-  static const std::vector<Spread> all = {
+const std::vector<PointDistribution>& distributions() {
+  static const std::vector<PointDistribution> all = {
       {"cube", 700, [](std::mt19937& d) { return uniform(d, -3, 3); }, 1},
       {"cube of bodies", 700, [](std::mt19937& d) { return uniform(d, -3, 3); }, 9},
       {"far from the origin", 300, [](std::mt19937& d) { return uniform(d, 5000, 5006); }, 3},
@@ -39,123 +41,123 @@ const std::vector<Spread>& spreads() {
   return all;
 }
 
-PointCloud cloud_of(const Spread& spread) {
-  std::mt19937 dice(11);
+PointCloud cloud_of(const PointDistribution& distribution) {
+  std::mt19937 generator(11);
   PointCloud cloud;
   cloud.clear();
-  for (int i = 0; i < spread.points; i++) {
-    const float x = spread.coordinate(dice);
-    const float y = spread.coordinate(dice);
-    cloud.add(x, y, spread.coordinate(dice), i / spread.bodies);
+  for (int i = 0; i < distribution.points; i++) {
+    const float x = distribution.coordinate(generator);
+    const float y = distribution.coordinate(generator);
+    cloud.add(x, y, distribution.coordinate(generator), i / distribution.bodies);
   }
-  cloud.one_each = spread.bodies == 1;
+  cloud.one_per_body = distribution.bodies == 1;
   return cloud;
 }
 
-bool within(const PointCloud& c, std::size_t i, const PointQuery& q, float least, float most) {
+bool within(const PointCloud& c, std::size_t i, const PointQuery& q, float min_distance, float max_distance) {
   const float dx = q.x - c.x[i], dy = q.y - c.y[i], dz = q.z - c.z[i];
   const float d = (dx * dx + dy * dy) + dz * dz;
-  return d >= least * least && d <= most * most && c.body[i] != q.body;
+  return d >= min_distance * min_distance && d <= max_distance * max_distance && c.body[i] != q.body;
 }
 
 constexpr float kDistances[] = {0, 1e-6f, 0.1f, 0.5f, 1, 1.7f, 4, 30, 2e4f};
 
-/// Narrower ones than asked for where the processor has no such.
-class PointGridLanes : public testing::TestWithParam<PointLanes> {};
-INSTANTIATE_TEST_SUITE_P(All, PointGridLanes,
-                         testing::Values(PointLanes::four, PointLanes::eight, PointLanes::sixteen));
+/// Parameter: the vector width, which PointGrid reduces if the processor doesn't support it.
+class PointGridVectors : public testing::TestWithParam<VectorWidth> {};
+INSTANTIATE_TEST_SUITE_P(All, PointGridVectors,
+                         testing::Values(VectorWidth::four, VectorWidth::eight, VectorWidth::sixteen));
 
-TEST_P(PointGridLanes, FindsWhatLookingAtEveryPointFinds) {
-  for (const Spread& spread : spreads()) {
-    const PointCloud cloud = cloud_of(spread);
-    std::vector<std::uint32_t> out(cloud.size() + kPointRoom);
-    std::mt19937 dice(5);
-    for (const float most : kDistances) {
+TEST_P(PointGridVectors, FindsTheSamePointsAsBruteForce) {
+  for (const PointDistribution& distribution : distributions()) {
+    const PointCloud cloud = cloud_of(distribution);
+    std::vector<std::uint32_t> out(cloud.size() + kPointPadding);
+    std::mt19937 generator(5);
+    for (const float max_distance : kDistances) {
       PointGrid grid(GetParam());
-      grid.build(cloud, most);
+      grid.build(cloud, max_distance);
       EXPECT_EQ(grid.size(), cloud.size());
       for (int q = 0; q < 60; q++) {
         // at the points themselves, near them, and anywhere
-        PointQuery query{uniform(dice, -4, 4), uniform(dice, -4, 4), uniform(dice, -4, 4),
-                         static_cast<int>(dice() % 5)};
+        PointQuery query{uniform(generator, -4, 4), uniform(generator, -4, 4), uniform(generator, -4, 4),
+                         static_cast<int>(generator() % 5)};
         if (cloud.size() > 0 && q % 3 > 0) {
-          const std::size_t i = dice() % cloud.size();
-          const float off = q % 3 == 1 ? 0 : uniform(dice, -most, most);
+          const std::size_t i = generator() % cloud.size();
+          const float off = q % 3 == 1 ? 0 : uniform(generator, -max_distance, max_distance);
           query = {cloud.x[i] + off, cloud.y[i], cloud.z[i] - off, cloud.body[i]};
         }
-        for (const float least : {0.0f, most / 2}) {
-          std::vector<std::uint32_t> wanted;
+        for (const float min_distance : {0.0f, max_distance / 2}) {
+          std::vector<std::uint32_t> expected;
           for (std::uint32_t i = 0; i < cloud.size(); i++) {
-            if (within(cloud, i, query, least, most)) wanted.push_back(i);
+            if (within(cloud, i, query, min_distance, max_distance)) expected.push_back(i);
           }
-          const std::uint32_t count = grid.near(query, least, most, out.data());
+          const std::uint32_t count = grid.find_near(query, min_distance, max_distance, out.data());
           std::vector<std::uint32_t> found;
           for (std::uint32_t k = 0; k < count; k++) found.push_back(grid.order()[out[k]]);
           std::sort(found.begin(), found.end());
-          ASSERT_EQ(found, wanted) << spread.name << " within " << least << " .. " << most;
+          ASSERT_EQ(found, expected) << distribution.name << " within " << min_distance << " .. " << max_distance;
         }
       }
     }
   }
 }
 
-TEST_P(PointGridLanes, EachPairOnce) {
-  for (const Spread& spread : spreads()) {
-    const PointCloud cloud = cloud_of(spread);
-    std::vector<std::uint32_t> out(cloud.size() + kPointRoom);
-    for (const float most : kDistances) {
+TEST_P(PointGridVectors, FindsEachPairOnce) {
+  for (const PointDistribution& distribution : distributions()) {
+    const PointCloud cloud = cloud_of(distribution);
+    std::vector<std::uint32_t> out(cloud.size() + kPointPadding);
+    for (const float max_distance : kDistances) {
       PointGrid grid(GetParam());
-      grid.build(cloud, most);
-      for (const float least : {0.0f, most / 2}) {
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> wanted, found;
+      grid.build(cloud, max_distance);
+      for (const float min_distance : {0.0f, max_distance / 2}) {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> expected, found;
         for (std::uint32_t i = 0; i < cloud.size(); i++) {
           for (std::uint32_t j = i + 1; j < cloud.size(); j++) {
-            if (within(cloud, j, {cloud.x[i], cloud.y[i], cloud.z[i], cloud.body[i]}, least, most))
-              wanted.emplace_back(i, j);
+            if (within(cloud, j, {cloud.x[i], cloud.y[i], cloud.z[i], cloud.body[i]}, min_distance, max_distance))
+              expected.emplace_back(i, j);
           }
         }
-        for (std::uint32_t place = 0; place < cloud.size(); place++) {
-          const std::uint32_t count = grid.near_once(place, least, most, out.data());
+        for (std::uint32_t index = 0; index < cloud.size(); index++) {
+          const std::uint32_t count = grid.find_pairs(index, min_distance, max_distance, out.data());
           for (std::uint32_t k = 0; k < count; k++) {
-            found.emplace_back(std::minmax(grid.order()[place], grid.order()[out[k]]));
+            found.emplace_back(std::minmax(grid.order()[index], grid.order()[out[k]]));
           }
         }
         std::ranges::sort(found);
-        ASSERT_EQ(found, wanted) << spread.name << " within " << least << " .. " << most;
+        ASSERT_EQ(found, expected) << distribution.name << " within " << min_distance << " .. " << max_distance;
       }
     }
   }
 }
 
-TEST(PointGrid, AnswersShorterDistancesThanItWasBuiltFor) {
-  const PointCloud cloud = cloud_of(spreads()[0]);
+TEST(PointGrid, SupportsShorterDistancesThanItsRadius) {
+  const PointCloud cloud = cloud_of(distributions()[0]);
   PointGrid grid;
   grid.build(cloud, 1.5f);
-  EXPECT_EQ(grid.reach(), 1.5f);
-  std::vector<std::uint32_t> out(cloud.size() + kPointRoom);
+  EXPECT_EQ(grid.search_radius(), 1.5f);
+  std::vector<std::uint32_t> out(cloud.size() + kPointPadding);
   for (std::uint32_t i = 0; i < 50; i++) {
     const PointQuery query{cloud.x[i], cloud.y[i], cloud.z[i], cloud.body[i]};
     std::uint32_t wanted = 0;
     for (std::size_t k = 0; k < cloud.size(); k++) wanted += within(cloud, k, query, 0, 0.8f) ? 1u : 0u;
-    EXPECT_EQ(grid.near(query, 0, 0.8f, out.data()), wanted);
+    EXPECT_EQ(grid.find_near(query, 0, 0.8f, out.data()), wanted);
   }
 }
 
-TEST(PointGrid, MayBeBuiltAgain) {
+TEST(PointGrid, CanBeRebuilt) {
   PointGrid grid;
   EXPECT_EQ(grid.size(), 0U);
-  std::vector<std::uint32_t> out(700 + kPointRoom);
+  std::vector<std::uint32_t> out(700 + kPointPadding);
   for (const int which : {0, 7, 9, 3, 0}) {
-    const PointCloud cloud = cloud_of(spreads()[static_cast<std::size_t>(which)]);
+    const PointCloud cloud = cloud_of(distributions()[static_cast<std::size_t>(which)]);
     grid.build(cloud, 1);
     std::uint32_t pairs = 0;
-    std::uint32_t wanted = 0;
+    std::uint32_t expected = 0;
     for (std::uint32_t i = 0; i < cloud.size(); i++) {
       const PointQuery query{cloud.x[i], cloud.y[i], cloud.z[i], cloud.body[i]};
-      pairs += grid.near(query, 0, 1, out.data());
-      for (std::size_t k = 0; k < cloud.size(); k++) wanted += within(cloud, k, query, 0, 1) ? 1u : 0u;
+      pairs += grid.find_near(query, 0, 1, out.data());
+      for (std::size_t k = 0; k < cloud.size(); k++) expected += within(cloud, k, query, 0, 1) ? 1u : 0u;
     }
-    EXPECT_EQ(pairs, wanted);
+    EXPECT_EQ(pairs, expected);
   }
 }
 

@@ -1,4 +1,4 @@
-// Motion against closed formulas: tensors, pendulum, springs, servos, limits, momentum, mirrors.
+// Motion compared with closed formulas: tensors, pendulum, springs, servos, limits, momentum, mirrors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-// A link with a full tensor, its centre away from the link's origin.
+// A link with a full tensor and its center away from the link's origin.
 std::shared_ptr<const BodyModel> model_with_tensor(const Mat3& tensor, double mass, const Vec3& center) {
   auto model = std::make_shared<BodyModel>();
   LinkModel link;
@@ -24,11 +24,11 @@ std::shared_ptr<const BodyModel> model_with_tensor(const Mat3& tensor, double ma
   return model;
 }
 
-TEST(Prediction, ATensorAnswersTorqueAboutEachAxis) {
-  // symmetric, positive, the triangle inequality of its moments holds
+TEST(Prediction, TorqueAcceleratesByTheTensor) {
+  // symmetric, positive definite, and its moments fulfill the triangle inequality
   const Mat3 tensor(Vec3(0.5, 0.08, -0.05), Vec3(0.08, 0.6, 0.1), Vec3(-0.05, 0.1, 0.4));
   for (int axis = 0; axis < 3; axis++) {
-    Stage s;
+    WorldFixture s;
     Body& body = **s.world.add_body(model_with_tensor(tensor, 2, {0.1, -0.2, 0.3}), "thing", {});
     Part& part = *body.root();
     const Quat turn = quat_axis(normalized({1, -2, 0.5}), 0.9);
@@ -40,19 +40,19 @@ TEST(Prediction, ATensorAnswersTorqueAboutEachAxis) {
     const Vec3 in_link = glm::inverse(tensor) * (glm::conjugate(turn) * torque);
     const Vec3 expected = turn * in_link / 60.0;
     for (int i = 0; i < 3; i++) EXPECT_NEAR(part.angular_velocity()[i], expected[i], 2e-5 * glm::length(expected));
-    // the centre stays where it was, and the link's origin is placed from it
+    // the center stays, and the link's origin follows from it
     const Vec3 center = Vec3(1, 2, 3) + turn * Vec3(0.1, -0.2, 0.3);
     EXPECT_LT(glm::length(part.center() - center), 1e-6);
   }
 }
 
-TEST(Prediction, APartTellsItsMomentsAndTheirAxes) {
+TEST(Prediction, PartReportsItsMomentsAndTheirAxes) {
   const Mat3 tensor(Vec3(0.5, 0.08, -0.05), Vec3(0.08, 0.6, 0.1), Vec3(-0.05, 0.1, 0.4));
-  Stage s;
+  WorldFixture s;
   Part& part = *(**s.world.add_body(model_with_tensor(tensor, 2, {0.1, -0.2, 0.3}), "thing", {})).root();
   const Quat turn = quat_axis(normalized({1, -2, 0.5}), 0.9);
   part.set_pose({{1, 2, 3}, turn});
-  s.set(part.id(), "mass", {6});  // its moments grow with it
+  s.set(part.id(), "mass", {6});  // its moments scale with it
   double moments[3], q[4];
   s.store.get(part.id(), Part::table().at("inertia"), moments);
   s.store.get(part.id(), Part::table().at("principal_axes"), q);
@@ -63,9 +63,9 @@ TEST(Prediction, APartTellsItsMomentsAndTheirAxes) {
   for (int i = 0; i < 3; i++) EXPECT_LT(glm::length(in_world[i] - expected[i]), 1e-6) << i;
 }
 
-TEST(Prediction, AForceAtAPointTurnsByItsArm) {
-  Stage s;
-  Part& box = s.lone(box_model({0.4, 0.6, 0.2}), 3, {{1, 1, 1}, quat_identity()});
+TEST(Prediction, ForceAtAPointActsWithItsArm) {
+  WorldFixture s;
+  Part& box = s.add_single_part(box_model({0.4, 0.6, 0.2}), 3, {{1, 1, 1}, quat_identity()});
   const Vec3 arm(0.2, 0.1, -0.1);
   const Vec3 force(0.5, -0.3, 0.4);
   box.apply_force_at(force, Vec3(1, 1, 1) + arm);
@@ -73,7 +73,7 @@ TEST(Prediction, AForceAtAPointTurnsByItsArm) {
   const Vec3 spin = glm::cross(arm, force) / box_inertia(3, {0.4, 0.6, 0.2}) / 60.0;
   EXPECT_LT(glm::length(box.angular_velocity() - spin), 1e-3 * glm::length(spin));
   EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0), 1e-7);
-  // a force ends with its tick; an impulse is there at once
+  // a force ends with its tick; an impulse acts at once
   s.ticks(10);
   EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0), 1e-7);
   box.apply_impulse_at({0.6, 0, 0}, box.center());
@@ -81,29 +81,29 @@ TEST(Prediction, AForceAtAPointTurnsByItsArm) {
   EXPECT_LT(glm::length(box.linear_velocity() - force / 180.0 - Vec3(0.2, 0, 0)), 1e-6);
 }
 
-// Free of torque, an uneven box tumbles but keeps its angular momentum.
-TEST(Prediction, ATumblingBoxKeepsItsAngularMomentum) {
+// A torque-free uneven box tumbles and conserves its angular momentum.
+TEST(Prediction, TumblingBoxConservesAngularMomentum) {
   const Vec3 size(0.1, 0.3, 0.5);
-  Stage s;
+  WorldFixture s;
   s.substeps(16);
-  Part& box = s.lone(box_model(size), 2);
+  Part& box = s.add_single_part(box_model(size), 2);
   s.set(box.id(), "angular_velocity", {0.3, 3, 0.3});  // about the middle axis: unstable
   const auto momentum = [&] {
     const Quat q = box.pose().rotation;
     return q * (box_inertia(2, size) * (glm::conjugate(q) * box.angular_velocity()));
   };
   const Vec3 before = momentum();
-  double least = 3;
+  double min_rate = 3;
   for (int i = 0; i < 180; i++) {
     s.ticks(1);
-    least = std::min(least, (glm::conjugate(box.pose().rotation) * box.angular_velocity()).y);
+    min_rate = std::min(min_rate, (glm::conjugate(box.pose().rotation) * box.angular_velocity()).y);
   }
-  EXPECT_LT(least, -2);  // it did turn over
+  EXPECT_LT(min_rate, -2);  // it turned over
   EXPECT_LT(glm::length(momentum() - before), 0.02 * glm::length(before));
 }
 
 // A box on a hinge through a point above it.
-struct Pendulum : Stage {
+struct Pendulum : WorldFixture {
   static constexpr double kLength = 0.8, kMass = 1.5;
   static constexpr Vec3 kBox{0.1, 0.2, 0.3};
   Body& robot = body("robot");
@@ -116,7 +116,7 @@ struct Pendulum : Stage {
     const Pose pivot{{0, 0, 1}, quat_axis({0, 1, 0}, angle)};
     bob.set_pose(pivot * Pose{{0, 0, -kLength}, quat_identity()});
   }
-  /// Mean period over some swings, from interpolated crossings of zero upwards.
+  /// Mean period of several swings, from interpolated upward zero crossings.
   double period(int swings, double about = 0) {
     double last = hinge.value() - about;
     double first_crossing = -1;
@@ -137,7 +137,7 @@ struct Pendulum : Stage {
   }
 };
 
-TEST(Prediction, APendulumSwingsByItsFormula) {
+TEST(Prediction, PendulumSwingsWithItsPeriod) {
   for (const double angle : {0.05, 0.5, 1.0}) {
     Pendulum p;
     p.gravity({0, 0, -9.81});
@@ -149,7 +149,7 @@ TEST(Prediction, APendulumSwingsByItsFormula) {
   }
 }
 
-TEST(Prediction, ASpringSwingsByItsFormulaAndSagsByItsLoad) {
+TEST(Prediction, SpringOscillatesAndDeflectsByItsFormula) {
   for (const double stiffness : {2.0, 20.0, 100.0}) {
     Pendulum p;
     Motor& motor = *p.robot.add_motor(p.hinge).value();
@@ -159,7 +159,7 @@ TEST(Prediction, ASpringSwingsByItsFormulaAndSagsByItsLoad) {
     const double expected = 2 * kPi * std::sqrt(p.inertia / stiffness);
     EXPECT_NEAR(p.period(5) / 5, expected, 0.005 * expected) << stiffness;
 
-    // held out level by gravity's torque along its arm: k·a = m·g·l·cos(a), with a rest at level
+    // released level, gravity's torque along its arm: k·a = m·g·l·cos(a), with the rest position level
     Pendulum q;
     Motor& holds = *q.robot.add_motor(q.hinge).value();
     q.set(holds.id(), "mode", {3});
@@ -176,7 +176,7 @@ TEST(Prediction, ASpringSwingsByItsFormulaAndSagsByItsLoad) {
   }
 }
 
-TEST(Prediction, AServoGoesAtItsSpeedRestsAndStalls) {
+TEST(Prediction, ServoMovesHoldsAndStalls) {
   Pendulum p;
   Motor& motor = *p.robot.add_motor(p.hinge).value();
   p.set(motor.id(), "speed", {1.5});
@@ -189,53 +189,53 @@ TEST(Prediction, AServoGoesAtItsSpeedRestsAndStalls) {
   EXPECT_NEAR(p.hinge.value(), 1.2, 1e-4);
   EXPECT_NEAR(p.number(p.hinge.id(), "speed"), 0, 1e-4);
 
-  // with gravity it bears m·g·l·sin(a) at rest, and tells so: torque on the child, right-handed
+  // with gravity it bears m·g·l·sin(a) at rest, and reports it: torque on the child, right-handed
   p.gravity({0, 0, -9.81});
   p.ticks(120);
   EXPECT_NEAR(p.hinge.value(), 1.2, 1e-3);
   const double load = Pendulum::kMass * 9.81 * Pendulum::kLength * std::sin(p.hinge.value());
   EXPECT_NEAR(p.vec(motor.id(), "applied_torque").z, load, 0.01 * load);
 
-  // with less it cannot hold, and falls with what is missing
+  // with less it can't hold, and falls with the difference
   p.set_one(motor.id(), "max_angular_force", 2, 0.6 * load);
   p.ticks(3);
   EXPECT_NEAR(p.number(p.hinge.id(), "speed"), -0.4 * load / p.inertia * 3 / 60, 0.05 * load / p.inertia * 3 / 60);
 }
 
-TEST(Prediction, LimitsHoldOnEachAxisAndSignAndBeyondPi) {
+TEST(Prediction, LimitsHoldOnEachAxisAndBeyondPi) {
   for (int axis = 3; axis < 6; axis++) {
     for (const double at : {4.5, 9.0}) {
-      for (const double way : {1.0, -1.0}) {
-        OneAxis a(axis);
-        way > 0 ? a.limits(-0.5, at) : a.limits(-at, 0.5);
-        a.pushed_ticks(600, way * 0.2);
-        EXPECT_NEAR(a.x(), way * at, 2e-3) << axis;
-        a.pushed_ticks(900, -way * 0.2);
-        EXPECT_NEAR(a.x(), -way * 0.5, 2e-3) << axis;
+      for (const double direction : {1.0, -1.0}) {
+        OneAxisFixture a(axis);
+        direction > 0 ? a.limits(-0.5, at) : a.limits(-at, 0.5);
+        a.ticks_with_load(600, direction * 0.2);
+        EXPECT_NEAR(a.x(), direction * at, 2e-3) << axis;
+        a.ticks_with_load(900, -direction * 0.2);
+        EXPECT_NEAR(a.x(), -direction * 0.5, 2e-3) << axis;
       }
     }
   }
 }
 
-TEST(Prediction, AServoOfALimitedJointGoesTheAllowedWayRound) {
-  OneAxis a(5);
+TEST(Prediction, LimitedServoTakesTheAllowedDirection) {
+  OneAxisFixture a(5);
   a.limits(-2.5, 2.5);
-  a.of_motor("active", 1);
-  a.of_motor("servo_active", 1);
-  a.of_motor("velocity", 3);
-  a.of_motor("servo_position", 2.4);
+  a.set_motor("active", 1);
+  a.set_motor("servo_active", 1);
+  a.set_motor("velocity", 3);
+  a.set_motor("servo_position", 2.4);
   a.ticks(120);
   EXPECT_NEAR(a.x(), 2.4, 1e-3);
-  a.of_motor("servo_position", -2.4);  // over pi it would be nearer
+  a.set_motor("servo_position", -2.4);  // over pi it would be nearer
   a.ticks(60);
   EXPECT_NEAR(a.x(), 2.4 - 3, 0.1);
   a.ticks(120);
   EXPECT_NEAR(a.x(), -2.4, 1e-3);
 }
 
-// A floating arm thrashes about with its servos: inner forces move neither its centre nor its momentum.
-TEST(Prediction, AFloatingBodyKeepsItsMomentum) {
-  Stage s;
+// A floating arm moves violently by its servos: internal forces change neither its center nor its momentum.
+TEST(Prediction, FloatingBodyConservesMomentum) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {5, {0, 0, 0}, false});
   const auto momentum = [&] {
     Vec3 linear(0);
@@ -251,28 +251,28 @@ TEST(Prediction, AFloatingBodyKeepsItsMomentum) {
     return std::pair(linear, angular);
   };
   s.set(arm.id(), "linear_velocity", {0.3, -0.2, 0.1});
-  s.world.settle();
+  s.world.flush();
   const auto [linear, angular] = momentum();
-  double most = 0;
+  double max_rate = 0;
   for (int i = 0; i < 180; i++) {
-    wave(s, arm, s.world.time());
+    set_wave_targets(s, arm, s.world.time());
     s.ticks(1);
-    for (const auto& part : arm.parts()) most = std::max(most, glm::length(part->angular_velocity()));
+    for (const auto& part : arm.parts()) max_rate = std::max(max_rate, glm::length(part->angular_velocity()));
   }
-  EXPECT_GT(most, 1);  // it did thrash
+  EXPECT_GT(max_rate, 1);  // it moved violently
   const auto [linear_after, angular_after] = momentum();
   EXPECT_LT(glm::length(linear_after - linear), 1e-4);
   EXPECT_LT(glm::length(angular_after - angular), 5e-3);
 }
 
 TEST(Prediction, MirroredRobotsMoveMirrored) {
-  Stage s;
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& left = make_arm(s, "left", {5, {0, 3, 0}, true, 1, 0.05});
   Body& right = make_arm(s, "right", {5, {0, -3, 0}, true, -1, 0.05});
   for (int i = 0; i < 120; i++) {
-    wave(s, left, s.world.time());
-    wave(s, right, s.world.time());
+    set_wave_targets(s, left, s.world.time());
+    set_wave_targets(s, right, s.world.time());
     s.ticks(1);
   }
   for (std::size_t i = 0; i < left.parts().size(); i++) {

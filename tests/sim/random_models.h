@@ -15,7 +15,7 @@
 
 namespace limber::test {
 
-/// Uniform numbers from a scene's number.
+/// Random generator seeded with the number of a scene.
 class SceneRandom {
  public:
   explicit SceneRandom(std::uint64_t number) : state_(number * 0x2545f4914f6cdd1du + 1) { splitmix64(state_); }
@@ -25,11 +25,11 @@ class SceneRandom {
   int below(int count) { return static_cast<int>(splitmix64(state_) % static_cast<std::uint64_t>(count)); }
   bool chance(double probability) { return uniform(0, 1) < probability; }
   /// Uniform exponent: 10^low .. 10^high.
-  double decades(double low, double high) { return std::pow(10.0, uniform(low, high)); }
-  Vec3 within(double reach) { return {uniform(-reach, reach), uniform(-reach, reach), uniform(-reach, reach)}; }
+  double log_uniform(double low, double high) { return std::pow(10.0, uniform(low, high)); }
+  Vec3 in_cube(double range) { return {uniform(-range, range), uniform(-range, range), uniform(-range, range)}; }
   Vec3 direction() {
     for (;;) {
-      const Vec3 v = within(1);
+      const Vec3 v = in_cube(1);
       const double length = glm::length(v);
       if (length > 0.1 && length <= 1) return v / length;
     }
@@ -54,26 +54,26 @@ inline double kinetic_energy(const btRigidBody& r) {
   return sum / 2;
 }
 
-/// Energy that neither a motor nor weight explains. A step changes velocities by impulses λ along J. Since
-/// K(after) - K(before) = Σ λ·J·v(after) - ½ |v(after) - v(before)|² (weighed by mass), a step gains at most the work
-/// that motors, springs and weight do at the velocities after it: locks, limits, contacts and friction do none there,
-/// or take some. The account sums up what exceeds this bound. With restitution it takes the mean of the velocities
-/// before and after instead, which makes the sum exact: a bounce gives back what the contact took. Call before() and
-/// after() around single internal steps.
+/// Energy that neither motors nor gravity explain. A step changes velocities by impulses λ along J. Since K(after) -
+/// K(before) = Σ λ·J·v(after) - ½ |v(after) - v(before)|² (in the norm of the mass matrix), a step gains at most the
+/// work of motors, springs and gravity at the velocities after it: there locks, limits, contacts and friction do no or
+/// negative work. The account sums up the excess over this bound. With restitution it uses the mean of the velocities
+/// before and after instead, which makes the sum exact, because a bounce returns energy that the contact absorbed. Call
+/// before() and after() around single internal steps.
 class EnergyAccount {
  public:
-  explicit EnergyAccount(Stage& stage, bool mean = false) : stage_(stage), before_(mean ? 0.5 : 0) {}
+  explicit EnergyAccount(WorldFixture& fixture, bool mean = false) : fixture_(fixture), before_share_(mean ? 0.5 : 0) {}
 
   void before() {
     moving_.clear();
-    for (const auto& body : stage_.world.bodies()) {
+    for (const auto& body : fixture_.world.bodies()) {
       for (const auto& part : body->parts()) {
         const btRigidBody& r = part->rigid();
         moving_.push_back({&r, r.getLinearVelocity(), r.getAngularVelocity(), kinetic_energy(r)});
       }
     }
     axes_.clear();
-    for (const auto& body : stage_.world.bodies()) {
+    for (const auto& body : fixture_.world.bodies()) {
       for (const auto& motor : body->motors()) {
         const Joint& joint = motor->joint();
         const JointConstraint& c = joint.constraint();
@@ -89,49 +89,50 @@ class EnergyAccount {
   }
 
   void after() {
-    const double h = stage_.h();
-    const Vec3 gravity = stage_.vec(stage_.world.id(), "gravity");
+    const double h = fixture_.h();
+    const Vec3 gravity = fixture_.vec(fixture_.world.id(), "gravity");
     double change = 0;
     double kinetic = 0;
-    double taken = 0;
+    double absorbed = 0;
     for (const Moving& m : moving_) {
       const double now = kinetic_energy(*m.part);
       kinetic += now;
       change += now - m.kinetic;
       if (m.part->getInvMass() == 0) continue;
-      const Vec3 v = glm::mix(from_bt(m.part->getLinearVelocity()), from_bt(m.linear), before_);
+      const Vec3 v = glm::mix(from_bt(m.part->getLinearVelocity()), from_bt(m.linear), before_share_);
       change -= glm::dot(gravity, v) * h / static_cast<double>(m.part->getInvMass());
     }
     for (const Axis& a : axes_) {
       const double load = a.axis < 3 ? a.joint->applied_force()[a.axis] : a.joint->applied_torque()[a.axis - 3];
-      if (load < 0 ? a.at_lower : a.at_upper) continue;  // motor and stop hold each other: neither does work
-      const double work = load * h * (before_ * a.rate + (1 - before_) * rate(a));
+      if (load < 0 ? a.at_lower : a.at_upper) continue;  // the motor presses against its limit: neither does work
+      const double work = load * h * (before_share_ * a.rate + (1 - before_share_) * rate(a));
       change -= work;
-      worked_ += std::fabs(work);
-      taken += std::max(-work, 0.0);
+      absolute_work_ += std::fabs(work);
+      absorbed += std::max(-work, 0.0);
     }
-    rest_ += change;
-    above_ += change - taken;
-    least_ = std::min(least_, rest_);
-    if (rest_ - least_ > created_) {
-      created_ = rest_ - least_;
-      created_at_ = stage_.world.time();
+    unexplained_ += change;
+    net_energy_ += change - absorbed;
+    minimum_ = std::min(minimum_, unexplained_);
+    if (unexplained_ - minimum_ > created_) {
+      created_ = unexplained_ - minimum_;
+      created_at_ = fixture_.world.time();
     }
-    most_kinetic_ = std::max(most_kinetic_, kinetic);
-    excess_ = std::max(excess_, above_);
+    max_kinetic_ = std::max(max_kinetic_, kinetic);
+    excess_ = std::max(excess_, net_energy_);
   }
 
-  /// The most that the unexplained energy grew above its least value so far, J; and when.
+  /// Largest increase of the unexplained energy above its minimum so far, J; and its time.
   double created() const { return created_; }
   double created_at() const { return created_at_; }
-  /// The most that the energy ever was above that of the start and all that motors and weight have given since, J. What
-  /// motors take counts as lost: where they strain against each other, they take what the repair of joints gives.
+  /// Largest excess of the energy over that of the start plus all positive work of motors and gravity since, J.
+  /// Negative work of motors counts as lost: motors that press against each other absorb energy that the repair of
+  /// joints adds.
   double excess() const { return excess_; }
   /// Unexplained energy so far, J.
-  double rest() const { return rest_; }
-  double most_kinetic() const { return most_kinetic_; }
+  double unexplained() const { return unexplained_; }
+  double max_kinetic() const { return max_kinetic_; }
   /// Sum of the magnitudes of the motors' work, J.
-  double worked() const { return worked_; }
+  double absolute_work() const { return absolute_work_; }
 
  private:
   struct Moving {
@@ -160,77 +161,78 @@ class EnergyAccount {
                                a.j.angular_b.dot(a.child->getAngularVelocity()));
   }
 
-  Stage& stage_;
-  double before_;  // share of the velocities before a step
+  WorldFixture& fixture_;
+  double before_share_;  // share of the velocities before a step
   std::vector<Moving> moving_;
   std::vector<Axis> axes_;
-  double rest_ = 0;
-  double least_ = 0;
-  double above_ = 0;
+  double unexplained_ = 0;
+  double minimum_ = 0;
+  double net_energy_ = 0;
   double excess_ = 0;
   double created_ = 0;
   double created_at_ = 0;
-  double most_kinetic_ = 0;
-  double worked_ = 0;
+  double max_kinetic_ = 0;
+  double absolute_work_ = 0;
 };
 
-/// What a random scene contains. Parts of it can be switched off to reduce a failure.
-struct RandomPlan {
+/// Contents of a random scene. Features can be switched off to reduce a failure.
+struct RandomSceneOptions {
   bool contacts = true;
   bool motors = true;
   bool loops = true;
   bool iterative = true;  ///< Some scenes use the iterative solver.
-  bool direct = true;     ///< False: all of them do.
+  bool direct = true;     ///< False: all scenes use the iterative solver.
 };
 
-/// A scene from its number: bodies, floor, motors. step() is one internal step.
-class RandomScene : public Stage {
+/// The scene with a given number: bodies, floor, motors. step() is one internal step.
+class RandomScene : public WorldFixture {
  public:
-  explicit RandomScene(std::uint64_t number, const RandomPlan& plan = {}) : random_(number), plan_(plan) {
+  explicit RandomScene(std::uint64_t number, const RandomSceneOptions& options = {})
+      : random_(number), options_(options) {
     set(world.id(), "timestep", {1.0 / 240});
     substeps(1);
     if (!random_.chance(0.1)) gravity({0, 0, -9.81});
-    iterative_ = (random_.chance(0.08) && plan.iterative) || !plan.direct;
+    iterative_ = (random_.chance(0.08) && options.iterative) || !options.direct;
     if (iterative_) set(world.id(), "solver", {0});
-    bouncing_ = random_.chance(0.15);
-    wide_ = random_.chance(0.3);
-    strong_ = random_.chance(0.4);
+    has_restitution_ = random_.chance(0.15);
+    unequal_masses_ = random_.chance(0.3);
+    strong_motors_ = random_.chance(0.4);
     const int count = 1 + random_.below(3);
     for (int i = 0; i < count; i++) add_robot(i);
-    add_loose();
-    if (random_.chance(0.6) && plan.contacts) {
-      surface(part(Stage::body("floor"), plane_model(), 0,
-                   {{0, 0, lowest_ - random_.uniform(0.25, 0.6)}, quat_identity()}));
+    add_single_bodies();
+    if (random_.chance(0.6) && options.contacts) {
+      set_surface(part(WorldFixture::body("floor"), plane_model(), 0,
+                       {{0, 0, lowest_height_ - random_.uniform(0.25, 0.6)}, quat_identity()}));
     }
-    if (!plan.contacts) {
+    if (!options.contacts) {
       for (const auto& body : world.bodies()) set(body->id(), "self_collision", {0});
     }
   }
 
   void step() {
-    if (world.tick() % 120 == 60 && renews_) aim();
+    if (world.tick() % 120 == 60 && changes_targets_) randomize_targets();
     world.step();
   }
 
   bool iterative() const { return iterative_; }
-  /// Whether contacts and limits give back a part of the speed.
-  bool bounces() const { return bouncing_; }
+  /// True if contacts and limits have restitution.
+  bool has_restitution() const { return has_restitution_; }
 
   double joint_gap() const {
-    double most = 0;
-    for (const auto& body : world.bodies()) most = std::max(most, widest_gap(*body));
-    return most;
+    double widest = 0;
+    for (const auto& body : world.bodies()) widest = std::max(widest, widest_gap(*body));
+    return widest;
   }
 
   bool finite() const {
-    for (const double v : store.live()) {
+    for (const double v : store.transient_values()) {
       if (!std::isfinite(v)) return false;
     }
     return true;
   }
 
  private:
-  ShapeModel hull() {
+  ShapeModel random_hull() {
     std::vector<Vec3> points;
     for (int i = 0; i < 8 + random_.below(12); i++) points.push_back(random_.direction() * random_.uniform(0.06, 0.12));
     for (const double sign : {-1.0, 1.0}) {
@@ -242,14 +244,14 @@ class RandomScene : public Stage {
     mesh->vertices = mesh->hull = made.vertices;
     mesh->triangles = made.triangles;
     mesh->closed = true;
-    mesh->solid = solid_of(made.vertices, made.triangles);
+    mesh->unit_inertial = unit_inertial_of(made.vertices, made.triangles);
     ShapeModel m;
     m.kind = ShapeKind::mesh;
     m.mesh = mesh;
     return m;
   }
 
-  ShapeModel simple() {
+  ShapeModel random_simple_shape() {
     ShapeModel m;
     switch (random_.below(6)) {
       case 0:
@@ -264,7 +266,7 @@ class RandomScene : public Stage {
         m.kind = ShapeKind::cone;
         break;
       case 4:
-        return hull();
+        return random_hull();
       default:
         return box_model({random_.uniform(0.04, 0.2), random_.uniform(0.04, 0.2), random_.uniform(0.04, 0.3)});
     }
@@ -274,55 +276,55 @@ class RandomScene : public Stage {
   }
 
   Shape& random_shape() {
-    if (!random_.chance(0.1)) return shape(simple());
+    if (!random_.chance(0.1)) return shape(random_simple_shape());
     ShapeModel m;
     m.kind = ShapeKind::compound;
     Shape& whole = shape(m);
     for (int i = 0; i < 2; i++) {
-      EXPECT_TRUE(whole.add_child(shape(simple()), {random_.within(0.08), random_.rotation()}));
+      EXPECT_TRUE(whole.add_child(shape(random_simple_shape()), {random_.in_cube(0.08), random_.rotation()}));
     }
     return whole;
   }
 
-  double mass() { return wide_ ? random_.decades(-2, 2) : random_.decades(-0.5, 0.5); }
+  double mass() { return unequal_masses_ ? random_.log_uniform(-2, 2) : random_.log_uniform(-0.5, 0.5); }
 
-  void surface(Part& p) {
-    // frictionless where it bounces: several impacts at once may not create energy
-    set(p.id(), "friction", {bouncing_ ? 0 : random_.uniform(0, 1.5)});
-    set(p.id(), "restitution", {bouncing_ ? 0.7 : 0});
-    if (!bouncing_ && random_.chance(0.2)) set(p.id(), "rolling_friction", {0.01});
+  void set_surface(Part& p) {
+    // frictionless if it bounces: several simultaneous impacts must not create energy
+    set(p.id(), "friction", {has_restitution_ ? 0 : random_.uniform(0, 1.5)});
+    set(p.id(), "restitution", {has_restitution_ ? 0.7 : 0});
+    if (!has_restitution_ && random_.chance(0.2)) set(p.id(), "rolling_friction", {0.01});
   }
 
   Part& add_part(Body& robot, const Pose& pose, double kg) {
     Part& made = *robot.add_part("p" + std::to_string(robot.parts().size()), random_shape(), kg, pose).value();
-    surface(made);
-    lowest_ = std::min(lowest_, pose.position.z);
+    set_surface(made);
+    lowest_height_ = std::min(lowest_height_, pose.position.z);
     return made;
   }
 
   void add_robot(int number) {
-    Body& robot = Stage::body("robot" + std::to_string(number));
-    const Vec3 home(number * (plan_.contacts ? random_.uniform(0.2, 0.9) : 50), random_.uniform(-0.3, 0.3),
-                    random_.uniform(0.6, 1.2));
+    Body& robot = WorldFixture::body("robot" + std::to_string(number));
+    const Vec3 origin(number * (options_.contacts ? random_.uniform(0.2, 0.9) : 50), random_.uniform(-0.3, 0.3),
+                      random_.uniform(0.6, 1.2));
     const bool fixed = random_.chance(0.4);
-    add_part(robot, {home, random_.rotation()}, fixed ? 0 : mass());
+    add_part(robot, {origin, random_.rotation()}, fixed ? 0 : mass());
     const int count = 1 + random_.below(random_.chance(0.2) ? 20 : 8);
     const bool chain = random_.chance(0.5);
     for (int i = 0; i < count; i++) {
       Part& parent = *robot.parts()[static_cast<std::size_t>(chain ? i : random_.below(i + 1))];
-      const Vec3 to = parent.pose().position + random_.direction() * random_.uniform(0.03, 0.3);
-      Part& child = add_part(robot, {to, random_.rotation()}, mass());
+      const Vec3 position = parent.pose().position + random_.direction() * random_.uniform(0.03, 0.3);
+      Part& child = add_part(robot, {position, random_.rotation()}, mass());
       add_joint(robot, parent, child);
     }
     const int loops = random_.chance(0.25) ? 1 + random_.below(2) : 0;
-    for (int i = 0; i < loops && plan_.loops && count > 2; i++) {
+    for (int i = 0; i < loops && options_.loops && count > 2; i++) {
       Part& a = *robot.parts()[static_cast<std::size_t>(random_.below(count))];
       Part& b = *robot.parts()[static_cast<std::size_t>(1 + random_.below(count))];
       if (&a != &b) add_joint(robot, a, b);
     }
     if (random_.chance(0.4)) set(robot.id(), "self_collision", {0});
     if (!fixed && random_.chance(0.3)) {
-      const Vec3 v = random_.within(3);
+      const Vec3 v = random_.in_cube(3);
       set(robot.id(), "linear_velocity", {v.x, v.y, v.z});
     }
   }
@@ -332,30 +334,30 @@ class RandomScene : public Stage {
                                 JointType::prismatic, JointType::planar,   JointType::floating, JointType::spherical,
                                 JointType::spherical, JointType::fixed};
     const JointType type = kTypes[static_cast<std::size_t>(random_.below(static_cast<int>(kTypes.size())))];
-    const Vec3 place = (parent.pose().position + child.pose().position) / 2.0 + random_.within(0.05);
+    const Vec3 place = (parent.pose().position + child.pose().position) / 2.0 + random_.in_cube(0.05);
     Joint& joint =
         *robot.add_joint("j" + std::to_string(robot.joints().size()), parent, child, type, place, random_.direction())
              .value();
     for (int axis = 0; axis < 6; axis++) {
-      const std::string half = axis < 3 ? "linear_" : "angular_";
+      const std::string prefix = axis < 3 ? "linear_" : "angular_";
       const auto i = static_cast<std::size_t>(axis % 3);
-      const bool locked = get(joint.id(), half + "lower_limit")[i] == get(joint.id(), half + "upper_limit")[i];
+      const bool locked = get(joint.id(), prefix + "lower_limit")[i] == get(joint.id(), prefix + "upper_limit")[i];
       if (type == JointType::continuous || (locked && axis != joint.own_axis())) continue;
-      // what slides freely in a plane is soon metres away
+      // a free planar slider is soon meters away
       if (!random_.chance(0.5) && !(type == JointType::planar && axis < 3)) continue;
-      const double reach = axis < 3 ? 0.2 : type == JointType::spherical ? 0.8 : 1.5;
-      set_one(joint.id(), half + "lower_limit", axis % 3, -random_.uniform(0.05, reach));
-      set_one(joint.id(), half + "upper_limit", axis % 3, random_.uniform(0.05, reach));
+      const double range = axis < 3 ? 0.2 : type == JointType::spherical ? 0.8 : 1.5;
+      set_one(joint.id(), prefix + "lower_limit", axis % 3, -random_.uniform(0.05, range));
+      set_one(joint.id(), prefix + "upper_limit", axis % 3, random_.uniform(0.05, range));
     }
     if (type == JointType::fixed) return;
     Motor& motor = *robot.add_motor(joint).value();
-    const int mode = plan_.motors ? random_.below(5) : 0;  // off, spin, servo, servo, spring
+    const int mode = options_.motors ? random_.below(5) : 0;  // off, spin, servo, servo, spring
     const bool angular = type != JointType::prismatic;
-    const std::string half = angular ? "angular_" : "linear_";
+    const std::string prefix = angular ? "angular_" : "linear_";
     if (type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic) {
       set(motor.id(), "mode", {static_cast<double>(std::array{0, 1, 2, 2, 3}[static_cast<std::size_t>(mode)])});
     } else {
-      // all open axes alike; only angular ones, or a servo would have to be told where a floating child is
+      // all open axes alike; angular ones only, because a floating child's servo target would have to be its position
       set(motor.id(), "mode", {0});
       const bool on = mode == 1 || mode == 2 || mode == 3;
       set(motor.id(), "angular_active", {on ? 1.0 : 0, on ? 1.0 : 0, on ? 1.0 : 0});
@@ -364,64 +366,64 @@ class RandomScene : public Stage {
       set(motor.id(), "angular_spring_active", {mode == 4 ? 1.0 : 0, mode == 4 ? 1.0 : 0, mode == 4 ? 1.0 : 0});
     }
     const double speed = random_.chance(0.3) ? 0 : random_.uniform(0.2, 6) * (angular ? 1 : 0.2);
-    const double force = strong_ ? 10000 : random_.decades(-1, 3);
-    const double stiffness = random_.decades(-1, 3);
+    const double force = strong_motors_ ? 10000 : random_.log_uniform(-1, 3);
+    const double stiffness = random_.log_uniform(-1, 3);
     const double goal = random_.uniform(-1, 1) * (angular ? 1 : 0.1);
-    const bool brief = random_.chance(0.3);
-    set(motor.id(), half + "velocity", {speed, speed, speed});
+    const bool damped = random_.chance(0.3);
+    set(motor.id(), prefix + "velocity", {speed, speed, speed});
     set(motor.id(), angular ? "max_angular_force" : "max_linear_force", {force, force, force});
-    set(motor.id(), half + "servo_position", {goal, brief ? 0 : goal, goal});
-    set(motor.id(), half + "spring_stiffness", {stiffness, stiffness, stiffness});
-    set(motor.id(), half + "spring_damping", {brief ? 0.1 : 0, brief ? 0.1 : 0, brief ? 0.1 : 0});
-    if (random_.chance(0.2)) set(motor.id(), "damping", {random_.decades(-3, 0)});
-    if (bouncing_) set(motor.id(), "bounce", {0.7});
-    motors_.push_back({&motor, half + "servo_position", angular ? 1 : 0.1});
+    set(motor.id(), prefix + "servo_position", {goal, damped ? 0 : goal, goal});
+    set(motor.id(), prefix + "spring_stiffness", {stiffness, stiffness, stiffness});
+    set(motor.id(), prefix + "spring_damping", {damped ? 0.1 : 0, damped ? 0.1 : 0, damped ? 0.1 : 0});
+    if (random_.chance(0.2)) set(motor.id(), "damping", {random_.log_uniform(-3, 0)});
+    if (has_restitution_) set(motor.id(), "bounce", {0.7});
+    motors_.push_back({&motor, prefix + "servo_position", angular ? 1 : 0.1});
   }
 
-  void add_loose() {
-    const int count = random_.chance(0.5) && plan_.contacts ? random_.below(5) : 0;
+  void add_single_bodies() {
+    const int count = random_.chance(0.5) && options_.contacts ? random_.below(5) : 0;
     for (int i = 0; i < count; i++) {
-      Body& body = Stage::body("loose" + std::to_string(i));
+      Body& body = WorldFixture::body("loose" + std::to_string(i));
       add_part(
           body,
           {Vec3(random_.uniform(-0.4, 1.2), random_.uniform(-0.4, 0.4), random_.uniform(0.5, 1.8)), random_.rotation()},
           mass());
     }
-    renews_ = random_.chance(0.5);
+    changes_targets_ = random_.chance(0.5);
   }
 
-  void aim() {
-    for (const Aimed& m : motors_) {
-      const double goal = random_.uniform(-1, 1) * m.reach;
-      set(m.motor->id(), m.row, {goal, goal, goal});
+  void randomize_targets() {
+    for (const DrivenMotor& m : motors_) {
+      const double goal = random_.uniform(-1, 1) * m.range;
+      set(m.motor->id(), m.property, {goal, goal, goal});
     }
   }
 
-  struct Aimed {
+  struct DrivenMotor {
     Motor* motor;
-    std::string row;
-    double reach;
+    std::string property;
+    double range;
   };
   SceneRandom random_;
-  RandomPlan plan_;
-  std::vector<Aimed> motors_;
-  double lowest_ = 10;
+  RandomSceneOptions options_;
+  std::vector<DrivenMotor> motors_;
+  double lowest_height_ = 10;
   bool iterative_ = false;
-  bool bouncing_ = false;
-  bool wide_ = false;    // masses over four decades
-  bool strong_ = false;  // motors with the default force
-  bool renews_ = false;
+  bool has_restitution_ = false;
+  bool unequal_masses_ = false;  // masses span four decades
+  bool strong_motors_ = false;   // motors with the default force
+  bool changes_targets_ = false;
 };
 
-/// What a played scene showed.
+/// Results of a played scene.
 struct RandomOutcome {
   bool iterative = false;
   bool finite = true;
   double created = 0;  ///< EnergyAccount::created(), J.
   double created_at = 0;
   double excess = 0;  ///< EnergyAccount::excess(), J.
-  double most_kinetic = 0;
-  double worked = 0;
+  double max_kinetic = 0;
+  double absolute_work = 0;
   double gap = 0;    ///< Largest joint gap, m.
   double speed = 0;  ///< Largest speed, m/s.
   std::uint64_t steps = 0;
@@ -432,15 +434,15 @@ struct RandomOutcome {
 
 /// Overwrites the stack below, so that two runs that read uninitialized variables differ.
 [[gnu::noinline]] inline void fill_stack(unsigned char byte) {
-  volatile unsigned char room[1 << 15];
-  for (volatile unsigned char& b : room) b = byte;
+  volatile unsigned char buffer[1 << 15];
+  for (volatile unsigned char& b : buffer) b = byte;
 }
 
 inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill, double seconds = 2,
-                                       const RandomPlan& plan = {}) {
-  RandomScene scene(number, plan);
-  scene.world.settle();
-  EnergyAccount energy(scene, scene.bounces());
+                                       const RandomSceneOptions& options = {}) {
+  RandomScene scene(number, options);
+  scene.world.flush();
+  EnergyAccount energy(scene, scene.has_restitution());
   RandomOutcome out;
   out.iterative = scene.iterative();
   const auto steps = static_cast<std::uint64_t>(std::lround(seconds * 240));
@@ -459,8 +461,8 @@ inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill,
   out.created = energy.created();
   out.created_at = energy.created_at();
   out.excess = energy.excess();
-  out.most_kinetic = energy.most_kinetic();
-  out.worked = energy.worked();
+  out.max_kinetic = energy.max_kinetic();
+  out.absolute_work = energy.absolute_work();
   out.fallbacks = static_cast<std::uint64_t>(scene.number(scene.world.id(), "solver_fallbacks"));
   out.hash = scene.world.state_hash();
   return out;

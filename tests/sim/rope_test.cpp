@@ -1,4 +1,4 @@
-// Ropes: light links that a heavy body pulls at stay together, and swing as a pendulum.
+// Ropes: light links stay together under a heavy load and swing as a pendulum.
 #include "sim/stage.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ constexpr double kRadius = 0.2;  // of the weight, m
 constexpr double kWeight = 100;  // kg
 
 /// 100 links of 10 g with a weight of 100 kg, hanging from the origin.
-class Rope : public Stage {
+class Rope : public WorldFixture {
  public:
   Rope() {
     gravity({0, 0, -kGravity});
@@ -44,7 +44,7 @@ class Rope : public Stage {
   Part* weight_ = nullptr;
 };
 
-// Its height at the turn is v²/2g, its period that of a pendulum with this amplitude, to second order.
+// Its height at the turning point is v²/2g, its period that of a pendulum with this amplitude, to second order.
 TEST(Rope, SwingsAHeavyWeight) {
   Rope rope;
   rope.ticks(60);

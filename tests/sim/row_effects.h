@@ -1,4 +1,5 @@
-// The register of what each row does: one measuring function a row of World, Body, Part, Joint, Motor and Gear.
+// The registry of the effects of properties: one measuring function per property of World, Body, Part, Joint, Motor
+// and Gear.
 #pragma once
 
 #include <functional>
@@ -8,19 +9,19 @@
 
 namespace limber::test {
 
-/// Class and row, and a function that sets the row and measures in the world what it did.
-using RowEffects = std::map<std::pair<std::string, std::string>, std::function<void()>>;
+/// Maps class and property to a function that sets the property and measures its effect in the world.
+using PropertyEffects = std::map<std::pair<std::string, std::string>, std::function<void()>>;
 
-void add_world_effects(RowEffects& effects);
-void add_body_effects(RowEffects& effects);
-void add_part_effects(RowEffects& effects);
-void add_joint_effects(RowEffects& effects);
-void add_motor_effects(RowEffects& effects);
-void add_gear_effects(RowEffects& effects);
+void add_world_effects(PropertyEffects& effects);
+void add_body_effects(PropertyEffects& effects);
+void add_part_effects(PropertyEffects& effects);
+void add_joint_effects(PropertyEffects& effects);
+void add_motor_effects(PropertyEffects& effects);
+void add_gear_effects(PropertyEffects& effects);
 
-inline const RowEffects& row_effects() {
-  static const RowEffects all = [] {
-    RowEffects effects;
+inline const PropertyEffects& all_property_effects() {
+  static const PropertyEffects all = [] {
+    PropertyEffects effects;
     add_world_effects(effects);
     add_body_effects(effects);
     add_part_effects(effects);

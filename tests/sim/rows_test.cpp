@@ -1,5 +1,5 @@
-// Every row of the physical classes: what it does is measured, and its door keeps its promises. A new row without a
-// line in a *_row_effects.cpp fails here.
+// Every property of the physical classes: its effect is measured, and setting it follows the general rules. A new
+// property without an entry in a *_row_effects.cpp fails here.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ using namespace test;
 
 struct NamedTable {
   const char* name;
-  const Table* table;
+  const PropertyTable* table;
 };
 
 std::array<NamedTable, 6> tables() {
@@ -25,38 +25,41 @@ std::array<NamedTable, 6> tables() {
           NamedTable{"Motor", &Motor::table()}, NamedTable{"Gear", &Gear::table()}};
 }
 
-TEST(Rows, EachHasAMeasuredEffect) {
+TEST(Properties, HaveMeasuredEffects) {
   std::size_t count = 0;
   for (const NamedTable& t : tables()) {
-    for (const Row& row : t.table->rows()) {
-      if (!row.writable()) continue;
+    for (const Property& property : t.table->properties()) {
+      if (!property.writable()) continue;
       count++;
-      EXPECT_EQ(row_effects().count({t.name, row.name}), 1u)
-          << t.name << "::" << row.name << " has no line that measures what it does";
+      EXPECT_EQ(all_property_effects().count({t.name, property.name}), 1u)
+          << t.name << "::" << property.name << " has no measured effect";
     }
   }
-  EXPECT_EQ(row_effects().size(), count) << "a line measures a row that is gone";
+  EXPECT_EQ(all_property_effects().size(), count) << "an effect is measured for a property that does not exist";
 }
 
-using Key = std::pair<std::string, std::string>;
+using PropertyKey = std::pair<std::string, std::string>;
 
-std::vector<Key> all_keys() {
-  std::vector<Key> keys;
-  for (const auto& [key, effect] : row_effects()) keys.push_back(key);
+std::vector<PropertyKey> all_keys() {
+  std::vector<PropertyKey> keys;
+  for (const auto& [key, effect] : all_property_effects()) keys.push_back(key);
   return keys;
 }
 
-struct Effect : testing::TestWithParam<Key> {};
+struct Effect : testing::TestWithParam<PropertyKey> {};
 
-TEST_P(Effect, IsAsPredicted) { row_effects().at(GetParam())(); }
+TEST_P(Effect, IsAsPredicted) { all_property_effects().at(GetParam())(); }
 
-std::string key_name(const testing::TestParamInfo<Key>& info) { return info.param.first + "_" + info.param.second; }
+std::string key_name(const testing::TestParamInfo<PropertyKey>& info) {
+  return info.param.first + "_" + info.param.second;
+}
 
-INSTANTIATE_TEST_SUITE_P(Row, Effect, testing::ValuesIn(all_keys()), key_name);
+INSTANTIATE_TEST_SUITE_P(Property, Effect, testing::ValuesIn(all_keys()), key_name);
 
-// One of everything: a floor, and a robot with two revolute joints, a gear between them, and a floating joint.
-struct Everything : Stage {
-  Everything() {
+// A floor, and a robot with two revolute joints, a gear between them, and a floating joint: at least one object of each
+// class.
+struct AllClasses : WorldFixture {
+  AllClasses() {
     floor();
     Body& robot = body("robot");
     Part& base = part(robot, box_model(Vec3(0.2)), 1, {{0, 0, 1}, quat_identity()});
@@ -74,107 +77,111 @@ struct Everything : Stage {
              string.id(),
              robot.add_motor(string).value()->id(),
              world.add_gear("gear", hinge, side, 2).value()->id()};
-    world.settle();
+    world.flush();
   }
   std::vector<NodeId> nodes;
 };
 
-// Three values that a row can hold.
-std::vector<double> samples(const Row& row) {
-  const double low = std::isfinite(row.min) ? row.min : -1e3;
-  const double high = std::isfinite(row.max) ? row.max : 1e3;
-  if (row.type == RowType::choice || row.type == RowType::boolean || row.type == RowType::flags3) return {low, high};
-  if (row.type == RowType::integer) return {low, std::floor((low + high) / 2), high};
+// Three valid values of a property.
+std::vector<double> samples(const Property& property) {
+  const double low = std::isfinite(property.min) ? property.min : -1e3;
+  const double high = std::isfinite(property.max) ? property.max : 1e3;
+  if (property.type == PropertyType::choice || property.type == PropertyType::boolean ||
+      property.type == PropertyType::flags3)
+    return {low, high};
+  if (property.type == PropertyType::integer) return {low, std::floor((low + high) / 2), high};
   return {low, low + (high - low) * 0.3, high};
 }
 
-void set_and_read_back(Stage& stage, NodeId id, const Row& row) {
-  for (const double v : samples(row)) {
-    std::vector<double> given(row.width, v);
-    if (row.type == RowType::quat) given = {0.5, -0.5, 0.5, 0.5};
-    for (std::size_t i = 1; i < given.size() && row.type == RowType::flags3; i++) given[i] = 1 - given[i - 1];
-    const Result<SetOutcome> outcome = stage.store.set(id, row, given);
+void set_and_read_back(WorldFixture& fixture, NodeId id, const Property& property) {
+  for (const double v : samples(property)) {
+    std::vector<double> given(property.width, v);
+    if (property.type == PropertyType::quat) given = {0.5, -0.5, 0.5, 0.5};
+    for (std::size_t i = 1; i < given.size() && property.type == PropertyType::flags3; i++) given[i] = 1 - given[i - 1];
+    const Result<SetOutcome> outcome = fixture.store.set(id, property, given);
     ASSERT_TRUE(outcome) << outcome.error();
-    EXPECT_FALSE(outcome->clamped) << row.name << " " << v;
-    const std::vector<double> back = stage.get(id, row.name);
+    EXPECT_FALSE(outcome->clamped) << property.name << " " << v;
+    const std::vector<double> back = fixture.get(id, property.name);
     for (std::size_t i = 0; i < back.size(); i++)
-      EXPECT_NEAR(back[i], given[i], 1e-12 * std::abs(given[i])) << row.name;
+      EXPECT_NEAR(back[i], given[i], 1e-12 * std::abs(given[i])) << property.name;
   }
 }
 
-TEST(Rows, AreReadBackAsSet) {
-  Everything all;
+TEST(Properties, ReadBackAsSet) {
+  AllClasses all;
   for (const NodeId id : all.nodes) {
-    for (const Row& row : all.store.table(id).rows()) {
-      if (row.writable()) set_and_read_back(all, id, row);
+    for (const Property& property : all.store.table(id).properties()) {
+      if (property.writable()) set_and_read_back(all, id, property);
     }
   }
 }
 
-TEST(Rows, ClampAtBothEnds) {
-  Everything all;
+TEST(Properties, ClampAtBothEnds) {
+  AllClasses all;
   for (const NodeId id : all.nodes) {
-    for (const Row& row : all.store.table(id).rows()) {
-      const bool range = row.type == RowType::number || row.type == RowType::integer || row.type == RowType::vec3;
-      if (!row.writable() || !range) continue;
-      for (const double end : {row.min, row.max}) {
-        ASSERT_TRUE(std::isfinite(end)) << row.name << " needs a range";
-        const double beyond = end + (end == row.min ? -1 : 1) * std::max(1.0, std::abs(end));
-        const Result<SetOutcome> outcome = all.store.set(id, row, std::vector<double>(row.width, beyond));
+    for (const Property& property : all.store.table(id).properties()) {
+      const bool range = property.type == PropertyType::number || property.type == PropertyType::integer ||
+                         property.type == PropertyType::vec3;
+      if (!property.writable() || !range) continue;
+      for (const double end : {property.min, property.max}) {
+        ASSERT_TRUE(std::isfinite(end)) << property.name << " needs a range";
+        const double beyond = end + (end == property.min ? -1 : 1) * std::max(1.0, std::abs(end));
+        const Result<SetOutcome> outcome = all.store.set(id, property, std::vector<double>(property.width, beyond));
         ASSERT_TRUE(outcome) << outcome.error();
-        EXPECT_TRUE(outcome->clamped) << row.name;
-        for (const double v : all.get(id, row.name)) EXPECT_NEAR(v, end, 1e-12 * std::abs(end)) << row.name;
+        EXPECT_TRUE(outcome->clamped) << property.name;
+        for (const double v : all.get(id, property.name)) EXPECT_NEAR(v, end, 1e-12 * std::abs(end)) << property.name;
       }
     }
   }
 }
 
-TEST(Rows, RefuseWhatIsNoNumberAndAWrongCount) {
-  Everything all;
+TEST(Properties, RejectNanAndWrongCounts) {
+  AllClasses all;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   for (const NodeId id : all.nodes) {
-    for (const Row& row : all.store.table(id).rows()) {
-      if (!row.writable()) continue;
-      const std::vector<double> before = all.get(id, row.name);
+    for (const Property& property : all.store.table(id).properties()) {
+      if (!property.writable()) continue;
+      const std::vector<double> before = all.get(id, property.name);
       for (const double bad : {nan, inf, -inf}) {
-        for (std::uint32_t i = 0; i < row.width; i++) {
+        for (std::uint32_t i = 0; i < property.width; i++) {
           std::vector<double> given = before;
           given[i] = bad;
-          EXPECT_FALSE(all.store.set(id, row, given)) << row.name;
+          EXPECT_FALSE(all.store.set(id, property, given)) << property.name;
         }
       }
-      EXPECT_FALSE(all.store.set(id, row, std::vector<double>(row.width + 1, 1.0))) << row.name;
-      EXPECT_FALSE(all.store.set(id, row, std::vector<double>(row.width - 1, 1.0))) << row.name;
-      EXPECT_EQ(all.get(id, row.name), before) << row.name;
+      EXPECT_FALSE(all.store.set(id, property, std::vector<double>(property.width + 1, 1.0))) << property.name;
+      EXPECT_FALSE(all.store.set(id, property, std::vector<double>(property.width - 1, 1.0))) << property.name;
+      EXPECT_EQ(all.get(id, property.name), before) << property.name;
     }
   }
 }
 
-TEST(Rows, ReadoutsAndActionsCannotBeSet) {
-  Everything all;
+TEST(Properties, ReadoutsAndActionsCannotBeSet) {
+  AllClasses all;
   for (const NodeId id : all.nodes) {
-    for (const Row& row : all.store.table(id).rows()) {
-      if (row.writable()) continue;
-      const std::vector<double> before = all.get(id, row.name);
-      const Result<SetOutcome> outcome = all.store.set(id, row, std::vector<double>(row.width, 0.5));
-      ASSERT_FALSE(outcome) << row.name;
-      EXPECT_EQ(outcome.error(), all.store.path(id) + "/" + row.name +
-                                     (row.kind == RowKind::action ? " can be done, not set" : " can be read, not set"));
-      EXPECT_EQ(all.get(id, row.name), before) << row.name;
+    for (const Property& property : all.store.table(id).properties()) {
+      if (property.writable()) continue;
+      const std::vector<double> before = all.get(id, property.name);
+      const Result<SetOutcome> outcome = all.store.set(id, property, std::vector<double>(property.width, 0.5));
+      ASSERT_FALSE(outcome) << property.name;
+      EXPECT_EQ(outcome.error(),
+                all.store.path(id) + "/" + property.name +
+                    (property.kind == PropertyKind::action ? " can be called, not set" : " can be read, not set"));
+      EXPECT_EQ(all.get(id, property.name), before) << property.name;
     }
   }
 }
 
-TEST(Rows, StandInOneTableWithUnitAndText) {
+TEST(Properties, HaveUnitsAndDescriptions) {
   for (const NamedTable& t : tables()) {
-    for (const Row& row : t.table->rows()) {
-      EXPECT_FALSE(row.doc.empty()) << row.name;
-      EXPECT_EQ(t.table->find(row.name), &row) << row.name << " stands twice, for the one naming rule";
-      EXPECT_EQ(row.act != nullptr, row.kind == RowKind::action) << row.name;
-      for (std::uint32_t i = 0; i < row.width; i++) {
-        EXPECT_GE(row.initial[i], row.min) << row.name;
-        EXPECT_LE(row.initial[i], row.max) << row.name;
+    for (const Property& property : t.table->properties()) {
+      EXPECT_FALSE(property.doc.empty()) << property.name;
+      EXPECT_EQ(t.table->find(property.name), &property) << property.name << " is ambiguous under the naming rule";
+      EXPECT_EQ(property.invoke != nullptr, property.kind == PropertyKind::action) << property.name;
+      for (std::uint32_t i = 0; i < property.width; i++) {
+        EXPECT_GE(property.initial[i], property.min) << property.name;
+        EXPECT_LE(property.initial[i], property.max) << property.name;
       }
     }
   }

@@ -1,4 +1,4 @@
-// Selections: names, patterns, "all", left out, none.
+// Selections: names, patterns, "all", unspecified, empty.
 #include "sim/selection.h"
 
 #include <gtest/gtest.h>
@@ -8,45 +8,45 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-TEST(Selection, LeftOutMeansAll) {
+TEST(Selection, DefaultSelectsAll) {
   const Selection all;
-  EXPECT_TRUE(all.left_out());
-  EXPECT_TRUE(all.all());
-  EXPECT_TRUE(all.means("x"));
-  EXPECT_FALSE(all.means("x", false));  // what "all" leaves out
+  EXPECT_TRUE(all.is_default());
+  EXPECT_TRUE(all.selects_all());
+  EXPECT_TRUE(all.selects("x"));
+  EXPECT_FALSE(all.selects("x", false));  // not selected by "all"
   EXPECT_FALSE(all.has_names());
 }
 
-TEST(Selection, TheWordAllMeansAllBesideNames) {
+TEST(Selection, AllCanBeCombinedWithNames) {
   const Selection some(Words{"base", "all"});
-  EXPECT_FALSE(some.left_out());
-  EXPECT_TRUE(some.all());
-  EXPECT_TRUE(some.means("tip"));
-  EXPECT_FALSE(some.means("tip", false));
-  EXPECT_TRUE(some.means("base", false));  // by its own name
+  EXPECT_FALSE(some.is_default());
+  EXPECT_TRUE(some.selects_all());
+  EXPECT_TRUE(some.selects("tip"));
+  EXPECT_FALSE(some.selects("tip", false));
+  EXPECT_TRUE(some.selects("base", false));  // selected by its name
 }
 
-TEST(Selection, PatternsAreOscs) {
+TEST(Selection, UsesOscPatterns) {
   const Selection some(Words{"left_*", "{a,b}"});
-  EXPECT_TRUE(some.means("left_arm", false));
-  EXPECT_TRUE(some.means("b"));
-  EXPECT_FALSE(some.means("right_arm"));
+  EXPECT_TRUE(some.selects("left_arm", false));
+  EXPECT_TRUE(some.selects("b"));
+  EXPECT_FALSE(some.selects("right_arm"));
   EXPECT_FALSE(some.has_names());
-  EXPECT_EQ(some.missing({}), "");
+  EXPECT_EQ(some.first_missing({}), "");
 }
 
-TEST(Selection, NoneMeansNothing) {
+TEST(Selection, EmptySelectsNothing) {
   const Selection none{Words{}};
-  EXPECT_FALSE(none.left_out());
-  EXPECT_FALSE(none.all());
-  EXPECT_FALSE(none.means("x"));
+  EXPECT_FALSE(none.is_default());
+  EXPECT_FALSE(none.selects_all());
+  EXPECT_FALSE(none.selects("x"));
 }
 
-TEST(Selection, SaysWhichNameIsMissing) {
+TEST(Selection, ReportsTheMissingName) {
   const Selection some(Words{"*", "base", "tipp", "all"});
   EXPECT_TRUE(some.has_names());
-  EXPECT_EQ(some.missing({"base", "tip"}), "tipp");
-  EXPECT_EQ(some.missing({"base", "tipp"}), "");
+  EXPECT_EQ(some.first_missing({"base", "tip"}), "tipp");
+  EXPECT_EQ(some.first_missing({"base", "tipp"}), "");
 }
 
 }  // namespace

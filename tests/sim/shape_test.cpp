@@ -1,4 +1,4 @@
-// Shapes: what is refused, and that a part's mass is spread over the volume of each of the eight kinds.
+// Shapes: validation, and the mass distribution of each of the eight kinds.
 #include "sim/shape.h"
 
 #include <gtest/gtest.h>
@@ -29,9 +29,9 @@ ShapeModel hull_model(const Vec3& size) {
     mesh->hull.push_back(size * Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5));
   }
   mesh->vertices = mesh->hull;
-  mesh->solid = {size.x * size.y * size.z, Vec3(0), Mat3(0)};
-  const Vec3 moments = box_inertia(mesh->solid.mass, size);
-  for (int i = 0; i < 3; i++) mesh->solid.tensor[i][i] = moments[i];
+  mesh->unit_inertial = {size.x * size.y * size.z, Vec3(0), Mat3(0)};
+  const Vec3 moments = box_inertia(mesh->unit_inertial.mass, size);
+  for (int i = 0; i < 3; i++) mesh->unit_inertial.tensor[i][i] = moments[i];
   mesh->closed = true;
   ShapeModel m;
   m.kind = ShapeKind::mesh;
@@ -43,9 +43,9 @@ struct Solid {
   const char* name;
   ShapeModel model;
   double volume;
-  Vec3 moments;   // of 1 kg, about the centre of mass
-  double center;  // height of the centre of mass in the shape's frame
-  double bottom;  // depth of the lowest point under the shape's origin
+  Vec3 moments;   // of 1 kg, about the center of mass
+  double center;  // height of the center of mass in the shape's frame
+  double bottom;  // depth of the lowest point below the shape's origin
 };
 
 std::vector<Solid> solids() {
@@ -53,7 +53,7 @@ std::vector<Solid> solids() {
   const double h = 0.8;
   const double cyl = kPi * r * r * h;
   const double ball = 4.0 / 3 * kPi * r * r * r;
-  // a capsule: a cylinder and two half balls, whose centres lie 3/8·r beyond its ends
+  // a capsule: a cylinder and two half balls with centers of mass 3/8·r beyond its ends
   const double mc = cyl / (cyl + ball);
   const double mb = ball / (cyl + ball);
   const double across = mc * (3 * r * r + h * h) / 12 + mb * (0.4 * r * r + h * h / 4 + 0.375 * h * r);
@@ -70,12 +70,12 @@ std::vector<Solid> solids() {
   };
 }
 
-TEST(ShapeTest, MassIsSpreadOverTheVolume) {
+TEST(ShapeTest, MassIsDistributedOverTheVolume) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
     for (int axis = 0; axis < 3; axis++) {
-      Stage s;
-      Part& part = s.lone(solid.model, 2);
+      WorldFixture s;
+      Part& part = s.add_single_part(solid.model, 2);
       EXPECT_NEAR(part.geometry()->volume, solid.volume, 1e-6 * solid.volume);
       Vec3 torque(0);
       torque[axis] = 0.01;
@@ -88,22 +88,22 @@ TEST(ShapeTest, MassIsSpreadOverTheVolume) {
   }
 }
 
-TEST(ShapeTest, EachRestsOnItsLowestPoint) {
+TEST(ShapeTest, EachKindRestsOnItsLowestPoint) {
   for (const Solid& solid : solids()) {
     SCOPED_TRACE(solid.name);
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -9.81});
-    Part& part = s.lone(solid.model, 1, {{0, 0, solid.bottom + 0.005}, quat_identity()});
+    Part& part = s.add_single_part(solid.model, 1, {{0, 0, solid.bottom + 0.005}, quat_identity()});
     s.ticks(30);
     EXPECT_NEAR(part.pose().position.z, solid.bottom, 0.003);
     EXPECT_LT(glm::length(part.linear_velocity()), 0.05);
   }
 }
 
-TEST(ShapeTest, ACompoundIsTheSumOfItsParts) {
-  // two cubes of 0.2 m, centres 0.6 m apart along x: parallel axes
-  Stage s;
+TEST(ShapeTest, CompoundIsTheSumOfItsChildren) {
+  // two cubes of 0.2 m, centers 0.6 m apart along x: parallel axis theorem
+  WorldFixture s;
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
   Shape& dumbbell = *s.world.add_shape("dumbbell", compound).value();
@@ -119,27 +119,27 @@ TEST(ShapeTest, ACompoundIsTheSumOfItsParts) {
   for (int i = 0; i < 3; i++) {
     EXPECT_NEAR(part.angular_velocity()[i], Vec3(0.01, 0.02, -0.03)[i] / moments[i] / 60, 1e-7);
   }
-  // its ends touch, its middle does not
+  // its ends touch the floor, its middle doesn't
   part.set_pose({{0, 0, 0}, quat_identity()});
   part.set_velocity(Vec3(0), Vec3(0));
-  Part& between = s.lone(sphere_model(0.15), 1, {{0, 0, 0.1}, quat_identity()});
-  Part& above = s.lone(sphere_model(0.1), 1, {{0.3, 0, 0.29}, quat_identity()});
+  Part& between = s.add_single_part(sphere_model(0.15), 1, {{0, 0, 0.1}, quat_identity()});
+  Part& above = s.add_single_part(sphere_model(0.1), 1, {{0.3, 0, 0.29}, quat_identity()});
   s.ticks(2);
   EXPECT_LT(glm::length(between.pose().position - Vec3(0, 0, 0.1)), 1e-5);
   EXPECT_GT(above.pose().position.z, 0.2901);
 }
 
-TEST(ShapeTest, APlaneLiesThroughItsPartWithItsNormal) {
-  Stage s;
+TEST(ShapeTest, PlanePassesThroughItsPart) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
-  s.lone(plane_model({0, 0, 5}), 0, {{0, 0, 2}, quat_identity()});
-  Part& ball = s.lone(sphere_model(0.1), 1, {{3, -4, 2.15}, quat_identity()});
+  s.add_single_part(plane_model({0, 0, 5}), 0, {{0, 0, 2}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{3, -4, 2.15}, quat_identity()});
   s.ticks(60);
   EXPECT_NEAR(ball.pose().position.z, 2.1, 0.002);
   EXPECT_EQ(s.number(ball.id(), "friction"), 0.5);
 }
 
-TEST(ShapeTest, RefusesWhatIsNoShape) {
+TEST(ShapeTest, RejectsInvalidShapes) {
   const double nan = std::nan("");
   const auto text = [](const ShapeModel& m) {
     const Result<void> r = check_shape(m);
@@ -158,22 +158,22 @@ TEST(ShapeTest, RefusesWhatIsNoShape) {
   mesh.kind = ShapeKind::mesh;
   EXPECT_EQ(text(mesh), "a convex mesh needs at least 4 points");
   for (const Solid& solid : solids()) EXPECT_EQ(text(solid.model), "none") << solid.name;
-  Stage s;
+  WorldFixture s;
   EXPECT_EQ(s.world.add_shape("ball", sphere_model(0)).error(),
             "shape 'ball': a sphere needs a radius of 0.0001 .. 10000 m, not 0");
   EXPECT_TRUE(s.world.shapes().empty());
 }
 
 TEST(ShapeTest, OnlyCompoundsHaveChildren) {
-  Stage s;
+  WorldFixture s;
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
   Shape& both = *s.world.add_shape("both", compound).value();
   Shape& ball = *s.world.add_shape("ball", sphere_model(0.1)).value();
   Shape& plane = *s.world.add_shape("plane", plane_model()).value();
-  EXPECT_EQ(ball.add_child(both, {}).error(), "shape 'ball' is no compound; make one with sim:add_compound_shape");
-  EXPECT_EQ(both.add_child(both, {}).error(), "compound 'both' can't hold itself");
-  EXPECT_EQ(both.add_child(plane, {}).error(), "compound 'both' can't hold a plane");
+  EXPECT_EQ(ball.add_child(both, {}).error(), "shape 'ball' is not a compound; create one with sim:add_compound_shape");
+  EXPECT_EQ(both.add_child(both, {}).error(), "compound 'both' can't contain itself");
+  EXPECT_EQ(both.add_child(plane, {}).error(), "compound 'both' can't contain a plane");
   EXPECT_TRUE(both.placed().empty());
   ASSERT_TRUE(both.add_child(ball, {{1, 0, 0}, quat_identity()}));
   Shape& nested = *s.world.add_shape("nested", compound).value();

@@ -1,5 +1,5 @@
-// Sleep: islands at rest are left out of steps, wake on any influence in the tick in which it comes, and nothing that
-// still moves or is made to move falls asleep, however slow it is.
+// Sleep: islands at rest are skipped by steps and wake on any influence in the same tick; slow motions never fall
+// asleep.
 #include "sim/sleep.h"
 
 #include <gtest/gtest.h>
@@ -18,14 +18,14 @@ using namespace test;
 
 constexpr double kTick = 1.0 / 60;
 
-int asleep(const Stage& s) { return static_cast<int>(s.number(s.world.id(), "sleeping_parts")); }
+int asleep(const WorldFixture& s) { return static_cast<int>(s.number(s.world.id(), "sleeping_parts")); }
 
 // A stack of two boxes and a hinged arm, which fall asleep.
-struct Resting : Stage {
+struct Resting : WorldFixture {
   Resting()
       : ground(floor()),
-        low(lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()})),
-        high(lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.3}, quat_identity()})),
+        low(add_single_part(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()})),
+        high(add_single_part(box_model(Vec3(0.2)), 1, {{0, 0, 0.3}, quat_identity()})),
         arm(make_arm(*this, "arm", {2, {2, 0, 0.05}})),
         motor(*arm.motors()[0]) {
     gravity({0, 0, -9.81});
@@ -54,7 +54,7 @@ TEST(Sleep, IslandsAtRestFallAsleepAndReportNoVelocity) {
   EXPECT_NEAR(s.high.pose().position.z, 0.3, 1e-3);
 }
 
-TEST(Sleep, NothingDriftsAndReadoutsKeepTheirValues) {
+TEST(Sleep, ReadoutsKeepTheirValues) {
   Resting s;
   const Pose pose = s.high.pose();
   const Vec3 torque = s.vec(s.motor.id(), "applied_torque");
@@ -65,9 +65,9 @@ TEST(Sleep, NothingDriftsAndReadoutsKeepTheirValues) {
   EXPECT_EQ(s.vec(s.motor.id(), "applied_torque"), torque);
 }
 
-// A servo that holds a beam of 2 kg, half a metre from its axis, reports its load while it sleeps.
-TEST(Sleep, AppliedTorqueOfAHoldingServoStays) {
-  Stage s;
+// A servo that holds a beam of 2 kg, half a meter from its axis, reports its load while it sleeps.
+TEST(Sleep, ServoKeepsItsAppliedTorque) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& body = s.body("beam");
   Part& base = s.part(body, sphere_model(0.05), 0);
@@ -81,22 +81,22 @@ TEST(Sleep, AppliedTorqueOfAHoldingServoStays) {
   EXPECT_NEAR(s.vec(motor.id(), "applied_torque").z, -9.81, 0.02);
 }
 
-TEST(Sleep, PairsThatSleepAreNotLookedAt) {
+TEST(Sleep, SleepingPairsAreSkipped) {
   Resting s;
   const auto& dispatcher = static_cast<const Dispatcher&>(*s.world.bullet().getDispatcher());
-  std::uint64_t before = dispatcher.looked_at();
+  std::uint64_t before = dispatcher.processed_pairs();
   s.ticks(10);
-  EXPECT_EQ(dispatcher.looked_at() - before, 0u);
-  // a ball that rolls elsewhere: its own pair with the floor, once in each internal step
-  Part& ball = s.lone(sphere_model(0.1), 1, {{-3, 0, 0.1}, quat_identity()});
+  EXPECT_EQ(dispatcher.processed_pairs() - before, 0u);
+  // a ball rolls elsewhere: only its pair with the floor is processed, once in each internal step
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{-3, 0, 0.1}, quat_identity()});
   ball.set_velocity({0, 1, 0}, {-10, 0, 0});
-  before = dispatcher.looked_at();
+  before = dispatcher.processed_pairs();
   s.ticks(10);
-  EXPECT_EQ(dispatcher.looked_at() - before, 40u);
+  EXPECT_EQ(dispatcher.processed_pairs() - before, 40u);
   EXPECT_EQ(asleep(s), 4);
 }
 
-TEST(Sleep, ABodyThatMayNotSleepStaysAwakeWithItsIsland) {
+TEST(Sleep, CanSleepKeepsAnIslandAwake) {
   Resting s;
   s.set(s.high.body().id(), "can_sleep", {0});
   s.ticks(120);
@@ -107,24 +107,24 @@ TEST(Sleep, ABodyThatMayNotSleepStaysAwakeWithItsIsland) {
   EXPECT_EQ(asleep(s), 4);
 }
 
-// What wakes the stack, or the arm, in the tick in which it comes.
+// Influences that wake the stack, or the arm, in the same tick.
 struct Influence {
   const char* name;
-  std::function<void(Resting&)> act;
-  bool arm = false;  // else the stack
+  std::function<void(Resting&)> apply;
+  bool arm = false;  // true: the arm; false: the stack
 
   friend void PrintTo(const Influence& influence, std::ostream* out) { *out << influence.name; }
 };
 
 const std::vector<Influence>& influences() {
-  static const auto of_low = [](const char* row, double value) {
-    return [row, value](Resting& s) { s.set(s.low.id(), row, {value}); };
+  static const auto of_low = [](const char* property, double value) {
+    return [property, value](Resting& s) { s.set(s.low.id(), property, {value}); };
   };
-  static const auto of_sim = [](const char* row, double value) {
-    return [row, value](Resting& s) { s.set(s.world.id(), row, {value}); };
+  static const auto of_sim = [](const char* property, double value) {
+    return [property, value](Resting& s) { s.set(s.world.id(), property, {value}); };
   };
-  static const auto of_motor = [](const char* row, std::vector<double> value) {
-    return [row, value](Resting& s) { s.set(s.motor.id(), row, value); };
+  static const auto of_motor = [](const char* property, std::vector<double> value) {
+    return [property, value](Resting& s) { s.set(s.motor.id(), property, value); };
   };
   static const std::vector<Influence> list = {
       {"force",
@@ -179,11 +179,11 @@ const std::vector<Influence>& influences() {
       {"floor_removed", [](Resting& s) { s.world.remove_body(s.ground.body()); }},
       {"body_put_into_it",
        [](Resting& s) {
-         s.lone(sphere_model(0.1), 1, {{0, 0, 0.45}, quat_identity()});
+         s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.45}, quat_identity()});
        }},
       {"static_body_put_into_it",
        [](Resting& s) {
-         s.lone(sphere_model(0.1), 0, {{0, 0, 0.45}, quat_identity()});
+         s.add_single_part(sphere_model(0.1), 0, {{0, 0, 0.45}, quat_identity()});
        }},
       {"joint",
        [](Resting& s) {
@@ -217,34 +217,34 @@ const std::vector<Influence>& influences() {
 
 struct SleepInfluence : testing::TestWithParam<Influence> {};
 
-TEST_P(SleepInfluence, WakesInTheTickInWhichItComes) {
+TEST_P(SleepInfluence, WakesInTheSameTick) {
   Resting s;
   ASSERT_EQ(asleep(s), 4);
   const Influence& influence = GetParam();
-  const NodeId kept = s.high.id();
-  influence.act(s);
+  const NodeId node = s.high.id();
+  influence.apply(s);
   s.ticks(1);
-  ASSERT_TRUE(s.store.alive(kept));
+  ASSERT_TRUE(s.store.alive(node));
   EXPECT_FALSE(influence.arm ? s.link().asleep() : s.high.asleep());
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, SleepInfluence, testing::ValuesIn(influences()),
                          [](const auto& info) { return std::string(info.param.name); });
 
-// The iterative solver lets stacks tremble; they fall asleep all the same.
+// Stacks jitter in the iterative solver, but must fall asleep.
 TEST(Sleep, StacksOfThreeBoxesFallAsleep) {
   for (const double solver : {0.0, 1.0}) {
-    Stage s;
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -9.81});
     s.set(s.world.id(), "solver", {solver});
-    for (int i = 0; i < 3; i++) s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.101 + 0.2 * i}, quat_identity()});
+    for (int i = 0; i < 3; i++) s.add_single_part(box_model(Vec3(0.2)), 1, {{0, 0, 0.101 + 0.2 * i}, quat_identity()});
     s.ticks(120);
     EXPECT_EQ(asleep(s), 3);
   }
 }
 
-TEST(Sleep, TheSameValuesAgainWakeNothing) {
+TEST(Sleep, SettingTheSameValuesWakesNothing) {
   Resting s;
   for (int i = 0; i < 5; i++) {
     s.set(s.motor.id(), "target", {s.number(s.motor.id(), "target")});
@@ -259,7 +259,7 @@ TEST(Sleep, TheSameValuesAgainWakeNothing) {
   }
 }
 
-TEST(Sleep, AStackFallsInTheTickInWhichItsLowestBoxIsRemoved) {
+TEST(Sleep, StackFallsWhenItsLowestBoxIsRemoved) {
   Resting s;
   const double before = s.high.pose().position.z;
   s.world.remove_body(s.low.body());
@@ -268,80 +268,80 @@ TEST(Sleep, AStackFallsInTheTickInWhichItsLowestBoxIsRemoved) {
   EXPECT_NEAR(before - s.high.pose().position.z, 9.81 / 240 / 240 * 24 * 25 / 2, 1e-4);
 }
 
-TEST(Sleep, ABallThatHitsASleepingBoxGivesItItsMomentum) {
-  Stage s;
+TEST(Sleep, ImpactTransfersMomentumToASleepingBox) {
+  WorldFixture s;
   s.floor();
   s.gravity({0, 0, -9.81});
-  Part& box = s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
+  Part& box = s.add_single_part(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
   s.ticks(90);
   ASSERT_EQ(asleep(s), 1);
-  Part& ball = s.lone(sphere_model(0.1), 1, {{-0.25, 0, 0.1}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{-0.25, 0, 0.1}, quat_identity()});
   s.set(ball.id(), "friction", {0});
   ball.set_velocity({2, 0, 0}, Vec3(0));
   s.ticks(1);
   EXPECT_EQ(asleep(s), 1);
   s.ticks(2);
   EXPECT_EQ(asleep(s), 0);
-  // inelastic: both go on with half the speed; the floor has braked the box for a tick or two
+  // inelastic: both continue at half the speed; the floor has decelerated the box for a tick or two
   EXPECT_GT(box.linear_velocity().x, 0.8);
   EXPECT_NEAR(box.linear_velocity().x + ball.linear_velocity().x, 2, 9.81 * 0.5 * 2.5 * kTick);
 }
 
-// Slow motions: after `seconds` each must have gone as far as predicted.
-TEST(SlowMotion, ASpinOfAHundredthRadianPerSecond) {
-  OneAxis s(5);
+// Slow motions must not fall asleep: each must have moved as far as predicted.
+TEST(SlowMotion, SpinOfAHundredthRadianPerSecond) {
+  OneAxisFixture s(5);
   s.set(s.motor.id(), "mode", {1});
-  s.of_motor("velocity", 0.01);
+  s.set_motor("velocity", 0.01);
   s.ticks(600);
   EXPECT_NEAR(s.x(), 0.1, 1e-3);
 }
 
-TEST(SlowMotion, ASpinThatIsSlowerThanWhatCountsAsRest) {
-  OneAxis s(5);
+TEST(SlowMotion, SpinBelowTheRestToleranceContinues) {
+  OneAxisFixture s(5);
   s.set(s.motor.id(), "mode", {1});
-  s.of_motor("velocity", 4e-6);
+  s.set_motor("velocity", 4e-6);
   s.ticks(300);
   EXPECT_NEAR(s.x(), 2e-5, 2e-6);
   EXPECT_EQ(asleep(s), 0);
 }
 
-TEST(SlowMotion, ASpinAgainstAStopSleepsOnlyWhenItsSpeedIsZero) {
-  OneAxis s(5);
+TEST(SlowMotion, SpinAgainstALimitSleepsOnlyAtSpeedZero) {
+  OneAxisFixture s(5);
   s.limits(-0.1, 0.1);
   s.set(s.motor.id(), "mode", {1});
-  s.of_motor("velocity", 1);
+  s.set_motor("velocity", 1);
   s.ticks(120);
   EXPECT_EQ(asleep(s), 0);
-  s.of_motor("velocity", 0);
+  s.set_motor("velocity", 0);
   s.ticks(120);
   EXPECT_EQ(asleep(s), 1);
 }
 
-TEST(SlowMotion, AServoWhoseSpeedLimitIsTiny) {
-  OneAxis s(5);
+TEST(SlowMotion, ServoWithATinySpeedLimitMoves) {
+  OneAxisFixture s(5);
   s.set(s.motor.id(), "mode", {2});
-  s.of_motor("velocity", 5e-5);
+  s.set_motor("velocity", 5e-5);
   s.set(s.motor.id(), "target", {1});
   s.ticks(1200);
   EXPECT_NEAR(s.x(), 20 * 5e-5, 2e-4);
   EXPECT_EQ(asleep(s), 0);
 }
 
-TEST(SlowMotion, ARampOfTargetsOfAMillimetrePerSecond) {
-  OneAxis s(2);
+TEST(SlowMotion, FollowsARampOfAMillimeterPerSecond) {
+  OneAxisFixture s(2);
   s.gravity({0, 0, -9.81});
   s.set_one(s.motor.id(), "linear_active", 2, 1);
   s.set_one(s.motor.id(), "linear_servo_active", 2, 1);
   for (int i = 1; i <= 300; i++) {
-    s.of_motor("servo_position", 1e-3 * i * kTick);
+    s.set_motor("servo_position", 1e-3 * i * kTick);
     s.ticks(1);
   }
   EXPECT_NEAR(s.x(), 5e-3, 1e-4);
 }
 
-TEST(SlowMotion, APendulumAtItsTurningPoint) {
-  // 20 m long, let go at 0.5 mm from its lowest point
-  Stage s;
+TEST(SlowMotion, PendulumSwingsThroughItsTurningPoint) {
+  // 20 m long, released 0.5 mm from its lowest point
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& body = s.body("pendulum");
   Part& pivot = s.part(body, sphere_model(0.1), 0);
@@ -355,34 +355,34 @@ TEST(SlowMotion, APendulumAtItsTurningPoint) {
   EXPECT_NEAR(bob.center().x, 5e-4, 1e-4);
 }
 
-TEST(SlowMotion, ASpringAtItsTurningPoint) {
-  OneAxis s(5);
+TEST(SlowMotion, SpringOscillatesThroughItsTurningPoint) {
+  OneAxisFixture s(5);
   s.set_one(s.motor.id(), "angular_spring_active", 2, 1);
   const double period = 20;
-  s.of_motor("spring_stiffness", s.inertia() * std::pow(2 * kPi / period, 2));
-  s.of_motor("spring_rest_length", 0.02);
+  s.set_motor("spring_stiffness", s.inertia() * std::pow(2 * kPi / period, 2));
+  s.set_motor("spring_rest_length", 0.02);
   s.ticks(600);
   EXPECT_NEAR(s.x(), 0.04, 4e-4);
   s.ticks(600);
   EXPECT_NEAR(s.x(), 0, 4e-4);
 }
 
-TEST(SlowMotion, ABallAtItsApex) {
-  Stage s;
+TEST(SlowMotion, BallFallsFromItsApex) {
+  WorldFixture s;
   s.gravity({0, 0, -0.01});
-  Part& ball = s.lone(sphere_model(0.1), 1);
+  Part& ball = s.add_single_part(sphere_model(0.1), 1);
   ball.set_velocity({0, 0, 0.01}, Vec3(0));
   s.ticks(120);
   EXPECT_NEAR(ball.pose().position.z, 0, 1e-3);
   EXPECT_NEAR(ball.linear_velocity().z, -0.01, 1e-5);
 }
 
-TEST(SlowMotion, ADiscThatRollsAMillimetrePerSecond) {
-  Stage s;
+TEST(SlowMotion, DiscRollsAMillimeterPerSecond) {
+  WorldFixture s;
   s.floor();
   s.gravity({0, 0, -9.81});
   const ShapeModel coin = round_model(ShapeKind::cylinder, 0.05, 0.04);
-  Part& disc = s.lone(coin, 0.1, {{0, 0, 0.05}, quat_axis({1, 0, 0}, kPi / 2)});
+  Part& disc = s.add_single_part(coin, 0.1, {{0, 0, 0.05}, quat_axis({1, 0, 0}, kPi / 2)});
   s.set(disc.id(), "friction", {0.1});
   s.ticks(5);
   disc.set_velocity({1e-3, 0, 0}, {0, 0.02, 0});
@@ -392,14 +392,14 @@ TEST(SlowMotion, ADiscThatRollsAMillimetrePerSecond) {
   EXPECT_EQ(asleep(s), 0);
 }
 
-TEST(SlowMotion, ADriftWithoutGravity) {
-  Stage s;
-  Part& part = s.lone(box_model(Vec3(0.1)), 1);
+TEST(SlowMotion, DriftContinuesWithoutGravity) {
+  WorldFixture s;
+  Part& part = s.add_single_part(box_model(Vec3(0.1)), 1);
   part.set_velocity({1e-6, 0, 0}, {0, 0, 1e-6});
   s.ticks(300);
   EXPECT_NEAR(part.pose().position.x, 5e-6, 1e-8);
   EXPECT_EQ(asleep(s), 0);
-  // without any motion there is nothing to lose
+  // without any motion nothing is lost by sleeping
   part.set_velocity(Vec3(0), Vec3(0));
   s.ticks(90);
   EXPECT_EQ(asleep(s), 1);
@@ -409,7 +409,7 @@ TEST(SlowMotion, ADriftWithoutGravity) {
 std::uint64_t hash_of_heap(int threads, std::vector<int>* sleeping = nullptr) {
   Store store;
   WorldSetup setup;
-  if (threads > 1) setup.team = std::make_shared<Team>(threads);
+  if (threads > 1) setup.thread_pool = std::make_shared<ThreadPool>(threads);
   World world(store, setup);
   log_to_stderr(false);
   Shape& plane = *world.add_shape("plane", plane_model()).value();
@@ -425,14 +425,14 @@ std::uint64_t hash_of_heap(int threads, std::vector<int>* sleeping = nullptr) {
   for (int i = 0; i < 250; i++) {
     if (i == 150) parts[40]->set_velocity({3, 1, 0}, Vec3(0));
     world.step();
-    hash = hash * 31 + world.motion_hash().now();
+    hash = hash * 31 + world.motion_hash().compute();
     if (sleeping != nullptr) sleeping->push_back(world.bullet().sleep().sleeping());
   }
   log_to_stderr(true);
   return hash ^ world.state_hash();
 }
 
-TEST(Sleep, IsTheSameForAnyNumberOfThreads) {
+TEST(Sleep, DoesNotDependOnThreads) {
   std::vector<int> sleeping;
   const std::uint64_t hash = hash_of_heap(1, &sleeping);
   EXPECT_EQ(sleeping[149], 90);
@@ -442,7 +442,7 @@ TEST(Sleep, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(hash_of_heap(3), hash);
 }
 
-TEST(Sleep, ACopyOfASleepingBodyIsAwakeWhereItIsPut) {
+TEST(Sleep, CopyOfASleepingBodyIsAwake) {
   Resting s;
   Body& copy = *s.world.copy_body(s.high.body(), "copy").value();
   copy.set_pose({{0, 0, 2}, quat_identity()});
@@ -453,15 +453,15 @@ TEST(Sleep, ACopyOfASleepingBodyIsAwakeWhereItIsPut) {
   EXPECT_FALSE(s.world.copy_body(s.high.body(), "other").value()->can_sleep());
 }
 
-TEST(Sleep, ACallThatFailsWakesNothing) {
+TEST(Sleep, FailedCallWakesNothing) {
   Resting s;
-  s.world.undo().begin();
+  s.world.transaction().begin();
   Part& part = s.part(s.high.body(), sphere_model(0.05), 1, {{0.5, 0, 0.3}, quat_identity()});
   (void)s.high.body().add_joint("new", s.high, part, JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
   s.low.apply_force({1, 0, 0});
   s.set(s.motor.id(), "target", {1});
   s.set(s.low.id(), "position", {0, 0, 1});
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   s.ticks(2);
   EXPECT_EQ(asleep(s), 4);
 }

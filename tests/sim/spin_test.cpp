@@ -1,5 +1,5 @@
-// Fast rotation: driven rotors reach their speed, free bodies rotate as Euler's equations say, a spinning top keeps its
-// height, and what is clamped is reported.
+// Fast rotation: driven rotors reach their speed, free bodies rotate by Euler's equations, a spinning top keeps its
+// height, and clamping is reported.
 #include "sim/spin.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 constexpr double kGravity = 9.81;
 
 /// A part on a revolute joint to another one, driven by a spin motor.
-struct Rotor : Stage {
+struct Rotor : WorldFixture {
   Rotor(double speed, double solver, const ShapeModel& model, double mass, const Vec3& at = Vec3(0))
       : robot(body("robot")),
         base(part(robot, box_model(Vec3(0.1)), 0, {{0, 0, -0.3}, quat_identity()})),
@@ -39,7 +39,7 @@ struct Rotor : Stage {
   Motor& motor;
 };
 
-TEST(Spin, ADrivenRotorReachesItsSpeed) {
+TEST(Spin, DrivenRotorReachesItsSpeed) {
   for (const double solver : {0.0, 1.0}) {
     for (const int substeps : {1, 4}) {
       for (const double speed : {50.0, 150.0, -188.0, 200.0, 300.0, -500.0, 1000.0}) {
@@ -61,7 +61,7 @@ TEST(Spin, ADrivenRotorReachesItsSpeed) {
 }
 
 /// A disc on a ball joint, its axis tilted up by `tilt`, in steady precession at spin `w`.
-struct Top : Stage {
+struct Top : WorldFixture {
   static constexpr double kRadius = 0.1, kHeight = 0.02, kArm = 0.2;
 
   Top(double w, double tilt, double solver)
@@ -77,13 +77,14 @@ struct Top : Stage {
     along = inertia.z;
     across = inertia.x + kArm * kArm;
     rate = precession(w, std::sin(tilt));
-    // the part's spin about its own axis is w in all
+    // w is the total spin of the part about its own axis
     const Vec3 spin = axis * (w - rate * axis.z) + Vec3(0, 0, rate);
     const Vec3 velocity = glm::cross(spin, axis * kArm);
     set(disc.id(), "angular_velocity", {spin.x, spin.y, spin.z});
     set(disc.id(), "linear_velocity", {velocity.x, velocity.y, velocity.z});
   }
-  // (across - along)·c·W² - along·s·W... with the total spin w about the axis: across·c·W² - along·w·W + m·g·arm = 0
+  // Rate W of steady precession, for a total spin w about the axis and c, the cosine of the angle to the vertical:
+  // across·c·W² - along·w·W + m·g·arm = 0, with m = 1.
   double precession(double w, double c) const {
     const double torque = kGravity * kArm;
     if (std::fabs(c) < 1e-9) return torque / (along * w);
@@ -105,10 +106,10 @@ struct Top : Stage {
   double along = 0, across = 0, rate = 0;
 };
 
-TEST(Spin, ATopKeepsItsHeight) {
+TEST(Spin, TopKeepsItsHeight) {
   for (const double tilt : {0.0, 0.5}) {
     for (const double w : {60.0, 100.0, 150.0, 180.0, 400.0, 1000.0}) {
-      if (tilt > 0 && w < 90) continue;  // it would need 87 rad/s
+      if (tilt > 0 && w < 90) continue;  // it would require 87 rad/s
       Top s(w, tilt, 1);
       const double start = s.disc.center().z;
       const double energy = s.energy();
@@ -135,8 +136,9 @@ TEST(Spin, ATopKeepsItsHeight) {
   }
 }
 
-// Lagrange's top: angle from the vertical, its rate, and the azimuth, in small steps of Runge and Kutta's fourth order.
-TEST(Spin, ANutatingTopFollowsRungeKutta) {
+// Lagrange's top: angle from the vertical, its rate, and the azimuth, in small steps of the fourth-order Runge-Kutta
+// method.
+TEST(Spin, NutatingTopFollowsRungeKutta) {
   for (const double w : {80.0, 150.0, 600.0}) {
     Top s(w, 0.2, 1);
     s.set(s.disc.id(), "angular_velocity", {s.axis.x * w, s.axis.y * w, s.axis.z * w});
@@ -171,8 +173,8 @@ TEST(Spin, ANutatingTopFollowsRungeKutta) {
   }
 }
 
-struct Free : Stage {
-  Free(const ShapeModel& model, const Vec3& w) : part(lone(model, 1, {{0, 0, 1}, quat_identity()})) {
+struct FreeBody : WorldFixture {
+  FreeBody(const ShapeModel& model, const Vec3& w) : part(add_single_part(model, 1, {{0, 0, 1}, quat_identity()})) {
     set(part.id(), "angular_velocity", {w.x, w.y, w.z});
   }
   Vec3 local() const { return glm::conjugate(part.principal_axes()) * part.angular_velocity(); }
@@ -182,10 +184,10 @@ struct Free : Stage {
   Part& part;
 };
 
-TEST(Spin, AFreeBodySpinsAboutAPrincipalAxis) {
+TEST(Spin, FreeBodySpinsAboutAPrincipalAxis) {
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
     for (const double w : {50.0, 300.0, -1000.0, 3000.0}) {
-      Free s(box_model({0.1, 0.2, 0.05}), axis * w);
+      FreeBody s(box_model({0.1, 0.2, 0.05}), axis * w);
       const bool stable = axis.x == 0;
       const int ticks = stable ? 60 : 1;
       s.ticks(ticks);
@@ -198,10 +200,10 @@ TEST(Spin, AFreeBodySpinsAboutAPrincipalAxis) {
   }
 }
 
-TEST(Spin, ATumblingBodyKeepsEnergyAndMomentum) {
+TEST(Spin, TumblingBodyConservesEnergyAndMomentum) {
   for (const Vec3& w :
        {Vec3(3, 0.3, 0.2), Vec3(8, 0.2, 0.1), Vec3(-5, 20, 7), Vec3(200, 30, -90), Vec3(400, 300, 500)}) {
-    Free s(box_model({0.1, 0.2, 0.05}), w);
+    FreeBody s(box_model({0.1, 0.2, 0.05}), w);
     const double energy = s.energy();
     const Vec3 momentum = s.momentum();
     double worst_energy = 0, worst_momentum = 0;
@@ -216,11 +218,11 @@ TEST(Spin, ATumblingBodyKeepsEnergyAndMomentum) {
   }
 }
 
-// A platform afloat that carries a driven rotor: its slow rotation across the rotor's axis turns as the rotor's
-// momentum says, and all momentum is kept.
-TEST(Spin, ARotorTurnsItsPlatform) {
+// A floating platform with a driven rotor: its slow rotation across the rotor's axis precesses by the rotor's momentum,
+// and the total momentum is conserved.
+TEST(Spin, PlatformWithARotorPrecesses) {
   for (const double w : {100.0, 400.0, 1000.0}) {
-    Stage s;
+    WorldFixture s;
     Body& robot = s.body("robot");
     Part& platform = s.part(robot, box_model(Vec3(0.2)), 2);
     Part& rotor = s.part(robot, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2, {{0, 0, 0.2}, quat_identity()});
@@ -252,26 +254,26 @@ TEST(Spin, ARotorTurnsItsPlatform) {
       return sum;
     };
     const Vec3 before = momentum();
-    double turned = 0, angle = 0, least = 9, most = 0;
+    double turned = 0, angle = 0, min_value = 9, max_value = 0;
     for (int tick = 0; tick < 120; tick++) {
       s.ticks(1);
       const Vec3 local = glm::conjugate(platform.pose().rotation) * platform.angular_velocity();
       const double now = std::atan2(local.y, local.x);
       turned += std::remainder(now - angle, 2 * kPi);
       angle = now;
-      least = std::min(least, std::hypot(local.x, local.y));
-      most = std::max(most, std::hypot(local.x, local.y));
+      min_value = std::min(min_value, std::hypot(local.x, local.y));
+      max_value = std::max(max_value, std::hypot(local.x, local.y));
     }
-    const double expected = i_rotor.z * w / across;  // in the platform, which does not turn about z
+    const double expected = i_rotor.z * w / across;  // in the platform, which doesn't rotate about z
     EXPECT_NEAR(turned / 2, expected, 0.02 * expected);
-    EXPECT_NEAR(least, 1, 0.03);
-    EXPECT_NEAR(most, 1, 0.03);
+    EXPECT_NEAR(min_value, 1, 0.03);
+    EXPECT_NEAR(max_value, 1, 0.03);
     EXPECT_LT(glm::length(momentum() - before), 0.01 * glm::length(before));
     EXPECT_NEAR(s.number(joint.id(), "speed"), w, 1e-3 * w);
   }
 }
 
-TEST(Spin, AnUnbalancedBladeReachesItsSpeed) {
+TEST(Spin, UnbalancedBladeReachesItsSpeed) {
   for (const double solver : {0.0, 1.0}) {
     for (const double speed : {100.0, 400.0, 1000.0}) {
       Rotor s(speed, solver, box_model({0.3, 0.02, 0.02}), 0.05, {0.15, 0, 0});
@@ -293,12 +295,12 @@ TEST(Spin, LimitsAndServosHoldAtSpeed) {
   Rotor s(1000, 1, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2);
   s.set(s.joint.id(), "angular_lower_limit", {0, 0, -200});
   s.set(s.joint.id(), "angular_upper_limit", {0, 0, 200});
-  double most = 0;
+  double max_value = 0;
   for (int tick = 0; tick < 60; tick++) {
     s.ticks(1);
-    most = std::max(most, s.value());
+    max_value = std::max(max_value, s.value());
   }
-  EXPECT_NEAR(most, 200, 0.01);
+  EXPECT_NEAR(max_value, 200, 0.01);
   EXPECT_NEAR(s.value(), 200, 0.01);
   s.set(s.motor.id(), "mode", {2});
   s.set(s.motor.id(), "target", {-150});
@@ -310,9 +312,9 @@ TEST(Spin, LimitsAndServosHoldAtSpeed) {
   EXPECT_NEAR(s.value(), -150, 0.01);
 }
 
-// A chain that whips is still clamped, and says so once.
-TEST(Spin, AClampIsReported) {
-  Stage s;
+// Two jointed parts that rotate quickly in opposite directions are clamped, which is reported once.
+TEST(Spin, ReportsTheClamp) {
+  WorldFixture s;
   Body& chain = s.body("chain");
   Part& a = s.part(chain, box_model({0.2, 0.05, 0.05}), 1);
   Part& b = s.part(chain, box_model({0.2, 0.05, 0.05}), 1, {{0.2, 0, 0}, quat_identity()});
@@ -338,9 +340,9 @@ TEST(Spin, AClampIsReported) {
 }
 
 // Far from its base, from rest, and hit from the side: errors of the joint's locks must not grow with the spin.
-TEST(Spin, ARotorOnALightBaseStaysOnItsJoint) {
+TEST(Spin, RotorOnALightBaseKeepsItsJointClosed) {
   for (const double speed : {100.0, 300.0, 1000.0}) {
-    Stage s;
+    WorldFixture s;
     Body& robot = s.body("robot");
     Part& base = s.part(robot, box_model(Vec3(0.15)), 1);
     const Pose at{Vec3(0.3, 0, 0), quat_axis(Vec3(0, 1, 0), kPi / 2)};
@@ -359,13 +361,13 @@ TEST(Spin, ARotorOnALightBaseStaysOnItsJoint) {
   }
 }
 
-// A team shares out the step; the state is the same to the bit.
-TEST(Spin, AnyNumberOfThreadsGivesTheSameMotion) {
-  const auto hash = [](int members) {
+// The state is identical to the bit for any number of threads.
+TEST(Spin, DoesNotDependOnThreads) {
+  const auto hash = [](int threads) {
     log_to_stderr(false);
     Store store;
     WorldSetup setup;
-    if (members > 1) setup.team = std::make_shared<Team>(members);
+    if (threads > 1) setup.thread_pool = std::make_shared<ThreadPool>(threads);
     World world(store, setup);
     Shape& disc = *world.add_shape("disc", round_model(ShapeKind::cylinder, 0.05, 0.02)).value();
     Shape& box = *world.add_shape("box", box_model({0.1, 0.2, 0.05})).value();
@@ -396,12 +398,12 @@ TEST(Spin, AnyNumberOfThreadsGivesTheSameMotion) {
   EXPECT_EQ(hash(3), alone);
 }
 
-// From outside any speed may come; the number of parts of a step must not overflow (a sanitizer reports it).
-TEST(FreeMotion, AnySpeedIsARotation) {
+// A velocity that is set may have any value; the number of substeps must not overflow (a sanitizer would report it).
+TEST(FreeMotion, SupportsAnySpeed) {
   for (const double speed : {1e3, 1e9, 1e18, 1e30}) {
     Quat rotation = quat_identity();
     Vec3 w = Vec3(1, 0.5, -0.2) * speed;
-    free_motion(Vec3(1, 2, 3), rotation, w, 1.0 / 240);
+    integrate_free_rotation(Vec3(1, 2, 3), rotation, w, 1.0 / 240);
     EXPECT_TRUE(is_finite(rotation)) << speed;
     EXPECT_NEAR(glm::length(rotation), 1, 1e-12) << speed;
     EXPECT_TRUE(is_finite(w)) << speed;

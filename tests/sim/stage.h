@@ -1,5 +1,5 @@
-// Stage: a world with its store, and short ways to make bodies, set rows and let time pass. Without gravity until
-// asked.
+// WorldFixture: a world with its store, and helpers for creating bodies, setting properties and running ticks. Gravity
+// is zero by default.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -43,9 +43,9 @@ inline ShapeModel plane_model(const Vec3& normal = {0, 0, 1}) {
 
 /// Largest joint gap of a body, m.
 inline double widest_gap(const Body& body) {
-  double most = 0;
-  for (const auto& joint : body.joints()) most = std::max(most, joint->gap());
-  return most;
+  double max_gap = 0;
+  for (const auto& joint : body.joints()) max_gap = std::max(max_gap, joint->gap());
+  return max_gap;
 }
 
 /// Principal moments of a solid box, kg·m².
@@ -53,35 +53,35 @@ inline Vec3 box_inertia(double mass, const Vec3& s) {
   return mass / 12 * Vec3(s.y * s.y + s.z * s.z, s.x * s.x + s.z * s.z, s.x * s.x + s.y * s.y);
 }
 
-struct Stage {
-  Stage() {
+struct WorldFixture {
+  WorldFixture() {
     log_to_stderr(false);
     set(world.id(), "gravity", {0, 0, 0});
   }
-  ~Stage() { log_to_stderr(true); }
-  Stage(const Stage&) = delete;
-  Stage& operator=(const Stage&) = delete;
+  ~WorldFixture() { log_to_stderr(true); }
+  WorldFixture(const WorldFixture&) = delete;
+  WorldFixture& operator=(const WorldFixture&) = delete;
 
-  void set(NodeId id, std::string_view row, std::vector<double> values) {
-    const Result<SetOutcome> outcome = store.set(id, row, values);
+  void set(NodeId id, std::string_view property, std::vector<double> values) {
+    const Result<SetOutcome> outcome = store.set(id, property, values);
     if (!outcome) ADD_FAILURE() << outcome.error();
   }
-  std::vector<double> get(NodeId id, std::string_view row) const {
-    const Row& r = store.table(id).at(row);
+  std::vector<double> get(NodeId id, std::string_view property) const {
+    const Property& r = store.table(id).at(property);
     std::vector<double> out(r.width);
     store.get(id, r, out.data());
     return out;
   }
-  double number(NodeId id, std::string_view row) const { return get(id, row)[0]; }
-  Vec3 vec(NodeId id, std::string_view row) const {
-    const std::vector<double> v = get(id, row);
+  double number(NodeId id, std::string_view property) const { return get(id, property)[0]; }
+  Vec3 vec(NodeId id, std::string_view property) const {
+    const std::vector<double> v = get(id, property);
     return {v[0], v[1], v[2]};
   }
-  /// One of the three numbers of a row; the others stay.
-  void set_one(NodeId id, std::string_view row, int i, double value) {
-    std::vector<double> v = get(id, row);
+  /// Sets one of the three components of a property.
+  void set_one(NodeId id, std::string_view property, int i, double value) {
+    std::vector<double> v = get(id, property);
     v[static_cast<std::size_t>(i)] = value;
-    set(id, row, v);
+    set(id, property, v);
   }
 
   void gravity(const Vec3& g) { set(world.id(), "gravity", {g.x, g.y, g.z}); }
@@ -90,76 +90,81 @@ struct Stage {
   void ticks(int n) {
     for (int i = 0; i < n; i++) world.step();
   }
-  /// Length of an internal step.
+  /// Length of a substep, s.
   double h() const { return number(world.id(), "timestep") / number(world.id(), "substeps"); }
 
-  Shape& shape(const ShapeModel& model) { return *world.add_shape("shape" + std::to_string(made_++), model).value(); }
+  Shape& shape(const ShapeModel& model) { return *world.add_shape("shape" + std::to_string(count_++), model).value(); }
   Body& body(const std::string& name) { return *world.add_body(name).value(); }
   Part& part(Body& body, const ShapeModel& model, double mass, const Pose& pose = {}) {
-    return *body.add_part("part" + std::to_string(made_++), shape(model), mass, pose).value();
+    return *body.add_part("part" + std::to_string(count_++), shape(model), mass, pose).value();
   }
   /// A body of a single part.
-  Part& lone(const ShapeModel& model, double mass, const Pose& pose = {}) {
-    return part(body("body" + std::to_string(made_++)), model, mass, pose);
+  Part& add_single_part(const ShapeModel& model, double mass, const Pose& pose = {}) {
+    return part(body("body" + std::to_string(count_++)), model, mass, pose);
   }
-  Part& floor() { return lone(plane_model(), 0); }
+  Part& floor() { return add_single_part(plane_model(), 0); }
 
   Store store;
   World world{store};
 
  private:
-  int made_ = 0;
+  int count_ = 0;
 };
 
-/// A box that hangs on a static ball by a joint through its centre, one axis of it free: 0..2 linear x y z, 3..5
+/// A box on a static ball, connected by a joint through its center with one free axis: 0..2 linear x y z, 3..5
 /// angular.
-struct OneAxis : Stage {
+struct OneAxisFixture : WorldFixture {
   static constexpr double kMass = 2;
   static constexpr Vec3 kSize{0.4, 0.6, 0.5};
 
-  explicit OneAxis(int axis)
+  explicit OneAxisFixture(int axis)
       : axis(axis),
         robot(body("robot")),
         base(part(robot, sphere_model(0.05), 0)),
         child(part(robot, box_model(kSize), kMass)),
         joint(*robot.add_joint("joint", base, child, JointType::floating, Vec3(0), Vec3(0, 0, 1)).value()),
         motor(*robot.add_motor(joint).value()) {
-    for (const char* row : {"linear_lower_limit", "linear_upper_limit", "angular_lower_limit", "angular_upper_limit"}) {
-      set(joint.id(), row, {0, 0, 0});
+    for (const char* property :
+         {"linear_lower_limit", "linear_upper_limit", "angular_lower_limit", "angular_upper_limit"}) {
+      set(joint.id(), property, {0, 0, 0});
     }
     set(motor.id(), "mode", {0});
     limits(1, -1);
   }
 
-  /// "linear_" + name or "angular_" + name.
-  std::string side(const std::string& name) const { return (axis < 3 ? "linear_" : "angular_") + name; }
+  /// Returns the name of a property of this axis: "linear_" + name or "angular_" + name.
+  std::string prefixed(const std::string& name) const { return (axis < 3 ? "linear_" : "angular_") + name; }
   void limits(double lower, double upper) {
-    set_one(joint.id(), side("lower_limit"), axis % 3, lower);
-    set_one(joint.id(), side("upper_limit"), axis % 3, upper);
+    set_one(joint.id(), prefixed("lower_limit"), axis % 3, lower);
+    set_one(joint.id(), prefixed("upper_limit"), axis % 3, upper);
   }
-  void of_joint(const std::string& name, double value) { set_one(joint.id(), side(name), axis % 3, value); }
-  void of_motor(const std::string& name, double value) {
-    const std::string row = name == "max_force" ? (axis < 3 ? "max_linear_force" : "max_angular_force") : side(name);
-    set_one(motor.id(), row, axis % 3, value);
+  void set_joint(const std::string& name, double value) { set_one(joint.id(), prefixed(name), axis % 3, value); }
+  void set_motor(const std::string& name, double value) {
+    const std::string property =
+        name == "max_force" ? (axis < 3 ? "max_linear_force" : "max_angular_force") : prefixed(name);
+    set_one(motor.id(), property, axis % 3, value);
   }
-  /// Mass or moment of inertia that moves along or about the axis.
+  /// Mass or moment of inertia for the motion along or about the axis.
   double inertia() const { return axis < 3 ? kMass : box_inertia(kMass, kSize)[axis - 3]; }
   double x() const { return joint.constraint().value(axis); }
   double v() const { return joint.constraint().rate(axis); }
-  Vec3 along() const { return {axis % 3 == 0 ? 1. : 0., axis % 3 == 1 ? 1. : 0., axis % 3 == 2 ? 1. : 0.}; }
-  /// Force or torque for the coming tick.
-  void push(double load) { axis < 3 ? child.apply_force(along() * load) : child.apply_torque(along() * load); }
-  void pushed_ticks(int n, double load) {
+  Vec3 direction() const { return {axis % 3 == 0 ? 1. : 0., axis % 3 == 1 ? 1. : 0., axis % 3 == 2 ? 1. : 0.}; }
+  /// Applies a force or torque for the next tick.
+  void apply_force(double load) {
+    axis < 3 ? child.apply_force(direction() * load) : child.apply_torque(direction() * load);
+  }
+  void ticks_with_load(int n, double load) {
     for (int i = 0; i < n; i++) {
-      push(load);
+      apply_force(load);
       world.step();
     }
   }
-  void kick(double rate) {
-    set(child.id(), axis < 3 ? "linear_velocity" : "angular_velocity", as_list(along() * rate));
+  void set_rate(double rate) {
+    set(child.id(), axis < 3 ? "linear_velocity" : "angular_velocity", as_list(direction() * rate));
   }
-  void put(double value) {
-    const Pose at = axis < 3 ? Pose{along() * value, quat_identity()} : Pose{Vec3(0), quat_axis(along(), value)};
+  void set_value(double value) {
+    const Pose at =
+        axis < 3 ? Pose{direction() * value, quat_identity()} : Pose{Vec3(0), quat_axis(direction(), value)};
     child.set_pose(at);
   }
   static std::vector<double> as_list(const Vec3& v) { return {v.x, v.y, v.z}; }

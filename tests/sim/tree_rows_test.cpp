@@ -1,4 +1,4 @@
-// The laws of trees' axes: what a step remembers of the one before.
+// TreeRows: the active set is restored from the step before.
 #include "sim/tree_rows.h"
 
 #include <gtest/gtest.h>
@@ -6,11 +6,11 @@
 namespace limber {
 namespace {
 
-// One body of 1 kg and 1 kg·m² on a hinge about z in its centre, with a motor of 0.1 N·m·s that wants 0.05 rad/s.
+// A body of 1 kg and 1 kg·m² on a hinge about z through its center, with a motor of 0.1 N·m·s and 0.05 rad/s.
 struct Hinge {
-  explicit Hinge(const TreeMemory& before) {
+  explicit Hinge(const ActiveSetMemory& before) {
     rows.clear();
-    TreeNode& n = rows.trees.add(-1);
+    TreeNode& n = rows.forest.add(-1);
     Sym3 one;
     one.xx = one.yy = one.zz = 1;
     n.inertia = SpatialInertia(1, one);
@@ -21,39 +21,39 @@ struct Hinge {
     for (int axis = 0; axis < 5; ++axis) rows.add(axis, 0, 0, -2 * kTreeInfinity, 2 * kTreeInfinity, TreeRow::other);
     rows.add(5, 0.05, 0, -0.1, 0.1, TreeRow::motor);
     rows.end_node({}, before);
-    EXPECT_TRUE(rows.settle(0, 1, 8));
+    EXPECT_TRUE(rows.solve(0, 1, 8));
   }
-  // what a contact may do
-  void turn(double impulse) {
-    rows.trees.node(0).load.angular.z = impulse;
+  // applies an impulse, as a contact does
+  void apply_contact_impulse(double impulse) {
+    rows.forest.node(0).load.angular.z = impulse;
     rows.correct(0, 1);
   }
   const TreeRow& motor() { return rows.rows().back(); }
-  Effort effort;
-  TreeRows rows{effort};
+  WorkBudget budget;
+  TreeRows rows{budget};
 };
 
-// The motor reaches its speed, until something turns against it with more than it has. Then it is given up, and the
-// step that follows gives it up at once, as a row that stands at its bound.
-TEST(TreeRows, WhatContactsDidIsRemembered) {
+// The motor reaches its speed until a larger impulse acts against it. It is deferred then, and the next step defers it
+// at once, with the status at its bound.
+TEST(TreeRows, RemembersAxesChangedByContacts) {
   Hinge first{{}};
   EXPECT_NEAR(first.motor().impulse, 0.05, 1e-12);
-  EXPECT_EQ(first.rows.give_up_remembered(0, 1), 0);
-  first.turn(-1);
-  EXPECT_NEAR(first.motor().impulse, 1.05, 1e-12) << "it still holds";
-  EXPECT_EQ(first.rows.give_up_broken(0, 1), 1);
-  EXPECT_TRUE(first.rows.refresh(0, 1));
+  EXPECT_EQ(first.rows.defer_remembered(0, 1), 0);
+  first.apply_contact_impulse(-1);
+  EXPECT_NEAR(first.motor().impulse, 1.05, 1e-12) << "the motor still holds";
+  EXPECT_EQ(first.rows.defer_violated(0, 1), 1);
+  EXPECT_TRUE(first.rows.factor_and_correct(0, 1));
   EXPECT_NEAR(first.motor().impulse, 0.1, 1e-12);
 
-  Hinge second{first.rows.memory(0)};
-  EXPECT_EQ(second.motor().guess, TreeRow::at_upper);
-  EXPECT_EQ(second.rows.give_up_remembered(0, 1), 1);
-  EXPECT_EQ(second.rows.give_up_remembered(0, 1), 0) << "only once";
-  EXPECT_EQ(second.motor().status, TreeRow::outer);
+  Hinge second{first.rows.active_set(0)};
+  EXPECT_EQ(second.motor().initial_status, TreeRow::at_upper);
+  EXPECT_EQ(second.rows.defer_remembered(0, 1), 1);
+  EXPECT_EQ(second.rows.defer_remembered(0, 1), 0) << "only once";
+  EXPECT_EQ(second.motor().status, TreeRow::deferred);
 
-  // nothing turned against it this time: it came to stand where the tree alone had it
-  Hinge third{second.rows.memory(0)};
-  EXPECT_EQ(third.rows.give_up_remembered(0, 1), 0);
+  // no impulse this time: the active set is again that of the tree alone
+  Hinge third{second.rows.active_set(0)};
+  EXPECT_EQ(third.rows.defer_remembered(0, 1), 0);
 }
 
 }  // namespace

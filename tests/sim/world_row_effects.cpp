@@ -1,4 +1,4 @@
-// What the rows of the world and of bodies do, as numbers measured in the world.
+// The effects of the properties of the world and of bodies, measured in the world.
 #include <cmath>
 
 #include "sim/row_effects.h"
@@ -8,16 +8,16 @@ namespace limber::test {
 
 namespace {
 
-void expect_near(const Vec3& a, const Vec3& b, double tolerance, std::string_view what = "") {
-  for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << what << " axis " << i;
+void expect_near(const Vec3& a, const Vec3& b, double tolerance, std::string_view label = "") {
+  for (int i = 0; i < 3; i++) EXPECT_NEAR(a[i], b[i], tolerance) << label << " axis " << i;
 }
 
-// Velocities are changed first, then positions: after n steps x = g·h²·n(n+1)/2, not g·t²/2.
+// Velocities are updated before positions: after n steps x = g·h²·n(n+1)/2, not g·t²/2.
 double fall(double g, double h, int n) { return g * h * h * n * (n + 1) / 2; }
 
 void gravity() {
-  Stage s;
-  Part& ball = s.lone(sphere_model(0.1), 3);
+  WorldFixture s;
+  Part& ball = s.add_single_part(sphere_model(0.1), 3);
   s.gravity({1.5, -2, 9.81});
   s.ticks(60);
   expect_near(ball.linear_velocity(), {1.5, -2, 9.81}, 1e-4);
@@ -25,8 +25,8 @@ void gravity() {
 
 void timestep() {
   for (const double dt : {1.0 / 60, 0.002, 0.05}) {
-    Stage s;
-    Part& ball = s.lone(sphere_model(0.1), 1);
+    WorldFixture s;
+    Part& ball = s.add_single_part(sphere_model(0.1), 1);
     s.set(s.world.id(), "timestep", {dt});
     s.gravity({0, 0, -10});
     s.ticks(10);
@@ -37,36 +37,36 @@ void timestep() {
 
 void substeps() {
   for (const int n : {1, 4, 7}) {
-    Stage s;
-    Part& ball = s.lone(sphere_model(0.1), 1);
+    WorldFixture s;
+    Part& ball = s.add_single_part(sphere_model(0.1), 1);
     s.substeps(n);
     s.gravity({0, 0, -9.81});
     s.ticks(30);
     const double expected = fall(9.81, 1.0 / 60 / n, 30 * n);
     EXPECT_NEAR(ball.pose().position.z, -expected, 2e-6 * expected) << n;
-    // a resolution: the finer, the nearer to g·t²/2
+    // the more substeps, the closer to g·t²/2
     EXPECT_NEAR(expected - 9.81 / 8, 9.81 / 4 / 60 / n, 1e-12);
   }
 }
 
-// Without weight a spinning joint stops where its motor holds it, and loses its speed with time where not.
+// Without gravity, a rotating joint stops if its motor holds it, and slows down otherwise.
 void panic_motors() {
   for (const double motors : {0.0, 1.0}) {
-    OneAxis s(5);
+    OneAxisFixture s(5);
     s.set(s.motor.id(), "mode", {1});
-    s.of_motor("velocity", 2);
+    s.set_motor("velocity", 2);
     s.set(s.world.id(), "panic_motors", {motors});
     s.ticks(30);
     EXPECT_NEAR(s.v(), 2, 1e-3);
     s.world.panic().begin();
     s.ticks(6);
-    EXPECT_NEAR(s.v(), motors == 0 ? 0 : 2 * std::exp(-Panic::kBrake / 10), 0.02);
+    EXPECT_NEAR(s.v(), motors == 0 ? 0 : 2 * std::exp(-Panic::kDamping / 10), 0.02);
   }
 }
 
-// Largest gap of a chain with a heavy end, which few rounds cannot hold.
+// Largest gap of a chain with a heavy end, which few iterations can't hold.
 double gap_of_chain(int iterations, double solver) {
-  Stage s;
+  WorldFixture s;
   s.set(s.world.id(), "solver", {solver});
   s.iterations(iterations);
   s.gravity({0, 0, -9.81});
@@ -90,27 +90,27 @@ double gap_of_chain(int iterations, double solver) {
 
 void solver_iterations() {
   EXPECT_LT(gap_of_chain(200, 0), 0.2 * gap_of_chain(4, 0));
-  Stage s;
+  WorldFixture s;
   s.iterations(17);
   s.ticks(1);
   EXPECT_EQ(s.world.bullet().getSolverInfo().m_numIterations, 17);
 }
 
 void solver() {
-  // ten rounds do not hold a chain with a heavy end; exactly, its joints stay where bodies arrive
+  // ten iterations can't hold a chain with a heavy end; the direct solver holds the joints exactly
   EXPECT_GT(gap_of_chain(10, 0), 0.003);
   EXPECT_LT(gap_of_chain(10, 1), 0.0005);
-  Stage s;
-  const Row& row = World::table().at("solver");
+  WorldFixture s;
+  const Property& property = World::table().at("solver");
   const double other = 2;
-  const Result<SetOutcome> outcome = s.store.set(s.world.id(), row, {&other, 1});
+  const Result<SetOutcome> outcome = s.store.set(s.world.id(), property, {&other, 1});
   ASSERT_FALSE(outcome);
-  EXPECT_EQ(outcome.error(), "/physics/sim/solver has the choices iterative, direct; 2 is none of them");
+  EXPECT_EQ(outcome.error(), "/physics/sim/solver must be one of iterative, direct (got 2)");
 }
 
 void seed() {
-  Stage a;
-  Stage b;
+  WorldFixture a;
+  WorldFixture b;
   EXPECT_EQ(a.world.seed(), 1u);
   EXPECT_EQ(a.world.state_hash(), b.world.state_hash());
   b.set(b.world.id(), "seed", {12345678901});
@@ -118,14 +118,14 @@ void seed() {
   EXPECT_NE(a.world.state_hash(), b.world.state_hash());
 }
 
-// How ticks are paced is the clock's matter: a tick itself is the same.
-void pacing(const char* row, double value) {
+// Pacing is done by the clock: the tick itself is the same.
+void pacing(const char* property, double value) {
   std::uint64_t hash[2] = {};
   for (int i = 0; i < 2; i++) {
-    Stage s;
+    WorldFixture s;
     s.gravity({0, 0, -9.81});
-    s.lone(sphere_model(0.1), 1);
-    if (i == 1) s.set(s.world.id(), row, {value});
+    s.add_single_part(sphere_model(0.1), 1);
+    if (i == 1) s.set(s.world.id(), property, {value});
     s.ticks(6);
     EXPECT_EQ(s.number(s.world.id(), "tick"), 6);
     EXPECT_NEAR(s.number(s.world.id(), "time"), 0.1, 1e-12);
@@ -134,8 +134,8 @@ void pacing(const char* row, double value) {
   EXPECT_EQ(hash[0], hash[1]);
 }
 
-// Two boxes on a hinge, bent by 0.7 rad, on their way through space.
-struct Pair : Stage {
+// Two boxes on a hinge, bent by 0.7 rad, moving freely.
+struct Pair : WorldFixture {
   Body& robot = body("robot");
   Part& a = part(robot, box_model(Vec3(0.2)), 2, {{1, 0, 0}, quat_identity()});
   Part& b = part(robot, box_model({0.2, 0.3, 0.1}), 1, {{1.5, 0, 0}, quat_identity()});
@@ -143,7 +143,7 @@ struct Pair : Stage {
   Pair() {
     const Pose pivot{{1.25, 0, 0}, quat_axis({0, 1, 0}, 0.7)};
     b.set_pose(pivot * Pose{{0.25, 0, 0}, quat_identity()});
-    world.settle();
+    world.flush();
   }
 };
 
@@ -152,7 +152,7 @@ void body_position() {
   p.set(p.b.id(), "linear_velocity", {0.1, 0, 0});
   const Vec3 before = p.b.pose().position;
   p.set(p.robot.id(), "position", {-3, 4, 5});
-  p.world.settle();
+  p.world.flush();
   expect_near(p.a.pose().position, {-3, 4, 5}, 1e-12);
   expect_near(p.b.pose().position, before + Vec3(-4, 4, 5), 1e-12);
   expect_near(from_bt(p.b.rigid().getWorldTransform().getOrigin()), before + Vec3(-4, 4, 5), 1e-6);
@@ -166,7 +166,7 @@ void body_rotation() {
   const Quat turn = quat_axis(normalized({1, 2, 3}), 2.1);
   const Vec3 arm = p.b.pose().position - p.a.pose().position;
   p.set(p.robot.id(), "rotation", {turn.x, turn.y, turn.z, turn.w});
-  p.world.settle();
+  p.world.flush();
   expect_near(p.a.pose().position, {1, 0, 0}, 1e-12);
   expect_near(p.b.pose().position, Vec3(1, 0, 0) + turn * arm, 1e-12);
   EXPECT_NEAR(p.number(p.hinge.id(), "value"), 0.7, 1e-6);
@@ -189,19 +189,19 @@ void body_angular_velocity() {
   const Vec3 omega(0.2, -0.4, 1.1);
   p.set(p.robot.id(), "linear_velocity", {0.5, 0, 0});
   p.set(p.robot.id(), "angular_velocity", {omega.x, omega.y, omega.z});
-  p.world.settle();
+  p.world.flush();
   for (const Part* part : {&p.a, &p.b}) {
     expect_near(part->angular_velocity(), omega, 1e-12);
     expect_near(part->linear_velocity(), Vec3(0.5, 0, 0) + glm::cross(omega, part->center() - p.a.center()), 1e-12);
   }
-  // it turns as a whole: the hinge does not move
+  // it rotates as a whole: the hinge doesn't move
   EXPECT_NEAR(p.hinge.constraint().rate(5), 0, 1e-6);
 }
 
 void body_enabled() {
-  Stage s;
+  WorldFixture s;
   s.gravity({0, 0, -10});
-  Part& ball = s.lone(sphere_model(0.1), 1, {{0, 0, 5}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.1), 1, {{0, 0, 5}, quat_identity()});
   s.ticks(6);
   s.set(ball.body().id(), "enabled", {0});
   const Pose at = ball.pose();
@@ -209,27 +209,27 @@ void body_enabled() {
   EXPECT_EQ(ball.pose().position, at.position);
   s.set(ball.body().id(), "enabled", {1});
   s.ticks(6);
-  // it goes on where and as it was: twelve ticks of falling in all
+  // it continues from its state: twelve ticks of falling altogether
   EXPECT_NEAR(ball.pose().position.z, 5 - fall(10, 1.0 / 240, 48), 1e-5);
 }
 
-// what may not sleep is stepped on, at rest or not
+// A body that must not sleep is stepped even if it is at rest.
 void body_can_sleep() {
-  for (const bool may : {true, false}) {
-    Stage s;
+  for (const bool can_sleep : {true, false}) {
+    WorldFixture s;
     s.floor();
     s.gravity({0, 0, -10});
-    Part& box = s.lone(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
-    s.set(box.body().id(), "can_sleep", {may ? 1.0 : 0.0});
+    Part& box = s.add_single_part(box_model(Vec3(0.2)), 1, {{0, 0, 0.1}, quat_identity()});
+    s.set(box.body().id(), "can_sleep", {can_sleep ? 1.0 : 0.0});
     s.ticks(90);
-    EXPECT_EQ(box.asleep(), may);
-    EXPECT_EQ(s.number(s.world.id(), "sleeping_parts"), may ? 1 : 0);
+    EXPECT_EQ(box.asleep(), can_sleep);
+    EXPECT_EQ(s.number(s.world.id(), "sleeping_parts"), can_sleep ? 1 : 0);
   }
 }
 
-// a ball on a static one of the same body; and one of another body, which always collides
+// A ball on a static ball of the same body, and one of another body, which always collides.
 void body_self_collision() {
-  Stage s;
+  WorldFixture s;
   s.gravity({0, 0, -10});
   Body& body = s.body("two");
   s.part(body, sphere_model(0.1), 0);
@@ -239,13 +239,13 @@ void body_self_collision() {
   const double rest = ball.pose().position.z;
   s.set(body.id(), "self_collision", {0});
   s.ticks(6);
-  // the contact that it had holds it no longer
+  // the previous contact no longer holds it
   EXPECT_NEAR(ball.pose().position.z, rest - fall(10, 1.0 / 240, 24), 1e-5);
   Body& copy = **s.world.copy_body(body, "copy");
   copy.set_pose({{3, 0, 0}, quat_identity()});
   Part& dropped = *copy.parts()[1];
   const double from = dropped.pose().position.z;
-  Part& foreign = s.lone(sphere_model(0.1), 1, {{3, 0, 0.2}, quat_identity()});
+  Part& foreign = s.add_single_part(sphere_model(0.1), 1, {{3, 0, 0.2}, quat_identity()});
   s.ticks(6);
   EXPECT_LT(dropped.pose().position.z, from - fall(10, 1.0 / 240, 24));
   EXPECT_NEAR(foreign.pose().position.z, 0.2, 0.01);
@@ -253,7 +253,7 @@ void body_self_collision() {
 
 }  // namespace
 
-void add_world_effects(RowEffects& effects) {
+void add_world_effects(PropertyEffects& effects) {
   effects[{"World", "gravity"}] = gravity;
   effects[{"World", "panic_motors"}] = panic_motors;
   effects[{"World", "timestep"}] = timestep;
@@ -266,7 +266,7 @@ void add_world_effects(RowEffects& effects) {
   effects[{"World", "history"}] = [] { pacing("history", 7); };
 }
 
-void add_body_effects(RowEffects& effects) {
+void add_body_effects(PropertyEffects& effects) {
   effects[{"Body", "position"}] = body_position;
   effects[{"Body", "rotation"}] = body_rotation;
   effects[{"Body", "linear_velocity"}] = body_linear_velocity;

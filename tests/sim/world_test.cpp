@@ -1,4 +1,4 @@
-// The world: what the state hash covers, that runs repeat, shapes, and clearing away.
+// The world: the state hash and its coverage, repeatability, shapes, clearing.
 #include "sim/world.h"
 
 #include <gtest/gtest.h>
@@ -13,30 +13,30 @@ namespace {
 
 using namespace test;
 
-std::uint64_t run_of_arms(int extra_settles) {
-  Stage s;
+std::uint64_t hash_of_arms(int extra_flushes) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   s.floor();
   for (int i = 0; i < 4; i++) make_arm(s, "arm" + std::to_string(i), {4, {0.15 * i, 0, 0.3}, i % 2 == 0});
   for (int tick = 0; tick < 90; tick++) {
-    for (const auto& body : s.world.bodies()) wave(s, *body, s.world.time());
-    for (int i = 0; i < extra_settles; i++) s.world.settle();
+    for (const auto& body : s.world.bodies()) set_wave_targets(s, *body, s.world.time());
+    for (int i = 0; i < extra_flushes; i++) s.world.flush();
     s.ticks(1);
   }
   return s.world.state_hash();
 }
 
-TEST(WorldTest, TwoRunsHaveOneHash) {
-  const std::uint64_t hash = run_of_arms(0);
-  EXPECT_EQ(run_of_arms(0), hash);
-  EXPECT_EQ(run_of_arms(2), hash);  // looking twice changes nothing
+TEST(WorldTest, EqualRunsHaveEqualHashes) {
+  const std::uint64_t hash = hash_of_arms(0);
+  EXPECT_EQ(hash_of_arms(0), hash);
+  EXPECT_EQ(hash_of_arms(2), hash);  // computing the hash changes nothing
 }
 
 double next_bit(double v) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(v) ^ 1u); }
 btScalar next_bit(btScalar v) { return std::bit_cast<btScalar>(std::bit_cast<std::uint32_t>(v) ^ 1u); }
 
-TEST(WorldTest, ASingleBitOfAnyPoseOrVelocityChangesTheHash) {
-  Stage s;
+TEST(WorldTest, HashCoversEveryBitOfPosesAndVelocities) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {2});
   s.ticks(10);
   const std::uint64_t hash = s.world.state_hash();
@@ -73,8 +73,8 @@ TEST(WorldTest, ASingleBitOfAnyPoseOrVelocityChangesTheHash) {
   EXPECT_EQ(s.world.state_hash(), hash);
 }
 
-TEST(WorldTest, ASingleBitOfAnyNumberOfAnyRowChangesTheHash) {
-  Stage s;
+TEST(WorldTest, HashCoversEveryBitOfProperties) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {2});
   s.ticks(10);
   const std::uint64_t hash = s.world.state_hash();
@@ -82,16 +82,16 @@ TEST(WorldTest, ASingleBitOfAnyNumberOfAnyRowChangesTheHash) {
   s.store.walk(arm.id(), [&](NodeId id) { nodes.push_back(id); });
   int numbers = 0;
   for (const NodeId id : nodes) {
-    for (const Row& row : s.store.table(id).rows()) {
-      // readouts follow from the rest, `paused` and `speed` are the clock's
-      const bool counts =
-          row.stored() && row.writable() && row.name != "paused" && row.name != "speed" && row.name != "history";
-      if (!counts || row.name == "seed" || row.name == "enabled") continue;
-      for (std::uint32_t i = 0; i < row.width; i++) {
-        double& v = s.store.tell(id, row)[i];
+    for (const Property& property : s.store.table(id).properties()) {
+      // readouts follow from the other values; `paused` and `speed` belong to the clock
+      const bool is_hashed = property.stored() && property.writable() && property.name != "paused" &&
+                             property.name != "speed" && property.name != "history";
+      if (!is_hashed || property.name == "seed" || property.name == "enabled") continue;
+      for (std::uint32_t i = 0; i < property.width; i++) {
+        double& v = s.store.mutable_values(id, property)[i];
         const double before = v;
         v = next_bit(v);
-        EXPECT_NE(s.world.state_hash(), hash) << s.store.path(id) << "/" << row.name;
+        EXPECT_NE(s.world.state_hash(), hash) << s.store.path(id) << "/" << property.name;
         v = before;
         numbers++;
       }
@@ -106,11 +106,11 @@ TEST(WorldTest, ASingleBitOfAnyNumberOfAnyRowChangesTheHash) {
   EXPECT_NE(s.world.state_hash(), hash);
 }
 
-TEST(WorldTest, NamesAndOrderOfBodiesAreInTheHash) {
+TEST(WorldTest, HashCoversNamesAndOrderOfBodies) {
   const auto hash = [](const std::vector<std::string>& names) {
-    Stage s;
+    WorldFixture s;
     for (const std::string& name : names) s.part(s.body(name), sphere_model(0.1), 1);
-    s.world.settle();
+    s.world.flush();
     return s.world.state_hash();
   };
   EXPECT_EQ(hash({"a", "b"}), hash({"a", "b"}));
@@ -119,8 +119,8 @@ TEST(WorldTest, NamesAndOrderOfBodiesAreInTheHash) {
   EXPECT_NE(hash({"a", "b"}), hash({"a"}));
 }
 
-TEST(WorldTest, ClearingLeavesAnEmptyWorldThatCanBeFilledAgain) {
-  Stage s;
+TEST(WorldTest, ClearLeavesAnEmptyUsableWorld) {
+  WorldFixture s;
   const std::uint64_t empty = [&] {
     s.world.clear();
     return s.world.state_hash();
@@ -143,7 +143,7 @@ TEST(WorldTest, ClearingLeavesAnEmptyWorldThatCanBeFilledAgain) {
 }
 
 TEST(WorldTest, TimeIsTicksTimesTimestep) {
-  Stage s;
+  WorldFixture s;
   s.ticks(1000);
   EXPECT_EQ(s.world.time(), 1000 * s.world.timestep());
   const double before = s.world.time();
@@ -155,28 +155,28 @@ TEST(WorldTest, TimeIsTicksTimesTimestep) {
   EXPECT_EQ(s.world.time(), 2 + 300 * s.world.timestep());
 }
 
-TEST(WorldTest, ResetIsAskedForAndTakenOnce) {
-  Stage s;
-  EXPECT_FALSE(s.world.take_reset_request());
-  ASSERT_TRUE(World::table().at("reset").act(&s.world, {}));
-  EXPECT_TRUE(s.world.take_reset_request());
-  EXPECT_FALSE(s.world.take_reset_request());
+TEST(WorldTest, ResetRequestIsConsumedOnce) {
+  WorldFixture s;
+  EXPECT_FALSE(s.world.consume_reset_request());
+  ASSERT_TRUE(World::table().at("reset").invoke(&s.world, {}));
+  EXPECT_TRUE(s.world.consume_reset_request());
+  EXPECT_FALSE(s.world.consume_reset_request());
 }
 
-TEST(WorldTest, SettlingBringsValuesInWithoutTime) {
-  Stage s;
+TEST(WorldTest, FlushAppliesValuesWithoutAdvancingTime) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm", {2});
   arm.set_pose({{0, 0, 5}, quat_identity()});
-  s.world.settle();
+  s.world.flush();
   EXPECT_EQ(s.world.time(), 0);
   EXPECT_EQ(s.world.tick(), 0u);
   EXPECT_NEAR(s.vec(arm.joints()[1]->id(), "position").z, 5 + 0.5 - 0.125, 1e-6);
   EXPECT_EQ(arm.parts()[2]->linear_velocity(), Vec3(0));
 }
 
-TEST(WorldTest, ReadoutsOfAJointAreRightHandedAndInTheWorld) {
-  Stage s;
+TEST(WorldTest, JointReadoutsAreRightHanded) {
+  WorldFixture s;
   Body& robot = s.body("robot");
   Part& base = s.part(robot, sphere_model(0.05), 0, {{1, 0, 0}, quat_identity()});
   Part& arm = s.part(robot, box_model({0.4, 0.1, 0.1}), 1, {{1.3, 0, 0}, quat_identity()});
@@ -186,7 +186,7 @@ TEST(WorldTest, ReadoutsOfAJointAreRightHandedAndInTheWorld) {
   s.set(arm.id(), "angular_velocity", {0, 0, 2});
   const Vec3 speed = glm::cross(Vec3(0, 0, 2), arm.pose().position - pivot.position);
   s.set(arm.id(), "linear_velocity", {speed.x, speed.y, speed.z});
-  s.world.settle();
+  s.world.flush();
   EXPECT_NEAR(s.number(joint.id(), "value"), 0.6, 1e-6);
   EXPECT_NEAR(s.number(joint.id(), "speed"), 2, 1e-5);
   EXPECT_NEAR(s.vec(joint.id(), "angles").z, 0.6, 1e-6);
@@ -199,9 +199,9 @@ TEST(WorldTest, ReadoutsOfAJointAreRightHandedAndInTheWorld) {
   EXPECT_NEAR(q[3], std::cos(0.3), 1e-6);
 }
 
-// A joint between two bodies of which one can't turn about any axis is nothing that the trees can say.
-TEST(WorldTest, CountsStepsOfIslandsThatTheDirectSolverLeaves) {
-  Stage s;
+// A joint between two bodies of which one can't rotate about any axis, which the direct solver doesn't support.
+TEST(WorldTest, CountsStepsLeftToTheIterativeSolver) {
+  WorldFixture s;
   s.set(s.world.id(), "solver", {1});
   Body& robot = s.body("robot");
   Part& a = s.part(robot, box_model(Vec3(0.2)), 1);
@@ -214,11 +214,12 @@ TEST(WorldTest, CountsStepsOfIslandsThatTheDirectSolverLeaves) {
   EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 8);  // 2 ticks of 4 steps
 }
 
-// A joint turned to where two of its axes are one is left to the sweeps, and all that moves with it in that step.
-TEST(WorldTest, ASingularJointAmongOthersIsSweptAsWithoutTheDirectSolver) {
+// A joint that is rotated to a singular position is left to the iterative solver for that step, with its whole
+// island.
+TEST(WorldTest, ASingularJointFallsBackToTheIterativeSolver) {
   std::vector<Vec3> swept;
   for (const double solver : {0.0, 1.0}) {
-    Stage s;
+    WorldFixture s;
     s.set(s.world.id(), "solver", {solver});
     s.set(s.world.id(), "substeps", {1});
     Body& robot = s.body("robot");

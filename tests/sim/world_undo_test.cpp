@@ -1,4 +1,4 @@
-// The world's undo: forces, flags, made and removed things, and what Bullet had been told, to the bit.
+// World transactions: forces, flags, added and removed objects, and Bullet's state, compared bit for bit.
 #include "sim/world_undo.h"
 
 #include <gtest/gtest.h>
@@ -14,69 +14,69 @@ namespace {
 
 using namespace test;
 
-// an arm that swings and a ball that flies; after ten ticks a call is made, and ten ticks later they are hashed
-std::uint64_t hash_with(const std::function<void(Stage&, Body& arm, Part& ball)>& call, bool good) {
-  Stage s;
+// A swinging arm and a flying ball: ten ticks, the call, and ten more ticks, then the state is hashed.
+std::uint64_t hash_with(const std::function<void(WorldFixture&, Body& arm, Part& ball)>& call, bool commit) {
+  WorldFixture s;
   s.gravity({0, 0, -9.81});
   Body& arm = make_arm(s, "arm", {3, {0, 0, 0.05}});
-  Part& ball = s.lone(sphere_model(0.2), 1, {{-2, 0, 0.3}, quat_identity()});
+  Part& ball = s.add_single_part(sphere_model(0.2), 1, {{-2, 0, 0.3}, quat_identity()});
   ball.set_velocity({1, 0.3, 0}, {0.1, 0.2, 0.3});
   for (int i = 0; i < 10; i++) s.world.step();
-  ball.apply_force({0, 0, 1});  // waits already when the call begins
-  s.world.undo().begin();
+  ball.apply_force({0, 0, 1});  // pending when the call begins
+  s.world.transaction().begin();
   call(s, arm, ball);
-  if (good) {
-    s.world.undo().end();
+  if (commit) {
+    s.world.transaction().commit();
   } else {
-    s.world.undo().take_back();
+    s.world.transaction().rollback();
   }
   for (int i = 0; i < 10; i++) s.world.step();
   return s.world.state_hash();
 }
 
-struct Deed {
+struct WorldChange {
   const char* name;
-  std::function<void(Stage&, Body& arm, Part& ball)> call;
+  std::function<void(WorldFixture&, Body& arm, Part& ball)> call;
 };
 
-const std::vector<Deed>& deeds() {
-  static const std::vector<Deed> list = {
+const std::vector<WorldChange>& world_changes() {
+  static const std::vector<WorldChange> list = {
       {"force",
-       [](Stage&, Body&, Part& ball) {
+       [](WorldFixture&, Body&, Part& ball) {
          ball.apply_force_at({1, 2, 3}, {0, 0, 0});
        }},
       {"impulse",
-       [](Stage&, Body&, Part& ball) {
+       [](WorldFixture&, Body&, Part& ball) {
          ball.apply_impulse_at({1, 2, 3}, {0, 0, 1});
        }},
-      {"clear", [](Stage&, Body&, Part& ball) { ball.clear_forces(); }},
+      {"clear", [](WorldFixture&, Body&, Part& ball) { ball.clear_forces(); }},
       {"pose",
-       [](Stage&, Body& arm, Part&) {
+       [](WorldFixture&, Body& arm, Part&) {
          arm.set_pose({{0, 1, 0}, quat_identity()});
        }},
       {"velocity",
-       [](Stage&, Body&, Part& ball) {
+       [](WorldFixture&, Body&, Part& ball) {
          ball.set_velocity({9, 9, 9}, {9, 9, 9});
        }},
-      {"rows",
-       [](Stage& s, Body& arm, Part& ball) {
+      {"properties",
+       [](WorldFixture& s, Body& arm, Part& ball) {
          s.set(ball.id(), "mass", {7});
          s.set(arm.motors()[0]->id(), "target", {0.5});
          s.set(s.world.id(), "gravity", {0, 0, 1});
        }},
-      {"reset", [](Stage&, Body& arm, Part& ball) { arm.reset(), ball.body().reset(); }},
-      {"off", [](Stage&, Body& arm, Part&) { arm.set_enabled(false); }},
-      {"remove", [](Stage& s, Body& arm, Part&) { s.world.remove_body(arm); }},
+      {"reset", [](WorldFixture&, Body& arm, Part& ball) { arm.reset(), ball.body().reset(); }},
+      {"disable", [](WorldFixture&, Body& arm, Part&) { arm.set_enabled(false); }},
+      {"remove", [](WorldFixture& s, Body& arm, Part&) { s.world.remove_body(arm); }},
       {"remove both",
-       [](Stage& s, Body& arm, Part& ball) { s.world.remove_body(arm), s.world.remove_body(ball.body()); }},
-      {"copy", [](Stage& s, Body& arm, Part&) { ASSERT_TRUE(s.world.copy_body(arm, "twin")); }},
+       [](WorldFixture& s, Body& arm, Part& ball) { s.world.remove_body(arm), s.world.remove_body(ball.body()); }},
+      {"copy", [](WorldFixture& s, Body& arm, Part&) { ASSERT_TRUE(s.world.copy_body(arm, "twin")); }},
       {"move, then copy",
-       [](Stage& s, Body& arm, Part&) {
+       [](WorldFixture& s, Body& arm, Part&) {
          arm.set_pose({{0, 3, 0}, quat_identity()});
          ASSERT_TRUE(s.world.copy_body(arm, "twin"));
        }},
       {"a joint between parts that were moved",
-       [](Stage& s, Body&, Part& ball) {
+       [](WorldFixture& s, Body&, Part& ball) {
          Shape& shape = **s.world.add_shape("more", sphere_model(0.1));
          Part& part = **ball.body().add_part("more", shape, 1, {{0, 0, 4}, quat_identity()});
          ball.set_pose({{0, 0, 5}, quat_identity()});
@@ -88,111 +88,111 @@ const std::vector<Deed>& deeds() {
   return list;
 }
 
-TEST(WorldUndo, TakesBackToTheBit) {
-  const auto nothing = [](Stage&, Body&, Part&) {};
-  const std::uint64_t alone = hash_with(nothing, true);
-  EXPECT_EQ(hash_with(nothing, false), alone);
-  for (const Deed& deed : deeds()) {
-    EXPECT_EQ(hash_with(deed.call, false), alone) << deed.name;
-    EXPECT_NE(hash_with(deed.call, true), alone) << deed.name;
+TEST(WorldTransaction, RollsBackBitForBit) {
+  const auto nothing = [](WorldFixture&, Body&, Part&) {};
+  const std::uint64_t expected = hash_with(nothing, true);
+  EXPECT_EQ(hash_with(nothing, false), expected);
+  for (const WorldChange& change : world_changes()) {
+    EXPECT_EQ(hash_with(change.call, false), expected) << change.name;
+    EXPECT_NE(hash_with(change.call, true), expected) << change.name;
   }
 }
 
-TEST(WorldUndo, AllAtOnce) {
-  const std::uint64_t alone = hash_with([](Stage&, Body&, Part&) {}, true);
+TEST(WorldTransaction, RollsBackAllChangesTogether) {
+  const std::uint64_t expected = hash_with([](WorldFixture&, Body&, Part&) {}, true);
   EXPECT_EQ(hash_with(
-                [](Stage& s, Body& arm, Part& ball) {
-                  for (const Deed& deed : deeds()) {
+                [](WorldFixture& s, Body& arm, Part& ball) {
+                  for (const WorldChange& change : world_changes()) {
                     if (!s.store.alive(arm.id())) return;
-                    deed.call(s, arm, ball);
+                    change.call(s, arm, ball);
                   }
                 },
                 false),
-            alone);
+            expected);
 }
 
-TEST(WorldUndo, ARemovedBodyComesBackInItsPlace) {
-  Stage s;
+TEST(WorldTransaction, RestoresARemovedBodyAtItsIndex) {
+  WorldFixture s;
   Body& one = **s.world.add_body("one");
   Body& two = **s.world.add_body("two");
   ASSERT_TRUE(s.world.add_body("three"));
   const NodeId id = two.id();
-  s.world.undo().begin();
+  s.world.transaction().begin();
   s.world.remove_body(two);
   EXPECT_FALSE(s.store.alive(id));
   EXPECT_EQ(s.world.find_body("two"), nullptr);
   EXPECT_EQ(s.world.bodies().size(), 2u);
   ASSERT_TRUE(s.world.add_body("two"));  // its name is free
   s.world.remove_body(one);
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_EQ(s.world.body_names(), (std::vector<std::string_view>{"one", "two", "three"}));
   EXPECT_EQ(s.world.find_body("two")->id(), id);
 }
 
-TEST(WorldUndo, AGoodRemovalIsForGood) {
-  Stage s;
-  Part& ball = s.lone(sphere_model(0.2), 1, {{0, 0, 0}, quat_identity()});
+TEST(WorldTransaction, CommittedRemovalIsFinal) {
+  WorldFixture s;
+  Part& ball = s.add_single_part(sphere_model(0.2), 1, {{0, 0, 0}, quat_identity()});
   s.world.step();
   const NodeId id = ball.body().id();
   const std::size_t slots = s.store.view()->slot_count;
-  s.world.undo().begin();
+  s.world.transaction().begin();
   s.world.remove_body(ball.body());
-  s.world.undo().end();
+  s.world.transaction().commit();
   EXPECT_FALSE(s.store.alive(id));
   EXPECT_TRUE(s.world.bodies().empty());
   s.world.step();
   ASSERT_TRUE(s.world.add_body("next"));
-  EXPECT_EQ(s.store.view()->slot_count, slots);  // in slots of the one that has gone
+  EXPECT_EQ(s.store.view()->slot_count, slots);  // reuses the slots of the removed body
 }
 
-TEST(WorldUndo, MadeThingsGoNewestFirst) {
-  Stage s;
-  s.world.undo().begin();
+TEST(WorldTransaction, RemovesAddedObjectsNewestFirst) {
+  WorldFixture s;
+  s.world.transaction().begin();
   Shape& shape = **s.world.add_shape("ball", sphere_model(0.1));
   Body& body = **s.world.add_body("body");
   Part& a = **body.add_part("a", shape, 1, {{0, 0, 0}, quat_identity()});
   Part& b = **body.add_part("b", shape, 1, {{0, 0, 1}, quat_identity()});
   ASSERT_TRUE(body.add_motor(**body.add_joint("j", a, b, JointType::revolute, {0, 0, 0.5}, {0, 0, 1})));
   b.apply_force({1, 0, 0});
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_TRUE(s.world.bodies().empty());
   EXPECT_TRUE(s.world.shapes().empty());
   s.world.step();
 }
 
-TEST(WorldUndo, ACompoundLosesWhatWasAdded) {
-  Stage s;
+TEST(WorldTransaction, RemovesAddedChildrenOfACompound) {
+  WorldFixture s;
   ShapeModel model;
   model.kind = ShapeKind::compound;
   Shape& both = **s.world.add_shape("both", model);
   Shape& ball = **s.world.add_shape("ball", sphere_model(0.1));
   ASSERT_TRUE(both.add_child(ball, {}));
-  s.world.undo().begin();
-  s.world.undo().keep(both);
+  s.world.transaction().begin();
+  s.world.transaction().save(both);
   ASSERT_TRUE(both.add_child(ball, {{1, 0, 0}, quat_identity()}));
-  s.world.undo().take_back();
+  s.world.transaction().rollback();
   EXPECT_EQ(both.child_count(), 1u);
 }
 
-TEST(WorldUndo, StepsOfOtherRoomsRunNewestFirst) {
-  Stage s;
+TEST(WorldTransaction, UndoFunctionsOfOtherModulesRunNewestFirst) {
+  WorldFixture s;
   std::vector<std::size_t> order;
   const auto step = [](void* owner, std::size_t value) {
     static_cast<std::vector<std::size_t>*>(owner)->push_back(value);
   };
-  s.world.undo().note(step, &order, 9);  // outside of a call: nothing
-  s.world.undo().begin();
-  for (std::size_t i = 1; i <= 3; i++) s.world.undo().note(step, &order, i);
-  s.world.undo().take_back();
+  s.world.transaction().record(step, &order, 9);  // no effect outside of a call
+  s.world.transaction().begin();
+  for (std::size_t i = 1; i <= 3; i++) s.world.transaction().record(step, &order, i);
+  s.world.transaction().rollback();
   EXPECT_EQ(order, (std::vector<std::size_t>{3, 2, 1}));
 }
 
-TEST(WorldUndo, AllocatesNothingOnceWarm) {
-  Stage s;
+TEST(WorldTransaction, DoesNotAllocateOnceWarm) {
+  WorldFixture s;
   Body& arm = make_arm(s, "arm", {6, {0, 0, 0.05}});
-  const Row& target = Motor::table().at("target");
+  const Property& target = Motor::table().at("target");
   const auto call = [&](int i) {
-    s.world.undo().begin();
+    s.world.transaction().begin();
     const double value = 0.3 * std::sin(0.05 * i);
     for (const auto& motor : arm.motors()) (void)s.store.set(motor->id(), target, {&value, 1});
     for (const auto& part : arm.parts()) {
@@ -200,9 +200,9 @@ TEST(WorldUndo, AllocatesNothingOnceWarm) {
       part->set_velocity({0, 0, value}, {0, 0, 0});
     }
     if (i % 2 == 0) {
-      s.world.undo().end();
+      s.world.transaction().commit();
     } else {
-      s.world.undo().take_back();
+      s.world.transaction().rollback();
     }
     s.world.step();
   };

@@ -1,4 +1,4 @@
-// The camera's rows as matrices, and a hand that turns, shifts and zooms.
+// Camera matrices, and the orbit camera's rotation, pan and zoom.
 #include "view/lens.h"
 
 #include "view/stage.h"
@@ -6,75 +6,76 @@
 namespace limber::view_test {
 namespace {
 
-Vec3 seen(const Lens& lens, const Vec3& point) {
-  const glm::vec4 clip = lens.projection * lens.view * glm::vec4(glm::vec3(point), 1);
+Vec3 seen(const ViewCamera& view_camera, const Vec3& point) {
+  const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
   return Vec3(clip) / static_cast<double>(clip.w);
 }
 
-TEST(Lens, LooksWhereTheCamerasRowsSay) {
-  Stage stage;
+TEST(ViewCamera, FollowsTheCameraProperties) {
+  TestScene scene;
   for (const auto& [eye, target] : {std::pair{Vec3(4.5, -6, 3.5), Vec3(0, 0, 1)},
                                     {Vec3(-2, 3, 0.5), Vec3(1, 1, 1)},
                                     {Vec3(0, 0, 9), Vec3(0, 0, 0)}}) {
-    stage.look_from(eye, target);
-    const Lens lens = lens_of(camera_of(*stage.snapshot()), 160, 90);
-    EXPECT_LT(glm::length(lens.eye - eye), 1e-9);
-    EXPECT_LT(glm::length(lens.target - target), 1e-9);
-    EXPECT_LT(glm::length(lens.forward - normalized(target - eye)), 1e-9);
-    const Vec3 middle = seen(lens, target);
+    scene.look_from(eye, target);
+    const ViewCamera view_camera = make_view_camera(camera_of(*scene.snapshot()), 160, 90);
+    EXPECT_LT(glm::length(view_camera.eye - eye), 1e-9);
+    EXPECT_LT(glm::length(view_camera.target - target), 1e-9);
+    EXPECT_LT(glm::length(view_camera.forward - normalized(target - eye)), 1e-9);
+    const Vec3 middle = seen(view_camera, target);
     EXPECT_NEAR(middle.x, 0, 1e-5);
     EXPECT_NEAR(middle.y, 0, 1e-5);
-    const Vec3 side = glm::cross(lens.forward, lens.up);
-    EXPECT_GT(seen(lens, target + 0.1 * side).x, 0.001) << "right is right";
-    EXPECT_GT(seen(lens, target + 0.1 * lens.up).y, 0.001) << "up is up";
+    const Vec3 side = glm::cross(view_camera.forward, view_camera.up);
+    EXPECT_GT(seen(view_camera, target + 0.1 * side).x, 0.001) << "right is right";
+    EXPECT_GT(seen(view_camera, target + 0.1 * view_camera.up).y, 0.001) << "up is up";
   }
 }
 
-TEST(Lens, AMetreAtAMetreTakesItsPixels) {
+TEST(ViewCamera, FocalLengthIsInPixels) {
   CameraView camera;
-  camera.fovy = 90;  // at 1 m the picture is 2 m high
-  EXPECT_NEAR(lens_of(camera, 400, 100).pixels, 50, 1e-9);
+  camera.fovy = 90;  // the view is 2 m high at a distance of 1 m
+  EXPECT_NEAR(make_view_camera(camera, 400, 100).focal_pixels, 50, 1e-9);
   camera.aspect = 1;
-  const Lens square = lens_of(camera, 400, 100);
-  EXPECT_NEAR(square.projection[0][0], square.projection[1][1], 1e-6) << "the row wins over the picture";
+  const ViewCamera square = make_view_camera(camera, 400, 100);
+  EXPECT_NEAR(square.projection[0][0], square.projection[1][1], 1e-6)
+      << "the property overrides the aspect ratio of the view";
 }
 
-TEST(Lens, ThePictureFillsThePartThatIsFree) {
+TEST(ViewCamera, FitsTheViewIntoTheFreeArea) {
   CameraView camera;
   camera.fovy = 90;
-  camera.position = {0, 0, -2};  // looks down from 2 m: the picture is 4 m high there
+  camera.position = {0, 0, -2};  // looks down from 2 m: the view is 4 m high there
   camera.distance = 2;
-  const FreePart free{0.1, 0.2, 0.5, 0.6};
-  const Lens lens = lens_of(camera, 400, 200, free);
-  const Vec3 middle = seen(lens, lens.target);
+  const FreeArea free{0.1, 0.2, 0.5, 0.6};
+  const ViewCamera view_camera = make_view_camera(camera, 400, 200, free);
+  const Vec3 middle = seen(view_camera, view_camera.target);
   EXPECT_NEAR(middle.x, 2 * 0.35 - 1, 1e-5) << "0.1 and half of 0.5";
   EXPECT_NEAR(middle.y, 1 - 2 * 0.5, 1e-5) << "0.2 and half of 0.6";
-  EXPECT_NEAR(seen(lens, lens.target + 2.0 * lens.up).y, 1 - 2 * 0.2, 1e-5) << "the upper edge";
-  EXPECT_NEAR(seen(lens, lens.target - 2.0 * lens.up).y, 1 - 2 * 0.8, 1e-5) << "the lower one";
-  EXPECT_NEAR(lens.pixels, 0.6 * 100, 1e-9);
+  EXPECT_NEAR(seen(view_camera, view_camera.target + 2.0 * view_camera.up).y, 1 - 2 * 0.2, 1e-5) << "the upper edge";
+  EXPECT_NEAR(seen(view_camera, view_camera.target - 2.0 * view_camera.up).y, 1 - 2 * 0.8, 1e-5) << "the lower one";
+  EXPECT_NEAR(view_camera.focal_pixels, 0.6 * 100, 1e-9);
 }
 
-TEST(Orbit, TurnsAboutItsTarget) {
+TEST(Orbit, RotatesAroundItsTarget) {
   Orbit orbit{{0, -2, 0}, {0, 0, 0}};
-  orbit.turn(kPi / 2, 0);
-  EXPECT_LT(glm::length(orbit.eye - Vec3(-2, 0, 0)), 1e-9) << "the world turns to the right";
-  orbit.turn(0, kPi / 4);
+  orbit.orbit(kPi / 2, 0);
+  EXPECT_LT(glm::length(orbit.eye - Vec3(-2, 0, 0)), 1e-9) << "the world rotates to the right";
+  orbit.orbit(0, kPi / 4);
   EXPECT_LT(glm::length(orbit.eye - Vec3(-std::sqrt(2), 0, std::sqrt(2))), 1e-9);
-  orbit.turn(0, 10);
+  orbit.orbit(0, 10);
   EXPECT_NEAR(glm::length(orbit.eye), 2, 1e-9);
   EXPECT_LT(std::hypot(orbit.eye.x, orbit.eye.y), 0.05) << "at most straight above";
   EXPECT_LT(orbit.eye.x, 0) << "and not past it";
   EXPECT_EQ(orbit.target, Vec3(0));
 }
 
-TEST(Orbit, ShiftsAsFarAsTheHandMoved) {
+TEST(Orbit, PansWithTheMouse) {
   Orbit orbit{{0, -2, 1}, {0, 0, 1}};
-  orbit.shift(0.5, 0.25, 90);  // at 2 m the picture is 4 m high
+  orbit.pan(0.5, 0.25, 90);  // the view is 4 m high at a distance of 2 m
   EXPECT_LT(glm::length(orbit.target - Vec3(-2, 0, 0)), 1e-9);
   EXPECT_LT(glm::length(orbit.eye - Vec3(-2, -2, 0)), 1e-9);
 }
 
-TEST(Orbit, ZoomsWithoutArriving) {
+TEST(Orbit, ZoomNeverReachesTheTarget) {
   Orbit orbit{{0, -2, 1}, {0, 0, 1}};
   orbit.zoom(0.5);
   EXPECT_LT(glm::length(orbit.eye - Vec3(0, -1, 1)), 1e-9);

@@ -1,4 +1,4 @@
-// Meshes: closed, turned outwards, and as large as the shape that they stand for.
+// Meshes are closed, oriented outwards, and have the size of their shape.
 #include "view/mesh.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace limber::view_test {
 namespace {
 
 struct Solid {
-  std::vector<Vec3> points;  // three a triangle
+  std::vector<Vec3> points;  // three per triangle
   std::vector<Vec3> normals;
 
   double volume() const {
@@ -20,32 +20,32 @@ struct Solid {
       sum += glm::dot(points[i], glm::cross(points[i + 1], points[i + 2])) / 6;
     return sum;
   }
-  Vec3 area() const {  // of a closed surface: zero
+  Vec3 area() const {  // vector area; zero for a closed surface
     Vec3 sum(0);
     for (std::size_t i = 0; i < points.size(); i += 3)
       sum += glm::cross(points[i + 1] - points[i], points[i + 2] - points[i]);
     return sum;
   }
   Vec3 half_size() const {
-    Vec3 most(0);
-    for (const Vec3& p : points) most = glm::max(most, glm::abs(p));
-    return most;
+    Vec3 max_extent(0);
+    for (const Vec3& p : points) max_extent = glm::max(max_extent, glm::abs(p));
+    return max_extent;
   }
 };
 
-// the shader's formula
+// applies the vertex shader's formula
 Solid solid(const MeshVertices& vertices, const MeshSize& size) {
   Solid out;
   for (const MeshVertex& v : vertices) {
     const Vec3 corner(v.corner[0], v.corner[1], v.corner[2]);
     const Vec3 normal(v.normal[0], v.normal[1], v.normal[2]);
-    out.points.push_back(corner * size.extent + normal * size.round);
-    out.normals.push_back(size.round > 0 ? normal : normalized(normal / size.extent));
+    out.points.push_back(corner * size.extent + normal * size.rounding_radius);
+    out.normals.push_back(size.rounding_radius > 0 ? normal : normalized(normal / size.extent));
   }
   return out;
 }
 
-TEST(Mesh, PrimitivesAreClosedAndOfTheirSize) {
+TEST(Mesh, PrimitivesAreClosedAndHaveTheirSize) {
   const double pi = std::numbers::pi;
   struct Case {
     ShapeModel shape;
@@ -60,7 +60,7 @@ TEST(Mesh, PrimitivesAreClosedAndOfTheirSize) {
       {round(ShapeKind::cone, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04 / 3},
   };
   for (const Case& c : cases) {
-    for (int detail = 0; detail < kDetails; detail++) {
+    for (int detail = 0; detail < kDetailLevels; detail++) {
       SCOPED_TRACE(fmt::format("kind {} detail {}", static_cast<int>(c.shape.kind), detail));
       const Solid mesh = solid(primitive_mesh(c.shape.kind, detail), mesh_size(c.shape));
       ASSERT_FALSE(mesh.points.empty());
@@ -95,14 +95,14 @@ TEST(Mesh, SharpEdgesStaySharp) {
   for (const Vec3& n : mesh.normals) EXPECT_NEAR(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), 1, 1e-6);
 }
 
-// a ball of triangles whose vertices are shared
+// a sphere of triangles with shared vertices
 MeshModel ball(unsigned around) {
   MeshModel m;
   for (unsigned i = 0; i <= around; i++) {
     for (unsigned k = 0; k < around; k++) {
       const double up = std::numbers::pi * i / around;
-      const double turn = 2 * std::numbers::pi * k / around;
-      m.vertices.emplace_back(std::sin(up) * std::cos(turn), std::sin(up) * std::sin(turn), std::cos(up));
+      const double azimuth = 2 * std::numbers::pi * k / around;
+      m.vertices.emplace_back(std::sin(up) * std::cos(azimuth), std::sin(up) * std::sin(azimuth), std::cos(up));
     }
   }
   for (unsigned i = 0; i < around; i++) {
@@ -115,7 +115,7 @@ MeshModel ball(unsigned around) {
   return m;
 }
 
-TEST(Mesh, RoundThingsAreSmooth) {
+TEST(Mesh, RoundMeshesAreSmooth) {
   const Solid mesh = solid(model_mesh(ball(24), 0), {});
   for (std::size_t i = 0; i < mesh.points.size(); i++) {
     if (std::abs(mesh.points[i].z) < 0.95) {
@@ -124,7 +124,7 @@ TEST(Mesh, RoundThingsAreSmooth) {
   }
 }
 
-TEST(Mesh, CoarserIsLessOfNearlyTheSame) {
+TEST(Mesh, CoarserDetailKeepsTheShape) {
   const MeshModel model = ball(80);  // 12 800 triangles
   std::size_t before = model_mesh(model, 0).size();
   for (const int detail : {1, 2}) {
@@ -135,20 +135,20 @@ TEST(Mesh, CoarserIsLessOfNearlyTheSame) {
   }
 }
 
-TEST(Mesh, BadIndicesAreLeftOut) {
+TEST(Mesh, IgnoresBadIndices) {
   MeshModel model = cube();
   model.triangles.insert(model.triangles.end(), {0, 1, 8, 7});
   EXPECT_EQ(model_mesh(model, 0).size(), 36u);
   EXPECT_TRUE(model_mesh(MeshModel{}, 2).empty());
 }
 
-TEST(Mesh, EachVertexIsThereOnce) {
+TEST(Mesh, SharesVertices) {
   for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder}) {
-    for (int detail = 0; detail < kDetails; detail++) {
+    for (int detail = 0; detail < kDetailLevels; detail++) {
       const MeshVertices triangles = primitive_mesh(kind, detail);
-      const IndexedMesh mesh = indexed(triangles);
+      const IndexedMesh mesh = with_shared_vertices(triangles);
       EXPECT_LT(mesh.vertices.size(), triangles.size() / 2);
-      // the triangles that have an area, in their order
+      // the triangles with a non-zero area, in their order
       MeshVertices again;
       for (const std::uint32_t i : mesh.indices) again.push_back(mesh.vertices.at(i));
       const auto same = [](const MeshVertex& a, const MeshVertex& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
@@ -161,9 +161,9 @@ TEST(Mesh, EachVertexIsThereOnce) {
       EXPECT_EQ(at, again.size());
     }
   }
-  EXPECT_EQ(indexed(primitive_mesh(ShapeKind::box, kDetails - 1)).vertices.size(), 24U);
-  EXPECT_EQ(indexed(primitive_mesh(ShapeKind::box, kDetails - 1)).indices.size(), 3U * 44);
-  EXPECT_TRUE(indexed({}).indices.empty());
+  EXPECT_EQ(with_shared_vertices(primitive_mesh(ShapeKind::box, kDetailLevels - 1)).vertices.size(), 24U);
+  EXPECT_EQ(with_shared_vertices(primitive_mesh(ShapeKind::box, kDetailLevels - 1)).indices.size(), 3U * 44);
+  EXPECT_TRUE(with_shared_vertices({}).indices.empty());
 }
 
 }  // namespace

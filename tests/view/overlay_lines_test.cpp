@@ -1,4 +1,4 @@
-// The debug picture: where its lines are, and that they are seen there.
+// Debug overlay: positions of its lines, and that they are visible in the image.
 #include "view/overlay_lines.h"
 
 #include "view/stage.h"
@@ -11,8 +11,8 @@ using Kind = OverlayMark::Kind;
 OverlayMark mark(Kind kind, const Vec3& at, const Vec3& vector = {0, 0, 0}) {
   OverlayMark made;
   made.kind = kind;
-  made.reach = 0.5;
-  made.at = at;
+  made.size = 0.5;
+  made.position = at;
   made.vector = vector;
   return made;
 }
@@ -20,76 +20,76 @@ OverlayMark mark(Kind kind, const Vec3& at, const Vec3& vector = {0, 0, 0}) {
 Vec3 from(const OverlayLine& line) { return {line.from[0], line.from[1], line.from[2]}; }
 Vec3 to(const OverlayLine& line) { return {line.to[0], line.to[1], line.to[2]}; }
 
-TEST(OverlayLines, AnArrowIsAsLongAsItsForce) {
+TEST(OverlayLines, ArrowLengthIsProportionalToForce) {
   Snapshot now;
   now.overlay = {mark(Kind::force, {1, 2, 3}, {0, 0, 2}), mark(Kind::force, {0, 0, 0}, {100, 0, 0}),
                  mark(Kind::force, {0, 0, 0}, {0.001, 0, 0})};
   OverlayLines lines;
-  lines.gather(now, now, 1, 1);
-  ASSERT_EQ(lines.lines().size(), 10U) << "a shaft and four barbs each, and none for next to nothing";
+  lines.update(now, now, 1, 1);
+  ASSERT_EQ(lines.lines().size(), 10U) << "a shaft and four barbs each, and none for tiny forces";
   EXPECT_EQ(from(lines.lines()[0]), Vec3(1, 2, 3));
-  EXPECT_EQ(to(lines.lines()[0]), Vec3(1, 2, 4)) << "half a metre for a weight";
+  EXPECT_EQ(to(lines.lines()[0]), Vec3(1, 2, 4)) << "half a meter for one weight";
   EXPECT_EQ(to(lines.lines()[5]), Vec3(2, 0, 0)) << "no longer than four weights";
 }
 
-TEST(OverlayLines, StandBetweenTwoTicks) {
+TEST(OverlayLines, InterpolateBetweenTicks) {
   Snapshot before;
   Snapshot now;
   before.overlay = {mark(Kind::force, {0, 0, 0}, {0, 0, 2}), mark(Kind::contact, {0, 0, 0}, {0, 0, 2})};
   now.overlay = {mark(Kind::force, {4, 0, 0}, {0, 0, 4}), mark(Kind::contact, {4, 0, 0}, {0, 0, 4})};
   OverlayLines lines;
-  lines.gather(before, now, 0.25, 1);
+  lines.update(before, now, 0.25, 1);
   EXPECT_EQ(from(lines.lines()[0]), Vec3(1, 0, 0));
   EXPECT_EQ(to(lines.lines()[0]), Vec3(1, 0, 1.25));
-  EXPECT_NEAR(lines.lines().back().to[0], 4, 1) << "contacts stand where they are";
+  EXPECT_NEAR(lines.lines().back().to[0], 4, 1) << "contacts are not interpolated";
   now.overlay[0].slot = 9;
-  lines.gather(before, now, 0.25, 1);
-  EXPECT_EQ(from(lines.lines()[0]), Vec3(4, 0, 0)) << "another part's is none of the first's";
+  lines.update(before, now, 0.25, 1);
+  EXPECT_EQ(from(lines.lines()[0]), Vec3(4, 0, 0)) << "marks of different parts are not interpolated";
 }
 
-TEST(OverlayLines, ALimitedTurnIsAFanAndAFreeOneARing) {
+TEST(OverlayLines, HingesShowAnArcOrACircle) {
   Snapshot now;
-  now.overlay = {mark(Kind::turn, {0, 0, 0})};
+  now.overlay = {mark(Kind::rotation_axis, {0, 0, 0})};
   now.overlay[0].axis = 2;
   now.overlay[0].limited = true;
-  now.overlay[0].low = 0;
-  now.overlay[0].high = kPi / 2;
+  now.overlay[0].lower = 0;
+  now.overlay[0].upper = kPi / 2;
   now.overlay[0].value = kPi / 2;
   OverlayLines lines;
-  lines.gather(now, now, 1, 1);
+  lines.update(now, now, 1, 1);
   for (const OverlayLine& line : lines.lines()) {
     if (line.from[2] != 0) continue;  // the axis
     EXPECT_GT(line.to[0], -1e-6) << "from x towards y";
     EXPECT_GT(line.to[1], -1e-6);
   }
-  EXPECT_NEAR(lines.lines().back().to[1], 0.4, 1e-6) << "the spoke stands where the joint does";
+  EXPECT_NEAR(lines.lines().back().to[1], 0.4, 1e-6) << "the spoke shows the joint angle";
   now.overlay[0].limited = false;
-  lines.gather(now, now, 1, 1);
+  lines.update(now, now, 1, 1);
   EXPECT_EQ(lines.lines().size(), 1U + 32 + 1);
 }
 
 bool is_red_line(const Vec3& c) { return c.x > 120 && c.x > 2.5 * c.y && c.x > 2.5 * c.z; }
 
-TEST(OverlayLines, AreSeenInThePictureWhileTheRowIsOn) {
-  Stage stage;
-  Shape& ball = **stage.world.add_shape("ball", round(ShapeKind::sphere, 0.3));
-  stage.set("/visuals/shape/ball/diffuse_color", {0, 0, 0.1});
-  Body& body = **stage.world.add_body("ball");
+TEST(OverlayLines, AreVisibleWhileEnabled) {
+  TestScene scene;
+  Shape& ball = **scene.world.add_shape("ball", round(ShapeKind::sphere, 0.3));
+  scene.set("/visuals/shape/ball/diffuse_color", {0, 0, 0.1});
+  Body& body = **scene.world.add_body("ball");
   Part& part = **body.add_part("part", ball, 1, {{0, 0, 1}, quat_identity()});
-  stage.set("/physics/sim/gravity", {0, 0, 0});
-  stage.look_from({0, -4, 1}, {0, 0, 1});
+  scene.set("/physics/sim/gravity", {0, 0, 0});
+  scene.look_from({0, -4, 1}, {0, 0, 1});
   const auto red_at = [&](Quality quality, bool on) {
-    stage.set("/visuals/look/overlay", {on ? 1.0 : 0.0});
+    scene.set("/visuals/look/overlay", {on ? 1.0 : 0.0});
     part.set_pose({{0, 0, 1}, quat_identity()});
     part.set_velocity(Vec3(0), Vec3(0));
     part.apply_force({3 * 9.81, 0, 0});
-    stage.world.step();
-    const auto now = stage.snapshot();
-    const Pixels picture = draw(*now, 320, 180, quality);
-    // well outside of the ball, on the way of the arrow
+    scene.world.step();
+    const auto now = scene.snapshot();
+    const Pixels image = draw(*now, 320, 180, quality);
+    // outside of the ball, on the arrow
     const Spot spot = spot_of(*now, part.center() + Vec3(0.6, 0, 0), 320, 180);
     int red = 0;
-    for (int y = spot.y - 3; y <= spot.y + 3; y++) red += is_red_line(color(picture, spot.x, y)) ? 1 : 0;
+    for (int y = spot.y - 3; y <= spot.y + 3; y++) red += is_red_line(color(image, spot.x, y)) ? 1 : 0;
     return red;
   };
   for (const Quality quality : {Quality::low, Quality::high}) {
@@ -97,14 +97,14 @@ TEST(OverlayLines, AreSeenInThePictureWhileTheRowIsOn) {
     EXPECT_GE(red_at(quality, true), 1);
     EXPECT_LE(red_at(quality, true), 4) << "a line, no more";
   }
-  EXPECT_TRUE(renderer(Quality::low).shader_fault().empty());
+  EXPECT_TRUE(renderer(Quality::low).shader_error().empty());
 }
 
-TEST(OverlayLines, WhatLiesBehindTheEyeIsNoLineInThePicture) {
-  Stage stage;
-  stage.set("/visuals/look/floor", {0});
-  stage.look_from({0, -4, 1}, {0, 0, 1});
-  Snapshot now = *stage.snapshot();
+TEST(OverlayLines, ClipsLinesBehindTheEye) {
+  TestScene scene;
+  scene.set("/visuals/look/floor", {0});
+  scene.look_from({0, -4, 1}, {0, 0, 1});
+  Snapshot now = *scene.snapshot();
   const Pixels without = draw(now, 64, 36);
   now.overlay = {mark(Kind::force, {0, -9, 1}, {0.5, 0.5, 0.5}), mark(Kind::center, {3, -9, 2})};
   EXPECT_EQ(draw(now, 64, 36).bytes, without.bytes);

@@ -1,4 +1,4 @@
-// Picking: what a ray through the picture meets first.
+// Picking: the first part hit by a ray through a point of the view.
 #include "view/pick.h"
 
 #include "view/stage.h"
@@ -13,41 +13,41 @@ ShapeModel ball_of(double radius) {
   return model;
 }
 
-TEST(Pick, TheNearestUnderThePlace) {
-  Stage stage;
-  Part& near = stage.add("near", ball_of(0.5), {0, 0, 0});
-  stage.add("far", ball_of(0.5), {0, 5, 0});
+TEST(Pick, ReturnsTheNearestPart) {
+  TestScene scene;
+  Part& near = scene.add("near", ball_of(0.5), {0, 0, 0});
+  scene.add("far", ball_of(0.5), {0, 5, 0});
   ShapeModel box;
   box.size = {0.4, 0.4, 2};
-  Part& side = stage.add("side", box, {3, 0, 0});
-  stage.look_from({0, -10, 0}, {0, 0, 0});
-  const auto now = stage.snapshot();
-  const Lens lens = lens_of(camera_of(*now), 200, 100);
-  const auto at = [&](Part& part) { return stage.store.view()->slots[part.id().slot].live; };
-  const auto middle = pick(*now, lens, 0, 0);
+  Part& side = scene.add("side", box, {3, 0, 0});
+  scene.look_from({0, -10, 0}, {0, 0, 0});
+  const auto now = scene.snapshot();
+  const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100);
+  const auto at = [&](Part& part) { return scene.store.view()->slots[part.id().slot].transient; };
+  const auto middle = pick(*now, view_camera, 0, 0);
   ASSERT_TRUE(middle.has_value());
-  EXPECT_EQ(middle->part_at, at(near));
+  EXPECT_EQ(middle->part_offset, at(near));
   EXPECT_NEAR(middle->distance, 9.5, 1e-3) << "its surface";
   EXPECT_LT(glm::length(middle->point - Vec3(0, -0.5, 0)), 1e-3);
-  const glm::vec4 clip = lens.projection * lens.view * glm::vec4(3, 0, 0.8, 1);
-  const auto post = pick(*now, lens, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
+  const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(3, 0, 0.8, 1);
+  const auto post = pick(*now, view_camera, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
   ASSERT_TRUE(post.has_value());
-  EXPECT_EQ(post->part_at, at(side));
-  EXPECT_FALSE(pick(*now, lens, 0.5, 0.9).has_value()) << "the sky is nothing";
+  EXPECT_EQ(post->part_offset, at(side));
+  EXPECT_FALSE(pick(*now, view_camera, 0.5, 0.9).has_value()) << "the sky is not a part";
 }
 
-TEST(Pick, SeesThroughThePartThatIsFree) {
-  Stage stage;
-  stage.add("ball", ball_of(0.5), {0, 0, 0});
-  stage.look_from({0, -10, 0}, {0, 0, 0});
-  const auto now = stage.snapshot();
-  const Lens lens = lens_of(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
-  EXPECT_FALSE(pick(*now, lens, 0, 0).has_value());
-  EXPECT_TRUE(pick(*now, lens, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
+TEST(Pick, UsesTheFreeArea) {
+  TestScene scene;
+  scene.add("ball", ball_of(0.5), {0, 0, 0});
+  scene.look_from({0, -10, 0}, {0, 0, 0});
+  const auto now = scene.snapshot();
+  const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
+  EXPECT_FALSE(pick(*now, view_camera, 0, 0).has_value());
+  EXPECT_TRUE(pick(*now, view_camera, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
 }
 
-// beside a capsule's end, a cone's tip, in a mesh's corner there is nothing, though a box around it has it
-TEST(Pick, ByTheTrueForm) {
+// points inside the bounding box but outside the shape: beside a capsule's end or a cone's tip, at a mesh's corner
+TEST(Pick, TestsTheExactShape) {
   auto mesh = std::make_shared<MeshModel>();
   mesh->vertices = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}};
   mesh->triangles = {0, 1, 2};
@@ -66,28 +66,28 @@ TEST(Pick, ByTheTrueForm) {
                         {"mesh", triangle, {-0.5, 0, -0.5}, {0.5, 0, 0.5}}};
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
-    Stage alone;
+    TestScene alone;
     alone.add(c.name, c.model);
-    alone.look_from({0, -1000, 0}, {0, 0, 0});  // from so far that rays are all but parallel
+    alone.look_from({0, -1000, 0}, {0, 0, 0});  // so far away that rays are almost parallel
     alone.set("/visuals/camera/fovy", {1});
     const auto now = alone.snapshot();
-    const Lens lens = lens_of(camera_of(*now), 200, 100);
+    const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100);
     const auto at = [&](const Vec3& point) {
-      const glm::vec4 clip = lens.projection * lens.view * glm::vec4(glm::vec3(point), 1);
-      return pick(*now, lens, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
+      const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
+      return pick(*now, view_camera, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
     };
     EXPECT_TRUE(at(c.on).has_value());
     EXPECT_FALSE(at(c.beside).has_value());
   }
 }
 
-TEST(Pick, APartThatIsOutOfTheWorldIsNoneToPick) {
-  Stage stage;
-  stage.add("ball", ball_of(0.5), {0, 0, 0});
-  stage.look_from({0, -10, 0}, {0, 0, 0});
-  stage.set("/physics/body/ball/enabled", {0});
-  const auto now = stage.snapshot();
-  EXPECT_FALSE(pick(*now, lens_of(camera_of(*now), 200, 100), 0, 0).has_value());
+TEST(Pick, IgnoresDisabledParts) {
+  TestScene scene;
+  scene.add("ball", ball_of(0.5), {0, 0, 0});
+  scene.look_from({0, -10, 0}, {0, 0, 0});
+  scene.set("/physics/body/ball/enabled", {0});
+  const auto now = scene.snapshot();
+  EXPECT_FALSE(pick(*now, make_view_camera(camera_of(*now), 200, 100), 0, 0).has_value());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// PNG files: what is written is what another reader finds; a place that can't be written is named.
+// PNG files: another reader gets the same pixels; an error names a path that can't be written.
 #include "view/pixels.h"
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 namespace limber::view_test {
 namespace {
 
-TEST(Pixels, APngHoldsThePicture) {
+TEST(Pixels, PngContainsTheImage) {
   Pixels pixels{3, 2, {}};
   for (int i = 0; i < 6; i++) {
     for (const int c : {40 * i, 255 - 40 * i, 7 * i, 255}) pixels.bytes.push_back(static_cast<std::uint8_t>(c));
@@ -30,7 +30,7 @@ TEST(Pixels, APngHoldsThePicture) {
   std::filesystem::remove(file);
 }
 
-TEST(Pixels, AFolderThatIsNotThereIsNamed) {
+TEST(Pixels, ErrorNamesAMissingFolder) {
   const Result<void> written = write_png({1, 1, {1, 2, 3, 255}}, "/nowhere/at/all.png");
   ASSERT_FALSE(written.ok());
   EXPECT_NE(written.error().find("'/nowhere/at/all.png'"), std::string::npos) << written.error();

@@ -1,4 +1,4 @@
-// Shaders in a folder: read anew when they are saved; a broken one says why, and the last good one draws on.
+// Hot reload of shaders: saved files are reloaded; a broken one is reported, and the last working one stays in use.
 #include "view/shaders.h"
 
 #include <filesystem>
@@ -17,7 +17,7 @@ std::span<const EmbeddedFile> shader_files();
 namespace limber::view_test {
 namespace {
 
-// a copy of shaders/ that goes when the test is over
+// a temporary copy of shaders/
 class ShaderFolder {
  public:
   ShaderFolder() : path_(std::filesystem::path(::testing::TempDir()) / fmt::format("limber_shaders_{}", ::getpid())) {
@@ -41,7 +41,7 @@ class ShaderFolder {
 
 constexpr const char* kBlue = "out vec4 color;\nvoid main() { color = vec4(0.0, 0.0, 1.0, 1.0); }\n";
 
-TEST(Shaders, TheFilesInsideAreThoseOfTheFolder) {
+TEST(Shaders, EmbeddedFilesMatchTheFolder) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMBER_SOURCE_DIR) + "/shaders")) {
     std::ifstream in(entry.path());
@@ -52,53 +52,53 @@ TEST(Shaders, TheFilesInsideAreThoseOfTheFolder) {
   EXPECT_EQ(shader_files().size(), count);
 }
 
-TEST(Shaders, ASavedOneIsTakenABrokenOneIsNamed) {
+TEST(Shaders, ReloadsSavedAndReportsBrokenShaders) {
   (void)context();
   const ShaderFolder folder;
-  Stage stage;
-  stage.add("box", box(Vec3(1)), {0, 0, 1});
-  const auto now = stage.snapshot();
+  TestScene scene;
+  scene.add("box", box(Vec3(1)), {0, 0, 1});
+  const auto now = scene.snapshot();
   const auto made = Renderer::make(context().api(), folder.path(), Quality::low);
   ASSERT_TRUE(made.ok()) << made.error();
   Renderer& renderer = **made;
-  const auto picture = [&] {
+  const auto render = [&] {
     EXPECT_TRUE(renderer.draw(*now, 64, 36).ok());
     return renderer.read();
   };
-  const Pixels first = picture();
-  EXPECT_FALSE(renderer.renew_shaders()) << "nothing was saved";
+  const Pixels first = render();
+  EXPECT_FALSE(renderer.reload_shaders()) << "nothing was saved";
 
   folder.write("shape.frag", "out vec4 color;\n\nvoid main() { color = vec4(blue); }\n");
-  (void)renderer.renew_shaders();
-  EXPECT_NE(renderer.shader_fault().find(folder.path() + "/shape.frag:3"), std::string::npos)
-      << renderer.shader_fault();
-  EXPECT_NE(renderer.shader_fault().find("blue"), std::string::npos);
-  EXPECT_EQ(picture().bytes, first.bytes) << "the last good one draws on";
+  (void)renderer.reload_shaders();
+  EXPECT_NE(renderer.shader_error().find(folder.path() + "/shape.frag:3"), std::string::npos)
+      << renderer.shader_error();
+  EXPECT_NE(renderer.shader_error().find("blue"), std::string::npos);
+  EXPECT_EQ(render().bytes, first.bytes) << "the last working shader stays in use";
 
   folder.write("shape.frag", kBlue);
-  EXPECT_TRUE(renderer.renew_shaders());
-  EXPECT_EQ(renderer.shader_fault(), "");
-  const Vec3 c = color(picture(), 32, 18);
+  EXPECT_TRUE(renderer.reload_shaders());
+  EXPECT_EQ(renderer.shader_error(), "");
+  const Vec3 c = color(render(), 32, 18);
   EXPECT_LT(c.x, 5);
   EXPECT_GT(c.z, 250);
 
   folder.write("common.glsl", "oh\n" + ShaderFolder::text("common.glsl"));
-  EXPECT_FALSE(renderer.renew_shaders());
-  EXPECT_NE(renderer.shader_fault().find(folder.path() + "/common.glsl:"), std::string::npos)
-      << renderer.shader_fault();
-  EXPECT_GT(color(picture(), 32, 18).z, 250);
+  EXPECT_FALSE(renderer.reload_shaders());
+  EXPECT_NE(renderer.shader_error().find(folder.path() + "/common.glsl:"), std::string::npos)
+      << renderer.shader_error();
+  EXPECT_GT(color(render(), 32, 18).z, 250);
 }
 
-TEST(Shaders, AFolderThatIsBrokenFromTheStartIsDrawnWithThoseInside) {
+TEST(Shaders, FallsBackToEmbeddedShaders) {
   for (const GlApi api : {GlApi::core, GlApi::es, GlApi::gl31}) {
     (void)context(api);
     const ShaderFolder folder;
     folder.write("sky.frag", "out vec4 color;\nthis is no shader\n");
     const auto made = Renderer::make(api, folder.path(), Quality::low);
     ASSERT_TRUE(made.ok()) << made.error();
-    EXPECT_NE((*made)->shader_fault().find("/sky.frag:2"), std::string::npos) << (*made)->shader_fault();
-    Stage stage;
-    EXPECT_TRUE((*made)->draw(*stage.snapshot(), 16, 9).ok());
+    EXPECT_NE((*made)->shader_error().find("/sky.frag:2"), std::string::npos) << (*made)->shader_error();
+    TestScene scene;
+    EXPECT_TRUE((*made)->draw(*scene.snapshot(), 16, 9).ok());
   }
 }
 

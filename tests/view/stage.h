@@ -1,4 +1,4 @@
-// A world that is drawn: bodies by hand, a snapshot of it, and a picture of that in a context without a display.
+// Fixtures for rendering tests: a world with bodies, its snapshot, and rendering in an offscreen context.
 #pragma once
 
 #include <cstdlib>
@@ -37,32 +37,32 @@ inline ShapeModel plane() {
   return m;
 }
 
-class Stage {
+class TestScene {
  public:
   Store store;
   World world{store};
 
-  /// A body of one static part.
+  /// Adds a body with one static part.
   Part& add(const std::string& name, const ShapeModel& model, const Vec3& at = {0, 0, 0},
-            const Quat& turn = quat_identity()) {
+            const Quat& rotation = quat_identity()) {
     Shape& shape = **world.add_shape(name, model);
     Body& body = **world.add_body(name);
-    return **body.add_part("part", shape, 0, {at, turn});
+    return **body.add_part("part", shape, 0, {at, rotation});
   }
   void set(const std::string& path, const std::vector<double>& values) {
-    const Result<Place> place = find_place(store, path);
-    ASSERT_TRUE(place.ok() && place->row != nullptr) << path;
-    ASSERT_TRUE(store.set(place->node, *place->row, values).ok()) << path;
+    const Result<PropertyRef> place = find_property(store, path);
+    ASSERT_TRUE(place.ok() && place->property != nullptr) << path;
+    ASSERT_TRUE(store.set(place->node, *place->property, values).ok()) << path;
   }
-  /// Both colours of a shape, hue, saturation and brightness.
+  /// Sets both colors of a shape: hue, saturation, brightness.
   void paint(const std::string& shape, const Vec3& hsb) {
-    for (const char* row : {"ambient_color", "diffuse_color"})
-      set(fmt::format("/visuals/shape/{}/{}", shape, row), {hsb.x, hsb.y, hsb.z});
+    for (const char* property : {"ambient_color", "diffuse_color"})
+      set(fmt::format("/visuals/shape/{}/{}", shape, property), {hsb.x, hsb.y, hsb.z});
   }
   void look_from(const Vec3& eye, const Vec3& target) { world.visuals().camera().look_at(eye, target); }
 
   std::shared_ptr<const Snapshot> snapshot() {
-    world.settle();
+    world.flush();
     publisher_.publish(false, 1);
     return latest_.read();
   }
@@ -72,24 +72,24 @@ class Stage {
   Publisher publisher_{world, latest_};
 };
 
-/// One context of each kind for the whole program, made current.
-inline Offscreen& context(GlApi api = GlApi::core) {
-  static std::map<GlApi, std::unique_ptr<Offscreen>> made;
-  std::unique_ptr<Offscreen>& one = made[api];
+/// The context of an OpenGL version, one for the whole program; makes it current.
+inline OffscreenContext& context(GlApi api = GlApi::core) {
+  static std::map<GlApi, std::unique_ptr<OffscreenContext>> made;
+  std::unique_ptr<OffscreenContext>& one = made[api];
   if (one == nullptr) {
-    Result<std::unique_ptr<Offscreen>> fresh = Offscreen::make(gl_api_info(api).option);
+    Result<std::unique_ptr<OffscreenContext>> fresh = OffscreenContext::make(gl_api_info(api).option);
     if (!fresh) {
       ADD_FAILURE() << fresh.error();
       std::abort();
     }
     one = std::move(*fresh);
   }
-  one->use();
+  one->make_current();
   return *one;
 }
 
 inline Renderer& renderer(Quality quality, GlApi api = GlApi::core) {
-  // a renderer's objects are deleted in its context, which it goes before
+  // makes the context current before a renderer is destroyed, because it deletes its OpenGL objects
   struct Made {
     GlApi api = GlApi::core;
     std::unique_ptr<Renderer> renderer;
@@ -120,12 +120,12 @@ inline Pixels draw(const Snapshot& now, int width = 160, int height = 90, Qualit
   EXPECT_TRUE(drawn.ok()) << drawn.error();
   return renderer.read();
 }
-inline Pixels draw(Stage& stage, int width = 160, int height = 90, Quality quality = Quality::low,
+inline Pixels draw(TestScene& scene, int width = 160, int height = 90, Quality quality = Quality::low,
                    GlApi api = GlApi::core) {
-  return draw(*stage.snapshot(), width, height, quality, api);
+  return draw(*scene.snapshot(), width, height, quality, api);
 }
 
-/// Red, green, blue, 0 .. 255.
+/// The color of a pixel: red, green, blue, 0..255.
 inline Vec3 color(const Pixels& p, int x, int y) {
   const std::uint8_t* const c = p.at(x, y);
   return {c[0], c[1], c[2]};
@@ -142,14 +142,14 @@ inline double brightness(const Pixels& p) {
   return sum / (p.width * p.height);
 }
 
-/// Where a point of the world is seen, in pixels from the top left.
+/// A pixel position, from the top left; spot_of() projects a world point.
 struct Spot {
   int x = 0;
   int y = 0;
 };
 inline Spot spot_of(const Snapshot& now, const Vec3& point, int width, int height) {
-  const Lens lens = lens_of(camera_of(now), width, height);
-  const glm::vec4 clip = lens.projection * lens.view * glm::vec4(glm::vec3(point), 1);
+  const ViewCamera view_camera = make_view_camera(camera_of(now), width, height);
+  const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
   return {static_cast<int>((0.5 + 0.5 * clip.x / clip.w) * width),
           static_cast<int>((0.5 - 0.5 * clip.y / clip.w) * height)};
 }

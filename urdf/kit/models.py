@@ -1,4 +1,4 @@
-"""The five models. All dimensions come from the construction set (kit/parts.py); here are the ways to join them.
+"""The five models, assembled from the parts in kit/parts.py.
 
 In every fixed model the home pose (all joints at 0) points straight up; the quadruped's home pose is its stand.
 """
@@ -9,7 +9,7 @@ from kit.parts import (BASE_HEIGHT, BLOCK, FINGER, FINGER_RADIUS, LEG, LEG_BOTTO
                        SEGMENT, SEGMENT_RADIUS, TIP, TRUNK, TUBE)
 from kit.robot import Piece, Robot, box, cylinder, mesh, sphere
 
-BEND = 1.5708  # a block turns by a right angle either way
+BEND = 1.5708  # limit of a block's joint, rad
 GAP = 0.02  # a tube ends this far below the pivot, inside the block
 
 
@@ -48,7 +48,7 @@ def arm(name, about, color, part, length, stages, taper, effort, bent_tip):
         nonlocal joints, below
         joints += 1
         twist = kind == "twist"
-        # what a joint must carry shrinks with the arm above it
+        # the load of a joint decreases with the size of the arm above it
         strength = effort * s**3 * (0.5 if twist else 1)
         robot.joint(f"joint_{joints}", "continuous" if twist else "revolute", below, child, (0, 0, z),
                     axis=(0, 0, 1) if twist else (1, 0, 0), limits=None if twist else (-BEND, BEND),
@@ -67,7 +67,7 @@ def arm(name, about, color, part, length, stages, taper, effort, bent_tip):
         put_tip(robot, s, height, block=True)
         add("bend", "tip", (length + GAP) * s, s)
     else:
-        # not as small as its stage: a feather on a heavy block is hard to simulate
+        # larger than its stage, because a light tip on a heavy block is hard to simulate
         put_tip(robot, 0.85, 0, block=False)
         add("twist", "tip", height, s)
     return robot
@@ -108,7 +108,7 @@ def quadruped():
                        [cylinder(middle, LEG - foot, xyz=(0, 0, -(LEG - foot) / 2))])
             robot.joint(f"{leg}_knee", "revolute", f"{leg}_thigh", f"{leg}_shin", (0, 0, -LEG), (0, -2 * lean, 0),
                         axis=(0, -1, 0), limits=(-1.1, 1.3), effort=40, velocity=12, damping=0.1)
-            # a ball of rubber: rolls off evenly, whatever the leg's angle
+            # a rubber ball, so that contact is the same for any angle of the leg
             robot.link(f"{leg}_foot", [Piece("ball", "graphite", radius=foot)], [sphere(foot)])
             robot.joint(f"{leg}_ankle", "fixed", f"{leg}_shin", f"{leg}_foot", (0, 0, -LEG))
     return robot
@@ -153,7 +153,7 @@ def hand():
             s, child = round(size * 0.9**k, 4), f"{name}_{part}"
             color = "white" if part == "tip" else "violet"
             robot.link(child, [Piece("finger", color, scale=s)], [mesh("finger", scale=s)])
-            # the little finger's end follows its middle, as in a hand of flesh
+            # the last joint of the little finger follows the middle one, as in a human hand
             follows = (f"{name}_2", 0.8) if (name, part) == ("little", "tip") else None
             robot.joint(f"{name}_{k + first}", "revolute", parent, child, xyz, rpy, axis=(0, 1, 0),
                         limits=(lower if k == 0 else 0, 1.6 if k < 2 else 1.4), effort=5, velocity=6, damping=0.02,

@@ -1,7 +1,7 @@
-"""The construction set: ten parts that all models are put together from, and their densities.
+"""The parts that all models are assembled from, and their densities.
 
-Every part stands on z = 0 and rises along +z, unless it says "centred". Densities are those of a printed shell
-with what it holds, hence lower than of solid plastic.
+Every part extends from z = 0 along +z, unless it is "centered". Densities are those of a printed shell with its
+contents, hence lower than that of solid plastic.
 """
 
 import math
@@ -18,7 +18,7 @@ TRUNK = (0.46, 0.18, 0.11)  # m
 TIP = 0.16  # length of the tip, m
 LEG = 0.22  # from joint to joint, m
 LEG_TOP, LEG_BOTTOM = 0.034, 0.026  # radii of the leg's ends, m
-SEGMENT, SEGMENT_RADIUS = 0.05, 0.05  # the worm's capsule: between the caps' centres, radius, m
+SEGMENT, SEGMENT_RADIUS = 0.05, 0.05  # the worm's capsule: between the caps' centers, radius, m
 FINGER, FINGER_RADIUS = 0.09, 0.022  # likewise, from joint to joint
 
 
@@ -41,7 +41,7 @@ def capsule(length, bottom, top, sides):
 
 
 def base():
-    """A disc with a collar: what fixed models stand on."""
+    """A disc with a collar, the base of fixed models."""
     profile = [(0, 0), (0.114, 0)] + arc(0.112, 0.008, 0.008, -math.pi / 4, 0, 2)
     profile += arc(0.108, 0.034, 0.012, 0, math.pi / 2, 4)
     profile += [(0.07, 0.046), (0.066, 0.05)] + arc(0.06, 0.054, 0.006, 0, math.pi / 2, 3)
@@ -49,21 +49,21 @@ def base():
 
 
 def tip():
-    """A small plate with a rounded pin: what points at things."""
+    """A small plate with a rounded pin, the tip of the arms."""
     profile = [(0, 0), (0.041, 0), (0.045, 0.004), (0.045, 0.016)]
     profile += arc(0.041, 0.016, 0.004, math.pi / 4, math.pi / 2, 1)
     profile += [(0.03, 0.02), (0.026, 0.026)]
     return lathe(profile + arc(0, TIP - 0.02, 0.02, 0, math.pi / 2, 6))
 
 
-# name: (solid, density in kg/m3, what it is)
+# name: (solid, density in kg/m3, description)
 PARTS = {
     "base": (base(), 500, "disc with a collar, 0.24 m wide, 0.06 m high"),
     "link": (tube(LINK, 3), 300, "tube of three rings, 0.1 m thick, 0.45 m long"),
     "link_short": (tube(LINK_SHORT, 2), 300, "tube of two rings, 0.1 m thick, 0.24 m long"),
-    "block": (rounded_box((BLOCK,) * 3, 0.014), 700, "joint block: bevelled cube of 0.12 m, centred; holds the motors"),
-    "plate": (rounded_box(PLATE, 0.02), 300, "plate, 0.05 x 0.23 x 0.2 m, centred"),
-    "trunk": (rounded_box(TRUNK, 0.025), 350, "long block, 0.46 x 0.18 x 0.11 m, centred"),
+    "block": (rounded_box((BLOCK,) * 3, 0.014), 700, "joint block: beveled cube of 0.12 m, centered; holds the motors"),
+    "plate": (rounded_box(PLATE, 0.02), 300, "plate, 0.05 x 0.23 x 0.2 m, centered"),
+    "trunk": (rounded_box(TRUNK, 0.025), 350, "long block, 0.46 x 0.18 x 0.11 m, centered"),
     "tip": (tip(), 400, "small plate with a rounded pin, 0.16 m long"),
     "leg": (capsule(LEG, LEG_TOP, LEG_BOTTOM, 28), 400, "tapered capsule, 0.22 m from joint to joint"),
     "segment": (capsule(SEGMENT, SEGMENT_RADIUS, SEGMENT_RADIUS, 32), 500, "stout capsule, 0.15 m long, 0.1 m thick"),

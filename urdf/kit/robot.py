@@ -1,6 +1,6 @@
-"""A robot put together from parts: links with true masses and tensors, joints, and the URDF text.
+"""Robots assembled from parts: links with computed masses and tensors, joints, and the URDF text.
 
-Frames, signs and units are URDF's: metres, radians, rpy about fixed axes x, y, z.
+Frames, signs and units follow URDF: meters, radians, rpy about fixed axes x, y, z.
 """
 
 import math
@@ -55,7 +55,7 @@ def mesh_text(part, scale):
 
 
 class Piece:
-    """Something seen on a link: a part of the construction set, scaled alike in all directions, or a ball."""
+    """A visual of a link: a part, scaled uniformly, or a ball."""
 
     def __init__(self, part, color, xyz=(0, 0, 0), rpy=(0, 0, 0), scale=1.0, radius=None):
         self.part, self.color, self.xyz, self.rpy, self.scale, self.radius = part, color, xyz, rpy, scale, radius
@@ -64,7 +64,7 @@ class Piece:
         return sphere_text(self.radius) if self.part == "ball" else mesh_text(self.part, self.scale)
 
     def inertia(self):
-        """Mass, centre and tensor about it, in the link's frame."""
+        """Mass, center of mass and tensor about it, in the link's frame."""
         if self.part == "ball":
             mass = BALL_DENSITY * 4 / 3 * math.pi * self.radius**3
             moment = 0.4 * mass * self.radius**2
@@ -76,7 +76,7 @@ class Piece:
         return density * volume * s**3, placed, [[density * s**5 * x for x in row] for row in turned]
 
     def points(self, pose):
-        """Corners in the world, for the link's pose there; of a ball its farthest points along the world's axes."""
+        """World positions of the corners for a pose of the link; for a ball, its extreme points along the world's axes."""
         m, p = pose
         place = lambda q: [a + b for a, b in zip(p, turn(m, q))]
         if self.part == "ball":
@@ -87,7 +87,7 @@ class Piece:
 
 
 class Hit:
-    """What a link collides with: URDF's own text for the geometry, and where it is."""
+    """A collision shape of a link: URDF text of its geometry, and its pose."""
 
     def __init__(self, geometry, xyz=(0, 0, 0), rpy=(0, 0, 0)):
         self.text, self.xyz, self.rpy = geometry, xyz, rpy
@@ -113,14 +113,14 @@ def mesh(part, scale=1, **where):
 
 
 class Link:
-    """What is seen and what collides; its inertia is the sum of what is seen. `fixed`: no mass, stands still."""
+    """A link with visuals and collision shapes; its inertia is the sum over the visuals. `fixed`: static, no mass."""
 
     def __init__(self, name, pieces, hits, fixed=False):
         self.name, self.pieces, self.hits = name, pieces, hits
         self.mass, self.center, self.tensor = (0, [0.0] * 3, None) if fixed else self.sum_up()
 
     def sum_up(self):
-        """One rigid body of all pieces: masses add, tensors by Steiner's theorem."""
+        """Mass, center and tensor of all pieces as one rigid body, by the parallel axis theorem."""
         all_of = [piece.inertia() for piece in self.pieces]
         mass = sum(m for m, _, _ in all_of)
         center = [sum(m * c[i] for m, c, _ in all_of) / mass for i in range(3)]
@@ -138,7 +138,7 @@ class Link:
         if self.mass:
             t = self.tensor
             names = (("ixx", 0, 0), ("ixy", 0, 1), ("ixz", 0, 2), ("iyy", 1, 1), ("iyz", 1, 2), ("izz", 2, 2))
-            # products of inertia that only rounding made are zero
+            # products of inertia that are only rounding errors are set to zero
             least = 1e-6 * max(t[i][i] for i in range(3))
             moments = [(n, t[i][j] if abs(t[i][j]) > least else 0) for n, i, j in names]
             center = [c if abs(c) > 1e-6 else 0 for c in self.center]
@@ -157,7 +157,7 @@ class Link:
 
 
 class Joint:
-    """As URDF has it; effort in N·m or N, velocity per second; without limits it turns freely."""
+    """A URDF joint; effort in N·m or N, velocity in rad/s or m/s; without limits it is free."""
 
     def __init__(self, name, kind, parent, child, xyz, rpy=(0, 0, 0), axis=(0, 0, 1), limits=None, effort=0,
                  velocity=0, damping=0, mimic=None):

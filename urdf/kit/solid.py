@@ -1,21 +1,21 @@
-"""Solids of triangles: a lathe and a rounded box, their mass properties, and binary STL.
+"""Triangle meshes: surfaces of revolution and rounded boxes, their mass properties, and binary STL.
 
-A solid is a list of triangles, each three (x, y, z) tuples in metres, counter-clockwise seen from outside.
+A solid is a list of triangles, each three (x, y, z) tuples in meters, counter-clockwise seen from outside.
 """
 
 import math
 import struct
 
-GRID = 6  # decimals kept of a coordinate: a micrometre hides the last bit of any platform's sine
+GRID = 6  # decimals of a coordinate: rounding to 1 µm hides differences between platforms' sine functions
 
 
 def snap(point):
-    """The point on the micrometre grid, as a single-precision file will hold it; no negative zeros."""
+    """Rounds a point to the micrometer grid and to single precision, without negative zeros."""
     return tuple(struct.unpack("<f", struct.pack("<f", round(c, GRID) + 0.0))[0] for c in point)
 
 
 def closed(triangles):
-    """The triangles on the grid, without those that have shrunk to nothing; refuses a solid that leaks."""
+    """Rounds the triangles to the grid and removes degenerate ones; asserts that the solid is watertight."""
     solid = [t for t in (tuple(snap(p) for p in tri) for tri in triangles) if len(set(t)) == 3]
     edges = set()
     for a, b, c in solid:
@@ -27,7 +27,7 @@ def closed(triangles):
 
 
 def lathe(profile, sides=32):
-    """Turns a profile of (radius, z) about z. It starts and ends on the axis and runs upwards."""
+    """Revolves a profile of (radius, z) about z. The profile starts and ends on the axis and runs upwards."""
     assert profile[0][0] == 0 and profile[-1][0] == 0
     angles = [2 * math.pi * k / sides for k in range(sides)]
     ring = lambda r, z: [(r * math.cos(a), r * math.sin(a), z) for a in angles]
@@ -42,11 +42,11 @@ def lathe(profile, sides=32):
 
 
 def rounded_box(size, radius, steps=3):
-    """A box centred on the origin whose edges and corners are rounded: each face is a grid whose border bends
-    over by 45 degrees to meet its neighbour; the corner's sphere is pulled apart by the inner box."""
+    """A box centered on the origin with rounded edges and corners: each face is a grid, and its border bends by 45
+    degrees to join its neighbor; the points are those of a sphere, offset to the corners of the inner box."""
     inner = [s / 2 - radius for s in size]
     bend = [math.pi / 4 * k / steps for k in range(steps + 1)]
-    # (tangent, side): the flat middle is the stretch between the two zeros
+    # (tangent, side): the flat middle of the face is between the two zeros
     marks = [(-math.tan(a), -1) for a in reversed(bend)] + [(math.tan(a), 1) for a in bend]
     triangles = []
     for axis in range(3):
@@ -80,8 +80,8 @@ def arc(center_r, center_z, radius, start, end, steps):
 
 
 def mass_properties(triangles):
-    """Volume, centre and the tensor about the centre for density 1, exact for the polyhedron: each triangle
-    spans a tetrahedron with the origin, whose integrals of 1, x and x*y are polynomials of its corners."""
+    """Volume, center and the tensor about the center for density 1, exact for the polyhedron: each triangle spans a
+    tetrahedron with the origin; the integrals of 1, x and x*y over it are polynomials of its corners."""
     volume, first, second = 0.0, [0.0] * 3, [[0.0] * 3 for _ in range(3)]
     for a, b, c in triangles:
         det = (

@@ -1,4 +1,4 @@
-"""The tables of docs/models.md, computed from the models so that they cannot go stale."""
+"""Generates the tables of docs/models.md from the models."""
 
 import math
 
@@ -16,15 +16,15 @@ def home_poses(robot):
 
 
 def extent(robot):
-    """Least and greatest corner of all that is seen, in the home pose."""
+    """Minimum and maximum corner of the bounding box of all visuals, in the home pose."""
     poses = home_poses(robot)
     points = [q for link in robot.links for piece in link.pieces for q in piece.points(poses[link.name])]
     return [min(q[i] for q in points) for i in range(3)], [max(q[i] for q in points) for i in range(3)]
 
 
 def reach(robot):
-    """How far anything gets from the first joint (a free body: from the root's frame) when all is stretched:
-    distances from joint to joint add up, then the farthest corner of the last link."""
+    """Upper bound of the distance from the first joint (of a free body: from the root's frame) to any point: the sum
+    of the distances between joints plus the distance of the last link's farthest corner."""
     into, root = {joint.child: joint for joint in robot.joints}, robot.links[0]
     still, best = (rotation((0, 0, 0)), (0, 0, 0)), 0.0
     for link in robot.links if root.mass else robot.links[1:]:
@@ -38,7 +38,7 @@ def reach(robot):
 
 
 def part_table():
-    lines = ["| part | what it is | density kg/m³ | mass at scale 1, kg | triangles |", "|---|---|---:|---:|---:|"]
+    lines = ["| part | description | density kg/m³ | mass at scale 1, kg | triangles |", "|---|---|---:|---:|---:|"]
     for name, (solid, density, about) in PARTS.items():
         mass = density * VOLUME_CENTER_TENSOR[name][0]
         lines.append(f"| `{name}` | {about} | {density} | {mass:.3f} | {len(solid)} |")
@@ -76,7 +76,7 @@ def joint_table(robot):
 
 
 def fill(text, robots):
-    """The page with the lines between each pair of marks, `<!-- made: x -->` and `<!-- end -->`, made anew."""
+    """Returns the page with the lines between each `<!-- made: x -->` and `<!-- end -->` replaced by generated tables."""
     makers = {"parts": part_table}
     for robot in robots:
         makers[robot.name] = lambda robot=robot: summary(robot) + [""] + joint_table(robot)

@@ -1,4 +1,4 @@
-// The signals that block_signals() blocks. For base/system alone.
+// The set of signals that block_signals() blocks. Private to base/system.
 #pragma once
 
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
@@ -8,7 +8,7 @@
 namespace limber::system {
 
 sigset_t blocked_signals();
-/// Of a signal's number; none below 1.
-Signal kind_of(int signal);
+/// Converts a signal number; numbers below 1 are Signal::none.
+Signal signal_from_number(int signal);
 
 }  // namespace limber::system

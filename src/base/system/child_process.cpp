@@ -1,4 +1,4 @@
-// posix_spawn.
+// Starts child processes with posix_spawn().
 #include "base/system/child_process.h"
 
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>

@@ -1,4 +1,4 @@
-// ChildProcess: a program that this one starts and writes to. [one thread]
+// ChildProcess: starts a program and writes to its standard input. [one thread]
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@ namespace limber::system {
 class ChildProcess {
  public:
   ChildProcess() = default;
-  /// Kills a process that was not waited for.
+  /// Kills the process if finish() was not called.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
-  /// Starts the program words[0], which is looked for in PATH, with these arguments, standard input from write(), and
-  /// in a process group of its own: Ctrl+C reaches only this program. 0, or the error's number.
+  /// Starts the program words[0], which is searched in PATH, with these arguments and a pipe from write() as standard
+  /// input. It gets its own process group, so that Ctrl+C does not reach it. Returns 0 or an errno.
   int start(const std::vector<std::string>& words);
   bool started() const { return pid_ >= 0; }
-  /// False: it reads no more.
+  /// Writes all bytes. False if the process no longer reads.
   bool write(std::string_view bytes);
-  /// Closes its input and waits for its end; whether it ended with exit code 0.
+  /// Closes its input and waits for its exit. True if the exit code is 0.
   bool finish();
-  /// Ends it at once and waits for that.
+  /// Kills it and waits for its exit.
   void kill();
 
  private:

@@ -1,4 +1,4 @@
-// POSIX clocks.
+// Clocks of POSIX.
 #include "base/system/clock.h"
 
 #include <array>
@@ -23,12 +23,12 @@ std::int64_t file_clock_nanoseconds() {
 std::string local_time_text() {
   timespec now{};
   clock_gettime(CLOCK_REALTIME, &now);
-  std::tm parts{};
-  localtime_r(&now.tv_sec, &parts);
+  std::tm calendar{};
+  localtime_r(&now.tv_sec, &calendar);
   std::array<char, 32> date{};
   std::array<char, 8> zone{};
-  (void)std::strftime(date.data(), date.size(), "%F %T", &parts);
-  (void)std::strftime(zone.data(), zone.size(), "%z", &parts);
+  (void)std::strftime(date.data(), date.size(), "%F %T", &calendar);
+  (void)std::strftime(zone.data(), zone.size(), "%z", &calendar);
   return fmt::format("{}.{:03}{}", date.data(), now.tv_nsec / 1'000'000, zone.data());
 }
 

@@ -1,4 +1,4 @@
-// Clocks that measure how long something takes, and the clock of file times. No run depends on their values. [any]
+// Clocks for measurements and file times. The simulation never depends on their values. [any]
 #pragma once
 
 #include <chrono>
@@ -11,16 +11,16 @@ inline double clock_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Processor time of this thread, s: time of other programs and of a suspended program does not count.
+/// Returns the processor time of this thread in seconds, without time of other programs or of suspension.
 double thread_seconds();
 
-/// Time since 1970 as file systems report it, ns.
+/// Returns the time since 1970 in ns, by the clock of file times.
 std::int64_t file_clock_nanoseconds();
 
-/// Seconds in which the system was suspended since its start; 0 where it does not tell.
+/// Returns how long the system was suspended since it booted, in seconds; 0 if unknown.
 double suspended_seconds();
 
-/// The time of day here, for log lines: "2026-03-09 21:03:12.345+0100".
+/// Returns the local time for log lines: "2026-03-09 21:03:12.345+0100".
 std::string local_time_text();
 
 }  // namespace limber::system

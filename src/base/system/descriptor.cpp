@@ -1,4 +1,4 @@
-// Closes the descriptor.
+// Closes file descriptors.
 #include "base/system/descriptor.h"
 
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Descriptor: a file descriptor that closes itself.
+// Descriptor: an owned file descriptor, closed by the destructor.
 #pragma once
 
 #include <utility>
@@ -19,7 +19,7 @@ class Descriptor {
   ~Descriptor();
 
   int fd() const { return fd_; }
-  bool open() const { return fd_ >= 0; }
+  bool is_open() const { return fd_ >= 0; }
 
  private:
   int fd_ = -1;

@@ -1,11 +1,11 @@
-// Where this program's own file is.
+// The path of this program's executable.
 #pragma once
 
 #include <string>
 
 namespace limber::system {
 
-/// Absolute; empty when the system does not know it. [any]
+/// Returns the absolute path, or an empty string if it is unknown. [any]
 std::string executable_path();
 
 }  // namespace limber::system

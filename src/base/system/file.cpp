@@ -1,4 +1,4 @@
-// POSIX files.
+// Files of POSIX.
 #include "base/system/file.h"
 
 #include <fcntl.h>
@@ -74,27 +74,28 @@ bool write_all(int fd, std::string_view bytes) {
   return true;
 }
 
-std::ptrdiff_t read_some(int fd, char* to, std::size_t most) {
+std::ptrdiff_t read_some(int fd, char* to, std::size_t max_bytes) {
   while (true) {
-    const ssize_t n = read(fd, to, most);
+    const ssize_t n = read(fd, to, max_bytes);
     if (n >= 0 || errno != EINTR) return n;
   }
 }
 
-Result<std::string> read_file(const std::string& path, std::uintmax_t most) {
-  // O_NONBLOCK: a named pipe that nobody writes to
+Result<std::string> read_file(const std::string& path, std::uintmax_t max_bytes) {
+  // O_NONBLOCK: don't wait for the writer of a named pipe.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
-  if (!file.open() || fstat(file.fd(), &info) != 0) return Error{reason()};
+  if (!file.is_open() || fstat(file.fd(), &info) != 0) return Error{reason()};
   const FileStatus status = status_of(info);
   if (!status.file) return Error{"it is a folder or a device, not a file"};
-  if (status.size > most) return Error{fmt::format("it has {} bytes; at most {} are read", status.size, most)};
+  if (status.size > max_bytes)
+    return Error{fmt::format("it has {} bytes; at most {} are read", status.size, max_bytes)};
   std::string bytes(static_cast<std::size_t>(status.size), '\0');
   std::size_t count = 0;
   while (count < bytes.size()) {
     const std::ptrdiff_t n = read_some(file.fd(), bytes.data() + count, bytes.size() - count);
     if (n < 0) return Error{reason()};
-    if (n == 0) break;  // it was shortened meanwhile
+    if (n == 0) break;  // the file was truncated meanwhile
     count += static_cast<std::size_t>(n);
   }
   bytes.resize(count);
@@ -113,9 +114,9 @@ bool sync_data(int fd) {
 #endif
 }
 
-Result<void> write_whole(const std::string& path, std::string_view text, unsigned permissions) {
+Result<void> replace_file(const std::string& path, std::string_view text, unsigned permissions) {
   const Descriptor file = open_file(path, OpenMode::replace, permissions);
-  if (!file.open() || !write_all(file.fd(), text)) return Error{reason()};
+  if (!file.is_open() || !write_all(file.fd(), text)) return Error{reason()};
   if (fchmod(file.fd(), static_cast<mode_t>(permissions)) != 0 || !sync_file(file.fd())) return Error{reason()};
   return {};
 }
@@ -124,7 +125,7 @@ void sync_folder(const std::string& file) {
   const std::filesystem::path path(file);
   const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
   const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (opened.open()) (void)fsync(opened.fd());
+  if (opened.is_open()) (void)fsync(opened.fd());
 }
 
 bool remove_file(const std::string& path) { return unlink(path.c_str()) == 0; }
@@ -140,15 +141,15 @@ bool is_executable(const std::string& path) { return access(path.c_str(), X_OK) 
 Result<Descriptor> lock_file(const std::string& path) {
   while (true) {
     Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
-    if (!file.open()) return Error{fmt::format("{}: {}", printable(path), reason())};
+    if (!file.is_open()) return Error{fmt::format("{}: {}", printable(path), reason())};
     if (flock(file.fd(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) return Descriptor();
       return Error{fmt::format("{}: {}", printable(path), reason())};
     }
-    struct stat held {};
+    struct stat locked {};
     struct stat named {};
-    // a program that has just ended has removed the name
-    if (fstat(file.fd(), &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino) return file;
+    // Retry if the previous owner removed the name between open() and flock().
+    if (fstat(file.fd(), &locked) == 0 && stat(path.c_str(), &named) == 0 && locked.st_ino == named.st_ino) return file;
   }
 }
 

@@ -1,5 +1,5 @@
-// Files below the level of streams: how they are opened, that bytes have reached the disk, locks, and status. Functions
-// without a Result leave the reason in errno. [any]
+// Low-level files: opening, reading, writing, syncing to disk, locks, and status. Functions that don't return a Result
+// set errno on failure. [any]
 #pragma once
 
 #include <cstddef>
@@ -15,60 +15,60 @@ namespace limber::system {
 
 enum class OpenMode : std::uint8_t {
   read,
-  write,       ///< What is there stays until it is overwritten.
-  append,      ///< At the end of an existing file.
-  append_any,  ///< At the end; the file is created when it does not exist.
-  create_new,  ///< Fails with EEXIST when something has the name.
-  replace,     ///< Emptied or created; fails when the name is a symbolic link.
+  write,       ///< Opens an existing file without truncating it.
+  append,      ///< Appends to an existing file.
+  append_any,  ///< Appends; creates the file if it does not exist.
+  create_new,  ///< Fails with EEXIST if the name exists.
+  replace,     ///< Truncates or creates the file; fails if the name is a symbolic link.
 };
 
-/// Child processes do not inherit it. `permissions` count where the file is created.
+/// Opens a file. Child processes do not inherit it. `permissions` apply if the file is created.
 Descriptor open_file(const std::string& path, OpenMode mode, unsigned permissions = 0644);
 
-/// Writes everything, also when signals come in between.
+/// Writes all bytes; continues after interruptions by signals.
 bool write_all(int fd, std::string_view bytes);
-/// Reads up to `most` bytes; 0: the end, -1: an error.
-std::ptrdiff_t read_some(int fd, char* to, std::size_t most);
+/// Reads up to `max_bytes` bytes. Returns 0 at the end of the file, -1 on error.
+std::ptrdiff_t read_some(int fd, char* to, std::size_t max_bytes);
 bool seek_to(int fd, std::uint64_t place);
-/// The bytes of a regular file that has at most so many. The error is the reason, without the path: it does not exist,
-/// is a folder or a device, is too large, can't be read. Doesn't wait for anything but the disk.
-Result<std::string> read_file(const std::string& path, std::uintmax_t most);
-/// Waits until the file is on the disk.
+/// Reads a regular file of at most `max_bytes` bytes. Errors (without the path): not found, a folder or device, too
+/// large, not readable. Blocks for disk access only.
+Result<std::string> read_file(const std::string& path, std::uintmax_t max_bytes);
+/// Waits until the file is written to the disk.
 bool sync_file(int fd);
-/// The same; without what only its times tell, where the system makes a difference.
+/// Like sync_file(), but without the file's times if the system distinguishes this.
 bool sync_data(int fd);
 
-/// Writes the text to a file that belongs to the caller alone, and waits until it is on the disk. The error is the
-/// system's reason.
-Result<void> write_whole(const std::string& path, std::string_view text, unsigned permissions);
-/// Waits until the name of a file is on the disk. Reports nothing where that is impossible.
+/// Replaces a file, which no other program uses, by the text and waits until it is written to the disk. The error is
+/// the system's message.
+Result<void> replace_file(const std::string& path, std::string_view text, unsigned permissions);
+/// Waits until a file's directory entry is written to the disk. Ignores errors.
 void sync_folder(const std::string& file);
 
-/// Removes a name that is not a folder's.
+/// Removes a file or link, not a folder.
 bool remove_file(const std::string& path);
-/// Gives a file a second name; fails with EEXIST when something has it, with EPERM where the file system has none.
+/// Creates a hard link. Fails with EEXIST if the name exists, with EPERM if the file system has no hard links.
 bool link_file(const std::string& path, const std::string& second);
 bool make_folder(const std::string& path, unsigned permissions);
-/// Whether this user may run it as a program.
+/// True if this user may execute it.
 bool is_executable(const std::string& path);
 
-/// Locks a file of that name, which is created when it does not exist, until the descriptor is closed or the program
-/// ends. A closed descriptor: another program has the lock.
+/// Creates the file if necessary and locks it until the descriptor is closed or the program exits. Returns a closed
+/// descriptor if another program has the lock.
 Result<Descriptor> lock_file(const std::string& path);
 
 struct FileStatus {
-  bool file = false;  ///< A regular one.
+  bool file = false;  ///< A regular file.
   bool folder = false;
   std::uintmax_t size = 0;
   std::uint64_t inode = 0;
-  long owner = 0;             ///< User number.
-  unsigned permissions = 0;   ///< 07777.
+  long owner = 0;             ///< User id.
+  unsigned permissions = 0;   ///< Bits 07777.
   std::int64_t modified = 0;  ///< ns since 1970.
-  std::int64_t changed = 0;   ///< The same, of its status: permissions, links, content.
+  std::int64_t changed = 0;   ///< Time of the last change of content or status (permissions, links), ns since 1970.
 };
-/// Nothing: errno says why.
+/// Returns nullopt on error, with errno set.
 std::optional<FileStatus> file_status(const std::string& path);
-/// The same; of a symbolic link itself.
+/// Like file_status(), but does not follow a symbolic link.
 std::optional<FileStatus> link_status(const std::string& path);
 
 }  // namespace limber::system

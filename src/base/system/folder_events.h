@@ -1,4 +1,4 @@
-// FolderEvents: what happens in some folders, told by the system. [one thread]
+// FolderEvents: change notifications of folders. [one thread]
 #pragma once
 
 #include <string>
@@ -9,33 +9,33 @@
 namespace limber::system {
 
 struct FolderEvent {
-  int folder = -1;           ///< Number of the folder; -1: events were lost, anything may have happened.
-  std::string name;          ///< The entry that was created, written, removed or renamed.
-  bool folder_gone = false;  ///< The folder itself was removed or renamed.
+  int folder = -1;              ///< Number of the folder; -1: events were lost, any folder may have changed.
+  std::string name;             ///< The entry that was created, written, removed or renamed.
+  bool folder_removed = false;  ///< The folder itself was removed or renamed.
   bool entry_is_folder = false;
-  bool may_be_open = false;  ///< A file was created that may not be whole yet.
+  bool may_be_open = false;  ///< A new file that may not be complete yet.
 };
 
 class FolderEvents {
  public:
   FolderEvents();
 
-  /// False: this system has none; folders must be looked at.
-  bool available() const { return events_.open(); }
-  /// Becomes readable at an event; -1: there are none.
+  /// False if the system has no such events; the caller must poll the folders.
+  bool available() const { return events_.is_open(); }
+  /// A descriptor that becomes readable at an event; -1 if not available.
   int fd() const { return events_.fd(); }
 
-  /// The number of a folder in its events, the same for two paths of one folder; -1: it can't be watched.
+  /// Watches a folder. Returns its number in events, which is the same for two paths of one folder; -1 on error.
   int add(const std::string& folder);
   void remove(int number);
-  /// Those since the last call. Never waits.
+  /// Returns the events since the last call. Never blocks.
   std::vector<FolderEvent> read();
 
  private:
   Descriptor events_;
 };
 
-/// False: the folder is on a file system that others change without the system noticing, such as a network's.
+/// False if the folder is on a file system that other machines may change without events here, such as NFS.
 bool reports_changes(const std::string& folder);
 
 }  // namespace limber::system

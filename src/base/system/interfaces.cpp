@@ -1,4 +1,4 @@
-// getifaddrs is not in POSIX, but Linux, macOS and the BSDs have it.
+// Lists the network interfaces with getifaddrs(), which is not in POSIX but in Linux, macOS and the BSDs.
 #include "base/system/interfaces.h"
 
 #include <arpa/inet.h>

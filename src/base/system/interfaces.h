@@ -1,4 +1,4 @@
-// The networks that this machine is connected to.
+// The network interfaces of this machine.
 #pragma once
 
 #include <cstdint>
@@ -6,13 +6,13 @@
 
 namespace limber::system {
 
-/// An IPv4 address of this machine, in host order, with the length of its network's prefix.
+/// An IPv4 address of this machine, in host byte order, with the length of its network prefix.
 struct Subnet {
   std::uint32_t ip = 0;
   int bits = 0;
 };
 
-/// Of every interface that is up, loopback included. Empty when the system gives no list. [any]
+/// Returns the addresses of all interfaces that are up, including loopback; empty on error. [any]
 std::vector<Subnet> connected_subnets();
 
 }  // namespace limber::system

@@ -1,4 +1,4 @@
-// Unix sockets.
+// Unix domain sockets of POSIX.
 #include "base/system/local_socket.h"
 
 #include <sys/socket.h>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kBacklog = 16;
 
-std::string why(int error_number) { return std::generic_category().message(error_number); }
+std::string error_message(int error_number) { return std::generic_category().message(error_number); }
 
 Result<sockaddr_un> address_of(const std::string& path) {
   sockaddr_un address{};
@@ -35,7 +35,7 @@ Result<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-// connects, or gives the error's number
+// Returns 0 or an errno.
 int connect_to(const Descriptor& socket, const sockaddr_un& address) {
   return connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ? 0 : errno;
 }
@@ -45,22 +45,22 @@ int connect_to(const Descriptor& socket, const sockaddr_un& address) {
 Listener find_listener(const std::string& path) {
   const Result<sockaddr_un> address = address_of(path);
   const Descriptor socket = open_socket(AF_UNIX, SOCK_STREAM);
-  if (!address || !socket.open()) return Listener::unknown;
-  const int refused = connect_to(socket, *address);
-  if (refused == 0 || refused == EAGAIN) return Listener::present;
-  return refused == ECONNREFUSED ? Listener::gone : Listener::unknown;
+  if (!address || !socket.is_open()) return Listener::unknown;
+  const int error = connect_to(socket, *address);
+  if (error == 0 || error == EAGAIN) return Listener::present;
+  return error == ECONNREFUSED ? Listener::absent : Listener::unknown;
 }
 
 Result<Descriptor> connect_local(const std::string& path, int seconds) {
   const Result<sockaddr_un> address = address_of(path);
   if (!address) return Error{address.error()};
   Descriptor socket = open_socket(AF_UNIX, SOCK_STREAM);
-  if (!socket.open()) return Error{why(errno)};
+  if (!socket.is_open()) return Error{error_message(errno)};
   set_blocking(socket.fd());
-  const timeval most = {seconds, 0};
-  setsockopt(socket.fd(), SOL_SOCKET, SO_SNDTIMEO, &most, sizeof most);
-  if (const int refused = connect_to(socket, *address); refused != 0)
-    return Error{fmt::format("{}: {}", path, why(refused))};
+  const timeval timeout = {seconds, 0};
+  setsockopt(socket.fd(), SOL_SOCKET, SO_SNDTIMEO, &timeout, sizeof timeout);
+  if (const int error = connect_to(socket, *address); error != 0)
+    return Error{fmt::format("{}: {}", path, error_message(error))};
   set_nonblocking(socket.fd());
   return socket;
 }
@@ -70,23 +70,23 @@ Result<Descriptor> listen_local(const std::string& path) {
   const Result<sockaddr_un> address = address_of(hidden);
   if (!address) return Error{address.error()};
   Descriptor socket = open_socket(AF_UNIX, SOCK_STREAM);
-  if (!socket.open()) return Error{why(errno)};
-  unlink(hidden.c_str());  // of an earlier program with our number
+  if (!socket.is_open()) return Error{error_message(errno)};
+  unlink(hidden.c_str());  // left over from a process that had the same id
   const bool listens = bind(socket.fd(), reinterpret_cast<const sockaddr*>(&*address), sizeof *address) == 0 &&
                        chmod(hidden.c_str(), 0600) == 0 && listen(socket.fd(), kBacklog) == 0 &&
                        rename(hidden.c_str(), path.c_str()) == 0;
   if (listens) return socket;
-  const std::string fault = why(errno);
+  const std::string fault = error_message(errno);
   unlink(hidden.c_str());
   return Error{fmt::format("{}: {}", path, fault)};
 }
 
 long peer_user(const Descriptor& connection) {
 #if defined(SO_PEERCRED)
-  ucred who{};
-  socklen_t length = sizeof who;
-  if (getsockopt(connection.fd(), SOL_SOCKET, SO_PEERCRED, &who, &length) != 0) return -1;
-  return static_cast<long>(who.uid);
+  ucred credentials{};
+  socklen_t length = sizeof credentials;
+  if (getsockopt(connection.fd(), SOL_SOCKET, SO_PEERCRED, &credentials, &length) != 0) return -1;
+  return static_cast<long>(credentials.uid);
 #else
   uid_t user = 0;
   gid_t group = 0;

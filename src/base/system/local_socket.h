@@ -1,4 +1,4 @@
-// Stream sockets between programs of one machine, which have a path. [any]
+// Unix domain stream sockets. [any]
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace limber::system {
 
-/// A non-blocking socket that listens at `path` and that only this user may open (0600). The path appears only once it
-/// listens, so that no program takes it for a dead one. The error says why not.
+/// Returns a non-blocking socket that listens at `path` and that only this user may open (0600). The path appears when
+/// the socket already listens, so that no program considers it stale.
 Result<Descriptor> listen_local(const std::string& path);
 
-/// A non-blocking connection. Where many wait to be accepted it waits too, for at most `seconds`. The error says why
-/// there is none.
+/// Returns a non-blocking connection. Waits at most `seconds` if the listener's backlog is full.
 Result<Descriptor> connect_local(const std::string& path, int seconds);
 
 /// Whether a program listens at a path.
-enum class Listener : std::uint8_t { present, gone, unknown };
+/// gone: the socket is stale. unknown: there is no socket, or it can't be opened.
+enum class Listener : std::uint8_t { present, absent, unknown };
 Listener find_listener(const std::string& path);
 
-/// The next connection of a listening socket, not blocking; closed: errno says why.
+/// Accepts a connection, which is non-blocking. Returns a closed descriptor on error, with errno set.
 Descriptor accept_connection(int listener);
-/// The user at the other end of a connection; -1: the system does not know.
+/// Returns the user id of the peer, or -1 if unknown.
 long peer_user(const Descriptor& connection);
 
 }  // namespace limber::system

@@ -1,13 +1,13 @@
-// Descriptors that child processes do not inherit, opened as each system offers it. For base/system alone.
+// Opens descriptors that child processes do not inherit. Private to base/system.
 #pragma once
 
 #include "base/system/descriptor.h"
 
 namespace limber::system {
 
-/// Both ends of a pipe, blocking. False: errno says why not.
+/// Opens a blocking pipe. False on error, with errno set.
 bool open_pipe(Descriptor& read_end, Descriptor& write_end);
-/// A socket that never blocks; closed: errno says why.
+/// Opens a non-blocking socket. Returns a closed descriptor on error, with errno set.
 Descriptor open_socket(int family, int type);
 void set_nonblocking(int fd);
 void set_blocking(int fd);

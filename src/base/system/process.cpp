@@ -1,4 +1,4 @@
-// POSIX, and the dynamic linker.
+// Process information of POSIX, and lookups with the dynamic linker.
 #include "base/system/process.h"
 
 #include <dlfcn.h>
@@ -17,7 +17,7 @@ namespace limber::system {
 
 int process_id() { return getpid(); }
 
-bool process_runs(int pid) { return kill(pid, 0) == 0 || errno != ESRCH; }
+bool is_process_running(int pid) { return kill(pid, 0) == 0 || errno != ESRCH; }
 
 long user_id() { return static_cast<long>(geteuid()); }
 
@@ -36,7 +36,7 @@ std::string machine_name() {
 
 void* find_symbol(const char* name) {
   if (void* const found = dlsym(RTLD_DEFAULT, name)) return found;
-  // GLFW, since 3.4, and others load libraries whose symbols only they see
+  // GLFW since 3.4 and others load libraries with RTLD_LOCAL; search each loaded library.
   std::vector<std::string> libraries;
   const auto add = [](dl_phdr_info* info, std::size_t, void* list) {
     static_cast<std::vector<std::string>*>(list)->emplace_back(info->dlpi_name);

@@ -1,4 +1,4 @@
-// This program as the system sees it, other programs, and the machine. [any]
+// Information about this process, other processes and the machine; dynamic libraries. [any]
 #pragma once
 
 #include <cstddef>
@@ -7,32 +7,32 @@
 namespace limber::system {
 
 int process_id();
-/// Whether a program with this number runs, of whatever user.
-bool process_runs(int pid);
-/// The user that the program runs as.
+/// True if a process with this id is running, under any user.
+bool is_process_running(int pid);
+/// Returns the effective user id.
 long user_id();
 
 constexpr int kStandardInput = 0;
-/// Whether both standard input and standard output are a terminal.
+/// True if standard input and standard output are terminals.
 bool at_terminal();
 
-/// The name of this machine in its network; empty when it has none.
+/// Returns the host name; empty if there is none.
 std::string host_name();
-/// The kernel and the processor: "Linux x86_64".
+/// Returns the operating system and architecture: "Linux x86_64".
 std::string machine_name();
 
-/// Whether this build makes POSIX calls only (LIMBER_PORTABLE), on Linux too.
+/// True if this build uses POSIX calls only (LIMBER_PORTABLE), which is possible on Linux too.
 bool is_portable();
 
-/// The processor's model; empty where the system does not name it.
+/// Returns the model name of the processor; empty if unknown.
 std::string processor_name();
 
-/// Bytes that the program holds on its heap; 0 where the system does not count them.
+/// Returns the bytes allocated on the heap; 0 if the system does not count them.
 double heap_bytes();
 
-/// The function of this name in the program or a library that it has loaded. Null: none.
+/// Returns the function of this name in the program or a loaded library, or null.
 void* find_symbol(const char* name);
-/// Loads a shared library for the rest of the process: "libEGL.so.1". False where it can't be loaded.
+/// Loads a shared library such as "libEGL.so.1" until the process exits. False on error.
 bool load_library(const char* file);
 
 }  // namespace limber::system

@@ -1,4 +1,4 @@
-// By trying, since the limits also count what other programs of the user hold.
+// Checks limits by trying, because they include the resources of the user's other programs.
 #include "base/system/resources.h"
 
 #include <sys/resource.h>
@@ -17,23 +17,23 @@ namespace limber::system {
 
 namespace {
 
-int count_descriptors(int most) {
+int count_descriptors(int max_count) {
   std::vector<Descriptor> opened;
-  while (static_cast<int>(opened.size()) < most) {
+  while (static_cast<int>(opened.size()) < max_count) {
     Descriptor one = open_file("/dev/null", OpenMode::read);
-    if (!one.open()) break;
+    if (!one.is_open()) break;
     opened.push_back(std::move(one));
   }
   return static_cast<int>(opened.size());
 }
 
-int count_threads(int most) {
+int count_threads(int max_count) {
   std::vector<std::thread> started;
-  started.reserve(static_cast<std::size_t>(most));
+  started.reserve(static_cast<std::size_t>(max_count));
   std::promise<void> end;
   const std::shared_future<void> ended = end.get_future().share();
   try {
-    while (static_cast<int>(started.size()) < most) started.emplace_back([ended] { ended.wait(); });
+    while (static_cast<int>(started.size()) < max_count) started.emplace_back([ended] { ended.wait(); });
   } catch (const std::system_error&) {
     // the limit is reached
   }
@@ -57,7 +57,7 @@ Result<void> check_resources(const Resources& needed) {
   if (const int found = count_threads(needed.threads); found < needed.threads) {
     return Error{
         fmt::format("only {} more threads can be started, and {} are needed: raise ulimit -u, or end other "
-                    "programs of this user; they need memory, too: ulimit -v",
+                    "programs of this user. Threads need memory, too: ulimit -v",
                     found, needed.threads)};
   }
   return {};

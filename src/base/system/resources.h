@@ -1,4 +1,4 @@
-// Limits of the system on a program: descriptors, threads, stack.
+// Checks the system's limits on a process: descriptors, threads, stack.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 namespace limber::system {
 
 struct Resources {
-  int descriptors = 0;    ///< That can be opened beside those that are open.
-  int threads = 0;        ///< That can be started beside this one.
-  std::size_t stack = 0;  ///< Of the first thread, bytes.
+  int descriptors = 0;    ///< Number of additional descriptors.
+  int threads = 0;        ///< Number of additional threads.
+  std::size_t stack = 0;  ///< Stack size of the main thread, bytes.
 };
 
-/// Checks that the system's limits leave room for these resources: opens the descriptors and starts the threads for a
-/// moment. The error names what is missing and the command that raises the limit. [main, before other threads start]
+/// Checks that the system's limits allow these resources, by opening the descriptors and starting the threads briefly.
+/// The error names the missing resource and the command that raises the limit. [main, before other threads start]
 Result<void> check_resources(const Resources& needed);
 
 }  // namespace limber::system

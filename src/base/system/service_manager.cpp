@@ -1,4 +1,4 @@
-// Datagrams of Unix sockets.
+// Sends sd_notify messages through a Unix datagram socket.
 #include "base/system/service_manager.h"
 
 #include <sys/socket.h>
@@ -22,7 +22,7 @@ namespace limber::system {
 
 namespace {
 
-std::string fetch_variable(const char* name) {
+std::string consume_variable(const char* name) {
   const char* const value = std::getenv(name);
   std::string text = value == nullptr ? "" : value;
   unsetenv(name);
@@ -31,9 +31,9 @@ std::string fetch_variable(const char* name) {
 
 }  // namespace
 
-ServiceManager::ServiceManager() : address_(fetch_variable("NOTIFY_SOCKET")) {
-  const std::optional<double> limit = parse_number(fetch_variable("WATCHDOG_USEC"));
-  const std::string process = fetch_variable("WATCHDOG_PID");
+ServiceManager::ServiceManager() : address_(consume_variable("NOTIFY_SOCKET")) {
+  const std::optional<double> limit = parse_number(consume_variable("WATCHDOG_USEC"));
+  const std::string process = consume_variable("WATCHDOG_PID");
   sockaddr_un address{};
   const bool usable =
       address_.size() > 1 && (address_[0] == '/' || address_[0] == '@') && address_.size() < sizeof address.sun_path;

@@ -1,5 +1,5 @@
-// ServiceManager: what a service manager (systemd) is told about this program, by the protocol of sd_notify: each
-// message is a datagram of lines such as "READY=1", to the socket that NOTIFY_SOCKET names.
+// ServiceManager: reports the state of this program to a service manager (systemd) by the protocol of sd_notify:
+// datagrams of lines such as "READY=1" to the socket in NOTIFY_SOCKET.
 #pragma once
 
 #include <chrono>
@@ -10,17 +10,18 @@
 
 namespace limber::system {
 
+/// Sends notifications to the service manager, if there is one.
 class ServiceManager {
  public:
-  /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID, and removes them, so that child processes don't answer in the
-  /// program's place. [main, before other threads start]
+  /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID and removes them from the environment, so that child processes
+  /// don't send messages. [main, before other threads start]
   ServiceManager();
 
-  /// Whether one has started the program and waits for messages. [any]
-  bool present() const { return socket_.open(); }
-  /// It restarts the program when "WATCHDOG=1" is missing for this long; 0: it doesn't. [any]
+  /// True if a service manager started the program and receives messages. [any]
+  bool present() const { return socket_.is_open(); }
+  /// The watchdog interval: the manager restarts the program without "WATCHDOG=1" in this time; 0: no watchdog. [any]
   std::chrono::microseconds watchdog() const { return watchdog_; }
-  /// Sends one or more lines. Never waits; false: not sent. [any]
+  /// Sends one or more lines without blocking. False if they were not sent. [any]
   bool notify(std::string_view lines) const;
 
  private:
@@ -29,7 +30,7 @@ class ServiceManager {
   std::chrono::microseconds watchdog_{0};
 };
 
-/// Whether standard error is a stream of systemd's journal, which reads a level in front of each line: "<3>". [any]
+/// True if standard error is systemd's journal, which parses a level at the start of each line: "<3>". [any]
 bool standard_error_is_journal();
 
 }  // namespace limber::system

@@ -1,4 +1,4 @@
-// POSIX signals.
+// Signals of POSIX.
 #include "base/system/signals.h"
 
 #include <dlfcn.h>
@@ -20,20 +20,20 @@ sigset_t blocked_signals() {
   return set;
 }
 
-Signal kind_of(int signal) {
+Signal signal_from_number(int signal) {
   if (signal <= 0) return Signal::none;
-  return signal == SIGUSR1 ? Signal::call : Signal::end;
+  return signal == SIGUSR1 ? Signal::wake : Signal::terminate;
 }
 
 void block_signals() {
   const sigset_t set = blocked_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
-  // SIGXFSZ: a file that may not grow is reported as a full disk is. SIGTTOU, SIGTTIN: a terminal whose foreground is
-  // another program's (stty tostop). The others end a program that has no use for them.
+  // SIGXFSZ: exceeding the file size limit becomes an error of write(). SIGTTOU, SIGTTIN: sent if another program is in
+  // the foreground of the terminal (stty tostop). The others would terminate the program.
   for (const int signal : {SIGPIPE, SIGXFSZ, SIGTTOU, SIGTTIN, SIGALRM, SIGVTALRM, SIGIO}) ::signal(signal, SIG_IGN);
 }
 
-void call_thread(std::uint64_t thread) { signal_thread(thread, SIGUSR1); }
+void wake_thread(std::uint64_t thread) { signal_thread(thread, SIGUSR1); }
 
 void handle_signal(int signal, SignalHandler handler) {
   struct sigaction action {};
@@ -41,18 +41,18 @@ void handle_signal(int signal, SignalHandler handler) {
   sigaction(signal, &action, nullptr);
 }
 
-void handle_signal_at_once(int signal, SignalHandler handler) {
+void handle_signal_immediately(int signal, SignalHandler handler) {
   struct sigaction action {};
   action.sa_handler = handler;
   action.sa_flags = SA_RESTART;
   sigemptyset(&action.sa_mask);
-  // the C library's own, which a sanitizer does not wrap
+  // The C library's function, which sanitizers do not intercept.
   using Function = decltype(&sigaction);
-  const auto own = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "__sigaction"));
-  (own == nullptr ? &sigaction : own)(signal, &action, nullptr);
+  const auto unwrapped = reinterpret_cast<Function>(dlsym(RTLD_NEXT, "__sigaction"));
+  (unwrapped == nullptr ? &sigaction : unwrapped)(signal, &action, nullptr);
 }
 
-void on_user_signal(SignalHandler handler) { handle_signal_at_once(SIGUSR2, handler); }
+void on_user_signal(SignalHandler handler) { handle_signal_immediately(SIGUSR2, handler); }
 
 void block_signal(int signal) {
   sigset_t set;
@@ -61,7 +61,7 @@ void block_signal(int signal) {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-SignalHandler take_profile_handler() {
+SignalHandler extract_profile_handler() {
   struct sigaction profiler {};
   sigaction(SIGPROF, nullptr, &profiler);
   const itimerval never{};

@@ -1,4 +1,4 @@
-// Berkeley sockets.
+// Sockets of POSIX.
 #include "base/system/socket.h"
 
 #include <arpa/inet.h>
@@ -45,14 +45,14 @@ Result<Endpoint> resolve(const std::string& host, std::uint16_t port) {
 
 Descriptor connect_tcp(const Endpoint& to) {
   Descriptor socket = open_socket(AF_INET, SOCK_STREAM);
-  if (!socket.open()) return socket;
+  if (!socket.is_open()) return socket;
   set_blocking(socket.fd());
   const sockaddr_in at = socket_address(to);
   if (connect(socket.fd(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) return {};
   return socket;
 }
 
-std::ptrdiff_t receive_bytes(int fd, char* to, std::size_t most) { return recv(fd, to, most, 0); }
+std::ptrdiff_t receive_bytes(int fd, char* to, std::size_t max_bytes) { return recv(fd, to, max_bytes, 0); }
 
 std::ptrdiff_t send_bytes(int fd, std::string_view bytes) { return send(fd, bytes.data(), bytes.size(), kNoSignal); }
 

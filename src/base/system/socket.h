@@ -1,4 +1,4 @@
-// IPv4 endpoints, and bytes through connected sockets.
+// IPv4 endpoints, name resolution, TCP connections, and I/O on connected sockets.
 #pragma once
 
 #include <compare>
@@ -13,7 +13,7 @@
 
 namespace limber::system {
 
-/// An IPv4 address and port, both in host order.
+/// An IPv4 address and port, both in host byte order.
 struct Endpoint {
   std::uint32_t ip = 0;
   std::uint16_t port = 0;
@@ -21,24 +21,24 @@ struct Endpoint {
   auto operator<=>(const Endpoint&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm of clang-tidy 14
 };
 
-/// "127.0.0.1:9003". [any]
+/// Returns "127.0.0.1:9003". [any]
 std::string endpoint_text(const Endpoint& endpoint);
 
-/// "192.168.1.7" in host order; nothing for anything else. [any]
+/// Parses an address such as "192.168.1.7", to host byte order; nullopt if it is invalid. [any]
 std::optional<std::uint32_t> parse_ipv4(const std::string& text);
-/// Whether it is an IPv4 or IPv6 address, without brackets or port. [any]
+/// True for an IPv4 or IPv6 address without brackets or port. [any]
 bool is_ip_address(const std::string& text);
 
-/// Looks up a host: numbers at once, names by the system's resolver, which may take seconds. `port` is carried over.
-/// [any]
+/// Resolves a host: an address immediately, a name with the system's resolver, which may take seconds. The result has
+/// this port. [any]
 Result<Endpoint> resolve(const std::string& host, std::uint16_t port);
 
-/// A blocking TCP connection; closed: errno says why there is none. [any]
+/// Opens a blocking TCP connection. Returns a closed descriptor on error, with errno set. [any]
 Descriptor connect_tcp(const Endpoint& to);
 
-/// Bytes received or sent through a connected socket, or one datagram; 0: the other end has closed; -1: errno says why
-/// (EAGAIN: a socket that does not block takes or has none now). [any]
-std::ptrdiff_t receive_bytes(int fd, char* to, std::size_t most);
+/// Receive from or send to a connected socket (a datagram socket: one datagram). Return the number of bytes, 0 if the
+/// peer has closed, or -1 on error with errno set (EAGAIN: a non-blocking socket is not ready). [any]
+std::ptrdiff_t receive_bytes(int fd, char* to, std::size_t max_bytes);
 std::ptrdiff_t send_bytes(int fd, std::string_view bytes);
 
 }  // namespace limber::system

@@ -1,4 +1,4 @@
-// Endpoints as the system's calls have them. For base/system and tests.
+// Conversions between Endpoint and sockaddr_in. Private to base/system and tests.
 #pragma once
 
 #include <netinet/in.h>
@@ -23,7 +23,7 @@ inline Endpoint endpoint_of(const sockaddr_in& address) {
 #if defined(MSG_NOSIGNAL)
 constexpr int kNoSignal = MSG_NOSIGNAL;
 #else
-constexpr int kNoSignal = 0;  // a connection that closes sends SIGPIPE, which shows ignore (block_signals)
+constexpr int kNoSignal = 0;  // a closed connection sends SIGPIPE, which block_signals() ignores
 #endif
 
 }  // namespace limber::system

@@ -1,4 +1,4 @@
-// Datagrams one at a time.
+// UDP sockets of POSIX: single datagrams.
 #include "base/system/udp_socket.h"
 
 #include <cerrno>
@@ -17,11 +17,11 @@ Endpoint UdpSocket::local() const {
 }
 
 Result<UdpSocket> open_udp(const Endpoint& at) {
-  const auto why = [] { return Error{std::generic_category().message(errno)}; };
+  const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
   UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
-  if (!socket.open()) return why();
+  if (!socket.is_open()) return system_error();
   const sockaddr_in address = socket_address(at);
-  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return why();
+  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
   return socket;
 }
 
@@ -32,7 +32,9 @@ void allow_broadcast(int fd) {
   setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
 }
 
-bool reports_earlier(int error) { return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH; }
+bool may_report_earlier_datagram(int error) {
+  return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH;
+}
 
 int send_datagram(int fd, const Endpoint& to, std::span<const char> packet) {
   const sockaddr_in address = socket_address(to);
@@ -40,7 +42,7 @@ int send_datagram(int fd, const Endpoint& to, std::span<const char> packet) {
     const auto* where = reinterpret_cast<const sockaddr*>(&address);
     return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal, where, sizeof address) >= 0;
   };
-  return send() || (reports_earlier(errno) && send()) ? 0 : errno;
+  return send() || (may_report_earlier_datagram(errno) && send()) ? 0 : errno;
 }
 
 }  // namespace limber::system

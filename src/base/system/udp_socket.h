@@ -1,4 +1,4 @@
-// UDP: sockets, datagrams in batches, and datagrams that came back.
+// UDP sockets, batched receive and send, and reports of undelivered datagrams.
 #pragma once
 
 #include <cstddef>
@@ -17,67 +17,67 @@ class UdpSocket : public Descriptor {
  public:
   using Descriptor::Descriptor;
   explicit UdpSocket(Descriptor opened) : Descriptor(std::move(opened)) {}
-  /// The local end: the port that the system chose, where it was asked to.
+  /// Returns the local endpoint, with the port that the system chose if 0 was requested.
   Endpoint local() const;
 };
 
-/// A non-blocking UDP socket bound to `at` (port 0: the system chooses). The error says why not, nothing more.
+/// Opens a non-blocking UDP socket bound to `at` (port 0: the system chooses). The error is the system's message.
 Result<UdpSocket> open_udp(const Endpoint& at);
 
 /// Requests a receive buffer of this size; returns the size that the system grants, in bytes.
 int set_receive_buffer(int fd, int bytes);
 void set_send_buffer(int fd, int bytes);
 void allow_broadcast(int fd);
-/// The largest receive buffer that the system grants; nothing: it does not tell.
+/// Returns the largest receive buffer that the system grants, in bytes; nullopt if unknown.
 std::optional<long> max_receive_buffer();
 
-/// A datagram that was received.
+/// A received datagram.
 struct Datagram {
-  const char* data = nullptr;  ///< Until the next read().
+  const char* data = nullptr;  ///< Valid until the next read().
   std::size_t size = 0;
   Endpoint from;
-  /// Datagrams that the system has dropped at this socket since it was opened, modulo 2^32; nothing: none, or it does
-  /// not count them.
+  /// Number of datagrams that the system dropped at this socket since it was opened, modulo 2^32; nullopt: none, or the
+  /// system does not count them.
   std::optional<std::uint32_t> dropped;
 };
 
-/// Reads datagrams, many with one system call where there is one. [one thread]
+/// Reads datagrams, in batches if the system has a call for it. [one thread]
 class DatagramReader {
  public:
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMaxBatch = 16;
 
   DatagramReader();
   ~DatagramReader();
   DatagramReader(const DatagramReader&) = delete;
   DatagramReader& operator=(const DatagramReader&) = delete;
 
-  /// Up to kMost that wait at the socket; none is also the result of an error. Never waits.
+  /// Returns up to kMaxBatch pending datagrams; none on error. Never blocks.
   std::span<const Datagram> read(int fd);
 
  private:
   struct Buffers;
   std::unique_ptr<Buffers> buffers_;
 };
-/// Makes the system count the datagrams that it drops at a socket, where it can.
+/// Makes the system count the datagrams that it drops at a socket, if it can.
 void count_dropped(int fd);
 
-/// Sends one datagram without waiting; 0, or the error's number.
+/// Sends one datagram without blocking. Returns 0 or an errno.
 int send_datagram(int fd, const Endpoint& to, std::span<const char> packet);
 
 /// Result of a batch.
 struct BatchResult {
-  std::size_t sent = 0;  ///< Datagrams.
-  int error = 0;         ///< errno of the first that was not sent; the rest was not tried. 0: all were sent.
+  std::size_t sent = 0;  ///< Number of datagrams.
+  int error = 0;         ///< errno of the first unsent datagram, after which sending stopped. 0: all were sent.
 };
 
-/// A datagram that did not reach its target.
+/// A report that a datagram did not reach its target.
 struct SendFailure {
   Endpoint to;
   int error = 0;
 };
 
-/// A socket to send from, or some of them, bound to no address. Where the system reports datagrams that came back, they
-/// are returned by next_failure(). [one thread]
+/// Sends datagrams from one or several unbound sockets. If the system reports undelivered datagrams (ICMP errors),
+/// next_failure() returns them. [one thread]
 class UdpSender {
  public:
   UdpSender();
@@ -85,18 +85,19 @@ class UdpSender {
   UdpSender(UdpSender&&) noexcept;
   UdpSender& operator=(UdpSender&&) noexcept;
 
-  /// `send_buffer` and `receive_buffer` are bytes; 0: as the system has them.
+  /// `send_buffer` and `receive_buffer` in bytes; 0: the system's default.
   Result<void> open(int send_buffer = 0, int receive_buffer = 0);
   void close();
   bool is_open() const { return state_ != nullptr; }
 
-  /// Sends one datagram; 0, or the error's number. An error about an earlier datagram is none.
+  /// Sends one datagram. Returns 0 or an errno. Ignores errors about earlier datagrams.
   int send(const Endpoint& to, std::span<const char> packet);
-  /// Sends datagrams of these sizes, which follow each other in `bytes`. Runs of equal size are one piece that the
-  /// system cuts (UDP segmentation) as long as `segmentation` is true; it becomes false where the route can't.
+  /// Sends datagrams of these sizes, which are concatenated in `bytes`. While `segmentation` is true, runs of equal
+  /// size are sent in one piece that the kernel splits (UDP segmentation offload); set to false if the route can't do
+  /// this.
   BatchResult send(const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
                    bool& segmentation);
-  /// The next datagram that came back since the last call.
+  /// Returns the next report of an undelivered datagram.
   std::optional<SendFailure> next_failure();
 
  private:
@@ -104,7 +105,7 @@ class UdpSender {
   std::unique_ptr<State> state_;
 };
 
-/// Whether an error of a send reports an earlier datagram, perhaps to another target: a second try sends.
-bool reports_earlier(int error);
+/// True if this error of a send may refer to an earlier datagram, perhaps to another target. Retrying sends.
+bool may_report_earlier_datagram(int error);
 
 }  // namespace limber::system

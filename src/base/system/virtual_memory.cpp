@@ -1,4 +1,4 @@
-// mmap.
+// Virtual memory with mmap().
 #include "base/system/virtual_memory.h"
 
 #include <sys/mman.h>
@@ -11,22 +11,22 @@ std::size_t page_size() {
   return bytes;
 }
 
-std::byte* reserve_memory(std::size_t bytes, std::uintptr_t wish) {
+std::byte* reserve_memory(std::size_t bytes, std::uintptr_t hint) {
   // NOLINTNEXTLINE(performance-no-int-to-ptr): no object has this address yet
-  auto* const place = reinterpret_cast<void*>(wish);
-  void* const got = mmap(place, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  return got == MAP_FAILED ? nullptr : static_cast<std::byte*>(got);
+  auto* const place = reinterpret_cast<void*>(hint);
+  void* const mapped = mmap(place, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  return mapped == MAP_FAILED ? nullptr : static_cast<std::byte*>(mapped);
 }
 
-bool commit_memory(std::byte* place, std::size_t bytes) {
-  return mprotect(static_cast<void*>(place), bytes, PROT_READ | PROT_WRITE) == 0;
+bool commit_memory(std::byte* begin, std::size_t bytes) {
+  return mprotect(static_cast<void*>(begin), bytes, PROT_READ | PROT_WRITE) == 0;
 }
 
-void release_memory(std::byte* place, std::size_t bytes) { munmap(static_cast<void*>(place), bytes); }
+void release_memory(std::byte* begin, std::size_t bytes) { munmap(static_cast<void*>(begin), bytes); }
 
-void prefer_large_pages([[maybe_unused]] std::byte* place, [[maybe_unused]] std::size_t bytes) {
+void prefer_large_pages([[maybe_unused]] std::byte* begin, [[maybe_unused]] std::size_t bytes) {
 #if defined(MADV_HUGEPAGE)
-  (void)madvise(static_cast<void*>(place), bytes, MADV_HUGEPAGE);
+  (void)madvise(static_cast<void*>(begin), bytes, MADV_HUGEPAGE);
 #endif
 }
 

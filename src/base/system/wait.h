@@ -1,4 +1,4 @@
-// Waiting until descriptors are ready.
+// Waits until descriptors are ready.
 #pragma once
 
 #include <chrono>
@@ -7,18 +7,19 @@
 
 namespace limber::system {
 
-struct Waiting {
-  int fd = -1;  ///< Negative: left out.
+/// A descriptor to wait for, like pollfd.
+struct PollEntry {
+  int fd = -1;  ///< Ignored if negative.
   bool read = true;
   bool write = false;
-  bool ready = false;  ///< Set: it can be read or written, as asked for, or its other end has closed.
+  bool ready = false;  ///< Result: readable or writable as requested, or closed by the peer.
 };
 
-/// Waits until one of them is ready, `limit` is over (nothing: without limit), or a signal has come; 0 and below none
-/// waits. False: none is ready. [any]
-bool wait_ready(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit);
+/// Waits until a descriptor is ready, `limit` has passed (nullopt: no limit; <= 0: don't wait), or a signal arrived.
+/// False if none is ready. [any]
+bool wait_ready(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit);
 
-/// The same; signals that are blocked otherwise come in while it waits, and only then. [any]
-bool wait_ready_or_signal(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit);
+/// Like wait_ready(), but unblocks all signals while it waits. [any]
+bool wait_ready_or_signal(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit);
 
 }  // namespace limber::system

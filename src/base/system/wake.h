@@ -1,5 +1,5 @@
-// Wake: any thread notifies it, one thread waits until its descriptor is readable. Notifications before the next
-// clear() cost one atomic each.
+// Wake: wakes one thread, which waits for a descriptor to be readable, from any thread. Repeated notifications before
+// the next clear() cost one atomic operation each.
 #pragma once
 
 #include <atomic>
@@ -12,19 +12,19 @@ class Wake {
  public:
   Wake();
 
-  /// [any]
+  /// Makes the descriptor readable. [any]
   void notify();
-  /// After this, everything that was done before any earlier notify() is visible. [the waiting thread]
+  /// Resets the descriptor. Memory writes before earlier notify() calls are visible after it. [the waiting thread]
   void clear();
   int fd() const { return read_end_.fd(); }
 
  private:
   Descriptor read_end_;
-  Descriptor write_end_;  // closed where one descriptor has both ends
+  Descriptor write_end_;  // closed if one descriptor serves both ends
   std::atomic<bool> pending_{false};
 };
 
-/// Opens the two ends, not blocking; the second one stays closed where one descriptor has both ends.
+/// Opens both ends, non-blocking. `write_end` stays closed if one descriptor serves both.
 void open_wake(Descriptor& read_end, Descriptor& write_end);
 
 }  // namespace limber::system

@@ -1,17 +1,18 @@
-// A bar: a slider with a number beside it. Wide ranges are stretched, so that usual values are not all at one end.
+// Bar: a slider with a number field beside it. The scale of wide ranges is nonlinear, so that typical values are not
+// all at one end.
 'use strict';
 
 const bars = (() => {
   const STEPS = 1000;
-  const THUMB = 14;  // pixels, as in the style
+  const THUMB = 14;  // pixels, as in style.css
 
-  // where on the bar (0 .. 1) a value stands, and back
-  function scale(min, max, usual) {
+  // Returns functions that map a value to its position on the bar (0 .. 1) and back.
+  function scale(min, max, typical) {
     const bound = Math.max(Math.abs(min), Math.abs(max));
-    const size = Math.abs(usual) || 1;
+    const size = Math.abs(typical) || 1;
     const span = max - min;
     if (span <= 200 || size > bound / 20) return { to: (v) => (v - min) / span, from: (p) => min + p * span };
-    // the usual size stands at four tenths of the way from the middle, or from the lower end
+    // the typical magnitude is at 40 % of the way from the middle, or from the lower end
     const power = Math.log((size - (min > 0 ? min : 0)) / bound) / Math.log(0.4);
     if (min >= 0) {
       return { to: (v) => Math.pow(Math.max(0, (v - min) / span), 1 / power), from: (p) => min + span * Math.pow(p, power) };
@@ -22,28 +23,28 @@ const bars = (() => {
     };
   }
 
-  // A hand on a bar. Mouse and keys act at once. A finger acts from where it moves sideways, by how far it moves: a
-  // touch alone sets nothing, and a swipe up or down scrolls the page (touch-action: pan-y in the style).
-  const SIDEWAYS = 8;  // pixels until a finger acts
+  // Handles the pointer on a bar. Mouse and keys act immediately. A touch acts only after a sideways movement, relative
+  // to its start: a tap sets nothing, and a vertical swipe scrolls the page (touch-action: pan-y in style.css).
+  const SIDEWAYS = 8;  // pixels until a touch acts
 
-  function follow(bar, range, begin, move, end) {
-    let pointer = null;  // of the hand
-    let from = 0;        // where it acts from, pixels
-    let start = 0;       // and what the bar was there, 0 .. 1
-    let acts = false;
+  function trackPointer(bar, range, begin, move, end) {
+    let pointer = null;  // id of the active pointer
+    let from = 0;        // start of the drag, pixels
+    let start = 0;       // value of the bar at the start of the drag, 0 .. 1
+    let dragging = false;
     const width = () => Math.max(1, bar.getBoundingClientRect().width - THUMB);
     const place = (event) => (event.clientX - bar.getBoundingClientRect().left - THUMB / 2) / width();
-    const held = (at) => Math.min(1, Math.max(0, at));
-    function act() {
-      acts = true;
+    const clamp01 = (at) => Math.min(1, Math.max(0, at));
+    function startDrag() {
+      dragging = true;
       bar.setPointerCapture(pointer);
       begin();
     }
-    function leave(event) {
+    function endDrag(event) {
       if (event.pointerId !== pointer) return;
       pointer = null;
-      if (acts) end();
-      acts = false;
+      if (dragging) end();
+      dragging = false;
     }
     bar.addEventListener('pointerdown', (event) => {
       if (pointer !== null || event.button !== 0) return;
@@ -53,30 +54,30 @@ const bars = (() => {
       if (event.pointerType !== 'mouse') return;
       event.preventDefault();
       range.focus({ preventScroll: true });
-      start = held(place(event));
-      act();
+      start = clamp01(place(event));
+      startDrag();
       move(start);
     });
     bar.addEventListener('pointermove', (event) => {
       if (event.pointerId !== pointer) return;
-      if (!acts) {
+      if (!dragging) {
         if (Math.abs(event.clientX - from) < SIDEWAYS) return;
         from = event.clientX;
         start = range.value / STEPS;
-        act();
+        startDrag();
       }
-      move(held(start + (event.clientX - from) / width()));
+      move(clamp01(start + (event.clientX - from) / width()));
     });
-    for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) bar.addEventListener(name, leave);
+    for (const name of ['pointerup', 'pointercancel', 'lostpointercapture']) bar.addEventListener(name, endDrag);
   }
 
-  // five digits of what the hand moves: nobody wants 0.30000001
-  function shown(value, whole) {
+  // Formats a value with five significant digits, which avoids texts like 0.30000001.
+  function format(value, whole) {
     if (typeof value !== 'number' || !isFinite(value)) return '';
     return whole ? String(Math.round(value)) : String(Number(value.toPrecision(5)));
   }
 
-  // options: min, max, usual, whole, step, label; changed(value) is called while a hand moves it
+  // Creates a bar. options: min, max, typical, whole, step, label; changed(value) is called on each user input.
   function make(options, changed) {
     const box = document.createElement('div');
     box.className = 'axis';
@@ -92,7 +93,7 @@ const bars = (() => {
     let range = null;
     let stretch = null;
     if (bounded && options.max > options.min) {
-      stretch = scale(options.min, options.max, options.usual);
+      stretch = scale(options.min, options.max, options.typical);
       const bar = document.createElement('div');
       bar.className = 'bar';
       range = document.createElement('input');
@@ -108,25 +109,25 @@ const bars = (() => {
     }
     box.append(number);
 
-    const widget = { box, held: false, value: NaN, show, release() {} };
+    const widget = { box, dragging: false, value: NaN, show, release() {} };
     function paint(value) {
       if (!range) return;
       const at = Math.min(1, Math.max(0, stretch.to(value)));
       const zero = Math.min(1, Math.max(0, stretch.to(Math.min(options.max, Math.max(options.min, 0)))));
       range.style.setProperty('--from', Math.min(at, zero));
       range.style.setProperty('--to', Math.max(at, zero));
-      if (!widget.held || document.activeElement !== range) range.value = Math.round(at * STEPS);
-      range.setAttribute('aria-valuetext', shown(value, options.whole));
+      if (!widget.dragging || document.activeElement !== range) range.value = Math.round(at * STEPS);
+      range.setAttribute('aria-valuetext', format(value, options.whole));
     }
     function show(value) {
       widget.value = value;
       paint(value);
-      if (document.activeElement !== number) number.value = shown(value, options.whole);
+      if (document.activeElement !== number) number.value = format(value, options.whole);
     }
-    function hold() { widget.held = true; }
+    function hold() { widget.dragging = true; }
     function release() {
-      if (!widget.held) return;
-      widget.held = false;
+      if (!widget.dragging) return;
+      widget.dragging = false;
       widget.release();
     }
     if (range) {
@@ -134,15 +135,15 @@ const bars = (() => {
         const value = stretch.from(at);
         widget.value = options.whole ? Math.round(value) : Number(value.toPrecision(5));
         paint(widget.value);
-        number.value = shown(widget.value, options.whole);
+        number.value = format(widget.value, options.whole);
         changed(widget.value);
       };
-      follow(range.parentNode, range, hold, (at) => { range.value = Math.round(at * STEPS); set(at); }, release);
+      trackPointer(range.parentNode, range, hold, (at) => { range.value = Math.round(at * STEPS); set(at); }, release);
       for (const end of ['change', 'blur']) range.addEventListener(end, release);
       range.addEventListener('input', () => set(range.value / STEPS));
       range.addEventListener('keydown', (event) => {
         if (event.key !== 'Home' && event.key !== 'End' && !/^(Arrow|Page)/.test(event.key)) return;
-        widget.held = false;
+        widget.dragging = false;
       });
     }
     number.addEventListener('input', () => {
@@ -157,5 +158,5 @@ const bars = (() => {
     return widget;
   }
 
-  return { make, shown };
+  return { make, format };
 })();

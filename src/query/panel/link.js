@@ -1,34 +1,34 @@
-// The way to Limber: the tree by HTTP, values both ways by WebSocket; when it is lost it is looked for again.
+// Connection to Limber: the tree by HTTP, values in both directions by WebSocket. Reconnects automatically.
 'use strict';
 
 const link = (() => {
-  const hearers = new Map();  // path -> set of functions that take a value's arguments
+  const listeners = new Map();  // path -> set of callbacks that get a value's arguments
   let socket = null;
-  let wait = 250;  // ms until the next try
+  let retryDelay = 250;  // delay of the next reconnection attempt, ms
 
   const on = {
-    open() {},          // connected, for the first time or again
+    open() {},  // connected or reconnected
     state(text, kind) {},
-    notice(command, path) {},
+    pathEvent(command, path) {},
     log(lines) {},
     error(address, text) {},
   };
 
-  function say(command, data) {
+  function sendCommand(command, data) {
     if (socket && socket.readyState === 1) socket.send(JSON.stringify({ COMMAND: command, DATA: data }));
   }
 
-  function listen(path, hear) {
-    let set = hearers.get(path);
+  function listen(path, callback) {
+    let set = listeners.get(path);
     if (!set) {
-      hearers.set(path, set = new Set());
-      say('LISTEN', path);
+      listeners.set(path, set = new Set());
+      sendCommand('LISTEN', path);
     }
-    set.add(hear);
+    set.add(callback);
     return () => {
-      if (!set.delete(hear) || set.size > 0 || hearers.get(path) !== set) return;
-      hearers.delete(path);
-      say('IGNORE', path);
+      if (!set.delete(callback) || set.size > 0 || listeners.get(path) !== set) return;
+      listeners.delete(path);
+      sendCommand('IGNORE', path);
     };
   }
 
@@ -43,37 +43,37 @@ const link = (() => {
     return reply.json();
   }
 
-  function take(event) {
+  function receive(event) {
     if (typeof event.data !== 'string') {
       const message = osc.decode(event.data);
       if (!message) return;
       if (message.address === '/error') on.error(message.args[0], message.args[1]);
-      const set = hearers.get(message.address);
-      if (set) for (const hear of [...set]) hear(message.args);
+      const set = listeners.get(message.address);
+      if (set) for (const callback of [...set]) callback(message.args);
       return;
     }
     const frame = JSON.parse(event.data);
     if (frame.COMMAND === 'LIMBER_LOG') on.log(frame.DATA);
-    if (/^PATH_/.test(frame.COMMAND)) on.notice(frame.COMMAND, frame.DATA);
+    if (/^PATH_/.test(frame.COMMAND)) on.pathEvent(frame.COMMAND, frame.DATA);
   }
 
   function connect() {
-    const mine = new WebSocket('ws://' + location.host + '/');
-    mine.binaryType = 'arraybuffer';
-    socket = mine;
-    mine.onopen = () => {
-      wait = 250;
-      on.state('connected', 'open');
-      say('LIMBER_LOG', true);
-      for (const path of hearers.keys()) say('LISTEN', path);
+    const newSocket = new WebSocket('ws://' + location.host + '/');
+    newSocket.binaryType = 'arraybuffer';
+    socket = newSocket;
+    newSocket.onopen = () => {
+      retryDelay = 250;
+      on.state('Connected', 'open');
+      sendCommand('LIMBER_LOG', true);
+      for (const path of listeners.keys()) sendCommand('LISTEN', path);
       on.open();
     };
-    mine.onmessage = take;
-    mine.onclose = () => {
-      if (socket !== mine) return;
-      on.state('not connected', 'lost');
-      setTimeout(connect, wait);
-      wait = Math.min(2 * wait, 4000);
+    newSocket.onmessage = receive;
+    newSocket.onclose = () => {
+      if (socket !== newSocket) return;
+      on.state('Not connected', 'lost');
+      setTimeout(connect, retryDelay);
+      retryDelay = Math.min(2 * retryDelay, 4000);
     };
   }
 

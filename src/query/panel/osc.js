@@ -1,4 +1,4 @@
-// OSC packets: what the WebSocket carries both ways.
+// Encodes and decodes the OSC packets sent over the WebSocket.
 'use strict';
 
 const osc = (() => {
@@ -12,13 +12,13 @@ const osc = (() => {
     return out;
   }
 
-  function four(write) {
+  function bytes4(write) {
     const out = new Uint8Array(4);
     write(new DataView(out.buffer));
     return out;
   }
 
-  // the arguments of a message as the tree's TYPE says; T takes true or false, N nothing
+  // Encodes a message with the type tags of the tree's TYPE. T takes a boolean and N no argument.
   function encode(address, tags, args) {
     let written = '';
     const pieces = [];
@@ -32,8 +32,8 @@ const osc = (() => {
         const value = args[at++];
         if (tag === 'T') written += value ? 'T' : 'F';
         if (tag === 's') { written += 's'; pieces.push(padded(String(value))); }
-        if (tag === 'i') { written += 'i'; pieces.push(four((v) => v.setInt32(0, Math.round(value)))); }
-        if (tag === 'f') { written += 'f'; pieces.push(four((v) => v.setFloat32(0, value))); }
+        if (tag === 'i') { written += 'i'; pieces.push(bytes4((v) => v.setInt32(0, Math.round(value)))); }
+        if (tag === 'f') { written += 'f'; pieces.push(bytes4((v) => v.setFloat32(0, value))); }
         if (tag === 'h') {
           written += 'h';
           const out = new Uint8Array(8);
@@ -49,7 +49,7 @@ const osc = (() => {
     return packet;
   }
 
-  // {address, args}; null for what is none of the kinds that come here
+  // Decodes a packet to {address, args}; returns null if it is malformed.
   function decode(buffer) {
     const bytes = new Uint8Array(buffer);
     const view = new DataView(buffer);

@@ -1,57 +1,57 @@
-// The page: transport, behaviours, parameters as the tree has them, search, messages.
+// The page: transport, behaviors, parameters, search and messages.
 'use strict';
 
 (() => {
   const byId = (id) => document.getElementById(id);
-  const opened = new Set(['/scene', '/physics/sim']);  // paths whose contents are shown
-  const isThing = (node) => node.CONTENTS !== undefined;
+  const expandedPaths = new Set(['/scene', '/physics/sim']);  // paths of the expanded objects
+  const isObject = (node) => node.CONTENTS !== undefined;
   const children = (node) => Object.values(node.CONTENTS || {});
 
-  // ---- things that open: their contents are fetched, and heard, only while they are open
+  // ---- expandable objects: their contents are fetched and listened to only while they are expanded
 
-  function thing(path, title, fill) {
+  function objectSection(path, title, fill) {
     const box = widgets.element('details');
     const summary = widgets.element('summary');
-    const inside = widgets.element('div', 'inside');
+    const contents = widgets.element('div', 'inside');
     if (title) summary.append(title);
-    box.append(summary, inside);
+    box.append(summary, contents);
     box.dataset.path = path;
     let rows = [];
-    let turn = 0;
+    let version = 0;
     const free = () => { for (const r of rows.splice(0)) r.free(); };
-    async function renew() {
-      const mine = ++turn;
+    async function refresh() {
+      const ownVersion = ++version;
       let node;
       try { node = await link.get(path, '?LIMBER_DEPTH=1'); } catch (error) { return; }
-      if (mine !== turn || !box.open) return;
+      if (ownVersion !== version || !box.open) return;
       free();
-      inside.replaceChildren();
-      rows = fill(node, inside);
+      contents.replaceChildren();
+      rows = fill(node, contents);
     }
     function close() {
-      turn++;
+      version++;
       free();
-      inside.replaceChildren();
+      contents.replaceChildren();
     }
     box.addEventListener('toggle', () => {
-      if (box.open) { opened.add(path); renew(); } else { opened.delete(path); close(); }
+      if (box.open) { expandedPaths.add(path); refresh(); } else { expandedPaths.delete(path); close(); }
     });
-    box.open = opened.has(path);
-    return { element: box, summary, free: close, renew, path, holds: () => rows };
+    box.open = expandedPaths.has(path);
+    return { element: box, summary, free: close, refresh, path, children: () => rows };
   }
 
-  function plainFill(node, inside) {
-    const made = [];
+  function fillProperties(node, contents) {
+    const items = [];
     for (const child of children(node)) {
-      const part = isThing(child) ? thing(child.FULL_PATH, widgets.label(child), plainFill) : widgets.row(child);
-      inside.append(part.element);
-      made.push(part);
+      const part = isObject(child) ? objectSection(child.FULL_PATH, widgets.label(child), fillProperties) : widgets.row(child);
+      contents.append(part.element);
+      items.push(part);
     }
-    if (made.length === 0) inside.append(widgets.element('p', 'none', 'nothing here'));
-    return made;
+    if (items.length === 0) contents.append(widgets.element('p', 'none', 'Empty'));
+    return items;
   }
 
-  // ---- parameters: the scene's first, then the world, then everything by its place in the tree
+  // ---- parameters: the scene's first, then the world's, then the rest of the tree
 
   let sections = [];
 
@@ -62,27 +62,27 @@
     const top = [root.CONTENTS.scene, physics && physics.CONTENTS.sim, physics && physics.CONTENTS.body, root.CONTENTS.osc]
       .concat(children(physics || {}).filter((c) => !['sim', 'body', 'group'].includes(widgets.label(c))))
       .concat(children(root).filter((c) => !['scene', 'physics', 'osc', 'transport'].includes(widgets.label(c))));
-    const titles = { '/physics/sim': 'world', '/physics/body': 'bodies', '/osc': 'OSC counters' };
+    const titles = { '/physics/sim': 'World', '/physics/body': 'Bodies', '/osc': 'OSC counters' };
     const place = byId('parameters');
     place.replaceChildren();
     for (const node of top) {
       if (!node || children(node).length === 0) continue;
-      const section = isThing(node) ? thing(node.FULL_PATH, titles[node.FULL_PATH] || widgets.label(node), plainFill) : widgets.row(node);
+      const section = isObject(node) ? objectSection(node.FULL_PATH, titles[node.FULL_PATH] || widgets.sentenceCase(widgets.label(node)), fillProperties) : widgets.row(node);
       place.append(section.element);
       sections.push(section);
     }
   }
 
-  // ---- behaviours: groups first, then each body's own
+  // ---- behaviors: groups first, then those of single bodies
 
   let behaviors = [];
 
   function behavior(active, title, of) {
     const path = active.FULL_PATH.slice(0, active.FULL_PATH.lastIndexOf('/'));
-    const part = thing(path, null, (node, inside) => {
-      const inner = Object.assign({}, node, { CONTENTS: Object.assign({}, node.CONTENTS) });
-      delete inner.CONTENTS.active;
-      return plainFill(inner, inside);
+    const part = objectSection(path, null, (node, contents) => {
+      const withoutActive = Object.assign({}, node, { CONTENTS: Object.assign({}, node.CONTENTS) });
+      delete withoutActive.CONTENTS.active;
+      return fillProperties(withoutActive, contents);
     });
     const wrap = widgets.element('label', 'toggle');
     const input = widgets.element('input');
@@ -94,9 +94,9 @@
     wrap.addEventListener('click', (event) => event.stopPropagation());
     input.addEventListener('change', () => link.send(active.FULL_PATH, 'T', [input.checked]));
     input.checked = active.VALUE[0];
-    const quiet = link.listen(active.FULL_PATH, (values) => { input.checked = values[0]; });
+    const unlisten = link.listen(active.FULL_PATH, (values) => { input.checked = values[0]; });
     const close = part.free;
-    part.free = () => { quiet(); close(); };
+    part.free = () => { unlisten(); close(); };
     return part;
   }
 
@@ -117,30 +117,30 @@
     const name = (row, at) => widgets.name(row.FULL_PATH.split('/').slice(0, at + 1).join('/'));
     for (const row of rows.filter((r) => r.FULL_PATH.startsWith('/physics/group/'))) {
       groups.add(name(row, 3));
-      show(row, name(row, 3), 'group');
+      show(row, name(row, 3), 'Group');
     }
     for (const row of rows) {
       const of = row.FULL_PATH.startsWith('/physics/body/') && !groups.has(name(row, 5));
       if (of) show(row, name(row, 5), name(row, 3));
     }
-    if (behaviors.length === 0) place.append(widgets.element('p', 'none', 'this scene has none'));
-    if (found.MORE) place.append(widgets.element('p', 'none', 'and more: search for active'));
+    if (behaviors.length === 0) place.append(widgets.element('p', 'none', 'No behaviors'));
+    if (found.MORE) place.append(widgets.element('p', 'none', 'There are more: search for "active"'));
   }
 
-  // ---- search: the server looks through all paths
+  // ---- search: the server searches all paths
 
   let foundRows = [];
-  let searching = 0;
+  let searchVersion = 0;
 
   async function search() {
     const words = byId('search').value.trim();
-    const mine = ++searching;
+    const ownVersion = ++searchVersion;
     const place = byId('found');
     let found = { FOUND: [], MORE: false };
     if (words) {
       try { found = await link.get('/', '?LIMBER_FIND=' + encodeURIComponent(words)); } catch (error) { return; }
     }
-    if (mine !== searching) return;
+    if (ownVersion !== searchVersion) return;
     for (const r of foundRows.splice(0)) r.free();
     place.replaceChildren();
     place.hidden = !words;
@@ -150,8 +150,8 @@
       foundRows.push(row);
       place.append(row.element);
     }
-    if (words && foundRows.length === 0) place.append(widgets.element('p', 'none', 'nothing is called so'));
-    if (found.MORE) place.append(widgets.element('p', 'none', 'there are more; another word narrows it'));
+    if (words && foundRows.length === 0) place.append(widgets.element('p', 'none', 'No results'));
+    if (found.MORE) place.append(widgets.element('p', 'none', 'There are more results; add a word'));
   }
 
   // ---- messages
@@ -184,22 +184,22 @@
   function showPaused(values) {
     paused = Boolean(values[0]);
     byId('play').setAttribute('aria-pressed', String(paused));
-    byId('play').setAttribute('aria-label', paused ? 'play' : 'pause');
+    byId('play').setAttribute('aria-label', paused ? 'Play' : 'Pause');
     byId('play-shape').setAttribute('d', paused ? PLAY : PAUSE);
   }
   function showTime([seconds]) {
     const rest = (seconds % 60).toFixed(2).padStart(5, '0');
     byId('time').textContent = Math.floor(seconds / 60) + ':' + rest;
   }
-  // lit while what it counts grows
+  // Returns a callback that lights a lamp for 400 ms when the counter changes.
   function lamp(id) {
     let last = null;
-    let out = 0;
+    let timer = 0;
     return ([count]) => {
       if (last !== null && count !== last) {
         byId(id).classList.add('lit');
-        clearTimeout(out);
-        out = setTimeout(() => byId(id).classList.remove('lit'), 400);
+        clearTimeout(timer);
+        timer = setTimeout(() => byId(id).classList.remove('lit'), 400);
       }
       last = count;
     };
@@ -215,11 +215,11 @@
   }
   function showPresets([names]) {
     const list = byId('presets');
-    list.replaceChildren(new Option('preset', ''));
+    list.replaceChildren(new Option('Preset', ''));
     for (const name of names.split('\n').filter(Boolean)) list.append(new Option(name, name));
     list.disabled = list.options.length === 1;
   }
-  // of the take: its name, whether it is replayed, whether it plays in the place of the show
+  // state of the take: its name, whether it is being replayed, whether it plays instead of the live scene
   const take = { name: '', replays: false, plays: false };
   function showTake(key) {
     return ([value]) => {
@@ -230,26 +230,26 @@
     };
   }
 
-  // ---- what comes and goes
+  // ---- added, removed and changed paths
 
-  let due = 0;
+  let refreshTimer = 0;
   const changedPaths = new Set();
 
-  function renewOpen(parts) {
+  function refreshExpanded(parts) {
     for (const part of parts) {
-      if (!part.renew || !part.element.open) continue;
-      const touched = [...changedPaths].some((p) => p.slice(0, p.lastIndexOf('/')) === part.path || p === part.path);
-      if (touched) part.renew(); else renewOpen(part.holds());
+      if (!part.refresh || !part.element.open) continue;
+      const affected = [...changedPaths].some((p) => p.slice(0, p.lastIndexOf('/')) === part.path || p === part.path);
+      if (affected) part.refresh(); else refreshExpanded(part.children());
     }
   }
-  function notice(command, path) {
+  function onPathEvent(command, path) {
     changedPaths.add(path);
-    clearTimeout(due);
-    due = setTimeout(() => {
+    clearTimeout(refreshTimer);
+    refreshTimer = setTimeout(() => {
       const all = [...changedPaths];
       if (all.some((p) => p === '/' || p.split('/').length <= 3)) return load();
-      renewOpen(sections);
-      renewOpen(behaviors);
+      refreshExpanded(sections);
+      refreshExpanded(behaviors);
       if (all.some((p) => /[/](behavior|group|body)([/]|$)/.test(p))) showBehaviors();
       changedPaths.clear();
     }, 200);
@@ -262,7 +262,7 @@
       await showBehaviors();
       if (byId('search').value) search();
     } catch (error) {
-      message('error', 'the tree could not be read: ' + error.message);
+      message('error', 'Reading the tree failed: ' + error.message);
     }
   }
 
@@ -271,7 +271,7 @@
     byId('link').textContent = text;
     byId('link').className = 'link ' + kind;
   };
-  link.on.notice = notice;
+  link.on.pathEvent = onPathEvent;
   link.on.log = (lines) => { for (const line of lines) message(line.LEVEL, line.TEXT); };
   link.on.error = (address, text) => message('error', address + ': ' + text);
 
@@ -283,7 +283,7 @@
   byId('presets').addEventListener('change', () => {
     const list = byId('presets');
     if (list.value) link.send('/preset/recall', 's', [list.value]);
-    list.value = '';  // the same one can be chosen again
+    list.value = '';  // so that the same preset can be selected again
   });
   byId('record').addEventListener('click', () => link.send(take.name && !take.replays ? '/take/stop' : '/take/record', '', []));
   byId('play-take').addEventListener('click', () => link.send(take.plays ? '/take/stop' : '/take/play', '', []));

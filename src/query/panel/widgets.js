@@ -1,4 +1,4 @@
-// Widgets: one for each kind of row, made from what the tree says of it, kept true by what is heard of it.
+// Widgets: creates the control for a property from its OSCQuery attributes and keeps it up to date.
 'use strict';
 
 const widgets = (() => {
@@ -6,13 +6,13 @@ const widgets = (() => {
   const AXES = ['x', 'y', 'z', 'w'];
 
   function element(kind, name, text) {
-    const made = document.createElement(kind);
-    if (name) made.className = name;
-    if (text !== undefined) made.textContent = text;
-    return made;
+    const created = document.createElement(kind);
+    if (name) created.className = name;
+    if (text !== undefined) created.textContent = text;
+    return created;
   }
 
-  function picture(path) {
+  function icon(path) {
     const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
     svg.setAttribute('viewBox', '0 0 16 16');
     svg.setAttribute('aria-hidden', 'true');
@@ -22,14 +22,15 @@ const widgets = (() => {
     return svg;
   }
 
-  // a thing's own name, and a row's as words
+  // name(): the unescaped name of a node; label(): the same with spaces instead of underscores for properties
   const name = (path) => decodeURIComponent(path.slice(path.lastIndexOf('/') + 1));
   const label = (node) => (node.CONTENTS ? name(node.FULL_PATH) : name(node.FULL_PATH).replace(/_/g, ' '));
+  const sentenceCase = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const flat = (values) => (values || []).flat();
-  // beyond what a float on the wire loses
+  // true if the difference exceeds the rounding of 32-bit floats in OSC messages
   const differs = (a, b) => a !== b && !(Math.abs(a - b) <= 1e-6 * Math.max(Math.abs(a), Math.abs(b)));
 
-  // hue, saturation, brightness (0 .. 1) as #rrggbb, and back
+  // convert hue, saturation, brightness (0 .. 1) to #rrggbb and back
   function toHex([h, s, b]) {
     const channel = (n) => {
       const k = (n + 6 * h) % 6;
@@ -39,14 +40,15 @@ const widgets = (() => {
   }
   function fromHex(hex) {
     const [r, g, b] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
-    const most = Math.max(r, g, b);
-    const span = most - Math.min(r, g, b);
-    if (span === 0) return [0, 0, most];
-    const sector = most === r ? ((g - b) / span + 6) % 6 : most === g ? (b - r) / span + 2 : (r - g) / span + 4;
-    return [sector / 6, span / most, most];
+    const max = Math.max(r, g, b);
+    const span = max - Math.min(r, g, b);
+    if (span === 0) return [0, 0, max];
+    const sector = max === r ? ((g - b) / span + 6) % 6 : max === g ? (b - r) / span + 2 : (r - g) / span + 4;
+    return [sector / 6, span / max, max];
   }
 
-  // each kind: fill(node, box, changed) adds its elements and gives {show(values), held()}; changed(values) is the hand
+  // Each kind of control is a function (node, box, changed) that adds its elements to `box` and returns {show(values),
+  // dragging()}. It calls changed(values) on user input.
   function toggles(node, box, changed) {
     const names = node.TYPE.length > 1 ? AXES : [''];
     const boxes = [...node.TYPE].map((tag, i) => {
@@ -83,13 +85,13 @@ const widgets = (() => {
   function numbers(node, box, changed) {
     const tags = [...node.TYPE.replace(/[[\]]/g, '')];
     const ranges = flat(node.RANGE);
-    const usual = flat(node.DEFAULT_VALUE || node.VALUE);
+    const typical = flat(node.DEFAULT_VALUE || node.VALUE);
     let release = () => {};
     const list = tags.map((tag, i) => {
       const range = ranges[i] || {};
       const options = {
         min: range.MIN === undefined ? -Infinity : range.MIN, max: range.MAX === undefined ? Infinity : range.MAX,
-        usual: usual[i] || 0, whole: tag !== 'f', label: label(node) + (tags.length > 1 ? ' ' + AXES[i] : ''),
+        typical: typical[i] || 0, whole: tag !== 'f', label: label(node) + (tags.length > 1 ? ' ' + AXES[i] : ''),
       };
       const bar = bars.make(options, () => changed(list.map((b) => b.value)));
       bar.release = () => release();
@@ -99,20 +101,20 @@ const widgets = (() => {
     });
     return {
       show: (values) => list.forEach((b, i) => b.show(values[i])),
-      held: () => list.some((b) => b.held),
+      dragging: () => list.some((b) => b.dragging),
       onRelease(done) { release = done; },
     };
   }
 
-  function told(node, box) {
-    const out = element('output', 'told' + (label(node) === 'error' ? ' fault' : ''));
-    box.append(out);
-    const text = (v) => (typeof v === 'number' ? bars.shown(v, node.TYPE === 'i' || node.TYPE === 'h') : v === true ? 'yes' : v === false ? 'no' : String(v));
-    return { show: (values) => { out.textContent = values.map(text).join('  '); } };
+  function readout(node, box) {
+    const output = element('output', 'readout' + (label(node) === 'error' ? ' fault' : ''));
+    box.append(output);
+    const text = (v) => (typeof v === 'number' ? bars.format(v, node.TYPE === 'i' || node.TYPE === 'h') : v === true ? 'yes' : v === false ? 'no' : String(v));
+    return { show: (values) => { output.textContent = values.map(text).join('  '); } };
   }
 
   function action(node, box) {
-    const press = element('button', '', label(node));
+    const press = element('button', '', sentenceCase(label(node)));
     const fields = [...node.TYPE].filter((tag) => tag === 'f').map((tag, i) => {
       const field = element('input', 'number');
       field.type = 'number';
@@ -129,68 +131,68 @@ const widgets = (() => {
 
   function kind(node) {
     if (node.ACCESS === 2) return action;
-    if (node.ACCESS === 1) return told;
+    if (node.ACCESS === 1) return readout;
     if (/^T+$/.test(node.TYPE)) return toggles;
-    if (node.TYPE === 's') return node.RANGE ? choice : told;
+    if (node.TYPE === 's') return node.RANGE ? choice : readout;
     if (node.EXTENDED_TYPE && node.EXTENDED_TYPE[0] === 'hue') return color;
     return numbers;
   }
 
-  function hint(node) {
+  function tooltip(node) {
     const range = flat(node.RANGE)[0];
     const unit = flat(node.UNIT)[0];
-    const between = range && range.MIN !== undefined && range.MAX !== undefined ? range.MIN + ' .. ' + range.MAX : '';
-    return [node.DOC || node.DESCRIPTION, [between, unit].filter(Boolean).join(' '), node.FULL_PATH].filter(Boolean).join('\n');
+    const limits = range && range.MIN !== undefined && range.MAX !== undefined ? range.MIN + ' .. ' + range.MAX : '';
+    return [node.DOC || node.DESCRIPTION, [limits, unit].filter(Boolean).join(' '), node.FULL_PATH].filter(Boolean).join('\n');
   }
 
-  // What the hand sets goes out as fast as frames are drawn, the newest only; what is heard meanwhile waits until the
-  // hand lets go. Gives {element, free()}.
+  // Creates the row of a property and returns {element, free()}. User input is sent at most once per animation frame,
+  // only the latest value. Values received while the user drags are shown after the release.
   function row(node, withPath) {
     const box = element('div', 'row');
     const title = element('span', 'name');
-    title.title = hint(node);
+    title.title = tooltip(node);
     title.append(element('span', 'label', label(node)));
     const unit = flat(node.UNIT)[0];
     if (unit) title.append(element('span', 'unit', unit));
     const widget = element('div', 'widget');
     box.append(title, widget);
-    let due = null;
-    let late = null;
+    let unsent = null;
+    let deferred = null;
     let frame = 0;
     const standard = node.DEFAULT_VALUE && flat(node.DEFAULT_VALUE);
-    function mark(values) {
+    function highlight(values) {
       if (standard) box.classList.toggle('set', standard.some((v, i) => differs(v, values[i])));
     }
     function changed(values) {
-      late = null;
-      due = values;
-      mark(values);
-      if (!frame) frame = requestAnimationFrame(() => { frame = 0; link.send(node.FULL_PATH, node.TYPE, due); });
+      deferred = null;
+      unsent = values;
+      highlight(values);
+      if (!frame) frame = requestAnimationFrame(() => { frame = 0; link.send(node.FULL_PATH, node.TYPE, unsent); });
     }
     const make = kind(node);
     box.classList.toggle('short', make !== numbers && make !== action && node.TYPE.length === 1);
     box.classList.toggle('pressed', make === action);
     const part = make(node, widget, changed);
-    const held = () => part.held !== undefined && part.held();
-    function hear(values) {
-      if (held()) { late = values; return; }
+    const dragging = () => part.dragging !== undefined && part.dragging();
+    function receive(values) {
+      if (dragging()) { deferred = values; return; }
       part.show(values);
-      mark(values);
+      highlight(values);
     }
-    if (part.onRelease) part.onRelease(() => { if (late) { const values = late; late = null; hear(values); } });
+    if (part.onRelease) part.onRelease(() => { if (deferred) { const values = deferred; deferred = null; receive(values); } });
     if (standard && node.ACCESS === 3) {
       const reset = element('button', 'reset');
-      reset.title = 'back to the default: ' + standard.join(' ');
-      reset.setAttribute('aria-label', label(node) + ' back to its default');
-      reset.append(picture(RESET));
+      reset.title = 'Reset to the default: ' + standard.join(' ');
+      reset.setAttribute('aria-label', 'Reset ' + label(node) + ' to its default');
+      reset.append(icon(RESET));
       reset.addEventListener('click', () => { part.show(standard); changed(standard); });
       box.append(reset);
     }
     if (withPath) box.append(element('span', 'path', node.FULL_PATH));
-    if (node.VALUE) hear(flat(node.VALUE));
-    const quiet = node.ACCESS === 2 ? () => {} : link.listen(node.FULL_PATH, hear);
-    return { element: box, free: quiet };
+    if (node.VALUE) receive(flat(node.VALUE));
+    const unlisten = node.ACCESS === 2 ? () => {} : link.listen(node.FULL_PATH, receive);
+    return { element: box, free: unlisten };
   }
 
-  return { row, element, label, name };
+  return { row, element, label, name, sentenceCase };
 })();

@@ -1,2 +1,2 @@
--- Beside these, scripts see the following names of Lua's own, as LuaJIT has them:
+-- In addition, scripts see the following names of Lua's own libraries, as implemented by LuaJIT:
 ---@names

@@ -1,5 +1,5 @@
--- What every other prelude file stands on: the door to C++, errors that stand at the script's line, near names.
--- These files are trusted and see ffi and debug; scripts see only what 90_sandbox.lua puts into their environment.
+-- Basis of all prelude files: the C API, errors attributed to the script's line, name suggestions. Prelude files are
+-- trusted and can use ffi and debug; scripts see only the environment from 90_sandbox.lua.
 local P = ...
 local ffi = require("ffi")
 
@@ -30,12 +30,12 @@ local ctx = ffi.cast("void*", P.context)
 local answer = api.answer(ctx)
 local getinfo, format, sub, byte, concat = debug.getinfo, string.format, string.sub, string.byte, table.concat
 
-P.entry = {}       -- what C++ calls
-P.on_failure = {}  -- run after a guarded call that failed
-P.metas = {}       -- metatables of cdata by the number of the type
+P.entry = {}       -- functions called from C++
+P.on_failure = {}  -- functions to run after a guarded call that failed
+P.metatables = {}  -- metatables of cdata by the number of the type
 local metatype = ffi.metatype
 function ffi.metatype(ctype, meta)
-  P.metas[tonumber(ffi.typeof(ctype))] = meta
+  P.metatables[tonumber(ffi.typeof(ctype))] = meta
   return metatype(ctype, meta)
 end
 
@@ -44,8 +44,8 @@ P.ffi, P.api, P.ctx, P.answer, P.view = ffi, api, ctx, answer, api.view(ctx)
 -- the text of the last answer
 function P.text() return ffi.string(answer.text, answer.length) end
 
--- file and line of the nearest script on the stack; prelude files have names without @
-function P.where(level)
+-- file and line of the innermost script function on the stack; names of prelude files do not begin with @
+function P.script_place(level)
   for l = level or 2, 200 do
     local info = getinfo(l, "Sl")
     if not info then return nil end
@@ -53,10 +53,10 @@ function P.where(level)
   end
 end
 
--- an error that stands at the script's line, whatever prelude function found it
+-- raises an error at the script's line, whichever prelude function detected it
 function P.fail(text, ...)
   if select("#", ...) > 0 then text = format(text, ...) end
-  local file, line = P.where(3)
+  local file, line = P.script_place(3)
   error(file and format("%s:%d: %s", file, line, text) or text, 0)
 end
 
@@ -75,7 +75,7 @@ function P.sorted_keys(t)
   return keys
 end
 
--- what an error says that was given; P.label_of knows things (30_things.lua)
+-- text of a value for error messages; labels of objects are added in 30_things.lua
 function P.describe(value)
   local kind = type(value)
   if kind == "nil" then return "nothing" end
@@ -85,57 +85,61 @@ function P.describe(value)
   return "a " .. kind
 end
 
--- a warning that is said once for each line of the script
-local said = {}
+-- logs a warning, at most once for each line of the script
+local warned = {}
 function P.warn_once(text)
-  local file, line = P.where(3)
+  local file, line = P.script_place(3)
   local key = file and format("%s:%d", file, line) or "?"
-  if said[key] then return end
-  said[key] = true
+  if warned[key] then return end
+  warned[key] = true
   text = file and format("%s: %s", key, text) or text
   api.warn(ctx, text, #text)
 end
 
--- what the door answered a write, an action or a making; label tells whom it was about
-function P.check(code, gone, thing)
+-- handles the result code of a write, an action or a creation; `fail_removed` raises the error for a removed object
+function P.check(code, fail_removed, object)
   if code == 0 then return end
   if code == 1 then return P.warn_once(P.text()) end
-  if code == -2 then return gone(thing) end
+  if code == -2 then return fail_removed(object) end
   P.fail("%s", P.text())
 end
 
--- what a behaviour may do only in its functions
-local function fail_in_behavior(what)
-  P.fail("%s acts on the running scene; a behavior acts in its start and step", what)
+-- Checks. `subject`: the start of the error message, such as "sim:every" or "add_part: mass".
+
+-- error for functions that a behavior can use only in its start and step
+local function fail_in_behavior(subject)
+  P.fail("%s acts on the running scene; a behavior acts in its start and step", subject)
 end
 
--- actions change a running world; the top level describes one
-function P.needs_callback(what)
+-- actions change a running world; the top level only describes it
+function P.needs_callback(subject)
   if answer.top_level ~= 0 then
-    if answer.in_behavior ~= 0 then fail_in_behavior(what) end
-    P.fail("%s acts on the running scene; at the top level use sim:on_start(function() … end)", what)
+    if answer.in_behavior ~= 0 then fail_in_behavior(subject) end
+    P.fail("%s acts on the running scene; at the top level use sim:on_start(function() … end)", subject)
   end
 end
-function P.needs_top_level(what)
-  if answer.top_level == 0 then P.fail("%s declares something about the scene; write it at the top level", what) end
+function P.needs_top_level(subject)
+  if answer.top_level == 0 then P.fail("%s declares something about the scene; write it at the top level", subject) end
 end
 
--- things and callbacks are the scene's; a behaviour moves what is there
-function P.needs_scene(what)
+-- only the scene creates objects and registers callbacks; a behavior controls existing objects
+function P.needs_scene(subject)
   if answer.in_behavior ~= 0 then
-    P.fail("%s makes or registers something: that is the scene's; a behavior moves what is there", what)
+    P.fail("%s creates or registers something, which only a scene can do; a behavior controls existing objects", subject)
   end
 end
 
-function P.want_function(f, what)
-  if type(f) ~= "function" then P.fail("%s takes a function, not %s", what, P.describe(f)) end
+function P.want_function(f, subject)
+  if type(f) ~= "function" then P.fail("%s takes a function, not %s", subject, P.describe(f)) end
 end
-function P.want_number(x, what)
-  if type(x) ~= "number" then P.fail("%s takes a number, not %s", what, P.describe(x)) end
-  if x ~= x or x == math.huge or x == -math.huge then P.fail("%s takes a finite number, not %s", what, tostring(x)) end
+function P.want_number(x, subject)
+  if type(x) ~= "number" then P.fail("%s takes a number, not %s", subject, P.describe(x)) end
+  if x ~= x or x == math.huge or x == -math.huge then
+    P.fail("%s takes a finite number, not %s", subject, tostring(x))
+  end
   return x
 end
-function P.want_text(x, what)
-  if type(x) ~= "string" then P.fail("%s takes text, not %s", what, P.describe(x)) end
+function P.want_text(x, subject)
+  if type(x) ~= "string" then P.fail("%s takes text, not %s", subject, P.describe(x)) end
   return x
 end

@@ -1,5 +1,5 @@
--- Replaces functions of Lua's libraries that some release of LuaJIT compiles to results other than the interpreter's.
--- The interpreter runs a loop at first and compiled code runs it later, so that a script would depend on that moment.
+-- Replaces functions of Lua's libraries for which some release of LuaJIT compiles code that gives other results than
+-- the interpreter. Since a loop is interpreted at first and compiled later, results would depend on that moment.
 --   math.min, math.max   NaN and -0                      2.1.0-beta3 (Debian 12)
 --   math.ceil            -0                              2.1.0-beta3 of 2022 (Debian 12)
 --   string.sub           positions outside of the text   all; 2.1.1737090214 (Debian 13) also crashes
@@ -9,7 +9,7 @@ local api, fail, describe = P.api, P.fail, P.describe
 local native_sub, native_byte = string.sub, string.byte
 P.native_sub = native_sub  -- for code that is never compiled
 
--- Compares two numbers in C, as the C code of standard Lua does: the first one wins a tie, and NaN loses against it.
+-- Compares two numbers in C like standard Lua: the first one wins a tie, and NaN loses.
 local function replace_extreme(name, choose)
   local function want(value)
     local number = tonumber(value)
@@ -30,7 +30,7 @@ end
 replace_extreme("min", api.min)
 replace_extreme("max", api.max)
 
--- -0 between -1 and 0, as the C library
+-- -0 between -1 and 0, like the C library
 local floor = math.floor
 function math.ceil(x)
   if type(x) ~= "number" then
@@ -41,7 +41,7 @@ function math.ceil(x)
   return -floor(-x)
 end
 
--- first and last position of a part of a text of n bytes, between 1 and n unless the part is empty
+-- first and last position of a substring of a text of n bytes, between 1 and n unless the substring is empty
 local function bounds(n, first, last)
   if first < 0 then first = n + first + 1 end
   if not (first >= 1) then first = 1 end
@@ -50,16 +50,16 @@ local function bounds(n, first, last)
   return first, last
 end
 
-local function want_text(value, what)
+local function want_text(value, name)
   if type(value) == "string" then return value end
   if type(value) == "number" then return tostring(value) end
-  fail("string.%s takes text, not %s", what, describe(value))
+  fail("string.%s takes text, not %s", name, describe(value))
 end
--- an integer; NaN is 0
-local function want_position(value, missing, what)
+-- an integer; NaN becomes 0
+local function want_position(value, missing, name)
   if value == nil then return missing end
   local number = tonumber(value)
-  if not number then fail("string.%s takes a number there, not %s", what, describe(value)) end
+  if not number then fail("string.%s takes a number there, not %s", name, describe(value)) end
   if number ~= number then return 0 end
   return number < 0 and -math.floor(-number) or math.floor(number)
 end
@@ -80,7 +80,7 @@ function string.byte(text, first, last)
   return native_byte(text, first, last)
 end
 
--- x64 rounds to the nearest integer, and takes it modulo 2^32; a sum rounds so.
+-- x64 rounds to the nearest integer modulo 2^32; adding and subtracting kShift rounds in the same way
 if jit.arch ~= "x64" then
   local kShift = 2 ^ 52 + 2 ^ 51
   local function whole(x) return (x + kShift - kShift) % 2 ^ 32 end

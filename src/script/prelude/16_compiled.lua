@@ -1,18 +1,18 @@
--- Faults of LuaJIT's compiler from which no replaced function protects. The functions of scripts that would run into one
--- are interpreted, or compiled without the optimization that has it. Each fault has a test in tests/script/luajit_faults/
--- and a row in docs/luajit.md.
+-- Works around faults of LuaJIT's compiler that replaced functions can't prevent. Affected functions of scripts are
+-- interpreted, or compiled without the faulty optimization. Each fault has a test in tests/script/luajit_faults/ and an
+-- entry in docs/luajit.md.
 local P = ...
 local util = require("jit.util")
 local funcbc, funck = util.funcbc, util.funck
 local band, rshift = bit.band, bit.rshift
 
 -- Debian 12 has 2.1.0-beta3: libluajit-5.1 of 2022 and libluajit2-5.1 of 2023. Later releases have numbers.
-local kOld = jit.version == "LuaJIT 2.1.0-beta3"
+local kBeta3 = jit.version == "LuaJIT 2.1.0-beta3"
 
--- Array accesses beyond the end: checks of an index are left out where a table changes, and cost nothing measurable.
+-- Array bounds check elimination is faulty for tables that change; turning it off has no measurable cost.
 jit.opt.start("-abc")
 
--- names of opcodes that matter here, by what the parser makes of texts: the instruction at `at`
+-- names of the relevant opcodes, found by compiling sample texts: the instruction at `at`
 local names = {}
 local function opcode(text, at) return (band(funcbc(loadstring(text), at), 0xff)) end
 local function name_opcode(name, text, at) names[opcode(text, at)] = name end
@@ -34,9 +34,9 @@ name_opcode("loop", "for i = 1, 2 do end", 4)
 name_opcode("loop", "while true do end", 1)
 name_opcode("loop", "for a in f do end", 4)
 name_opcode("loop", "for a in pairs(f) do end", 4)
-local kMove = opcode("local f f()", 2)  -- those before it compare: their first operand is no result
+local kMove = opcode("local f f()", 2)  -- opcodes before it are comparisons; their first operand is not a result
 
--- Whether the table that the instruction at `at` makes in register r is only an argument of a call.
+-- True if the table created in register r by the instruction at `at` is only used as an argument of a call.
 local function is_argument(proto, at, r)
   while true do
     at = at + 1
@@ -49,7 +49,7 @@ local function is_argument(proto, at, r)
   end
 end
 
--- What a function has that matters.
+-- Collects the relevant properties of a function.
 local function scan(proto)
   local found, fresh, empty, last_empty = {}, {}, -1, -1
   local at = 0
@@ -60,11 +60,11 @@ local function scan(proto)
     local op, a, b, c = band(ins, 0xff), band(rshift(ins, 8), 0xff), rshift(ins, 24), band(rshift(ins, 16), 0xff)
     local name = names[op]
     if name == "vararg" then
-      -- a fixed number of values, where compiled code may have begun inside the function, not knowing the caller
+      -- a fixed number of values: compiled code that starts inside the function does not know the caller
       if b ~= 0 and (found.call or found.loop) then found.misread = true end
     elseif name == "new" or name == "constant" then
       fresh[a] = {}
-      if name == "constant" and not is_argument(proto, at, a) then found.kept = true end
+      if name == "constant" and not is_argument(proto, at, a) then found.constant_stored = true end
     elseif name == "nil" then
       if rshift(ins, 16) == 0 then empty, last_empty = a, a end
     elseif name == "nils" then
@@ -72,7 +72,7 @@ local function scan(proto)
     elseif name == "field" or name == "element" then
       local keys = fresh[b]
       if name == "field" and keys then
-        if keys[c] then found.twice = true end
+        if keys[c] then found.key_twice = true end
         keys[c] = true
       end
       if name == "element" then found.element = true end
@@ -108,9 +108,10 @@ local function interpret(proto)
 end
 function P.is_interpreted(proto) return interpreted[proto] ~= nil end
 
--- Metamethods that make the compilation of a group of functions wrong: until a script has one, the group is compiled.
---   __concat     in functions with `..`: with `...` or pcall as the metamethod it crashes, and an error is lost
---   __newindex   in functions that set elements to nil, on Debian 12: it isn't called for the same table by another name
+-- Metamethods that make compiled code of a group of functions wrong. The group is compiled until a script has such a
+-- metamethod.
+-- __concat     in functions with `..`: crashes with `...` or pcall as the metamethod, and loses errors
+-- __newindex   in functions that set elements to nil, on Debian 12: not called if the table is accessed by another name
 local groups = { __concat = {}, __newindex = {} }
 for _, group in pairs(groups) do group.waiting = setmetatable({}, { __mode = "k" }) end
 local function join_group(name, proto)
@@ -125,8 +126,8 @@ local function interpret_group(name)
   group.waiting = nil
 end
 
--- On Debian 12, the optimization of loops confuses constant tables that a variable holds in turn, and lengths of a table
--- with two names. Scripts that keep such tables, or have lengths and set elements, are compiled without it.
+-- On Debian 12, loop optimization confuses constant tables that a variable holds in turn, and lengths of a table with
+-- two names. Scripts that store such tables, or use lengths and set elements, are compiled without it.
 local loops_optimized, has_length, has_element = true, false, false
 local function forbid_loop_optimization()
   if not loops_optimized then return end
@@ -137,9 +138,9 @@ end
 
 local function inspect(proto, is_chunk)
   local found = scan(proto)
-  if kOld and (found.misread or found.twice or found.outgrown) then interpret(proto) end
+  if kBeta3 and (found.misread or found.key_twice or found.outgrown) then interpret(proto) end
   if found.concat then join_group("__concat", proto) end
-  if kOld and found.clears then join_group("__newindex", proto) end
+  if kBeta3 and found.clears then join_group("__newindex", proto) end
   local uses_tables = false
   constants(proto, function(constant)
     if type(constant) == "proto" then return inspect(constant) end
@@ -147,16 +148,16 @@ local function inspect(proto, is_chunk)
     if constant == "table" then uses_tables = true end
   end)
   if not is_chunk then P.watch(proto) end
-  if not kOld then return end
-  -- one length may be taken for another, although an element was set through another name in between
+  if not kBeta3 then return end
+  -- a length may be reused although an element was set through another name in between
   if found.lengths and (found.element or uses_tables) then interpret(proto) end
   if is_chunk then
-    -- it runs once, and interpreted after a save
-    if found.loop and (found.kept or found.length or uses_tables) then interpret(proto) end
+    -- it runs once, and is interpreted after a reload
+    if found.loop and (found.constant_stored or found.length or uses_tables) then interpret(proto) end
     return
   end
   has_length, has_element = has_length or found.length or uses_tables, has_element or found.element or uses_tables
-  if found.kept or (has_length and has_element) then forbid_loop_optimization() end
+  if found.constant_stored or (has_length and has_element) then forbid_loop_optimization() end
 end
 
 local load = P.load
@@ -166,14 +167,15 @@ function P.load(text, name, env)
   return chunk, fault
 end
 
--- What a metatable gets by a name that no function mentions. Entries of weak tables would go when the collector finds
--- time for them, at another tick in each run, so tables of scripts are never weak.
+-- Handles a metatable field with a name that no function mentions. Entries of weak tables would disappear when the
+-- collector runs, at a different tick in each run, so tables of scripts are never weak.
 local function accept_field(name)
   if name ~= "__mode" then
     interpret_group(name)
     return true
   end
-  P.warn_once("__mode is ignored: entries of weak tables would go at another tick in each run. Remove them by = nil")
+  P.warn_once("__mode is ignored: entries of weak tables would disappear at a different tick in each run. " ..
+    "Remove them with = nil")
   return false
 end
 

@@ -1,7 +1,7 @@
--- Values: vec3, quat, and the three booleans of a flags row. Copies that never change.
--- What a loop over many parts calls returns (f(x)), in parentheses, here and in the files after: LuaJIT's compiler counts
--- a tail call as a turn of a loop and gives a trace up after fifteen. Without the parentheses lua_rotation_target was
--- interpreted, and stopped for its time; lua_alignment took more than twice as long.
+-- Immutable values: vec3, quat, and the three booleans of a flags property.
+-- In this and the following files, functions that may be called in loops over many parts return (f(x)) in parentheses:
+-- LuaJIT's compiler counts a tail call as a loop iteration and aborts a trace after fifteen. Without the parentheses
+-- lua_rotation_target was interpreted, and stopped for its time; lua_alignment took more than twice as long.
 local P = ...
 local ffi, fail, describe = P.ffi, P.fail, P.describe
 local istype, format, sqrt = ffi.istype, string.format, math.sqrt
@@ -9,7 +9,7 @@ local istype, format, sqrt = ffi.istype, string.format, math.sqrt
 local V, Q, F = ffi.typeof("vec3"), ffi.typeof("quat"), ffi.typeof("flags3")
 P.V, P.Q, P.F = V, Q, F
 
--- a vec3, or a table of three numbers as one; else nil
+-- the argument as a vec3: a vec3, or a table of three numbers; else nil
 local function as_vec3(v)
   if istype(V, v) then return v end
   if type(v) == "table" and #v == 3 then
@@ -19,15 +19,15 @@ local function as_vec3(v)
 end
 P.as_vec3 = as_vec3
 
-local function want_vec3(v, what)
+local function want_vec3(v, subject)
   if istype(V, v) then return v end
-  return as_vec3(v) or fail("%s takes a vec3, not %s", what, describe(v))
+  return as_vec3(v) or fail("%s takes a vec3, not %s", subject, describe(v))
 end
 P.want_vec3 = want_vec3
 
-local function want_quat(q, what)
+local function want_quat(q, subject)
   if istype(Q, q) then return q end
-  fail("%s takes a quat, not %s", what, describe(q))
+  fail("%s takes a quat, not %s", subject, describe(q))
 end
 P.want_quat = want_quat
 
@@ -39,23 +39,23 @@ local function unknown_member(kind, methods)
 end
 
 local function never_changes(kind)
-  return function() fail("a %s never changes; set the whole value", kind) end
+  return function() fail("a %s is immutable; assign the whole value", kind) end
 end
 
 local function no_call(kind)
-  return function() fail("this is a %s, no function: members take a dot, only methods a colon", kind) end
+  return function() fail("this is a %s, not a function: use a dot for members, a colon only for methods", kind) end
 end
 
-local function operands(a, b, what)
+local function operands(a, b, verb)
   local u, v = as_vec3(a), as_vec3(b)
-  if not (u and v) then fail("can't %s %s and %s", what, describe(a), describe(b)) end
+  if not (u and v) then fail("can't %s %s and %s", verb, describe(a), describe(b)) end
   return u, v
 end
 
 local function length(v) return (sqrt(v.x * v.x + v.y * v.y + v.z * v.z)) end
 local function cross(a, b) return (V(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x)) end
 
--- members of values by the name of their kind, for texts that list them
+-- members of value types by type name, for completion and listings
 P.value_members = {
   vec3 = { x = 1, y = 1, z = 1, length = 1, normalized = 1, dot = 1, cross = 1, lerp = 1 },
   quat = { x = 1, y = 1, z = 1, w = 1, inverse = 1, slerp = 1 },
@@ -129,7 +129,7 @@ local quat_methods = {}
 function quat_methods.inverse(q)
   q = want_quat(q, "quat:inverse")
   local n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w
-  if n == 0 then fail("quat(0, 0, 0, 0) is no rotation and has no inverse") end
+  if n == 0 then fail("quat(0, 0, 0, 0) is not a rotation and has no inverse") end
   return (Q(-q.x / n, -q.y / n, -q.z / n, q.w / n))
 end
 function quat_methods.slerp(a, b, t)
@@ -163,7 +163,7 @@ ffi.metatype(Q, {
       local v = as_vec3(b)
       if v then return (rotate(a, v)) end
     end
-    fail("can't multiply %s and %s; a quat turns what stands on its right", describe(a), describe(b))
+    fail("can't multiply %s and %s; a quat rotates its right operand", describe(a), describe(b))
   end,
   __eq = function(a, b)
     return istype(Q, a) and istype(Q, b) and a.x == b.x and a.y == b.y and a.z == b.z and a.w == b.w
@@ -198,7 +198,7 @@ local function euler(x, y, z)
   return (multiply(Q(0, 0, sz, cz), multiply(Q(0, sy, 0, cy), Q(sx, 0, 0, cx))))
 end
 
--- each environment gets a table of its own, so that nobody spoils another's
+-- a separate table for each environment, so that scripts can't modify each other's
 function P.make_quat()
   return setmetatable({ euler = euler, axis = axis }, { __call = quat, __metatable = "quat" })
 end
@@ -209,7 +209,7 @@ ffi.metatype(F, {
     if type(i) == "number" then return nil end
     fail("three booleans have the members 1, 2, 3 and x, y, z, not '%s'", tostring(i))
   end,
-  __newindex = function() fail("three booleans never change alone; set the whole: { false, false, true }") end,
+  __newindex = function() fail("three booleans are immutable; assign all of them: { false, false, true }") end,
   __call = no_call("set of three booleans"),
   __len = function() return 3 end,
   __eq = function(a, b) return istype(F, a) and istype(F, b) and a.x == b.x and a.y == b.y and a.z == b.z end,

@@ -1,4 +1,4 @@
--- What `math` has beside Lua's own, colours, and the file's seeded generator.
+-- Additions to Lua's `math`, colors, and the file's seeded random generator.
 local P = ...
 local ffi, api, ctx, answer, fail = P.ffi, P.api, P.ctx, P.answer, P.fail
 local V, want_number, istype = P.V, P.want_number, P.ffi.istype
@@ -8,10 +8,10 @@ P.math_extra = extra
 
 function extra.clamp(x, lo, hi)
   if type(x) ~= "number" or type(lo) ~= "number" or type(hi) ~= "number" then
-    fail("math.clamp takes three numbers: what, from, to")
+    fail("math.clamp takes three numbers: value, minimum, maximum")
   end
-  -- Not compared here: each outcome would become a way of its own through the loop around it, and a compiler that has
-  -- too many leaves the loop.
+  -- Don't compare in Lua: each outcome would become a separate trace of the surrounding loop, and the compiler aborts a
+  -- loop with too many traces.
   return api.clamp(x, lo, hi)
 end
 function extra.lerp(a, b, t) return a + (b - a) * t end
@@ -22,13 +22,13 @@ function extra.noise(x, y, z)
   end
   return api.noise(ctx, x, y or 0, z or 0)
 end
--- math.random of a file: slot -1 is the scene's, -2 that of behaviour file 0, and so on
+-- math.random of a file: slot -1 is the scene's, -2 that of behavior file 0, and so on
 function P.make_random(slot)
   return function(low, high)
     if low == nil then return api.random_uniform(ctx, slot, 0) end
     if high == nil then low, high = 1, low end
     low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
-    if low > high then fail("math.random: nothing lies between %d and %d", low, high) end
+    if low > high then fail("math.random: the range %d .. %d is empty", low, high) end
     return low + math.floor(api.random_uniform(ctx, slot, 0) * (high - low + 1))
   end
 end
@@ -49,10 +49,10 @@ end
 local R = ffi.typeof("rng")
 P.value_members.rng = { uniform = 1, direction = 1, normal = 1 }
 local methods = {}
-local function check(self, what)
-  if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", what, what) end
+local function check(self, method)
+  if not istype(R, self) then fail("rng.%s is a method: write rng:%s(…)", method, method) end
 end
-local function wide(v)
+local function to_vec3(v)
   if type(v) == "number" then return (V(v, v, v)) end
   return P.want_vec3(v, "rng:uniform")
 end
@@ -60,10 +60,14 @@ function methods.uniform(self, a, b)
   check(self, "uniform")
   if a == nil and b == nil then return api.random_uniform(ctx, self.slot_, self.generation_) end
   a, b = a or 0, b or 1
-  if type(a) == "number" and type(b) == "number" then return a + (b - a) * api.random_uniform(ctx, self.slot_, self.generation_) end
-  local lo, hi = wide(a), wide(b)
-  local x, y = api.random_uniform(ctx, self.slot_, self.generation_), api.random_uniform(ctx, self.slot_, self.generation_)
-  return (V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * api.random_uniform(ctx, self.slot_, self.generation_)))
+  if type(a) == "number" and type(b) == "number" then
+    return a + (b - a) * api.random_uniform(ctx, self.slot_, self.generation_)
+  end
+  local lo, hi = to_vec3(a), to_vec3(b)
+  local x = api.random_uniform(ctx, self.slot_, self.generation_)
+  local y = api.random_uniform(ctx, self.slot_, self.generation_)
+  local z = api.random_uniform(ctx, self.slot_, self.generation_)
+  return (V(lo.x + (hi.x - lo.x) * x, lo.y + (hi.y - lo.y) * y, lo.z + (hi.z - lo.z) * z))
 end
 function methods.direction(self)
   check(self, "direction")

@@ -1,5 +1,5 @@
--- Things: one handle for each node that a script has met, and its class's members, derived from the rows of its table.
--- A stored row is read straight from the store: alive when the generation still fits, then a load.
+-- Objects: one handle per node that a script has accessed, and the members of its class, derived from the properties of
+-- its table. Stored properties are read directly from the store's memory after a check of the generation.
 local P = ...
 local ffi, api, ctx, answer, view = P.ffi, P.api, P.ctx, P.answer, P.view
 local fail, describe, text = P.fail, P.describe, P.text
@@ -8,17 +8,17 @@ local V, Q, F, istype, format = P.V, P.Q, P.F, P.ffi.istype, string.format
 local classes, by_table, by_ctype = {}, {}, {}
 P.classes = classes
 function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype)] = class, class end
--- behaviours have a table each type: their classes are made when they are met (55_behaviors.lua)
+-- each behavior type has a table of its own; its class is created on first use (55_behaviors.lua)
 local function class_of_table(number) return by_table[number] or P.make_class(number) end
 P.class_of_table = class_of_table
 for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear" } do
-  local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, rows = {} }
+  local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, properties = {} }
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class
 end
--- The table of a living handle's node; a behavior's or a group's is that of its type.
+-- table of the node of a valid handle; for behaviors and groups the table of their type
 local handles = {}
-local function each_class_met(f)
+local function each_class_in_use(f)
   for slot, h in pairs(handles) do
     if slot < view.slot_count and view.slots[slot].generation == h.generation_ then
       f(by_ctype[tonumber(ffi.typeof(h))], view.slots[slot].table)
@@ -26,14 +26,14 @@ local function each_class_met(f)
   end
 end
 
--- each store numbers the tables of its classes by itself
+-- each store numbers its tables independently
 function P.number_classes()
   for table in pairs(by_table) do by_table[table] = nil end
   for _, class in pairs(classes) do
     class.table = api.class_table(ctx, class.number)
     by_table[class.table] = class
   end
-  each_class_met(function(class, number)
+  each_class_in_use(function(class, number)
     if class.number then return end
     class.table = number
     by_table[number] = by_table[number] or class
@@ -41,54 +41,54 @@ function P.number_classes()
 end
 P.number_classes()
 
--- the types of behaviors may have other parameters now: a class follows the table of its handles
-function P.renew_classes()
-  each_class_met(function(class, number)
+-- after parameters of behavior types may have changed: updates each class to the table of its handles
+function P.update_classes()
+  each_class_in_use(function(class, number)
     if class.number or class.table == number then return end
     if by_table[class.table] == class then by_table[class.table] = nil end
     by_table[number] = by_table[number] or class
     class.table = number
-    P.renew_class(class)
+    P.update_class(class)
   end)
 end
--- what errors call those of which there is one
+-- names of singletons in error messages
 classes.sim.only, classes.visuals.only = "sim", "visuals"
 classes.camera.only, classes.look.only = "visuals.camera", "visuals.look"
 
--- handles: one for each slot, so that a thing is always the same key of a table; names stay for the gone ones
+-- Handles: one for each slot, so that an object is always the same table key. Names remain after an object is removed.
 local names = setmetatable({}, { __mode = "k" })
 local owners = setmetatable({}, { __mode = "k" })
 P.names, P.handles = names, handles
 
-local thing
-local function intern(slot, generation)
+local handle_of
+local function create_handle(slot, generation)
   local class = class_of_table(view.slots[slot].table)
   local h = class.ctype(slot, generation)
   api.name(ctx, slot, generation)
   names[h] = text()
   api.owner(ctx, slot, generation)
-  if answer.count ~= 0 then owners[h] = thing(answer.slot, answer.generation) end
-  handles[slot] = h  -- known from here on: a script may be stopped at any line
+  if answer.count ~= 0 then owners[h] = handle_of(answer.slot, answer.generation) end
+  handles[slot] = h  -- last, because a script may be stopped at any line
   return h
 end
 
--- the handle of an id
-function thing(slot, generation)
+-- returns the handle of an id
+function handle_of(slot, generation)
   local h = handles[slot]
   if h and h.generation_ == generation then return h end
-  return intern(slot, generation)
+  return create_handle(slot, generation)
 end
-P.thing = thing
+P.handle_of = handle_of
 
--- the handle of the last answer, nil when it named nothing
-function P.answered()
+-- the handle of the last answer, or nil if it had none
+function P.answered_handle()
   if answer.count == 0 then return nil end
-  return (thing(answer.slot, answer.generation))
+  return (handle_of(answer.slot, answer.generation))
 end
 
--- another class of handles; what one of its handles is called, and whose it is
+-- adds a class of handles; sets name and owner of a handle
 function P.add_handles(class) by_ctype[tonumber(class.ctype)] = class end
-function P.introduce(h, name, owner) names[h], owners[h] = name, owner end
+function P.register_handle(h, name, owner) names[h], owners[h] = name, owner end
 
 local function class_of(value)
   return type(value) == "cdata" and by_ctype[tonumber(ffi.typeof(value))] or nil
@@ -109,15 +109,15 @@ local function alive(h)
 end
 P.alive = alive
 
-local function gone(h) fail("%s no longer exists (thing.alive tells)", label(h)) end
-P.gone = gone
+local function fail_removed(h) fail("%s no longer exists (check its .alive)", label(h)) end
+P.fail_removed = fail_removed
 
--- the slot of a living thing
+-- the slot of an existing object; error if it was removed
 local function slot_of(h)
   local slot = h.slot_
-  if not (slot >= 0 and slot < view.slot_count) then gone(h) end
+  if not (slot >= 0 and slot < view.slot_count) then fail_removed(h) end
   local s = view.slots[slot]
-  if s.generation ~= h.generation_ then gone(h) end
+  if s.generation ~= h.generation_ then fail_removed(h) end
   return s
 end
 P.slot_of = slot_of
@@ -130,13 +130,13 @@ function P.check_self(h, class, method)
   slot_of(h)
 end
 
--- RowType and RowKind of params/table.h, as far as they make a difference here
+-- PropertyType and PropertyKind of params/table.h, as far as used here
 local kBoolean, kChoice, kVec3, kFlags3, kQuat, kText = 2, 3, 4, 5, 6, 8
 local kReadout, kAction = 2, 3
 
--- what reads a row: by its type, from the live or the kept block, or computed for a view
-local function getter_of(row)
-  local offset, live, choices, kind = row.offset, row.live, row.choices, row.type
+-- returns the getter of a property: by type, from the transient or persistent block, or through the API if computed
+local function getter_of(property)
+  local offset, is_transient, choices, kind = property.offset, property.transient, property.choices, property.type
   local make
   if kind == kVec3 then
     make = function(v, i) return (V(v[i], v[i + 1], v[i + 2])) end
@@ -151,23 +151,23 @@ local function getter_of(row)
   else
     make = function(v, i) return v[i] end
   end
-  if row.view then
-    local index = row.index
+  if property.computed then
+    local index = property.index
     return function(h)
-      if api.get(ctx, h.slot_, h.generation_, index) ~= 0 then gone(h) end
+      if api.get(ctx, h.slot_, h.generation_, index) ~= 0 then fail_removed(h) end
       return (make(answer.number, 0))
     end
   end
-  if live then return function(h) return (make(view.live, slot_of(h).live + offset)) end end
-  return function(h) return (make(view.kept, slot_of(h).kept + offset)) end
+  if is_transient then return function(h) return (make(view.transient, slot_of(h).transient + offset)) end end
+  return function(h) return (make(view.persistent, slot_of(h).persistent + offset)) end
 end
 
-local function refuse(h, row, value, takes)
-  fail("%s: '%s' takes %s, not %s", label(h), row.name, takes, describe(value))
+local function fail_type(h, property, value, expected)
+  fail("%s: '%s' takes %s, not %s", label(h), property.name, expected, describe(value))
 end
 
-local function set_three(row)
-  local index, own = row.index, row.own_axis
+local function set_three(property)
+  local index, own = property.index, property.own_axis
   return function(h, value)
     local code
     if istype(V, value) then
@@ -175,17 +175,18 @@ local function set_three(row)
     elseif own and type(value) == "number" then
       code = api.set_own(ctx, h.slot_, h.generation_, index, value)
     else
-      local v = P.as_vec3(value) or refuse(h, row, value, own and "a vec3, or one number for the own axis" or "a vec3")
+      local v = P.as_vec3(value) or
+        fail_type(h, property, value, own and "a vec3, or one number for the own axis" or "a vec3")
       code = api.set3(ctx, h.slot_, h.generation_, index, v.x, v.y, v.z)
     end
-    if code ~= 0 then P.check(code, gone, h) end
+    if code ~= 0 then P.check(code, fail_removed, h) end
   end
 end
 
-local function set_flags(row)
-  local index = row.index
+local function set_flags(property)
+  local index = property.index
   local function number(h, value, flag)
-    if type(flag) ~= "boolean" then refuse(h, row, value, "three booleans, or one for all axes") end
+    if type(flag) ~= "boolean" then fail_type(h, property, value, "three booleans, or one for all axes") end
     return flag and 1 or 0
   end
   return function(h, value)
@@ -199,45 +200,47 @@ local function set_flags(row)
     end
     local code = api.set3(ctx, h.slot_, h.generation_, index, number(h, value, x), number(h, value, y),
       number(h, value, z))
-    if code ~= 0 then P.check(code, gone, h) end
+    if code ~= 0 then P.check(code, fail_removed, h) end
   end
 end
 
--- what writes a row: type first, then the one door
-local function setter_of(row)
-  local index, kind = row.index, row.type
-  if kind == kVec3 then return set_three(row) end
-  if kind == kFlags3 then return set_flags(row) end
+-- returns the setter of a property: checks the type, then calls the API
+local function setter_of(property)
+  local index, kind = property.index, property.type
+  if kind == kVec3 then return set_three(property) end
+  if kind == kFlags3 then return set_flags(property) end
   if kind == kQuat then
     return function(h, q)
-      if not istype(Q, q) then refuse(h, row, q, "a quat") end
+      if not istype(Q, q) then fail_type(h, property, q, "a quat") end
       local code = api.set4(ctx, h.slot_, h.generation_, index, q.x, q.y, q.z, q.w)
-      if code ~= 0 then P.check(code, gone, h) end
+      if code ~= 0 then P.check(code, fail_removed, h) end
     end
   elseif kind == kBoolean then
     return function(h, value)
-      if type(value) ~= "boolean" then refuse(h, row, value, "true or false") end
+      if type(value) ~= "boolean" then fail_type(h, property, value, "true or false") end
       local code = api.set1(ctx, h.slot_, h.generation_, index, value and 1 or 0)
-      if code ~= 0 then P.check(code, gone, h) end
+      if code ~= 0 then P.check(code, fail_removed, h) end
     end
   elseif kind == kChoice then
     return function(h, value)
-      if type(value) ~= "string" then refuse(h, row, value, "one of '" .. table.concat(row.choices, "' '") .. "'") end
+      if type(value) ~= "string" then
+        fail_type(h, property, value, "one of '" .. table.concat(property.choices, "' '") .. "'")
+      end
       local code = api.set_choice(ctx, h.slot_, h.generation_, index, value, #value)
-      if code ~= 0 then P.check(code, gone, h) end
+      if code ~= 0 then P.check(code, fail_removed, h) end
     end
   end
   return function(h, value)
-    if type(value) ~= "number" then refuse(h, row, value, "a number") end
+    if type(value) ~= "number" then fail_type(h, property, value, "a number") end
     local code = api.set1(ctx, h.slot_, h.generation_, index, value)
-    if code ~= 0 then P.check(code, gone, h) end
+    if code ~= 0 then P.check(code, fail_removed, h) end
   end
 end
 
--- an action's method: vec3s and numbers become the row's numbers
+-- returns the method of an action: converts vec3s and numbers to the action's numbers
 local numbers = ffi.new("double[16]")
-local function method_of(class, row)
-  local index, name, ctype = row.index, row.name, class.ctype
+local function method_of(class, property)
+  local index, name, ctype = property.index, property.name, class.ctype
   local function put(h, n, value)
     if type(value) == "number" and n < 16 then
       numbers[n] = value
@@ -263,26 +266,27 @@ local function method_of(class, row)
       if f ~= nil then n = put(h, n, f) end
     end
     local code = api.act(ctx, h.slot_, h.generation_, index, numbers, n)
-    if code ~= 0 then P.check(code, gone, h) end
+    if code ~= 0 then P.check(code, fail_removed, h) end
   end
 end
 
--- a class's members from the rows of its table
-function P.derive(class)
-  for i = 0, api.row_count(ctx, class.table) - 1 do
-    local r = api.row(ctx, class.table, i)
-    local row = { index = i, name = ffi.string(r.name, r.length), type = r.type, kind = r.kind, live = r.live ~= 0,
-      view = r.view ~= 0, offset = r.offset, own_axis = r.own_axis ~= 0, writable = r.writable ~= 0, choices = {} }
+-- derives a class's members from the properties of its table
+function P.derive_members(class)
+  for i = 0, api.property_count(ctx, class.table) - 1 do
+    local r = api.property(ctx, class.table, i)
+    local property = { index = i, name = ffi.string(r.name, r.length), type = r.type, kind = r.kind,
+      transient = r.transient ~= 0, computed = r.computed ~= 0, offset = r.offset, own_axis = r.own_axis ~= 0,
+      writable = r.writable ~= 0, choices = {} }
     for c = 0, r.choices - 1 do
-      api.row_choice(ctx, class.table, i, c)
-      row.choices[c + 1] = text()
+      api.property_choice(ctx, class.table, i, c)
+      property.choices[c + 1] = text()
     end
-    class.rows[row.name] = row
-    if row.kind == kAction then
-      class.methods[row.name] = method_of(class, row)
-    elseif row.type ~= kText then  -- a text's getter is written by hand
-      class.getters[row.name] = getter_of(row)
-      if row.writable then class.setters[row.name] = setter_of(row) end
+    class.properties[property.name] = property
+    if property.kind == kAction then
+      class.methods[property.name] = method_of(class, property)
+    elseif property.type ~= kText then  -- getters of texts are written by hand
+      class.getters[property.name] = getter_of(property)
+      if property.writable then class.setters[property.name] = setter_of(property) end
     end
   end
 end
@@ -302,21 +306,24 @@ end
 
 local function not_writable(h, class, key)
   if class.methods[key] then fail("%s: '%s' is a method: call it with a colon, it can't be set", label(h), key) end
-  local row = class.rows[key]
-  if row and row.kind == kReadout then fail("%s: '%s' is a readout: it can be read, not set", label(h), key) end
+  local property = class.properties[key]
+  if property and property.kind == kReadout then
+    fail("%s: '%s' is a readout: it can be read, not set", label(h), key)
+  end
   if class.getters[key] then fail("%s: '%s' can be read, not set", label(h), key) end
   no_member(h, class, key)
 end
 P.not_writable = not_writable
 
--- a method is told from an unknown name: compiled code finds what is there for less than what is not
+-- Methods have the entry false to distinguish them from unknown names, because compiled code finds existing keys faster
+-- than missing ones.
 function P.fill_members(class)
   for key in pairs(class.methods) do class.members[key] = false end
   for key, get in pairs(class.getters) do class.members[key] = get end
 end
 
--- gives a class's handles their behaviour, once all of its members are known
-function P.finish(class)
+-- sets the metatable of a class's handles, once all of its members are known
+function P.finish_class(class)
   local getters, setters, methods, ctype = class.getters, class.setters, class.methods, class.ctype
   local members = {}
   class.members = members
@@ -324,9 +331,9 @@ function P.finish(class)
   ffi.metatype(ctype, {
     __index = function(h, key)
       local get = members[key]
-      if get == nil then get = getters[key] end  -- one that came later
+      if get == nil then get = getters[key] end  -- added later
       if get then
-        local value = get(h)  -- no tail call: a getter returns to a Lua function, so that it can be compiled
+        local value = get(h)  -- no tail call: a getter must return to a Lua function to be compiled
         return value
       end
       return methods[key] or no_member(h, class, key)
@@ -340,12 +347,14 @@ function P.finish(class)
       return istype(ctype, a) and istype(ctype, b) and a.slot_ == b.slot_ and a.generation_ == b.generation_
     end,
     __tostring = label,
-    __call = function() fail("this is a %s, no function: members take a dot, only methods a colon", class.name) end,
+    __call = function()
+      fail("this is a %s, not a function: use a dot for members, a colon only for methods", class.name)
+    end,
   })
 end
 
--- what every thing has
-function P.common(class)
+-- members of all objects
+function P.add_common_members(class)
   class.getters.alive = alive
   class.getters.name = function(h)
     slot_of(h)
@@ -353,15 +362,15 @@ function P.common(class)
   end
 end
 
--- sets what an opts table says, in a fixed order; `own` are the keys that the making itself took
-function P.check_opts(class, opts, own, what)
+-- sets properties from an opts table in a fixed order; `own`: keys that were used for the creation itself
+function P.check_opts(class, opts, own, subject)
   if opts == nil then return end
-  if type(opts) ~= "table" then fail("%s: opts is a table, not %s", what, describe(opts)) end
+  if type(opts) ~= "table" then fail("%s: opts is a table, not %s", subject, describe(opts)) end
   for key in pairs(opts) do
     if type(key) ~= "string" or not (own[key] or class.setters[key]) then
       local known = P.sorted_keys(own)
       for _, name in ipairs(P.sorted_keys(class.setters)) do known[#known + 1] = name end
-      fail("%s: opts has no '%s'%s", what, tostring(key), P.hint(key, known))
+      fail("%s: opts has no '%s'%s", subject, tostring(key), P.hint(key, known))
     end
   end
 end

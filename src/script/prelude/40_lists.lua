@@ -1,7 +1,7 @@
 -- Lists in stream order: #arm.motors, arm.motors[1], ipairs(arm.motors), for motor in arm:motors("left_*") do.
 local P = ...
 local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
-local fail, describe, thing, alive, istype = P.fail, P.describe, P.thing, P.alive, P.ffi.istype
+local fail, describe, handle_of, alive, istype = P.fail, P.describe, P.handle_of, P.alive, P.ffi.istype
 
 local L = ffi.typeof("list")
 P.L = L
@@ -10,20 +10,20 @@ local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list 
   { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" },
   { name = "gear", list = "gears" } }
 
--- what a list holds is gathered when it is asked for and kept until the structure of the world changes
+-- the contents of a list are collected on first use and cached until the structure of the world changes
 local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_
-  local owner = thing(slot, generation)
+  local owner = handle_of(slot, generation)
   P.slot_of(owner)
   local count, items = api.list_count(ctx, slot, generation, kind), {}
-  if count < 0 then P.gone(owner) end
+  if count < 0 then P.fail_removed(owner) end
   for i = 0, count - 1 do
     api.list_item(ctx, slot, generation, kind, i)
-    items[i + 1] = thing(answer.slot, answer.generation)
+    items[i + 1] = handle_of(answer.slot, answer.generation)
   end
-  -- the version last: a script may be stopped at any line
+  -- set the version last, because a script may be stopped at any line
   entry.items, entry.matched = items, {}
   entry.version = api.structure(ctx)
   return entry
@@ -39,7 +39,7 @@ end
 local function items_of(list) return entry_of(list).items end
 P.items_of = items_of
 
--- the list of a thing, always the same one
+-- the list of an object; always the same list object
 function P.list_of(owner, kind)
   P.slot_of(owner)
   local slot = owner.slot_
@@ -57,8 +57,8 @@ function P.each_list(f)
   end
 end
 
--- their handles have other ids now
-function P.lists_moved()
+-- updates the lists after their handles got other ids
+function P.reindex_lists()
   for kind = 0, #entries do
     local moved = {}
     for _, entry in pairs(entries[kind]) do
@@ -70,12 +70,12 @@ function P.lists_moved()
   end
 end
 
--- the thing of a name, a number (−1: the last) or the thing itself
+-- finds an object by name, by number (−1: the last), or returns the object itself after a check
 function P.find_in(owner, kind, key)
   if type(key) == "string" then
     local code = api.find(ctx, owner.slot_, owner.generation_, kind, key, #key)
-    if code ~= 0 then P.check(code, P.gone, owner) end
-    return (thing(answer.slot, answer.generation))
+    if code ~= 0 then P.check(code, P.fail_removed, owner) end
+    return (handle_of(answer.slot, answer.generation))
   end
   if type(key) == "number" then
     local items = items_of(P.list_of(owner, kind))
@@ -85,47 +85,49 @@ function P.find_in(owner, kind, key)
   end
   local class = P.class_of(key)
   if not class or class.name ~= kinds[kind].name then
-    fail("a %s is wanted by its name or number, not %s", kinds[kind].name, describe(key))
+    fail("expected the name or number of a %s, not %s", kinds[kind].name, describe(key))
   end
   P.slot_of(key)
   local of = P.class_of(owner).name == "behavior" and owner.body or owner
-  if (kind > 0 and kind < 4 or kind == 5) and key.body ~= of then fail("%s does not belong to %s", P.label(key), P.label(owner)) end
+  if (kind > 0 and kind < 4 or kind == 5) and key.body ~= of then
+    fail("%s does not belong to %s", P.label(key), P.label(owner))
+  end
   return key
 end
 
--- marks the things that one wanted word means
-local function choose(list, items, chosen, one)
-  if one == "all" then
+-- adds the objects that match one word to `chosen`
+local function choose(list, items, chosen, word)
+  if word == "all" then
     for _, item in ipairs(items) do chosen[item] = true end
-  elseif type(one) == "string" and api.is_pattern(ctx, one, #one) ~= 0 then
+  elseif type(word) == "string" and api.is_pattern(ctx, word, #word) ~= 0 then
     for _, item in ipairs(items) do
       local name = P.names[item]
-      if api.matches(ctx, one, #one, name, #name) ~= 0 then chosen[item] = true end
+      if api.matches(ctx, word, #word, name, #name) ~= 0 then chosen[item] = true end
     end
   else
-    chosen[P.find_in(thing(list.slot_, list.generation_), list.kind_, one)] = true
+    chosen[P.find_in(handle_of(list.slot_, list.generation_), list.kind_, word)] = true
   end
 end
 
-local function select_anew(list, entry, wanted)
+local function select_uncached(list, entry, selector)
   local chosen, result = {}, {}
-  if type(wanted) == "table" then
-    for _, one in ipairs(wanted) do choose(list, entry.items, chosen, one) end
+  if type(selector) == "table" then
+    for _, word in ipairs(selector) do choose(list, entry.items, chosen, word) end
   else
-    choose(list, entry.items, chosen, wanted)
+    choose(list, entry.items, chosen, selector)
   end
   for _, item in ipairs(entry.items) do
     if chosen[item] then result[#result + 1] = item end
   end
-  if type(wanted) == "string" then entry.matched[wanted] = result end
+  if type(selector) == "string" then entry.matched[selector] = result end
   return result
 end
 
--- the things that a name, a pattern, a thing, a list of these or "all" means, each once, in stream order; without
--- closures and loops, which would keep a script's loop around it from being compiled
-local function select_from(list, entry, wanted)
-  if wanted == nil then return entry.items end
-  return type(wanted) == "string" and entry.matched[wanted] or select_anew(list, entry, wanted)
+-- Returns the objects that match a name, a pattern, an object, a list of these or "all", without duplicates, in stream
+-- order. Has no closures or loops, which would prevent the compilation of a surrounding loop.
+local function select_from(list, entry, selector)
+  if selector == nil then return entry.items end
+  return type(selector) == "string" and entry.matched[selector] or select_uncached(list, entry, selector)
 end
 
 local function next_alive(items, i)
@@ -133,18 +135,18 @@ local function next_alive(items, i)
   return i
 end
 
--- one step of a walk: what has gone meanwhile is passed over
-local function step(walk)
-  local items, i = walk.items, walk.i + 1
+-- one iteration step; skips objects that have been removed meanwhile
+local function step(iteration)
+  local items, i = iteration.items, iteration.i + 1
   local item = items[i]
   if item and not alive(item) then
     i = next_alive(items, i)
     item = items[i]
   end
-  walk.i = i
+  iteration.i = i
   if not item then return nil end
-  walk.count = walk.count + 1
-  return item, walk.count
+  iteration.count = iteration.count + 1
+  return item, iteration.count
 end
 
 ffi.metatype(L, {
@@ -154,25 +156,25 @@ ffi.metatype(L, {
     fail("a list of %s has no member '%s'; a %s is found by %s:%s(name) or by a number in [ ]", kind.list,
       tostring(key), kind.name, kind.name == "body" and "sim" or "body", kind.name)
   end,
-  __newindex = function(list) fail("the list of %s can't be changed by hand", kinds[list.kind_].list) end,
+  __newindex = function(list) fail("the list of %s is read-only", kinds[list.kind_].list) end,
   __len = function(list) return #items_of(list) end,
   __eq = function(a, b)
     return istype(L, a) and istype(L, b) and a.slot_ == b.slot_ and a.generation_ == b.generation_ and
       a.kind_ == b.kind_
   end,
-  __call = function(list, self, wanted)
+  __call = function(list, self, selector)
     local class = P.class_of(self)
     if not class or self.slot_ ~= list.slot_ then
       local name = kinds[list.kind_].list
-      fail("to walk %s write a colon: for x in thing:%s(…) do", name, name)
+      fail("to iterate over %s use a colon: for x in object:%s(…) do", name, name)
     end
     local entry = entry_of(list)
-    return step, { items = select_from(list, entry, wanted), i = 0, count = 0 }
+    return step, { items = select_from(list, entry, selector), i = 0, count = 0 }
   end,
   __tostring = function(list) return "list of " .. kinds[list.kind_].list end,
 })
 
--- ipairs for lists and flags too
+-- ipairs that also accepts lists and flags
 local native_ipairs = ipairs
 function P.ipairs(t)
   if istype(L, t) then t = items_of(t) end

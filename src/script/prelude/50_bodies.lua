@@ -1,4 +1,4 @@
--- What bodies, parts, joints, motors and shapes have beside their rows.
+-- Members of bodies, parts, joints, motors and shapes that are not properties.
 local P = ...
 local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
 local fail, classes = P.fail, P.classes
@@ -7,21 +7,21 @@ local bodies, parts, joints, motors, shapes = 0, 1, 2, 3, 4
 local number = answer.number
 
 for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do
-  P.derive(classes[name])
-  P.common(classes[name])
+  P.derive_members(classes[name])
+  P.add_common_members(classes[name])
 end
-P.solid_members(part)
+P.add_mass_members(part)
 
 local function related(which)
   return function(h)
-    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.gone(h) end
-    return (P.answered())
+    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.fail_removed(h) end
+    return (P.answered_handle())
   end
 end
 local function owner(h)
   P.slot_of(h)
   api.owner(ctx, h.slot_, h.generation_)
-  return (P.answered())
+  return (P.answered_handle())
 end
 local function list(kind) return function(h) return (P.list_of(h, kind)) end end
 
@@ -30,27 +30,27 @@ for _, class in ipairs { part, joint, motor } do class.getters.body = owner end
 part.getters.shape = related(0)
 joint.getters.parent, joint.getters.child, joint.getters.motor = related(0), related(1), related(2)
 
--- a motor keeps its joint, so it is asked once, by the motor's slot. When the slot is another motor's, the old joint is
--- gone as well, unless the old motor was taken back.
+-- A motor's joint never changes, so it is looked up once and cached by the motor's slot. If the slot is reused by
+-- another motor, the old joint was removed as well, unless the creation of the old motor was rolled back.
 local joint_of = {}
-local ask_joint = related(0)
+local query_joint = related(0)
 motor.getters.joint = function(h)
   P.slot_of(h)
-  local its = joint_of[h.slot_]
-  if its == nil or not P.alive(its) then
-    its = ask_joint(h)
-    joint_of[h.slot_] = its
+  local joint = joint_of[h.slot_]
+  if joint == nil or not P.alive(joint) then
+    joint = query_joint(h)
+    joint_of[h.slot_] = joint
   end
-  return its
+  return joint
 end
--- slots mean other things now
-function P.relations_moved() joint_of = {} end
-P.on_failure[#P.on_failure + 1] = P.relations_moved
+-- called when slots may belong to other objects: clears the cache
+function P.clear_relations() joint_of = {} end
+P.on_failure[#P.on_failure + 1] = P.clear_relations
 
 body.getters.root = related(0)
 body.getters.parts, body.getters.joints, body.getters.motors = list(parts), list(joints), list(motors)
 joint.getters.type = function(h)
-  if api.joint_type(ctx, h.slot_, h.generation_) ~= 0 then P.gone(h) end
+  if api.joint_type(ctx, h.slot_, h.generation_) ~= 0 then P.fail_removed(h) end
   return P.text()
 end
 
@@ -68,28 +68,28 @@ for name, kind in pairs { part = parts, joint = joints, motor = motors } do
   end
 end
 
--- made things: answer, then what opts says
-local function finish_making(code, class, opts, own, h)
-  if code ~= 0 then P.check(code, P.gone, h) end
-  return P.apply_opts(P.answered(), class, opts, own)
+-- completes a creation: checks the result, then sets the properties from opts
+local function finish_creation(code, class, opts, own, h)
+  if code ~= 0 then P.check(code, P.fail_removed, h) end
+  return P.apply_opts(P.answered_handle(), class, opts, own)
 end
-P.finish_making = finish_making
+P.finish_creation = finish_creation
 
 local pose = ffi.new("double[7]")
--- position and rotation of an opts table as seven numbers; `missing` stands for what it leaves out
-function P.pose_of(opts, what, missing)
+-- position and rotation of an opts table as seven numbers; `missing` is used for omitted values
+function P.pose_of(opts, subject, missing)
   local p, q = opts and opts.position, opts and opts.rotation
   for i = 0, 6 do pose[i] = missing or 0 end
   if not missing then pose[6] = 1 end
   if p ~= nil then
-    p = P.want_vec3(p, what .. ": position")
-    pose[0], pose[1], pose[2] = P.want_number(p.x, what), P.want_number(p.y, what), P.want_number(p.z, what)
+    p = P.want_vec3(p, subject .. ": position")
+    pose[0], pose[1], pose[2] = P.want_number(p.x, subject), P.want_number(p.y, subject), P.want_number(p.z, subject)
   end
   if q ~= nil then
-    q = P.want_quat(q, what .. ": rotation")
-    if q.x == 0 and q.y == 0 and q.z == 0 and q.w == 0 then fail("%s: quat(0, 0, 0, 0) is no rotation", what) end
-    pose[3], pose[4], pose[5], pose[6] = P.want_number(q.x, what), P.want_number(q.y, what), P.want_number(q.z, what),
-      P.want_number(q.w, what)
+    q = P.want_quat(q, subject .. ": rotation")
+    if q.x == 0 and q.y == 0 and q.z == 0 and q.w == 0 then fail("%s: quat(0, 0, 0, 0) is not a rotation", subject) end
+    pose[3], pose[4] = P.want_number(q.x, subject), P.want_number(q.y, subject)
+    pose[5], pose[6] = P.want_number(q.z, subject), P.want_number(q.w, subject)
   end
   return pose
 end
@@ -98,79 +98,80 @@ local function shape_named(key) return (P.find_in(P.sim, shapes, key)) end
 
 local part_own = { mass = true, position = true, rotation = true }
 method(body, "add_part", function(h, name, of_shape, opts)
-  local what = "add_part"
-  P.want_text(name, what .. ": the name")
+  local subject = "add_part"
+  P.want_text(name, subject .. ": the name")
   of_shape = shape_named(of_shape)
-  P.check_opts(part, opts, part_own, what)
+  P.check_opts(part, opts, part_own, subject)
   local mass = opts and opts.mass
-  if mass ~= nil and P.want_number(mass, what .. ": mass") < 0 then
-    fail("%s: mass must not be negative (0: a part that never moves)", what)
+  if mass ~= nil and P.want_number(mass, subject .. ": mass") < 0 then
+    fail("%s: mass must not be negative (0: a part that never moves)", subject)
   end
   local code = api.add_part(ctx, h.slot_, h.generation_, name, #name, of_shape.slot_, of_shape.generation_,
-    mass or -1, P.pose_of(opts, what, 0 / 0))
-  return finish_making(code, part, opts, part_own, h)
+    mass or -1, P.pose_of(opts, subject, 0 / 0))
+  return finish_creation(code, part, opts, part_own, h)
 end)
 
 local joint_own = { type = true, position = true, axis = true }
 local frame = ffi.new("double[6]")
 method(body, "add_joint", function(h, name, parent, child, opts)
-  local what = "add_joint"
-  P.want_text(name, what .. ": the name")
+  local subject = "add_joint"
+  P.want_text(name, subject .. ": the name")
   parent, child = P.find_in(h, parts, parent), P.find_in(h, parts, child)
-  P.check_opts(joint, opts, joint_own, what)
+  P.check_opts(joint, opts, joint_own, subject)
   opts = opts or {}
-  local kind = P.want_text(opts.type or "revolute", what .. ": type")
-  local position = P.want_vec3(opts.position or child.position, what .. ": position")
-  local axis = P.want_vec3(opts.axis or { 0, 0, 1 }, what .. ": axis")
+  local kind = P.want_text(opts.type or "revolute", subject .. ": type")
+  local position = P.want_vec3(opts.position or child.position, subject .. ": position")
+  local axis = P.want_vec3(opts.axis or { 0, 0, 1 }, subject .. ": axis")
   frame[0], frame[1], frame[2] = position.x, position.y, position.z
   frame[3], frame[4], frame[5] = axis.x, axis.y, axis.z
-  for i = 0, 5 do P.want_number(frame[i], what) end
+  for i = 0, 5 do P.want_number(frame[i], subject) end
   local code = api.add_joint(ctx, h.slot_, h.generation_, name, #name, kind, #kind, parent.slot_, child.slot_, frame)
-  return finish_making(code, joint, opts, joint_own, h)
+  return finish_creation(code, joint, opts, joint_own, h)
 end)
 
 method(body, "add_motor", function(h, of_joint, opts)
   of_joint = P.find_in(h, joints, of_joint)
   P.check_opts(motor, opts, {}, "add_motor")
-  return finish_making(api.add_motor(ctx, of_joint.slot_, of_joint.generation_), motor, opts, {}, of_joint)
+  return finish_creation(api.add_motor(ctx, of_joint.slot_, of_joint.generation_), motor, opts, {}, of_joint)
 end)
 
 method(body, "copy", function(h, name, opts)
   P.want_text(name, "copy: the name")
   P.check_opts(body, opts, {}, "copy")
-  return finish_making(api.copy_body(ctx, h.slot_, h.generation_, name, #name), body, opts, {}, h)
+  return finish_creation(api.copy_body(ctx, h.slot_, h.generation_, name, #name), body, opts, {}, h)
 end)
 
--- pairs of parts that don't collide with each other
+-- pairs of parts that don't collide
 local function edit_pair(name, edit)
   method(body, name, function(h, a, b)
     a, b = P.find_in(h, parts, a), P.find_in(h, parts, b)
-    P.check(api.edit_pair(ctx, h.slot_, h.generation_, a.slot_, a.generation_, b.slot_, b.generation_, edit), P.gone, h)
+    local code = api.edit_pair(ctx, h.slot_, h.generation_, a.slot_, a.generation_, b.slot_, b.generation_, edit)
+    P.check(code, P.fail_removed, h)
   end)
 end
 edit_pair("exclude_pair", 1)
 edit_pair("include_pair", 2)
 body.getters.excluded_pairs = function(h)
-  if api.excluded_pair(ctx, h.slot_, h.generation_, -1) ~= 0 then P.gone(h) end
+  if api.excluded_pair(ctx, h.slot_, h.generation_, -1) ~= 0 then P.fail_removed(h) end
   local pairs_of_parts = {}
   for i = 1, number[0] do
     api.excluded_pair(ctx, h.slot_, h.generation_, i - 1)
     local a, b = number[0], number[1]
     api.list_item(ctx, h.slot_, h.generation_, parts, a)
-    local first = P.answered()
+    local first = P.answered_handle()
     api.list_item(ctx, h.slot_, h.generation_, parts, b)
-    pairs_of_parts[i] = { first, P.answered() }
+    pairs_of_parts[i] = { first, P.answered_handle() }
   end
   return pairs_of_parts
 end
 
--- collision groups: a number with a bit each, or names that the scene gives the bits
+-- collision groups: a bit mask, or names that the scene assigns to bits
 P.collision_groups = {}
-local function group_bits(h, row, value)
+local function group_bits(h, property, value)
   if type(value) == "number" then return value end
   if type(value) == "string" then value = { value } end
   if type(value) ~= "table" then
-    fail("%s: '%s' takes a number, a name of sim.collision_groups, or a list of names, not %s", P.label(h), row,
+    fail("%s: '%s' takes a number, a name of sim.collision_groups, or a list of names, not %s", P.label(h), property,
       P.describe(value))
   end
   local bits = {}
@@ -182,7 +183,7 @@ local function group_bits(h, row, value)
     if not found then
       if #P.collision_groups == 0 then
         fail("%s: '%s' can't take names yet; name the groups first: sim.collision_groups = { 'robot', 'floor' }",
-          P.label(h), row)
+          P.label(h), property)
       end
       fail("%s: sim.collision_groups has no '%s'%s", P.label(h), tostring(name),
         P.hint(tostring(name), P.collision_groups))
@@ -193,9 +194,9 @@ local function group_bits(h, row, value)
   for i in pairs(bits) do sum = sum + 2 ^ (i - 1) end
   return sum
 end
-for _, row in ipairs { "collision_group", "collision_mask" } do
-  local set = part.setters[row]
-  part.setters[row] = function(h, value) set(h, group_bits(h, row, value)) end
+for _, property in ipairs { "collision_group", "collision_mask" } do
+  local set = part.setters[property]
+  part.setters[property] = function(h, value) set(h, group_bits(h, property, value)) end
 end
 
 method(body, "state_hash", function(h)
@@ -203,12 +204,12 @@ method(body, "state_hash", function(h)
   return P.text()
 end)
 
--- a link of the model, merged ones too: its name is known to its body for good
+-- a link of the model, including merged ones; identified by its name
 local K = ffi.typeof("link")
 local links = {}
 method(body, "link", function(h, name)
   P.want_text(name, "body:link")
-  P.check(api.link_pose(ctx, h.slot_, h.generation_, name, #name), P.gone, h)
+  P.check(api.link_pose(ctx, h.slot_, h.generation_, name, #name), P.fail_removed, h)
   for _, known in ipairs(links) do
     if known.body == h and known.name == name then return known.handle end
   end
@@ -224,7 +225,7 @@ end
 local function link_pose(k)
   local entry = links[k.number_]
   local code = api.link_pose(ctx, k.slot_, k.generation_, entry.name, #entry.name)
-  if code ~= 0 then P.check(code, P.gone, entry.body) end
+  if code ~= 0 then P.check(code, P.fail_removed, entry.body) end
 end
 local link_members = {
   name = function(k) return links[k.number_].name end,
@@ -257,8 +258,8 @@ method(shape, "add_child", function(h, child, position, rotation)
   child = shape_named(child)
   local code = api.add_child(ctx, h.slot_, h.generation_, child.slot_, child.generation_,
     P.pose_of({ position = position, rotation = rotation }, "add_child"))
-  P.check(code, P.gone, h)
+  P.check(code, P.fail_removed, h)
   return h
 end)
 
-for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do P.finish(classes[name]) end
+for _, name in ipairs { "body", "part", "joint", "motor", "shape" } do P.finish_class(classes[name]) end

@@ -1,11 +1,11 @@
--- `sim`: the world's rows, shapes, bodies, URDF files.
+-- `sim`: the world's properties, shapes, bodies, URDF files, gears.
 local P = ...
 local ffi, api, ctx = P.ffi, P.api, P.ctx
 local fail, describe, classes = P.fail, P.describe, P.classes
 local class = classes.sim
 local bodies, shapes = 0, 4
 
-P.derive(class)
+P.derive_members(class)
 class.getters.alive = P.alive
 class.getters.bodies = function(h) return P.list_of(h, bodies) end
 
@@ -21,15 +21,15 @@ method("body", function(h, key) return P.find_in(h, bodies, key) end)
 method("find_body", function(h, name)
   P.want_text(name, "sim:find_body")
   if api.find(ctx, h.slot_, h.generation_, bodies, name, #name) ~= 0 then return nil end
-  return P.answered()
+  return P.answered_handle()
 end)
 method("add_body", function(_, name, opts)
   P.want_text(name, "add_body: the name")
   P.check_opts(classes.body, opts, {}, "add_body")
-  return P.finish_making(api.add_body(ctx, name, #name), classes.body, opts, {})
+  return P.finish_creation(api.add_body(ctx, name, #name), classes.body, opts, {})
 end)
 
--- names of the bits of collision groups, for scripts
+-- the names of collision group bits
 class.getters.collision_groups = function()
   local names = {}
   for i, name in ipairs(P.collision_groups) do names[i] = name end
@@ -37,13 +37,13 @@ class.getters.collision_groups = function()
 end
 class.setters.collision_groups = function(_, names)
   if P.answer.top_level == 0 then
-    fail("sim.collision_groups is set at the top level of the scene, so that all parts know the same names")
+    fail("sim.collision_groups must be set at the top level of the scene")
   end
   if type(names) ~= "table" or #names > 16 then fail("sim.collision_groups is a list of at most 16 names") end
   local seen, list = {}, {}
   for i, name in ipairs(names) do
     P.want_text(name, "sim.collision_groups: name " .. i)
-    if seen[name] then fail("sim.collision_groups: '%s' is there twice", name) end
+    if seen[name] then fail("sim.collision_groups: duplicate name '%s'", name) end
     seen[name], list[i] = true, name
   end
   P.collision_groups = list
@@ -55,7 +55,7 @@ local function add_shape(name, kind, x, y, z)
   P.want_text(name, "add_" .. kind .. "_shape: the name")
   numbers[0], numbers[1], numbers[2] = x or 0, y or 0, z or 0
   P.check(api.add_shape(ctx, name, #name, kind, numbers))
-  return P.answered()
+  return P.answered_handle()
 end
 method("add_plane_shape", function(_, name, normal)
   local n = P.want_vec3(normal == nil and { 0, 0, 1 } or normal, "add_plane_shape: the normal")
@@ -70,49 +70,51 @@ method("add_box_shape", function(_, name, size)
 end)
 for _, kind in ipairs { "cylinder", "capsule", "cone" } do
   method("add_" .. kind .. "_shape", function(_, name, radius, height)
-    local what = "add_" .. kind .. "_shape: the "
-    return add_shape(name, kind, P.want_number(radius, what .. "radius"), P.want_number(height, what .. "height"))
+    local subject = "add_" .. kind .. "_shape: the "
+    return add_shape(name, kind, P.want_number(radius, subject .. "radius"), P.want_number(height, subject .. "height"))
   end)
 end
 method("add_compound_shape", function(_, name) return add_shape(name, "compound") end)
 
 local mesh_opts = { scale = true, max_vertices = true }
 method("add_convex_mesh_shape", function(_, name, source, opts)
-  local what = "add_convex_mesh_shape"
-  P.want_text(name, what .. ": the name")
-  P.check_opts({ setters = {} }, opts, mesh_opts, what)
+  local subject = "add_convex_mesh_shape"
+  P.want_text(name, subject .. ": the name")
+  P.check_opts({ setters = {} }, opts, mesh_opts, subject)
   opts = opts or {}
   local from_file = type(source) == "string"
   if not from_file and type(source) ~= "table" then
-    fail("%s takes a file's name or a list of vec3, not %s", what, describe(source))
+    fail("%s takes a file's name or a list of vec3, not %s", subject, describe(source))
   end
   local scale = opts.scale == nil and 1 or opts.scale
   if type(scale) == "number" then scale = P.V(scale, scale, scale) end
-  scale = P.want_vec3(scale, what .. ": scale")
-  local most = P.want_number(opts.max_vertices or (from_file and 64 or 255), what .. ": max_vertices")
-  if most < 4 or most > 255 then fail("%s: max_vertices is 4 .. 255, not %s", what, tostring(most)) end
+  scale = P.want_vec3(scale, subject .. ": scale")
+  local max_vertices = P.want_number(opts.max_vertices or (from_file and 64 or 255), subject .. ": max_vertices")
+  if max_vertices < 4 or max_vertices > 255 then
+    fail("%s: max_vertices is 4 .. 255, not %s", subject, tostring(max_vertices))
+  end
   for _, x in ipairs { scale.x, scale.y, scale.z } do
-    if P.want_number(x, what .. ": scale") == 0 then fail("%s: scale must not be 0", what) end
+    if P.want_number(x, subject .. ": scale") == 0 then fail("%s: scale must not be 0", subject) end
   end
   api.mesh_clear(ctx)
   if not from_file then
-    if #source > 100000 then fail("%s takes up to 100000 points", what) end
+    if #source > 100000 then fail("%s takes up to 100000 points", subject) end
     for i, point in ipairs(source) do
-      local p = P.want_vec3(point, what .. ": point " .. i)
-      api.mesh_point(ctx, P.want_number(p.x, what), P.want_number(p.y, what), P.want_number(p.z, what))
+      local p = P.want_vec3(point, subject .. ": point " .. i)
+      api.mesh_point(ctx, P.want_number(p.x, subject), P.want_number(p.y, subject), P.want_number(p.z, subject))
     end
   end
   local file = from_file and source or ""
-  P.check(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, most))
-  return P.answered()
+  P.check(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, max_vertices))
+  return P.answered_handle()
 end)
 
 -- URDF
 local urdf_own = { name = true, fixed_base = true, keep_fixed = true, motors = true, pose = true, package_path = true,
   position = true, rotation = true }
-local function flag(which, value, what)
+local function flag(which, value, subject)
   if value == nil then return end
-  if type(value) ~= "boolean" then fail("load_urdf: %s is true or false, not %s", what, describe(value)) end
+  if type(value) ~= "boolean" then fail("load_urdf: %s is true or false, not %s", subject, describe(value)) end
   api.urdf_flag(ctx, which, value and 1 or 0)
 end
 local function motor_option(motors)
@@ -146,25 +148,27 @@ method("load_urdf", function(_, path, opts)
   end
   local name = opts.name == nil and "" or P.want_text(opts.name, "load_urdf: name")
   local code = api.load_urdf(ctx, path, #path, name, #name, P.pose_of(opts, "load_urdf", 0 / 0))
-  return P.finish_making(code, classes.body, opts, urdf_own)
+  return P.finish_creation(code, classes.body, opts, urdf_own)
 end)
 
 -- gears
 local gear, gears = classes.gear, 7
-P.derive(gear)
-P.common(gear)
+P.derive_members(gear)
+P.add_common_members(gear)
 for which, name in pairs { [0] = "joint_a", "joint_b" } do
   gear.getters[name] = function(h)
-    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.gone(h) end
-    return (P.answered())
+    if api.related(ctx, h.slot_, h.generation_, which) ~= 0 then P.fail_removed(h) end
+    return (P.answered_handle())
   end
 end
-P.finish(gear)
+P.finish_class(gear)
 
 local gear_own = { name = true, offset = true }
-local function want_joint(value, what)
+local function want_joint(value, subject)
   local of = P.class_of(value)
-  if not of or of.name ~= "joint" then fail("add_gear: %s is a joint, as body:joint(name), not %s", what, describe(value)) end
+  if not of or of.name ~= "joint" then
+    fail("add_gear: %s is a joint, as body:joint(name), not %s", subject, describe(value))
+  end
   P.slot_of(value)
   return value
 end
@@ -191,7 +195,7 @@ method("add_gear", function(h, joint_a, joint_b, ratio, opts)
   local offset = opts.offset == nil and 0 / 0 or P.want_number(opts.offset, "add_gear: offset")
   local code = api.add_gear(ctx, name, #name, joint_a.slot_, joint_a.generation_, joint_b.slot_, joint_b.generation_,
     ratio, offset)
-  return P.finish_making(code, gear, opts, gear_own, joint_a)
+  return P.finish_creation(code, gear, opts, gear_own, joint_a)
 end)
 method("gear", function(h, key) return P.find_in(h, gears, key) end)
 class.getters.gears = function(h) return P.list_of(h, gears) end
@@ -202,12 +206,12 @@ method("state_hash", function(h)
 end)
 method("reset", function()
   P.needs_callback("sim:reset")
-  api.ask_reset(ctx)
+  api.request_reset(ctx)
 end)
 method("panic", function()
   P.needs_callback("sim:panic")
-  api.ask_panic(ctx)
+  api.request_panic(ctx)
 end)
 
-P.finish(class)
-P.sim = P.thing(P.world_slot, P.world_generation)
+P.finish_class(class)
+P.sim = P.handle_of(P.world_slot, P.world_generation)

@@ -1,13 +1,13 @@
--- `visuals`: what the picture is drawn with: its background, the camera, the look, the shapes' materials.
+-- `visuals`: settings for rendering: background, camera, look, materials of shapes.
 local P = ...
 local api, ctx = P.api, P.ctx
 local fail, describe, classes = P.fail, P.describe, P.classes
 local class, camera, look = classes.visuals, classes.camera, classes.look
 local shapes = 4
 
-P.derive(class)
-P.derive(camera)
-P.derive(look)
+P.derive_members(class)
+P.derive_members(camera)
+P.derive_members(look)
 class.getters.alive, camera.getters.alive, look.getters.alive = P.alive, P.alive, P.alive
 
 class.methods.shape = function(h, key)
@@ -15,20 +15,20 @@ class.methods.shape = function(h, key)
   return P.find_in(P.sim, shapes, key)
 end
 
--- four rows as one value
-local four = { "fovy", "aspect", "near", "far" }
+-- four properties as one value
+local projection_members = { "fovy", "aspect", "near", "far" }
 camera.getters.projection = function(h)
   local value = {}
-  for i, name in ipairs(four) do value[i] = camera.getters[name](h) end
+  for i, name in ipairs(projection_members) do value[i] = camera.getters[name](h) end
   return value
 end
 camera.setters.projection = function(h, value)
   if type(value) ~= "table" or #value ~= 4 then
     fail("visuals.camera: 'projection' takes { fovy, aspect, near, far }, not %s", describe(value))
   end
-  for i, name in ipairs(four) do P.want_number(value[i], "visuals.camera: " .. name) end
-  if value[4] <= value[3] then fail("visuals.camera: what is far must be further away than what is near") end
-  for i, name in ipairs(four) do camera.setters[name](h, value[i]) end
+  for i, name in ipairs(projection_members) do P.want_number(value[i], "visuals.camera: " .. name) end
+  if value[4] <= value[3] then fail("visuals.camera: far must be greater than near") end
+  for i, name in ipairs(projection_members) do camera.setters[name](h, value[i]) end
 end
 
 camera.methods.look_at = function(h, eye, target, seconds)
@@ -36,7 +36,7 @@ camera.methods.look_at = function(h, eye, target, seconds)
   eye, target = P.want_vec3(eye, "look_at: the eye"), P.want_vec3(target, "look_at: the target")
   if seconds ~= nil then
     if P.want_number(seconds, "look_at: the seconds") <= 0 then
-      fail("look_at takes seconds above 0, not %s; without seconds it looks there at once", tostring(seconds))
+      fail("look_at takes seconds above 0, not %s; without seconds the change is immediate", tostring(seconds))
     end
     P.needs_callback("camera:look_at with seconds")
     if api.camera_glide(ctx, eye.x, eye.y, eye.z, target.x, target.y, target.z, seconds) ~= 0 then
@@ -44,29 +44,30 @@ camera.methods.look_at = function(h, eye, target, seconds)
     end
     return
   end
+  -- the eye again, because an eye equal to the previous target is ignored
   camera.setters.eye(h, eye)
   camera.setters.target(h, target)
   camera.setters.eye(h, eye)
 end
 
-camera.methods.follow = function(h, thing)
+camera.methods.follow = function(h, object)
   P.check_self(h, camera, "follow")
   P.needs_callback("camera:follow")
-  if thing == nil then return api.camera_follow(ctx, -1, 0) end
-  local kind = P.class_of(thing)
+  if object == nil then return api.camera_follow(ctx, -1, 0) end
+  local kind = P.class_of(object)
   if kind ~= classes.body and kind ~= classes.part then
-    fail("camera:follow takes a body, a part, or nil, not %s", describe(thing))
+    fail("camera:follow takes a body, a part, or nil, not %s", describe(object))
   end
-  if not thing.alive then P.gone(thing) end
-  api.camera_follow(ctx, thing.slot_, thing.generation_)
+  if not object.alive then P.fail_removed(object) end
+  api.camera_follow(ctx, object.slot_, object.generation_)
 end
 
-local the_camera = P.thing(P.camera_slot, P.camera_generation)
-class.getters.camera = function() return the_camera end
-local the_look = P.thing(P.look_slot, P.look_generation)
-class.getters.look = function() return the_look end
+local camera_handle = P.handle_of(P.camera_slot, P.camera_generation)
+class.getters.camera = function() return camera_handle end
+local look_handle = P.handle_of(P.look_slot, P.look_generation)
+class.getters.look = function() return look_handle end
 
-P.finish(class)
-P.finish(camera)
-P.finish(look)
-P.visuals = P.thing(P.visuals_slot, P.visuals_generation)
+P.finish_class(class)
+P.finish_class(camera)
+P.finish_class(look)
+P.visuals = P.handle_of(P.visuals_slot, P.visuals_generation)

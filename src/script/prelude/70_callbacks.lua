@@ -1,48 +1,49 @@
--- Callbacks of a scene: start, tick, contacts, timers. Each is a guarded call; one that errs is switched off and told.
+-- Callbacks of a scene: start, tick, contacts, timers. Each is a guarded call; one that fails is disabled and reported.
 local P = ...
 local ffi, api, ctx, answer, guarded = P.ffi, P.api, P.ctx, P.answer, P.guarded
 local fail, istype, floor = P.fail, P.ffi.istype, math.floor
 local method = P.sim_method
 local number = answer.number
 
--- What a call registers is taken back when it fails: what to undo, and how long a list was. Entries of the call before
--- are of no use any more.
+-- Registrations of a call that fails are rolled back. Each entry has a timer to reactivate, or a list and its previous
+-- length. Entries of earlier calls are obsolete.
 local journal = {}
-function P.log(list)
+function P.journal(list)
   if #journal > 0 and journal[1].call ~= answer.call then journal = {} end
   journal[#journal + 1] = { call = answer.call, list = list, count = #list }
 end
--- An earlier run: its file was saved since, and only the timers of its callbacks go on.
+-- True in an earlier run: its file has been saved since, so only timers of its callbacks continue.
 local earlier = false
 
--- true: the run is an earlier one, where nothing is registered any more (reported once for each line)
-function P.registers_nothing(what)
+-- returns true in an earlier run, which can't register anything any more (reported once for each line)
+function P.is_earlier_run(subject)
   if earlier then
-    P.warn_once(what .. " is ignored: this function belongs to a run before the last save, of which only timers go on")
+    P.warn_once(subject ..
+      " is ignored: this function belongs to a run before the last save, of which only timers continue")
   end
   return earlier
 end
 
-local function add(list, entry, what)
-  if P.registers_nothing(what) then return end
-  P.log(list)
+local function add(list, entry, subject)
+  if P.is_earlier_run(subject) then return end
+  P.journal(list)
   entry.in_callback = answer.top_level == 0
   list[#list + 1] = entry
 end
 P.on_failure[#P.on_failure + 1] = function()
   for i = #journal, 1, -1 do
-    local done = journal[i]
-    if done.call == answer.call then
-      if done.timer then done.timer.off = nil end
-      if done.list then
-        for k = #done.list, done.count + 1, -1 do done.list[k] = nil end
+    local record = journal[i]
+    if record.call == answer.call then
+      if record.timer then record.timer.off = nil end
+      if record.list then
+        for k = #record.list, record.count + 1, -1 do record.list[k] = nil end
       end
     end
   end
   journal = {}
 end
 
--- calls what is registered, in order; what is registered meanwhile has its turn the next time
+-- calls the registered functions in order; functions registered meanwhile are called from the next time on
 local function call_all(list, a, b, c, d)
   local n = #list
   for i = 1, n do
@@ -72,12 +73,12 @@ method("on_contact", function(_, f)
   add(contacts, { f = f }, "sim:on_contact")
 end)
 
--- Timers. A sum of time steps misses a multiple by a few bits, so a nanosecond counts as reached.
-local kSlack = 1e-9
+-- Timers. A sum of time steps misses a multiple by a few bits, so a timer is due one nanosecond early.
+local kTolerance = 1e-9
 local T = ffi.typeof("timer")
 local timer_of = setmetatable({}, { __mode = "v" })
 local timer_count = 0
-local afters = {}  -- the top level's sim:after, in their order, the ended ones too: the next run takes them over
+local afters = {}  -- the top level's sim:after in their order, including finished ones; the next run takes them over
 
 local function now() return P.sim.time end
 
@@ -86,12 +87,12 @@ local function add_timer(f, entry)
   entry.f, entry.handle = f, T(timer_count, 0)
   entry.in_callback = answer.top_level == 0
   timer_of[timer_count] = entry
-  P.log(timers)
+  P.journal(timers)
   timers[#timers + 1] = entry
   return entry.handle
 end
 
-local function beats(entry, time) return floor((time + kSlack) / entry.period) end
+local function periods_until(entry, time) return floor((time + kTolerance) / entry.period) end
 
 method("every", function(_, seconds, f)
   if P.want_number(seconds, "sim:every") <= 0 then
@@ -99,12 +100,12 @@ method("every", function(_, seconds, f)
   end
   P.want_function(f, "sim:every")
   local entry = { period = seconds }
-  entry.beat = beats(entry, now())
+  entry.periods = periods_until(entry, now())
   return add_timer(f, entry)
 end)
 method("after", function(_, seconds, f)
   if P.want_number(seconds, "sim:after") < 0 then
-    fail("sim:after takes seconds from 0 on, not %s", tostring(seconds))
+    fail("sim:after takes seconds of 0 or more, not %s", tostring(seconds))
   end
   P.want_function(f, "sim:after")
   local entry = { due = now() + seconds, seconds = seconds }
@@ -118,19 +119,20 @@ method("at", function(_, time, f)
   return add_timer(f, { due = time, fixed = true })
 end)
 
--- the run becomes the show, whose timers were looked at last at `time`: beats go on, and what was due does not come again
-function P.timers_moved(time)
+-- The run goes live after timers were last checked at `time`: periods continue, and fixed times before it don't fire
+-- again.
+function P.resume_timers(time)
   for _, entry in ipairs(timers) do
     if entry.period then
-      entry.beat = beats(entry, time)
-    elseif entry.fixed and time + kSlack >= entry.due then
+      entry.periods = periods_until(entry, time)
+    elseif entry.fixed and time + kTolerance >= entry.due then
       entry.off = true
     end
   end
 end
 
--- Top-level timers of sim:after as text, for the run that takes this one's place: delay, time, whether it has ended. One
--- that failed has no time: it counts again, since the save may have corrected it.
+-- Serializes top-level timers of sim:after for the next run: delay, due time, whether it has ended. Failed ones have no
+-- due time: they count again, since the edit may have fixed them.
 function P.entry.afters()
   local list = {}
   for i, entry in ipairs(afters) do
@@ -139,9 +141,9 @@ function P.entry.afters()
   return P.plain_text(list, "afters", function() end)
 end
 
--- The first with a delay goes on as the first with that delay of the run before, and so on: at the same time, and not
--- again if it has acted or was cancelled. Others count from this run.
-function P.entry.take_afters(text)
+-- Takes over the timers of the previous run. The n-th timer with a given delay continues the n-th one with that delay:
+-- same due time, and no second call if it has fired or was canceled. Others start in this run.
+function P.entry.adopt_afters(text)
   local of_delay = {}
   for _, before in ipairs(P.plain_value(text) or {}) do
     local queue = of_delay[before[1]] or { at = 1 }
@@ -158,7 +160,7 @@ function P.entry.take_afters(text)
   end
 end
 
--- how many timers of callbacks wait, and how many of them repeat
+-- number of pending timers of callbacks, and how many of them repeat
 function P.entry.callback_timers()
   local count, repeating = 0, 0
   for _, entry in ipairs(timers) do
@@ -174,35 +176,35 @@ local function clear(list)
   for i = #list, 1, -1 do list[i] = nil end
 end
 
--- The run becomes an earlier one: all ends that the top level has registered, and whatever is no timer. The answer: how
--- many handlers that callbacks had registered end with it.
-function P.entry.become_earlier()
+-- Makes this an earlier run: ends everything registered by the top level, and everything but timers. Returns the number
+-- of callback handlers that ended.
+function P.entry.retire()
   earlier = true
-  local lost = P.end_handlers()
+  local removed = P.remove_handlers()
   for _, list in ipairs { steps, contacts } do
     for _, entry in ipairs(list) do
-      if entry.in_callback and not entry.off then lost = lost + 1 end
+      if entry.in_callback and not entry.off then removed = removed + 1 end
     end
     clear(list)
   end
   clear(starts)
   clear(afters)
-  local kept = {}
+  local remaining = {}
   for _, entry in ipairs(timers) do
-    if not entry.off and entry.in_callback then kept[#kept + 1] = entry end
+    if not entry.off and entry.in_callback then remaining[#remaining + 1] = entry end
   end
   clear(timers)
-  for i, entry in ipairs(kept) do timers[i] = entry end
-  return lost
+  for i, entry in ipairs(remaining) do timers[i] = entry end
+  return removed
 end
 
--- Timers in `state` are known to all runs, by the number of the run that set them; 0 in a handle is the run itself.
+-- Timers in `state` are identified in all runs by the number of the run that set them; 0 in a handle is this run.
 P.run_number = -1
-function P.entry.number_run(number) P.run_number = number end
+function P.entry.set_run_number(number) P.run_number = number end
 function P.timer(number, run) return T(number, run == P.run_number and 0 or run) end
 function P.timer_text(handle) return handle.number_, handle.run_ == 0 and P.run_number or handle.run_ end
 
--- of an earlier run, by another one
+-- cancels a timer of this earlier run for another run
 function P.entry.cancel_timer(number)
   local entry = timer_of[number]
   if entry then entry.off = true end
@@ -215,7 +217,7 @@ local timer_methods = {
     if handle.run_ ~= 0 then return api.cancel_timer(ctx, handle.run_, handle.number_) end
     local entry = timer_of[handle.number_]
     if not entry or entry.off then return end
-    P.log(timers)
+    P.journal(timers)
     journal[#journal].timer = entry
     entry.off = true
   end,
@@ -230,8 +232,8 @@ ffi.metatype(T, {
 
 local function is_due(entry, time)
   if entry.off then return false end
-  if entry.period then return beats(entry, time) > entry.beat end
-  return time + kSlack >= entry.due
+  if entry.period then return periods_until(entry, time) > entry.periods end
+  return time + kTolerance >= entry.due
 end
 
 local function run_timers()
@@ -241,7 +243,7 @@ local function run_timers()
   for i = 1, n do
     local entry = timers[i]
     local due = is_due(entry, time)
-    if entry.period and not entry.off then entry.beat = beats(entry, time) end
+    if entry.period and not entry.off then entry.periods = periods_until(entry, time) end
     if due then
       local ok = guarded(entry.f)
       if not ok then
@@ -251,16 +253,16 @@ local function run_timers()
       if not (ok and entry.period) then entry.off = true end
     end
   end
-  -- what is done goes; the others keep their order
-  local kept = 0
+  -- remove finished timers, keeping the order of the others
+  local remaining = 0
   for i = 1, #timers do
     local entry = timers[i]
     if not entry.off then
-      kept = kept + 1
-      timers[kept] = entry
+      remaining = remaining + 1
+      timers[remaining] = entry
     end
   end
-  for i = #timers, kept + 1, -1 do timers[i] = nil end
+  for i = #timers, remaining + 1, -1 do timers[i] = nil end
 end
 jit.off(run_timers)
 
@@ -273,8 +275,8 @@ local function run_contacts()
     if code == 0 then
       local impulse, position = number[0], P.V(number[1], number[2], number[3])
       local slot, generation = number[6], number[7]
-      local part = P.thing(number[4], number[5])
-      call_all(contacts, part, P.thing(slot, generation), impulse, position)
+      local part = P.handle_of(number[4], number[5])
+      call_all(contacts, part, P.handle_of(slot, generation), impulse, position)
     end
     i = i + 1
   end
@@ -290,7 +292,7 @@ function P.entry.tick(dt)
   P.report_fallbacks()
 end
 
--- of an earlier run: whether a timer is due; then the timers, and how many are left
+-- in an earlier run: true if a timer is due; then runs the timers and returns the number of pending ones
 function P.entry.timers_due()
   local time = now()
   for _, entry in ipairs(timers) do

@@ -1,4 +1,4 @@
--- `osc`: handlers of messages that come in, messages that go out, ports and streams that a scene declares.
+-- `osc`: handlers of incoming messages, outgoing messages, ports and streams declared by a scene.
 local P = ...
 local ffi, api, ctx, answer, istype = P.ffi, P.api, P.ctx, P.answer, P.ffi.istype
 local fail, describe = P.fail, P.describe
@@ -6,61 +6,61 @@ local fail, describe = P.fail, P.describe
 local handlers = {}
 local address_now, sender_now
 
-local function want_address(address, what)
-  P.want_text(address, what)
-  if string.byte(address, 1) ~= 47 then fail("%s: '%s' is no address: it must begin with /", what, address) end
+local function want_address(address, subject)
+  P.want_text(address, subject)
+  if string.byte(address, 1) ~= 47 then fail("%s: '%s' is not an address; it must begin with /", subject, address) end
   if #address > 1024 or address:find("[%c\128-\255 ]") then
-    fail("%s: an address is up to 1024 characters of plain ASCII without blanks", what)
+    fail("%s: an address is up to 1024 characters of plain ASCII without blanks", subject)
   end
   return address
 end
 
-local function put(value, what)
+local function put(value, subject)
   local kind = type(value)
-  if kind == "number" then return api.message_number(ctx, P.want_number(value, what)) end
+  if kind == "number" then return api.message_number(ctx, P.want_number(value, subject)) end
   if kind == "boolean" then return api.message_flag(ctx, value and 1 or 0) end
   if kind == "string" then return api.message_text(ctx, value, #value) end
   local v = P.as_vec3(value)
-  if not v then fail("%s sends numbers, text, booleans and vec3s, not %s", what, describe(value)) end
-  api.message_number(ctx, P.want_number(v.x, what))
-  api.message_number(ctx, P.want_number(v.y, what))
-  api.message_number(ctx, P.want_number(v.z, what))
+  if not v then fail("%s sends numbers, text, booleans and vec3s, not %s", subject, describe(value)) end
+  api.message_number(ctx, P.want_number(v.x, subject))
+  api.message_number(ctx, P.want_number(v.y, subject))
+  api.message_number(ctx, P.want_number(v.z, subject))
 end
 
--- a message is whole before it is handed over: a wrong value sends nothing
-local function send(what, way, ip, port, address, ...)
-  P.needs_callback(what)
-  want_address(address, what)
+-- the message is complete before it is sent: an invalid value sends nothing
+local function send(subject, route, ip, port, address, ...)
+  P.needs_callback(subject)
+  want_address(address, subject)
   api.message_begin(ctx, address, #address)
-  for i = 1, select("#", ...) do put((select(i, ...)), what) end
-  P.check(api.message_send(ctx, way, ip, port))
+  for i = 1, select("#", ...) do put((select(i, ...)), subject) end
+  P.check(api.message_send(ctx, route, ip, port))
 end
 
 local osc = {}
 local members = { "address", "sender", "on", "send", "reply", "listen", "stream_to", "to" }
 P.osc_members, P.osc_functions = members, osc
-local function check(self, what)
-  if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", what, what) end
+local function check(self, subject)
+  if self ~= P.osc then fail("%s is a method of osc: write osc:%s(…), with a colon", subject, subject) end
 end
 
 function osc.on(self, pattern, f)
   check(self, "on")
   want_address(pattern, "osc:on")
   P.want_function(f, "osc:on")
-  if P.registers_nothing("osc:on") then return end
-  P.log(handlers)
+  if P.is_earlier_run("osc:on") then return end
+  P.journal(handlers)
   handlers[#handlers + 1] = { pattern = pattern, f = f, in_callback = answer.top_level == 0 }
   api.osc_handlers(ctx, #handlers)
 end
--- all of them end; the answer: how many of them callbacks had registered
-function P.end_handlers()
-  local lost = 0
+-- removes all handlers; returns the number of those registered by callbacks
+function P.remove_handlers()
+  local removed = 0
   for i = #handlers, 1, -1 do
-    if handlers[i].in_callback then lost = lost + 1 end
+    if handlers[i].in_callback then removed = removed + 1 end
     handlers[i] = nil
   end
   api.osc_handlers(ctx, 0)
-  return lost
+  return removed
 end
 function osc.send(self, address, ...)
   check(self, "send")
@@ -160,24 +160,24 @@ P.osc = setmetatable({}, {
 
 P.on_failure[#P.on_failure + 1] = function() api.osc_handlers(ctx, #handlers) end
 
--- Calls every handler whose pattern matches. One that fails or is stopped is reported and disabled; its messages still
--- count as heard.
+-- Calls every handler with a matching pattern. A handler that fails or is stopped is reported and disabled; its
+-- messages still count as handled.
 function P.entry.message(address, sender, ...)
-  local heard = false
-  local outer_address, outer_sender = address_now, sender_now
+  local handled = false
+  local previous_address, previous_sender = address_now, sender_now
   address_now, sender_now = address, sender
   for i = 1, #handlers do
     local entry = handlers[i]
     local pattern = entry.pattern
     if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
-      heard = true
+      handled = true
       if not entry.off and not P.guarded(entry.f, ...) then
         api.report(ctx)
         entry.off = api.disable_handler(ctx) ~= 0
       end
     end
   end
-  address_now, sender_now = outer_address, outer_sender
-  return heard
+  address_now, sender_now = previous_address, previous_sender
+  return handled
 end
 jit.off(P.entry.message)

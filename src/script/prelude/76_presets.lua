@@ -1,4 +1,4 @@
--- `presets`: the named states of the show. What a callback asks of them is done once the tick's callbacks are.
+-- `presets`: saved states of the show. Operations requested by a callback are carried out after the tick's callbacks.
 local P = ...
 local api, ctx = P.api, P.ctx
 local fail, describe = P.fail, P.describe
@@ -7,28 +7,32 @@ local presets = {}
 local members = { "store", "recall", "morph", "delete", "names" }
 P.preset_members, P.preset_functions = members, presets
 
-local function begin(self, what)
-  if self ~= P.presets then fail("%s is a method of presets: write presets:%s(…), with a colon", what, what) end
-  P.needs_callback("presets:" .. what)
-  local address = "/preset/" .. what
+local function begin(self, operation)
+  if self ~= P.presets then
+    fail("%s is a method of presets: write presets:%s(…), with a colon", operation, operation)
+  end
+  P.needs_callback("presets:" .. operation)
+  local address = "/preset/" .. operation
   api.message_begin(ctx, address, #address)
 end
 
 -- a preset by name or number
-local function put_which(which, what)
-  if type(which) == "number" then return api.message_number(ctx, P.want_number(which, what)) end
-  if type(which) ~= "string" then fail("%s takes the name or the number of a preset, not %s", what, describe(which)) end
+local function put_which(which, subject)
+  if type(which) == "number" then return api.message_number(ctx, P.want_number(which, subject)) end
+  if type(which) ~= "string" then
+    fail("%s takes the name or the number of a preset, not %s", subject, describe(which))
+  end
   api.message_text(ctx, which, #which)
 end
 
-local function finish(what)
-  if api.preset_ask(ctx) ~= 0 then fail("presets:%s: %s", what, P.text()) end
+local function finish(operation)
+  if api.request_preset(ctx) ~= 0 then fail("presets:%s: %s", operation, P.text()) end
 end
 
 local store_opts = { rows = true, except = true, poses = true, velocities = true }
-local function put_patterns(patterns, what)
+local function put_patterns(patterns, subject)
   for _, pattern in ipairs(type(patterns) == "table" and patterns or { patterns }) do
-    P.want_text(pattern, what)
+    P.want_text(pattern, subject)
     api.message_text(ctx, pattern, #pattern)
   end
 end

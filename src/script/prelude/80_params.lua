@@ -1,19 +1,19 @@
--- `params`: a scene's own parameters, rows of the node /scene.
+-- `params`: a scene's own parameters, properties of the node /scene.
 local P = ...
 local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
 local fail, describe = P.fail, P.describe
-local kNumber, kBoolean, kChoice, kVec3 = 0, 2, 3, 4  -- RowType of params/table.h
+local kNumber, kBoolean, kChoice, kVec3 = 0, 2, 3, 4  -- PropertyType of params/table.h
 
 local class, node  -- of the declared parameters
 local initial, low, high = ffi.new("double[4]"), ffi.new("double[4]"), ffi.new("double[4]")
 local keys = { min = true, max = true, step = true, unit = true, doc = true, choices = true, rerun = true }
 
-local function put(to, value, what, name)
+local function put(to, value, subject, name)
   if type(value) == "number" then
-    if value ~= value then fail("params: '%s': %s is no number", name, what) end
+    if value ~= value then fail("params: '%s': %s is not a number", name, subject) end
     to[0], to[1], to[2] = value, value, value
   else
-    local v = P.as_vec3(value) or fail("params: '%s': %s is a number or a vec3, not %s", name, what, describe(value))
+    local v = P.as_vec3(value) or fail("params: '%s': %s is a number or a vec3, not %s", name, subject, describe(value))
     to[0], to[1], to[2] = v.x, v.y, v.z
   end
 end
@@ -86,7 +86,7 @@ local function declare_one(spec, i)
     put(low, 0)
     put(high, #choices - 1)
   end
-  P.check(api.param_row(ctx, name, #name, kind, initial, low, high))
+  P.check(api.param_property(ctx, name, #name, kind, initial, low, high))
   for _, choice in ipairs(choices) do api.param_choice(ctx, choice, #choice) end
   if spec.doc then api.param_doc(ctx, spec.doc, #spec.doc) end
   if spec.step then api.param_step(ctx, spec.step) end
@@ -94,15 +94,18 @@ local function declare_one(spec, i)
   if spec.unit then P.check(api.param_unit(ctx, spec.unit, #spec.unit)) end
 end
 
--- the rows of a list of declarations, gathered behind the door: the scene's, or a behaviour's
-function P.gather_rows(list)
+-- passes a list of declarations, of the scene or of a behavior, to the API
+function P.collect_params(list)
   if type(list) ~= "table" then fail("params takes a list of { \"name\", default, … }, not %s", describe(list)) end
-  local others = {}
+  local unknown_keys = {}
   for key in pairs(list) do
-    if type(key) ~= "number" or key % 1 ~= 0 or key < 1 or key > #list then others[#others + 1] = tostring(key) end
+    if type(key) ~= "number" or key % 1 ~= 0 or key < 1 or key > #list then
+      unknown_keys[#unknown_keys + 1] = tostring(key)
+    end
   end
-  table.sort(others)
-  if others[1] then fail("params: '%s' is not an entry of the list; write { \"%s\", … }", others[1], others[1]) end
+  table.sort(unknown_keys)
+  local first = unknown_keys[1]
+  if first then fail("params: '%s' is not an entry of the list; write { \"%s\", … }", first, first) end
   api.param_begin(ctx)
   for i, spec in ipairs(list) do declare_one(spec, i) end
 end
@@ -111,31 +114,31 @@ local function declare(_, list)
   P.needs_top_level("params")
   P.needs_scene("params")
   if node then fail("params is called once, with all parameters of the scene") end
-  P.gather_rows(list)
+  P.collect_params(list)
   if api.param_done(ctx) ~= 0 then fail("%s", P.text()) end
-  class = { name = "params", table = answer.count, getters = {}, setters = {}, methods = {}, rows = {} }
+  class = { name = "params", table = answer.count, getters = {}, setters = {}, methods = {}, properties = {} }
   node = { slot_ = answer.slot, generation_ = answer.generation }
-  P.derive(class)
+  P.derive_members(class)
 end
 
--- the node is another one now
-function P.params_moved()
+-- looks up the node's id after the node was replaced
+function P.update_params_node()
   if not node then return end
   api.params_node(ctx)
   node.slot_, node.generation_ = answer.slot, answer.generation
 end
 
--- Of an earlier run: the parameters are those of the run that plays now.
-function P.params_renewed()
+-- in an earlier run: switches to the parameters of the live run
+function P.update_params()
   if not node then return end
-  local there = api.params_node(ctx) == 0
-  node.slot_, node.generation_ = there and answer.slot or -1, there and answer.generation or 0
-  if there and answer.count == class.table then return end
-  for _, members in ipairs { class.getters, class.setters, class.methods, class.rows } do
+  local exists = api.params_node(ctx) == 0
+  node.slot_, node.generation_ = exists and answer.slot or -1, exists and answer.generation or 0
+  if exists and answer.count == class.table then return end
+  for _, members in ipairs { class.getters, class.setters, class.methods, class.properties } do
     for key in pairs(members) do members[key] = nil end
   end
-  class.table = there and answer.count or -1
-  if there then P.derive(class) end
+  class.table = exists and answer.count or -1
+  if exists then P.derive_members(class) end
 end
 
 function P.parameter_names() return class and class.getters or {} end

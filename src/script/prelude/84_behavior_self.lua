@@ -1,21 +1,21 @@
--- `self` of a behaviour written in Lua: a handle of a class of its type's, with the type's parameters and what every
--- behaviour has; and the calls of its functions.
+-- `self` of a behavior written in Lua: a handle of a class with the type's parameters and the members of every
+-- behavior; and the entries for calling its functions.
 local P = ...
 local ffi, api, ctx, answer = P.ffi, P.api, P.ctx, P.answer
 local fail, describe, istype = P.fail, P.describe, P.ffi.istype
 local native_ipairs = ipairs
 
--- by number; what a step reads most stands in tables of its own: to walk through thousands of instances takes time for
--- each place in memory that is looked at
+-- All tables are indexed by the instance's number. Data used in most steps have separate tables, because with thousands
+-- of instances each memory access counts.
 local instances = {}  -- handle, type, body, state, rng
 local group_of = {}   -- slot of the group's node
 local kinds = { parts = 1, joints = 2, motors = 3 }
 local lists_of = { parts = {}, joints = {}, motors = {}, neighbor_parts = {} }
 P.group_of = group_of
 
-local function instance_of(h) return instances[h.number_] or P.gone(h) end
+local function instance_of(h) return instances[h.number_] or P.fail_removed(h) end
 
--- Lists of `self`: what they hold is gathered when it is asked for and kept until start() is called again.
+-- Lists of `self`: collected on first use and cached until start() is called again.
 local S = ffi.typeof("struct { const int32_t number_; }")
 local lists, list_names, free = {}, {}, {}
 P.S = S
@@ -23,15 +23,15 @@ P.S = S
 local function gather(h, kind)
   local items = {}
   local count = api.behavior_item(ctx, h.slot_, h.generation_, kind, -1)
-  if count < 0 then P.gone(h) end
+  if count < 0 then P.fail_removed(h) end
   for i = 0, count - 1 do
     api.behavior_item(ctx, h.slot_, h.generation_, kind, i)
-    items[i + 1] = P.thing(answer.slot, answer.generation)
+    items[i + 1] = P.handle_of(answer.slot, answer.generation)
   end
   return items
 end
 
-local function items_of(list) return lists[list.number_] or fail("this list is out of date: take it from self anew") end
+local function items_of(list) return lists[list.number_] or fail("this list is out of date: get it from self again") end
 
 local function next_item(list, i)
   i = i + 1
@@ -39,10 +39,10 @@ local function next_item(list, i)
   if item then return i, item end
 end
 
--- a long list has a walk of its own, which finds its items without looking for them at each step, and which no script
--- can change
-local walks = {}
-local function walk_of(items)
+-- Lists with several items have an iterator of their own, which needs no lookup for each step and can't be modified by
+-- scripts.
+local iterators = {}
+local function iterator_of(items)
   return function(_, i)
     i = i + 1
     local item = items[i]
@@ -55,29 +55,30 @@ ffi.metatype(S, {
     if type(key) == "number" then return items_of(list)[key] end
     fail("a list of %s has no member '%s'; an entry is found by a number in [ ]", list_names[list.number_], tostring(key))
   end,
-  __newindex = function(list) fail("the list of %s can't be changed by hand", list_names[list.number_]) end,
+  __newindex = function(list) fail("the list of %s is read-only", list_names[list.number_]) end,
   __len = function(list) return #items_of(list) end,
   __call = function(list)
-    fail("%s is a list, no function: for i, x in ipairs(self.%s) do", list_names[list.number_], list_names[list.number_])
+    local name = list_names[list.number_]
+    fail("%s is a list, not a function: for i, x in ipairs(self.%s) do", name, name)
   end,
   __tostring = function(list) return "list of " .. list_names[list.number_] end,
 })
 
-local ipairs_of_things = P.ipairs
+local ipairs_of_lists = P.ipairs
 function P.ipairs(t)
-  if istype(S, t) then return walks[t.number_] or next_item, t, 0 end
-  local f, s, i = ipairs_of_things(t)
+  if istype(S, t) then return iterators[t.number_] or next_item, t, 0 end
+  local f, s, i = ipairs_of_lists(t)
   return f, s, i
 end
 
-local function keep_list(name, items)
+local function store_list(name, items)
   local number = #free > 0 and table.remove(free) or #lists + 1
-  lists[number], list_names[number], walks[number] = items, name, #items > 1 and walk_of(items)
+  lists[number], list_names[number], iterators[number] = items, name, #items > 1 and iterator_of(items)
   return (S(number))
 end
 
-local function keep_list_of(number, name, items)
-  lists_of[name][number] = keep_list(name, items)
+local function store_list_of(number, name, items)
+  lists_of[name][number] = store_list(name, items)
   return lists_of[name][number]
 end
 
@@ -91,20 +92,20 @@ local function drop_lists(number)
   for name in pairs(lists_of) do drop_list(number, name) end
 end
 
--- a group's neighbours come and go without a start of its members
+-- a group's neighbors change without a start of its members
 local function neighbor_parts(h)
   local instance, number, version = instance_of(h), h.number_, api.structure(ctx)
   if not lists_of.neighbor_parts[number] or instance.structure ~= version then
     drop_list(number, "neighbor_parts")
-    keep_list_of(number, "neighbor_parts", P.neighbor_parts(h, instance.body))
+    store_list_of(number, "neighbor_parts", P.neighbor_parts(h, instance.body))
     instance.structure = version
   end
   return lists_of.neighbor_parts[number]
 end
 
-function P.empty_list() return (keep_list("warm", {})) end
+function P.empty_list() return (store_list("warm", {})) end
 
--- what every `self` has beside its parameters
+-- members of every `self` besides its parameters
 local getters = {
   name = function(h) return P.names[instance_of(h).handle] end,
   type = function(h) return instance_of(h).type.name end,
@@ -117,7 +118,7 @@ local getters = {
 for name in pairs(kinds) do
   local known = lists_of[name]
   getters[name] = function(h)
-    return known[h.number_] or keep_list_of(h.number_, name, instance_of(h) and gather(h, kinds[name]))
+    return known[h.number_] or store_list_of(h.number_, name, instance_of(h) and gather(h, kinds[name]))
   end
 end
 
@@ -129,52 +130,54 @@ local setters = {
 }
 
 local function no_interval(h, class, name)
-  local row = class.rows[name]
-  if row then fail("%s: '%s' is no number of milliseconds; due takes the name of a number", P.label(h), name) end
+  local property = class.properties[name]
+  if property then
+    fail("%s: '%s' is not a number of milliseconds; due takes the name of a number parameter", P.label(h), name)
+  end
   local names = {}
   for _, key in native_ipairs(P.sorted_keys(class.setters)) do
-    if class.rows[key] and class.rows[key].type == 0 then names[#names + 1] = key end
+    if class.properties[key] and class.properties[key].type == 0 then names[#names + 1] = key end
   end
   fail("%s: due takes the name of a parameter in quotes, not %s%s", P.label(h), describe(name), P.hint(name, names))
 end
 
--- the class of a type's handles
+-- creates the class of a type's handles
 function P.make_self(of)
   local ctype = ffi.typeof("struct { const int32_t slot_, generation_, number_; }")
-  local class = { name = "behavior", table = of.table, ctype = ctype, getters = {}, setters = {}, methods = {}, rows = {} }
+  local class = { name = "behavior", table = of.table, ctype = ctype, getters = {}, setters = {}, methods = {},
+    properties = {} }
   P.add_handles(class)
-  P.derive(class)
+  P.derive_members(class)
   class.methods.remove = nil
-  local intervals = {}  -- rows by name, for due
-  for name, row in pairs(class.rows) do
-    if row.type == 0 and class.setters[name] then intervals[name] = row.index end
+  local intervals = {}  -- property indices by name, for due
+  for name, property in pairs(class.properties) do
+    if property.type == 0 and class.setters[name] then intervals[name] = property.index end
   end
   for name, get in pairs(getters) do class.getters[name] = get end
   for name, set in pairs(setters) do class.setters[name] = set end
   function class.methods.due(h, name)
     if not istype(ctype, h) then P.check_self(h, class, "due") end
-    local row = intervals[name] or no_interval(h, class, name)
-    local due = api.behavior_due(ctx, h.slot_, h.generation_, row)
-    if due < 0 then P.gone(h) end
+    local property = intervals[name] or no_interval(h, class, name)
+    local due = api.behavior_due(ctx, h.slot_, h.generation_, property)
+    if due < 0 then P.fail_removed(h) end
     return due == 1
   end
   if of.is_group then
-    P.neighbor_members(class)
+    P.add_neighbor_members(class)
     class.getters.neighbor_parts = neighbor_parts
   end
-  P.finish(class)
+  P.finish_class(class)
   of.class = class
 end
 
--- What C++ calls: each start, step and migrate is a guarded call of its own, with functions and handles from these
--- tables, by the number of the instance.
+-- Called from C++: each start, step and migrate is a guarded call with a function and a handle from these tables,
+-- indexed by the instance's number.
 local entry = P.entry
 local selfs, starts, steps, migrates = {}, {}, {}, {}
 entry.behavior_self, entry.behavior_start, entry.behavior_step, entry.behavior_migrate = selfs, starts, steps, migrates
 
--- Steps of many instances in one call; each is guarded by itself all the same, from one behavior_next to the next. A
--- loop around them is compiled together with what they do; a call for each would come from C++, interpreted up to its
--- first loop.
+-- Steps many instances in one call; each is still guarded individually, from one behavior_next to the next. The loop is
+-- compiled together with the steps, whereas a separate call from C++ would be interpreted up to its first loop.
 function entry.step_behaviors(dt)
   local number = api.behavior_next(ctx)
   while number > 0 do
@@ -190,41 +193,41 @@ function entry.make_behavior(file, slot, generation)
   api.name(ctx, slot, generation)
   local name = P.text()
   api.behavior_body(ctx, slot, generation)
-  local body = P.answered()
-  P.introduce(h, name, body)
+  local body = P.answered_handle()
+  P.register_handle(h, name, body)
   instances[number] = { handle = h, type = of, body = body, state = {}, rng = P.R(slot, generation) }
   group_of[number] = of.is_group and api.behavior_group(ctx, slot, generation)
-  for _, known in pairs(lists_of) do known[number] = false end  -- a row without gaps
+  for _, known in pairs(lists_of) do known[number] = false end  -- without gaps, so that the table stays an array
   selfs[number], starts[number], steps[number], migrates[number] = h, of.start, of.step, of.migrate
   return number
 end
 
--- what it acts on may have changed
-function entry.renew_behavior(number) drop_lists(number) end
+-- called before a start: the instance's targets may have changed
+function entry.clear_behavior_lists(number) drop_lists(number) end
 
--- takes a state as text: the state
+-- sets the state from text and returns it
 function entry.restore_behavior(number, text)
   local state = P.plain_value(text)
   instances[number].state = state
   return state
 end
 
--- takes what migrate gave; else text, file and line of what is wrong
-function entry.migrated_behavior(number, state)
+-- accepts the result of migrate; if it is invalid returns text, file and line of the error
+function entry.accept_migrated_state(number, state)
   local instance = instances[number]
   if type(state) == "table" then
     instance.state = state
     return nil
   end
-  local file, line = instance.type.shown, debug.getinfo(instance.type.migrate, "S").linedefined
+  local file, line = instance.type.display_path, debug.getinfo(instance.type.migrate, "S").linedefined
   return string.format("%s:%d: %s: migrate returns the new state, a table, not %s", file, line,
     P.label(instance.handle), describe(state)), file, line
 end
 
--- as text, or nothing and what can't be kept
-local function refuse(path, what) error(string.format("%s %s; %s", path, what, P.plain_kinds), 0) end
+-- the state as text, or nil and the reason why it can't be serialized
+local function reject(path, reason) error(string.format("%s %s; %s", path, reason, P.plain_kinds), 0) end
 function entry.behavior_state(number)
-  local ok, text = pcall(P.plain_text, instances[number].state, "state", refuse)
+  local ok, text = pcall(P.plain_text, instances[number].state, "state", reject)
   if ok then return text end
   return nil, text
 end

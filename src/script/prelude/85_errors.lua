@@ -1,10 +1,10 @@
--- Errors as a person reads them: file:line: what, the source line, the way there through the scripts.
+-- Error messages: "file:line: message", the source line, the stack traceback of the scripts.
 local P = ...
 local api, ctx = P.api, P.ctx
 local getinfo, format, sub, find = debug.getinfo, string.format, P.native_sub, string.find
-jit.off(true, true)  -- native_sub; and a stack overflow leaves room for little else
+jit.off(true, true)  -- because of native_sub; and a stack overflow leaves little stack space
 
--- text of every script by the name that messages show; true where it is no longer known
+-- text of each script by its name in messages; true if it is no longer available
 local sources = {}
 P.sources = sources
 
@@ -19,8 +19,8 @@ local function source_line(file, line)
   return (sub(text, at, (find(text, "\n", at, true) or #text + 1) - 1):gsub("\r", ""))
 end
 
--- Lua cuts long names at the front: "...ts/arms.lua"
-local function whole_name(name)
+-- Lua truncates long names at the front: "...ts/arms.lua"
+local function full_name(name)
   if sources[name] then return name end
   if sub(name, 1, 3) ~= "..." then return nil end
   for _, known in ipairs(P.sorted_keys(sources)) do
@@ -28,26 +28,26 @@ local function whole_name(name)
   end
 end
 
--- the place that a message begins with, and the rest
+-- splits a message into file, line and the rest
 local function place_in(message)
   local from, to, name, line = find(message, "^(.-):(%d+): ")
   if not from then return nil, nil, message end
-  local file = whole_name(name)
+  local file = full_name(name)
   if file then return file, tonumber(line), sub(message, to + 1) end
-  -- an error that Lua found inside a prelude file belongs to the script that called it
+  -- an error raised by Lua inside a prelude file is attributed to the script that called it
   if find(name, "^limber ") then return nil, nil, sub(message, to + 1) end
   return nil, nil, message
 end
 
 local function explain(message)
   if find(message, "^attempt to call method '.-' %(a %a+ value%)") and not find(message, "nil value") then
-    return message .. "; members take a dot, only methods a colon"
+    return message .. "; use a dot for members, a colon only for methods"
   end
   if message == "attempt to call field 'randomseed' (a nil value)" then
     return "math.randomseed is not available; sim.seed (or --seed) seeds every generator of a scene"
   end
   if message == "attempt to write to constant location" then
-    return "this member never changes; of a vec3 or quat set the whole value"
+    return "this member is read-only; of a vec3 or quat assign the whole value"
   end
   return message
 end
@@ -63,16 +63,16 @@ local function traceback(level)
         lines[#lines + 1] = "  …"
         break
       end
-      local what = info.what == "main" and "the main chunk" or info.name and "function '" .. info.name .. "'" or
+      local location = info.what == "main" and "the main chunk" or info.name and "function '" .. info.name .. "'" or
         format("the function of line %d", info.linedefined)
-      lines[#lines + 1] = format("  %s:%d: in %s", sub(info.source, 2), info.currentline, what)
+      lines[#lines + 1] = format("  %s:%d: in %s", sub(info.source, 2), info.currentline, location)
     end
   end
   return lines
 end
 
--- what is shown is read by people, and handled where no script can be stopped
-local function shortened(text, most) return #text > most and sub(text, 1, most) .. "…" or text end
+-- messages have a bounded length, because they are processed where no script can be stopped
+local function shortened(text, max_length) return #text > max_length and sub(text, 1, max_length) .. "…" or text end
 
 local function fault_of(file, line, message, trace)
   local text = message
@@ -82,21 +82,21 @@ local function fault_of(file, line, message, trace)
     if source then text = format("%s\n  %d | %s", text, line, shortened(source, 200)) end
   end
   if #trace > 0 then text = text .. "\nstack traceback:\n" .. table.concat(trace, "\n") end
-  return { file = file or P.main or "", line = line or 0, text = text }  -- 0: the guard knows where it began
+  return { file = file or P.main or "", line = line or 0, text = text }  -- 0: set by the guard
 end
 
--- the message handler of every guarded call; what is thrown may be anything, and its __tostring is never called
+-- The message handler of every guarded call. The thrown value can have any type; its __tostring is never called.
 function P.handler(thrown)
   if api.stopped(ctx) ~= 0 then return P.stopped_fault(traceback(3)) end
   if type(thrown) ~= "string" then
-    thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is no text but a %s", type(thrown))
+    thrown = type(thrown) == "number" and tostring(thrown) or format("an error that is not text but a %s", type(thrown))
   end
   local file, line, message = place_in(shortened(thrown, 4000))
-  if not file then file, line = P.where(3) end
+  if not file then file, line = P.script_place(3) end
   return fault_of(file, line, explain(message), traceback(3))
 end
 
--- of a call that was stopped; it may have caught that itself, and nothing came out
+-- the fault of a call that was stopped; needed if the call has caught the error itself
 function P.stopped_fault(trace)
   api.stopped(ctx)
   local file, line = P.text(), tonumber(P.answer.number[0])

@@ -1,10 +1,10 @@
--- What a behaviour can't do: make things, register callbacks. These are the scene's.
+-- Functions that a behavior can't call: creating objects and registering callbacks is reserved for the scene.
 local P = ...
 
-local function keep_to_scene(functions, key, what)
+local function keep_to_scene(functions, key, subject)
   local f = functions[key]
   functions[key] = function(...)
-    if P.answer.in_behavior ~= 0 then P.needs_scene(what) end
+    if P.answer.in_behavior ~= 0 then P.needs_scene(subject) end
     return f(...)
   end
 end

@@ -1,33 +1,33 @@
--- `string` as scripts see it: patterns whose matcher can be stopped, texts of a bounded size, no addresses in texts.
+-- `string` for scripts: an interruptible pattern matcher, texts of bounded size, no memory addresses in texts.
 local P = ...
 local ffi, api, ctx, fail, describe = P.ffi, P.api, P.ctx, P.fail, P.describe
 local native, floor, huge = string, math.floor, math.huge
 local native_sub, byte, getmetatable = P.native_sub, string.byte, debug.getmetatable
 local match = api.match(ctx)
 
-local kLong = 4 * 2 ^ 20  -- what walks a whole text in C takes up to that many bytes
+local kMaxLength = 4 * 2 ^ 20  -- max. length for functions that process a whole text in C
 
 local text_of = tostring
-local function want_text(value, what)
+local function want_text(value, name)
   if type(value) == "string" then return value end
   if type(value) == "number" then return text_of(value) end
-  fail("string.%s takes text, not %s", what, describe(value))
+  fail("string.%s takes text, not %s", name, describe(value))
 end
-local function want_short(value, what)
-  value = want_text(value, what)
-  if #value > kLong then fail("string.%s takes texts of up to 4 MB", what) end
+local function want_short(value, name)
+  value = want_text(value, name)
+  if #value > kMaxLength then fail("string.%s takes texts of up to 4 MB", name) end
   return value
 end
-local function want_integer(value, missing, what)
+local function want_integer(value, missing, name)
   if value == nil then return missing end
   local number = tonumber(value)
-  if not number then fail("string.%s takes a number there, not %s", what, describe(value)) end
+  if not number then fail("string.%s takes a number there, not %s", name, describe(value)) end
   if number ~= number then return 0 end
   number = math.max(-2 ^ 31, math.min(2 ^ 31 - 1, number))
   return number < 0 and -floor(-number) or floor(number)
 end
 
--- tables, functions and coroutines have no address in texts: it would differ from run to run
+-- tables, functions and coroutines are shown without address, which would differ from run to run
 function P.show(value)
   local kind = type(value)
   if kind == "table" then
@@ -39,13 +39,13 @@ function P.show(value)
 end
 local show = P.show
 
--- the bytes from `first` (0: the first one) up to `last`, 0 <= first, last <= #text
+-- the bytes from offset `first` up to `last`, 0 <= first, last <= #text
 local function part(text, first, last)
   if not (first < last) then return "" end
   return native_sub(text, first + 1, last)
 end
 
--- the captures of the last match, from the i-th on
+-- the captures of the last match, from index i on
 local function capture(text, i)
   local length = match.length[i]
   if length == -2 then return match.from[i] + 1 end
@@ -61,19 +61,19 @@ local function whole_or_captures(text)
   return captures(text, 0, match.count)
 end
 
-local function search(text, pattern, from, anchors, what)
+local function search(text, pattern, from, anchors, name)
   local found = api.find_match(ctx, text, #text, pattern, #pattern, from, anchors)
-  if found < 0 then fail("string.%s: %s", what, P.text()) end
+  if found < 0 then fail("string.%s: %s", name, P.text()) end
   return found == 1
 end
 
-local function start_of(text, init, what)
-  init = want_integer(init, 1, what)
+local function start_of(text, init, name)
+  init = want_integer(init, 1, name)
   if init < 0 then init = init + #text else init = init - 1 end
   return math.max(0, math.min(#text, init))
 end
 
--- the characters by which LuaJIT tells a pattern
+-- the special characters of a pattern, as in LuaJIT
 local function is_pattern(pattern) return native.find(pattern, "[%^%$%*%+%?%.%(%[%%%-]") ~= nil end
 
 local S = {}
@@ -109,7 +109,7 @@ function S.gmatch(text, pattern)
   end
 end
 
--- what a replacing text with % stands for
+-- expands % in a replacement text
 local function expand(replacement, text)
   local pieces, i = {}, 1
   while i <= #replacement do
@@ -138,7 +138,7 @@ end
 
 local function replaced(kind, replacement, text)
   if kind == "string" then return expand(replacement, text) end
-  local start, stop = match.start, match["end"]  -- what is called may search itself
+  local start, stop = match.start, match["end"]  -- saved, because the called function may search itself
   local value
   if kind == "table" then
     value = replacement[match.count == 0 and part(text, start, stop) or capture(text, 0)]
@@ -152,7 +152,7 @@ local function replaced(kind, replacement, text)
   return value
 end
 
-function S.gsub(text, pattern, replacement, most)
+function S.gsub(text, pattern, replacement, max_count)
   text, pattern = want_text(text, "gsub"), want_text(pattern, "gsub")
   local kind = type(replacement)
   if kind == "number" then kind, replacement = "string", text_of(replacement) end
@@ -160,9 +160,9 @@ function S.gsub(text, pattern, replacement, most)
     fail("string.gsub replaces by text, a table or a function, not %s", describe(replacement))
   end
   if kind == "string" and not native.find(replacement, "%", 1, true) then kind = "plain" end
-  most = want_integer(most, #text + 1, "gsub")
+  max_count = want_integer(max_count, #text + 1, "gsub")
   local pieces, copied, from, count = {}, 0, 0, 0
-  while count < most and from <= #text and search(text, pattern, from, 1, "gsub") do
+  while count < max_count and from <= #text and search(text, pattern, from, 1, "gsub") do
     local start, stop = match.start, match["end"]
     count = count + 1
     if start > copied then pieces[#pieces + 1] = part(text, copied, start) end
@@ -185,14 +185,14 @@ local function plain(...)
 end
 local function check_format(text, ...)
   if native.find(text, "%%[^%%%a]*p") then
-    fail("string.format: %p tells an address, which differs in each run")
+    fail("string.format: %p shows an address, which differs in each run")
   end
   for i = 1, select("#", ...) do
     local value = select(i, ...)
     if type(value) == "string" then want_short(value, "format") end
   end
 end
--- LuaJIT 2.1.0-beta3 crashes where it compiles a format of very many parts.
+-- LuaJIT 2.1.0-beta3 crashes when it compiles a format with very many parts.
 local function format_long(...) return native.format(...) end
 jit.off(format_long)
 local kLongFormat = 500
@@ -224,13 +224,13 @@ for _, name in ipairs { "lower", "upper", "reverse" } do
   S[name] = function(text) return f(want_short(text, name)) end
 end
 
--- tables of their own, so that nobody spoils another's
+-- separate tables, so that scripts can't modify each other's
 function P.make_string()
   local t = { byte = native.byte, char = native.char, len = native.len, sub = native.sub }
   for name, f in pairs(S) do t[name] = f end
   return t
 end
 
--- ("x"):upper() finds a table of its own
+-- ("x"):upper() uses a table of its own
 local meta = getmetatable("")
 meta.__index, meta.__metatable = P.make_string(), "string"

@@ -1,18 +1,18 @@
--- `table`, `coroutine` and pairs as scripts see them: whatever takes long runs in Lua, where it can be stopped, and
--- nothing eats the C stack.
+-- `table`, `coroutine` and pairs for scripts: functions that can take long are written in Lua, where they can be
+-- stopped, and the use of the C stack is bounded.
 local P = ...
 local api, ctx, istype = P.api, P.ctx, P.ffi.istype
 local fail, describe, floor = P.fail, P.describe, math.floor
 local native = { concat = table.concat, insert = table.insert, maxn = table.maxn, remove = table.remove, pcall = pcall,
   resume = coroutine.resume, create = coroutine.create }
 
-local function want_table(t, what)
-  if type(t) ~= "table" then fail("%s takes a table, not %s", what, describe(t)) end
+local function want_table(t, subject)
+  if type(t) ~= "table" then fail("%s takes a table, not %s", subject, describe(t)) end
   return t
 end
 
--- Sorting: short runs by insertion, then runs are merged. Equal ones keep their order; a comparing function that
--- contradicts itself gives some order; one that errs leaves the table as it was.
+-- Merge sort of short runs sorted by insertion. Stable. An inconsistent comparison function gives an unspecified order;
+-- if it raises an error the table is unchanged.
 local function ascending(a, b) return a < b end
 local kRun = 8
 local function sort_runs(list, n, before)
@@ -63,7 +63,7 @@ function T.concat(t, separator, first, last)
   if not ok then fail("table.concat: %s", text) end
   return text
 end
--- outside of 1 … #t + 1 it would go through all numbers between
+-- outside of 1 … #t + 1 the native function would iterate over all integers between
 function T.insert(...)
   local t, at, value = ...
   want_table(t, "table.insert")
@@ -77,7 +77,7 @@ function T.insert(...)
 end
 T.remove, T.maxn = native.remove, native.maxn
 
--- coroutines inside coroutines eat the C stack
+-- nested coroutines use up the C stack
 local depth = 0
 P.on_failure[#P.on_failure + 1] = function() depth = 0 end
 local function leave(...)
@@ -86,7 +86,7 @@ local function leave(...)
 end
 local function resume(co, ...)
   if type(co) ~= "thread" then fail("coroutine.resume takes a coroutine, not %s", describe(co)) end
-  if depth >= 100 then fail("coroutines inside coroutines, 100 deep: that is too deep") end
+  if depth >= 100 then fail("coroutines are nested more than 100 deep") end
   depth = depth + 1
   return leave(native.resume(co, ...))
 end
@@ -113,19 +113,20 @@ end
 function P.make_table() return copy(T) end
 function P.make_coroutine() return copy(C) end
 
--- pairs in a fixed order: numbers, text by alphabet, false and true, things in stream order
+-- pairs in a fixed order: numbers, texts in alphabetical order, false and true, objects in stream order
 local function by_order(a, b) return a.order < b.order end
-local function add_things(keys, things)
-  for i, thing in ipairs(things) do
-    things[i] = { thing = thing, order = api.order(ctx, thing.slot_, thing.generation_) }
+local function add_objects(keys, objects)
+  for i, object in ipairs(objects) do
+    objects[i] = { object = object, order = api.order(ctx, object.slot_, object.generation_) }
   end
-  P.sort(things, by_order)
-  for _, entry in ipairs(things) do keys[#keys + 1] = entry.thing end
+  P.sort(objects, by_order)
+  for _, entry in ipairs(objects) do keys[#keys + 1] = entry.object end
 end
--- A loop over `next` itself has instructions of its own, by which LuaJIT of 2022 ends it too early once its compilation failed.
+-- A loop over `next` itself has special instructions, and LuaJIT of 2022 ends it too early after its compilation
+-- failed.
 local function key_after(t, key) return (next(t, key)) end
 local function gather_keys(t)
-  local numbers, texts, flags, things, sorted, last = {}, {}, {}, {}, true, -math.huge
+  local numbers, texts, flags, objects, sorted, last = {}, {}, {}, {}, true, -math.huge
   for key in key_after, t do
     local kind = type(key)
     if kind == "number" then
@@ -135,9 +136,10 @@ local function gather_keys(t)
     elseif kind == "boolean" then
       flags[key and 2 or 1] = key
     elseif P.class_of(key) then
-      things[#things + 1] = key
+      objects[#objects + 1] = key
     else
-      fail("pairs: a key of this table is a %s, which has no place in a fixed order; use numbers, text or things", kind)
+      fail("pairs: a key of this table is a %s, which can't be put in a fixed order; use numbers, text or objects",
+        kind)
     end
   end
   if not sorted then P.sort(numbers) end
@@ -146,21 +148,21 @@ local function gather_keys(t)
   for i = 1, 2 do
     if flags[i] ~= nil then numbers[#numbers + 1] = flags[i] end
   end
-  if #things > 0 then add_things(numbers, things) end
+  if #objects > 0 then add_objects(numbers, objects) end
   return numbers
 end
-local function next_left(keys, t, i)
+local function next_existing(keys, t, i)
   while keys[i] ~= nil and rawget(t, keys[i]) == nil do i = i + 1 end
   return i
 end
-local function next_pair(walk)
-  local keys, t, i = walk.keys, walk.t, walk.i + 1
+local function next_pair(iteration)
+  local keys, t, i = iteration.keys, iteration.t, iteration.i + 1
   local key = keys[i]
   if key ~= nil and rawget(t, key) == nil then
-    i = next_left(keys, t, i)
+    i = next_existing(keys, t, i)
     key = keys[i]
   end
-  walk.i = i
+  iteration.i = i
   if key == nil then return nil end
   return key, rawget(t, key)
 end

@@ -1,20 +1,20 @@
--- A scene's `state`, handed from a run to the one that takes its place.
+-- A scene's `state`, passed from a run to its successor.
 local P = ...
 local api, ctx, format = P.api, P.ctx, string.format
 
--- what is no plain data is left out, and said once for each place
-local said = {}
-local function leave_out(path, what)
-  if said[path] then return end
-  said[path] = true
-  local text = format("%s: %s %s and does not outlive a reload; %s", P.main or "scene", path, what, P.plain_kinds)
+-- values that are not plain data are omitted, reported once for each path
+local reported = {}
+local function omit(path, reason)
+  if reported[path] then return end
+  reported[path] = true
+  local text = format("%s: %s %s and does not survive a reload; %s", P.main or "scene", path, reason, P.plain_kinds)
   api.warn(ctx, text, #text)
 end
 
-local function text_of(value, path) return P.plain_text(value, path, leave_out) end
+local function text_of(value, path) return P.plain_text(value, path, omit) end
 local function table_of(text) return P.plain_value(text) or {} end
 
--- tables keep being the same ones: a script may hold one of them elsewhere
+-- tables keep their identity, because a script may have references to them
 local function fill(target, source)
   for key in next, target do
     if source[key] == nil then target[key] = nil end
@@ -30,32 +30,32 @@ local function state_now()
   return type(state) == "table" and state or nil
 end
 
-local given, written = "", {}
+local initial_text, written_keys = "", {}
 
--- what `state` is when the top level begins
-function P.first_state() return table_of(given) end
+-- initial value of `state` for the top level
+function P.first_state() return table_of(initial_text) end
 
 function P.entry.state() return text_of(state_now(), "state") end
-function P.entry.give_state(text) given = text end
+function P.entry.set_initial_state(text) initial_text = text end
 
--- which keys the top level wrote: the others are the show's
+-- finds the keys that the top level wrote; the others are taken over from the live run
 function P.find_written()
-  local before, now = table_of(given), state_now() or {}
-  written = {}
+  local before, now = table_of(initial_text), state_now() or {}
+  written_keys = {}
   local function compare(key)
     local path = "state." .. tostring(key)
-    if text_of(rawget(now, key), path) ~= text_of(before[key], path) then written[key] = true end
+    if text_of(rawget(now, key), path) ~= text_of(before[key], path) then written_keys[key] = true end
   end
   for key in next, now do compare(key) end
   for key in next, before do compare(key) end
 end
 
-function P.entry.take_state(text)
+function P.entry.adopt_state(text)
   local now = state_now()
-  if text == given or not now then return end
-  local live = table_of(text)
-  for key in next, written do live[key] = rawget(now, key) end
-  fill(now, live)
+  if text == initial_text or not now then return end
+  local merged = table_of(text)
+  for key in next, written_keys do merged[key] = rawget(now, key) end
+  fill(now, merged)
 end
 
 local function same(a, b)
@@ -64,7 +64,7 @@ local function same(a, b)
   return a == b or a ~= a and b ~= b
 end
 
--- brings the difference between two states into a table that is like the first; what is no plain data stays
+-- applies the difference between two states to a table that equals the first; values that are not plain data stay
 local function change(target, before, after)
   for key in next, before do
     if after[key] == nil then target[key] = nil end
@@ -79,7 +79,7 @@ local function change(target, before, after)
   end
 end
 
--- Runs of one scene share `state`: the changes between two texts of it that another run has made.
+-- Runs of one scene share `state`: applies the changes made by another run.
 function P.entry.change_state(before, after)
   local now = state_now()
   if now then change(now, table_of(before), table_of(after)) end

@@ -1,12 +1,12 @@
--- A run beside the show becomes the show: handles that it made in a world of its own are given the ids that the same
--- things have in the live one. Handles stay the same objects, so that variables and keys of tables still mean them.
+-- A detached run goes live: handles created in its own world get the ids that the same objects have in the live one.
+-- Handles keep their identity, so variables and table keys stay valid.
 local P = ...
 local ffi, api, ctx = P.ffi, P.api, P.ctx
 
 local gathered, thing_count, pointers = {}, 0, nil
 
--- where each handle keeps its slot and generation
-local function gather()
+-- passes the addresses of slot and generation of each handle to the API
+local function gather_handles()
   gathered = {}
   for _, handle in pairs(P.handles) do gathered[#gathered + 1] = handle end
   thing_count = #gathered
@@ -16,15 +16,15 @@ local function gather()
   for i, handle in ipairs(gathered) do pointers[i - 1] = ffi.cast("int32_t*", handle) end
   api.handles(ctx, pointers, #gathered)
 end
-P.entry.gather = gather
+P.entry.gather_handles = gather_handles
 
--- off the simulation thread, after a good run
+-- called after a successful run, not on the simulation thread
 function P.entry.prepare()
   P.find_written()
-  gather()
+  gather_handles()
 end
 
--- handles by their slots, which are others now
+-- indexes handles by their new slots
 local function index_handles()
   local handles = P.handles
   for slot in pairs(handles) do handles[slot] = nil end
@@ -35,21 +35,21 @@ local function index_handles()
   gathered, pointers = {}, nil
 end
 
--- the ids are others now; `timers_at`: when the show's timers were looked at last, nil when they never were
+-- after the handles were remapped; `timers_at`: time of the last timer check of the live run, or nil
 function P.entry.become_live(timers_at)
   index_handles()
   P.number_classes()
-  P.lists_moved()
-  P.relations_moved()
-  P.params_moved()
-  if timers_at then P.timers_moved(timers_at) end
+  P.reindex_lists()
+  P.clear_relations()
+  P.update_params_node()
+  if timers_at then P.resume_timers(timers_at) end
 end
 
--- Of an earlier run: another run has become the show, and things were made again.
-function P.entry.things_moved()
+-- in an earlier run: another run went live, and objects were rebuilt
+function P.entry.handles_moved()
   index_handles()
-  P.renew_classes()
-  P.lists_moved()
-  P.relations_moved()
-  P.params_renewed()
+  P.update_classes()
+  P.reindex_lists()
+  P.clear_relations()
+  P.update_params()
 end

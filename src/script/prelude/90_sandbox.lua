@@ -1,4 +1,4 @@
--- The environment of a script: the names that it sees, and nothing else. Library tables are copies.
+-- The environment of a script: the only names that it sees. Library tables are copies.
 local P = ...
 local api, ctx = P.api, P.ctx
 local fail, describe = P.fail, P.describe
@@ -31,12 +31,12 @@ end
 local function add_functions(env)
   for name in kPlain:gmatch("%S+") do env[name] = _G[name] end
   env.ipairs, env.pairs, env.tostring, env.setmetatable = P.ipairs, P.pairs, P.show, P.setmetatable
-  -- what all scripts share is not to be changed past its metatable
+  -- protects shared objects, which rawset would change in spite of their metatables
   function env.rawset(t, key, value)
     if t == P.osc or t == P.params or t == P.presets then fail("rawset: %s can't be changed", P.show(t)) end
     return P.rawset(t, key, value)
   end
-  -- a long text is walked in C
+  -- C code would scan a long text without interruption
   function env.tonumber(value, base)
     if type(value) == "string" and #value > 1000 then return nil end
     return native.tonumber(value, base)
@@ -56,9 +56,9 @@ local function add_functions(env)
     return P.load(text, "@" .. name, of or env)
   end
   function env.loadstring(text, name) return env.load(text, name) end
-  function env.collectgarbage(what)
-    if what ~= "count" then
-      fail("collectgarbage: scripts may ask for 'count' only; limber collects after each tick")
+  function env.collectgarbage(option)
+    if option ~= "count" then
+      fail("collectgarbage accepts only 'count'; Limber collects garbage after each tick")
     end
     return collectgarbage("count")
   end
@@ -72,7 +72,7 @@ local function add_functions(env)
   end
 end
 
--- modules of a lib folder run in the environment of the script that requires them, once
+-- modules of a lib folder run once, in the environment of the script that requires them
 local loading = {}
 P.on_failure[#P.on_failure + 1] = function() loading = {} end
 local function make_require(env, file)
@@ -83,12 +83,12 @@ local function make_require(env, file)
     end
     if loaded[name] ~= nil then return loaded[name] end
     for _, other in ipairs(loading) do
-      if other == name then fail("require goes in a circle: %s -> %s", table.concat(loading, " -> "), name) end
+      if other == name then fail("circular require: %s -> %s", table.concat(loading, " -> "), name) end
     end
     if api.read_lib(ctx, file, name, #name) ~= 0 then fail("%s", P.text()) end
-    local shown, text = P.text():match("^(.-)\n(.*)$")
-    P.sources[shown] = text
-    local chunk, fault = P.load(text, "@" .. shown, env)
+    local display_path, text = P.text():match("^(.-)\n(.*)$")
+    P.sources[display_path] = text
+    local chunk, fault = P.load(text, "@" .. display_path, env)
     if not chunk then error(fault, 0) end
     loading[#loading + 1] = name
     local ok, result = native.pcall(chunk, name)
@@ -99,13 +99,13 @@ local function make_require(env, file)
   end
 end
 
--- names that one kind of script has and the other has not
+-- names that exist only in scenes or only in behaviors
 local elsewhere = {
   scene = { behavior = "; a behavior is a file of its own in behaviors_lua/" },
-  behavior = { state = "; a behavior keeps what it remembers in self.state" },
+  behavior = { state = "; a behavior stores its state in self.state" },
 }
 
--- of the scene (file -1), or of a behaviour's file, by its number
+-- environment of the scene (file -1) or of a behavior file, by its number
 function P.make_env(file)
   local env, kind = {}, file < 0 and "scene" or "behavior"
   add_libraries(env, file)
@@ -132,13 +132,13 @@ local function compile_and_run(text, name)
   chunk()
 end
 
--- runs a scene's file; false when it fails
+-- runs a scene's file; false if it fails
 function P.entry.run(text, name)
   P.sources[name], P.main = text, name
   return P.guarded_run(compile_and_run, text, name)
 end
 
--- every name that a scene sees, one a line: globals, members of libraries, then members and methods of things
+-- all names that a scene sees, one per line: globals, members of libraries, then members and methods of objects
 function P.entry.names()
   local lines = {}
   local env = P.make_env(-1)

@@ -1,13 +1,13 @@
--- The console: texts that a person gives to the running scene, evaluated in its environment as a callback would be, and
--- the words that may stand at the end of a half-written one.
+-- The console: evaluates entered texts in the environment of the running scene, as a callback, and completes incomplete
+-- texts.
 local P = ...
 local api, ctx, load, guarded = P.api, P.ctx, P.load, P.guarded
 local xpcall, pcall, next, type, rawget = xpcall, pcall, next, type, rawget
 local format, istype = string.format, P.ffi.istype
 local getmetatable = debug.getmetatable
 
--- values as a person reads them: tables are opened, three deep and four hundred values wide
-local kDeep, kWide, kMostKeys = 3, 400, 2000
+-- formats values for display: tables up to three levels deep, four hundred values in total
+local kMaxDepth, kMaxValues, kMaxKeys = 3, 400, 2000
 local show_value
 
 local function before(a, b)
@@ -24,85 +24,85 @@ local function show_key(key)
   return "[" .. P.show(key) .. "]"
 end
 
-local function show_table(t, deep, room)
-  if deep >= kDeep then return "{ … }" end
+local function show_table(t, depth, budget)
+  if depth >= kMaxDepth then return "{ … }" end
   local list, keys, last = {}, {}, 0
-  while rawget(t, last + 1) ~= nil and room.left > 0 do
+  while rawget(t, last + 1) ~= nil and budget.left > 0 do
     last = last + 1
-    list[last] = show_value(rawget(t, last), deep + 1, room)
+    list[last] = show_value(rawget(t, last), depth + 1, budget)
   end
   for key in next, t do
     if not (type(key) == "number" and key >= 1 and key <= last and key % 1 == 0) then keys[#keys + 1] = key end
-    if #keys == kMostKeys then break end
+    if #keys == kMaxKeys then break end
   end
   table.sort(keys, before)
   for _, key in ipairs(keys) do
-    if room.left <= 0 then
+    if budget.left <= 0 then
       list[#list + 1] = "…"
       break
     end
-    list[#list + 1] = show_key(key) .. " = " .. show_value(rawget(t, key), deep + 1, room)
+    list[#list + 1] = show_key(key) .. " = " .. show_value(rawget(t, key), depth + 1, budget)
   end
   return #list == 0 and "{}" or "{ " .. table.concat(list, ", ") .. " }"
 end
 
-function show_value(value, deep, room)
-  room.left = room.left - 1
+function show_value(value, depth, budget)
+  budget.left = budget.left - 1
   local kind = type(value)
-  if kind == "string" then return deep == 0 and value or (format("%q", value):gsub("\\\n", "\\n")) end
-  if istype(P.L, value) then return show_table(P.items_of(value), deep, room) end
+  if kind == "string" then return depth == 0 and value or (format("%q", value):gsub("\\\n", "\\n")) end
+  if istype(P.L, value) then return show_table(P.items_of(value), depth, budget) end
   if kind ~= "table" then return P.show(value) end
   local meta = getmetatable(value)
   if type(meta) == "table" and rawget(meta, "__tostring") then return P.show(value) end
-  return show_table(value, deep, room)
+  return show_table(value, depth, budget)
 end
 
 local function show_all(...)
   local count = select("#", ...)
   if count == 0 then return nil end
   local list = { ... }
-  for i = 1, count do list[i] = show_value(list[i], 0, { left = kWide }) end
+  for i = 1, count do list[i] = show_value(list[i], 0, { left = kMaxValues }) end
   return table.concat(list, "\t")
 end
 
--- whether more lines could make a chunk of what Lua can't read
-local function may_go_on(message)
+-- true if a text that Lua can't read may become a valid chunk with more lines
+local function is_incomplete(message)
   return message:find("near '<eof>'", 1, true) and not message:find("unfinished string near", 1, true) and
     not message:find("'=' expected", 1, true)
 end
 
--- an expression is read behind a nil: alone it would be a tail call, and an error in it would stand nowhere
+-- An expression is evaluated after a nil: alone it would be a tail call, and an error in it would have no place.
 local kExpression = "return nil, "
 local function call_and_show(chunk, skipped) return show_all(select(1 + skipped, chunk())) end
 
--- kind and text of an Evaluation (base/evaluation.h)
+-- returns kind and text of an Evaluation (base/evaluation.h)
 function P.entry.evaluate(text)
   if not P.env then return "error", "no scene has run yet" end
   text = text:gsub("^%s*=", "")
   P.sources.console = text
-  local chunk, wrong = load(kExpression .. text, "@console", P.env)
+  local chunk, fault = load(kExpression .. text, "@console", P.env)
   local skipped = 1
   if not chunk then
     skipped = 0
-    local as_value = wrong
-    chunk, wrong = load(text, "@console", P.env)
+    local as_value = fault
+    chunk, fault = load(text, "@console", P.env)
     if not chunk then
-      if may_go_on(as_value) or may_go_on(wrong) then return "incomplete", "" end
-      return "error", P.handler(wrong).text
+      if is_incomplete(as_value) or is_incomplete(fault) then return "incomplete", "" end
+      return "error", P.handler(fault).text
     end
   end
   local result
-  local ended_well = guarded(function() result = call_and_show(chunk, skipped) end)
-  P.sources.console = true -- what it leaves behind may err later, beside another text
-  if not ended_well then
+  local success = guarded(function() result = call_and_show(chunk, skipped) end)
+  P.sources.console = true -- functions it leaves behind may fail later, when `console` has another text
+  if not success then
     api.fault(ctx)
     return "error", P.text()
   end
   return result and "value" or "done", result or ""
 end
 
--- Completion. A chain such as sim:body("arm").root is followed without running anything of the scene's: members are read,
--- and of the methods those are called that only look something up.
+-- Completion. Evaluates a chain such as sim:body("arm").root without running code of the scene: reads members, and
+-- calls only those methods that look up an object.
 local lookups = { body = true, find_body = true, part = true, joint = true, motor = true, behavior = true,
   group_behavior = true }
 local class_lists = { bodies = true, parts = true, joints = true, motors = true, behaviors = true }
@@ -121,14 +121,14 @@ local function member_of(value, key)
   return type(value) == "table" and rawget(value, key) or nil
 end
 
-local function looked_up(value, name, argument)
+local function look_up(value, name, argument)
   local class = P.class_of(value)
   if not (class and lookups[name] and class.methods[name]) then return nil end
   local ok, found = pcall(class.methods[name], value, argument)
   return ok and found or nil
 end
 
--- the text in the quotes that a text begins with, and what stands behind them
+-- the contents of the quotes at the start of a text, and the rest
 local function quoted(text)
   local quote = text:match("^[\"']")
   local at = 2
@@ -139,7 +139,7 @@ local function quoted(text)
   end
 end
 
--- the key in brackets, or the argument in parentheses, that a text begins with, and what stands behind: text or a number
+-- the key in brackets, or the argument in parentheses, at the start of a text (text or number), and the rest
 local function enclosed(text, open, close)
   local inside = text:match("^%" .. open .. "%s*(.*)$")
   if not inside then return nil end
@@ -152,7 +152,7 @@ local function enclosed(text, open, close)
   return after and key, after
 end
 
--- the thing that a chain leads to, nil when that is not known
+-- the value of a chain, or nil if unknown
 local function follow(chain)
   local name, rest = chain:match("^([%a_][%w_]*)(.*)$")
   local value = name and rawget(P.env, name)
@@ -169,20 +169,20 @@ local function follow(chain)
       argument, after = enclosed(call, "(", ")")
       if not argument then argument, after = quoted(call) end
       if not argument then return nil end
-      value, rest = looked_up(value, method, argument), after
+      value, rest = look_up(value, method, argument), after
     end
   end
   return value
 end
 
--- where the quotes open that end at a place; before the text when they do not
+-- position of the opening quote for the closing one at `at`; 0 or less if there is none
 local function quote_before(text, at)
   local quote = text:sub(at, at)
   repeat at = at - 1 until at <= 0 or text:sub(at, at) == quote and text:sub(at - 1, at - 1) ~= "\\"
   return at
 end
 
--- the chain that a text ends with: back over names, dots, colons, quotes and whole brackets
+-- the chain at the end of a text: backwards over names, dots, colons, quotes and complete brackets
 local function chain_at_end(text)
   local at = #text
   while at > 0 do
@@ -233,13 +233,13 @@ local function members(value, separator)
   elseif type(value) == "string" then
     add_keys(words, rawget(P.env, "string") or {})
   elseif value == nil then
-    -- nobody knows what stands before it: what any thing has
+    -- unknown object: the members of all classes
     for _, each in next, P.classes do add_members(words, each, separator) end
   end
   return words
 end
 
--- the part of a text that stands inside a string that is still open, else nil
+-- the part of a text inside a string that is still open, else nil
 local function open_string(text)
   local quote, from
   local i = 1
@@ -257,7 +257,7 @@ local function open_string(text)
   return quote and text:sub(from)
 end
 
-local function living_names()
+local function object_names()
   local words = {}
   local function add(list)
     for _, item in ipairs(P.items_of(list)) do words[P.names[item]] = true end
@@ -269,12 +269,12 @@ local function living_names()
   return words
 end
 
--- the words that may stand at the end of a text, and how many bytes of it they replace
-local kMostWords = 500
+-- completions for the end of a text, and the number of bytes that they replace
+local kMaxWords = 500
 local function complete(text)
   local word, words = open_string(text), {}
   if word then
-    words = living_names()
+    words = object_names()
   else
     word = text:match("[%w_]*$")
     local separator = text:sub(-#word - 1, -#word - 1)
@@ -286,7 +286,7 @@ local function complete(text)
   end
   local list = {}
   for _, each in ipairs(P.sorted_keys(words)) do
-    if #list < kMostWords and each:sub(1, #word) == word then list[#list + 1] = each end
+    if #list < kMaxWords and each:sub(1, #word) == word then list[#list + 1] = each end
   end
   return table.concat(list, "\n"), #word
 end

@@ -1,27 +1,27 @@
--- Metamethods are compiled ahead. LuaJIT can't record one by itself while a script's operator calls it (it returns to no
--- Lua function then), tries again and again, and after some thousand calls forbids whatever calls it to be compiled: a
--- loop over many parts would be interpreted for good, some hundred times slower. Recorded here, by plain calls, it is a
--- piece of compiled code of its own, and loops that call it take it in.
+-- Compiles metamethods ahead of time. LuaJIT can't record a metamethod alone when a script's operator calls it, because
+-- it does not return to a Lua function; after some thousand failed attempts it blacklists the callers, and a loop over
+-- many parts would be interpreted permanently, some hundred times slower. Recorded here by plain calls, each metamethod
+-- becomes a trace of its own, which compiled loops can include.
 local P = ...
 local V, Q, F, ffi = P.V, P.Q, P.F, P.ffi
 
-local kCalls = 150  -- more than make a function hot
+local kCalls = 150  -- more than needed to make a function hot
 
--- interpreted itself, so that only what it calls is recorded
+-- interpreted, so that only the called functions are recorded
 local function call_often(f, a, b, c)
   for _ = 1, kCalls do f(a, b, c) end
 end
 jit.off(call_often)
 
--- a class whose members do nothing; its metamethods share their code with those of all classes
+-- a class with trivial members; all classes share the code of their metamethods
 local function nothing() return 0 end
 local dummy = { name = "warm", getters = { x = nothing }, setters = { x = nothing }, methods = { m = nothing },
-  rows = {}, ctype = ffi.typeof("struct { const int32_t slot_, generation_; }") }
-P.finish(dummy)
+  properties = {}, ctype = ffi.typeof("struct { const int32_t slot_, generation_; }") }
+P.finish_class(dummy)
 
 local calls = {}
 local function warm(ctype, name, ...)
-  local f = P.metas[tonumber(ctype)][name]
+  local f = P.metatables[tonumber(ctype)][name]
   calls[#calls + 1] = { f, ... }
 end
 local v, q, f, h = V(1, 2, 3), Q(0, 0, 0, 1), F(true, false, true), dummy.ctype(0, 0)

@@ -1,4 +1,4 @@
--- The built-in behavior random_force: gusts that are drawn several times a second.
+-- The built-in behavior random_force: random gusts several times a second.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

@@ -1,4 +1,4 @@
--- The built-in behavior random_rotation_target: servos that are led to drawn targets.
+-- The built-in behavior random_rotation_target: servos with random targets.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

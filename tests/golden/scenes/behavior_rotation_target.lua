@@ -1,4 +1,4 @@
--- The built-in behavior rotation_target: servos and springs that are led to a target.
+-- The built-in behavior rotation_target: servos and springs that move to a target.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

@@ -1,4 +1,4 @@
--- The built-in behavior speed: balls are driven to a speed, some are braked.
+-- The built-in behavior speed: some balls are accelerated to a speed, others are braked.
 --@ ticks 150
 sim.gravity = vec3(0, 0, 0)
 local ball = sim:add_sphere_shape("ball", 0.05)

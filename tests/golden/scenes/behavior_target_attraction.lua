@@ -1,4 +1,4 @@
--- The built-in behavior target_attraction: the tip is drawn to a point, the middle is pushed away from one.
+-- The built-in behavior target_attraction: the tip is attracted by a point, the middle is repelled by another.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

@@ -1,4 +1,4 @@
--- The built-in behavior torque: a torque on all parts, and one scaled while it plays.
+-- The built-in behavior torque: a torque on all parts, and one that is scaled while the scene plays.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

@@ -1,4 +1,4 @@
--- The built-in behavior volume: pairs of parts that push each other apart.
+-- The built-in behavior volume: pairs of parts that repel each other.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

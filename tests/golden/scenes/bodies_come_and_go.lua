@@ -1,4 +1,4 @@
--- Bodies that are copied, removed and added while it plays, by scripts; behaviors and groups that follow.
+-- Bodies that scripts copy, remove and add while the scene plays; behaviors and groups that follow.
 --@ ticks 150
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm0" })

@@ -1,4 +1,4 @@
--- What the view is drawn with is part of the state: the camera that glides and follows, materials, the look.
+-- Appearance as part of the state: the camera that glides and follows, materials, the look.
 --@ ticks 100
 --@ 20 send /visuals/shape/diffusecolor ball 0.1 0.5 0.7
 --@ 40 send /visuals/camera/rotation -80 0 -24

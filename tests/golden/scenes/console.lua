@@ -1,4 +1,4 @@
--- Lines of a console: statements, calls, mistakes that leave nothing behind.
+-- Lines of a console: statements, calls, errors without an effect.
 --@ ticks 90
 --@ take
 --@ 10 eval sim:body("box1").root:apply_impulse(vec3(1, 0, 0))

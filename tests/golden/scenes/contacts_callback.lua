@@ -1,4 +1,4 @@
--- sim:on_contact: scripts that act on impulses and positions of contacts that begin.
+-- sim:on_contact: scripts that use impulses and positions of new contacts.
 --@ ticks 150
 params { { "sum", 0 } }
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { restitution = 0.9 })

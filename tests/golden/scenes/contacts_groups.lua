@@ -1,4 +1,4 @@
--- Collision groups and masks, pairs that are excluded and included, self-collision, changed while it plays.
+-- Collision groups and masks, excluded and included pairs, self-collision, changed while the scene plays.
 --@ ticks 120
 --@ 40 send /physics/part/collisionmask ball2 1
 --@ 70 send /physics/body/pair/self_collision false

@@ -1,4 +1,4 @@
--- A pile of boxes and balls: more rows than the direct solver takes, with an arm on top.
+-- A pile of boxes and balls: more rows than the direct solver accepts, with an arm on top.
 --@ ticks 60
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local box, ball = sim:add_box_shape("box", vec3(0.2, 0.2, 0.2)), sim:add_sphere_shape("ball", 0.1)

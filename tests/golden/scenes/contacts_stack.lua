@@ -1,4 +1,4 @@
--- A stack of heavy boxes on light ones, boxes that begin inside each other, an arm inside a wall.
+-- A stack of heavy boxes on light ones, boxes that start inside each other, an arm inside a wall.
 --@ ticks 90
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local box = sim:add_box_shape("box", vec3(0.2, 0.2, 0.2))

@@ -1,4 +1,4 @@
--- Mimic joints of a URDF: the hand closes by its leaders, the fingers press on a ball, then it turns.
+-- Mimic joints of a URDF: the hand is closed by the mimicked joints, the fingers press on a ball, then it turns.
 --@ ticks 120
 local hand = sim:load_urdf("urdf/hand.urdf", { name = "hand" })
 local ball = sim:add_sphere_shape("ball", 0.03)

@@ -1,4 +1,4 @@
--- The Lua behaviors follow and orbit: an arm's tip is drawn to a moving target, balls circle about a point.
+-- The Lua behaviors follow and orbit: an arm's tip follows a moving target, balls circle around a point.
 --@ ticks 150
 --@ 60 send /physics/body/arm/behavior/hand/target 0.6 0.4 1.2
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })

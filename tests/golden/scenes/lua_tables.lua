@@ -1,4 +1,4 @@
--- Plain Lua: tables, strings, patterns, sorting, closures, coroutines; what comes of it goes into a parameter.
+-- Plain Lua: tables, strings, patterns, sorting, closures, coroutines; the results are folded into a parameter.
 --@ ticks 60
 params { { "digest", 0 } }
 -- bits of a number, folded into the parameter `digest`, which is part of the hash

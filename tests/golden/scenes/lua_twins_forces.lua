@@ -1,4 +1,4 @@
--- The built-in behaviors of forces and torques, as they are written in Lua.
+-- The Lua versions of the built-in behaviors of forces and torques.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 for motor in arm:motors() do motor.max_angular_force = 30 end

@@ -1,4 +1,4 @@
--- The built-in group behaviors, as they are written in Lua.
+-- The Lua versions of the built-in group behaviors.
 --@ ticks 120
 sim.gravity = vec3(0, 0, 0)
 local ball = sim:add_sphere_shape("ball", 0.05)

@@ -1,4 +1,4 @@
--- Each function of Lua's math library over many arguments: each result's digits go into a parameter.
+-- Each function of Lua's math library with many arguments: the digits of the results are folded into a parameter.
 --@ ticks 60
 params { { "digest", 0 } }
 -- bits of a number, folded into the parameter `digest`, which is part of the hash

@@ -1,4 +1,4 @@
--- Math whose results move things: targets by sines, exponentials, powers and logarithms, each tick.
+-- Math results that move bodies: targets from sines, exponentials, powers and logarithms, each tick.
 --@ ticks 150
 local arms = {}
 for i = 1, 3 do arms[i] = sim:load_urdf("urdf/arm6.urdf", { name = "arm" .. i, position = vec3(i, 0, 0) }) end

@@ -1,4 +1,4 @@
--- Meshes: hulls of mesh files, scaled and of few points, and a compound of hulls, which fall on each other.
+-- Meshes: hulls of mesh files, scaled and simplified, and a compound of hulls, which fall on each other.
 --@ ticks 90
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local shapes = {}

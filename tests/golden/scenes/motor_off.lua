@@ -1,4 +1,4 @@
--- Motors that are off, with damping, on an arm that falls; modes that change while it plays.
+-- Motors that are off, with damping, on an arm that falls; modes that change while the scene plays.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 

@@ -1,4 +1,4 @@
--- Servos: a target each tick, irregular targets that are smoothed, speed and force that are limited.
+-- Servos: a target each tick, irregular targets that are smoothed, limits of speed and force.
 --@ ticks 120
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 

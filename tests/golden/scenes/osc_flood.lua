@@ -1,4 +1,4 @@
--- A flood of messages: more than a tick takes, so that the rest waits in its order.
+-- A flood of messages: more than the budget of a tick, so that the rest waits in order.
 --@ ticks 90
 --@ take
 --@ 5 flood 9000 /push 0.0001 1

@@ -1,4 +1,4 @@
--- OSC: handlers of the scene, properties by arguments, paths and patterns, scheduled by tick.
+-- OSC: the scene's handlers, properties by arguments, paths and patterns, scheduled by tick.
 --@ ticks 120
 --@ 10 send /push 0.5 2
 --@ 20 send /lift/all 1.5

@@ -1,4 +1,4 @@
--- Panic: everything comes to rest, and goes on; another time to the newest good moment; motors held and limp.
+-- Panic: everything comes to rest and continues, once from there and once from a checkpoint; motors held and limp.
 --@ ticks 200
 --@ 40 send /transport/panic
 --@ 90 send /transport/play

@@ -1,4 +1,4 @@
--- Random numbers of a scene, of behaviors, of two seeds; noise; shuffles by math.random.
+-- Random numbers of a scene, of behaviors, with two seeds; noise; shuffles with math.random.
 --@ ticks 120
 --@ 60 send /physics/sim/seed 77
 params { { "digest", 0 } }

@@ -1,4 +1,4 @@
--- Reloads of what scripts do: callbacks, timers, handlers and `state` that goes on; parameters with `rerun`.
+-- Reloads of scripts: callbacks, timers, handlers and `state` that persists; parameters with `rerun`.
 --@ ticks 160
 --@ 30 replace "0.01 * state.n" "0.02 * state.n"
 --@ 50 send /scene/wind 0.4

@@ -1,4 +1,4 @@
--- Reloads: values, things that are added and removed, shapes and poses that differ, while it plays.
+-- Reloads: values, objects that are added and removed, shapes and poses that change, while the scene plays.
 --@ ticks 160
 --@ 20 replace "mass = 0.5" "mass = 0.8"
 --@ 40 replace "local count = 4" "local count = 7"

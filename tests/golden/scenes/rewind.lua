@@ -1,4 +1,4 @@
--- Rewinds: what is played again comes to the same hash, and the show goes on from a moment that was gone back to.
+-- Rewinds: ticks that are played again reach the same hash, and the show continues from a restored state.
 --@ ticks 330
 --@ 20 send /push 1
 --@ 60 again 30

@@ -1,4 +1,4 @@
--- Ropes: a light chain with a heavy weight, a chain over a bar, one that is pulled by both ends.
+-- Ropes: a light chain with a heavy weight, a chain over a bar, one that is pulled at both ends.
 --@ ticks 120
 local link, bob = sim:add_capsule_shape("link", 0.02, 0.08), sim:add_sphere_shape("bob", 0.15)
 local function rope(name, place, n, weight, fixed)

@@ -1,4 +1,4 @@
--- Scripts that fail: what a failing callback had changed and drawn is taken back, a failing behavior rests.
+-- Scripts that fail: writes and random draws of a failing callback are rolled back, a failing behavior is disabled.
 --@ ticks 90
 --@ faults 2
 --@ 20 send /bad 3

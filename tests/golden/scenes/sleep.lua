@@ -1,4 +1,4 @@
--- Sleep: stacks and an arm come to rest, and wake by a blow, by a property and by a visitor.
+-- Sleep: stacks and an arm come to rest, and are woken by an impact, by a property and by a body that arrives.
 --@ ticks 240
 --@ 150 send /physics/part/friction box3 0.1
 --@ 180 send /physics/sim/gravity 0 0.5 -9

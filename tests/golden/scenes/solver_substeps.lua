@@ -1,4 +1,4 @@
--- The same chain and boxes with other substeps, time steps and solver iterations, changed while it plays.
+-- The same chain and boxes with different substeps, time steps and solver iterations, changed while they move.
 --@ ticks 120
 --@ 20 send /physics/sim/substeps 1
 --@ 40 send /physics/sim/substeps 7

@@ -1,4 +1,4 @@
--- Fast rotation: gyroscopic torques, parts that turn further in a substep than Bullet rotates, tops on the floor.
+-- Fast rotation: gyroscopic torques, parts that turn further in a substep than Bullet allows, tops on the floor.
 --@ ticks 120
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local slab = sim:add_box_shape("slab", vec3(0.3, 0.2, 0.04))

@@ -1,4 +1,4 @@
--- Timers: every, after, at, canceled, made in callbacks; intervals that ticks do not divide.
+-- Timers: every, after, at, canceled, made in callbacks; intervals that are not a multiple of the tick.
 --@ ticks 150
 --@ 80 send /physics/sim/timestep 0.013
 local box = sim:add_box_shape("box", vec3(0.2, 0.2, 0.2))

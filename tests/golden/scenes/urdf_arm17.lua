@@ -1,4 +1,4 @@
--- The long arm with a pose, kept fixed links, a copy that is turned, another root, and a free one that falls.
+-- The long arm with a pose, preserved fixed links, a rotated copy, another root, and a free one that falls.
 --@ ticks 100
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
 local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm", keep_fixed = true, pose = { joint_2 = 0.4, joint_4 = -0.3 } })

@@ -1,4 +1,4 @@
--- The quadruped stands, is pushed, and walks by sines; its trunk is kept upright.
+-- The quadruped stands, is pushed, and walks with sine targets; its trunk is kept upright.
 --@ ticks 120
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { friction = 1 })
 local dog = sim:load_urdf("urdf/quadruped.urdf", { name = "dog", position = vec3(0, 0, 0.40) })

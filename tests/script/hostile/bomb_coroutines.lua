@@ -1,5 +1,5 @@
--- Coroutines, all kept.
+-- Coroutines that are all referenced.
 -- limits: call_ms=10000 memory=8
--- expect: 5: stopped: scripts may hold
-kept = {}
-sim:on_step(function() while true do kept[#kept + 1] = coroutine.create(function() end) end end)
+-- expect: 5: stopped: scripts can use
+stored = {}
+sim:on_step(function() while true do stored[#stored + 1] = coroutine.create(function() end) end end)

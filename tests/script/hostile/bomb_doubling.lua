@@ -1,6 +1,6 @@
--- A text that doubles.
+-- A text that doubles in size.
 -- limits: call_ms=10000
--- expect: 6: stopped: scripts may hold
+-- expect: 6: stopped: scripts can use
 sim:on_step(function()
   local text = "x"
   while true do text = text .. text end

@@ -1,4 +1,4 @@
--- A message with text of megabytes.
+-- A message with megabytes of text.
 -- expect: 5: one call may send up to 10000 messages and 1 MB of text
 -- sent: 0
 sim:on_step(function() osc:send("/a", ("x"):rep(500000))

@@ -1,4 +1,4 @@
--- Messages with text, one after the other.
+-- Many messages with text.
 -- expect: 6: one call may send up to 10000 messages and 1 MB of text
 -- sent: 0
 local text = ("x"):rep(1000)

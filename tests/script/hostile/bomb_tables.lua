@@ -1,5 +1,5 @@
--- Many small tables, all kept.
+-- Many small tables that are all referenced.
 -- limits: call_ms=10000 memory=8
--- expect: 5: stopped: scripts may hold
-kept = {}
-sim:on_step(function() while true do kept[#kept + 1] = { 1, 2, 3 } end end)
+-- expect: 5: stopped: scripts can use
+stored = {}
+sim:on_step(function() while true do stored[#stored + 1] = { 1, 2, 3 } end end)

@@ -1,4 +1,4 @@
--- Coroutines, sorts and replacements inside each other.
+-- Nested coroutines, sorts and replacements.
 -- limits: call_ms=10000
 -- expect: 5: 100 deep
 local function f()

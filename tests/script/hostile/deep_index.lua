@@ -1,4 +1,4 @@
--- A chain of tables that leads to itself.
+-- A chain of __index tables that forms a loop.
 -- expect: 4: loop
 local t = {}
 setmetatable(t, { __index = t }) sim:on_step(function() return t.x end)

@@ -1,4 +1,4 @@
--- pcall inside pcall without an end.
+-- Infinite recursion of pcall.
 -- limits: call_ms=200
 -- expect: 3-6: stopped after
 local function f() pcall(f) end

@@ -1,3 +1,3 @@
--- require of what is not there.
+-- require of a missing module.
 -- expect: 3: there is no module
 sim:on_step(function() require("nothing.here") end)

@@ -1,4 +1,4 @@
--- sort inside sort.
+-- Recursive sort.
 -- limits: call_ms=10000
 -- expect: 4-5: stack overflow|error in error handling
 local function f() table.sort({ 1, 2 }, f) return true end

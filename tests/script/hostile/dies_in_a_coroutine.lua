@@ -1,4 +1,4 @@
--- An error inside a coroutine is the resumer's to see.
+-- An error inside a coroutine is passed to the caller of resume.
 -- expect: 4: inside
 local co = coroutine.wrap(function()
   coroutine.yield() error("inside") end)

@@ -1,4 +1,4 @@
--- Turns bits for ever.
+-- Bit operations in an infinite loop.
 -- expect: 5: stopped after
 sim:on_step(function()
   local x = 1

@@ -1,4 +1,4 @@
--- Functions are made for ever.
+-- Creates functions in an infinite loop.
 -- expect: 5: stopped
 sim:on_step(function()
   local f

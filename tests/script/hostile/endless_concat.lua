@@ -1,4 +1,4 @@
--- Texts are joined again and again.
+-- Concatenates texts in an infinite loop.
 -- expect: 4-6: stopped
 sim:on_step(function()
   local t = {}

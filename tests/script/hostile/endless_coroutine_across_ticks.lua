@@ -1,4 +1,4 @@
--- A coroutine that began well in one tick loops in a later one.
+-- A coroutine that starts in one tick and loops in a later one.
 -- expect: 5-6: stopped after
 local co = coroutine.wrap(function()
   for i = 1, 5 do coroutine.yield(i) end

@@ -1,4 +1,4 @@
--- A coroutine that catches its own end, inside another one.
+-- A coroutine that catches the stop, inside another one.
 -- expect: 5-9: stopped after
 sim:on_step(function()
   local co = coroutine.create(function()

@@ -1,4 +1,4 @@
--- A new coroutine in each round.
+-- A new coroutine in each iteration.
 -- expect: 4-5: stopped
 sim:on_step(function()
   while true do

@@ -1,4 +1,4 @@
--- A coroutine that is resumed for ever.
+-- A coroutine that is resumed in an infinite loop.
 -- expect: 5-7: stopped after
 sim:on_step(function()
   local co = coroutine.wrap(function()

@@ -1,4 +1,4 @@
--- Finding for ever.
+-- gmatch in an infinite loop.
 -- expect: 4-7: stopped after
 sim:on_step(function()
   local text, n = ("abc "):rep(1000), 0

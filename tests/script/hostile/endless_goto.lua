@@ -1,4 +1,4 @@
--- A jump to itself.
+-- A goto to itself.
 -- expect: 4-5: stopped after
 sim:on_step(function()
   ::again::

@@ -1,4 +1,4 @@
--- Replacing for ever.
+-- gsub in an infinite loop.
 -- expect: 4-5: stopped
 sim:on_step(function()
   local text = ("abc "):rep(1000)

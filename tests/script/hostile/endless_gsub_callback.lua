@@ -1,4 +1,4 @@
--- A replacing function that never ends.
+-- A replacement function that never returns.
 -- expect: 4: stopped after
 sim:on_step(function()
   local text = ("abc"):gsub("%w", function() while true do end end)

@@ -1,4 +1,4 @@
--- A table that is filled from its front.
+-- Inserts at the front of a table.
 -- expect: 5: stopped
 sim:on_step(function()
   local t = {}

@@ -1,4 +1,4 @@
--- An iterator that always has one more.
+-- An iterator that never ends.
 -- expect: 4: stopped after
 sim:on_step(function()
   for x in function() return 1 end do local y = x end

@@ -1,4 +1,4 @@
--- Walks lists by patterns for ever.
+-- Iterates over lists by pattern in an infinite loop.
 -- expect: 4-6: stopped
 sim:on_step(function()
   while true do

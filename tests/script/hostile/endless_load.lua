@@ -1,4 +1,4 @@
--- Compiles for ever.
+-- Compiles in an infinite loop.
 -- expect: 4-5: stopped
 sim:on_step(function()
   local n = 0

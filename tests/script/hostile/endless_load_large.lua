@@ -1,4 +1,4 @@
--- Texts whose jumps take the compiler long: of so many jumps that it is refused, and of as many as may be.
+-- Texts with many jumps, which are slow to compile: one with too many jumps, and one with the maximum number.
 -- expect: 4-12: stopped
 local function text_of(jumps)
   local lines = { "local a while true do" }

@@ -1,4 +1,4 @@
--- Makes bodies for ever, in the middle of the others.
+-- Creates bodies in an infinite loop, overlapping the others.
 -- expect: 4-7: stopped
 sim:on_step(function()
   local n = 0

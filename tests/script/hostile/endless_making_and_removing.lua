@@ -1,4 +1,4 @@
--- Makes a body and removes it, for ever.
+-- Creates and removes a body in an infinite loop.
 -- expect: 4-5: stopped
 sim:on_step(function()
   while true do

@@ -1,4 +1,4 @@
--- A metamethod that never ends: __index.
+-- A metamethod that never returns: __index.
 -- expect: 3: stopped after
 local t = setmetatable({}, { __index = function() while true do end end })
 sim:on_step(function() local x = t.a end)

@@ -1,4 +1,4 @@
--- A metamethod that never ends: __newindex.
+-- A metamethod that never returns: __newindex.
 -- expect: 3: stopped after
 local t = setmetatable({}, { __newindex = function() while true do end end })
 sim:on_step(function() t.a = 1 end)

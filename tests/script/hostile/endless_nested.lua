@@ -1,4 +1,4 @@
--- Loops within loops, none of which ends.
+-- Nested infinite loops.
 -- expect: 5-8: stopped after
 sim:on_step(function()
   local n = 0

@@ -1,4 +1,4 @@
--- pairs over a table that grows meanwhile, again and again.
+-- pairs over a growing table in an infinite loop.
 -- expect: 4-5: stopped
 sim:on_step(function()
   local t = { 1 }

@@ -1,4 +1,4 @@
--- A pattern that would take longer than anybody lives.
+-- A pattern with exponential matching time.
 -- limits: call_ms=60000
 -- expect: 4: this pattern takes too many steps
 sim:on_step(function()

@@ -1,7 +1,7 @@
--- Brackets that never close, looked for from each place.
+-- Brackets that are never closed, searched from each position.
 -- expect: 3: takes too many steps|stopped after
 sim:on_step(function()
   local text = ("("):rep(200000)
-  -- each search alone is a walk to the end
+  -- each single search scans to the end
   return text:find("%b()")
 end)

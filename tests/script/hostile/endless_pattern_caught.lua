@@ -1,4 +1,4 @@
--- The same, caught and tried again.
+-- The same, caught and repeated.
 -- expect: 4-6: stopped after
 sim:on_step(function()
   local text = ("a"):rep(5000)

@@ -1,4 +1,4 @@
--- What stops it is caught, again and again.
+-- Catches the stop in an infinite loop.
 -- expect: 4-5: stopped after
 sim:on_step(function()
   while true do

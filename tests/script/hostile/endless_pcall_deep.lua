@@ -1,4 +1,4 @@
--- A hundred nested pcalls, each with a loop behind it.
+-- A hundred nested pcalls, each followed by a loop.
 -- expect: 4-8: stopped after
 sim:on_step(function()
   local function deep(n)

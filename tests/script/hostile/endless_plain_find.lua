@@ -1,4 +1,4 @@
--- A search for plain text that nearly fits everywhere.
+-- A plain text search with almost a match at each position.
 -- expect: 4-5: stopped after
 sim:on_step(function()
   local text, wanted = ("a"):rep(4000000), ("a"):rep(250) .. "b"

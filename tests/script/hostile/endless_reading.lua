@@ -1,4 +1,4 @@
--- Reads a value for ever.
+-- Reads a property in an infinite loop.
 -- expect: 4-5: stopped
 sim:on_step(function()
   local part, sum = sim:body("victim").root, 0

@@ -1,4 +1,4 @@
--- Removes all bodies, then waits for ever.
+-- Removes all bodies, then loops.
 -- expect: 4-6: stopped after
 sim:on_step(function()
   sim:body("healthy"):remove()

@@ -1,4 +1,4 @@
--- A loop that counts, whose end is never reached.
+-- A loop with a condition that is never met.
 -- expect: 5: stopped after
 sim:on_step(function()
   local i = 0

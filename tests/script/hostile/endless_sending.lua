@@ -1,4 +1,4 @@
--- Sends for ever: none of it goes out.
+-- Sends messages in an infinite loop: none is sent.
 -- expect: 5: stopped|messages
 -- sent: 0
 sim:on_step(function()

@@ -1,4 +1,4 @@
--- A large table is sorted again and again, by a function that contradicts itself.
+-- Sorts a large table with an inconsistent comparison in an infinite loop.
 -- expect: 4-6: stopped
 sim:on_step(function()
   local t = {}

@@ -1,4 +1,4 @@
--- A large table is sorted with no comparing function at all.
+-- Sorts a large table without a comparison function in an infinite loop.
 -- expect: 4-7: stopped
 sim:on_step(function()
   local t = {}

@@ -1,4 +1,4 @@
--- A text that grows by a letter.
+-- A text that grows by one letter.
 -- expect: 4-5: stopped
 sim:on_step(function()
   local text = ""

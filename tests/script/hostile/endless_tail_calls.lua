@@ -1,4 +1,4 @@
--- Two functions that hand over to each other.
+-- Two functions with tail calls to each other.
 -- expect: 3-6: stopped after
 local f, g
 f = function() return g() end

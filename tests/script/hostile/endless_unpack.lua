@@ -1,4 +1,4 @@
--- Many values, again and again.
+-- Unpacks many values in an infinite loop.
 -- expect: 4-6: stopped
 sim:on_step(function()
   local t = {}

@@ -1,4 +1,4 @@
--- Vectors for ever.
+-- Vector operations in an infinite loop.
 -- expect: 5: stopped
 sim:on_step(function()
   local v = vec3(1, 0, 0)

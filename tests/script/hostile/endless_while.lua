@@ -1,4 +1,4 @@
--- A plain loop, compiled in no time.
+-- An empty loop, which is compiled at once.
 -- expect: 4: stopped after
 sim:on_step(function()
   while true do end

@@ -1,4 +1,4 @@
--- Pushes both bodies for ever.
+-- Applies forces to both bodies in an infinite loop.
 -- expect: 4-8: stopped
 sim:on_step(function()
   local one, other = sim:body("healthy").root, sim:body("victim").root

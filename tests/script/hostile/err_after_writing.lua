@@ -1,4 +1,4 @@
--- Writes to its own and to the healthy body, then errs.
+-- Changes its own and the healthy body, then raises an error.
 -- expect: 12: on purpose
 sim:on_step(function()
   for _, name in ipairs { "healthy", "victim" } do

@@ -1,4 +1,4 @@
--- The same from the hundredth tick on; until then it leaves the healthy one alone.
+-- The same from the hundredth tick on; until then it does not change the healthy body.
 -- expect: 11: on purpose
 local n = 0
 sim:on_step(function()

@@ -1,4 +1,4 @@
--- Cancels another's timer, then errs: the timer goes on.
+-- Cancels another callback's timer, then raises an error: the timer continues.
 -- expect: 5: on purpose
 -- printed: 9
 local timer = sim:every(1, function() print("beat") end)

@@ -1,4 +1,4 @@
--- A hull of more points than a callback may ask for.
+-- A hull with more points than allowed in a callback.
 -- limits: call_ms=10000
 -- expect: 5: points
 local points = {} for i = 1, 20000 do points[i] = vec3(math.sin(i), math.cos(i), math.sin(i * i)) end

@@ -1,4 +1,4 @@
--- Metatables that lie.
+-- Invalid metatables.
 sim:on_step(function()
   local liar = setmetatable({}, { __index = function() return 0 / 0 end, __metatable = "none", __mode = "kv",
     __len = function() return 1e9 end, __gc = function() while true do end end })

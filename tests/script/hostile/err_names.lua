@@ -1,4 +1,4 @@
--- Names that nobody would give.
+-- Unusual names.
 sim:on_step(function()
   for _, name in ipairs { "", ("x"):rep(1e6), "\0", "\n", "\27[2J", "../..", "healthy" } do
     assert(not pcall(sim.add_body, sim, name) or name == "../..")

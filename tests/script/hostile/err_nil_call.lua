@@ -1,3 +1,3 @@
--- A function that is not there.
+-- Calls a missing function.
 -- expect: 3: has no property
 sim:on_step(function() sim:body("healthy").root.jump() end)

@@ -1,4 +1,4 @@
--- Registers more callbacks, then errs: they are gone with it.
+-- Registers more callbacks, then raises an error: they are removed.
 -- messages: 1
 -- expect: 7: on purpose
 sim:on_step(function()

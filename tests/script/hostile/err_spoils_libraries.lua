@@ -1,4 +1,4 @@
--- Takes the libraries of the environment apart.
+-- Modifies the libraries of its environment.
 -- expect: 8: attempt to call
 sim:on_step(function()
   for _, lib in ipairs { string, table, math, coroutine, bit } do

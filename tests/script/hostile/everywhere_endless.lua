@@ -1,4 +1,4 @@
--- A loop in each kind of callback.
+-- An infinite loop in each kind of callback.
 -- expect: 8: stopped after
 -- expect: 9: stopped after
 -- expect: 10: stopped after

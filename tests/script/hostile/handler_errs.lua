@@ -1,4 +1,4 @@
--- A handler that fails is disabled and reported once; what it answered is not sent.
+-- A handler that fails is disabled and reported once; its reply is not sent.
 -- expect: 7: late
 -- messages: 3
 -- sent: 0

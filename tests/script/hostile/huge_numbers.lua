@@ -1,4 +1,4 @@
--- Numbers at the edges of integers.
+-- Numbers at the limits of integers.
 sim:on_step(function()
   for _, n in ipairs { 2 ^ 31, -2 ^ 31, 2 ^ 53, -2 ^ 63, 1e300, -1e300, 4294967296 } do
     pcall(table.insert, {}, n, 1)

@@ -1,4 +1,4 @@
--- What is no number, wherever a number is wanted.
+-- NaN and infinity for all numbers.
 sim:on_step(function()
   local nan, part, body = 0 / 0, sim:body("healthy").root, sim:body("healthy")
   for _, bad in ipairs { nan, math.huge, -math.huge } do

@@ -1,4 +1,4 @@
--- Other scripts' tables through functions, load and metatables.
+-- Access to other scripts' tables through functions, load and metatables.
 sim:on_step(function()
   assert(not pcall(setmetatable, osc, {}) and not pcall(setmetatable, params, {}))
   assert(not pcall(load, "return 1", "n", "t", 5))

@@ -1,4 +1,4 @@
--- Names that are not there.
+-- Missing globals.
 sim:on_step(function()
   for _, name in ipairs { "os", "io", "ffi", "debug", "jit", "package", "module", "dofile", "loadfile", "getfenv",
     "setfenv", "newproxy", "gcinfo", "next", "_G" } do

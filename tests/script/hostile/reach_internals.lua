@@ -1,4 +1,4 @@
--- Methods called on the wrong things.
+-- Methods called on wrong objects.
 sim:on_start(function()
   local part = sim:body("victim").root
   for _, wrong in ipairs { {}, 5, "x", vec3(), sim, sim.bodies, { slot_ = 1, generation_ = 1 }, print, rng, osc } do

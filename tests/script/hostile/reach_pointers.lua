@@ -1,4 +1,4 @@
--- Things are no arrays, no pointers, no structs of others.
+-- Use of objects as arrays, pointers and other structs.
 sim:on_step(function()
   local part = sim:body("victim").root
   for _, f in ipairs {

@@ -1,4 +1,4 @@
--- The way to everything through a text.
+-- Access through the metatable of strings.
 sim:on_step(function()
   assert(getmetatable("") == "string")
   assert(not pcall(setmetatable, "", {}))

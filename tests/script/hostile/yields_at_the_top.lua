@@ -1,3 +1,3 @@
--- Yields where there is nobody to yield to.
+-- Yields outside of a coroutine.
 -- expect: 3: attempt to yield
 sim:on_step(function() coroutine.yield() end)

@@ -1,4 +1,4 @@
--- A check of an index is left out for a table that is replaced by an empty one.
+-- A bounds check is omitted for a table that is replaced by an empty one.
 local out = ...
 local function play()
   local s, t, n = { nil, nil, nil, nil }, {}, 0

@@ -1,4 +1,4 @@
--- Joining several texts behind an object with a metamethod joins something else.
+-- Concatenating several texts after an object with a metamethod uses wrong operands.
 local out = ...
 local object = setmetatable({}, { __concat = function(_, right) return right end })
 local function join()

@@ -1,4 +1,4 @@
--- A variable that holds one or the other constant table in turn: its values are those of the other one.
+-- A variable that alternates between two constant tables has the values of the wrong one.
 local out = ...
 local slot, wrong = { true }, 0
 for i = 1, 300 do

@@ -1,4 +1,4 @@
--- A key of a new table that is set twice has its first value, where compiled code goes on from other compiled code.
+-- A key of a new table that is set twice has its first value if compiled code continues from other compiled code.
 local out = ...
 local side
 local function make(number)
@@ -8,7 +8,7 @@ local function make(number)
   if side then end
   return t.key
 end
-local function call()  -- the closure keeps it from being compiled itself
+local function call()  -- the closure prevents its own compilation
   local _ = function() end
   local result = make(0)
   return result

@@ -1,4 +1,4 @@
--- `#t` in a loop doesn't see what is appended through another variable.
+-- `#t` in a loop ignores elements appended through another variable.
 local out = ...
 local t, sum = {}, 0
 local alias = t

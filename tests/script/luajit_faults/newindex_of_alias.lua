@@ -1,4 +1,4 @@
--- __newindex is not called where two variables hold one table.
+-- __newindex is not called if two variables refer to one table.
 local out = ...
 local count = 0
 local function play(a, b)

@@ -1,4 +1,4 @@
--- A value of a new table that has grown out of its array is read from where it was.
+-- A value of a new table that has outgrown its array is read from the old location.
 local out = ...
 local function values()
   local sum = 0

@@ -1,4 +1,4 @@
--- `...` read behind a call of a recursive function gives other values.
+-- `...` read after a call of a recursive function gives wrong values.
 local out = ...
 local function fact(n) return n <= 1 and 1 or n * fact(n - 1) end
 local function second(...)

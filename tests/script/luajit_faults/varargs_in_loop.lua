@@ -1,4 +1,4 @@
--- `...` read in a loop gives other values once the loop is compiled.
+-- `...` read in a loop gives wrong values once the loop is compiled.
 local out = ...
 local function mean(...)
   local sum = 0

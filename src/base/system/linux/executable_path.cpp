@@ -1,4 +1,4 @@
-// The kernel keeps a link to it.
+// Reads the link /proc/self/exe.
 #include "base/system/executable_path.h"
 
 #include <filesystem>

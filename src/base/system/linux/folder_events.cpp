@@ -1,4 +1,4 @@
-// inotify.
+// Folder events with inotify.
 #include "base/system/folder_events.h"
 
 #include <sys/inotify.h>
@@ -40,7 +40,7 @@ std::vector<FolderEvent> FolderEvents::read() {
   return list;
 }
 
-// NFS, 9P, SMB, CIFS, FUSE (virtiofs is one), Coda, AFS
+// File systems without events for remote changes: NFS, 9P, SMB, CIFS, FUSE (with virtiofs), Coda, AFS.
 bool reports_changes(const std::string& folder) {
   struct statfs info {};
   if (statfs(folder.c_str(), &info) != 0) return true;

@@ -1,4 +1,4 @@
-// The heap as glibc counts it, and the kernel's description of the processor.
+// Heap size from glibc, processor model from /proc/cpuinfo, suspended time from the kernel's clocks.
 #include <malloc.h>
 
 #include <ctime>

@@ -1,4 +1,4 @@
-// In one system call each, so that a process that starts at the same time inherits nothing.
+// Opens descriptors with their flags in one system call, so that a process started at the same time inherits none.
 #include "base/system/open.h"
 
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-// sigtimedwait.
+// Waits for signals with sigtimedwait().
 #include <algorithm>
 #include <ctime>
 
@@ -10,7 +10,7 @@ Signal wait_for_signal(std::chrono::nanoseconds limit) {
   const sigset_t set = blocked_signals();
   const std::int64_t ns = std::max<std::int64_t>(0, limit.count());
   const timespec time = {ns / 1'000'000'000, ns % 1'000'000'000};
-  return kind_of(sigtimedwait(&set, nullptr, &time));
+  return signal_from_number(sigtimedwait(&set, nullptr, &time));
 }
 
 }  // namespace limber::system

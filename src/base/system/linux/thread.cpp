@@ -1,4 +1,4 @@
-// Threads are tasks with numbers and priorities of their own.
+// Threads of Linux have their own ids and priorities.
 #include "base/system/thread.h"
 
 #include <pthread.h>

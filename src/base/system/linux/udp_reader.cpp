@@ -1,4 +1,4 @@
-// recvmmsg.
+// Receives datagrams in batches with recvmmsg().
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -10,23 +10,23 @@
 namespace limber::system {
 
 namespace {
-constexpr std::size_t kDatagram = 65536;  // more than UDP carries, so nothing is cut
+constexpr std::size_t kDatagram = 65536;  // more than the UDP maximum, so nothing is truncated
 }  // namespace
 
 struct DatagramReader::Buffers {
-  std::vector<char> bytes = std::vector<char>(kMost * kDatagram);
-  std::array<iovec, kMost> pieces{};
-  std::array<sockaddr_in, kMost> from{};
-  std::array<mmsghdr, kMost> headers{};
+  std::vector<char> bytes = std::vector<char>(kMaxBatch * kDatagram);
+  std::array<iovec, kMaxBatch> pieces{};
+  std::array<sockaddr_in, kMaxBatch> from{};
+  std::array<mmsghdr, kMaxBatch> headers{};
   struct alignas(cmsghdr) Control {
     std::array<char, 64> bytes;
   };
-  std::array<Control, kMost> control{};
-  std::array<Datagram, kMost> datagrams{};
+  std::array<Control, kMaxBatch> control{};
+  std::array<Datagram, kMaxBatch> datagrams{};
 
-  // the kernel writes lengths, so they are set before each round
+  // The kernel overwrites the lengths, so they are set before each call.
   void prepare() {
-    for (std::size_t i = 0; i < kMost; i++) {
+    for (std::size_t i = 0; i < kMaxBatch; i++) {
       pieces[i] = {bytes.data() + i * kDatagram, kDatagram};
       msghdr& h = headers[i].msg_hdr;
       h = {};
@@ -58,7 +58,7 @@ DatagramReader::~DatagramReader() = default;
 std::span<const Datagram> DatagramReader::read(int fd) {
   Buffers& b = *buffers_;
   b.prepare();
-  const int count = recvmmsg(fd, b.headers.data(), kMost, MSG_DONTWAIT, nullptr);
+  const int count = recvmmsg(fd, b.headers.data(), kMaxBatch, MSG_DONTWAIT, nullptr);
   if (count <= 0) return {};
   const auto got = static_cast<std::size_t>(count);
   for (std::size_t i = 0; i < got; i++) {
@@ -78,7 +78,7 @@ int set_receive_buffer(int fd, int bytes) {
   int granted = 0;
   socklen_t length = sizeof granted;
   getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &granted, &length);
-  return granted / 2;  // the kernel doubles it, for its own bookkeeping
+  return granted / 2;  // the kernel doubles the value for its own overhead
 }
 
 std::optional<long> max_receive_buffer() {

@@ -1,9 +1,9 @@
-// sendmmsg over runs of equal datagrams, and the kernel's error queue (ip(7), IP_RECVERR).
+// Sends batches with sendmmsg() and UDP segmentation; reads undelivered datagrams from the error queue (IP_RECVERR).
 #include <netinet/udp.h>
 
 #include "base/system/socket_address.h"
 #include "base/system/udp_socket.h"
-// behind the others: it uses their types
+// after the others, because it uses their types
 #include <linux/errqueue.h>
 
 #include <array>
@@ -15,8 +15,8 @@ namespace limber::system {
 namespace {
 
 constexpr std::size_t kCalls = 32;        // messages of one sendmmsg
-constexpr std::size_t kSegments = 64;     // the kernel's bound
-constexpr std::size_t kRunBytes = 65000;  // and that of the piece it cuts
+constexpr std::size_t kSegments = 64;     // the kernel's limit
+constexpr std::size_t kRunBytes = 65000;  // the kernel's limit for a piece
 
 struct Call {
   std::array<mmsghdr, kCalls> headers{};
@@ -28,7 +28,7 @@ struct Call {
   std::array<Control, kCalls> control{};
 };
 
-// number of datagrams from `first` on that make one piece
+// Returns the number of datagrams from `first` on that can be sent in one piece.
 std::size_t run_length(std::span<const std::uint32_t> sizes, std::size_t first, bool segmentation) {
   if (!segmentation) return 1;
   const std::uint32_t size = sizes[first];
@@ -61,8 +61,8 @@ void add_piece(Call& call, std::size_t i, const sockaddr_in& to, const char* dat
   std::memcpy(CMSG_DATA(c), &size, sizeof size);
 }
 
-// errors that mean that the kernel can't cut on this route
-bool segmentation_refused(int error) {
+// True if the error means that the route does not support segmentation.
+bool segmentation_unsupported(int error) {
   return error == EIO || error == EINVAL || error == EMSGSIZE || error == ENOPROTOOPT || error == EOPNOTSUPP;
 }
 
@@ -85,11 +85,11 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
     const int done = sendmmsg(fd, call.headers.data(), static_cast<unsigned>(count), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (done < 0) {
       if (errno == EINTR) continue;
-      if (reports_earlier(errno) && again != result.sent) {
+      if (may_report_earlier_datagram(errno) && again != result.sent) {
         again = result.sent;
         continue;
       }
-      if (call.datagrams[0] > 1 && segmentation_refused(errno)) {
+      if (call.datagrams[0] > 1 && segmentation_unsupported(errno)) {
         segmentation = false;
         continue;
       }
@@ -104,7 +104,7 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
   return result;
 }
 
-// the error of one that came back; 0: it is something else
+// Returns the error of an undelivered datagram, or 0 for other messages.
 int error_of(msghdr& message) {
   for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
     if (c->cmsg_level != IPPROTO_IP || c->cmsg_type != IP_RECVERR) continue;

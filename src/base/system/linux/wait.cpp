@@ -1,4 +1,4 @@
-// ppoll: nanoseconds, any number of descriptors, and signals.
+// Waits with ppoll(): nanosecond timeouts, any number of descriptors, and signals.
 #include "base/system/wait.h"
 
 #include <poll.h>
@@ -13,7 +13,7 @@ namespace limber::system {
 
 namespace {
 
-bool wait(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit, const sigset_t* signals) {
+bool wait(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit, const sigset_t* signals) {
   std::array<pollfd, 16> few;
   std::vector<pollfd> many(list.size() > few.size() ? list.size() : 0);
   pollfd* const polled = many.empty() ? few.data() : many.data();
@@ -34,11 +34,11 @@ bool wait(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit
 
 }  // namespace
 
-bool wait_ready(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit) {
+bool wait_ready(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit) {
   return wait(list, limit, nullptr);
 }
 
-bool wait_ready_or_signal(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit) {
+bool wait_ready_or_signal(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit) {
   sigset_t none;
   sigemptyset(&none);
   return wait(list, limit, &none);

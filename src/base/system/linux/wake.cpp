@@ -1,4 +1,4 @@
-// An eventfd.
+// Wake with an eventfd.
 #include "base/system/wake.h"
 
 #include <sys/eventfd.h>

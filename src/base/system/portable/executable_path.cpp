@@ -1,5 +1,5 @@
-// The dynamic linker knows the file that holds this function: as it was called, so a name without a folder is looked
-// for in PATH, as the shell did, and a relative one in the folder where the program was started.
+// Asks the dynamic linker for the file of this function. It returns the name used to start the program, so a name
+// without a folder is searched in PATH like the shell does, and a relative path is resolved in the working directory.
 #include "base/system/executable_path.h"
 
 #include <dlfcn.h>
@@ -33,7 +33,7 @@ std::string find_executable() {
   return {};
 }
 
-// before main(): the program has not left its folder yet
+// Initialized before main(), before the working directory can change.
 const std::string kFound = find_executable();
 
 }  // namespace

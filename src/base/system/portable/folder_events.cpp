@@ -1,4 +1,4 @@
-// POSIX has no events of folders.
+// Stub: POSIX has no folder events.
 #include "base/system/folder_events.h"
 
 namespace limber::system {

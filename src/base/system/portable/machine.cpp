@@ -1,4 +1,4 @@
-// POSIX counts no heap and names no processor.
+// Stubs: POSIX has no calls for the heap size, the processor model, and suspended time.
 #include "base/system/clock.h"
 #include "base/system/process.h"
 

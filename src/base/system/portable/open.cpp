@@ -1,4 +1,4 @@
-// Opened, then marked. A process that starts between the two calls inherits the descriptor.
+// Opens descriptors, then sets their flags. A process started between the two calls inherits the descriptor.
 #include "base/system/open.h"
 
 #include <fcntl.h>
@@ -19,7 +19,7 @@ Descriptor not_inherited(int fd) {
 }
 
 Descriptor nonblocking(Descriptor opened) {
-  if (opened.open()) set_nonblocking(opened.fd());
+  if (opened.is_open()) set_nonblocking(opened.fd());
   return opened;
 }
 

@@ -1,4 +1,4 @@
-// macOS has no sigtimedwait: pending signals are looked for every few milliseconds.
+// Polls for pending signals every 5 ms, because macOS has no sigtimedwait().
 #include <algorithm>
 #include <mutex>
 #include <thread>
@@ -9,9 +9,9 @@ namespace limber::system {
 
 namespace {
 
-constexpr std::chrono::nanoseconds kLook = std::chrono::milliseconds(5);
+constexpr std::chrono::nanoseconds kPollInterval = std::chrono::milliseconds(5);
 
-std::mutex mutex;  // so that no other thread fetches the signal that was seen
+std::mutex mutex;  // prevents another thread from consuming the pending signal
 
 Signal pending_signal() {
   const std::scoped_lock lock(mutex);
@@ -20,8 +20,8 @@ Signal pending_signal() {
   if (sigpending(&pending) != 0) return Signal::none;
   for (const int candidate : {SIGINT, SIGTERM, SIGHUP, SIGUSR1}) {
     if (sigismember(&pending, candidate) != 1) continue;
-    int came = 0;
-    return sigwait(&set, &came) == 0 ? kind_of(came) : Signal::none;
+    int received = 0;
+    return sigwait(&set, &received) == 0 ? signal_from_number(received) : Signal::none;
   }
   return Signal::none;
 }
@@ -31,10 +31,10 @@ Signal pending_signal() {
 Signal wait_for_signal(std::chrono::nanoseconds limit) {
   const auto end = std::chrono::steady_clock::now() + limit;
   while (true) {
-    if (const Signal came = pending_signal(); came != Signal::none) return came;
+    if (const Signal received = pending_signal(); received != Signal::none) return received;
     const auto left = end - std::chrono::steady_clock::now();
     if (left <= std::chrono::nanoseconds(0)) return Signal::none;
-    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kLook, left));
+    std::this_thread::sleep_for(std::min<std::chrono::nanoseconds>(kPollInterval, left));
   }
 }
 

@@ -1,5 +1,5 @@
-// POSIX threads. Priorities are those of the whole program there, so none is changed. macOS has no
-// pthread_getcpuclockid(): a port reads thread_info() instead.
+// Threads of POSIX. Priorities apply to the whole process there, so they are not changed. A port to macOS, which has no
+// pthread_getcpuclockid(), would use thread_info().
 #include "base/system/thread.h"
 
 #include <pthread.h>

@@ -1,4 +1,4 @@
-// recvfrom. POSIX offers neither a count of dropped datagrams nor the largest buffer size.
+// Receives datagrams with recvfrom(). POSIX has no count of dropped datagrams and no maximum buffer size.
 #include <array>
 #include <vector>
 
@@ -8,12 +8,12 @@
 namespace limber::system {
 
 namespace {
-constexpr std::size_t kDatagram = 65536;  // more than UDP carries, so nothing is cut
+constexpr std::size_t kDatagram = 65536;  // more than the UDP maximum, so nothing is truncated
 }  // namespace
 
 struct DatagramReader::Buffers {
-  std::vector<char> bytes = std::vector<char>(kMost * kDatagram);
-  std::array<Datagram, kMost> datagrams{};
+  std::vector<char> bytes = std::vector<char>(kMaxBatch * kDatagram);
+  std::array<Datagram, kMaxBatch> datagrams{};
 };
 
 DatagramReader::DatagramReader() : buffers_(std::make_unique<Buffers>()) {}
@@ -21,7 +21,7 @@ DatagramReader::~DatagramReader() = default;
 
 std::span<const Datagram> DatagramReader::read(int fd) {
   std::size_t got = 0;
-  for (; got < kMost; got++) {
+  for (; got < kMaxBatch; got++) {
     char* const to = buffers_->bytes.data() + got * kDatagram;
     sockaddr_in from{};
     socklen_t length = sizeof from;

@@ -1,6 +1,6 @@
-// A connected socket for each target: POSIX reports a datagram that came back only to a connected one, at its next
-// send. So each target gets its datagrams from a port of its own, and that a target is gone is known one datagram later
-// than on Linux.
+// Sends with one connected socket per target, because POSIX reports undelivered datagrams only to connected sockets, at
+// the next send. Therefore each target gets its datagrams from a different port, and an unreachable target is detected
+// one datagram later than on Linux.
 #include <array>
 #include <cerrno>
 #include <deque>
@@ -14,8 +14,8 @@ namespace limber::system {
 
 namespace {
 
-constexpr std::size_t kMostSockets = 128;    // the one that was used least recently is closed for another
-constexpr std::size_t kMostFailures = 1024;  // that wait for next_failure()
+constexpr std::size_t kMaxSockets = 128;    // more targets close the least recently used socket
+constexpr std::size_t kMaxFailures = 1024;  // pending reports for next_failure()
 
 }  // namespace
 
@@ -30,18 +30,18 @@ struct UdpSender::State {
   std::map<Endpoint, Connection> connections;
   std::deque<SendFailure> failures;
 
-  // the socket of a target; -1: errno says why there is none
+  // Returns the socket of a target, or -1 with errno set.
   int socket_to(const Endpoint& to) {
     auto known = connections.find(to);
     if (known == connections.end()) {
       Descriptor socket = open_socket(AF_INET, SOCK_DGRAM);
-      if (!socket.open()) return -1;
+      if (!socket.is_open()) return -1;
       if (send_buffer > 0) set_send_buffer(socket.fd(), send_buffer);
       if (receive_buffer > 0) set_receive_buffer(socket.fd(), receive_buffer);
       allow_broadcast(socket.fd());
       const sockaddr_in address = socket_address(to);
       if (connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return -1;
-      if (connections.size() >= kMostSockets) close_oldest();
+      if (connections.size() >= kMaxSockets) close_oldest();
       known = connections.emplace(to, Connection{std::move(socket), 0}).first;
     }
     known->second.used = ++uses;
@@ -73,15 +73,15 @@ void UdpSender::close() { state_.reset(); }
 
 int UdpSender::send(const Endpoint& to, std::span<const char> packet) {
   if (state_ == nullptr) return EBADF;
-  if (to.port == 0) return EINVAL;  // which connect() takes
+  if (to.port == 0) return EINVAL;  // connect() accepts port 0
   const int fd = state_->socket_to(to);
   if (fd < 0) return errno;
   const auto send = [&] { return ::send(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal) >= 0; };
   if (send()) return 0;
   const int error = errno;
-  if (!reports_earlier(error)) return error;
+  if (!may_report_earlier_datagram(error)) return error;
   if (!send()) return errno;
-  if (state_->failures.size() < kMostFailures) state_->failures.push_back({to, error});
+  if (state_->failures.size() < kMaxFailures) state_->failures.push_back({to, error});
   return 0;
 }
 

@@ -1,5 +1,5 @@
-// pselect: nanoseconds and signals, but only descriptors below FD_SETSIZE; with others poll waits, in milliseconds and
-// without letting signals in.
+// Waits with pselect(), which has nanosecond timeouts and signals but requires descriptors below FD_SETSIZE. For others
+// uses poll(), in milliseconds and without unblocking signals.
 #include "base/system/wait.h"
 
 #include <poll.h>
@@ -14,9 +14,9 @@ namespace limber::system {
 
 namespace {
 
-bool wait_by_poll(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit) {
+bool wait_by_poll(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit) {
   std::vector<pollfd> polled;
-  for (const Waiting& w : list)
+  for (const PollEntry& w : list)
     polled.push_back({w.fd, static_cast<short>((w.read ? POLLIN : 0) | (w.write ? POLLOUT : 0)), 0});
   int ms = -1;
   if (limit) {
@@ -28,18 +28,18 @@ bool wait_by_poll(std::span<Waiting> list, std::optional<std::chrono::nanosecond
   return true;
 }
 
-bool wait(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit, const sigset_t* signals) {
+bool wait(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit, const sigset_t* signals) {
   fd_set readable;
   fd_set writable;
   FD_ZERO(&readable);
   FD_ZERO(&writable);
   int end = 0;
-  for (Waiting& w : list) {
+  for (PollEntry& w : list) {
     w.ready = false;
     end = std::max(end, w.fd + 1);
   }
   if (end > FD_SETSIZE) return wait_by_poll(list, limit);
-  for (const Waiting& w : list) {
+  for (const PollEntry& w : list) {
     if (w.fd >= 0 && w.read) FD_SET(w.fd, &readable);
     if (w.fd >= 0 && w.write) FD_SET(w.fd, &writable);
   }
@@ -50,17 +50,17 @@ bool wait(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit
     time.tv_nsec = ns % 1'000'000'000;
   }
   if (pselect(end, &readable, &writable, nullptr, limit ? &time : nullptr, signals) <= 0) return false;
-  for (Waiting& w : list) w.ready = w.fd >= 0 && (FD_ISSET(w.fd, &readable) || FD_ISSET(w.fd, &writable));
+  for (PollEntry& w : list) w.ready = w.fd >= 0 && (FD_ISSET(w.fd, &readable) || FD_ISSET(w.fd, &writable));
   return true;
 }
 
 }  // namespace
 
-bool wait_ready(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit) {
+bool wait_ready(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit) {
   return wait(list, limit, nullptr);
 }
 
-bool wait_ready_or_signal(std::span<Waiting> list, std::optional<std::chrono::nanoseconds> limit) {
+bool wait_ready_or_signal(std::span<PollEntry> list, std::optional<std::chrono::nanoseconds> limit) {
   sigset_t none;
   sigemptyset(&none);
   return wait(list, limit, &none);

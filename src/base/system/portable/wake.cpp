@@ -1,4 +1,4 @@
-// A pipe.
+// Wake with a pipe.
 #include "base/system/wake.h"
 
 #include "base/system/open.h"

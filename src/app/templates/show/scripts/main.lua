@@ -2,22 +2,22 @@
 --
 --     limber play scripts/main.lua
 --
--- Lengths are metres, masses kilograms, times seconds, angles radians. Z points up.
+-- Units: meters, kilograms, seconds, radians. Z points up.
 
--- Bodies are made of parts, parts have shapes. A plane never moves: this is the ground.
+-- Bodies consist of parts, and parts have shapes. Planes are static: this one is the ground.
 sim:add_body("ground"):add_part("floor", sim:add_plane_shape("floor"))
 
--- A body from a file. Its joints have motors, which hold where they are told to be.
+-- A body from a file. Its joints have motors, which hold them at their targets.
 local reed = sim:load_urdf("urdf/reed.urdf", { name = "reed" })
 
--- Sliders of the panel, and /scene/depth over OSC: oscsend 127.0.0.1 9003 /scene/depth f 0.5
+-- Parameters: sliders in the panel, and /scene/depth over OSC: oscsend 127.0.0.1 9003 /scene/depth f 0.5
 params {
   { "speed", 0.3, min = 0, max = 2, unit = "Hz", doc = "Waves per second." },
-  { "depth", 0.25, min = 0, max = 0.6, unit = "rad", doc = "How far each joint bends." },
+  { "depth", 0.25, min = 0, max = 0.6, unit = "rad", doc = "Amplitude of each joint." },
 }
 
--- The lines above say what exists. Callbacks act while time goes on: this one in each tick. What is in `state` stays
--- when this file is read again.
+-- The lines above create the objects. Callbacks run while the scene plays: this one in each tick. Values in `state`
+-- survive when this file is saved and reloaded.
 state.phase = state.phase or 0
 sim:on_step(function(dt)
   state.phase = state.phase + 2 * math.pi * params.speed * dt
@@ -26,7 +26,7 @@ sim:on_step(function(dt)
   end
 end)
 
--- And this one whenever somebody sends /gust: oscsend 127.0.0.1 9003 /gust f 0.5
+-- And this one for each message /gust: oscsend 127.0.0.1 9003 /gust f 0.5
 osc:on("/gust", function(strength)
   reed:part("tip"):apply_impulse(vec3(strength or 0.5, 0, 0))
 end)

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Prints measures of the sources' structure: folders, classes, complexity, friends, lines, wording.
+
+    .ci/measures.py            all but the cost of a rebuild
+    .ci/measures.py --rebuild src/sim/motor.h
+                               processor seconds that a change of this header costs in a debug build (a full build first)
+"""
+import collections
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "tests/mutations"))
+import cpp_source  # noqa: E402
+
+BRANCHES = {"if", "for", "while", "case", "catch", "&&", "||", "?"}
+
+
+def sources():
+    names = subprocess.run(["git", "ls-files", "src"], capture_output=True, text=True, check=True).stdout.split()
+    return {name: pathlib.Path(name).read_text() for name in names if name.endswith((".h", ".cpp", ".inc"))}
+
+
+def classes_of(tokens):
+    """(name, functions, fields) of each class; overloads count one each."""
+    found = []
+    stack = []  # of [kind, name, functions, fields], for each open brace
+    begin = 0
+    for i, token in enumerate(tokens):
+        text = token.text
+        inside = stack[-1] if stack else None
+        if text == "{":
+            head = [t.text for t in tokens[begin:i]]
+            kind = "block"
+            name = ""
+            if "(" not in head and "enum" not in head and ("class" in head or "struct" in head):
+                at = max(j for j, w in enumerate(head) if w in ("class", "struct"))
+                kind, name = "class", head[at + 1] if at + 1 < len(head) else ""
+            elif "namespace" in head:
+                kind = "namespace"
+            elif inside and inside[0] == "class":
+                kind = "function" if "(" in head and "=" not in head[: head.index("(")] else "initializer"
+                if kind == "function":
+                    inside[2] += 1
+            stack.append([kind, name, 0, 0])
+            begin = i + 1
+        elif text == "}":
+            closed = stack.pop() if stack else None
+            if closed and closed[0] == "class":
+                found.append(tuple(closed[1:]))
+            if not closed or closed[0] != "initializer":
+                begin = i + 1
+        elif text == ";":
+            head = [t.text for t in tokens[begin:i]]
+            if inside and inside[0] == "class" and head and head[0] not in ("using", "friend", "static_assert", "enum"):
+                declares = "(" in head and (head.index("(") == 0 or head[head.index("(") - 1] not in ("decltype", "alignas"))
+                before = head[: head.index("(")] if declares else head
+                if declares and "=" not in before and "{" not in before and "<" not in before[-1:]:
+                    if head[-2:] not in (["=", "delete"],):
+                        inside[2] += 1
+                elif "static" not in head and head not in (["class"], ["struct"]) and len(head) > 1 and head[0] not in ("class", "struct"):
+                    inside[3] += 1
+            begin = i + 1
+        elif text == ":" and i and tokens[i - 1].text in ("public", "private", "protected"):
+            begin = i + 1
+    return found
+
+
+def report():
+    texts = sources()
+    folders = collections.Counter(os.path.dirname(name) for name in texts)
+    classes, complexity, friends, lines = [], [], 0, 0
+    for name, text in texts.items():
+        tokens = cpp_source.tokens_of(text)
+        lines += text.count("\n")
+        friends += sum(token.text == "friend" for token in tokens)
+        classes += [(functions, fields, title, name) for title, functions, fields in classes_of(tokens)]
+        for function in cpp_source.functions_of(tokens):
+            body = tokens[function.opening : function.closing]
+            complexity.append((1 + sum(token.text in BRANCHES for token in body), function.name, name))
+    largest = folders.most_common(1)[0]
+    print(f"lines in src: {lines}")
+    print(f"largest folder: {largest[0]}, {largest[1]} files")
+    most = max(classes)
+    print(f"most functions in a class: {most[2]} ({most[3]}), {most[0]}")
+    most = max(classes, key=lambda c: c[1])
+    print(f"most fields in a class: {most[2]} ({most[3]}), {most[1]}")
+    for value, title, name in sorted(complexity, reverse=True)[:5]:
+        print(f"cyclomatic complexity: {title} ({name}), {value}")
+    print(f"friend declarations: {friends}")
+    subprocess.run([sys.executable, pathlib.Path(__file__).parent / "words.py", "--share"], check=False)
+
+
+def rebuild(header):
+    folder = "build/debug_measure"
+    subprocess.run(["cmake", "--preset", "debug", "-B", folder, "-DLIMBER_UNITY=OFF", "-DLIMBER_TESTS=OFF",
+                    "-DCMAKE_CXX_COMPILER_LAUNCHER="], check=True, stdout=subprocess.DEVNULL)
+    build = ["cmake", "--build", folder]
+    subprocess.run(build, check=True, stdout=subprocess.DEVNULL)
+    os.utime(header)
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(build, check=True, stdout=subprocess.DEVNULL)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    print(f"{header}: {after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime:.0f} s")
+
+
+if __name__ == "__main__":
+    if "--rebuild" in sys.argv:
+        rebuild(sys.argv[sys.argv.index("--rebuild") + 1])
+    else:
+        report()
