@@ -52,8 +52,9 @@ void Health::set(HealthItem item, std::uint64_t count) {
 
 void Health::add(HealthItem item, std::uint64_t count) {
   Item& entry = items_[static_cast<std::size_t>(item)];
-  if (count > 0 && entry.count.fetch_add(count, std::memory_order_relaxed) == 0)
-    entry.since.store(now_(), std::memory_order_relaxed);
+  if (count == 0) return;
+  if (entry.count.load(std::memory_order_relaxed) == 0) entry.since.store(now_(), std::memory_order_relaxed);
+  entry.count.fetch_add(count, std::memory_order_relaxed);
 }
 
 std::vector<HealthEntry> Health::entries() const {

@@ -116,7 +116,9 @@ Result<void> TakeWriter::open_file() {
   if (target_.make_unique) fs::create_directories(fs::path(target_.path).parent_path(), ignored);
   const std::string requested_path = target_.path;
   if (Result<void> free = find_free_path(requested_path); !free) return free;
-  temporary_path_ = fmt::format("{}.{}.part", requested_path, system::process_id());
+  // the writer of an earlier take with the same name may not have finished yet
+  static std::atomic<int> serial{0};
+  temporary_path_ = fmt::format("{}.{}-{}.part", requested_path, system::process_id(), ++serial);
   system::remove_file(temporary_path_);  // left by a killed program with the same process id
   file_ = system::open_file(temporary_path_, system::OpenMode::create_new);
   if (file_.is_open()) return {};

@@ -132,7 +132,7 @@ class CsvWriter : public MotionWriter {
   }
 
   Error read_error() const {
-    return Error{fmt::format("{} can't be written: {}", printable(path_), std::generic_category().message(errno))};
+    return Error{fmt::format("{} can't be read back: {}", printable(path_), std::generic_category().message(errno))};
   }
 
   std::string path_;

@@ -79,6 +79,9 @@ void BehaviorTransaction::save_targets(Behavior& behavior) {
         saved.behavior->parts_ = std::move(saved.parts);
         saved.behavior->joints_ = std::move(saved.joints);
         saved.behavior->motors_ = std::move(saved.motors);
+        // an earlier call may have changed the structure: resolve the targets again
+        saved.behavior->resolved_structure_--;
+        static_cast<BehaviorTransaction*>(owner)->list_.structure_version_ = 0;
       },
       this, saved_targets_.size() - 1);
 }

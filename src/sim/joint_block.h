@@ -6,12 +6,11 @@
 #include <cstring>
 
 #include "sim/bullet.h"
+#include "sim/lanes.h"
 
 namespace limber {
 
-/// Four floats as a SIMD vector. Bullet on Debian doesn't align its vectors; their fourth float is 0 in rows and
-/// bodies.
-using Float4 = float __attribute__((vector_size(16)));
+/// Bullet on Debian doesn't align its vectors; their fourth float is 0 in rows and bodies.
 inline Float4 to_float4(const btVector3& v) {
   Float4 vector;
   std::memcpy(&vector, v.m_floats, sizeof vector);

@@ -321,9 +321,17 @@ void Part::apply_surface() {
   static const Property& bounce = table().at("restitution");
   const Store& store = body_.store();
   const auto surface = [this] {
-    return std::array<btScalar, 3>{rigid_->getFriction(), rigid_->getRollingFriction(), rigid_->getRestitution()};
+    const btVector3& anisotropic = rigid_->getAnisotropicFriction();
+    return std::array<btScalar, 8>{rigid_->getFriction(),
+                                   rigid_->getRollingFriction(),
+                                   rigid_->getSpinningFriction(),
+                                   rigid_->getRestitution(),
+                                   anisotropic.x(),
+                                   anisotropic.y(),
+                                   anisotropic.z(),
+                                   anisotropic.w()};
   };
-  const std::array<btScalar, 3> before = surface();
+  const std::array<btScalar, 8> before = surface();
   rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
   rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
   rigid_->setSpinningFriction(static_cast<btScalar>(store.values(id_, spinning)[0]));

@@ -56,6 +56,7 @@ void WorldTransaction::begin() {
   motions_.clear();
   reset_requested_ = world_.reset_requested_;
   panic_requested_ = world_.panic_requested_;
+  panic_end_requested_ = world_.panic_end_requested_;
   world_.behaviors_->transaction().begin();
   world_.store_.begin_transaction();
 }
@@ -84,11 +85,12 @@ void WorldTransaction::rollback() {
   world_.store_.rollback();
   world_.reset_requested_ = reset_requested_;
   world_.panic_requested_ = panic_requested_;
+  world_.panic_end_requested_ = panic_end_requested_;
 }
 
 bool WorldTransaction::is_empty() const {
   return entries_.empty() && world_.store_.transaction_is_empty() && world_.reset_requested_ == reset_requested_ &&
-         world_.panic_requested_ == panic_requested_;
+         world_.panic_requested_ == panic_requested_ && world_.panic_end_requested_ == panic_end_requested_;
 }
 
 void WorldTransaction::record(UndoFunction undo, void* owner, std::size_t value) {

@@ -77,6 +77,7 @@ class WorldTransaction {
   bool active_ = false;
   bool reset_requested_ = false;
   bool panic_requested_ = false;
+  bool panic_end_requested_ = false;
   std::uint64_t call_ = 0;
   std::vector<Entry> entries_;
   std::vector<SavedForces> forces_;

@@ -1,6 +1,7 @@
 // Takes: a replay is bit-exact and needs nothing but the take.
 #include <sstream>
 
+#include "engine/take_writer.h"
 #include "engine/taken.h"
 
 namespace limber::engine_test {
@@ -290,6 +291,23 @@ TEST(Take, RejectsInvalidTakeMessages) {
   EXPECT_TRUE(std::filesystem::exists(folder.path("takes/one.take")));
   EXPECT_TRUE(std::filesystem::exists(folder.path("takes/one-2.take"))) << "no file is overwritten";
   EXPECT_FALSE(std::filesystem::exists(folder.path("takes/two.take")));
+}
+
+// A slow disk: an earlier take with the same name is not finished when the next one begins.
+TEST(Take, TakesWithOneNameThatAreWrittenAtOnceAreBothKept) {
+  const ShowFolder folder;
+  const auto fail = [](const std::string& why) { ADD_FAILURE() << why; };
+  const TakeWriter::Target target{folder.path("takes/one.take"), true};
+  {
+    TakeWriter first(target, {}, fail);
+    ASSERT_TRUE(first.wait_until_open().ok());
+    TakeWriter second(target, {}, fail);
+    ASSERT_TRUE(second.wait_until_open().ok());
+    first.write("first");
+    second.write("second");
+  }
+  for (const char* name : {"takes/one.take", "takes/one-2.take"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path(name))) << name;
 }
 
 TEST(Take, NeverRecordsThroughALinkOutOfTheShow) {

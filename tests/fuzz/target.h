@@ -29,7 +29,7 @@ int persistent_input(const std::uint8_t* bytes, std::size_t size) {
     fixture = std::make_unique<Fixture>();
   }
   fixture->input(std::string_view(reinterpret_cast<const char*>(bytes), size));
-  if (fixture->worn()) fixture.reset();
+  if (fixture->needs_renewal()) fixture.reset();
   return 0;
 }
 

@@ -43,6 +43,17 @@ TEST_F(VisualsTest, CanBeSetFromAScene) {
   }
 }
 
+TEST_F(VisualsTest, LookAtSwapsEyeAndTarget) {
+  ASSERT_EQ(fixture.run(R"(
+    local camera = visuals.camera
+    camera:look_at(vec3(4, 0, 0), vec3(0, 0, 0))
+    camera:look_at(camera.target, camera.eye)
+  )"),
+            "");
+  EXPECT_NEAR(read("/visuals/camera/eye")[0], 0, 1e-9);
+  EXPECT_NEAR(read("/visuals/camera/target")[0], 4, 1e-9);
+}
+
 TEST_F(VisualsTest, CanBeReadInAScene) {
   EXPECT_EQ(value_of("visuals.camera.projection[1], visuals.camera.aspect"), "40\t0");
   EXPECT_EQ(value_of("visuals.camera == visuals.camera, visuals.alive, tostring(visuals.camera)"),

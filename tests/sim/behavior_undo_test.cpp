@@ -226,6 +226,22 @@ TEST(BehaviorTransaction, RestoresGeneratorsTimersAndErrors) {
   EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/one"}));
 }
 
+// A part that an earlier call added is a target, even if the call that resolved the targets failed.
+TEST(BehaviorTransaction, TargetsAreResolvedAgainAfterARollback) {
+  BehaviorRig s;
+  Body& a = s.chain("a", {"base"});
+  Probe& one = s.probe(a, "one");
+  s.ticks(1);
+  ASSERT_EQ(one.parts().size(), 1u);
+  ASSERT_TRUE(a.add_part("added", s.shape(sphere_model(0.05)), 1, {{3, 0, 0}, quat_identity()}).ok());
+  s.world.transaction().begin();
+  s.list().update_members();
+  EXPECT_EQ(one.parts().size(), 2u);
+  s.world.transaction().rollback();
+  s.ticks(1);
+  EXPECT_EQ(one.parts().size(), 2u);
+}
+
 TEST(BehaviorTransaction, RejectedGroupLeavesNothingBehind) {
   BehaviorRig s;
   Body& a = s.chain("a", {"base"});

@@ -113,9 +113,11 @@ struct Influence {
   std::function<void(Resting&)> apply;
   bool arm = false;  // true: the arm; false: the stack
 
+  // NOLINTNEXTLINE(readability-identifier-naming): GoogleTest's name
   friend void PrintTo(const Influence& influence, std::ostream* out) { *out << influence.name; }
 };
 
+// NOLINTNEXTLINE(readability-function-size): a table
 const std::vector<Influence>& influences() {
   static const auto of_low = [](const char* property, double value) {
     return [property, value](Resting& s) { s.set(s.low.id(), property, {value}); };
@@ -123,7 +125,7 @@ const std::vector<Influence>& influences() {
   static const auto of_sim = [](const char* property, double value) {
     return [property, value](Resting& s) { s.set(s.world.id(), property, {value}); };
   };
-  static const auto of_motor = [](const char* property, std::vector<double> value) {
+  static const auto of_motor = [](const char* property, const std::vector<double>& value) {
     return [property, value](Resting& s) { s.set(s.motor.id(), property, value); };
   };
   static const std::vector<Influence> list = {
@@ -142,6 +144,12 @@ const std::vector<Influence>& influences() {
       {"mass", of_low("mass", 2)},
       {"friction", of_low("friction", 0.1)},
       {"rolling_friction", of_low("rolling_friction", 0.1)},
+      {"spinning_friction", of_low("spinning_friction", 0.1)},
+      {"friction_factor",
+       [](Resting& s) {
+         s.set(s.low.id(), "friction_direction", {1, 0, 0});
+         s.set(s.low.id(), "friction_factor", {0.5});
+       }},
       {"restitution", of_low("restitution", 0.1)},
       {"linear_damping", of_low("linear_damping", 0.1)},
       {"angular_damping", of_low("angular_damping", 0.1)},
@@ -417,7 +425,9 @@ std::uint64_t hash_of_heap(int threads, std::vector<int>* sleeping = nullptr) {
   (void)(*world.add_body("floor").value()).add_part("p", plane, 0, {});
   std::vector<Part*> parts;
   for (int i = 0; i < 90; i++) {
-    const Vec3 at(0.5 * (i % 9), 0.5 * (i / 9 % 5), 0.1 + 0.205 * (i / 45));
+    const int row = i / 9 % 5;
+    const int layer = i / 45;
+    const Vec3 at(0.5 * (i % 9), 0.5 * row, 0.1 + 0.205 * layer);
     parts.push_back(
         world.add_body("b" + std::to_string(i)).value()->add_part("p", box, 1, {at, quat_identity()}).value());
   }

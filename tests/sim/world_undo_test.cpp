@@ -111,6 +111,15 @@ TEST(WorldTransaction, RollsBackAllChangesTogether) {
             expected);
 }
 
+TEST(WorldTransaction, RollsBackRequests) {
+  WorldFixture s;
+  s.world.transaction().begin();
+  s.world.request_panic_end();
+  EXPECT_FALSE(s.world.transaction().is_empty());
+  s.world.transaction().rollback();
+  EXPECT_FALSE(s.world.consume_panic_end_request());
+}
+
 TEST(WorldTransaction, RestoresARemovedBodyAtItsIndex) {
   WorldFixture s;
   Body& one = **s.world.add_body("one");

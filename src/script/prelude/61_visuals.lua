@@ -44,7 +44,10 @@ camera.methods.look_at = function(h, eye, target, seconds)
     end
     return
   end
-  -- the eye again, because an eye equal to the previous target is ignored
+  -- a view whose eye and target are equal is ignored: the eye again, and a detour where the two are swapped
+  if camera.getters.eye(h) == target and camera.getters.target(h) == eye then
+    camera.setters.eye(h, (eye + target) / 2)
+  end
   camera.setters.eye(h, eye)
   camera.setters.target(h, target)
   camera.setters.eye(h, eye)
