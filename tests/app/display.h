@@ -4,21 +4,27 @@
 #include <memory>
 
 #include "app/program.h"
+#include "base/system/process.h"
 
 namespace limber::app_test {
 
-/// An X server without a screen, on a free display number.
+/// An X server without a screen.
 class Display {
  public:
-  /// `more`: further arguments of the server.
-  explicit Display(const std::string& screen = "320x240x24", const std::vector<std::string>& more = {})
+  /// `more`: further arguments of the server. The display number is the lowest free one, or `number`, such as ":1234".
+  explicit Display(const std::string& screen = "320x240x24", const std::vector<std::string>& more = {},
+                   const std::string& number = "")
       : words_(with({"-displayfd", "1", "-screen", "0", screen, "-nolisten", "tcp", "-fbdir", folder_.path()}, more)),
-        server_(std::make_unique<Process>(with({"Xvfb"}, words_))) {
+        server_(std::make_unique<Process>(with(
+            number.empty() ? std::vector<std::string>{"Xvfb"} : std::vector<std::string>{"Xvfb", number}, words_))) {
     EXPECT_TRUE(server_->wait_for("\n", true)) << "apt-get install xvfb\n" << server_->err();
     name_ = ":" + server_->out().substr(0, server_->out().find('\n'));
   }
+  /// A high display number that depends on the process.
+  static std::string own_number() { return ":" + std::to_string(1000 + system::process_id() % 50000); }
   void kill() { server_->signal(SIGKILL); }
-  /// Starts another server with the same number after the last one was stopped.
+  /// Starts another server with the same number after the last one was stopped. Needs a number that no other test takes
+  /// meanwhile: own_number().
   void restart() {
     server_.reset();
     server_ = std::make_unique<Process>(with({"Xvfb", name_}, words_));

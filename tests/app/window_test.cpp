@@ -256,7 +256,7 @@ TEST(Window, ShowOutlivesTheDisplay) {
 }
 
 TEST(Window, RequestedWindowWaitsForItsDisplay) {
-  Display display;
+  Display display("320x240x24", {}, Display::own_number());
   display.kill();
   const TempFolder folder;
   const std::string scene = folder.file("s.lua", kFallingBall);
