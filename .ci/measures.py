@@ -2,7 +2,7 @@
 """Prints measures of the sources' structure: folders, classes, complexity, friends, lines, wording.
 
     .ci/measures.py            all but the cost of a rebuild
-    .ci/measures.py --rebuild src/sim/motor.h
+    .ci/measures.py --rebuild src/sim/world/motor.h
                                processor seconds that a change of this header costs in a debug build (a full build first)
 """
 import collections

@@ -1,5 +1,5 @@
 // The program.
-#include "app/options.h"
+#include "app/cli/options.h"
 #include "base/system/standard_output.h"
 
 int main(int argc, char** argv) {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "base/output.h"
+#include "base/log/output.h"
 #include "base/system/clock.h"
 
 namespace limber {

@@ -1,7 +1,7 @@
 // Reports failed checks to the hook or the log.
 #include "base/check.h"
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 namespace limber {
 

@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
-#include "base/fixed_math.h"
+#include "base/math/fixed_math.h"
 
 namespace limber {
 

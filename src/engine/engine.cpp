@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "base/fixed_math.h"
-#include "base/log.h"
+#include "base/log/log.h"
+#include "base/math/fixed_math.h"
 #include "base/system/clock.h"
 #include "base/text.h"
-#include "engine/console_params.h"
+#include "engine/commands/console_params.h"
 
 namespace limber {
 

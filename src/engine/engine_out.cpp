@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
-#include "base/output.h"
+#include "base/log/log.h"
+#include "base/log/output.h"
 #include "base/text.h"
 #include "engine/engine.h"
 

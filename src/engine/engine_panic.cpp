@@ -1,5 +1,5 @@
 // Engine: start and end of a panic.
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/engine.h"
 
 namespace limber {

@@ -1,7 +1,7 @@
 // Engine: start and end of a replay, of --replay and of a take that is played inside a running session.
 #include <utility>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/text.h"
 #include "engine/engine.h"
 

@@ -1,7 +1,7 @@
 // Engine: preset commands from the command line and from scripts.
 #include <fmt/format.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/text.h"
 #include "engine/engine.h"
 

@@ -1,7 +1,7 @@
 // Engine: crash recovery of property values.
 #include <fmt/format.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/text.h"
 #include "engine/engine.h"
 

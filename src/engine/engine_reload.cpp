@@ -1,9 +1,9 @@
 // Engine: reloads and scene changes. The new scene runs detached from the show.
 #include <utility>
 
-#include "base/log.h"
-#include "engine/draft.h"
+#include "base/log/log.h"
 #include "engine/engine.h"
+#include "engine/reload/reload_candidate.h"
 
 namespace limber {
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/text.h"
-#include "engine/draft.h"
 #include "engine/engine.h"
+#include "engine/reload/reload_candidate.h"
 
 namespace limber {
 

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/command.h"
-#include "engine/health.h"
-#include "sim/world.h"
+#include "engine/commands/command.h"
+#include "engine/output/health.h"
+#include "sim/world/world.h"
 
 namespace limber {
 

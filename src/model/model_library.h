@@ -11,8 +11,8 @@
 
 #include "base/result.h"
 #include "model/body_model.h"
-#include "model/mesh_library.h"
-#include "model/urdf_import.h"
+#include "model/mesh/library.h"
+#include "model/urdf/import.h"
 
 namespace limber {
 

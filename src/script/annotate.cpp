@@ -12,8 +12,8 @@
 #include "base/check.h"
 #include "base/embedded.h"
 #include "base/text.h"
-#include "params/row_text.h"
-#include "sim/world.h"
+#include "properties/property_text.h"
+#include "sim/world/world.h"
 
 namespace limber {
 

@@ -1,12 +1,12 @@
 // The benchmark: results, output, and that both sides simulate the same arms.
-#include "app/bench.h"
+#include "app/commands/bench.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "app/bench_arms.h"
-#include "sim/world.h"
+#include "app/commands/bench_arms.h"
+#include "sim/world/world.h"
 
 namespace limber {
 namespace {

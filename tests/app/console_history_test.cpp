@@ -1,5 +1,5 @@
 // The console history: saved at once, bounded, and robust against damaged files.
-#include "app/console_history.h"
+#include "app/console/history.h"
 
 #include "app/program.h"
 #include "base/random.h"

@@ -11,9 +11,9 @@
 
 #include "app/program.h"
 #include "base/random.h"
-#include "engine/preset_file.h"
-#include "osc/decode.h"
-#include "osc/encode.h"
+#include "engine/presets/file.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/encode.h"
 #include "osc/osc_test_tools.h"
 
 namespace limber::app_test {

@@ -1,5 +1,5 @@
 // The reference printed by `limber describe`: the golden file of all addresses, a scene's own addresses, and JSON.
-#include "app/describe.h"
+#include "app/commands/describe.h"
 
 #include <algorithm>
 #include <fstream>

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "app/describe.h"
+#include "app/commands/describe.h"
 #include "app/program.h"
 #include "base/text.h"
 #include "engine/seed_table.h"

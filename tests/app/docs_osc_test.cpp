@@ -8,9 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/describe_page.h"
+#include "app/commands/describe_page.h"
+#include "app/commands/send.h"
 #include "app/program.h"
-#include "app/send.h"
 #include "engine/engine.h"
 
 namespace limber::app_test {

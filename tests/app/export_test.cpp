@@ -1,5 +1,5 @@
 // `limber export`: the poses in exported files are those of the engine that replays the take.
-#include "app/export.h"
+#include "app/commands/export.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "app/program.h"
 #include "engine/engine.h"
-#include "motion/loaded.h"
+#include "export/loaded.h"
 
 namespace limber::app_test {
 namespace {

@@ -1,5 +1,5 @@
 // All ways in which editors save, in a temporary folder; the test provides the clock, so it never waits.
-#include "app/file_watch.h"
+#include "app/show/file_watch.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

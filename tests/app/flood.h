@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/random.h"
-#include "engine/command.h"
+#include "engine/commands/command.h"
+#include "net/osc/packets/decode.h"
 #include "osc/bad_packets.h"
-#include "osc/decode.h"
 #include "osc/osc_test_tools.h"
 
 namespace limber::app_test {

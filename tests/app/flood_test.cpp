@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "app/flood.h"
-#include "app/query_doors.h"
-#include "base/log.h"
+#include "app/show/query_host.h"
+#include "base/log/log.h"
 #include "engine/show.h"
-#include "osc/decode.h"
-#include "query/web_client.h"
+#include "net/osc/packets/decode.h"
+#include "oscquery/web_client.h"
 
 namespace limber::app_test {
 namespace {

@@ -1,5 +1,5 @@
 // FramePace: frames counted on a simulated clock; and an idle window on a real display.
-#include "app/frame_pace.h"
+#include "app/view/frame_pace.h"
 
 #include "app/display.h"
 

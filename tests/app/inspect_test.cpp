@@ -1,5 +1,5 @@
 // `limber inspect`: the JSON, the table, the exit codes.
-#include "app/inspect.h"
+#include "app/commands/inspect.h"
 
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 namespace limber {
 namespace {

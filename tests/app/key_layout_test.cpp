@@ -1,5 +1,5 @@
 // Keys by their printed letters, for the X11 layouts us, fr, de, dvorak and ru.
-#include "app/key_layout.h"
+#include "app/view/key_layout.h"
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>

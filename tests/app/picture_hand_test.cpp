@@ -1,5 +1,5 @@
 // ViewportMouse without a window: its messages, and their effects on a world.
-#include "app/picture_hand.h"
+#include "app/view/viewport_mouse.h"
 
 #include "engine/show.h"
 

@@ -7,7 +7,7 @@
 #include "app/program.h"
 #include "app/taken_port.h"
 #include "osc/osc_test_tools.h"
-#include "query/web_client.h"
+#include "oscquery/web_client.h"
 
 namespace limber::app_test {
 namespace {

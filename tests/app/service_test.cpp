@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "app/playing.h"
-#include "app/service_unit.h"
+#include "app/service/service_unit.h"
 
 namespace limber::app_test {
 namespace {

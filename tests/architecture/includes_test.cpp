@@ -55,39 +55,39 @@ struct IncludeCase {
 TEST(Includes, ViolationsAreFound) {
   const std::vector<IncludeCase> planted{
       // a higher layer
-      {"src/base/log.cpp", "#include \"params/table.h\"", "not in a lower module"},
-      {"src/params/store.cpp", "#include \"sim/world.h\"", "not in a lower module"},
-      {"src/sim/world.h", "#include \"engine/engine.h\"", "not in a lower module"},
+      {"src/base/log/log.cpp", "#include \"properties/property_table.h\"", "not in a lower module"},
+      {"src/properties/store.cpp", "#include \"sim/world/world.h\"", "not in a lower module"},
+      {"src/sim/world/world.h", "#include \"engine/engine.h\"", "not in a lower module"},
       {"src/engine/engine.cpp", "#include \"osc/send.h\"", "not in a lower module"},
-      {"src/gui/gui.cpp", "#include \"app/app.h\"", "not in a lower module"},
+      {"src/ui/panel/gui.cpp", "#include \"app/app.h\"", "not in a lower module"},
       // an unrelated module
-      {"src/params/store.cpp", "#include \"model/body_model.h\"", "not in a lower module"},
-      {"src/script/vm.cpp", "#include \"behaviors/force.h\"", "not in a lower module"},
-      {"src/osc/send.cpp", "#include \"query/server.h\"", "not in a lower module"},
+      {"src/properties/store.cpp", "#include \"model/body_model.h\"", "not in a lower module"},
+      {"src/script/vm/vm.cpp", "#include \"behaviors/force.h\"", "not in a lower module"},
+      {"src/osc/send.cpp", "#include \"net/oscquery/server.h\"", "not in a lower module"},
       // modules outside the simulation thread have no access to simulation objects
-      {"src/osc/receive.cpp", "#include \"sim/part.h\"", "not in a lower module"},
-      {"src/view/scene.cpp", "#include \"script/vm.h\"", "not in a lower module"},
+      {"src/osc/receive.cpp", "#include \"sim/world/part.h\"", "not in a lower module"},
+      {"src/view/scene.cpp", "#include \"script/vm/vm.h\"", "not in a lower module"},
       // an external library in the wrong module
       {"src/engine/engine.cpp", "#include <btBulletDynamicsCommon.h>", "module sim only"},
-      {"src/model/hull.cpp", "#include <LinearMath/btConvexHullComputer.h>", "module sim only"},
-      {"src/sim/body.cpp", "#include <urdf_parser/urdf_parser.h>", "module model only"},
-      {"src/sim/body.cpp", "#include <assimp/Importer.hpp>", "no known library"},
-      {"src/app/options.cpp", "#include <tinyxml2.h>", "module model only"},
+      {"src/model/mesh/hull.cpp", "#include <LinearMath/btConvexHullComputer.h>", "module sim only"},
+      {"src/sim/world/body.cpp", "#include <urdf_parser/urdf_parser.h>", "module model only"},
+      {"src/sim/world/body.cpp", "#include <assimp/Importer.hpp>", "no known library"},
+      {"src/app/cli/options.cpp", "#include <tinyxml2.h>", "module model only"},
       {"src/engine/engine.cpp", "#include <lua.hpp>", "module script only"},
-      {"src/query/server.cpp", "#include <oscpack/osc/OscOutboundPacketStream.h>", "module osc only"},
-      {"src/sim/world.cpp", "#include <spdlog/spdlog.h>", "module base only"},
+      {"src/net/oscquery/server.cpp", "#include <oscpack/osc/OscOutboundPacketStream.h>", "module osc only"},
+      {"src/sim/world/world.cpp", "#include <spdlog/spdlog.h>", "module base only"},
       {"src/engine/clock.cpp", "#include <GLFW/glfw3.h>", "module app only"},
-      {"src/sim/world.cpp", "#include <Eigen/Dense>", "no known library"},
+      {"src/sim/world/world.cpp", "#include <Eigen/Dense>", "no known library"},
       // system headers outside the system layer
       {"src/osc/receive.cpp", "#include <sys/socket.h>", "src/base/system/"},
-      {"src/base/arena.cpp", "#include <sys/mman.h>", "src/base/system/"},
-      {"src/app/play.cpp", "#include <pthread.h>", "src/base/system/"},
+      {"src/base/memory/arena.cpp", "#include <sys/mman.h>", "src/base/system/"},
+      {"src/app/show/play.cpp", "#include <pthread.h>", "src/base/system/"},
       {"src/script/determinism.cpp", "#include <dlfcn.h>", "src/base/system/"},
       // a path that is not relative to src/, an unknown module, or leading blanks
-      {"src/sim/world.cpp", "#include \"body.h\"", "relative to src/"},
-      {"src/sim/world.cpp", "#include \"../engine/engine.h\"", "relative to src/"},
-      {"src/sim/world.cpp", "#include \"physics/body.h\"", "in no module"},
-      {"src/sim/world.cpp", "  #  include\t\"engine/engine.h\"  // why not", "not in a lower module"},
+      {"src/sim/world/world.cpp", "#include \"body.h\"", "relative to src/"},
+      {"src/sim/world/world.cpp", "#include \"../engine/engine.h\"", "relative to src/"},
+      {"src/sim/world/world.cpp", "#include \"physics/body.h\"", "in no module"},
+      {"src/sim/world/world.cpp", "  #  include\t\"engine/engine.h\"  // why not", "not in a lower module"},
       {"src/physics/world.cpp", "", "unknown module"},
   };
   for (const IncludeCase& p : planted) {
@@ -104,20 +104,20 @@ TEST(Includes, ViolationsAreFound) {
 
 TEST(Includes, AllowedIncludesPass) {
   const std::vector<IncludeCase> allowed{
-      {"src/base/log.cpp", "#include <spdlog/spdlog.h>", nullptr},
-      {"src/sim/world.cpp", "#include \"model/body_model.h\"", nullptr},
-      {"src/sim/bullet.h", "#include <btBulletDynamicsCommon.h>", nullptr},
-      {"src/behaviors/force.cpp", "#include \"sim/behavior.h\"", nullptr},
-      {"src/engine/engine.cpp", "#include \"script/vm.h\"", nullptr},
-      {"src/osc/receive.cpp", "#include \"engine/command.h\"", nullptr},
-      {"src/base/system/socket.cpp", "#include <sys/socket.h>", nullptr},
-      {"src/sim/dense.cpp", "#include <immintrin.h>", nullptr},
+      {"src/base/log/log.cpp", "#include <spdlog/spdlog.h>", nullptr},
+      {"src/sim/world/world.cpp", "#include \"model/body_model.h\"", nullptr},
+      {"src/sim/bullet/bullet.h", "#include <btBulletDynamicsCommon.h>", nullptr},
+      {"src/sim/behavior/builtin/force.cpp", "#include \"sim/behavior/behavior.h\"", nullptr},
+      {"src/engine/engine.cpp", "#include \"script/vm/vm.h\"", nullptr},
+      {"src/osc/receive.cpp", "#include \"engine/commands/command.h\"", nullptr},
+      {"src/base/system/net/socket.cpp", "#include <sys/socket.h>", nullptr},
+      {"src/sim/solver/dense_kernels.cpp", "#include <immintrin.h>", nullptr},
       {"src/app/app.cpp", "#include \"osc/receive.h\"", nullptr},
       {"src/main.cpp", "#include \"app/app.h\"", nullptr},
-      {"src/script/vm.cpp", "#include <lua.hpp>", nullptr},
+      {"src/script/vm/vm.cpp", "#include <lua.hpp>", nullptr},
       {"src/query/json.cpp", "#include <nlohmann/json.hpp>", nullptr},
       {"src/base/vec.h", "#include <cmath>", nullptr},
-      {"src/base/log.cpp", "// a comment with #include \"sim/world.h\"", nullptr},
+      {"src/base/log/log.cpp", "// a comment with #include \"sim/world/world.h\"", nullptr},
   };
   for (const IncludeCase& p : allowed) {
     const std::vector<std::string> complaints = include_complaints(p.path, p.line);

@@ -99,7 +99,7 @@ bool has_word(std::string_view words, std::string_view word) {
   return std::find(std::istream_iterator<std::string>(in), {}, word) != std::istream_iterator<std::string>();
 }
 
-/// Returns the module of a path: "sim" for "src/sim/world.cpp"; files in src/ itself belong to app.
+/// Returns the module of a path: "sim" for "src/sim/world/world.cpp"; files in src/ itself belong to app.
 std::string module_of(std::string_view path) {
   path.remove_prefix(std::string_view("src/").size());
   const auto slash = path.find('/');
@@ -232,14 +232,15 @@ std::vector<std::string> math_complaints(std::string_view path, std::string_view
   std::vector<std::string> complaints;
   if (!std::regex_match(path.begin(), path.end(), modules)) return complaints;
   for (std::cregex_iterator found(text.data(), text.data() + text.size(), call), end; found != end; ++found) {
-    complaints.push_back(std::string(path) + ": calls " + found->str(1) + "; use limber::fixed (base/fixed_math.h)");
+    complaints.push_back(std::string(path) + ": calls " + found->str(1) +
+                         "; use limber::fixed (base/math/fixed_math.h)");
   }
   return complaints;
 }
 
 std::vector<std::string> output_complaints(std::string_view path, std::string_view text) {
   std::vector<std::string> complaints;
-  if (path == "src/app/console_terminal.cpp") return complaints;  // libedit takes streams
+  if (path == "src/app/console/terminal.cpp") return complaints;  // libedit takes streams
   static const std::regex use(
       R"((fmt::print|std::(cout|cerr|clog|fflush|perror)|\b(stdout|stderr|f?printf|puts|putchar)\b))");
   std::istringstream lines{std::string(text)};
@@ -252,7 +253,7 @@ std::vector<std::string> output_complaints(std::string_view path, std::string_vi
     std::smatch found;
     if (!std::regex_search(code, found, use)) continue;
     complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + found.str() +
-                         "' may throw or block: use base/output.h");
+                         "' may throw or block: use base/log/output.h");
   }
   return complaints;
 }

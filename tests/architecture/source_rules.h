@@ -8,7 +8,7 @@
 
 namespace limber::rules {
 
-/// Returns the complaints about the includes of one file. `path` is relative to the root: "src/sim/world.cpp".
+/// Returns the complaints about the includes of one file. `path` is relative to the root: "src/sim/world/world.cpp".
 std::vector<std::string> include_complaints(std::string_view path, std::string_view text);
 
 /// Returns complaints about calls, types and files of the operating system outside src/base/system/, except in
@@ -19,10 +19,10 @@ std::vector<std::string> system_complaints(std::string_view path, std::string_vi
 std::vector<std::string> shape_complaints(std::string_view path, std::string_view text);
 
 /// Returns complaints about calls of the C library's mathematical functions in the modules that affect the state hash.
-/// Only the functions of base/fixed_math.h give the same bits on every machine.
+/// Only the functions of base/math/fixed_math.h give the same bits on every machine.
 std::vector<std::string> math_complaints(std::string_view path, std::string_view text);
 
-/// Returns complaints about output to stdout or stderr without base/output.h, which may throw or block.
+/// Returns complaints about output to stdout or stderr without base/log/output.h, which may throw or block.
 std::vector<std::string> output_complaints(std::string_view path, std::string_view text);
 
 /// Returns the modules, which are the folders that src/ may have; base is first.

@@ -17,7 +17,7 @@
 #include "assets/solid.h"
 #include "base/vec.h"
 #include "model/body_model.h"
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // AddressSpace: addresses of reserved ranges, also on a system that prefers addresses beyond LuaJIT's 47 bits.
-#include "base/address_space.h"
+#include "base/memory/address_space.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // OSC addresses matched against patterns.
-#include "base/address.h"
+#include "base/osc_pattern.h"
 
 #include <gtest/gtest.h>
 

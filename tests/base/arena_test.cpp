@@ -1,5 +1,5 @@
 // The arena as an allocator, compared with a simple model of its blocks; and its captures, compared with copies.
-#include "base/arena.h"
+#include "base/memory/arena.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 
 namespace limber {
 namespace {

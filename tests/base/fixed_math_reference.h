@@ -12,8 +12,8 @@
 #include <ostream>
 #include <vector>
 
-#include "base/fixed_math.h"
 #include "base/hash.h"
+#include "base/math/fixed_math.h"
 #include "base/random.h"
 
 namespace limber::base_test {

@@ -1,5 +1,5 @@
 // Math functions with bit-identical results: errors against MPFR, special cases, exact results, golden bits.
-#include "base/fixed_math.h"
+#include "base/math/fixed_math.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // BoundedQueue: many writers, one reader, limits, counted drops. Intended for the thread sanitizer too.
-#include "base/inbox.h"
+#include "base/threads/bounded_queue.h"
 
 #include <gtest/gtest.h>
 

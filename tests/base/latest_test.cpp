@@ -1,5 +1,5 @@
 // Latest: readers see complete values, and memory is reused. Intended for the thread sanitizer too.
-#include "base/latest.h"
+#include "base/threads/latest.h"
 
 #include <gtest/gtest.h>
 

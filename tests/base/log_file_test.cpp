@@ -1,5 +1,5 @@
 // LogFile: rotation by size, files that are removed or renamed, paths that can't be written.
-#include "base/log_file.h"
+#include "base/log/log_file.h"
 
 #include <sys/resource.h>
 #include <unistd.h>

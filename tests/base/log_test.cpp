@@ -1,5 +1,5 @@
 // The log's ring: numbered lines, the last 1000 lines, counts per level, escaped control characters.
-#include "base/log.h"
+#include "base/log/log.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Rate limits of the log.
-#include "base/log_throttle.h"
+#include "base/log/log_throttle.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
-#include "base/output.h"
+#include "base/log/log.h"
+#include "base/log/output.h"
 #include "base/text.h"
 
 namespace limber {

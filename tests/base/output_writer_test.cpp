@@ -1,6 +1,6 @@
 // OutputWriter with devices that are full, not ready, closed, slow or stuck: callers are not blocked, lost lines are
 // counted, and lines stay complete.
-#include "base/output_writer.h"
+#include "base/log/output_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // PageStore: contents, sharing, and memory use of copies.
-#include "base/page_store.h"
+#include "base/memory/page_store.h"
 
 #include <gtest/gtest.h>
 

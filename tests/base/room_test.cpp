@@ -1,5 +1,5 @@
 // Growth of reserved capacity.
-#include "base/room.h"
+#include "base/capacity.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ThreadPool: each task runs once, in every round. Intended for the thread sanitizer too.
-#include "base/team.h"
+#include "base/threads/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "base/fixed_math.h"
+#include "base/math/fixed_math.h"
 
 namespace limber {
 namespace {

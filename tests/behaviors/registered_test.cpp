@@ -5,8 +5,8 @@
 #include <set>
 
 #include "base/text.h"
-#include "sim/behavior.h"
-#include "sim/behavior_type.h"
+#include "sim/behavior/behavior.h"
+#include "sim/behavior/behavior_type.h"
 
 namespace limber {
 namespace {

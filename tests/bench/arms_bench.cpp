@@ -1,7 +1,7 @@
 // The arms of `limber bench` with Google Benchmark: a tick of Limber, a tick of the plain Bullet loop, a snapshot.
 #include <benchmark/benchmark.h>
 
-#include "app/bench_arms.h"
+#include "app/commands/bench_arms.h"
 
 namespace limber {
 namespace {

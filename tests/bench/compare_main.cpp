@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include "app/bench_times.h"
+#include "app/commands/bench_times.h"
 #include "bench/contender.h"
-#include "sim/raw_machines.h"
+#include "sim/world/raw_machines.h"
 
 namespace limber {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/raw_scene.h"
+#include "sim/world/raw_scene.h"
 
 namespace limber {
 

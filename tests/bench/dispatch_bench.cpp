@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "engine/dispatch.h"
+#include "engine/commands/message_dispatcher.h"
 
 namespace limber {
 namespace {

@@ -10,9 +10,9 @@
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
-#include "base/log.h"
-#include "script/scene.h"
-#include "sim/world.h"
+#include "base/log/log.h"
+#include "script/scene/scene.h"
+#include "sim/world/world.h"
 
 namespace limber {
 namespace {

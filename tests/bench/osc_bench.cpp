@@ -7,13 +7,13 @@
 #include <string>
 #include <thread>
 
-#include "base/log.h"
-#include "base/system/udp_socket.h"
-#include "osc/decode.h"
-#include "osc/network.h"
+#include "base/log/log.h"
+#include "base/system/net/udp_socket.h"
+#include "net/osc/network.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/validate.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
-#include "osc/validate.h"
 
 namespace limber {
 namespace {

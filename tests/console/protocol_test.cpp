@@ -1,5 +1,5 @@
 // The console protocol: round trips between both ends, and arbitrary input.
-#include "console/protocol.h"
+#include "net/console/protocol.h"
 
 #include <gtest/gtest.h>
 

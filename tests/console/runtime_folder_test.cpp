@@ -1,5 +1,5 @@
 // Runtime folders: only private ones are used, and sockets of dead programs are removed.
-#include "console/runtime_folder.h"
+#include "net/console/runtime_folder.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "base/system/local_socket.h"
+#include "base/system/net/local_socket.h"
 #include "console/private_folder.h"
 
 namespace limber {

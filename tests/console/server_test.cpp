@@ -1,17 +1,17 @@
 // The console server with an engine: access, results, and robustness against misbehaving clients.
-#include "console/server.h"
+#include "net/console/server.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
 #include <map>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/random.h"
-#include "base/system/local_socket.h"
-#include "console/console_link.h"
+#include "base/system/net/local_socket.h"
 #include "console/private_folder.h"
 #include "engine/show.h"
+#include "net/console/console_link.h"
 
 namespace limber {
 namespace {

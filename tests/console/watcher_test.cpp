@@ -1,5 +1,5 @@
 // Subscriptions: messages, and differences between two value snapshots.
-#include "console/watcher.h"
+#include "net/console/subscription.h"
 
 #include "engine/show.h"
 

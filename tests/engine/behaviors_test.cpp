@@ -1,7 +1,7 @@
 // Behaviors controlled by messages: the legacy message, paths, lists, faults; and equal runs have equal results.
 #include "engine/behaviors.h"
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/show.h"
 
 namespace limber::engine_test {

@@ -1,7 +1,7 @@
 // The log of changes: gestures are merged into one line, floods are counted, the oldest lines are dropped.
-#include "engine/change_log.h"
+#include "engine/edits/change_log.h"
 
-#include "engine/change_notes.h"
+#include "engine/edits/change_recorder.h"
 
 #include "engine/show.h"
 

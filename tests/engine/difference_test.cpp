@@ -1,7 +1,7 @@
 // Scene diffs and how they are applied: worlds built by the test, without a scene.
-#include "engine/difference.h"
+#include "engine/reload/scene_diff.h"
 
-#include "engine/apply.h"
+#include "engine/reload/scene_patch.h"
 #include "engine/rig.h"
 
 namespace limber::engine_test {

@@ -1,5 +1,5 @@
 // Messages besides the legacy forms: one number for three axes, paths and patterns, rejections, queries.
-#include "engine/dispatch.h"
+#include "engine/commands/message_dispatcher.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
 // Render scenes: shapes and their instances, and the appearance values in snapshots.
-#include "engine/drawing.h"
+#include "engine/output/render_scene.h"
 
 #include "engine/show.h"
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 namespace limber::engine_test {
 namespace {

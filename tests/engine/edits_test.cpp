@@ -1,7 +1,7 @@
 // Undo and redo of the values that controllers set: restored to the bit, in the steps in which they were set.
-#include "engine/edits.h"
+#include "engine/edits/undo_stack.h"
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/edited.h"
 #include "engine/everything.h"
 

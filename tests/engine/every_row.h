@@ -9,8 +9,8 @@
 
 #include "base/text.h"
 #include "engine/everything.h"
-#include "params/catalog.h"
-#include "sim/world.h"
+#include "properties/catalog.h"
+#include "sim/world/world.h"
 
 namespace limber::engine_test {
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/show.h"
 
 namespace limber::engine_test {

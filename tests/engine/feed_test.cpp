@@ -1,5 +1,5 @@
 // Change notifications of a client: the newest value if the client does not know it, once, and never its own writes.
-#include "engine/feed.h"
+#include "engine/output/feed.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Mouse springs: they pull with any mass and are removed after a time.
-#include "engine/grips.h"
+#include "engine/commands/mouse_springs.h"
 
 #include "engine/show.h"
 

@@ -1,5 +1,5 @@
 // Overrides: the last value for each address and names, in the order in which they were set.
-#include "engine/hand.h"
+#include "engine/edits/overrides.h"
 
 #include "engine/show.h"
 

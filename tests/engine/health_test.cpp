@@ -1,13 +1,13 @@
 // Health: each kind of loss is provoked and read with /list/health.
-#include "engine/health.h"
+#include "engine/output/health.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/clock.h"
-#include "engine/recovery_keeper.h"
+#include "engine/recovery/recovery_saver.h"
 #include "engine/show.h"
 
 namespace limber::engine_test {

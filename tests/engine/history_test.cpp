@@ -1,5 +1,5 @@
 // Rewind: the replayed future is bit-identical to the original one; limits of the history and messages about them.
-#include "engine/history.h"
+#include "engine/history/history.h"
 
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>

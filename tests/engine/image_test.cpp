@@ -1,12 +1,12 @@
 // Value snapshots: they contain all values, are made on request and not too often, and contain the writes of clients.
-#include "engine/image.h"
+#include "engine/output/value_snapshot.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/everything.h"
-#include "engine/feed.h"
-#include "engine/image_maker.h"
 #include "engine/image_of.h"
+#include "engine/output/feed.h"
+#include "engine/output/value_snapshotter.h"
 #include "engine/show.h"
 
 namespace limber::engine_test {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "base/log.h"
-#include "base/log_throttle.h"
+#include "base/log/log.h"
+#include "base/log/log_throttle.h"
 #include "engine/show.h"
 
 namespace limber::engine_test {

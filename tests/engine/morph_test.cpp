@@ -1,5 +1,5 @@
 // Morphs: exact at both ends, monotonic in between, and interrupted by any controller that sets a property.
-#include "engine/morph.h"
+#include "engine/presets/morph.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // Preset files on the disk: atomic replacement, and backups of content that would be lost.
-#include "engine/preset_file.h"
+#include "engine/presets/file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

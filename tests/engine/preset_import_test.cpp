@@ -1,5 +1,5 @@
 // Import of pattrstorage files as Max writes them, and rejection of other files.
-#include "engine/preset_import.h"
+#include "engine/presets/pattrstorage.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Planning in slices yields the same presets as planning at once, for all structural changes.
-#include "engine/preset_taker.h"
+#include "engine/presets/capturer.h"
 
 #include <algorithm>
 #include <set>
@@ -8,8 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "engine/rig.h"
-#include "params/catalog.h"
-#include "sim/part.h"
+#include "properties/catalog.h"
+#include "sim/world/part.h"
 
 namespace limber::engine_test {
 namespace {

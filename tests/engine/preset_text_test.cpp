@@ -1,5 +1,5 @@
 // Preset text format: round trips are bit-exact; damaged texts are rejected or reported.
-#include "engine/preset_text.h"
+#include "engine/presets/text.h"
 
 #include <gtest/gtest.h>
 

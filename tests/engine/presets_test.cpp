@@ -1,7 +1,7 @@
 // Presets in a running engine: stored values are restored, whatever happened in between.
-#include "engine/presets.h"
+#include "engine/presets/presets.h"
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/edited.h"
 #include "engine/everything.h"
 #include "engine/random_values.h"

@@ -1,5 +1,5 @@
 // Snapshots: their contents, and a list of bodies that is rebuilt only when bodies are added or removed.
-#include "engine/publish.h"
+#include "engine/output/publisher.h"
 
 #include "engine/show.h"
 

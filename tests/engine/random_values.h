@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "params/store.h"
+#include "properties/store.h"
 
 namespace limber::engine_test {
 

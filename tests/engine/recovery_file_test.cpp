@@ -1,5 +1,5 @@
 // Recovery files: complete, of the latest run that crashed, owned by one program.
-#include "engine/recovery_file.h"
+#include "engine/recovery/recovery_file.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // Recovery after a crash: the next start restores the performer's values.
-#include "engine/recovery_keeper.h"
+#include "engine/recovery/recovery_saver.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,6 +1,6 @@
 // Behaviors and groups in a reload: built-in types and types from files.
 #include "engine/edited.h"
-#include "sim/behavior_list.h"
+#include "sim/behavior/behavior_list.h"
 
 namespace limber::engine_test {
 namespace {

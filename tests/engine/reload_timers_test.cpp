@@ -1,7 +1,7 @@
 // Timers set by callbacks survive a save with their functions and variables, and end by cancel or a reset.
 #include "engine/edited.h"
 #include "engine/taken.h"
-#include "script/earlier_runs.h"
+#include "script/scene/earlier_runs.h"
 
 namespace limber::engine_test {
 namespace {

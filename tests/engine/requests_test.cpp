@@ -1,6 +1,6 @@
 // SimThreadExecutor: work is executed by the simulation thread while the caller waits; callers are released when the
 // simulation ends.
-#include "engine/requests.h"
+#include "engine/sim_thread_executor.h"
 
 #include <gtest/gtest.h>
 

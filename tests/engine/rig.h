@@ -11,9 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "base/message.h"
-#include "engine/dispatch.h"
-#include "params/catalog.h"
-#include "sim/world.h"
+#include "engine/commands/message_dispatcher.h"
+#include "properties/catalog.h"
+#include "sim/world/world.h"
 
 namespace limber::engine_test {
 

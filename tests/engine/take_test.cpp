@@ -1,8 +1,8 @@
 // Takes: a replay is bit-exact and needs nothing but the take.
 #include <sstream>
 
-#include "engine/take_writer.h"
 #include "engine/taken.h"
+#include "engine/takes/writer.h"
 
 namespace limber::engine_test {
 namespace {

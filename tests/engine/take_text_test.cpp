@@ -1,5 +1,5 @@
 // Binary encoding of takes: round trips are exact, and repeated message headers are short.
-#include "engine/take_text.h"
+#include "engine/takes/encoding.h"
 
 #include <bit>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The message log: enabled by a watcher, bounded, as readable text.
-#include "engine/traffic.h"
+#include "engine/output/message_log.h"
 
 #include <gtest/gtest.h>
 

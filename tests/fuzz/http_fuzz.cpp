@@ -8,12 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/text.h"
 #include "engine/everything.h"
 #include "engine/image_of.h"
 #include "fuzz/target.h"
-#include "query/request.h"
+#include "net/oscquery/request.h"
 
 namespace {
 

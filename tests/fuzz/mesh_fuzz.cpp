@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "fuzz/target.h"
-#include "model/mesh_load.h"
+#include "model/mesh/load.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

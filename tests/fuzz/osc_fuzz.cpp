@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
+#include "engine/commands/urgent.h"
 #include "engine/engine.h"
 #include "engine/everything.h"
-#include "engine/urgent.h"
 #include "fuzz/target.h"
-#include "osc/codec.h"
-#include "osc/encode.h"
-#include "osc/receiver.h"
+#include "net/osc/packets/codec.h"
+#include "net/osc/packets/encode.h"
+#include "net/osc/packets/validate.h"
+#include "net/osc/receiver.h"
+#include "net/osc/subscribers.h"
 #include "osc/same_decoded.h"
-#include "osc/subscribers.h"
-#include "osc/validate.h"
 
 namespace {
 

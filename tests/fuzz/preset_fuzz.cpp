@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "engine/preset_import.h"
-#include "engine/preset_text.h"
+#include "engine/presets/pattrstorage.h"
+#include "engine/presets/text.h"
 #include "fuzz/target.h"
 
 namespace {

@@ -11,10 +11,10 @@
 #include "engine/everything.h"
 #include "engine/image_of.h"
 #include "fuzz/target.h"
-#include "osc/encode.h"
-#include "osc/receiver.h"
-#include "osc/validate.h"
-#include "query/hall.h"
+#include "net/osc/packets/encode.h"
+#include "net/osc/packets/validate.h"
+#include "net/osc/receiver.h"
+#include "net/oscquery/hub.h"
 
 namespace limber {
 

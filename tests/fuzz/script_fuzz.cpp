@@ -10,11 +10,11 @@
 #include <fmt/format.h>
 #include <lua.hpp>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "fuzz/target.h"
-#include "script/context.h"
-#include "script/scene.h"
-#include "script/vm.h"
+#include "script/api/script_context.h"
+#include "script/scene/scene.h"
+#include "script/vm/vm.h"
 
 namespace limber {
 namespace {

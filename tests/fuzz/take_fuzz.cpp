@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/take_reader.h"
+#include "engine/takes/reader.h"
 #include "fuzz/target.h"
 
 namespace {

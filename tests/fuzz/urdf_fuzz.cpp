@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "fuzz/target.h"
-#include "model/mass_properties.h"
-#include "model/urdf_import.h"
+#include "model/mesh/mass_properties.h"
+#include "model/urdf/import.h"
 
 namespace {
 

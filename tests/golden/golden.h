@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/engine.h"
 #include "golden/score.h"
 

@@ -8,8 +8,8 @@
 
 #include "app/flood.h"
 #include "app/program.h"
-#include "engine/link.h"
-#include "query/web_client.h"
+#include "engine/output/engine_link.h"
+#include "oscquery/web_client.h"
 
 namespace limber::app_test {
 namespace {

@@ -1,12 +1,12 @@
 // Hulls compared with solids of known hull, and checked against every point of the cloud.
-#include "model/hull.h"
+#include "model/mesh/hull.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
 #include "base/random.h"
-#include "model/mass_properties.h"
+#include "model/mesh/mass_properties.h"
 #include "solids.h"
 
 namespace limber {

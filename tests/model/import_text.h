@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 namespace limber::test {
 

@@ -1,5 +1,5 @@
 // Mass properties compared with textbook formulas, and of meshes compared with primitives.
-#include "model/mass_properties.h"
+#include "model/mesh/mass_properties.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Search for mesh files, and the cache of loaded meshes.
-#include "model/mesh_library.h"
+#include "model/mesh/library.h"
 
 #include <gtest/gtest.h>
 

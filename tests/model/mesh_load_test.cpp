@@ -1,5 +1,5 @@
 // Valid and invalid mesh files of each format, generated from known solids.
-#include "model/mesh_load.h"
+#include "model/mesh/load.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // OBJ in the notations of real programs, and the errors for invalid files.
 #include <gtest/gtest.h>
 
-#include "model/mesh_load.h"
-#include "model/mesh_soup.h"
+#include "model/mesh/load.h"
+#include "model/mesh/triangles.h"
 #include "solids.h"
 
 namespace limber {

@@ -1,5 +1,5 @@
 // Tokenizer with line numbers, and triangulation of polygons, checked by area.
-#include "model/mesh_soup.h"
+#include "model/mesh/triangles.h"
 
 #include <algorithm>
 

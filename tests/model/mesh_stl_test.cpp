@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "import_text.h"
-#include "model/mesh_load.h"
-#include "model/mesh_soup.h"
+#include "model/mesh/load.h"
+#include "model/mesh/triangles.h"
 #include "solids.h"
 
 namespace limber {

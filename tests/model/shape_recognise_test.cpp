@@ -1,5 +1,5 @@
 // Recognition of meshes that are boxes, spheres or capsules, and of meshes that are not.
-#include "model/shape_recognise.h"
+#include "model/mesh/fit_primitive.h"
 
 #include <algorithm>
 #include <array>

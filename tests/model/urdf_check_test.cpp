@@ -1,5 +1,5 @@
 // Invalid URDF text: the content that must still load, and the problems that must be reported, with line and fix.
-#include "model/urdf_check.h"
+#include "model/urdf/check.h"
 
 #include <string>
 

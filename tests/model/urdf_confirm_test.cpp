@@ -1,5 +1,5 @@
 // Cross-check with urdfdom: reports nothing for equal results, and an error for each difference.
-#include "model/urdf_confirm.h"
+#include "model/urdf/confirm.h"
 
 #include <limits>
 #include <string>

@@ -1,5 +1,5 @@
 // Import of valid files: order, frames, limits, merging, masses, mimic joints, start poses.
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Masses and tensors of links: from the file, merged, estimated from shapes, repaired.
-#include "model/mass_properties.h"
+#include "model/mesh/mass_properties.h"
 
 #include <string>
 

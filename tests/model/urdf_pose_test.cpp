@@ -1,5 +1,5 @@
 // Home and start poses, poses in the import options, mimic joints.
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 
 #include <string>
 

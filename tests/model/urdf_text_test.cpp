@@ -1,5 +1,5 @@
 // Sanitizing of a file's bytes: encodings, control characters, declarations, depth, truncated files.
-#include "model/urdf_text.h"
+#include "model/xml_text.h"
 
 #include <algorithm>
 #include <string>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "osc/network.h"
+#include "net/osc/network.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 

@@ -1,6 +1,6 @@
 // Compares the two codecs where oscpack is correct: they accept the same packets, decode the same values and write the
 // same bytes. Our own codec is also tested against hand-written bytes.
-#include "osc/codec.h"
+#include "net/osc/packets/codec.h"
 
 #include <gtest/gtest.h>
 
@@ -9,13 +9,13 @@
 #include <memory>
 
 #include "base/random.h"
+#include "net/osc/packets/hex.h"
+#include "net/osc/packets/packet_writer.h"
+#include "net/osc/packets/validate.h"
 #include "osc/bad_packets.h"
-#include "osc/hex.h"
-#include "osc/packet_writer.h"
 #include "osc/same_decoded.h"
-#include "osc/validate.h"
 #if LIMBER_OSCPACK
-#include "osc/oscpack_writer.h"
+#include "net/osc/packets/oscpack_writer.h"
 #endif
 
 namespace limber {

@@ -1,5 +1,5 @@
 // Decoding: the value of each type tag, flattened bundles and arrays, rejected types, and round trips.
-#include "osc/decode.h"
+#include "net/osc/packets/decode.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "base/random.h"
-#include "osc/encode.h"
+#include "net/osc/packets/encode.h"
+#include "net/osc/packets/validate.h"
 #include "osc/osc_test_tools.h"
-#include "osc/validate.h"
 
 namespace limber {
 namespace {

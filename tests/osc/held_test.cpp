@@ -1,5 +1,5 @@
 // Time tags: which commands are scheduled, for how long, and in which order they become due.
-#include "osc/held.h"
+#include "net/osc/scheduled_commands.h"
 
 #include <gtest/gtest.h>
 

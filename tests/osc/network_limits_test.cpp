@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/everything.h"
 #include "engine/image_of.h"
-#include "osc/decode.h"
-#include "osc/network.h"
+#include "net/osc/network.h"
+#include "net/osc/packets/decode.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 

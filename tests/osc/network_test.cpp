@@ -1,5 +1,5 @@
 // The network thread on this machine: real sockets with ports chosen by the kernel, bursts, answers, streams, plans.
-#include "osc/network.h"
+#include "net/osc/network.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <future>
 #include <thread>
 
-#include "base/log.h"
+#include "base/log/log.h"
+#include "net/osc/packets/decode.h"
 #include "osc/bad_packets.h"
-#include "osc/decode.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 

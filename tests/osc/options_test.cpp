@@ -1,5 +1,5 @@
 // OSC command line options: values, errors with their corrections, precedence.
-#include "osc/options.h"
+#include "net/osc/options.h"
 
 #include <gtest/gtest.h>
 

@@ -12,12 +12,12 @@
 #include <string_view>
 #include <vector>
 
-#include "base/system/socket_address.h"
-#include "base/system/udp_socket.h"
-#include "engine/link.h"
+#include "base/system/net/socket_address.h"
+#include "base/system/net/udp_socket.h"
+#include "engine/output/engine_link.h"
+#include "net/osc/clock.h"
+#include "net/osc/endpoint.h"
 #include "osc/bytes.h"
-#include "osc/clock.h"
-#include "osc/endpoint.h"
 
 namespace limber::osc_test {
 

@@ -12,9 +12,9 @@
 #include <functional>
 #include <thread>
 
-#include "base/log.h"
-#include "osc/decode.h"
-#include "osc/network.h"
+#include "base/log/log.h"
+#include "net/osc/network.h"
+#include "net/osc/packets/decode.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 

@@ -1,5 +1,5 @@
 // PacketWriter: the exact bytes of every type, nested bundles, and buffers that are too small.
-#include "osc/packet_writer.h"
+#include "net/osc/packets/packet_writer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "net/osc/packets/validate.h"
 #include "osc/bytes.h"
-#include "osc/validate.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // The receiver: malformed datagrams change only counters; allow list, pings, rejected types, time tags, a full inbox.
-#include "osc/receiver.h"
+#include "net/osc/receiver.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "base/system/process.h"
 #include "osc/bad_packets.h"
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/show.h"
+#include "net/osc/receiver.h"
 #include "osc/bad_packets.h"
-#include "osc/receiver.h"
 
 namespace limber::osc_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "osc/decode.h"
+#include "net/osc/packets/decode.h"
 
 namespace limber::osc_test {
 

@@ -6,9 +6,9 @@
 
 #include "engine/seed_table.h"
 #include "engine/show.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/validate.h"
 #include "osc/bytes.h"
-#include "osc/decode.h"
-#include "osc/validate.h"
 
 namespace limber::osc_test {
 namespace {

@@ -1,5 +1,5 @@
 // The budget of subscriptions with a simulated clock: limits, fair shares, reports.
-#include "osc/send_budget.h"
+#include "net/osc/send_budget.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 // The sender: receivers of each kind of message, the limit of ten errors per second, and messages that are never
 // answered.
-#include "osc/sender.h"
+#include "net/osc/sender.h"
 
 #include <gtest/gtest.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "osc/osc_test_tools.h"
 
 namespace limber {

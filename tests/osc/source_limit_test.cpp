@@ -1,9 +1,9 @@
 // Limits per source address: trusted senders and the amount that others get. Addresses are only data here.
-#include "osc/source_limit.h"
+#include "net/osc/amplification_limit.h"
 
 #include <gtest/gtest.h>
 
-#include "base/system/socket.h"
+#include "base/system/net/socket.h"
 
 namespace limber::osc_test {
 namespace {

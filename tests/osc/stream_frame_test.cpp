@@ -1,12 +1,12 @@
 // Stream frames: the exact bytes of hand-made snapshots, compared with a writer based only on the specification.
-#include "osc/stream_frame.h"
+#include "net/osc/stream_frame.h"
 
 #include <gtest/gtest.h>
 
-#include "osc/decode.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/validate.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
-#include "osc/validate.h"
 
 namespace limber {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/snapshot.h"
+#include "engine/output/snapshot.h"
 
 namespace limber::osc_test {
 

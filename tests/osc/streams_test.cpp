@@ -1,11 +1,11 @@
 // The schedule of streams: no drift, missed frames are skipped, a paused world is sent repeatedly.
-#include "osc/streams.h"
+#include "net/osc/streams.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "base/system/udp_socket.h"
+#include "base/system/net/udp_socket.h"
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 

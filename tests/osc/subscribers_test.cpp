@@ -1,5 +1,5 @@
 // Subscriptions by UDP: paths and patterns at a rate, streams, renewal and expiry, rejected requests.
-#include "osc/subscribers.h"
+#include "net/osc/subscribers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Urgent requests overtake the datagrams before them, are executed once, and are accepted only from allowed senders.
 #include <gtest/gtest.h>
 
+#include "net/osc/receiver.h"
 #include "osc/bad_packets.h"
 #include "osc/osc_test_tools.h"
-#include "osc/receiver.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // The validator accepts valid packets, rejects each malformed one for its own reason, and never reads past the end.
-#include "osc/validate.h"
+#include "net/osc/packets/validate.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <set>
 
 #include "base/random.h"
+#include "net/osc/packets/decode.h"
 #include "osc/bad_packets.h"
-#include "osc/decode.h"
 
 namespace limber {
 namespace {

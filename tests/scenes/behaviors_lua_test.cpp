@@ -4,7 +4,7 @@
 #include <complex>
 
 #include "player.h"
-#include "sim/behavior_list.h"
+#include "sim/behavior/behavior_list.h"
 
 namespace limber {
 namespace {

@@ -10,7 +10,7 @@
 #include "app/program.h"
 #include "doc_page.h"
 #include "player.h"
-#include "sim/behavior_type.h"
+#include "sim/behavior/behavior_type.h"
 
 namespace limber {
 namespace {

@@ -11,9 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "engine/engine.h"
-#include "params/catalog.h"
+#include "properties/catalog.h"
 
 namespace limber {
 

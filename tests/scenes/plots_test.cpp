@@ -9,7 +9,7 @@
 
 #include "app/program.h"
 #include "doc_page.h"
-#include "sim/behavior_type.h"
+#include "sim/behavior/behavior_type.h"
 
 namespace limber {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "player.h"
-#include "sim/behavior_group.h"
+#include "sim/behavior/behavior_group.h"
 
 namespace limber {
 namespace {

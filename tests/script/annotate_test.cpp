@@ -11,7 +11,7 @@
 
 #include "base/text.h"
 #include "luacats.h"
-#include "params/row_text.h"
+#include "properties/property_text.h"
 #include "stage.h"
 
 namespace limber {

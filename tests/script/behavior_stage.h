@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "script/lua_behavior.h"
-#include "sim/behavior_list.h"
+#include "script/behaviors/lua_behavior.h"
+#include "sim/behavior/behavior_list.h"
 #include "stage.h"
 
 namespace limber {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "behavior_stage.h"
-#include "params/catalog.h"
-#include "script/sources.h"
+#include "properties/catalog.h"
+#include "script/scene/sources.h"
 
 namespace limber {
 namespace {

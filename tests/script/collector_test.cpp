@@ -1,5 +1,5 @@
 // The garbage collector: pauses while scripts run, keeps up with their garbage, and cleans up after a memory stop.
-#include "script/collector.h"
+#include "script/vm/garbage_collector.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include <lua.hpp>
 
-#include "script/memory.h"
+#include "script/vm/lua_memory.h"
 
 namespace limber {
 namespace {

@@ -1,8 +1,8 @@
 // The search for a scene's files.
 #include <gtest/gtest.h>
 
-#include "script/files.h"
-#include "script/sources.h"
+#include "script/scene/script_files.h"
+#include "script/scene/sources.h"
 #include "stage.h"
 
 namespace limber {

@@ -1,6 +1,6 @@
 // Guarded calls: calls that take too long or use too much memory are stopped, failing calls are rolled back, and others
 // continue; interpreted and live mode; calls from C++.
-#include "script/guard.h"
+#include "script/vm/guard.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <lua.hpp>
 
-#include "script/context.h"
-#include "script/vm.h"
+#include "script/api/script_context.h"
+#include "script/vm/vm.h"
 #include "stage.h"
 
 namespace limber {

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "base/fixed_math.h"
+#include "base/math/fixed_math.h"
 #include "stage.h"
 
 namespace limber {

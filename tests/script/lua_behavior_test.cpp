@@ -1,5 +1,5 @@
 // Behaviors in Lua: start, step, self, errors, state after a reload.
-#include "script/lua_behavior.h"
+#include "script/behaviors/lua_behavior.h"
 
 #include <gtest/gtest.h>
 

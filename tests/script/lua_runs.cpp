@@ -21,7 +21,7 @@ namespace limber::script_test {
 namespace {
 
 // `/run` runs a text and prints the values that it passed to `out`, and how it ended. It uses no length operator, so
-// that programs without tables are compiled with all optimizations (src/script/prelude/16_compiled.lua).
+// that programs without tables are compiled with all optimizations (src/script/prelude/compiled.lua).
 constexpr const char* kScene = R"(
 local concat = table.concat
 local lines, count

@@ -1,5 +1,5 @@
 // Patterns: the same results as Lua's matcher for random patterns and texts, and a step limit.
-#include "script/match.h"
+#include "script/vm/pattern_match.h"
 
 #include <gtest/gtest.h>
 

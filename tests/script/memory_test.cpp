@@ -1,5 +1,5 @@
 // The counting allocator: counts, signals, and headroom.
-#include "script/memory.h"
+#include "script/vm/lua_memory.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // params: properties of /scene declared by a scene; reading, setting, clamping.
 #include <gtest/gtest.h>
 
-#include "params/catalog.h"
+#include "properties/catalog.h"
 #include "stage.h"
 
 namespace limber {

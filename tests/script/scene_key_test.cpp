@@ -1,14 +1,14 @@
 // Checkpoints of Lua's heap: after a restore scripts repeat their actions exactly, compiled or not; guards and counters
 // continue.
-#include "script/scene_key.h"
+#include "script/scene/scene_checkpoint.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
-#include "script/call_ledger.h"
-#include "sim/world_key.h"
+#include "script/vm/call_log.h"
+#include "sim/state/world_checkpoint.h"
 #include "stage.h"
 
 namespace limber {

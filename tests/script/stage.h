@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/log.h"
-#include "script/scene.h"
-#include "sim/world.h"
+#include "base/log/log.h"
+#include "script/scene/scene.h"
+#include "sim/world/world.h"
 
 namespace limber {
 

@@ -1,5 +1,5 @@
 // Texts that must not reach LuaJIT's compiler.
-#include "script/text_check.h"
+#include "script/vm/text_check.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Lua's `visuals`: background, both ways to set the camera, materials by shape name.
 #include <gtest/gtest.h>
 
-#include "params/catalog.h"
+#include "properties/catalog.h"
 #include "stage.h"
 
 namespace limber {

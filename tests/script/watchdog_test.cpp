@@ -1,5 +1,5 @@
 // The watchdog: stops calls that compute too long, not those that wait, and late signals do no harm.
-#include "script/watchdog.h"
+#include "script/vm/watchdog.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include "sim/arm.h"
 #include "sim/counted_new.h"
-#include "sim/raw_loop.h"
 #include "sim/stage.h"
+#include "sim/world/raw_loop.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // Behavior groups: membership, propagated values, neighbors.
-#include "sim/behavior_group.h"
+#include "sim/behavior/behavior_group.h"
 
 #include "sim/behavior_rig.h"
 

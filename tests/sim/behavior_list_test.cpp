@@ -1,5 +1,5 @@
 // The behavior list: order, attaching and its errors, removing, copies, removed bodies.
-#include "sim/behavior_list.h"
+#include "sim/behavior/behavior_list.h"
 
 #include "sim/behavior_rig.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/behavior_list.h"
+#include "sim/behavior/behavior_list.h"
 #include "sim/stage.h"
 
 namespace limber::test {

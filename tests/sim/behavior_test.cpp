@@ -1,5 +1,5 @@
 // Common features of behaviors: targets, start, intervals, random generator, errors, time.
-#include "sim/behavior.h"
+#include "sim/behavior/behavior.h"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Behavior types: the naming rule; adding, replacing and removing types; replacing instances.
-#include "sim/behavior_type.h"
+#include "sim/behavior/behavior_type.h"
 
 #include "sim/behavior_rig.h"
 

@@ -1,6 +1,6 @@
 // Rollback of behaviors: after a failed call, removed behaviors, start flags and random draws are as before, and
 // stepping continues.
-#include "sim/behavior_undo.h"
+#include "sim/behavior/behavior_transaction.h"
 
 #include <functional>
 

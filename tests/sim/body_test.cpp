@@ -1,5 +1,5 @@
 // Bodies: creating, copying, moving, resetting, removing; names and stale ids.
-#include "sim/body.h"
+#include "sim/world/body.h"
 
 #include <gtest/gtest.h>
 

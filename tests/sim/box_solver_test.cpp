@@ -1,6 +1,6 @@
 // BoxedLcp: checks that solutions of random problems and of a block on the floor satisfy the complementarity
 // conditions.
-#include "sim/box_solver.h"
+#include "sim/solver/boxed_lcp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Broadphase: its pairs are those of a brute-force search, while objects move and are added, removed, joined and
 // separated.
-#include "sim/broadphase.h"
+#include "sim/collision/broadphase.h"
 
 #include <gtest/gtest.h>
 

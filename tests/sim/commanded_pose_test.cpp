@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "model/urdf_import.h"
+#include "model/urdf/import.h"
 #include "sim/stage.h"
 
 namespace limber::test {

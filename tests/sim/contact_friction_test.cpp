@@ -1,5 +1,5 @@
 // Contact friction: isotropic friction in both solvers; rolling and spinning friction; anisotropic friction.
-#include "sim/contact_friction.h"
+#include "sim/collision/contact_friction.h"
 
 #include <cmath>
 

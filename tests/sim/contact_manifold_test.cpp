@@ -1,5 +1,5 @@
 // Contact manifolds: complete in one step for every shape, on planes and boxes, at rest and sliding.
-#include "sim/contact_manifold.h"
+#include "sim/collision/contact_manifold.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // ContactSweep compared with Bullet's sweeps on random rows: identical to the bit along normals; friction within the
 // disc, opposite to the slip.
-#include "sim/contact_sweep.h"
+#include "sim/bullet/contact_sweep.h"
 
 #include <cmath>
 #include <cstring>

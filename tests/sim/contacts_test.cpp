@@ -1,5 +1,5 @@
 // Contacts: each contact begins once, its impulse is the change of momentum, and removed parts are forgotten.
-#include "sim/contacts.h"
+#include "sim/world/contacts.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Dense kernels of every vector width return the same as scalar loops, to the bit.
-#include "sim/dense.h"
+#include "sim/solver/dense_kernels.h"
 
 #include <gtest/gtest.h>
 

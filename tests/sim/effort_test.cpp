@@ -1,5 +1,5 @@
 // WorkBudget: counting work and the tolerance beyond the limit.
-#include "sim/effort.h"
+#include "sim/solver/work_budget.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // IncrementalLdlt: changes the selection repeatedly and compares each solution with the matrix itself.
-#include "sim/free_factor.h"
+#include "sim/solver/incremental_ldlt.h"
 
 #include <gtest/gtest.h>
 

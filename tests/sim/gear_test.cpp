@@ -1,5 +1,5 @@
 // Gears: two joints coupled both ways, with either solver; torque balance, reflected inertia, redundancy, undo.
-#include "sim/gear.h"
+#include "sim/world/gear.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "sim/arm.h"
 #include "sim/stage.h"
-#include "sim/world_key.h"
+#include "sim/state/world_checkpoint.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // Torque-free bodies rotate by Euler's equations, including light ones.
-#include "sim/gyroscope.h"
+#include "sim/solver/gyroscope.h"
 
 #include <cmath>
 

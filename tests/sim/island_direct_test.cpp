@@ -1,5 +1,5 @@
 // DirectSolver against physics: servo loads and stall torques, joint gaps, standing bodies.
-#include "sim/island_direct.h"
+#include "sim/solver/direct_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "joint_rig.h"
-#include "sim/raw_machines.h"
+#include "sim/world/raw_machines.h"
 #include "stage.h"
 
 namespace limber {

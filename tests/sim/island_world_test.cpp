@@ -1,6 +1,6 @@
 // IslandWorld: islands are independent of each other, joints keep their order, substeps only change the resolution,
 // joined parts don't collide, and steps don't allocate.
-#include "sim/island_world.h"
+#include "sim/bullet/island_world.h"
 
 #include <gtest/gtest.h>
 

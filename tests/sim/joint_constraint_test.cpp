@@ -1,5 +1,5 @@
 // Geometry of joints compared with explicit rotations: orders, signs, turns, rates, inertia.
-#include "sim/joint_constraint.h"
+#include "sim/bullet/joint_constraint.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/log.h"
+#include "base/log/log.h"
 #include "joint_rig.h"
 #include "stage.h"
 

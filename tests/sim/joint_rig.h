@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/island_world.h"
+#include "sim/bullet/island_world.h"
 
 namespace limber {
 

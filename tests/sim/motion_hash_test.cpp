@@ -1,5 +1,5 @@
 // The motion hash: covered and uncovered values, and added and removed bodies.
-#include "sim/motion_hash.h"
+#include "sim/state/motion_hash.h"
 
 #include <gtest/gtest.h>
 

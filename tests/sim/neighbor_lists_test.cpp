@@ -1,5 +1,5 @@
 // Neighbor lists: lists built for all parts at once equal the results of single queries.
-#include "sim/neighbor_lists.h"
+#include "sim/neighbors/neighbor_lists.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Sums over pairs: compared with sums in double precision, and bit for bit between all vector widths.
-#include "sim/neighbor_sums.h"
+#include "sim/neighbors/neighbor_sums.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Neighbor sets: order, parts of other bodies only, disabled bodies, sharing, cached results.
-#include "sim/neighbors.h"
+#include "sim/neighbors/neighbor_set.h"
 
 #include "sim/behavior_rig.h"
 

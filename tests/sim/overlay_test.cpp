@@ -1,5 +1,5 @@
 // The debug overlay, compared with expected physical quantities.
-#include "sim/overlay.h"
+#include "sim/visuals/overlay.h"
 
 #include "sim/stage.h"
 

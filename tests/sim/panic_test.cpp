@@ -1,5 +1,5 @@
 // Panic: decay of the energy, terminal speed, and preservation of all settings.
-#include "sim/panic.h"
+#include "sim/world/panic.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Force accumulators: applied once, only to parts in the world; released elements are reused.
-#include "sim/part_loads.h"
+#include "sim/world/force_accumulators.h"
 
 #include "sim/stage.h"
 

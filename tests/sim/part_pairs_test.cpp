@@ -1,6 +1,6 @@
 // Pairs of parts of a body that don't collide: those that overlap at the start and those that a script excludes;
 // independent of joints, collision groups and self_collision.
-#include "sim/part_pairs.h"
+#include "sim/world/part_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/page_store.h"
+#include "base/memory/page_store.h"
 #include "sim/stage.h"
-#include "sim/world_key.h"
+#include "sim/state/world_checkpoint.h"
 
 namespace limber {
 namespace {

@@ -1,5 +1,5 @@
 // The mass table: a part's center of mass in its link, by the slot of its node.
-#include "sim/part_solids.h"
+#include "sim/neighbors/mass_table.h"
 
 #include "sim/stage.h"
 

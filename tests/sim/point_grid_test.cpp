@@ -1,5 +1,5 @@
 // The grid compared with brute force: the same comparisons in the same single precision, so results must be equal.
-#include "sim/point_grid.h"
+#include "sim/neighbors/point_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/hash.h"
-#include "model/hull.h"
-#include "model/mass_properties.h"
+#include "model/mesh/hull.h"
+#include "model/mesh/mass_properties.h"
 #include "sim/stage.h"
 
 namespace limber::test {

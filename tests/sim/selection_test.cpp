@@ -1,5 +1,5 @@
 // Selections: names, patterns, "all", unspecified, empty.
-#include "sim/selection.h"
+#include "sim/behavior/selection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // Shapes: validation, and the mass distribution of each of the eight kinds.
-#include "sim/shape.h"
+#include "sim/world/shape.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "sim/geometry.h"
 #include "sim/stage.h"
+#include "sim/world/geometry.h"
 
 namespace limber {
 namespace {

@@ -1,6 +1,6 @@
 // Sleep: islands at rest are skipped by steps and wake on any influence in the same tick; slow motions never fall
 // asleep.
-#include "sim/sleep.h"
+#include "sim/bullet/sleep.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <ostream>
 
 #include "sim/arm.h"
-#include "sim/dispatcher.h"
+#include "sim/collision/dispatcher.h"
 #include "sim/stage.h"
 
 namespace limber {

@@ -1,6 +1,6 @@
 // Fast rotation: driven rotors reach their speed, free bodies rotate by Euler's equations, a spinning top keeps its
 // height, and clamping is reported.
-#include "sim/spin.h"
+#include "sim/bullet/spin.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/team.h"
+#include "base/threads/thread_pool.h"
 #include "sim/stage.h"
 
 namespace limber::test {

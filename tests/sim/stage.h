@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "base/log.h"
-#include "sim/world.h"
+#include "base/log/log.h"
+#include "sim/world/world.h"
 
 namespace limber::test {
 

@@ -1,5 +1,5 @@
 // TreeRows: the active set is restored from the step before.
-#include "sim/tree_rows.h"
+#include "sim/solver/axis_rows.h"
 
 #include <gtest/gtest.h>
 

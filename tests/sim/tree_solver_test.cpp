@@ -1,5 +1,5 @@
 // Forest: compares random trees with dense elimination of the whole system.
-#include "sim/tree_solver.h"
+#include "sim/solver/forest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // The camera's two representations, the shapes' materials, and those of a robot's file.
-#include "sim/visuals.h"
+#include "sim/visuals/visuals.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "base/color.h"
-#include "model/urdf_import.h"
-#include "sim/world.h"
+#include "model/urdf/import.h"
+#include "sim/world/world.h"
 
 namespace limber {
 namespace {

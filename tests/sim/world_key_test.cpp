@@ -1,5 +1,5 @@
 // World checkpoints: after a checkpoint is restored, all further ticks are the same bit for bit.
-#include "sim/world_key.h"
+#include "sim/state/world_checkpoint.h"
 
 #include <gtest/gtest.h>
 

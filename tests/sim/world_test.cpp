@@ -1,5 +1,5 @@
 // The world: the state hash and its coverage, repeatability, shapes, clearing.
-#include "sim/world.h"
+#include "sim/world/world.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // World transactions: forces, flags, added and removed objects, and Bullet's state, compared bit for bit.
-#include "sim/world_undo.h"
+#include "sim/state/world_transaction.h"
 
 #include <gtest/gtest.h>
 

@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 
+#include "base/system/net/socket_address.h"
 #include "base/system/open.h"
 #include "base/system/process.h"
-#include "base/system/socket_address.h"
 #include "base/system/standard_output.h"
 #include "base/text.h"
 

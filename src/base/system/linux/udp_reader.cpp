@@ -4,8 +4,8 @@
 #include <fstream>
 #include <vector>
 
-#include "base/system/socket_address.h"
-#include "base/system/udp_socket.h"
+#include "base/system/net/socket_address.h"
+#include "base/system/net/udp_socket.h"
 
 namespace limber::system {
 

@@ -1,8 +1,8 @@
 // Sends batches with sendmmsg() and UDP segmentation; reads undelivered datagrams from the error queue (IP_RECVERR).
 #include <netinet/udp.h>
 
-#include "base/system/socket_address.h"
-#include "base/system/udp_socket.h"
+#include "base/system/net/socket_address.h"
+#include "base/system/net/udp_socket.h"
 // after the others, because it uses their types
 #include <linux/errqueue.h>
 

@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include "base/system/local_socket.h"
+#include "base/system/net/local_socket.h"
 
 namespace limber::system {
 

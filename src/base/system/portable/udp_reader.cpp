@@ -2,8 +2,8 @@
 #include <array>
 #include <vector>
 
-#include "base/system/socket_address.h"
-#include "base/system/udp_socket.h"
+#include "base/system/net/socket_address.h"
+#include "base/system/net/udp_socket.h"
 
 namespace limber::system {
 

@@ -6,9 +6,9 @@
 #include <deque>
 #include <map>
 
+#include "base/system/net/socket_address.h"
+#include "base/system/net/udp_socket.h"
 #include "base/system/open.h"
-#include "base/system/socket_address.h"
-#include "base/system/udp_socket.h"
 
 namespace limber::system {
 

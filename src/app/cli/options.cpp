@@ -1,0 +1,447 @@
+// Declares the command line with CLI11 and runs the commands. Without a command it plays.
+#include "app/cli/options.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <new>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/cli/command_info.h"
+#include "app/cli/completion.h"
+#include "app/cli/man_page.h"
+#include "app/cli/play_options.h"
+#include "app/commands/annotate.h"
+#include "app/commands/bench.h"
+#include "app/commands/describe.h"
+#include "app/commands/describe_page.h"
+#include "app/commands/doctor.h"
+#include "app/commands/export.h"
+#include "app/commands/inspect.h"
+#include "app/commands/monitor.h"
+#include "app/commands/new.h"
+#include "app/commands/preset.h"
+#include "app/commands/send.h"
+#include "app/commands/take.h"
+#include "app/console/console.h"
+#include "app/exit_code.h"
+#include "app/paths.h"
+#include "app/service/service.h"
+#include "app/view/display_options.h"
+#include "base/build_info.h"
+#include "base/log/output.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::array<std::string_view, 16> kCommands = {
+    "play",  "console", "monitor", "send",   "new",    "inspect", "describe",   "annotate",
+    "bench", "preset",  "take",    "export", "doctor", "service", "completion", "man"};
+
+constexpr const char* kAbout =
+    "Limber: a live simulator of actuated, articulated bodies, scripted in Lua and controlled over OSC.\n\n"
+    "  limber                                       play scripts/arms.lua\n"
+    "  limber my.lua --osc-in 0.0.0.0:9003          another scene, OSC open to the whole network\n"
+    "  oscsend 127.0.0.1 9003 /physics/sim/gravity f -1.6\n"
+    "  limber my.lua --fast --duration 10 --hash    ten simulated seconds at full speed, print the hash\n"
+    "  limber console -e sim.time                   evaluate Lua in the running program\n"
+    "  limber monitor                               print the messages it receives and sends\n"
+    "  limber export evening.take --format gltf     export recorded motion for other programs\n"
+    "  limber new show my_show                      create a folder with an example\n";
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 success; 1 invalid input (such as a scene); 2 wrong usage;\n"
+    "3 a problem of the machine (such as a port in use).\n"
+    "See `limber COMMAND --help` for each command.";
+
+CLI::Validator whole_number() {
+  return CLI::Validator([](std::string& text) { return whole_number_fault(text); }, "", "count");
+}
+
+// arguments for CLI11: `play` is inserted if there is no command
+std::vector<std::string> with_command(int argc, char** argv) {
+  std::vector<std::string> args(argv + std::min(argc, 1), argv + argc);
+  const bool names_one = !args.empty() && (args[0] == "-h" || args[0] == "--help" || args[0] == "--version" ||
+                                           std::find(kCommands.begin(), kCommands.end(), args[0]) != kCommands.end());
+  if (!names_one) args.insert(args.begin(), "play");
+  return args;
+}
+
+// suggests a command for a word that is not a scene but similar to a command
+std::optional<std::string> mistyped_command(int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return {};
+  const std::string_view word = argv[1];
+  std::vector<std::string> searched;
+  if (word.ends_with(".lua") || word.find('/') != std::string_view::npos || !find_scene(word, searched).empty())
+    return {};
+  const std::string_view near = nearest_name(word, kCommands);
+  if (near.empty() || near == word) return {};
+  return fmt::format("unknown command '{}'; did you mean '{}'?", printable(word), near);
+}
+
+struct CommandLine {
+  PlayOptions play;
+  BenchOptions bench;
+  std::string robot;        // inspect
+  std::string scene;        // describe
+  std::string definitions;  // annotate
+  ConsoleCommand console;
+  MonitorCommand monitor;
+  SendCommand send;
+  NewCommand create;
+  PresetCommand preset;
+  TakeCommand take;
+  ExportCommand exported;
+  DoctorCommand doctor;
+  ServiceCommand service;
+  std::string shell;  // completion
+  bool json = false;
+  bool markdown = false;
+  std::vector<std::string> package_paths;
+};
+
+void add_inspect(CLI::App& app, CommandLine& line) {
+  CLI::App* inspect =
+      app.add_subcommand("inspect", "Check a URDF file: links, joints, and every problem with its line and fix.");
+  inspect->add_option("file", line.robot, "The robot.")->type_name("FILE.urdf")->required();
+  inspect->add_flag("--json", line.json, "Print JSON.");
+  inspect->add_option("--package-path", line.package_paths, "Folder for package:// paths; may be repeated.")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+}
+
+void add_describe(CLI::App& app, CommandLine& line) {
+  CLI::App* describe =
+      app.add_subcommand("describe", "List all OSC addresses with type, unit, range, default and meaning.");
+  describe->add_option("scene", line.scene, "List the addresses of this scene; default: those of all classes.")
+      ->type_name("SCENE.lua");
+  CLI::Option* json = describe->add_flag("--json", line.json, "Print JSON.");
+  describe->add_flag("--markdown", line.markdown, "Print Markdown, as in docs/osc.md.")->excludes(json);
+}
+
+void add_bench(CLI::App& app, CommandLine& line) {
+  CLI::App* bench = app.add_subcommand("bench", "Measure the speed on this machine.");
+  bench->add_option("scene", line.bench.scenes, "Benchmarks to run; default: all.")
+      ->type_name("SCENE:{" + bench_scene_list() + "}");
+  bench->add_flag("--compare-raw", line.bench.compare_raw, "Compare with a plain Bullet loop.");
+  bench->add_flag("--json", line.bench.json, "Print JSON.");
+  add_gl_option(*bench, line.bench.gl);
+  bench->add_option("--ticks", line.bench.ticks, "Number of timed ticks; default: depends on the benchmark.")
+      ->type_name("N")
+      ->check(whole_number());
+}
+
+void add_console(CLI::App& app, ConsoleCommand& command) {
+  CLI::App* console =
+      app.add_subcommand("console", "Open a Lua console of a scene that is running in another terminal.");
+  console->footer(
+      "In a terminal: Tab completes, the arrow keys recall earlier lines, Ctrl+D exits.\n"
+      "  limber console -e 'sim.time'                 print one value\n"
+      "  echo 'sim.gravity = vec3()' | limber console  evaluate lines from a pipe; exit code 1 on any error");
+  console->add_option("pid", command.pid, "Process id, if several programs are running.")->type_name("PID");
+  console->add_option("-e,--evaluate", command.expression, "Evaluate this expression and exit.")->type_name("LUA");
+}
+
+void add_monitor(CLI::App& app, MonitorCommand& command) {
+  CLI::App* monitor =
+      app.add_subcommand("monitor", "Print the messages that a running program receives (<) and sends (>).");
+  monitor->footer(
+      "  limber monitor --in                          received messages, with senders and times\n"
+      "  limber monitor '/physics/part/*'             only these addresses\n"
+      "  limber monitor --changes                     changed values: sender, property, old and new value\n"
+      "  limber monitor --changes '/physics/body/arm1/motor/*/target'");
+  monitor->add_option("pattern", command.pattern, "Pattern of addresses, or with --changes of paths; default: all.")
+      ->type_name("PATTERN");
+  monitor->add_flag("--changes", command.changes,
+                    "Print changes of values: those set by clients, or all that match the pattern.");
+  CLI::Option* in = monitor->add_flag("--in", command.only_in, "Only received messages.");
+  monitor->add_flag("--out", command.only_out, "Only sent messages.")->excludes(in);
+  monitor->add_option("--pid", command.pid, "Process id, if several programs are running.")->type_name("PID");
+  monitor->add_option("--count", command.count, "Exit after this number of lines.")
+      ->type_name("N")
+      ->check(whole_number());
+}
+
+void add_doctor(CLI::App& app, DoctorCommand& command) {
+  CLI::App* doctor = app.add_subcommand("doctor", "Check this machine: ports, buffers, data, OpenGL, display.");
+  add_gl_option(*doctor, command.gl);
+  doctor->add_option("--osc-in", command.osc_in, "Address of OSC input to check; default 127.0.0.1:9003.")
+      ->type_name("[ADDR:]PORT|off");
+  doctor
+      ->add_option("--query", command.query,
+                   "Address of OSCQuery and the remote panel to check (TCP); default: as --osc-in.")
+      ->type_name("[ADDR:]PORT|off");
+}
+
+void add_send(CLI::App& app, SendCommand& command) {
+  CLI::App* send = app.add_subcommand("send", "Send one OSC message and print the replies.");
+  send->footer(
+      "Arguments are numbers, true and false, else text; \"'1'\" is the text 1.\n"
+      "  limber send /physics/part/mass arm1 0.3\n"
+      "  limber send '/physics/body/arm*/motor/*/target' 0.5\n"
+      "  limber send /get /physics/sim/gravity\n"
+      "  limber send --tags 'i[ff]T' /scene/shape -3 0.5 1\n"
+      "Exit codes: 1 the message was rejected; 3 no reply.");
+  send->add_option("address", command.address, "OSC address.")->type_name("ADDRESS")->required();
+  send->add_option("args", command.words, "Arguments.")->type_name("ARGS");
+  send->add_option("--tags", command.tags,
+                   "OSC type tags of the arguments: i h f d s S c r m t b take one each (r m t b in hexadecimal "
+                   "digits), T F N I and [ ] none; default: f for numbers, i for booleans, s for text.")
+      ->type_name("TAGS");
+  send->add_option("--to", command.to, "Receiver; default 127.0.0.1:9003.")->type_name("[HOST:]PORT");
+  send->add_option("--wait", command.wait, "Seconds to wait for replies; 0: don't wait.")
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 60.0));
+}
+
+void add_new(CLI::App& app, NewCommand& command) {
+  CLI::App* subcommand = app.add_subcommand("new", "Create a commented template of a show, a scene or a behavior.");
+  subcommand->require_subcommand(1);
+  const auto add = [&](const char* word, NewCommand::Kind value, const char* option, const char* about) {
+    CLI::App* kind = subcommand->add_subcommand(word, about);
+    kind->add_option(option, command.name)->required()->type_name("");
+    kind->callback([&command, value] { command.kind = value; });
+  };
+  add("show", NewCommand::Kind::show, "DIR", "A folder with a scene, a robot and settings for editors.");
+  add("scene", NewCommand::Kind::scene, "NAME", "scripts/NAME.lua in the show of the current folder.");
+  add("behavior", NewCommand::Kind::behavior, "NAME", "behaviors_lua/NAME.lua in the show of the current folder.");
+}
+
+void add_preset(CLI::App& app, PresetCommand& command) {
+  CLI::App* preset = app.add_subcommand("preset", "Import presets of other programs.");
+  preset->require_subcommand(1);
+  CLI::App* import =
+      preset->add_subcommand("import", "Append the presets of a Max pattrstorage (writejson) to those of a scene.");
+  import->add_option("file", command.file, "The pattrstorage file.")->type_name("FILE.json")->required();
+  import->add_option("scene", command.scene, "The scene; default scripts/arms.lua.")->type_name("SCENE.lua");
+}
+
+void add_take(CLI::App& app, TakeCommand& command) {
+  CLI::App* take = app.add_subcommand("take", "Inspect recorded takes.");
+  take->require_subcommand(1);
+  CLI::App* info = take->add_subcommand("info", "Print the contents of a take, and whether it is complete.");
+  info->add_option("file", command.file, "The take.")->type_name("TAKE")->required();
+  take->footer(
+      "  limber my.lua --record evening.take\n"
+      "  limber --replay evening.take --fast\n"
+      "  limber export evening.take --format gltf");
+}
+
+// a number within a range
+CLI::Validator number_between(double min, double max) {
+  return CLI::Validator(
+      [min, max](std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        return number && *number >= min && *number <= max
+                   ? std::string()
+                   : fmt::format("'{}' must be a number from {} to {}", text, number_text(min), number_text(max));
+      },
+      "", "number");
+}
+
+void add_export(CLI::App& app, ExportCommand& command) {
+  CLI::App* subcommand = app.add_subcommand("export", "Export a take as motion for other programs: CSV, BVH, glTF.");
+  subcommand->footer(
+      "Replays the take at full speed and samples it at the frame rate, interpolating between ticks.\n"
+      "  csv   a table, one line per frame: position and rotation of each part, value of each joint\n"
+      "  bvh   one skeleton per body; Y up, meters; -o NAME.bvh writes one body, else a folder\n"
+      "  gltf  bodies with their meshes and one animation; Y up, meters; .glb, or .gltf with a .bin file\n"
+      "  limber export evening.take --format gltf                    write evening.glb\n"
+      "  limber export evening.take -o arm1.bvh --body arm1 --rate 30\n"
+      "  limber export evening.take -o arms.csv --body 'arm*' --from 60 --to 90\n"
+      "The formats are described in docs/export.md.");
+  subcommand->add_option("take", command.take, "The take.")->type_name("TAKE")->required();
+  subcommand->add_option("--format", command.format, "Format; default: by the extension of -o.")
+      ->type_name("csv|bvh|gltf")
+      ->check(CLI::IsMember({"csv", "bvh", "gltf"}));
+  subcommand->add_option("-o,--output", command.output, "Output file; default: next to the take, with the same name.")
+      ->type_name("FILE");
+  subcommand->add_option("--rate", command.rate, "Frames per simulated second; default 60.")
+      ->type_name("N")
+      ->check(number_between(0.01, 10000));
+  subcommand->add_option("--body", command.bodies, "Export only bodies of this name or pattern; may be repeated.")
+      ->type_name("PATTERN")
+      ->allow_extra_args(false);
+  subcommand->add_option("--from", command.from, "Start time in simulated seconds of the take.")
+      ->type_name("S")
+      ->check(number_between(0, 1e9));
+  subcommand->add_option("--to", command.to, "End time.")->type_name("S")->check(number_between(0, 1e9));
+  subcommand->add_flag("--overwrite", command.overwrite, "Overwrite an existing file.");
+}
+
+void add_service(CLI::App& app, ServiceCommand& command) {
+  CLI::App* service =
+      app.add_subcommand("service", "Install shows as services that systemd starts, monitors and restarts.");
+  service->require_subcommand(1);
+  service->footer(
+      "  limber service install my.lua --fullscreen   write the user unit limber-my, and print it\n"
+      "  systemctl --user enable --now limber-my      start it, now and with each session\n"
+      "  limber service remove my                     delete the unit\n"
+      "After install come the scene and options of `limber play`. The unit is described in docs/installations.md.");
+  CLI::App* install =
+      service->add_subcommand("install", "Write a unit that plays a scene with options of play in the current folder.");
+  install->add_option("--name", command.name, "Name of the service after limber-; default: the name of the scene.")
+      ->type_name("NAME");
+  install->add_flag("--print", command.print, "Print the unit, don't write it.");
+  install->callback([&command] { command.action = ServiceCommand::Action::install; });
+  CLI::App* remove = service->add_subcommand("remove", "Delete a unit that was written by install.");
+  remove->add_option("name", command.name, "Name of the service; default: the only one.")->type_name("NAME");
+  remove->callback([&command] { command.action = ServiceCommand::Action::remove; });
+}
+
+// moves the arguments after `service install`, except its own options, to `words`
+void split_service_words(std::vector<std::string>& args, std::vector<std::string>& words) {
+  if (args.size() < 2 || args[0] != "service" || args[1] != "install") return;
+  std::vector<std::string> own(args.begin(), args.begin() + 2);
+  for (std::size_t i = 2; i < args.size(); i++) {
+    const std::string& word = args[i];
+    const bool named = word == "--name";
+    const bool help = word == "-h" || word == "--help";
+    (named || help || word == "--print" || word.starts_with("--name=") ? own : words).push_back(word);
+    if (named && i + 1 < args.size()) own.push_back(args[++i]);
+  }
+  args = std::move(own);
+}
+
+// the usage error of CLI11; for an unknown option with a suggestion
+std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
+  const std::string help = fmt::format("See `limber {} --help`", command->get_name());
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.starts_with("-")) return fmt::format("unexpected argument '{}'. {}", printable(word), help);
+    const std::string option = word.substr(0, word.find('='));
+    std::vector<std::string> names;
+    for (const CLI::Option* known : command->get_options()) names.push_back(known->get_name());
+    const std::vector<std::string_view> views(names.begin(), names.end());
+    const std::string_view near = nearest_name(option, views);
+    return fmt::format("unknown option '{}'{} {}", printable(option),
+                       near.empty() ? "." : fmt::format("; did you mean '{}'?", near), help);
+  }
+  return fmt::format("{}. {}", printable(error.what()), help);
+}
+
+void add_shell_files(CLI::App& app, CommandLine& line) {
+  CLI::App* completion = app.add_subcommand("completion", "Print a completion script for a shell.");
+  completion->footer(
+      "  source <(limber completion bash)             for ~/.bashrc\n"
+      "  limber completion zsh >~/.zfunc/_limber      for a folder in fpath\n"
+      "The Debian package installs both.");
+  completion->add_option("shell", line.shell, "The shell.")
+      ->type_name("SHELL")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh"}));
+  app.add_subcommand("man", "Print the manual page.")->footer("  limber man | man -l -                        read it");
+}
+
+void add_commands(CLI::App& app, CommandLine& line) {
+  app.footer(kExitCodes);
+  app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
+  app.require_subcommand(1);
+  add_play_options(*app.add_subcommand("play", "Play a scene (the default command)."), line.play);
+  add_inspect(app, line);
+  add_describe(app, line);
+  add_bench(app, line);
+  add_console(app, line.console);
+  add_monitor(app, line.monitor);
+  add_send(app, line.send);
+  add_new(app, line.create);
+  add_preset(app, line.preset);
+  add_take(app, line.take);
+  add_export(app, line.exported);
+  CLI::App* annotate = app.add_subcommand("annotate", "Write the definitions of the Lua API for editors (LuaCATS).");
+  annotate->add_option("file", line.definitions, "Output file; default: stdout.")->type_name("FILE");
+  add_doctor(app, line.doctor);
+  add_service(app, line.service);
+  add_shell_files(app, line);
+}
+
+int print_shell_file(const CLI::App& app, const std::string& command, const std::string& shell) {
+  const CommandInfo program = command_info(app);
+  print_result("{}", command == "man" ? man_page(program)
+                     : shell == "zsh" ? zsh_completion(program)
+                                      : bash_completion(program));
+  return 0;
+}
+
+int run_service(ServiceCommand& command) {
+  CLI::App play("", "play");
+  add_play_options(play, command.play);
+  std::vector<std::string> words = command.words;
+  std::reverse(words.begin(), words.end());
+  try {
+    play.parse(words);
+  } catch (const CLI::ParseError& error) {
+    print_notice("{}", usage_text(play, error));
+    return kUsageError;
+  }
+  return service_command(command);
+}
+
+int run_command(int argc, char** argv) {
+  CLI::App app{kAbout, "limber"};
+  CommandLine line;
+  add_commands(app, line);
+  if (const auto mistyped = mistyped_command(argc, argv)) {
+    print_notice("{}", *mistyped);
+    return kUsageError;
+  }
+  std::vector<std::string> args = with_command(argc, argv);
+  split_service_words(args, line.service.words);
+  std::reverse(args.begin(), args.end());  // CLI11 reads them from the back
+  try {
+    app.parse(args);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // help, version
+      std::ostringstream text;
+      (void)app.exit(error, text, text);
+      write_result(text.str());
+      return kSuccess;
+    }
+    print_notice("{}", usage_text(app, error));
+    return kUsageError;
+  }
+  const std::string command = app.get_subcommands().front()->get_name();
+  if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
+  if (command == "describe" && line.markdown) {
+    print_result("{}", describe_page());
+    return 0;
+  }
+  if (command == "describe") return describe_command(line.scene, line.json);
+  if (command == "console") return console_command(line.console);
+  if (command == "monitor") return monitor_command(line.monitor);
+  if (command == "send") return send_command(line.send);
+  if (command == "new") return new_command(line.create);
+  if (command == "preset") return preset_command(line.preset);
+  if (command == "take") return take_command(line.take);
+  if (command == "export") return export_command(line.exported);
+  if (command == "annotate") return annotate_command(line.definitions);
+  if (command == "bench") return bench_command(line.bench);
+  if (command == "doctor") return doctor_command(line.doctor);
+  if (command == "service") return run_service(line.service);
+  if (command == "completion" || command == "man") return print_shell_file(app, command, line.shell);
+  return play_command(line.play);
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  try {
+    return finish_command(run_command(argc, argv));
+  } catch (const std::bad_alloc&) {
+    print_notice("not enough memory; end other programs, or raise ulimit -v");
+  } catch (const std::system_error& error) {  // a thread could not be started
+    print_notice("{}; end other programs, or raise ulimit -u and ulimit -v", error.code().message());
+  }
+  return kMachineError;
+}
+
+}  // namespace limber

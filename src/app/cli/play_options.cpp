@@ -1,0 +1,142 @@
+// Declares the options of `play` with CLI11.
+#include "app/cli/play_options.h"
+
+#include <cstdint>
+#include <optional>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/show/query_host.h"
+#include "app/view/display_options.h"
+#include "base/text.h"
+#include "base/threads/thread_pool.h"
+
+namespace limber {
+
+std::string whole_number_fault(const std::string& text) {
+  const bool digits = !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
+  const std::optional<double> number = digits ? parse_number(text) : std::nullopt;
+  return number && *number <= 9007199254740992.0
+             ? std::string()
+             : fmt::format("'{}' must be a whole number from 0 to 9007199254740992", text);
+}
+
+namespace {
+
+// duration of a run in seconds
+CLI::Validator positive_time() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const std::optional<double> seconds = parse_number(text);
+        return seconds && *seconds > 0 ? std::string()
+                                       : fmt::format("'{}' must be a time in seconds greater than 0", text);
+      },
+      "", "seconds");
+}
+
+CLI::Validator plain_count() {
+  return CLI::Validator([](std::string& text) { return whole_number_fault(text); }, "", "count");
+}
+
+// options of OSC and OSCQuery
+void add_network(CLI::App& play, PlayOptions& o) {
+  play.add_option("--osc-in", o.osc_in, "Address of OSC input; default 127.0.0.1:9003.")->type_name("[ADDR:]PORT|off");
+  play.add_option("--osc-allow", o.osc_allow, "Accept only these senders, such as 192.168.1.0/24; may be repeated.")
+      ->type_name("ADDRESS[/BITS],...")
+      ->join(',');
+  play.add_option("--osc-out", o.osc_out,
+                  "Receiver of the streams of joint poses; default 127.0.0.1:9005. Settings after it: rate=60, "
+                  "bundle=off|1472|8192|65504, "
+                  "streams=pos+rot+relrot+relpos, bodies=arm*, errors=on.")
+      ->type_name("HOST:PORT[,...]|off")
+      ->allow_extra_args(false);
+  play.add_option(
+          "--query", o.query,
+          "Address of OSCQuery and the remote panel (for a browser); default: 127.0.0.1 with the port number of "
+          "--osc-in; 0.0.0.0:9003 opens it to phones and tablets.")
+      ->type_name("[ADDR:]PORT|off");
+  play.add_option("--query-name", o.query_names,
+                  "Additional host name of this machine that browsers may use; may be repeated.")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->check(CLI::Validator([](std::string& text) { return host_name_fault(text); }, "", "host name"));
+  play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");
+}
+
+void add_log(CLI::App& play, LogOptions& o) {
+  CLI::Option* const file =
+      play.add_option("--log", o.file, "Also write the log to this file, with the time of each line.")
+          ->type_name("FILE");
+  play.add_option("--log-size", o.megabytes, "Start a new log file at this size; default 10.")
+      ->type_name("MB")
+      ->check(CLI::Range(0.001, 1e6))
+      ->needs(file);
+  play.add_option("--log-keep", o.old_files, "Number of old log files to keep, FILE.1 is the latest; default 5.")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000))
+      ->needs(file);
+  play.add_flag("--quiet", o.quiet, "Print only warnings and errors to standard error.");
+}
+
+}  // namespace
+
+void add_play_options(CLI::App& command, PlayOptions& o) {
+  CLI::App* const play = &command;
+  CLI::Option* scene =
+      play->add_option("scene", o.scene, "File of the scene; default scripts/arms.lua.")->type_name("SCENE.lua");
+  add_display_options(*play, o.display);
+  CLI::Option* fast =
+      play->add_flag("--fast", o.fast, "Run at full speed instead of real time; no OSC and OSCQuery unless requested.");
+  play->add_option("--duration,--seconds", o.duration, "End at this simulated time.")
+      ->type_name("S")
+      ->check(positive_time());
+  play->add_option("--ticks", o.ticks, "End after this number of ticks.")->type_name("N")->check(plain_count());
+  CLI::Option* seed = play->add_option("--seed", o.seed, "Seed of the random numbers; overrides sim.seed of the scene.")
+                          ->type_name("N")
+                          ->check(plain_count());
+  play->add_option("--threads", o.threads,
+                   "Number of threads for physics and readouts; the result is identical for any number.")
+      ->type_name("N")
+      ->check(CLI::Range(1, ThreadPool::kMaxThreads));
+  CLI::Option* sets =
+      play->add_option(
+              "--set", o.sets,
+              "Set a value after the scene has run; a path or an OSC address of ofxDabPhysics; may be repeated.")
+          ->type_name("PATH=VALUE")
+          ->allow_extra_args(false);
+  CLI::Option* preset =
+      play->add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
+          ->type_name("NAME");
+  add_network(*play, o);
+  play->add_option("--package-path", o.package_paths, "Folder for package:// paths in URDF files; may be repeated.")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  play->add_flag("--watch", o.watch,
+                 "With --fast: reload the scene when one of its files is saved, as is done in real time.");
+  CLI::Option* record =
+      play->add_option("--record", o.record,
+                       "Record the scene and all input to this file, so that it can be replayed bit for bit.")
+          ->type_name("TAKE");
+  CLI::Option* replay =
+      play->add_option("--replay", o.replay, "Replay this take with the scene and files recorded in it.")
+          ->type_name("TAKE")
+          ->excludes(record)
+          ->excludes(scene)
+          ->excludes(seed)
+          ->excludes(sets)
+          ->excludes(preset);
+  play->add_flag("--recover", o.recover,
+                 "Restore the values that the scene had when its last run crashed; the program reports at start if "
+                 "there are any.")
+      ->excludes(replay)
+      ->excludes(fast);
+  play->add_flag("--with-current-scripts", o.current_scripts,
+                 "With --replay: use the current scene files; reports where the runs diverge.")
+      ->needs(replay);
+  play->add_flag("--strict", o.strict, "Exit with code 1 after any script error, rejected value or health event.");
+  play->add_flag("--hash", o.hash, "Print the state hash at the end.");
+  add_log(*play, o.log);
+}
+
+}  // namespace limber

@@ -1,0 +1,215 @@
+// Prints the contents of a URDF file in file order, and every problem with its line and fix.
+#include "app/commands/inspect.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "app/exit_code.h"
+#include "base/log/output.h"
+#include "base/text.h"
+#include "model/urdf/import.h"
+
+namespace limber {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::note:
+      return "note";
+    case Severity::warning:
+      return "warning";
+    case Severity::error:
+      return "error";
+  }
+  return "";
+}
+
+Json json_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+Json json_of(const Pose& p) {
+  const Quat& q = p.rotation;
+  return {{"position", json_of(p.position)}, {"rotation", Json::array({q.x, q.y, q.z, q.w})}};
+}
+
+Json json_of(const FileLink& link) {
+  const Mat3& t = link.tensor;
+  return {{"name", link.name},
+          {"mass", link.mass},
+          {"com", json_of(link.center)},
+          {"inertia", Json::array({t[0][0], t[0][1], t[0][2], t[1][1], t[1][2], t[2][2]})},
+          {"collisions", link.collisions},
+          {"visuals", link.visuals},
+          {"home", json_of(link.home)},
+          {"start", json_of(link.start)}};
+}
+
+Json json_of(const FileJoint& joint) {
+  Json j = {{"name", joint.name},
+            {"type", joint.type},
+            {"parent", joint.parent},
+            {"child", joint.child},
+            {"axis", json_of(joint.axis)},
+            {"lower", joint.free ? Json() : Json(joint.lower)},
+            {"upper", joint.free ? Json() : Json(joint.upper)},
+            {"effort", joint.effort},
+            {"velocity", joint.velocity},
+            {"free", joint.free}};
+  if (!joint.mimic.empty()) {
+    j["mimic"] = {{"joint", joint.mimic}, {"multiplier", joint.mimic_multiplier}, {"offset", joint.mimic_offset}};
+  }
+  return j;
+}
+
+const char* kind_name(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::plane:
+      return "plane";
+    case ShapeKind::sphere:
+      return "sphere";
+    case ShapeKind::box:
+      return "box";
+    case ShapeKind::cylinder:
+      return "cylinder";
+    case ShapeKind::capsule:
+      return "capsule";
+    case ShapeKind::cone:
+      return "cone";
+    case ShapeKind::mesh:
+      return "hull";
+    case ShapeKind::compound:
+      return "compound";
+  }
+  return "";
+}
+
+std::string vec_text(const Vec3& v) { return fmt::format("{:9.4f} {:9.4f} {:9.4f}", v.x, v.y, v.z); }
+
+void add_links(const BodyModel& model, std::string& out) {
+  std::size_t width = 4;
+  for (const FileLink& l : model.file_links) width = std::max(width, printable(l.name).size());
+  out +=
+      fmt::format("\n{:<{}}  {:>10}  {:>4}  {:>4}  {}\n", "link", width, "mass kg", "coll", "vis", "home position m");
+  for (const FileLink& l : model.file_links) {
+    out += fmt::format("{:<{}}  {:>10.6g}  {:>4}  {:>4}  {}\n", printable(l.name), width, l.mass, l.collisions,
+                       l.visuals, vec_text(l.home.position));
+  }
+}
+
+void add_joints(const BodyModel& model, std::string& out) {
+  std::size_t width = 5;
+  for (const FileJoint& j : model.file_joints) width = std::max(width, printable(j.name).size());
+  out += fmt::format("\n{:<{}}  {:<10}  {:<26}  {:<22}  {:>8}  {}\n", "joint", width, "type", "axis", "limits",
+                     "effort", "parent -> child");
+  for (const FileJoint& j : model.file_joints) {
+    const std::string limits = j.free ? "free" : fmt::format("{:.5g} .. {:.5g}", j.lower, j.upper);
+    out += fmt::format("{:<{}}  {:<10}  {:<26}  {:<22}  {:>8.5g}  {} -> {}\n", printable(j.name), width, j.type,
+                       fmt::format("{:.5g} {:.5g} {:.5g}", j.axis.x, j.axis.y, j.axis.z), limits, j.effort,
+                       printable(j.parent), printable(j.child));
+  }
+}
+
+void add_mimics(const BodyModel& model, std::string& out) {
+  bool first = true;
+  for (const FileJoint& j : model.file_joints) {
+    if (j.mimic.empty()) continue;
+    if (std::exchange(first, false)) out += "\nmimic\n";
+    out += fmt::format("  {} = {:.6g} * {} {} {:.6g}\n", printable(j.name), j.mimic_multiplier, printable(j.mimic),
+                       j.mimic_offset < 0 ? '-' : '+', std::abs(j.mimic_offset));
+  }
+}
+
+void add_body(const BodyModel& model, std::string& out) {
+  out += "\nresulting body (mass 0: fixed to the world)\n";
+  for (const LinkModel& link : model.links) {
+    out += fmt::format("  {}: {:.6g} kg", printable(link.name), link.inertial.mass);
+    for (const PlacedShape& s : link.collisions) {
+      out += fmt::format(", {}", kind_name(s.shape.kind));
+      if (s.shape.kind != ShapeKind::mesh || !s.shape.mesh) continue;
+      out += fmt::format(" of {} points (farthest vertex {:.2g} m outside)", s.shape.mesh->hull.size(),
+                         s.shape.mesh->hull_error);
+    }
+    if (!link.self_collision) out += ", does not collide with its own body (selfCollide)";
+    out += '\n';
+  }
+  for (const MergedLink& m : model.merged) {
+    out += fmt::format("  {}: merged into {}\n", printable(m.name),
+                       printable(model.links[static_cast<std::size_t>(m.link)].name));
+  }
+}
+
+const std::string& link_name(const BodyModel& model, int link) {
+  return model.links[static_cast<std::size_t>(link)].name;
+}
+
+void add_overlaps(const BodyModel& model, std::string& out) {
+  if (model.overlaps.empty()) return;
+  out += "\npairs excluded from collision (they overlap with all joints at 0)\n";
+  for (const Overlap& overlap : model.overlaps) {
+    out += fmt::format("  {} and {}: {:.3g} mm\n", printable(link_name(model, overlap.a)),
+                       printable(link_name(model, overlap.b)), overlap.depth * 1000);
+  }
+}
+
+}  // namespace
+
+std::string inspect_json(const BodyModel& model) {
+  Json links = Json::array(), joints = Json::array(), problems = Json::array();
+  for (const FileLink& link : model.file_links) links.push_back(json_of(link));
+  for (const FileJoint& joint : model.file_joints) joints.push_back(json_of(joint));
+  for (const Problem& p : model.problems) {
+    problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.fix}});
+  }
+  Json pairs = Json::array(), no_self_collision = Json::array();
+  for (const Overlap& overlap : model.overlaps) {
+    pairs.push_back({{"a", link_name(model, overlap.a)}, {"b", link_name(model, overlap.b)}, {"depth", overlap.depth}});
+  }
+  for (const LinkModel& link : model.links) {
+    if (!link.self_collision) no_self_collision.push_back(link.name);
+  }
+  const Json all{{"robot", model.name},
+                 {"links", links},
+                 {"joints", joints},
+                 {"excluded_pairs", pairs},
+                 {"no_self_collision", no_self_collision},
+                 {"problems", problems}};
+  return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string inspect_table(const BodyModel& model) {
+  double mass = 0;
+  for (const FileLink& link : model.file_links) mass += link.mass;
+  std::string out = fmt::format("{}: {} links, {} joints, {:.6g} kg\n", printable(model.name), model.file_links.size(),
+                                model.file_joints.size(), mass);
+  add_links(model, out);
+  if (!model.file_joints.empty()) add_joints(model, out);
+  add_mimics(model, out);
+  add_body(model, out);
+  add_overlaps(model, out);
+  out += model.problems.empty() ? "\nno problems\n" : "\n";
+  for (const Problem& p : model.problems) {
+    out += fmt::format("{}:{}: {}: {}. {}\n", printable(model.file), p.line, severity_name(p.severity), p.text, p.fix);
+  }
+  return out;
+}
+
+int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths) {
+  ImportOptions options;
+  options.package_paths = package_paths;
+  const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options);
+  if (!model) {
+    write_line(OutputTo::error, model.error());
+    return kInputError;
+  }
+  const std::string text = json ? inspect_json(**model) : inspect_table(**model);
+  write_result(text);
+  return kSuccess;
+}
+
+}  // namespace limber

@@ -1,0 +1,64 @@
+// Reads both files, appends the presets and writes the result.
+#include "app/commands/preset.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "app/paths.h"
+#include "base/log/output.h"
+#include "base/system/file.h"
+#include "base/text.h"
+#include "engine/presets/file.h"
+#include "engine/presets/pattrstorage.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20u;  // limit for preset files of other programs
+
+// appends presets under names that are not in use
+void append(PresetList& list, const PresetList& more) {
+  for (const auto& preset : more) {
+    std::string name = preset->name;
+    const auto in_use = [&] {
+      return std::any_of(list.begin(), list.end(), [&](const auto& p) { return p->name == name; });
+    };
+    for (int n = 2; in_use(); n++) name = fmt::format("{} {}", shortened(preset->name, 100), n);
+    list.push_back(std::make_shared<const Preset>(Preset{name, preset->selection, preset->schema, preset->values}));
+  }
+}
+
+}  // namespace
+
+int preset_command(const PresetCommand& command) {
+  const Result<std::string> text = system::read_file(command.file, kMaxBytes);
+  if (!text)
+    return fail(kInputError, fmt::format("{}: {}; in Max, pattrstorage writes one by the message writejson",
+                                         printable(command.file), text.error()));
+  const Result<ParsedPresets> imported = import_pattrstorage(*text);
+  if (!imported) return fail(kInputError, fmt::format("{}: {}", command.file, imported.error()));
+  std::vector<std::string> searched;
+  const std::string scene = find_scene(command.scene, searched);
+  if (scene.empty()) return fail(kInputError, scene_not_found(command.scene, searched));
+  const std::string state = state_dir();
+  const std::string locks = state.empty() ? "" : state + "/locks";
+  PresetFile file(PresetFile::path_for(scene), PresetFile::write_access_for(scene, locks, true));
+  Result<ParsedPresets> before = file.load();
+  if (!before) return fail(kInputError, before.error());
+  append(before->presets, imported->presets);
+  std::string notice;
+  if (const Result<void> saved = file.save(before->presets, notice); !saved)
+    return fail(kMachineError, fmt::format("{}: {}", printable(file.path()), saved.error()));
+  for (const std::string& problem : imported->problems) print_notice("{}", printable(problem));
+  if (!notice.empty()) print_notice("{}", notice);
+  print_result("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
+               imported->presets.size());
+  return kSuccess;
+}
+
+}  // namespace limber

@@ -1,0 +1,141 @@
+// Sends two queries after the message, one after the other. The second is answered in a later tick, when the scene's
+// own handlers have processed the message too; then all replies have arrived.
+#include "app/commands/send.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands/tagged_message.h"
+#include "app/exit_code.h"
+#include "base/log/output.h"
+#include "base/system/clock.h"
+#include "base/system/net/udp_socket.h"
+#include "base/system/wait.h"
+#include "base/text.h"
+#include "engine/output/message_log.h"
+#include "net/osc/endpoint.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/encode.h"
+#include "net/osc/packets/validate.h"
+
+namespace limber {
+
+namespace {
+
+// answered by another thread than the simulation's
+constexpr const char* kDelayedReplies[] = {"/transport/scene", "/list/scenes", "/take/play"};
+constexpr const char* kProbeAddress = "/physics/sim/tick";  // queried after the message
+
+Result<Endpoint> endpoint_named(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  const std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
+  const std::optional<double> port = parse_number(text.substr(colon + 1));
+  if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
+    return Error{fmt::format("--to '{}' is not an address; write --to [HOST:]PORT", printable(text))};
+  Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
+  if (!at) return Error{fmt::format("--to '{}': {}", printable(text), at.error())};
+  return at;
+}
+
+// returns the messages of one datagram; invalid packets are ignored
+std::vector<Message> receive(int fd, double seconds) {
+  system::PollEntry waiting{.fd = fd};
+  const auto limit = std::chrono::milliseconds(static_cast<int>(std::max(seconds, 0.0) * 1000) + 1);
+  if (!system::wait_ready({&waiting, 1}, limit)) return {};
+  std::vector<char> bytes(65536);
+  const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
+  if (got <= 0 || packet_fault(bytes.data(), static_cast<std::size_t>(got)) != nullptr) return {};
+  Result<Decoded> decoded = decode_packet(bytes.data(), static_cast<std::size_t>(got));
+  return decoded ? std::move(decoded->messages) : std::vector<Message>();
+}
+
+struct Replies {
+  bool queries_answered = false;  // all immediate replies have arrived
+  bool complete = false;          // all replies have arrived
+  bool rejected = false;
+};
+
+// `delayed`: the reply comes from another thread, after the replies to the queries
+Replies show_replies(int fd, double wait, bool delayed, const std::function<void()>& query) {
+  Replies replies;
+  int queries = 1;
+  bool reply_seen = !delayed;
+  query();
+  const double end = system::clock_seconds() + wait;
+  while (!replies.complete && system::clock_seconds() < end) {
+    for (const Message& message : receive(fd, end - system::clock_seconds())) {
+      if (message.address == kProbeAddress) {
+        replies.queries_answered = queries == 2;
+        if (queries++ == 1) query();
+        continue;
+      }
+      reply_seen = true;
+      if (message.address == "/error" && message.args.size() == 2) {
+        replies.rejected = true;
+        print_notice("{}: {}", printable(message.args[0].text), printable(message.args[1].text));
+      } else {
+        print_result("{}\n", message_text(message));
+      }
+    }
+    replies.complete = replies.queries_answered && reply_seen;
+  }
+  return replies;
+}
+
+// `tags`: as in SendCommand
+bool send_message(int fd, const Endpoint& to, const Message& message, std::string_view tags) {
+  PacketBuffer buffer;
+  const std::span<const char> packet =
+      tags.empty() ? encode_message(message, buffer) : encode_tagged(message, tags, buffer);
+  return !packet.empty() && system::send_datagram(fd, to, packet) == 0;
+}
+
+}  // namespace
+
+Arg parse_arg(const std::string& word) {
+  const bool quoted = word.size() >= 2 && (word.front() == '\'' || word.front() == '"') && word.back() == word.front();
+  if (quoted) return Arg::of(std::string_view(word).substr(1, word.size() - 2));
+  if (word == "true" || word == "false") return Arg::of(word == "true");
+  const std::optional<double> number = parse_number(word);
+  return number ? Arg::of(*number) : Arg::of(word);
+}
+
+int send_command(const SendCommand& command) {
+  Message message{command.address, {}};
+  if (!message.address.starts_with('/'))
+    return fail(kUsageError, fmt::format("send: address '{}' must begin with /", message.address));
+  if (command.tags.empty()) {
+    for (const std::string& word : command.words) message.args.push_back(parse_arg(word));
+  } else {
+    Result<Message> tagged = tagged_message(command.address, command.tags, command.words);
+    if (!tagged) return fail(kUsageError, "send: " + tagged.error());
+    message = std::move(*tagged);
+  }
+  const Result<Endpoint> to = endpoint_named(command.to);
+  if (!to) return fail(kUsageError, "send: " + to.error());
+  const Result<system::UdpSocket> socket = system::open_udp({});
+  if (!socket) return fail(kMachineError, "send: " + socket.error());
+  if (!send_message(socket->fd(), *to, message, command.tags)) {
+    return fail(kMachineError,
+                fmt::format("send: the message could not be sent to {}. Check its length and the address", command.to));
+  }
+  if (command.wait <= 0) return kSuccess;
+  const auto query = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kProbeAddress)}}, {}); };
+  const bool delayed =
+      std::ranges::any_of(kDelayedReplies, [&](const char* start) { return message.address.starts_with(start); });
+  const Replies replies = show_replies(socket->fd(), command.wait, delayed, query);
+  if (replies.rejected) return kInputError;
+  if (!replies.queries_answered) {
+    return fail(kMachineError,
+                fmt::format("send: no reply from {}. Is Limber running there? (--wait 0 doesn't wait for a reply)",
+                            command.to));
+  }
+  return kSuccess;
+}
+
+}  // namespace limber

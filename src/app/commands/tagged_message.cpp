@@ -1,0 +1,90 @@
+// Parses tag by tag and consumes the words in order.
+#include "app/commands/tagged_message.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::string_view kWithoutWord = "TFNI[]";
+constexpr std::string_view kWithWord = "ihfdsScrmtb";
+
+bool is_hexadecimal(std::string_view text) {
+  return text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
+}
+
+// describes the expected word for an error message; null: the word is valid
+const char* expected_word(char tag, const std::string& word) {
+  switch (tag) {
+    case 'i':
+    case 'h':
+    case 'f':
+    case 'd':
+      return parse_number(word) ? nullptr : "a number";
+    case 'c':
+      return word.size() == 1 && static_cast<unsigned char>(word[0]) < 128 ? nullptr : "one ASCII character";
+    case 'r':
+      return word.size() == 8 && is_hexadecimal(word) ? nullptr : "8 hexadecimal digits: red, green, blue, alpha";
+    case 'm':
+      return word.size() == 8 && is_hexadecimal(word) ? nullptr : "8 hexadecimal digits: port, status, data, data";
+    case 't':
+      return word.size() == 16 && is_hexadecimal(word) ? nullptr
+                                                       : "16 hexadecimal digits: seconds since 1900, fraction";
+    case 'b':
+      return word.size() % 2 == 0 && is_hexadecimal(word) ? nullptr : "pairs of hexadecimal digits";
+    default:
+      return nullptr;
+  }
+}
+
+Arg arg_of_tag(char tag, const std::string& word) {
+  if (std::string_view("ihfd").find(tag) != std::string_view::npos) return Arg::of(*parse_number(word));
+  return Arg::of(word);
+}
+
+// null: valid
+const char* fault_of_tags(std::string_view tags) {
+  int level = 0;
+  for (const char tag : tags) {
+    level += tag == '[' ? 1 : tag == ']' ? -1 : 0;
+    if (level < 0) return "a ']' without its '['";
+  }
+  return level == 0 ? nullptr : "a '[' without its ']'";
+}
+
+}  // namespace
+
+Result<Message> tagged_message(const std::string& address, std::string_view tags,
+                               const std::vector<std::string>& words) {
+  if (const char* const fault = fault_of_tags(tags)) return Error{fmt::format("--tags '{}' has {}", tags, fault)};
+  const auto count = static_cast<std::size_t>(
+      std::ranges::count_if(tags, [](char tag) { return kWithoutWord.find(tag) == std::string_view::npos; }));
+  Message message{address, {}};
+  std::size_t at = 0;
+  for (const char tag : tags) {
+    if (tag == '[' || tag == ']') continue;
+    if (kWithoutWord.find(tag) != std::string_view::npos) {
+      message.args.push_back(Arg::of(tag == 'T'));
+      continue;
+    }
+    if (kWithWord.find(tag) == std::string_view::npos)
+      return Error{fmt::format("--tags: '{}' is not an OSC type tag; the tags are {}{}", tag, kWithWord, kWithoutWord)};
+    if (at == words.size()) break;
+    const std::string& word = words[at++];
+    if (const char* const need = expected_word(tag, word))
+      return Error{fmt::format("'{}' must be {}, since its tag is {}", printable(word), need, tag)};
+    message.args.push_back(arg_of_tag(tag, word));
+  }
+  if (at != words.size() || count != words.size())
+    return Error{
+        fmt::format("--tags '{}' needs {} argument{}, got {}", tags, count, count == 1 ? "" : "s", words.size())};
+  return message;
+}
+
+}  // namespace limber

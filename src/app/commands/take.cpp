@@ -1,0 +1,87 @@
+// Reads a whole take and prints a summary.
+#include "app/commands/take.h"
+
+#include <cstdint>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "base/log/output.h"
+#include "base/text.h"
+#include "engine/takes/reader.h"
+
+namespace limber {
+
+namespace {
+
+struct Count {
+  std::uint64_t ticks = 0, messages = 0, texts = 0, stopped = 0, last = 0;
+  std::map<TakeSceneRun::Kind, std::uint64_t> runs;
+};
+
+Count count_all(TakeReader& reader) {
+  Count count;
+  for (TakeTick tick; reader.next(tick);) {
+    if (tick.running) count.ticks++;
+    for (const TakeMessage& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
+    for (const TakeSceneRun& run : tick.runs) {
+      if (run.succeeded) count.runs[run.kind]++;
+    }
+    count.stopped += tick.stopped_calls.size();
+    count.last = tick.tick;
+  }
+  return count;
+}
+
+// prints each file once, with the size of its first version
+void print_files(const TakeReader& reader) {
+  std::map<std::string, std::pair<std::size_t, std::size_t>> files;  // number of versions, bytes of the first
+  std::map<std::string, std::uint32_t> newest;
+  for (const TakeFileList& list : reader.file_lists()) {
+    for (const auto& [path, content] : list.files) {
+      const auto [at, fresh] = files.try_emplace(path, 1, reader.content_size(content));
+      if (!fresh && newest[path] != content) at->second.first++;
+      newest[path] = content;
+    }
+  }
+  for (const auto& [path, file] : files) {
+    print_result("  {} ({} bytes{})\n", printable(path), file.second,
+                 file.first > 1 ? fmt::format(", {} versions", file.first) : std::string());
+  }
+}
+
+}  // namespace
+
+int take_command(const TakeCommand& command) {
+  auto opened = TakeReader::open(command.file);
+  if (!opened) return fail(kInputError, opened.error());
+  TakeReader& reader = **opened;
+  const Count count = count_all(reader);
+  const auto runs = [&](TakeSceneRun::Kind kind) {
+    const auto at = count.runs.find(kind);
+    return at == count.runs.end() ? std::uint64_t{0} : at->second;
+  };
+  print_result("scene     {}\n", printable(reader.header().scene));
+  print_result("recorded  {} by limber {}\n", printable(reader.header().recorded), printable(reader.header().limber));
+  print_result("ticks     {}\n", count.ticks);
+  print_result("messages  {}, console inputs {}\n", count.messages, count.texts);
+  print_result(
+      "runs      {} reloads, {} resets, {} other scenes\n",
+      runs(TakeSceneRun::Kind::reload_finished) + runs(TakeSceneRun::Kind::reload) + runs(TakeSceneRun::Kind::rerun),
+      runs(TakeSceneRun::Kind::reset), runs(TakeSceneRun::Kind::scene));
+  print_result("stopped   {} script calls\n", count.stopped);
+  print_result("bytes     {}\n", reader.size());
+  if (reader.end()) {
+    print_result("end       complete; hash {:016x} tick {}\n", reader.end()->state_hash, reader.end()->tick);
+  } else {
+    print_result("end       cut off after tick {}, at byte {}\n", count.last, reader.position());
+  }
+  print_result("files\n");
+  print_files(reader);
+  if (!reader.damage().empty())
+    return fail(kInputError, fmt::format("{}: {}", printable(command.file), reader.damage()));
+  return kSuccess;
+}
+
+}  // namespace limber

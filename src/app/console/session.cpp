@@ -1,0 +1,90 @@
+// Sends requests, waits for the answers and prints them.
+#include "app/console/session.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log/output.h"
+
+namespace limber {
+
+namespace {
+
+using Kind = ConsoleLine::Kind;
+
+bool is_reply(Kind kind) { return kind >= Kind::done && kind <= Kind::names; }
+
+}  // namespace
+
+// Returns the reply; nullopt if the user cancelled or the program has ended.
+std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) {
+  request.id = ++last_request_;
+  if (!link_.send(request)) return {};
+  while (true) {
+    std::optional<ConsoleLine> line = link_.next(-1);
+    if (line && line->id == last_request_ && is_reply(line->kind)) return line;
+    if (line) {
+      show(*line);
+    } else if (link_.ended() || is_cancelled_()) {
+      return {};
+    }
+  }
+}
+
+ConsoleSession::EvaluationStatus ConsoleSession::evaluate(const std::string& text) {
+  const std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::evaluate, text});
+  if (!reply) return link_.ended() ? EvaluationStatus::program_ended : EvaluationStatus::cancelled;
+  if (reply->kind == Kind::incomplete) return EvaluationStatus::incomplete;
+  show(*reply);
+  return reply->kind == Kind::error ? EvaluationStatus::failed : EvaluationStatus::done;
+}
+
+std::vector<std::string> ConsoleSession::complete(const std::string& text, std::size_t& word) {
+  std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::complete, text});
+  if (!reply || reply->word > text.size()) return {};
+  word = reply->word;
+  return std::move(reply->names);
+}
+
+bool ConsoleSession::has_messages() {
+  while (std::optional<ConsoleLine> line = link_.next(0)) messages_.push_back(std::move(*line));
+  return !messages_.empty();
+}
+
+void ConsoleSession::show_messages() {
+  for (const ConsoleLine& line : messages_) show(line);
+  messages_.clear();
+}
+
+void ConsoleSession::show(const ConsoleLine& line) const {
+  switch (line.kind) {
+    case Kind::value:
+      print_result("{}\n", line.text);
+      break;
+    case Kind::print:
+      if (line.id == last_request_) {
+        print_result("{}\n", line.text);
+      } else {
+        write_line(OutputTo::error, line.text);
+      }
+      break;
+    case Kind::error:
+    case Kind::rejected:
+      write_line(OutputTo::error, line.text);
+      break;
+    case Kind::warning:
+      print_notice("warning: {}", line.text);
+      break;
+    case Kind::fault:
+      print_notice("error: {}", line.text);
+      break;
+    case Kind::missed:
+      write_line(OutputTo::error, fmt::format("({} lines dropped: too much output)", line.count));
+      break;
+    default:
+      return;  // no output
+  }
+}
+
+}  // namespace limber

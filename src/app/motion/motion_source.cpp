@@ -1,0 +1,214 @@
+// Reads skeletons from the world when bodies were added or removed, poses from snapshots.
+#include "app/motion/motion_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+struct JointOffsets {
+  std::uint32_t value, angles, offsets, relrot;
+};
+
+const JointOffsets& joint_offsets() {
+  static const auto at = [](const char* name) { return Joint::table().at(name).offset; };
+  static const JointOffsets layout{at("value"), at("angles"), at("offsets"), at("relrot")};
+  return layout;
+}
+
+struct NamedValue {
+  const char* name;
+  std::uint32_t offset;
+  bool is_angle;
+};
+
+// the exported values of a joint
+std::vector<NamedValue> exported_values(JointType type) {
+  const JointOffsets& layout = joint_offsets();
+  const std::vector<NamedValue> turned = {
+      {"angle_x", layout.relrot, true}, {"angle_y", layout.relrot + 1, true}, {"angle_z", layout.relrot + 2, true}};
+  std::vector<NamedValue> shifted = {{"shift_x", layout.offsets, false},
+                                     {"shift_y", layout.offsets + 1, false},
+                                     {"shift_z", layout.offsets + 2, false}};
+  switch (type) {
+    case JointType::revolute:
+    case JointType::continuous:
+      return {{"angle", layout.value, false}};
+    case JointType::prismatic:
+      return {{"shift", layout.value, false}};
+    case JointType::planar:
+      return {shifted[0], shifted[1], {"angle", layout.angles + 2, false}};
+    case JointType::spherical:
+      return turned;
+    case JointType::floating:
+      shifted.insert(shifted.end(), turned.begin(), turned.end());
+      return shifted;
+    case JointType::fixed:
+      break;
+  }
+  return {};
+}
+
+std::vector<std::string> value_names(JointType type) {
+  std::vector<std::string> names;
+  for (const NamedValue& value : exported_values(type)) names.emplace_back(value.name);
+  return names;
+}
+
+std::uint64_t content_of(const Body& body) { return body.model() == nullptr ? 0 : body.model()->content_hash; }
+
+bool same_parts(const MotionBody& known, const Body& body) {
+  const auto parts = body.parts();
+  const auto joints = body.joints();
+  return known.links.size() == parts.size() && known.joints.size() == joints.size() &&
+         std::equal(parts.begin(), parts.end(), known.links.begin(),
+                    [](const auto& part, const MotionLink& link) { return part->name() == link.name; }) &&
+         std::equal(joints.begin(), joints.end(), known.joints.begin(), [](const auto& joint, const MotionJoint& as) {
+           return joint->name() == as.name && value_names(joint->type()) == as.values;
+         });
+}
+
+Pose pose_in(const Snapshot& snapshot, std::uint32_t part) {
+  const double* const block = snapshot.transient.data() + part;
+  return {vec3_at(block + transient_offsets().part_position), quat_at(block + transient_offsets().part_rotation)};
+}
+
+Pose interpolate(const Pose& a, const Pose& b, double mix) {
+  return {glm::mix(a.position, b.position, mix), slerp(a.rotation, b.rotation, mix)};
+}
+
+// sets the parent of each link by the first joint that leads to it and closes no loop, and the rest poses along these
+// joints
+void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& now) {
+  std::map<const Part*, int> number;
+  for (std::size_t i = 0; i < body.parts().size(); i++) number[body.parts()[i].get()] = static_cast<int>(i);
+  std::vector<const Joint*> by(motion.links.size(), nullptr);
+  for (const auto& joint : body.joints()) {
+    const int parent = number[&joint->parent()];
+    const int child = number[&joint->child()];
+    int top = parent;
+    while (top >= 0 && top != child) top = motion.links[static_cast<std::size_t>(top)].parent;
+    MotionLink& link = motion.links[static_cast<std::size_t>(child)];
+    if (top == child || link.parent >= 0) continue;
+    link.parent = parent;
+    by[static_cast<std::size_t>(child)] = joint.get();
+  }
+  for (const std::size_t i : link_order(motion).links) {
+    MotionLink& link = motion.links[i];
+    if (link.parent < 0) {
+      link.rest = now.front().inverse() * now[i];
+    } else {
+      const JointSpec& spec = by[i]->spec();
+      link.rest = motion.links[static_cast<std::size_t>(link.parent)].rest * spec.frame_in_parent *
+                  spec.frame_in_child.inverse();
+    }
+  }
+}
+
+}  // namespace
+
+bool MotionSource::is_selected(const std::string& name) const {
+  return patterns_.empty() || std::any_of(patterns_.begin(), patterns_.end(), [&](const std::string& pattern) {
+           return pattern == name || pattern_match(pattern, name);
+         });
+}
+
+MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
+  Track track;
+  track.content = content_of(body);
+  track.body.name = body.name();
+  std::map<std::uint32_t, std::vector<RenderInstance>> pieces;
+  for (const RenderInstance& piece : now.render_scene->instances) {
+    if (piece.enabled_offset == entry.enabled_offset) pieces[piece.part_offset].push_back(piece);
+  }
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < body.parts().size(); i++) {
+    poses.push_back(pose_in(now, entry.part_offsets[i]));
+    track.body.links.push_back(
+        {body.parts()[i]->name(), -1, {}, surfaces_.surfaces_of(now, pieces[entry.part_offsets[i]])});
+  }
+  set_parents(track.body, body, poses);
+  for (std::size_t i = 0; i < body.joints().size(); i++) {
+    const Joint& joint = *body.joints()[i];
+    track.body.joints.push_back({joint.name(), value_names(joint.type())});
+    for (const NamedValue& value : exported_values(joint.type()))
+      track.values.push_back({i, value.offset, value.is_angle});
+  }
+  return track;
+}
+
+int MotionSource::find_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
+  if (std::find(names_.begin(), names_.end(), body.name()) == names_.end()) names_.push_back(body.name());
+  if (body.parts().empty() || !is_selected(body.name())) return -1;
+  for (std::size_t i = 0; i < tracks_.size(); i++) {
+    const Track& track = tracks_[i];
+    if (track.body.name == body.name() && track.content == content_of(body) && same_parts(track.body, body))
+      return static_cast<int>(i);
+  }
+  tracks_.push_back(make_track(body, entry, now));
+  return static_cast<int>(tracks_.size()) - 1;
+}
+
+void MotionSource::update(const World& world, const Snapshot& now) {
+  if (recent_[0].body_list == now.body_list) return;
+  std::swap(recent_[0], recent_[1]);
+  BodyListTracks& tracks = recent_[0];
+  tracks.body_list = now.body_list;
+  tracks.track_of.clear();
+  for (std::size_t i = 0; i < now.body_list->bodies.size(); i++)
+    tracks.track_of.push_back(find_track(*world.bodies()[i], now.body_list->bodies[i], now));
+  tracks.body_of.assign(tracks_.size(), -1);
+  for (std::size_t i = 0; i < tracks.track_of.size(); i++) {
+    if (tracks.track_of[i] >= 0) tracks.body_of[static_cast<std::size_t>(tracks.track_of[i])] = static_cast<int>(i);
+  }
+}
+
+const MotionSource::BodyListTracks& MotionSource::tracks_of(const BodyList* body_list) const {
+  return recent_[0].body_list.get() == body_list ? recent_[0] : recent_[1];
+}
+
+Result<void> MotionSource::add_frame(double time, const Snapshot& before, const Snapshot& now, double mix,
+                                     MotionWriter& writer) {
+  const Snapshot& snapshot = mix >= 1 ? now : before;
+  const BodyListTracks& here = tracks_of(snapshot.body_list.get());
+  const BodyListTracks& next = tracks_of(now.body_list.get());
+  const bool interpolates = mix < 1 && now.time >= before.time;
+  for (MotionSample& sample : samples_) sample.present = false;
+  for (std::size_t i = 0; i < here.track_of.size(); i++) {
+    const BodyEntry& a = snapshot.body_list->bodies[i];
+    if (here.track_of[i] < 0 || snapshot.transient[a.enabled_offset] < 0.5) continue;
+    const auto number = static_cast<std::size_t>(here.track_of[i]);
+    Track& track = tracks_[number];
+    if (!track.writer_number) {
+      track.writer_number = samples_.size();
+      samples_.emplace_back();
+      if (Result<void> added = writer.add_body(track.body); !added) return added;
+    }
+    MotionSample& sample = samples_[*track.writer_number];
+    sample.present = true;
+    sample.links.resize(a.part_offsets.size());
+    sample.values.resize(track.values.size());
+    const bool continues = interpolates && number < next.body_of.size() && next.body_of[number] >= 0;
+    const BodyEntry& b = continues ? now.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
+    const Snapshot& to = continues ? now : snapshot;
+    const double part = continues ? mix : 0;
+    for (std::size_t k = 0; k < a.part_offsets.size(); k++)
+      sample.links[k] = interpolate(pose_in(snapshot, a.part_offsets[k]), pose_in(to, b.part_offsets[k]), part);
+    for (std::size_t k = 0; k < track.values.size(); k++) {
+      const Value& value = track.values[k];
+      const double from = snapshot.transient[a.joint_offsets[value.joint] + value.offset];
+      double difference = to.transient[b.joint_offsets[value.joint] + value.offset] - from;
+      if (value.is_angle) difference -= 2 * kPi * std::round(difference / (2 * kPi));
+      sample.values[k] = from + difference * part;
+    }
+  }
+  return writer.add_frame(time, samples_);
+}
+
+}  // namespace limber

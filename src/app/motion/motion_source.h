@@ -1,0 +1,72 @@
+// MotionSource: feeds a MotionWriter from an engine that runs offline: which bodies exist, with which links, and their
+// poses at times between two ticks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/motion/motion_surfaces.h"
+#include "engine/output/snapshot.h"
+#include "export/motion.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+/// Tracks the bodies of a running engine.
+class MotionSource {
+ public:
+  /// `patterns`: names or OSC patterns of bodies; empty: all bodies.
+  explicit MotionSource(std::vector<std::string> patterns) : patterns_(std::move(patterns)) {}
+
+  /// Updates the list of bodies; called before the first tick and after each. A body that is created again with the
+  /// same name, parts and joints (after a reset, for example) continues the same track. [sim]
+  void update(const World& world, const Snapshot& now);
+  /// Adds a frame that is interpolated between the two snapshots by `mix`, 0 .. 1: positions linearly, rotations along
+  /// the shortest arc. Bodies that `now` adds or removes change at `mix` 1, and there is no interpolation across a
+  /// reset.
+  Result<void> add_frame(double time, const Snapshot& before, const Snapshot& now, double mix, MotionWriter& writer);
+
+  /// Number of bodies that were in a frame.
+  std::size_t bodies() const { return samples_.size(); }
+  /// Names of all bodies seen so far, whether they match the patterns or not.
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  // a value in the transient block of a joint
+  struct Value {
+    std::size_t joint = 0;
+    std::uint32_t offset = 0;
+    bool is_angle = false;  // an angle between -pi and pi
+  };
+  // the motion of one body
+  struct Track {
+    MotionBody body;
+    std::uint64_t content = 0;  // hash of the body's model
+    std::vector<Value> values;
+    std::optional<std::size_t> writer_number;  // the writer's number of the body
+  };
+  // maps the bodies of a body list to tracks and back; -1: none
+  struct BodyListTracks {
+    std::shared_ptr<const BodyList> body_list;
+    std::vector<int> track_of;
+    std::vector<int> body_of;
+  };
+
+  int find_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
+  Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
+  bool is_selected(const std::string& name) const;
+  const BodyListTracks& tracks_of(const BodyList* body_list) const;
+
+  std::vector<std::string> patterns_;
+  std::vector<std::string> names_;
+  std::vector<Track> tracks_;
+  std::array<BodyListTracks, 2> recent_;  // the latest first
+  MotionSurfaces surfaces_;
+  std::vector<MotionSample> samples_;  // indexed by the writer's number
+};
+
+}  // namespace limber

@@ -1,0 +1,134 @@
+// Builds surfaces from the view's meshes at medium detail, without duplicate vertices.
+#include "app/motion/motion_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "base/color.h"
+#include "ui/render/mesh.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMinAlpha = 0.002;  // alpha below which a surface is left out
+
+struct Paint {
+  Vec3 color{0};
+  double alpha = 1;
+};
+
+// the factor 2 is for ofxDabPhysics: its scale is 0.5 for a surface of full brightness
+Paint paint_of(const Material& material) {
+  const Vec3 rgb = rgb_of(material.diffuse_color);
+  Paint paint;
+  for (int i = 0; i < 3; i++)
+    paint.color[i] = std::clamp(2 * material.diffuse_scale * linear_light_of(rgb[i]), 0.0, 1.0);
+  paint.alpha = 1 - material.transparency;
+  return paint;
+}
+
+void add_number(std::string& key, double number) { key.append(reinterpret_cast<const char*>(&number), sizeof number); }
+void add_vec(std::string& key, const Vec3& v) {
+  for (int i = 0; i < 3; i++) add_number(key, v[i]);
+}
+void add_pose(std::string& key, const Pose& pose) {
+  add_vec(key, pose.position);
+  for (int i = 0; i < 4; i++) add_number(key, pose.rotation[i]);
+}
+
+void add_piece(std::string& key, const ShapeModel& shape, const Pose& origin, const Paint& paint) {
+  const MeshModel* const mesh = shape.mesh.get();
+  key.append(reinterpret_cast<const char*>(&mesh), sizeof mesh);
+  add_number(key, static_cast<double>(shape.kind));
+  add_vec(key, shape.normal);
+  add_vec(key, shape.size);
+  add_number(key, shape.radius);
+  add_number(key, shape.height);
+  add_pose(key, shape.mesh_pose);
+  add_pose(key, origin);
+  add_vec(key, paint.color);
+  add_number(key, paint.alpha);
+}
+
+// appends to a surface and merges equal vertices
+class Builder {
+ public:
+  explicit Builder(Surface& surface) : surface_(surface) {}
+
+  void add(const Pose& at, const Vec3& point, const Vec3& normal) {
+    const Vec3 p = at * point;
+    const Vec3 n = normalized(at.rotation * normal);
+    const auto f = [](double v) { return static_cast<float>(v) + 0.0F; };  // no negative zero
+    const std::array<float, 6> both = {f(p.x), f(p.y), f(p.z), f(n.x), f(n.y), f(n.z)};
+    const auto [entry, fresh] = indices_.try_emplace(both, static_cast<std::uint32_t>(surface_.points.size()));
+    if (fresh) {
+      surface_.points.push_back({both[0], both[1], both[2]});
+      surface_.normals.push_back({both[3], both[4], both[5]});
+    }
+    surface_.triangles.push_back(entry->second);
+  }
+
+ private:
+  Surface& surface_;
+  std::map<std::array<float, 6>, std::uint32_t> indices_;
+};
+
+void add_plane(Builder& builder, const Pose& at, const Vec3& up) {
+  const Vec3 n = normalized(up);
+  const Vec3 u = normalized(glm::cross(std::abs(n.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0), n)) * (kPlaneEdge / 2);
+  const Vec3 v = glm::cross(n, u);
+  for (const Vec3& corner : {-u - v, u - v, u + v, -u - v, u + v, v - u}) builder.add(at, corner, n);
+}
+
+void add_shape(Builder& builder, const ShapeModel& shape, const Pose& origin) {
+  if (shape.mesh == nullptr && shape.kind == ShapeKind::plane) return add_plane(builder, origin, shape.normal);
+  const bool of_file = shape.mesh != nullptr;
+  const MeshVertices vertices = of_file ? model_mesh(*shape.mesh, 0) : primitive_mesh(shape.kind, 1);
+  const MeshSize size = of_file ? MeshSize{} : mesh_size(shape);
+  const Pose at = of_file ? origin * shape.mesh_pose : origin;
+  for (const MeshVertex& vertex : vertices) {
+    const Vec3 corner(vertex.corner[0], vertex.corner[1], vertex.corner[2]);
+    const Vec3 normal(vertex.normal[0], vertex.normal[1], vertex.normal[2]);
+    // shapes without a round part are scaled, their normals inversely
+    builder.add(at, corner * size.extent + normal * size.rounding_radius,
+                size.rounding_radius > 0 ? normal : normal / size.extent);
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snapshot,
+                                                            std::span<const RenderInstance> pieces) {
+  std::string key;
+  std::vector<Paint> paints;
+  for (const RenderInstance& piece : pieces) {
+    const RenderShape& form = snapshot.render_scene->shapes[piece.shape];
+    paints.push_back(paint_of(material_of(snapshot, form.material)));
+    add_piece(key, form.geometry, piece.origin, paints.back());
+  }
+  const auto [at, fresh] = cache_.try_emplace(key);
+  if (!fresh) return at->second.surfaces;
+  Surfaces surfaces;
+  std::vector<Builder> builders;
+  surfaces.reserve(pieces.size());  // builders keep references to its elements
+  for (std::size_t i = 0; i < pieces.size(); i++) {
+    if (paints[i].alpha < kMinAlpha) continue;
+    std::size_t n = 0;
+    while (n < surfaces.size() && (surfaces[n].color != paints[i].color || surfaces[n].alpha != paints[i].alpha)) n++;
+    if (n == surfaces.size()) {
+      builders.emplace_back(surfaces.emplace_back());
+      surfaces[n].color = paints[i].color;
+      surfaces[n].alpha = paints[i].alpha;
+    }
+    const ShapeModel& shape = snapshot.render_scene->shapes[pieces[i].shape].geometry;
+    add_shape(builders[n], shape, pieces[i].origin);
+    at->second.meshes.push_back(shape.mesh);
+  }
+  std::erase_if(surfaces, [](const Surface& surface) { return surface.triangles.empty(); });
+  if (!surfaces.empty()) at->second.surfaces = std::make_shared<const Surfaces>(std::move(surfaces));
+  return at->second.surfaces;
+}
+
+}  // namespace limber

@@ -1,0 +1,354 @@
+// Plays a scene: sets up the threads of the simulation and the network; signals and the window or status line use the
+// main thread.
+#include "app/show/play.h"
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "app/paths.h"
+#include "app/show/query_host.h"
+#include "app/show/scene_watch.h"
+#include "app/show/service_notifier.h"
+#include "app/show/show.h"
+#include "app/show/show_loop.h"
+#include "app/show/shutdown_guard.h"
+#include "app/view/render.h"
+#include "app/view/window.h"
+#include "base/build_info.h"
+#include "base/log/log.h"
+#include "base/log/log_file.h"
+#include "base/log/output.h"
+#include "base/system/resources.h"
+#include "base/system/signals.h"
+#include "base/text.h"
+#include "engine/engine.h"
+#include "net/console/server.h"
+#include "net/osc/network.h"
+
+namespace limber {
+
+namespace {
+
+// parses "PATH=VALUE": numbers separated by spaces or commas, true, false, or text
+Result<Message> parse_set(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return Error{fmt::format("--set '{}': write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
+  }
+  Message message{text.substr(0, equals), {}};
+  if (message.address.front() != '/') message.address = fmt::format("/{}", message.address);
+  std::string values = text.substr(equals + 1);
+  for (char& c : values) {
+    if (c == ',' || c == '\t') c = ' ';
+  }
+  for (const std::string_view word : split(values, ' ')) {
+    if (word.empty()) continue;
+    if (const auto number = parse_number(word)) {
+      message.args.push_back(Arg::of(*number));
+    } else if (word == "true" || word == "false") {
+      message.args.push_back(Arg::of(word == "true"));
+    } else {
+      message.args.push_back(Arg::of(word));
+    }
+  }
+  if (message.args.empty()) {
+    return Error{
+        fmt::format("--set '{}': no value after the =; write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
+  }
+  return message;
+}
+
+Result<OscOptions> parse_osc(const PlayOptions& options) {
+  OscOptions osc;
+  osc.optional = options.osc_optional;
+  if (!options.osc_in.empty()) {
+    auto in = parse_osc_in(options.osc_in);
+    if (!in) return Error{in.error()};
+    osc.in = std::move(*in);
+  } else if (options.fast) {
+    osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
+  }
+  for (const std::string& text : options.osc_out) {
+    auto out = parse_osc_out(text);
+    if (!out) return Error{out.error()};
+    if (!osc.out) osc.out.emplace();
+    osc.out->insert(osc.out->end(), out->begin(), out->end());
+  }
+  if (options.fast && !osc.out) osc.out.emplace();
+  if (!options.osc_allow.empty()) {
+    auto allow = parse_osc_allow(options.osc_allow);
+    if (!allow) return Error{allow.error()};
+    osc.allow = std::move(*allow);
+  }
+  return osc;
+}
+
+Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string& scene) {
+  EngineOptions engine;
+  engine.scene = scene;
+  engine.scene_options.data_dir = data_dir();
+  engine.scene_options.package_paths = options.package_paths;
+  engine.scene_options.seed = options.seed;
+  engine.fast = options.fast;
+  engine.strict = options.strict;
+  engine.threads = options.threads;
+  engine.ticks = options.ticks;
+  engine.duration = options.duration;
+  engine.preset = options.preset;
+  engine.record = options.record;
+  engine.replay = options.replay;
+  engine.current_scripts = options.current_scripts;
+  // batch runs, replays and films save no recovery file
+  const std::string state = state_dir();
+  if (!state.empty()) engine.lock_folder = state + "/locks";
+  if (!options.fast && options.replay.empty() && !options.display.offline() && !state.empty())
+    engine.recovery_folder = state + "/recovery";
+  engine.recover = options.recover;
+  for (const std::string& text : options.sets) {
+    Result<Message> set = parse_set(text);
+    if (!set) return Error{set.error()};
+    engine.sets.push_back(std::move(*set));
+  }
+  return engine;
+}
+
+int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
+  if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
+  if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
+  if (!options.replay.empty()) {
+    const ReplayResult result = engine.replay_result();
+    print_notice("{}", text_of(result));
+    if ((result.diverged_at && !options.current_scripts) || !result.damage.empty()) return kInputError;
+  }
+  if (options.strict && engine.faults() > 0)
+    return fail(kInputError, "--strict: there was a script error, a rejected value or a health event, see above");
+  return kSuccess;
+}
+
+// a console that can't be opened doesn't stop the show; batch runs have none, like ports. `retry`: a failure was
+// already reported
+void open_console(ConsoleServer& console, bool retry = false) {
+  if (!console.path().empty()) return;
+  if (const Result<void> open = console.start(); !open) {
+    if (!retry) log_warning("console not available, retrying: {}", open.error());
+    return;
+  }
+  print_notice("console {}", console.path());
+}
+
+// retries a port that was in use
+void retry_query(const std::optional<ListenAddress>& at, QueryServer& query) {
+  if (at && query.port() == 0 && query.start(*at)) print_notice("{}", query_line(at, query));
+}
+
+using QueryAddresses = std::optional<std::vector<ListenAddress>>;
+
+// opens the ports of OSC and OSCQuery and prints them
+Result<void> open_ports(const OscOptions& osc, const std::optional<ListenAddress>& at, Network& network,
+                        QueryServer& query) {
+  if (Result<void> open = network.start(); !open) return open;
+  Result<void> open = at ? query.start(*at) : Result<void>();
+  if (!open && !osc.optional) return open;
+  if (!open) log_warning("{}; retrying every second", open.error());
+  for (const std::string& line : network.status_lines()) print_notice("{}", line);
+  print_notice("{}", query_line(at, query));
+  return {};
+}
+
+// SIGUSR2 triggers a panic, whatever the main thread is doing
+class PanicSignal {
+ public:
+  explicit PanicSignal(EngineLink& link) {
+    active_link.store(&link);
+    system::on_user_signal([](int) {
+      if (EngineLink* const here = active_link.load()) here->panic_signal.store(true);
+    });
+  }
+  ~PanicSignal() { active_link.store(nullptr); }
+  PanicSignal(const PanicSignal&) = delete;
+  PanicSignal& operator=(const PanicSignal&) = delete;
+
+ private:
+  static inline std::atomic<EngineLink*> active_link{nullptr};
+};
+
+// Owns the engine, the network and the other services of a running show.
+class Playing {
+ public:
+  Playing(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
+          const QueryAddresses& query_addresses)
+      : options_(options),
+        osc_(osc),
+        query_addresses_(query_addresses),
+        scene_file_(engine_options.scene),
+        engine_(link_, with_notifier(std::move(engine_options))),
+        network_(link_, osc, transient_offsets()),
+        console_(link_, {.folder = "", .scene = printable(options.scene)}),
+        query_(link_, query_host(network_, osc.allow, options.query_names)) {
+    if ((!options.fast || options.watch) && options.replay.empty()) scene_watch_.emplace(link_, engine_, scene_file_);
+  }
+
+  /// Returns the exit code.
+  int play() {
+    bool interrupted = false;
+    {
+      Show show(engine_);
+      DisplayWatchdog frames;
+      ShowLoop loop(show, engine_, link_, notifier_, frames, options_);
+      if (const std::optional<int> failed = start(show, loop)) return *failed;
+      const auto end_without_window = [&](const char* why) {
+        log_error("{}", why);
+        const bool ended = interrupted || loop.run_headless();
+        show.end();
+        end_program(close(ended));
+      };
+      frames.start([&] { end_without_window("the display does not answer"); });
+      const bool waits = loop.open_window();
+      if (!show.result() && !waits) return fail_start(show.exit_code(), show.result().error());
+      show.allow_ticks(waits);
+      if (scene_watch_) scene_watch_->start();
+      if (!show.result()) log_error("{}\nthe world stays empty until the file is fixed", show.result().error());
+      // Xlib ends the program when the display is lost: the callback plays on headless instead and ends the program
+      // itself
+      Window::on_display_lost([&] { end_without_window("the display is lost; playing on headless"); });
+      interrupted = loop.run();
+      Window::on_display_lost({});
+      frames.ending();
+      loop.close_window();
+    }
+    return close(interrupted);
+  }
+
+ private:
+  EngineOptions with_notifier(EngineOptions options) {
+    options.on_iteration = [this] { notifier_.on_iteration(); };
+    return options;
+  }
+  // runs the scene, then opens the ports; returns the exit code if the show can't be played
+  std::optional<int> start(const Show& show, ShowLoop& loop) {
+    loop.wait_for_scene();
+    if (!show.result() && !loop.may_wait_for_fix()) return fail_start(show.exit_code(), show.result().error());
+    const std::optional<ListenAddress> at =
+        query_address(query_addresses_, effective_config(osc_, link_.osc_config.read().get()));
+    if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
+      return fail_start(kMachineError, open.error());
+    if (!options_.fast) open_console(console_);
+    loop.each_second([this, at] {
+      retry_query(at, query_);
+      if (!options_.fast) open_console(console_, true);
+    });
+    return std::nullopt;
+  }
+  int fail_start(int code, const std::string& why) {
+    engine_.end_recovery();
+    return fail(code, why);
+  }
+  int close(bool ended) {
+    notifier_.stopping();
+    {
+      ShutdownGuard guard([&] { end_program(finish(options_, engine_, ended)); });
+      engine_.finish_saving();
+      engine_.end_recovery();
+      guard.files_written();
+      scene_watch_.reset();
+      query_.stop();
+      network_.stop();
+      console_.stop();
+    }
+    return finish(options_, engine_, ended);
+  }
+
+  const PlayOptions& options_;
+  const OscOptions& osc_;
+  const QueryAddresses& query_addresses_;
+  const std::string scene_file_;
+  EngineLink link_;
+  const PanicSignal panic_signal_{link_};
+  ServiceNotifier notifier_;
+  Engine engine_;
+  Network network_;
+  ConsoleServer console_;
+  std::optional<SceneWatch> scene_watch_;
+  QueryServer query_;
+};
+
+// the given options that have no meaning for still images and films
+std::string ignored_options(const PlayOptions& options) {
+  std::string names;
+  const auto add = [&](bool given, const char* name) {
+    if (given) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+  };
+  add(!options.osc_in.empty() && options.osc_in != "off", "--osc-in");
+  add(!options.osc_out.empty() && options.osc_out.front() != "off", "--osc-out");
+  add(!options.query.empty() && options.query != "off", "--query");
+  add(options.watch, "--watch");
+  return names;
+}
+
+// renders a still image or a film offline, without network
+int render_scene(const PlayOptions& options, EngineOptions engine_options) {
+  EngineLink link;
+  if (const std::string ignored = ignored_options(options); !ignored.empty())
+    print_notice("rendering doesn't use the network: {} {} ignored", ignored,
+                 ignored.find(',') == std::string::npos ? "is" : "are");
+  const std::optional<double> duration = engine_options.duration;
+  Engine engine(link, std::move(engine_options));
+  if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
+  const RenderResult rendered = render(options.display, engine, link, duration, system::signal_arrived);
+  return rendered.code != kSuccess ? rendered.code : finish(options, engine, rendered.cancelled);
+}
+
+Result<void> open_output(const PlayOptions& options) {
+  OutputSetup setup;
+  setup.mode = options.fast || options.display.offline() ? OutputMode::batch : OutputMode::live;
+  setup.quiet = options.log.quiet;
+  if (!options.log.file.empty()) {
+    LogRotation rotation;
+    rotation.bytes = static_cast<std::uintmax_t>(options.log.megabytes * 1e6);
+    rotation.old_files = options.log.old_files;
+    Result<std::unique_ptr<LogFile>> log = LogFile::open(options.log.file, rotation);
+    if (!log) return Error{log.error()};
+    setup.log = std::move(*log);
+    setup.log_name = printable(options.log.file);
+  }
+  start_output(std::move(setup));
+  return {};
+}
+
+}  // namespace
+
+int play_command(const PlayOptions& options) {
+  const Result<void> resources = system::check_resources({24, 11 + options.threads, std::size_t{512} * 1024});
+  if (!resources) return fail(kMachineError, resources.error());
+  system::block_signals();
+  if (const Result<void> open = open_output(options); !open) return fail(kMachineError, open.error());
+  const bool replays = !options.replay.empty();
+  write_message(
+      MessageLevel::info,
+      fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.replay : options.scene)), "");
+  if (Result<void> display_check = check_display_options(options.display, options.duration); !display_check)
+    return fail(kUsageError, display_check.error());
+  if (options.recover && options.display.offline())
+    return fail(kUsageError, "--recover can't be combined with --render and --screenshot; leave them out");
+  Result<OscOptions> osc = parse_osc(options);
+  if (!osc) return fail(kUsageError, osc.error());
+  Result<QueryAddresses> query = parse_query(options.query);
+  if (!query) return fail(kUsageError, query.error());
+  if (options.fast && !*query) query->emplace();  // no port either
+  std::vector<std::string> searched;
+  const std::string scene = replays ? options.scene : find_scene(options.scene, searched);
+  // absolute, because the current folder may be replaced while the show plays
+  std::error_code fault;
+  const std::filesystem::path scene_path = std::filesystem::absolute(scene, fault);
+  Result<EngineOptions> engine_options = parse_engine(options, fault || scene.empty() ? scene : scene_path.string());
+  if (!engine_options) return fail(kUsageError, engine_options.error());
+  if (scene.empty()) return fail(kInputError, scene_not_found(options.scene, searched));
+  if (options.display.offline()) return render_scene(options, std::move(*engine_options));
+  return std::make_unique<Playing>(options, std::move(*engine_options), *osc, *query)->play();
+}
+
+}  // namespace limber

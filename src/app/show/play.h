@@ -1,0 +1,52 @@
+// `limber play`: plays a scene with OSC, a window or a status line once a second, until it ends or is stopped.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/view/display_options.h"
+
+namespace limber {
+
+/// Options of log messages.
+struct LogOptions {
+  std::string file;  ///< Log file; empty: none.
+  double megabytes = 10;
+  int old_files = 5;  ///< Number of old log files.
+  bool quiet = false;
+};
+
+/// Options of `play`, as typed.
+struct PlayOptions {
+  std::string scene = "scripts/arms.lua";
+  bool fast = false;
+  bool hash = false;
+  bool strict = false;
+  bool watch = false;  ///< Watch the scene's files under `fast` too.
+  std::optional<std::uint64_t> ticks;
+  std::optional<double> duration;
+  std::optional<std::uint64_t> seed;
+  int threads = 1;                ///< Number of threads for the physics.
+  std::vector<std::string> sets;  ///< PATH=VALUE
+  std::string preset;             ///< Recalled after the scene has run, before `sets`.
+  std::vector<std::string> package_paths;
+  std::string osc_in;  ///< Empty: not given.
+  std::string osc_allow;
+  std::vector<std::string> osc_out;
+  bool osc_optional = false;
+  std::string query;  ///< Empty: not given.
+  std::vector<std::string> query_names;
+  bool recover = false;          ///< Start with the values that a crashed run has left.
+  std::string record;            ///< File of the take to record.
+  std::string replay;            ///< File of the take to replay.
+  bool current_scripts = false;  ///< Replay with the current scripts instead of the recorded ones.
+  LogOptions log;
+  DisplayOptions display;
+};
+
+/// Plays. Returns the exit code: 0 success, 1 invalid input, 2 usage, 3 the machine. [main]
+int play_command(const PlayOptions& options);
+
+}  // namespace limber

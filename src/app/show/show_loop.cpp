@@ -1,0 +1,159 @@
+// Handles the causes that end a show, and limits the time of each wait.
+#include "app/show/show_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/exit_code.h"
+#include "base/log/log.h"
+#include "base/log/output.h"
+#include "base/system/service_manager.h"
+#include "base/system/signals.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+using namespace std::chrono_literals;
+using system::Signal;
+
+constexpr std::chrono::milliseconds kStatusInterval = 1s;
+
+// a thread that doesn't return can't be joined; all files are written, so the process may end
+[[noreturn]] void leave(std::string_view why) {
+  write_message(MessageLevel::warning, why);
+  begin_output_shutdown();
+  end_program(kInputError);
+}
+
+}  // namespace
+
+ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
+                   DisplayWatchdog& frames, const PlayOptions& options)
+    : show_(show),
+      engine_(engine),
+      link_(link),
+      notifier_(notifier),
+      frames_(frames),
+      options_(options),
+      prints_status_(!options.log.quiet && !system::standard_error_is_journal()) {}
+
+void ShowLoop::wait_for_scene() {
+  while (!show_.started()) {
+    notifier_.loading();
+    if (system::wait_for_signal(kStatusInterval) == Signal::terminate) leave("interrupted while the scene was loading");
+  }
+}
+
+bool ShowLoop::may_wait_for_fix() const {
+  return options_.replay.empty() && !options_.fast && !options_.display.headless && Window::has_display();
+}
+
+bool ShowLoop::should_await_display() const {
+  const DisplayOptions& display = options_.display;
+  const bool requested = display.fullscreen || !display.monitor.empty() || notifier_.present();
+  return requested && !display.headless && !options_.fast && Window::has_display();
+}
+
+bool ShowLoop::open_window() {
+  if (options_.fast) return false;
+  std::string why;
+  if (!options_.display.headless) {
+    auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
+    if (window) {
+      window_ = std::move(*window);
+      return true;
+    }
+    why = fmt::format(" ({})", window.error());
+  }
+  awaits_display_ = should_await_display();
+  print_notice("playing headless{}; {}", why,
+               awaits_display_ ? "the window opens as soon as there is a display" : "Ctrl+C ends it");
+  return awaits_display_;
+}
+
+bool ShowLoop::try_window() {
+  auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
+  if (!window) return false;
+  window_ = std::move(*window);
+  return true;
+}
+
+void ShowLoop::print_status() const {
+  const std::shared_ptr<const Snapshot> now = link_.snapshots.read();
+  if (now == nullptr) return;
+  std::size_t joints = 0;
+  for (const BodyEntry& body : now->body_list->bodies) joints += body.joint_offsets.size();
+  const std::string line =
+      fmt::format("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
+                  now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
+                  now->body_list->bodies.size(), joints, link_.counters.received.load(), link_.counters.sent.load(),
+                  link_.counters.dropped.load() + link_.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
+  notifier_.status(line);
+  if (prints_status_) write_line(OutputTo::error, "limber: " + line);
+}
+
+// retries everything that failed at the start
+void ShowLoop::retry() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_retry_ < kStatusInterval) return;
+  last_retry_ = now;
+  if (window_ == nullptr && awaits_display_ && try_window()) awaits_display_ = false;
+  retry_();
+}
+
+bool ShowLoop::run() {
+  while (!show_.over()) {
+    retry();
+    const WindowShow::End end =
+        window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
+    if (end == WindowShow::End::lost) return run_headless();
+    const bool closed = end == WindowShow::End::closed;
+    const Signal signal = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusInterval);
+    if (signal == Signal::none && window_ == nullptr) print_status();
+    if (signal != Signal::terminate && !closed) continue;
+    end_show();
+    return true;
+  }
+  return false;
+}
+
+bool ShowLoop::run_headless() {
+  awaits_display_ = false;
+  while (!show_.over()) {
+    retry();
+    const Signal signal = system::wait_for_signal(kStatusInterval);
+    if (signal == Signal::none) print_status();
+    if (signal != Signal::terminate) continue;
+    end_show();
+    return true;
+  }
+  return false;
+}
+
+void ShowLoop::close_window() {
+  frames_.call([&] { window_.reset(); });
+}
+
+void ShowLoop::end_show() {
+  begin_output_shutdown();
+  notifier_.stopping();
+  engine_.stop();
+  // wait for up to a second, less after another signal. A second signal may be a duplicate of the first (sent to
+  // the program and to its group), so a tick of normal length may still finish
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point deadline = Clock::now() + 900ms;
+  while (!show_.over() && Clock::now() < deadline) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+    if (system::wait_for_signal(left) != Signal::terminate) continue;
+    deadline = std::min(deadline, Clock::now() + std::chrono::milliseconds(250));
+  }
+  if (!show_.over()) leave("interrupted during a long tick. Reduce substeps or solver_iterations");
+}
+
+}  // namespace limber

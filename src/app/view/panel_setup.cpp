@@ -1,0 +1,54 @@
+// Collects the data from the modules and the user's folders.
+#include "app/view/panel_setup.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/console/history.h"
+#include "app/paths.h"
+#include "app/view/window.h"
+#include "sim/behavior/behavior_type.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// the built-in types and those in behaviors_lua
+std::vector<std::string> behavior_types() {
+  std::vector<std::string> names;
+  const BehaviorTypes built_in;
+  for (const auto& type : built_in.all()) names.push_back(type->name);
+  std::error_code fault;
+  for (const auto& entry : fs::directory_iterator(fs::path(data_dir()) / "behaviors_lua", fault)) {
+    if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace
+
+FreeArea free_part(const Gui& gui, int width, int height) {
+  const PanelRect& free = gui.layout().view;
+  if (gui.settings().hidden || free.empty()) return {};
+  return {free.x / width, free.y / height, free.width / width, free.height / height};
+}
+
+GuiOptions panel_options(Window* window, GlApi api) {
+  GuiOptions options;
+  options.glsl = gl_api_info(api).glsl;
+  options.behavior_types = behavior_types();
+  const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
+  options.history = history->lines();
+  options.store_line = [history](const std::string& line) { history->add(line); };
+  if (window == nullptr) return options;
+  options.copy = [window](const std::string& text) { window->clipboard(text); };
+  options.paste = [window] { return window->clipboard(); };
+  return options;
+}
+
+}  // namespace limber

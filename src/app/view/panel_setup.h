@@ -1,0 +1,19 @@
+// Collects the panel's inputs from the app: settings, behavior types, console history, clipboard.
+#pragma once
+
+#include "ui/panel/gui.h"
+#include "ui/render/camera.h"
+#include "ui/render/gl.h"
+
+namespace limber {
+
+class Window;
+
+/// Returns the part of a view of this size that the panel doesn't cover. [main]
+FreeArea free_part(const Gui& gui, int width, int height);
+
+/// Returns the options of the panel. `window`: provides the clipboard and must outlive the panel; null: no clipboard.
+/// `api`: OpenGL kind of the context that draws the panel. [main]
+GuiOptions panel_options(Window* window, GlApi api);
+
+}  // namespace limber

@@ -1,0 +1,316 @@
+// The frame loop of a window.
+#include "app/view/window_show.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "app/paths.h"
+#include "app/view/panel_setup.h"
+#include "base/log/log.h"
+#include "base/log/output.h"
+#include "base/system/clock.h"
+#include "base/system/thread.h"
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLongestInterval = 0.1;  // s; longer gaps between snapshots are not interpolated
+// time in s after the last camera movement in which the local camera overrides the snapshot's
+constexpr double kLocalCameraTime = 0.3;
+constexpr double kShaderCheckInterval = 0.25;  // s
+constexpr double kOrbitSpeed = 2.5;            // rad per height of the window
+constexpr double kZoomStep = 0.88;             // factor of the distance per step
+
+Orbit orbit_of(const CameraView& camera) {
+  const ViewCamera view_camera = make_view_camera(camera, 1, 1);
+  return {view_camera.eye, view_camera.target};
+}
+
+// true if both have the same poses, shapes and values
+bool looks_alike(const Snapshot& a, const Snapshot& b) {
+  if (a.tick != b.tick || a.render_scene != b.render_scene || a.visuals_version != b.visuals_version ||
+      a.transient.size() != b.transient.size() || a.overlay.size() != b.overlay.size())
+    return false;
+  const TransientOffsets& at = transient_offsets();
+  for (const BodyEntry& body : b.body_list->bodies) {
+    if (a.transient[body.enabled_offset] != b.transient[body.enabled_offset]) return false;
+    for (const std::uint32_t part : body.part_offsets) {
+      const auto same = [&](std::uint32_t offset, std::size_t width) {
+        const auto* const first = a.transient.data() + part + offset;
+        return std::equal(first, first + width, b.transient.data() + part + offset);
+      };
+      if (!same(at.part_position, 3) || !same(at.part_rotation, 4)) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<Arg> numbers(const Vec3& v) { return {Arg::of(v.x), Arg::of(v.y), Arg::of(v.z)}; }
+
+}  // namespace
+
+Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& options, const std::string& scene,
+                                                     EngineLink& link) {
+  // software renderers create their worker threads from this thread, and use every core
+  system::lower_thread_priority();
+  Result<ImageSize> size = image_size(options);
+  if (!size) return Error{size.error()};
+  const PanelSettings settings = load_settings(settings_file());
+  if (options.size.empty() && settings.window_width > 0 && settings.window_height > 0)
+    *size = {settings.window_width, settings.window_height};
+  Result<std::unique_ptr<Window>> window =
+      Window::open(fmt::format("Limber: {}", scene), size->width, size->height, gl_apis(options.gl));
+  if (!window) return Error{window.error()};
+  const GlApiInfo& api = gl_api_info((*window)->api());
+  // GPUs without OpenGL 3.3 are those of single-board computers
+  const bool software = gl_is_software();
+  const bool slow = software || api.api != GlApi::core;
+  const Quality quality = render_quality(options, slow ? Quality::low : Quality::high);
+  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api.api, shader_dir(), quality);
+  if (!renderer) return Error{renderer.error()};
+  print_notice("window {} × {}, drawn by {} with {}", size->width, size->height, gl_driver(), api.name);
+  if (slow && options.quality.empty())
+    print_notice("using --quality low because of {}; --quality high looks better",
+                 software ? "software rendering" : api.name);
+  return std::unique_ptr<WindowShow>(
+      new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
+}
+
+WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer,
+                       const DisplayOptions& options, const PanelSettings& settings, std::string scene,
+                       EngineLink& link)
+    : window_(std::move(window)),
+      renderer_(std::move(renderer)),
+      settings_file_(settings_file()),
+      saved_settings_(settings),
+      panel_scale_(options.panel_scale.value_or(1)),
+      fixed_size_(!options.size.empty()),
+      scene_(std::move(scene)),
+      link_(link) {
+  GuiOptions panel = panel_options(window_.get(), window_->api());
+  panel.settings = settings;
+  if (!options.monitor.empty()) panel.settings.monitor = options.monitor;
+  if (options.hide_pointer) panel.settings.hide_pointer = *options.hide_pointer;
+  const bool fullscreen = options.fullscreen.value_or(settings.fullscreen);
+  gui_ = std::make_unique<Gui>(link_, std::move(panel));
+  if (const std::string& monitor = gui_->settings().monitor; !monitor.empty()) {
+    if (const Result<void> moved = window_->move_to_monitor(monitor); !moved) log_warning("{}", moved.error());
+  }
+  if (gui_->settings().hide_pointer) window_->hide_pointer();
+  if (fullscreen) window_->toggle_full_screen();
+}
+
+WindowShow::~WindowShow() {
+  PanelSettings now = gui_->settings();
+  if (!fixed_size_ && window_->width() > 0 && !window_->is_full_screen()) {
+    now.window_width = window_->width();
+    now.window_height = window_->height();
+  }
+  now.fullscreen = window_->is_full_screen();
+  if (now != saved_settings_) save_settings(settings_file_, now);
+}
+
+void WindowShow::send(std::vector<Message> messages) {
+  link_.command_queue.push({std::move(messages), CommandOrigin{CommandSource::panel, 0, 0, false}});
+  link_.wake_engine();
+}
+
+// drawing lags one tick behind, so that there are two snapshots to interpolate; if ticks are more frequent than frames,
+// the latest snapshot is drawn
+void WindowShow::update_snapshots(double now) {
+  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  if (newest == nullptr || newest == now_) return;
+  if (now_ == nullptr) initial_view_ = orbit_of(camera_of(*newest));
+  const bool moves = now_ != nullptr && newest->tick == now_->tick + 1 && newest->render_scene == now_->render_scene;
+  before_ = moves ? now_ : newest;
+  if (moves || now_ == nullptr) {
+    interval_ = std::min(now - snapshot_time_, kLongestInterval);
+    snapshot_time_ = now;
+  }
+  now_ = newest;
+}
+
+// sends the eye twice, because a new eye is ignored if it equals the old target
+void WindowShow::set_camera(const Orbit& orbit) {
+  send({{"/visuals/camera/eye", numbers(orbit.eye)},
+        {"/visuals/camera/target", numbers(orbit.target)},
+        {"/visuals/camera/eye", numbers(orbit.eye)}});
+}
+
+// the panel has priority; the view receives the remaining events
+void WindowShow::handle_input(int width, int height, double now) {
+  const std::vector<InputEvent> events = window_->consume_events();
+  for (const InputEvent& event : events) gui_->push(event);
+  if (output_ != nullptr) {
+    for (const InputEvent& key : output_->consume_keys()) gui_->push(key);
+  }
+  if (gui_->context().show_help) gui_->key_labels(window_->key_labels());
+  gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
+  for (const HotkeyAction action : gui_->consume_actions()) act(action);
+  PanelContext& context = gui_->context();
+  if (context.value_snapshot != nullptr) {
+    const ViewState view{*now_,
+                         *context.value_snapshot,
+                         make_view_camera(camera_of(*now_), width, height, free_part(*gui_, width, height)),
+                         width,
+                         height,
+                         now};
+    for (const InputEvent& event : events) {
+      const bool release = event.kind == InputEvent::Kind::button && !event.down;
+      if (release || event.kind == InputEvent::Kind::move || !gui_->wants_mouse()) viewport_mouse_.event(event, view);
+    }
+    viewport_mouse_.frame(view);
+    if (std::vector<Message> messages = viewport_mouse_.consume_messages(); !messages.empty())
+      send(std::move(messages));
+    if (std::string selection = viewport_mouse_.consume_selection(); !selection.empty())
+      context.select(std::move(selection));
+    context.spring_marker.reset();
+    if (const auto marker = viewport_mouse_.drag_marker(view))
+      context.spring_marker = {marker->x, marker->y, marker->to_x, marker->to_y, marker->name};
+  }
+  handle_mouse();
+  follow_part();
+}
+
+void WindowShow::act(HotkeyAction action) {
+  if (action == HotkeyAction::output) toggle_output();
+  if (action == HotkeyAction::full_screen)
+    output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
+  if (action != HotkeyAction::default_view && action != HotkeyAction::restore_view) return;
+  viewport_mouse_.stop_following();
+  if (action == HotkeyAction::default_view) set_camera(initial_view_);
+}
+
+void WindowShow::toggle_output() {
+  if (output_ != nullptr) return output_.reset();
+  Result<std::unique_ptr<OutputWindow>> opened = OutputWindow::open(*window_, scene_);
+  if (opened) {
+    output_ = std::move(*opened);
+  } else {
+    log_error("{}", opened.error());
+  }
+}
+
+Result<void> WindowShow::draw_window(double mix, int width, int height) {
+  if (Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height, free_part(*gui_, width, height));
+      !drawn)
+    return drawn;
+  renderer_->present(width, height);
+  gui_->paint();
+  window_->swap();
+  return {};
+}
+
+// after the first window's frame was submitted
+Result<void> WindowShow::draw_output(double mix) {
+  if (output_ != nullptr && output_->closed()) output_.reset();
+  return output_ == nullptr ? Result<void>() : output_->draw(*renderer_, *before_, *now_, mix);
+}
+
+void WindowShow::follow_part() {
+  if (!viewport_mouse_.followed() || *viewport_mouse_.followed() >= now_->transient.size()) {
+    viewport_mouse_.stop_following();
+    follow_part_.reset();
+    return;
+  }
+  const Vec3 at = part_pose(*now_, *viewport_mouse_.followed()).position;
+  if (follow_part_ != viewport_mouse_.followed()) {
+    follow_part_ = viewport_mouse_.followed();
+    const Orbit orbit = orbit_of(camera_of(*now_));
+    follow_offset_ = orbit.eye - orbit.target;
+  }
+  set_camera({at + follow_offset_, at});
+}
+
+void WindowShow::handle_mouse() {
+  const MouseMovement mouse = window_->consume_mouse();
+  if (!mouse.any() || gui_->wants_mouse() || viewport_mouse_.has_grab()) return;
+  const CameraView camera = camera_of(*now_);
+  const double now = system::clock_seconds();
+  if (now - camera_move_time_ > kLocalCameraTime) orbit_ = orbit_of(camera);
+  camera_move_time_ = now;
+  // relative to the part of the window that the panel leaves free
+  const double height = std::max(window_->height(), 1) *
+                        free_part(*gui_, std::max(window_->width(), 1), std::max(window_->height(), 1)).height;
+  orbit_.orbit(kOrbitSpeed * mouse.orbit_x / height, kOrbitSpeed * mouse.orbit_y / height);
+  orbit_.pan(mouse.pan_x / height, -mouse.pan_y / height, camera.fovy);
+  orbit_.zoom(std::pow(kZoomStep, mouse.wheel));
+  if (mouse.pan_x != 0 || mouse.pan_y != 0) viewport_mouse_.stop_following();
+  follow_offset_ = orbit_.eye - orbit_.target;
+  set_camera(orbit_);
+}
+
+void WindowShow::update_title(double now) {
+  frames_++;
+  if (now - title_time_ < 1) return;
+  window_->title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_,
+                             frames_ / (now - title_time_), now_->speed, now_->paused ? "  paused" : ""));
+  frames_ = 0;
+  title_time_ = now;
+}
+
+// an idle, paused show needs few frames
+void WindowShow::check_for_changes(double now) {
+  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  const int width = window_->width();
+  const int height = window_->height();
+  const bool moved =
+      newest != nullptr && (last_seen_ == nullptr || !newest->paused || !looks_alike(*last_seen_, *newest));
+  const bool input = window_->has_events() || (output_ != nullptr && output_->has_events()) || gui_->has_events();
+  if (!moved && !input && width == seen_width_ && height == seen_height_) return;
+  last_seen_ = newest;
+  seen_width_ = width;
+  seen_height_ = height;
+  pace_.note_activity(now);
+}
+
+WindowShow::End WindowShow::frame() {
+  // limits the rate if the screen doesn't
+  const double rate = window_->refresh_rate();
+  double now = system::clock_seconds();
+  const double wait = pace_.wait_time(now, rate);
+  window_->poll(wait > 0.001 ? wait : 0);
+  now = system::clock_seconds();
+  if (window_->lost()) {
+    log_error("the window is lost; playing on headless");
+    return End::lost;
+  }
+  if (window_->closed()) return End::closed;
+  check_for_changes(now);
+  if (!pace_.frame_due(now, rate)) return End::none;  // woken by an event before the next frame
+  pace_.begin_frame(now);
+  update_snapshots(now);
+  if (now_ == nullptr) return End::none;
+  if (now - shader_check_time_ > kShaderCheckInterval) {
+    shader_check_time_ = now;
+    renderer_->reload_shaders();
+  }
+  const int width = window_->width();
+  const int height = window_->height();
+  const bool visible = width > 0 && height > 0;
+  if (!visible && output_ == nullptr) {
+    window_->poll(0.05);
+    return End::none;
+  }
+  const double mix = interval_ <= 0 ? 1 : std::clamp((now - snapshot_time_) / interval_, 0.0, 1.0);
+  if (visible) {
+    handle_input(width, height, now);
+    if (const Result<void> drawn = draw_window(mix, width, height); !drawn) {
+      log_error("{}; playing on headless", drawn.error());
+      return End::lost;
+    }
+  }
+  if (const Result<void> drawn = draw_output(mix); !drawn) {
+    log_error("{}; closing the output window", drawn.error());
+    output_.reset();
+  }
+  update_title(now);
+  return End::none;
+}
+
+}  // namespace limber

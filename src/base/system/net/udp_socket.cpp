@@ -1,0 +1,48 @@
+// UDP sockets of POSIX: single datagrams.
+#include "base/system/net/udp_socket.h"
+
+#include <cerrno>
+#include <system_error>
+
+#include "base/system/net/socket_address.h"
+#include "base/system/open.h"
+
+namespace limber::system {
+
+Endpoint UdpSocket::local() const {
+  sockaddr_in address{};
+  socklen_t length = sizeof address;
+  if (getsockname(fd(), reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
+  return endpoint_of(address);
+}
+
+Result<UdpSocket> open_udp(const Endpoint& at) {
+  const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
+  UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
+  if (!socket.is_open()) return system_error();
+  const sockaddr_in address = socket_address(at);
+  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
+  return socket;
+}
+
+void set_send_buffer(int fd, int bytes) { setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes); }
+
+void allow_broadcast(int fd) {
+  const int on = 1;
+  setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
+}
+
+bool may_report_earlier_datagram(int error) {
+  return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH;
+}
+
+int send_datagram(int fd, const Endpoint& to, std::span<const char> packet) {
+  const sockaddr_in address = socket_address(to);
+  const auto send = [&] {
+    const auto* where = reinterpret_cast<const sockaddr*>(&address);
+    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal, where, sizeof address) >= 0;
+  };
+  return send() || (may_report_earlier_datagram(errno) && send()) ? 0 : errno;
+}
+
+}  // namespace limber::system

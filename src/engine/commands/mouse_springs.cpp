@@ -1,0 +1,41 @@
+// Mouse springs.
+#include "engine/commands/mouse_springs.h"
+
+#include <algorithm>
+
+namespace limber {
+
+bool MouseSprings::attach(World& world, NodeId part, const Vec3& point, const Vec3& target) {
+  const auto same =
+      std::find_if(springs_.begin(), springs_.end(), [&](const Spring& spring) { return spring.part == part; });
+  if (same == springs_.end() && springs_.size() >= kMaxSprings) return false;
+  Spring& spring = same == springs_.end() ? springs_.emplace_back() : *same;
+  spring = {part, point, target, world.time() + kTimeout};
+  return true;
+}
+
+void MouseSprings::release(NodeId part) {
+  std::erase_if(springs_, [&](const Spring& spring) { return spring.part == part; });
+}
+
+void MouseSprings::apply_forces(World& world) {
+  if (springs_.empty()) return;
+  const Store& store = world.store();
+  std::erase_if(springs_,
+                [&](const Spring& spring) { return !store.alive(spring.part) || world.time() > spring.until; });
+  for (const Spring& spring : springs_) {
+    Part& part = *static_cast<Part*>(store.object(spring.part));
+    double mass = 0;
+    for (const auto& other : part.body().parts()) mass += other->is_static() ? 0 : other->mass();
+    const Pose pose = part.pose();
+    const Vec3 at = pose.position + pose.rotation * spring.point;
+    const Vec3 velocity = part.linear_velocity() + glm::cross(part.angular_velocity(), at - part.center());
+    // sized for the mass of the whole body, but limited for the part, so that explicit integration stays stable
+    const double dt = world.timestep();
+    const double stiffness = std::min(mass * kOmega * kOmega, 0.3 * part.mass() / (dt * dt));
+    const double damping = std::min(2 * mass * kOmega, 0.4 * part.mass() / dt);
+    part.apply_force_at(stiffness * (spring.target - at) - damping * velocity, at);
+  }
+}
+
+}  // namespace limber

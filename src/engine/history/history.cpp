@@ -1,0 +1,257 @@
+// Capture, restore and disposal of checkpoints, and the recorded inputs between them.
+#include "engine/history/history.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/log/log.h"
+
+namespace limber {
+
+namespace {
+
+enum class Record : std::uint8_t { input, stopped_call, paused_pass, running_pass };
+
+constexpr std::size_t kMaxInputBytes = std::size_t{4} << 20;  // bytes of inputs after one checkpoint
+constexpr std::uint64_t kTicksBetweenStops = 15;  // ticks: limits checkpoints caused by repeatedly stopped calls
+
+}  // namespace
+
+std::size_t History::bytes() const {
+  std::size_t total = pages_.bytes();
+  const UndoStack::State* last_undo = nullptr;
+  for (const auto& checkpoint : checkpoints_) {
+    total += const_cast<Archive&>(checkpoint->inputs).bytes().capacity() + checkpoint->handler_queue.bytes();
+    if (checkpoint->undo.get() != last_undo) total += checkpoint->undo->size();
+    last_undo = checkpoint->undo.get();
+  }
+  return total;
+}
+
+void History::clear(std::string_view why) {
+  while (!checkpoints_.empty()) drop(checkpoints_.size() - 1);
+  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  pinned_tick_ = kNoTick;
+  limit_reason_ = why;
+  too_large_ = false;
+}
+
+// a checkpoint lists nodes in order, so it fits only the structure that it was captured from
+bool History::validate(const Session& session) {
+  const std::uint64_t structure = session.store.structure_version();
+  if (std::exchange(structure_version_, structure) != structure && !checkpoints_.empty())
+    clear("objects were added or removed");
+  return !checkpoints_.empty();
+}
+
+void History::drop(std::size_t index) {
+  std::unique_ptr<Checkpoint> checkpoint = std::move(checkpoints_[index]);
+  checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(index));
+  recycle(std::move(checkpoint));
+}
+
+void History::recycle(std::unique_ptr<Checkpoint> checkpoint) {
+  checkpoint->world.release(pages_);
+  checkpoint->scene.release(pages_);
+  checkpoint->handler_queue.clear();
+  checkpoint->inputs.resume_saving(0);
+  free_.push_back(std::move(checkpoint));
+}
+
+void History::drop_oldest() {
+  if (checkpoints_.front()->tick != pinned_tick_) return drop(0);
+  pinned_ = std::move(checkpoints_.front());
+  pinned_->inputs.resume_saving(0);
+  checkpoints_.erase(checkpoints_.begin());
+}
+
+void History::pin() {
+  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  pinned_tick_ = checkpoints_.empty() ? kNoTick : checkpoints_.back()->tick;
+}
+
+void History::record_input(const Message& message, const CommandOrigin& origin, bool evaluate) {
+  if (checkpoints_.empty()) return;
+  input_.message = message;
+  input_.origin = origin;
+  input_.evaluate = evaluate;
+  Archive& inputs = checkpoints_.back()->inputs;
+  auto record = Record::input;
+  inputs.serialize(record);
+  serialize_input(inputs, input_);
+}
+
+void History::serialize_input(Archive& bytes, TakeMessage& input) {
+  bytes.serialize_all(input.evaluate, input.origin, input.message.address);
+  std::size_t count = input.message.args.size();
+  bytes.serialize(count);
+  input.message.args.resize(count);
+  for (Arg& arg : input.message.args) bytes.serialize_all(arg.kind, arg.number, arg.text);
+}
+
+void History::serialize_stop(Archive& bytes, StoppedCall& stop) {
+  bytes.serialize_all(stop.number, stop.file, stop.line, stop.text);
+}
+
+void History::end_pass(Session& session, const CallLog& calls, bool running, double seconds) {
+  if (seconds <= 0) {
+    if (!checkpoints_.empty()) clear("history is switched off");
+    limit_reason_ = "history is switched off";
+    free_.clear();
+    if (pages_.bytes() == 0) pages_.clear();
+    release_ended_runs(session);
+    return;
+  }
+  if (validate(session)) {
+    Archive& inputs = checkpoints_.back()->inputs;
+    for (const StoppedCall& stop : calls.stopped_since_rewind()) {
+      auto record = Record::stopped_call;
+      inputs.serialize(record);
+      stop_ = stop;
+      serialize_stop(inputs, stop_);
+    }
+    const bool empty = inputs.bytes().size() == pass_start_;
+    if (running || !empty) {
+      auto record = running ? Record::running_pass : Record::paused_pass;
+      inputs.serialize(record);
+    }
+    pass_start_ = inputs.bytes().size();
+  }
+  if (checkpoint_due(session.world, !calls.stopped().empty())) capture_checkpoint(session);
+  trim(session.world, seconds);
+  release_ended_runs(session);
+}
+
+// Releases scene runs with no timer that was active at or after the oldest checkpoint.
+void History::release_ended_runs(Session& session) const {
+  if (session.scene == nullptr) return;
+  session.scene->release_ended(pinned_ != nullptr ? pinned_->tick : empty() ? kNoTick : oldest_tick());
+}
+
+bool History::checkpoint_due(const World& world, bool stopped) const {
+  if (too_large_) return false;
+  const bool interval_over =
+      world.time() >= checkpoint_time_ + kCheckpointInterval - 1e-9 || world.tick() < checkpoint_tick_;
+  if (checkpoints_.empty()) return interval_over || checkpoint_tick_ == 0;
+  if (interval_over) return true;
+  // changes that a call made in Lua before it was stopped can't be reproduced from inputs
+  if (stopped && world.tick() >= checkpoint_tick_ + kTicksBetweenStops) return true;
+  return pass_start_ > kMaxInputBytes;
+}
+
+void History::capture_checkpoint(Session& session) {
+  if (free_.empty()) free_.push_back(std::make_unique<Checkpoint>());
+  std::unique_ptr<Checkpoint> checkpoint = std::move(free_.back());
+  free_.pop_back();
+  const Checkpoint* const previous = checkpoints_.empty() ? nullptr : checkpoints_.back().get();
+  checkpoint->tick = checkpoint_tick_ = session.world.tick();
+  checkpoint->time = checkpoint_time_ = session.world.time();
+  checkpoint->world.capture(session.world, pages_, previous == nullptr ? nullptr : &previous->world, scratch_);
+  checkpoint->has_scene = session.scene != nullptr;
+  if (checkpoint->has_scene)
+    checkpoint->scene.capture(*session.scene, pages_, previous == nullptr ? nullptr : &previous->scene, scratch_);
+  if (const std::uint64_t now = overrides_.version();
+      shared_overrides_.copy == nullptr || shared_overrides_.version != now)
+    shared_overrides_ = {std::make_shared<const Overrides>(overrides_), now};
+  if (const std::uint64_t now = undo_.version(); shared_undo_.copy == nullptr || shared_undo_.version != now)
+    shared_undo_ = {undo_.state(), now};
+  checkpoint->overrides = shared_overrides_.copy;
+  checkpoint->undo = shared_undo_.copy;
+  presets_.capture(checkpoint->presets);
+  checkpoint->mouse_springs = session.dispatcher.mouse_springs();
+  checkpoint->handler_queue = handler_queue_;
+  checkpoint->inputs.begin_saving();
+  pass_start_ = 0;
+  checkpoints_.push_back(std::move(checkpoint));
+}
+
+void History::trim(const World& world, double seconds) {
+  while (checkpoints_.size() > 1 && checkpoints_[1]->time <= world.time() - seconds + 1e-9) {
+    drop_oldest();
+    limit_reason_ = "history is limited by /physics/sim/history";
+  }
+  bool shortage = false;
+  while (checkpoints_.size() > 1 && bytes() > max_bytes_) {
+    drop_oldest();
+    shortage = true;
+    limit_reason_ = "history is limited to 256 MB";
+  }
+  if (checkpoints_.size() == 1 && bytes() > max_bytes_) {
+    clear("one checkpoint of this scene takes more than 256 MB");
+    too_large_ = shortage = true;
+  }
+  if (!shortage || std::exchange(shortage_reported_, true)) return;
+  log_info("history: {:.0f} s instead of {:.0f} s: {} (reported once)",
+           checkpoints_.empty() ? 0 : world.time() - oldest_time(), seconds, limit_reason_);
+}
+
+void History::restore_checkpoint(Session& session, std::size_t index) {
+  while (checkpoints_.size() > index + 1) drop(checkpoints_.size() - 1);
+  Checkpoint& checkpoint = *checkpoints_[index];
+  checkpoint.world.restore(session.world, pages_, scratch_);
+  if (checkpoint.has_scene) checkpoint.scene.restore(*session.scene, pages_, scratch_);
+  overrides_.restore(*checkpoint.overrides);
+  undo_.restore(*checkpoint.undo);
+  presets_.restore(checkpoint.presets);
+  shared_overrides_ = {checkpoint.overrides, overrides_.version()};
+  shared_undo_ = {checkpoint.undo, undo_.version()};
+  session.dispatcher.mouse_springs() = checkpoint.mouse_springs;
+  handler_queue_ = checkpoint.handler_queue;
+  checkpoint_tick_ = checkpoint.tick;
+  checkpoint_time_ = checkpoint.time;
+  checkpoint.inputs.begin_loading();
+  last_pass_start_ = 0;
+}
+
+void History::restore(Session& session, const RewindTarget& target) {
+  const double half_tick = session.world.timestep() / 2;
+  std::size_t index = checkpoints_.size();
+  while (--index > 0) {
+    const Checkpoint& checkpoint = *checkpoints_[index];
+    if (target.time ? checkpoint.time <= *target.time + half_tick : checkpoint.tick <= target.tick) break;
+  }
+  // the inputs of the current, unfinished pass belong to the discarded future
+  checkpoints_.back()->inputs.resume_saving(pass_start_);
+  restore_checkpoint(session, index);
+}
+
+bool History::next(RecordedPass& pass) {
+  Archive& inputs = checkpoints_.back()->inputs;
+  pass.messages.clear();
+  pass.stopped.clear();
+  last_pass_start_ = inputs.position();
+  while (inputs.position() < inputs.bytes().size()) {
+    auto record = Record::input;
+    inputs.serialize(record);
+    if (record == Record::input) {
+      serialize_input(inputs, pass.messages.emplace_back());
+    } else if (record == Record::stopped_call) {
+      serialize_stop(inputs, pass.stopped.emplace_back());
+    } else {
+      pass.running = record == Record::running_pass;
+      return true;
+    }
+  }
+  return false;
+}
+
+void History::truncate(bool last) {
+  Archive& inputs = checkpoints_.back()->inputs;
+  pass_start_ = last ? last_pass_start_ : inputs.position();
+  inputs.resume_saving(pass_start_);
+}
+
+bool History::restore_before(Session& session, std::uint64_t tick) {
+  std::size_t index = checkpoints_.size();
+  while (index > 0 && checkpoints_[index - 1]->tick >= tick) index--;
+  if (index == 0) {
+    if (pinned_ == nullptr || pinned_->tick >= tick) return false;
+    checkpoints_.insert(checkpoints_.begin(), std::move(pinned_));
+    index = 1;
+  }
+  restore_checkpoint(session, index - 1);
+  truncate();
+  return true;
+}
+
+}  // namespace limber

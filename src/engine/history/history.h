@@ -1,0 +1,146 @@
+// History: the last seconds of the simulation, for rewind: checkpoints at most a second apart, and all inputs between
+// them. An earlier tick is reached by restoring a checkpoint and replaying the inputs. [sim]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/memory/archive.h"
+#include "base/memory/page_store.h"
+#include "engine/commands/handler_queue.h"
+#include "engine/commands/mouse_springs.h"
+#include "engine/edits/overrides.h"
+#include "engine/edits/undo_stack.h"
+#include "engine/presets/presets.h"
+#include "engine/session.h"
+#include "engine/takes/take.h"
+#include "script/scene/scene_checkpoint.h"
+#include "script/vm/call_log.h"
+#include "sim/state/world_checkpoint.h"
+
+namespace limber {
+
+/// All inputs of one pass of the engine (Engine::run_pass).
+struct RecordedPass {
+  bool running = false;  ///< Simulated time advanced.
+  std::vector<TakeMessage> messages;
+  std::vector<StoppedCall> stopped;
+};
+
+/// Target of a rewind.
+struct RewindTarget {
+  std::uint64_t tick = 0;
+  std::optional<double> time;  ///< s; takes precedence over `tick`.
+
+  /// True if the world is at the target or past it.
+  bool reached(const World& world) const {
+    return time ? world.time() + world.timestep() / 2 > *time : world.tick() >= tick;
+  }
+};
+
+class History {
+ public:
+  static constexpr double kCheckpointInterval = 1;                  ///< Simulated seconds between checkpoints.
+  static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  ///< Memory limit of the history, in bytes.
+
+  History(Overrides& overrides, UndoStack& undo, Presets& presets, HandlerQueue& handler_queue)
+      : overrides_(overrides), undo_(undo), presets_(presets), handler_queue_(handler_queue) {}
+
+  /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
+  void clear(std::string_view why);
+  /// Records a message, or Lua code from a console, as input of the current pass.
+  void record_input(const Message& message, const CommandOrigin& origin, bool evaluate = false);
+  /// Ends the pass: records the stopped calls in `calls`, captures a checkpoint if one is due and discards everything
+  /// older than `seconds`; 0 switches history off.
+  void end_pass(Session& session, const CallLog& calls, bool running, double seconds);
+  /// Sets the memory limit: a replay may use more than kMaxBytes.
+  void set_max_bytes(std::size_t bytes) { max_bytes_ = bytes; }
+
+  bool empty() const { return checkpoints_.empty(); }
+  /// True if there is a checkpoint to restore. Discards the history if nodes were added or removed since the last call:
+  /// checkpoints fit only the structure that they were captured from. [sim]
+  bool validate(const Session& session);
+  /// Reason why older checkpoints were discarded, for error messages.
+  const std::string& limit_reason() const { return limit_reason_; }
+  double oldest_time() const { return checkpoints_.empty() ? 0 : checkpoints_.front()->time; }
+  std::uint64_t oldest_tick() const { return checkpoints_.empty() ? 0 : checkpoints_.front()->tick; }
+  /// Tick of the newest checkpoint.
+  std::uint64_t newest_tick() const { return checkpoints_.empty() ? 0 : checkpoints_.back()->tick; }
+  /// Memory use in bytes.
+  std::size_t bytes() const;
+
+  /// Restores the newest checkpoint that is not after the target, else the oldest; must not be empty. Then next()
+  /// supplies the recorded passes after the checkpoint.
+  void restore(Session& session, const RewindTarget& target);
+  /// Reads the next recorded pass. False at the end of the recording.
+  bool next(RecordedPass& pass);
+  /// Discards the passes that next() has not read yet. `last`: also the last one that it has read.
+  void truncate(bool last = false);
+  /// Keeps the newest checkpoint, regardless of its age, for restore_before(), until clear() or the next pin().
+  void pin();
+  /// Restores the newest checkpoint before a tick and discards everything after it. False if there is none.
+  bool restore_before(Session& session, std::uint64_t tick);
+
+ private:
+  struct Checkpoint {
+    std::uint64_t tick = 0;
+    double time = 0;
+    WorldCheckpoint world;
+    SceneCheckpoint scene;
+    bool has_scene = false;
+    std::shared_ptr<const Overrides> overrides;
+    std::shared_ptr<const UndoStack::State> undo;
+    Presets::State presets;
+    MouseSprings mouse_springs;
+    HandlerQueue handler_queue;
+    Archive inputs;  // inputs of the passes after the checkpoint
+  };
+  /// A shared copy and the version of the original, to avoid copying unchanged data.
+  template <class T>
+  struct Shared {
+    std::shared_ptr<const T> copy;
+    std::uint64_t version = 0;
+  };
+
+  static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
+  bool checkpoint_due(const World& world, bool stopped) const;
+  void capture_checkpoint(Session& session);
+  void restore_checkpoint(Session& session, std::size_t index);
+  void drop(std::size_t index);
+  void recycle(std::unique_ptr<Checkpoint> checkpoint);
+  void drop_oldest();
+  void trim(const World& world, double seconds);
+  void release_ended_runs(Session& session) const;
+  static void serialize_input(Archive& bytes, TakeMessage& input);
+  static void serialize_stop(Archive& bytes, StoppedCall& stop);
+
+  Overrides& overrides_;
+  UndoStack& undo_;
+  Presets& presets_;
+  HandlerQueue& handler_queue_;
+  PageStore pages_;
+  std::vector<std::unique_ptr<Checkpoint>> checkpoints_;  // oldest first
+  std::unique_ptr<Checkpoint> pinned_;                    // pinned checkpoint that left the list, without inputs
+  std::uint64_t pinned_tick_ = kNoTick;                   // tick of the pinned checkpoint
+  std::vector<std::unique_ptr<Checkpoint>> free_;         // discarded checkpoints; their memory is reused
+  Shared<Overrides> shared_overrides_;
+  Shared<UndoStack::State> shared_undo_;
+  std::uint64_t structure_version_ = 0;  // structure version of the store, the same for all checkpoints
+  std::uint64_t checkpoint_tick_ = 0;    // of the last checkpoint
+  double checkpoint_time_ = 0;
+  bool too_large_ = false;
+  bool shortage_reported_ = false;
+  std::size_t max_bytes_ = kMaxBytes;
+  std::size_t pass_start_ = 0;       // offset of the current pass in the inputs of the newest checkpoint
+  std::size_t last_pass_start_ = 0;  // offset of the pass that next() has read last
+  std::string limit_reason_ = "the scene starts there";
+  Archive scratch_;
+  TakeMessage input_;  // scratch
+  StoppedCall stop_;   // scratch
+};
+
+}  // namespace limber

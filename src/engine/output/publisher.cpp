@@ -1,0 +1,71 @@
+// Snapshots: a copy of the transient values, and a list of bodies, shared until bodies are added or removed.
+#include "engine/output/publisher.h"
+
+#include <algorithm>
+
+namespace limber {
+
+namespace {
+/// Grain size of the parallel copy, in numbers.
+constexpr int kCopyGrain = 1 << 14;
+}  // namespace
+
+const TransientOffsets& transient_offsets() {
+  static const auto joint = [](const char* name) { return Joint::table().at(name).offset; };
+  static const auto part = [](const char* name) { return Part::table().at(name).offset; };
+  static const TransientOffsets offsets{joint("position"), joint("rotation"), joint("relrot"),
+                                        joint("offsets"),  part("position"),  part("rotation")};
+  return offsets;
+}
+
+void Publisher::update_body_list() {
+  auto body_list = std::make_shared<BodyList>();
+  const StoreView& view = *world_.store().view();
+  const auto block_of = [&](NodeId id) { return view.slots[id.slot].transient; };
+  body_list->bodies.reserve(world_.bodies().size());
+  for (const auto& body : world_.bodies()) {
+    BodyEntry& entry = body_list->bodies.emplace_back();
+    entry.name = body->name();
+    entry.enabled_offset = block_of(body->id()) + Body::table().at("enabled").offset;
+    for (const auto& joint : body->joints()) {
+      entry.joint_names.push_back(joint->name());
+      entry.joint_offsets.push_back(block_of(joint->id()));
+    }
+    for (const auto& part : body->parts()) entry.part_offsets.push_back(block_of(part->id()));
+  }
+  body_list_ = std::move(body_list);
+}
+
+void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& times) {
+  if (body_list_ == nullptr || structure_version_ != world_.store().structure_version()) {
+    update_body_list();
+    render_scene_ = std::make_shared<const RenderScene>(world_);
+    structure_version_ = world_.store().structure_version();
+  }
+  const std::shared_ptr<Snapshot> snapshot = out_.acquire_buffer();
+  snapshot->tick = world_.tick();
+  snapshot->time = world_.time();
+  snapshot->paused = paused;
+  snapshot->speed = speed_factor;
+  snapshot->times = times;
+  snapshot->body_list = body_list_;
+  const std::span<const double> transient = world_.store().transient_values();
+  snapshot->transient.resize(transient.size());
+  parallel_for_ranges(
+      world_.thread_pool(), static_cast<int>(transient.size()),
+      [&](int, int first, int end) {
+        std::copy(transient.begin() + first, transient.begin() + end, snapshot->transient.begin() + first);
+      },
+      kCopyGrain);
+  const std::uint64_t version = world_.store().persistent_version();
+  if (snapshot->render_scene != render_scene_ || snapshot->visuals_version != version) {
+    render_scene_->copy_visuals(world_.store().persistent_values(), snapshot->visuals);
+    snapshot->render_scene = render_scene_;
+    snapshot->visuals_version = version;
+  }
+  snapshot->overlay.clear();
+  if (world_.overlay().on()) world_.overlay().collect(snapshot->overlay);
+  out_.publish(snapshot);
+}
+
+}  // namespace limber

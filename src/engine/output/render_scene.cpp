@@ -1,0 +1,162 @@
+// RenderScene: collects the shapes of the scene and the visuals of URDF files, and reads their properties by the
+// offsets of the property tables.
+#include "engine/output/render_scene.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "engine/output/snapshot.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+namespace {
+
+struct PlacedRenderShape {
+  std::uint32_t shape = 0;
+  Pose origin;
+};
+
+// Finds the render shapes of parts; caches those of each shape and model.
+class RenderShapeCollector {
+ public:
+  RenderShapeCollector(const World& world, std::vector<RenderShape>& shapes) : world_(world), shapes_(shapes) {
+    for (std::size_t i = 0; i < world.shapes().size(); i++)
+      material_of_[world.shapes()[i]->id().slot] = static_cast<std::uint32_t>(i + 1);
+  }
+
+  const std::vector<PlacedRenderShape>& shapes_of(const Part& part, std::size_t link_index) {
+    if (world_.store().alive(part.shape())) return of_shape(part.shape());
+    const auto& model = part.body().model();
+    if (model == nullptr || link_index >= model->links.size()) return none_;
+    std::vector<std::vector<PlacedRenderShape>>& links = of_model_[model.get()];
+    if (links.empty()) links = of_model(*model);
+    return links[link_index];
+  }
+
+ private:
+  const std::vector<PlacedRenderShape>& of_shape(NodeId id) {
+    const auto [known, is_new] = of_shape_.try_emplace(id.slot);
+    if (!is_new) return known->second;
+    const Shape& shape = *static_cast<const Shape*>(world_.store().object(id));
+    for (const PlacedShape& placed : shape.placed()) add(known->second, placed, material_of_[id.slot]);
+    return known->second;
+  }
+
+  // A model without any visuals is drawn with its collision shapes.
+  std::vector<std::vector<PlacedRenderShape>> of_model(const BodyModel& model) {
+    const bool has_visuals =
+        std::any_of(model.links.begin(), model.links.end(), [](const LinkModel& l) { return !l.visuals.empty(); });
+    std::vector<std::vector<PlacedRenderShape>> links(model.links.size());
+    for (std::size_t i = 0; i < links.size(); i++) {
+      const LinkModel& link = model.links[i];
+      const std::vector<PlacedShape>& placed_shapes = has_visuals ? link.visuals : link.collisions;
+      for (std::size_t k = 0; k < placed_shapes.size(); k++) {
+        const Shape* const shape = has_visuals ? world_.find_shape(visual_shape_name(model, link, k)) : nullptr;
+        add(links[i], placed_shapes[k], shape == nullptr ? 0 : material_of_[shape->id().slot]);
+      }
+    }
+    return links;
+  }
+
+  void add(std::vector<PlacedRenderShape>& to, const PlacedShape& placed, std::uint32_t material) {
+    to.push_back({static_cast<std::uint32_t>(shapes_.size()), placed.origin});
+    shapes_.push_back({placed.shape, material});
+  }
+
+  const World& world_;
+  std::vector<RenderShape>& shapes_;
+  const std::vector<PlacedRenderShape> none_;
+  std::unordered_map<std::uint32_t, std::uint32_t> material_of_;  // by the shape's slot; 0: default values
+  std::unordered_map<std::uint32_t, std::vector<PlacedRenderShape>> of_shape_;
+  std::unordered_map<const BodyModel*, std::vector<std::vector<PlacedRenderShape>>> of_model_;
+};
+
+// offset of a property in its object's block
+std::uint32_t at(const PropertyTable& table, std::string_view property) { return table.at(property).offset; }
+
+}  // namespace
+
+RenderScene::RenderScene(const World& world) {
+  const StoreView& view = *world.store().view();
+  const auto block = [&](NodeId id) {
+    return Block{view.slots[id.slot].persistent, world.store().table(id).persistent_width()};
+  };
+  blocks_ = {block(world.visuals().id()), block(world.visuals().camera().id()),
+             block(world.visuals().appearance().id())};
+  for (const auto& shape : world.shapes()) blocks_.push_back(block(shape->id()));
+
+  RenderShapeCollector collector(world, shapes);
+  const std::uint32_t enabled = Body::table().at("enabled").offset;
+  for (const auto& body : world.bodies()) {
+    const std::uint32_t enabled_offset = view.slots[body->id().slot].transient + enabled;
+    for (std::size_t i = 0; i < body->parts().size(); i++) {
+      const Part& part = *body->parts()[i];
+      for (const PlacedRenderShape& placed : collector.shapes_of(part, i))
+        instances.push_back({view.slots[part.id().slot].transient, enabled_offset, placed.shape, placed.origin});
+    }
+  }
+}
+
+void RenderScene::copy_visuals(std::span<const double> persistent, std::vector<double>& to) const {
+  to.clear();
+  for (const Block& block : blocks_) {
+    const double* const from = persistent.data() + block.offset;
+    to.insert(to.end(), from, from + block.width);
+  }
+}
+
+Material material_of(const Snapshot& snapshot, std::uint32_t material) {
+  static const PropertyTable& table = Shape::table();
+  static const std::uint32_t first =
+      Visuals::table().persistent_width() + Camera::table().persistent_width() + Appearance::table().persistent_width();
+  static const std::vector<double> defaults = [] {
+    std::vector<double> all(table.persistent_width());
+    for (const Property& property : table.properties())
+      std::copy_n(property.initial.begin(), property.width, all.begin() + property.offset);
+    return all;
+  }();
+  const double* const v =
+      material == 0 ? defaults.data() : snapshot.visuals.data() + first + (material - 1) * table.persistent_width();
+  return {v[at(table, "transparency")],           v[at(table, "ambient_scale")],
+          v[at(table, "diffuse_scale")],          v[at(table, "specular_scale")],
+          v[at(table, "specular_pow")],           vec3_at(v + at(table, "ambient_color")),
+          vec3_at(v + at(table, "diffuse_color"))};
+}
+
+CameraView camera_of(const Snapshot& snapshot) {
+  static const PropertyTable& table = Camera::table();
+  const double* const v = snapshot.visuals.data() + Visuals::table().persistent_width();
+  return {vec3_at(v + at(table, "position")),
+          vec3_at(v + at(table, "rotation")),
+          v[at(table, "fovy")],
+          v[at(table, "aspect")],
+          v[at(table, "near")],
+          v[at(table, "far")],
+          v[at(table, "distance")]};
+}
+
+AppearanceView appearance_of(const Snapshot& snapshot) {
+  static const PropertyTable& table = Appearance::table();
+  static const Property& background = Visuals::table().at("background");
+  const double* const b = snapshot.visuals.data() + background.offset;
+  const double* const v =
+      snapshot.visuals.data() + Visuals::table().persistent_width() + Camera::table().persistent_width();
+  const bool custom = !std::equal(b, b + 3, background.initial.begin());
+  return {v[at(table, "style")] != 0,
+          v[at(table, "exposure")],
+          v[at(table, "ambient")],
+          v[at(table, "lamp")],
+          v[at(table, "rim")],
+          v[at(table, "shadow")],
+          v[at(table, "fog")],
+          v[at(table, "grid")],
+          v[at(table, "mirror")],
+          v[at(table, "floor")] != 0,
+          vec3_at(b),
+          custom};
+}
+
+}  // namespace limber

@@ -1,0 +1,332 @@
+// Preset commands, and the application of presets to the world.
+#include "engine/presets/presets.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/log/log.h"
+#include "base/text.h"
+#include "engine/presets/commands.h"
+#include "engine/presets/recall.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::size_t kMaxRecent = 8;
+constexpr const char* kScript = "script";
+
+std::vector<std::string> excluded_patterns(const Blend& blend) {
+  std::vector<std::string> all = blend.a->selection.except;
+  if (blend.amount > 0) all.insert(all.end(), blend.b->selection.except.begin(), blend.b->selection.except.end());
+  return all;
+}
+
+template <class T>
+void push_recent(std::vector<T>& list, T item) {
+  if (list.size() >= kMaxRecent) list.erase(list.begin());
+  list.push_back(std::move(item));
+}
+
+std::string name_of(const Blend& blend) {
+  if (blend.amount <= 0) return fmt::format("preset '{}'", printable(blend.a->name));
+  return fmt::format("presets '{}' and '{}'", printable(blend.a->name), printable(blend.b->name));
+}
+
+}  // namespace
+
+Presets::Bank Presets::read(const std::string& scene, PresetFile::WriteAccess access,
+                            std::function<void(const std::string&)> on_failure) {
+  Bank bank;
+  if (scene.empty()) return bank;
+  const std::string path = PresetFile::path_for(scene);
+  std::error_code error;
+  const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
+  bank.file = error ? path : canonical.string();
+  bank.saver = std::make_unique<PresetSaver>(PresetFile(path, std::move(access)), std::move(on_failure));
+  Result<ParsedPresets> read = bank.saver->load();
+  if (!read) {
+    log_error("{}; the file stays unchanged, and is backed up when a preset is stored", read.error());
+    return bank;
+  }
+  for (const std::string& problem : read->problems) log_warning("{}", problem);
+  bank.list = std::move(read->presets);
+  return bank;
+}
+
+Presets::Bank Presets::open(Bank bank) { return bank.file == file_ ? std::move(bank) : exchange(std::move(bank)); }
+
+Presets::Bank Presets::exchange(Bank bank) {
+  std::swap(list_, bank.list);
+  std::swap(saver_, bank.saver);
+  std::swap(file_, bank.file);
+  pairs_.clear();
+  update_names();
+  return bank;
+}
+
+void Presets::save() {
+  if (saver_ != nullptr && !replaying_) saver_->save(std::make_shared<const PresetList>(list_));
+}
+
+void Presets::restore(const State& state) {
+  set_list(state.list);
+  morphs_ = state.morphs;
+}
+
+void Presets::set_list(PresetList list) {
+  list_ = std::move(list);
+  update_names();
+}
+
+void Presets::update_names() {
+  names_.clear();
+  for (const auto& preset : list_) names_ += (names_.empty() ? "" : "\n") + preset->name;
+}
+
+void Presets::forget_store() {
+  capturer_.forget_store();
+  bindings_.clear();
+  morphs_.clear();
+}
+
+void Presets::finish_saving() {
+  if (saver_ != nullptr) saver_->finish();
+}
+
+void Presets::advance(World& world) {
+  if (!morphs_.empty()) morphs_.advance(world.store(), world.time());
+}
+
+Outcome Presets::execute(std::string_view command, const Message& message, World& world) {
+  if (command == "store") return store(message, world);
+  if (command == "recall") return recall(message, world);
+  if (command == "morph") return morph(message, world);
+  if (command == "delete") return erase(message);
+  return list_names(message);
+}
+
+const std::shared_ptr<const Preset>* Presets::find(std::string_view name) const {
+  if (name == kScript) return script_ == nullptr ? nullptr : &script_;
+  const auto at = std::find_if(list_.begin(), list_.end(), [&](const auto& p) { return p->name == name; });
+  return at == list_.end() ? nullptr : &*at;
+}
+
+Error Presets::not_found(std::string_view name) const {
+  std::vector<std::string_view> names{kScript};
+  for (const auto& preset : list_) names.push_back(preset->name);
+  return Error{fmt::format("there is no preset '{}'{}", printable(shortened(name, 100)), name_hint(name, names))};
+}
+
+Result<std::shared_ptr<const Preset>> Presets::resolve(const Arg& arg) const {
+  if (arg.is_text()) {
+    const auto* const found = find(arg.text);
+    if (found == nullptr) return not_found(arg.text);
+    return *found;
+  }
+  const double number = arg.number;
+  if (arg.kind == Arg::Kind::nil || !(number >= 1 && number <= static_cast<double>(list_.size())) ||
+      number != std::floor(number))
+    return not_found(arg.kind == Arg::Kind::nil ? "" : number_text(number));
+  return list_[static_cast<std::size_t>(number) - 1];
+}
+
+Result<Blend> Presets::blend_at(double number) {
+  const auto count = static_cast<double>(list_.size());
+  if (!(number >= 1 && number <= count)) {
+    return Error{list_.empty() ? std::string("there is no preset yet; /preset/store makes one")
+                               : fmt::format("the number of a preset must be 1 to {}, got {}", list_.size(), number)};
+  }
+  const auto index = static_cast<std::size_t>(number);
+  const double part = number - std::floor(number);
+  if (part <= 0) return Blend::of(list_[index - 1]);
+  return blend_of(list_[index - 1], list_[index], part);
+}
+
+Blend Presets::blend_of(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b, double amount) {
+  if (amount <= 0) return Blend::of(a);
+  if (amount >= 1) return Blend::of(b);
+  auto pair = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return p.a == a && p.b == b; });
+  if (pair == pairs_.end()) {
+    push_recent(pairs_, Pair{a, b, align(a, b)});
+    pair = pairs_.end() - 1;
+  }
+  Blend blend = pair->aligned;
+  blend.amount = amount;
+  return blend;
+}
+
+Outcome Presets::store(const Message& message, World& world) {
+  Result<StoreCommand> command = parse_store(message);
+  if (!command) return Outcome::rejected(command.error());
+  auto existing = list_.end();
+  if (command->number) {
+    const auto at = resolve(Arg::of(*command->number));
+    if (!at) return Outcome::rejected(at.error());
+    existing = std::find(list_.begin(), list_.end(), *at);
+    command->name = (*at)->name;
+  } else {
+    existing = std::find_if(list_.begin(), list_.end(), [&](const auto& p) { return p->name == command->name; });
+  }
+  if (existing == list_.end() && list_.size() >= kMax)
+    return Outcome::rejected(fmt::format("there are {} presets already; delete one", kMax));
+  // without words: the selection of the preset that is replaced
+  const PresetSelection selection = command->selection        ? *command->selection
+                                    : existing != list_.end() ? (*existing)->selection
+                                                              : PresetSelection{};
+  auto captured = capturer_.capture(world.store(), command->name, selection);
+  if (!captured) return Outcome::rejected(captured.error());
+  if (existing == list_.end()) {
+    list_.push_back(std::move(*captured));
+  } else {
+    *existing = std::move(*captured);
+  }
+  update_names();
+  save();
+  return {};
+}
+
+Outcome Presets::erase(const Message& message) {
+  if (message.args.size() != 1) return Outcome::rejected("expected the name of a preset");
+  const auto preset = resolve(message.args[0]);
+  if (!preset) return Outcome::rejected(preset.error());
+  if (*preset == script_) return Outcome::rejected("'script' has the values of the scene; it can't be deleted");
+  std::erase(list_, *preset);
+  update_names();
+  save();
+  return {};
+}
+
+Outcome Presets::recall(const Message& message, World& world) {
+  const Result<RecallCommand> command = parse_recall(message);
+  if (!command) return Outcome::rejected(command.error());
+  Result<Blend> blend = Blend{};
+  if (command->preset.is_text()) {
+    const auto preset = resolve(command->preset);
+    blend = preset ? Result<Blend>(Blend::of(*preset)) : Result<Blend>(Error{preset.error()});
+  } else {
+    blend = blend_at(command->preset.number);
+  }
+  if (!blend) return Outcome::rejected(blend.error());
+  Result<std::string> notice = apply(world, *blend, command->seconds, command->easing);
+  if (!notice) return Outcome::rejected(notice.error());
+  Outcome outcome;
+  outcome.warning = std::move(*notice);
+  return outcome;
+}
+
+Result<void> Presets::recall_number(World& world, double number, double seconds) {
+  const Outcome outcome = recall({"/preset/recall", {Arg::of(number), Arg::of(seconds)}}, world);
+  if (outcome.kind == Outcome::Kind::rejected) return Error{outcome.error};
+  return {};
+}
+
+Outcome Presets::morph(const Message& message, World& world) {
+  const Result<MorphCommand> command = parse_morph(message);
+  if (!command) return Outcome::rejected(command.error());
+  const auto a = resolve(command->a);
+  if (!a) return Outcome::rejected(a.error());
+  const auto b = resolve(command->b);
+  if (!b) return Outcome::rejected(b.error());
+  Result<std::string> notice = apply(world, blend_of(*a, *b, command->amount), 0, Easing::linear);
+  if (!notice) return Outcome::rejected(notice.error());
+  Outcome outcome;
+  outcome.warning = std::move(*notice);
+  return outcome;
+}
+
+Outcome Presets::list_names(const Message& message) const {
+  if (!message.args.empty()) return Outcome::rejected("takes no arguments");
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::answered;
+  Message& answer = outcome.answers.emplace_back(Message{"/list/presets", {}});
+  for (const auto& preset : list_) answer.args.push_back(Arg::of(preset->name));
+  // a reply without arguments would look like a query
+  if (list_.empty()) answer.args.push_back(Arg::of(""));
+  return outcome;
+}
+
+Result<std::shared_ptr<const PresetBinding>> Presets::bind(const Store& store, const Blend& blend) {
+  std::erase_if(bindings_, [&](const auto& binding) { return !binding->up_to_date(store); });
+  const std::vector<std::string> except = excluded_patterns(blend);
+  for (const auto& binding : bindings_) {
+    if (binding->schema() == blend.a->schema && binding->except() == except) return binding;
+  }
+  const bool all = blend.amount <= 0 && blend.a->selection.include.empty();
+  auto created = PresetBinding::make(store, blend.a->schema, except, all);
+  if (created) push_recent(bindings_, *created);
+  return created;
+}
+
+// Applies a blend, at once or as a morph; returns a description of values that were skipped.
+Result<std::string> Presets::apply(World& world, const Blend& blend, double seconds, Easing easing) {
+  Store& store = world.store();
+  const auto binding = bind(store, blend);
+  if (!binding) return Error{fmt::format("{}: {}", name_of(blend), binding.error())};
+  if (seconds > 0 && morphs_.full())
+    return Error{fmt::format("{} morphs are running; wait for one to end, or send /preset/stop", Morphs::kMax)};
+  // the newest command takes over the properties from older morphs
+  morphs_.release(**binding);
+  std::vector<std::string> notices{(*binding)->omissions(), missing_choices(store, **binding, blend)};
+  if (seconds > 0) {
+    Morph morph(store, **binding, blend, world.time(), seconds, easing);
+    morph.announce(store);
+    morphs_.begin(std::move(morph));
+  } else {
+    const RecallResult result = limber::recall(store, **binding, blend);
+    const std::size_t count = result.clamped + result.rejected;
+    if (count > 0) {
+      notices.push_back(fmt::format("{} value{} clamped or rejected ({})", count, count == 1 ? " was" : "s were",
+                                    result.first_problem));
+    }
+  }
+  overrides_.add_recall(blend);
+  std::erase(notices, "");
+  return notices.empty() ? std::string() : fmt::format("{}: {}", name_of(blend), fmt::join(notices, "; "));
+}
+
+void Presets::reapply(World& world, const Blend& blend) {
+  const auto binding = bind(world.store(), blend);
+  if (binding) (void)limber::recall(world.store(), **binding, blend);
+}
+
+Result<void> Presets::check(const Message& message, std::span<const Message> before) const {
+  const auto will_exist = [&](const Arg& arg) {
+    if (!arg.is_text()) return true;  // numbers are resolved on execution
+    bool exists = find(arg.text) != nullptr || arg.text == kScript;
+    for (const Message& m : before) {
+      if (m.args.empty() || m.args[0].text != arg.text) continue;
+      if (m.address == "/preset/store") exists = true;
+      if (m.address == "/preset/delete") exists = false;
+    }
+    return exists;
+  };
+  std::vector<Arg> names;
+  if (message.address == "/preset/store") {
+    const Result<StoreCommand> command = parse_store(message);
+    return command ? Result<void>() : Result<void>(Error{command.error()});
+  }
+  if (message.address == "/preset/recall") {
+    const Result<RecallCommand> command = parse_recall(message);
+    if (!command) return Error{command.error()};
+    names = {command->preset};
+  } else if (message.address == "/preset/morph") {
+    const Result<MorphCommand> command = parse_morph(message);
+    if (!command) return Error{command.error()};
+    names = {command->a, command->b};
+  } else {
+    names = message.args;
+  }
+  for (const Arg& name : names) {
+    if (!will_exist(name)) return not_found(name.text);
+  }
+  return {};
+}
+
+}  // namespace limber

@@ -1,0 +1,85 @@
+// ReloadCandidate: a new run of the scene, detached from the show in its own store and world, and its differences from
+// the last successful run. It touches nothing live, so it can run on any thread and take any time. [any]
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/presets/preset.h"
+#include "engine/reload/scene_diff.h"
+#include "engine/reload/scene_spec.h"
+#include "script/scene/scene.h"
+#include "script/scene/sources.h"
+
+namespace limber {
+
+/// The input of a candidate, copied from the show between two ticks.
+struct ReloadRequest {
+  std::string file;
+  SceneOptions options;
+  RunInputs inputs;
+  std::shared_ptr<const SceneSpec> base_spec;  ///< Of the last successful run.
+};
+
+class ReloadCandidate {
+ public:
+  /// Runs the file. `host` receives the output of its top level, on this thread.
+  ReloadCandidate(ReloadRequest request, ScriptHost& host);
+  ReloadCandidate(const ReloadCandidate&) = delete;
+  ReloadCandidate& operator=(const ReloadCandidate&) = delete;
+
+  const ReloadRequest& request() const { return request_; }
+  /// The result of the run. After an error only fault() and files() are valid.
+  const Result<void>& result() const { return result_; }
+  const ScriptPlace& fault() const { return scene_->fault(); }
+
+  const World& world() const { return world_; }
+  const std::shared_ptr<const SceneSpec>& spec() const { return spec_; }
+  const SceneDiff& diff() const { return diff_; }
+  std::vector<SourceFile> files() const;
+  /// The values of all properties after the run.
+  const std::shared_ptr<const Preset>& script_preset() const { return script_preset_; }
+
+  /// The scene, to be swapped with the live one, which is then destroyed with the candidate.
+  std::unique_ptr<Scene>& scene() { return scene_; }
+  /// Returns the live id of an object of the candidate; null if there is none. `shapes`, `bodies`: the live ones, in
+  /// the order of the spec. [sim]
+  NodeId live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
+                 const std::vector<NodeId>& bodies) const;
+
+ private:
+  enum class Kind : std::uint8_t {
+    none,
+    world,
+    visuals,
+    camera,
+    appearance,
+    shape,
+    body,
+    part,
+    joint,
+    motor,
+    gear,
+    behavior,
+    group
+  };
+  struct SlotObject {  // the object in a slot of the store
+    Kind kind = Kind::none;
+    std::uint32_t owner = 0;  // index of the body or shape
+    std::uint32_t index = 0;  // index in its list
+  };
+  void index_slots();
+
+  ReloadRequest request_;
+  Store store_;
+  World world_{store_};
+  std::vector<SlotObject> slots_;  // by slot
+  std::unique_ptr<Scene> scene_;   // after world_: must be destroyed first
+  Result<void> result_;
+  std::shared_ptr<const SceneSpec> spec_;
+  SceneDiff diff_;
+  std::shared_ptr<const Preset> script_preset_;
+};
+
+}  // namespace limber

@@ -1,0 +1,378 @@
+// SceneDiff: comparison of two scene specs.
+#include "engine/reload/scene_diff.h"
+
+#include <algorithm>
+#include <string_view>
+#include <tuple>
+#include <unordered_map>
+
+namespace limber {
+
+namespace {
+
+bool same_mesh(const std::shared_ptr<const MeshModel>& a, const std::shared_ptr<const MeshModel>& b) {
+  if (a == b) return true;
+  return a != nullptr && b != nullptr && a->hull == b->hull && a->vertices == b->vertices &&
+         a->triangles == b->triangles;
+}
+
+bool same_geometry(const ShapeModel& a, const ShapeModel& b) {
+  return a.kind == b.kind && a.normal == b.normal && a.size == b.size && a.radius == b.radius && a.height == b.height &&
+         same_mesh(a.mesh, b.mesh) && nearly_same(a.mesh_pose, b.mesh_pose);
+}
+
+bool same_geometry(const ShapeDescription& a, const ShapeDescription& b) {
+  return same_geometry(a.model, b.model) &&
+         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(),
+                    [](const PlacedShape& x, const PlacedShape& y) {
+                      return same_geometry(x.shape, y.shape) && nearly_same(x.origin, y.origin);
+                    });
+}
+
+bool same_construction(const PartDescription& a, const PartDescription& b) {
+  if (a.name != b.name || a.is_static != b.is_static || (a.shape == nullptr) != (b.shape == nullptr)) return false;
+  return a.shape == b.shape || (a.shape->name == b.shape->name && same_geometry(*a.shape, *b.shape));
+}
+
+bool same_mimic(const std::optional<Mimic>& a, const std::optional<Mimic>& b) {
+  if (!a || !b) return !a && !b;
+  return a->leader == b->leader && a->multiplier == b->multiplier && a->offset == b->offset;
+}
+
+bool same_construction(const JointDescription& a, const JointDescription& b) {
+  return a.name == b.name && a.parent == b.parent && a.child == b.child && a.spec.type == b.spec.type &&
+         a.spec.friction == b.spec.friction && same_mimic(a.spec.mimic, b.spec.mimic) &&
+         nearly_same(a.spec.frame_in_parent, b.spec.frame_in_parent) &&
+         nearly_same(a.spec.frame_in_child, b.spec.frame_in_child) && nearly_same(a.start, b.start);
+}
+
+bool same_construction(const MotorDescription& a, const MotorDescription& b) { return a.joint == b.joint; }
+
+template <class T>
+bool all_same_construction(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const T& x, const T& y) { return same_construction(x, y); });
+}
+
+// Compares by content, because the model cache may return either of two equal models.
+bool same_model(const std::shared_ptr<const BodyModel>& a, const std::shared_ptr<const BodyModel>& b) {
+  return a == b || (a != nullptr && b != nullptr && a->content_hash == b->content_hash);
+}
+
+bool same_construction(const BodyDescription& a, const BodyDescription& b) {
+  return same_model(a.model, b.model) && all_same_construction(a.parts, b.parts) &&
+         all_same_construction(a.joints, b.joints) && all_same_construction(a.motors, b.motors);
+}
+
+template <class T>
+const T* find_named(const std::vector<T>& list, std::string_view name) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const T& t) { return t.name == name; });
+  return found == list.end() ? nullptr : &*found;
+}
+
+const MotorDescription* motor_of(const BodyDescription& body, std::string_view joint) {
+  for (const MotorDescription& motor : body.motors) {
+    if (body.joints[motor.joint].name == joint) return &motor;
+  }
+  return nullptr;
+}
+
+// True if the start pose is set for the first time or to another value.
+bool start_differs(const Vec3& before, bool set_before, const Vec3& now, bool set_now) {
+  return (set_now && !set_before) || !nearly_same(before, now);
+}
+bool start_differs(const Quat& before, bool set_before, const Quat& now, bool set_now) {
+  return (set_now && !set_before) || !nearly_same(before, now);
+}
+bool position_differs(const StartPose& before, const StartPose& now) {
+  return start_differs(before.pose.position, before.position_set, now.pose.position, now.position_set);
+}
+bool rotation_differs(const StartPose& before, const StartPose& now) {
+  return start_differs(before.pose.rotation, before.rotation_set, now.pose.rotation, now.rotation_set);
+}
+
+// Returns the old element that corresponds to element `i`: at the same index if the body is not rebuilt, else by name.
+template <class T>
+const T* counterpart(const std::vector<T>& before, const std::vector<T>& now, std::size_t i, bool rebuild) {
+  return rebuild ? find_named(before, now[i].name) : &before[i];
+}
+
+// Compares trees other than the root's: those with the same offset from the root move along with it; those with another
+// start pose of their own move there.
+void compare_trees(const BodyDescription& before, const BodyDescription& now, const Pose& root_moved, BodyDiff& out) {
+  for (std::size_t i = 0; i < now.parts.size(); i++) {
+    const PartDescription& part = now.parts[i];
+    if (part.tree != i || now.parts.front().tree == i) continue;
+    const PartDescription* const old_part = counterpart(before.parts, now.parts, i, out.rebuild);
+    if (old_part == nullptr) continue;
+    const bool newly_set = (part.start.position_set && !old_part->start.position_set) ||
+                           (part.start.rotation_set && !old_part->start.rotation_set);
+    if (!newly_set && nearly_same(old_part->start.pose, part.start.pose)) continue;
+    const bool moves_along = !newly_set && nearly_same(root_moved * old_part->start.pose, part.start.pose);
+    (moves_along ? out.trees_with_root : out.trees_placed).push_back(i);
+  }
+}
+
+void compare_start_poses(const BodyDescription& before, const BodyDescription& now, BodyDiff& out) {
+  // if the root was another part before, compare with the start pose of that part
+  const PartDescription* const root = now.parts.empty() ? nullptr : find_named(before.parts, now.parts.front().name);
+  const bool was_root = root == nullptr || root == before.parts.data();
+  const StartPose& start = was_root ? before.start : root->start;
+  out.position_changed = position_differs(start, now.start);
+  out.rotation_changed = rotation_differs(start, now.start);
+  compare_trees(before, now, now.start.pose * start.pose.inverse(), out);
+  const auto same_start = [](const PartDescription& a, const PartDescription& b) {
+    return nearly_same(a.start.pose, b.start.pose);
+  };
+  out.start_changed =
+      !std::equal(before.parts.begin(), before.parts.end(), now.parts.begin(), now.parts.end(), same_start);
+  for (std::size_t i = 0; i < now.joints.size(); i++) {
+    const JointDescription* const old_joint = counterpart(before.joints, now.joints, i, out.rebuild);
+    out.joints_to_reset.push_back(old_joint == nullptr || !nearly_same(old_joint->start, now.joints[i].start));
+  }
+}
+
+const PairDescription* find_pair(const BodyDescription& body, std::string_view a, std::string_view b) {
+  const auto found = std::find_if(body.pairs.begin(), body.pairs.end(), [&](const PairDescription& pair) {
+    const std::string_view first = body.parts[pair.a].name;
+    const std::string_view second = body.parts[pair.b].name;
+    return (first == a && second == b) || (first == b && second == a);
+  });
+  return found == body.pairs.end() ? nullptr : &*found;
+}
+
+// Compares pairs by the names of their parts: finds changed edits and removed ones.
+void compare_pairs(const BodyDescription& before, const BodyDescription& now, BodyDiff& out) {
+  for (const PairDescription& pair : now.pairs) {
+    const PairDescription* const old_pair = find_pair(before, now.parts[pair.a].name, now.parts[pair.b].name);
+    if (old_pair == nullptr || old_pair->edit != pair.edit) out.pairs.push_back(pair);
+  }
+  for (const PairDescription& pair : before.pairs) {
+    const PartDescription* const a = find_named(now.parts, before.parts[pair.a].name);
+    const PartDescription* const b = find_named(now.parts, before.parts[pair.b].name);
+    if (a == nullptr || b == nullptr || find_pair(now, a->name, b->name) != nullptr) continue;
+    out.pairs.push_back({static_cast<std::size_t>(a - now.parts.data()), static_cast<std::size_t>(b - now.parts.data()),
+                         PairEdit::none});
+  }
+}
+
+// For an object without an old spec, returns the explicitly set properties.
+std::uint64_t mask_to_set(const SpecValues* before, const SpecValues& now) {
+  return before == nullptr ? explicit_mask(now) : changed_mask(*before, now);
+}
+
+BodyDiff compare_bodies(const BodyDescription& before, const BodyDescription& now) {
+  BodyDiff out;
+  out.rebuild = !same_construction(before, now);
+  out.changed = changed_mask(before.values, now.values);
+  const auto add_mask = [&](std::vector<std::uint64_t>& masks, const auto* old_element, const SpecValues& new_values) {
+    masks.push_back(mask_to_set(old_element == nullptr ? nullptr : &old_element->values, new_values));
+  };
+  for (std::size_t i = 0; i < now.parts.size(); i++)
+    add_mask(out.parts, counterpart(before.parts, now.parts, i, out.rebuild), now.parts[i].values);
+  for (std::size_t i = 0; i < now.joints.size(); i++)
+    add_mask(out.joints, counterpart(before.joints, now.joints, i, out.rebuild), now.joints[i].values);
+  for (std::size_t i = 0; i < now.motors.size(); i++) {
+    const MotorDescription& motor = now.motors[i];
+    add_mask(out.motors, out.rebuild ? motor_of(before, now.joints[motor.joint].name) : &before.motors[i],
+             motor.values);
+  }
+  compare_pairs(before, now, out);
+  compare_start_poses(before, now, out);
+  return out;
+}
+
+// Compares values of two tables, which may differ after a reload of a behavior's type: properties are then compared by
+// name, including defaults.
+std::uint64_t changed_mask(const PropertyTable& table_before, const SpecValues& before, const PropertyTable& table_now,
+                           const SpecValues& now) {
+  if (&table_before == &table_now) return changed_mask(before, now);
+  const auto value_of = [](const PropertyTable&, const SpecValues& values, const Property& property) {
+    const auto found =
+        std::find_if(values.begin(), values.end(), [&](const SpecValue& r) { return r.property == property.index; });
+    return found == values.end() ? SpecValue{property.index, false, property.initial} : *found;
+  };
+  std::uint64_t mask = 0;
+  for (const Property& property : table_now.properties()) {
+    if (!property.stored() || !property.writable()) continue;
+    const SpecValue new_value = value_of(table_now, now, property);
+    const Property* const old_property = table_before.find(property.name);
+    const bool same_type =
+        old_property != nullptr && old_property->type == property.type && old_property->choices == property.choices;
+    const SpecValue old_value =
+        same_type ? value_of(table_before, before, *old_property) : SpecValue{property.index, !new_value.is_set, {}};
+    if (old_value.is_set != new_value.is_set ||
+        !std::equal(old_value.values.begin(), old_value.values.begin() + property.width, new_value.values.begin()))
+      mask |= std::uint64_t{1} << property.index;
+  }
+  return mask;
+}
+
+template <class T>
+BehaviorDiff compare_behavior(const T* before, const T& now, bool same_setup) {
+  if (before == nullptr) return {false, false, explicit_mask(now.values)};
+  return {true, before->type != now.type || !same_setup,
+          changed_mask(*before->table, before->values, *now.table, now.values)};
+}
+
+std::vector<BehaviorDiff> compare_behaviors(const BodyDescription* before, const BodyDescription& now) {
+  std::vector<BehaviorDiff> out;
+  for (const BehaviorDescription& item : now.behaviors) {
+    const BehaviorDescription* const old_item = before == nullptr ? nullptr : find_named(before->behaviors, item.name);
+    const bool same =
+        old_item != nullptr && old_item->of_group == item.of_group && (item.of_group || old_item->setup == item.setup);
+    out.push_back(compare_behavior(old_item, item, same));
+  }
+  return out;
+}
+
+template <class T, class Name>
+std::vector<std::optional<std::size_t>> match(const std::vector<T>& before, const std::vector<T>& now, Name name,
+                                              std::vector<std::size_t>& removed) {
+  std::unordered_map<std::string_view, std::size_t> old_index_by_name;
+  for (std::size_t i = 0; i < before.size(); i++) old_index_by_name[name(before[i])] = i;
+  std::vector<std::optional<std::size_t>> old_indices;
+  std::vector<bool> still_exists(before.size());
+  for (const T& item : now) {
+    const auto found = old_index_by_name.find(name(item));
+    old_indices.push_back(found == old_index_by_name.end() ? std::nullopt : std::optional(found->second));
+    if (old_indices.back()) still_exists[*old_indices.back()] = true;
+  }
+  for (std::size_t i = 0; i < before.size(); i++) {
+    if (!still_exists[i]) removed.push_back(i);
+  }
+  return old_indices;
+}
+
+bool all_zero(const std::vector<std::uint64_t>& masks) {
+  return std::all_of(masks.begin(), masks.end(), [](std::uint64_t r) { return r == 0; });
+}
+
+}  // namespace
+
+bool BodyDiff::empty() const {
+  return old_index && !rebuild && changed == 0 && all_zero(parts) && all_zero(joints) && all_zero(motors) &&
+         pairs.empty() && !position_changed && !rotation_changed && trees_with_root.empty() && trees_placed.empty() &&
+         !start_changed;
+}
+
+bool SceneDiff::empty() const {
+  const auto existed = [](const std::optional<std::size_t>& before) { return before.has_value(); };
+  const auto same = [](const BehaviorDiff& diff) { return diff.in_old_spec && !diff.rebuild && diff.changed == 0; };
+  const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
+  const auto same_gear = [](const GearDiff& diff) { return diff.in_old_spec && diff.same_joints && diff.changed == 0; };
+  return !order_changed && removed_gears.empty() && std::all_of(gears.begin(), gears.end(), same_gear) &&
+         removed_behaviors.empty() && removed_groups.empty() && all_same(groups) &&
+         std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 &&
+         appearance == 0 && shapes.empty() && bodies.empty() && removed_shapes.empty() && removed_bodies.empty() &&
+         std::all_of(old_shape_indices.begin(), old_shape_indices.end(), existed) &&
+         std::all_of(old_body_indices.begin(), old_body_indices.end(), existed);
+}
+
+std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
+  std::uint64_t mask = 0;
+  auto b = before.begin();
+  auto n = now.begin();
+  while (b != before.end() || n != now.end()) {
+    // an omitted property was not set and has the table's default
+    if (n == now.end() || (b != before.end() && b->property < n->property)) {
+      mask |= std::uint64_t{1} << b++->property;
+    } else if (b == before.end() || n->property < b->property) {
+      mask |= std::uint64_t{1} << n++->property;
+    } else {
+      if (b->is_set != n->is_set || b->values != n->values) mask |= std::uint64_t{1} << n->property;
+      ++b;
+      ++n;
+    }
+  }
+  return mask;
+}
+
+BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescription& now) {
+  BodyDiff out;
+  out.rebuild = !same_construction(existing, now);
+  out.changed = explicit_mask(now.values);
+  for (const PartDescription& part : now.parts) out.parts.push_back(explicit_mask(part.values));
+  for (const JointDescription& joint : now.joints) out.joints.push_back(explicit_mask(joint.values));
+  for (const MotorDescription& motor : now.motors) out.motors.push_back(explicit_mask(motor.values));
+  out.pairs = now.pairs;
+  out.position_changed = now.start.position_set;
+  out.rotation_changed = now.start.rotation_set;
+  for (std::size_t i = 0; i < now.parts.size(); i++) {
+    const PartDescription& part = now.parts[i];
+    if (part.tree != i || now.parts.front().tree == i) continue;
+    if (part.start.position_set || part.start.rotation_set) out.trees_placed.push_back(i);
+  }
+  out.start_changed = true;
+  return out;
+}
+
+namespace {
+
+void compare_behaviors(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  for (std::size_t i = 0; i < now.bodies.size(); i++) {
+    const std::optional<std::size_t> old_item = out.old_body_indices[i];
+    out.behaviors.push_back(compare_behaviors(old_item ? &before.bodies[*old_item] : nullptr, now.bodies[i]));
+    if (!old_item) continue;
+    for (const BehaviorDescription& behavior : before.bodies[*old_item].behaviors) {
+      if (find_named(now.bodies[i].behaviors, behavior.name) == nullptr)
+        out.removed_behaviors.emplace_back(i, behavior.name);
+    }
+  }
+  for (const GroupDescription& item : now.groups) {
+    const GroupDescription* const old_item = find_named(before.groups, item.name);
+    out.groups.push_back(compare_behavior(old_item, item, old_item != nullptr && old_item->setup == item.setup));
+  }
+  for (const GroupDescription& old_item : before.groups) {
+    if (find_named(now.groups, old_item.name) == nullptr) out.removed_groups.push_back(old_item.name);
+  }
+  out.order_changed = before.behavior_order != now.behavior_order;
+}
+
+void compare_gears(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  const auto joints = [](const GearDescription& gear) {
+    return std::tie(gear.body_a, gear.joint_a, gear.body_b, gear.joint_b);
+  };
+  for (const GearDescription& gear : now.gears) {
+    const GearDescription* const old_gear = find_named(before.gears, gear.name);
+    const bool same_joints = old_gear != nullptr && joints(*old_gear) == joints(gear);
+    out.gears.push_back({old_gear != nullptr, same_joints,
+                         mask_to_set(old_gear == nullptr ? nullptr : &old_gear->values, gear.values)});
+  }
+  for (const GearDescription& old_gear : before.gears) {
+    if (find_named(now.gears, old_gear.name) == nullptr) out.removed_gears.push_back(old_gear.name);
+  }
+}
+
+}  // namespace
+
+SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
+  SceneDiff out;
+  out.world = changed_mask(before.world, now.world);
+  out.visuals = changed_mask(before.visuals, now.visuals);
+  out.camera = changed_mask(before.camera, now.camera);
+  out.appearance = changed_mask(before.appearance, now.appearance);
+  out.old_shape_indices = match(
+      before.shapes, now.shapes, [](const auto& s) { return std::string_view(s->name); }, out.removed_shapes);
+  out.old_body_indices = match(
+      before.bodies, now.bodies, [](const auto& b) { return std::string_view(b.name); }, out.removed_bodies);
+  for (std::size_t i = 0; i < now.shapes.size(); i++) {
+    if (!out.old_shape_indices[i]) continue;
+    const ShapeDescription& old_shape = *before.shapes[*out.old_shape_indices[i]];
+    const ShapeDiff diff{i, !same_geometry(old_shape, *now.shapes[i]),
+                         changed_mask(old_shape.values, now.shapes[i]->values)};
+    if (diff.geometry_changed || diff.changed != 0) out.shapes.push_back(diff);
+  }
+  for (std::size_t i = 0; i < now.bodies.size(); i++) {
+    if (!out.old_body_indices[i]) continue;
+    BodyDiff diff = compare_bodies(before.bodies[*out.old_body_indices[i]], now.bodies[i]);
+    diff.new_index = i;
+    diff.old_index = out.old_body_indices[i];
+    if (!diff.empty()) out.bodies.push_back(std::move(diff));
+  }
+  compare_gears(before, now, out);
+  compare_behaviors(before, now, out);
+  return out;
+}
+
+}  // namespace limber

@@ -1,0 +1,87 @@
+// SceneDiff: the differences between the specs of two runs of a scene. The rule: values that the script has changed are
+// applied; values that it sets as before keep their overrides; values that it no longer sets return to their default.
+// [any]
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/reload/scene_spec.h"
+
+namespace limber {
+
+/// A body that is added or differs between the two specs. Sets of properties are bit masks.
+struct BodyDiff {
+  std::size_t new_index = 0;             ///< Index in the new spec.
+  std::optional<std::size_t> old_index;  ///< Index in the old spec.
+  bool rebuild = false;                  ///< Its construction differs, so it must be rebuilt.
+  std::uint64_t changed = 0;             ///< Properties of the body to set.
+  std::vector<std::uint64_t> parts;      ///< Properties to set of each of its parts, joints and motors in the new spec.
+  std::vector<std::uint64_t> joints;
+  std::vector<std::uint64_t> motors;
+  std::vector<PairDescription> pairs;        ///< Pairs to set; PairEdit::none restores the default.
+  bool position_changed = false;             ///< The root must move to its new start position.
+  bool rotation_changed = false;             ///< The root must turn to its new start rotation.
+  std::vector<std::size_t> trees_with_root;  ///< First parts of other trees that move along with the root.
+  std::vector<std::size_t> trees_placed;     ///< First parts of other trees that move to their own new start pose.
+  bool start_changed = false;                ///< Start poses differ.
+  std::vector<bool> joints_to_reset;         ///< If the body is rebuilt: the joints with another start pose.
+
+  bool empty() const;
+};
+
+struct ShapeDiff {
+  std::size_t new_index = 0;
+  bool geometry_changed = false;
+  std::uint64_t changed = 0;
+};
+
+/// Changes of a behavior or a group.
+struct BehaviorDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool rebuild = false;       ///< Its type or targets differ, so it must be rebuilt.
+  std::uint64_t changed = 0;  ///< Properties to set, as bits of the new table.
+};
+
+/// Changes of a gear. A gear between other joints is rebuilt.
+struct GearDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_joints = true;    ///< It connects the same joints.
+  std::uint64_t changed = 0;  ///< Properties to set.
+};
+
+struct SceneDiff {
+  std::uint64_t world = 0;                                    ///< Properties of the world to set.
+  std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
+  std::uint64_t camera = 0;                                   ///< Properties of the camera to set.
+  std::uint64_t appearance = 0;                               ///< Properties of the appearance to set.
+  std::vector<std::optional<std::size_t>> old_shape_indices;  ///< For each new shape its index in the old spec.
+  std::vector<std::optional<std::size_t>> old_body_indices;   ///< For each new body its index in the old spec.
+  std::vector<ShapeDiff> shapes;                              ///< Changed shapes, without added ones.
+  std::vector<BodyDiff> bodies;                               ///< Changed bodies, without added ones.
+  std::vector<std::size_t> removed_shapes;                    ///< Removed shapes, by index in the old spec.
+  std::vector<std::size_t> removed_bodies;                    ///< Removed bodies, by index in the old spec.
+  std::vector<std::vector<BehaviorDiff>> behaviors;           ///< For each new body, each of its behaviors.
+  std::vector<BehaviorDiff> groups;                           ///< For each new group.
+  /// Removed behaviors, by body (index in the new spec) and name.
+  std::vector<std::pair<std::size_t, std::string>> removed_behaviors;
+  std::vector<std::string> removed_groups;  ///< Removed groups.
+  std::vector<GearDiff> gears;              ///< For each new gear.
+  std::vector<std::string> removed_gears;   ///< Removed gears.
+  bool order_changed = false;               ///< The order of the behaviors differs.
+
+  bool empty() const;
+};
+
+SceneDiff compare(const SceneSpec& before, const SceneSpec& now);
+/// Compares an unmanaged body (one that was made in a callback, not by the spec) with its spec `now`. Only explicitly
+/// set values are applied; the others stay. `existing`: the state of the body, captured as a spec.
+BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescription& now);
+
+/// Returns a bit mask of the properties that differ in value or in being explicitly set.
+std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now);
+
+}  // namespace limber

@@ -1,0 +1,294 @@
+// ScenePatch: applies a scene diff to a world: shapes, bodies, values, poses, order.
+#include "engine/reload/scene_patch.h"
+
+#include <algorithm>
+#include <bit>
+#include <string>
+
+#include "base/check.h"
+#include "engine/reload/behavior_patch.h"
+
+namespace limber {
+
+namespace {
+
+template <class T>
+T* find_alive(const World& world, NodeId id) {
+  const Store& store = world.store();
+  if (!store.alive(id) || &store.table(id) != &T::table()) return nullptr;
+  return static_cast<T*>(store.object(id));
+}
+
+std::uint64_t part_property_bit(std::string_view property) {
+  return std::uint64_t{1} << Part::table().at(property).index;
+}
+
+// Saves the values of a body's objects while the body is rebuilt, by class and name.
+class SavedValues {
+ public:
+  explicit SavedValues(const Body& body) {
+    save(body, body.id(), "");
+    for (const auto& part : body.parts()) save(body, part->id(), part->name());
+    for (const auto& joint : body.joints()) save(body, joint->id(), joint->name());
+    for (const auto& motor : body.motors()) save(body, motor->id(), motor->name());
+    for (const PartPair& pair : body.pairs().list) {
+      pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
+    }
+  }
+
+  // Restores the edits of pairs if both parts still exist.
+  void restore_pairs_to(Body& body) const {
+    for (const SavedPair& pair : pairs_) {
+      const Part* const a = body.find_part(pair.a);
+      const Part* const b = body.find_part(pair.b);
+      if (a != nullptr && b != nullptr) (void)body.edit_pair(*a, *b, pair.edit);
+    }
+  }
+
+  // Restores the saved values, except the properties of `except`, and velocities, which belong to the body state.
+  void restore_to(Store& store, NodeId id, std::string_view name, std::uint64_t except) const {
+    const PropertyTable& table = store.table(id);
+    const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                    [&](const Entry& entry) { return entry.table == &table && entry.name == name; });
+    if (found == entries_.end()) return;
+    if (&table == &Part::table())
+      except |= part_property_bit("linear_velocity") | part_property_bit("angular_velocity");
+    const std::uint64_t mask = described_mask(table) & ~except;
+    for (const Property& property : table.properties()) {
+      if ((mask >> property.index & 1u) == 0) continue;
+      const double* const saved = (property.transient ? found->transient : found->persistent).data() + property.offset;
+      if (std::equal(saved, saved + property.width, std::as_const(store).values(id, property))) continue;
+      (void)store.set(id, property, {saved, property.width});  // may fail, for example if a mass can no longer be set
+    }
+  }
+
+ private:
+  struct SavedPair {
+    std::string a, b;
+    PairEdit edit;
+  };
+  struct Entry {
+    const PropertyTable* table;
+    std::string name;
+    std::vector<double> persistent, transient;
+  };
+  void save(const Body& body, NodeId id, const std::string& name) {
+    const Store& store = body.store();
+    const PropertyTable& table = store.table(id);
+    const double* const persistent = store.persistent_block(id);
+    const double* const transient = store.transient_block(id);
+    entries_.push_back({&table,
+                        name,
+                        {persistent, persistent + table.persistent_width()},
+                        {transient, transient + table.transient_width()}});
+  }
+
+  std::vector<Entry> entries_;
+  std::vector<SavedPair> pairs_;
+};
+
+class PatchApplier {
+ public:
+  explicit PatchApplier(const ScenePatch& patch) : patch_(patch), store_(patch.world.store()) {}
+
+  void run(LiveObjects& objects) {
+    set_properties(patch_.candidate.id(), patch_.world.id(), patch_.diff.world);
+    const Visuals& visuals = patch_.candidate.visuals();
+    set_properties(visuals.id(), patch_.world.visuals().id(), patch_.diff.visuals);
+    set_properties(visuals.camera().id(), patch_.world.visuals().camera().id(), patch_.diff.camera);
+    set_properties(visuals.appearance().id(), patch_.world.visuals().appearance().id(), patch_.diff.appearance);
+    remove_bodies(objects);
+    apply_shapes(objects);
+    apply_bodies(objects);
+    apply_gears();
+    apply_behaviors(patch_, bodies_, saved_behaviors_);
+    for (const std::size_t removed : patch_.diff.removed_shapes) {
+      if (Shape* const shape = find_alive<Shape>(patch_.world, objects.shapes[removed]))
+        patch_.world.remove_shape(*shape);
+    }
+    patch_.world.move_shapes_to_front(shapes_);
+    patch_.world.move_bodies_to_front(bodies_);
+    objects = {};
+    for (const Shape* shape : shapes_) objects.shapes.push_back(shape->id());
+    for (const Body* body : bodies_) objects.bodies.push_back(body->id());
+  }
+
+ private:
+  void set_properties(NodeId from, NodeId to, std::uint64_t mask) {
+    const Store& source_store = patch_.candidate.store();
+    for (; mask != 0; mask &= mask - 1) {
+      const Property& property = store_.table(to).property(static_cast<std::uint32_t>(std::countr_zero(mask)));
+      const double* const values = source_store.values(from, property);
+      patch_.on_set(to, property);
+      if (std::equal(values, values + property.width, std::as_const(store_).values(to, property))) continue;
+      const Result<SetOutcome> set = store_.set(to, property, {values, property.width});
+      LIMBER_CHECK(set.ok());
+    }
+  }
+
+  void remove_bodies(const LiveObjects& objects) {
+    for (const std::size_t removed : patch_.diff.removed_bodies) {
+      if (Body* const body = find_alive<Body>(patch_.world, objects.bodies[removed])) patch_.world.remove_body(*body);
+    }
+  }
+
+  void apply_shapes(const LiveObjects& objects) {
+    auto next = patch_.diff.shapes.begin();
+    for (std::size_t i = 0; i < patch_.now.shapes.size(); i++) {
+      const std::optional<std::size_t> before = patch_.diff.old_shape_indices[i];
+      const Shape& source = *patch_.candidate.shapes()[i];
+      Shape* shape = before ? find_alive<Shape>(patch_.world, objects.shapes[*before]) : nullptr;
+      const bool differs = next != patch_.diff.shapes.end() && next->new_index == i;
+      if (shape == nullptr) {
+        shape = patch_.world.find_shape(source.name());
+        const bool is_new = shape == nullptr;
+        if (is_new) shape = *patch_.world.add_shape(source.name(), source.model());
+        shape->assign_geometry(source);
+        // a new shape gets all values, because colors of a URDF file are not explicitly set
+        set_properties(source.id(), shape->id(),
+                       is_new ? described_mask(Shape::table()) : explicit_mask(patch_.now.shapes[i]->values));
+      } else if (differs) {
+        if (next->geometry_changed) shape->assign_geometry(source);
+        set_properties(source.id(), shape->id(), next->changed);
+      }
+      if (differs) ++next;
+      shapes_.push_back(shape);
+    }
+  }
+
+  void apply_bodies(const LiveObjects& objects) {
+    auto next = patch_.diff.bodies.begin();
+    for (std::size_t i = 0; i < patch_.now.bodies.size(); i++) {
+      const std::optional<std::size_t> before = patch_.diff.old_body_indices[i];
+      const bool differs = next != patch_.diff.bodies.end() && next->new_index == i;
+      Body* body = before ? find_alive<Body>(patch_.world, objects.bodies[*before]) : nullptr;
+      if (body == nullptr) {
+        body = add_body(i);
+      } else if (differs) {
+        body = &patch_body(*body, *next);
+      }
+      if (differs) ++next;
+      bodies_.push_back(body);
+    }
+  }
+
+  // A gear that was removed, or lost a body, is added again with the values of the scene; others keep their values.
+  void apply_gears() {
+    for (const std::string& name : patch_.diff.removed_gears) {
+      if (Gear* const removed = patch_.world.find_gear(name)) patch_.world.remove_gear(*removed);
+    }
+    std::vector<Gear*> order;
+    for (std::size_t i = 0; i < patch_.now.gears.size(); i++) {
+      const GearDescription& now = patch_.now.gears[i];
+      const Gear& source = *patch_.candidate.gears()[i];
+      Joint* const a = joint_of(now.body_a, now.joint_a);
+      Joint* const b = joint_of(now.body_b, now.joint_b);
+      LIMBER_CHECK(a != nullptr && b != nullptr);
+      Gear* live = patch_.world.find_gear(now.name);
+      if (live != nullptr && (&live->joint_a() != a || &live->joint_b() != b)) {
+        patch_.world.remove_gear(*live);
+        live = nullptr;
+      }
+      if (live == nullptr) {
+        const Result<Gear*> added = patch_.world.add_gear(now.name, *a, *b, source.ratio(), source.offset());
+        LIMBER_CHECK(added.ok());
+        live = *added;
+        set_properties(source.id(), live->id(), described_mask(Gear::table()));
+      } else {
+        const GearDiff& diff = patch_.diff.gears[i];
+        set_properties(source.id(), live->id(), diff.changed);
+      }
+      order.push_back(live);
+    }
+    patch_.world.move_gears_to_front(order);
+  }
+
+  Joint* joint_of(const std::string& body, const std::string& joint) const {
+    for (Body* const candidate : bodies_) {
+      if (candidate->name() == body) return candidate->find_joint(joint);
+    }
+    return nullptr;
+  }
+
+  // Adds a body that is new or was removed, or adopts an unmanaged body of this name.
+  Body* add_body(std::size_t i) {
+    const Body& source = *patch_.candidate.bodies()[i];
+    Body* const unmanaged = patch_.world.find_body(source.name());
+    if (unmanaged == nullptr) return *patch_.world.copy_body(source, source.name());
+    BodyDiff diff = compare_unmanaged(describe_body(*unmanaged), patch_.now.bodies[i]);
+    diff.new_index = i;
+    return &patch_body(*unmanaged, diff);
+  }
+
+  Body& patch_body(Body& body, const BodyDiff& diff) {
+    const Body& source = *patch_.candidate.bodies()[diff.new_index];
+    Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
+    if (!diff.rebuild && diff.start_changed) live.save_start_pose(source);
+    set_properties(source.id(), live.id(), diff.changed);
+    for (std::size_t i = 0; i < diff.parts.size(); i++)
+      set_properties(source.parts()[i]->id(), live.parts()[i]->id(), diff.parts[i]);
+    for (std::size_t i = 0; i < diff.joints.size(); i++)
+      set_properties(source.joints()[i]->id(), live.joints()[i]->id(), diff.joints[i]);
+    for (std::size_t i = 0; i < diff.motors.size(); i++)
+      set_properties(source.motors()[i]->id(), live.motors()[i]->id(), diff.motors[i]);
+    for (const PairDescription& pair : diff.pairs) {
+      (void)live.edit_pair(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
+    }
+    move_body(live, source, diff);
+    return live;
+  }
+
+  Body& rebuild(Body& body, const Body& source, const BodyDiff& diff) {
+    const SavedValues saved(body);
+    save_behaviors(body, saved_behaviors_);
+    Body& live = patch_.world.rebuild_body(body, source, diff.joints_to_reset);
+    saved.restore_pairs_to(live);
+    saved.restore_to(store_, live.id(), "", diff.changed);
+    for (std::size_t i = 0; i < diff.parts.size(); i++)
+      saved.restore_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), diff.parts[i]);
+    for (std::size_t i = 0; i < diff.joints.size(); i++)
+      saved.restore_to(store_, live.joints()[i]->id(), live.joints()[i]->name(), diff.joints[i]);
+    for (std::size_t i = 0; i < diff.motors.size(); i++)
+      saved.restore_to(store_, live.motors()[i]->id(), live.motors()[i]->name(), diff.motors[i]);
+    return live;
+  }
+
+  static void move_body(Body& live, const Body& source, const BodyDiff& diff) {
+    const Pose before = live.pose();
+    const Pose target = source.pose();
+    const Pose to{diff.position_changed ? target.position : before.position,
+                  diff.rotation_changed ? target.rotation : before.rotation};
+    if (live.parts().empty()) return live.set_pose(to);
+    if (diff.position_changed || diff.rotation_changed) {
+      const Pose moved = to * before.inverse();
+      const std::size_t root_tree = live.trees().front();
+      const auto move_along = [&](std::size_t first) { live.move_tree(first, moved * live.parts()[first]->pose()); };
+      if (root_tree == 0) {
+        live.move_tree(0, to);
+      } else {
+        move_along(root_tree);
+      }
+      for (const std::size_t first : diff.trees_with_root) move_along(first);
+    }
+    for (const std::size_t first : diff.trees_placed) live.move_tree(first, source.parts()[first]->pose());
+  }
+
+  const ScenePatch& patch_;
+  Store& store_;
+  std::vector<Shape*> shapes_;
+  std::vector<Body*> bodies_;
+  std::vector<SavedBehavior> saved_behaviors_;  // of rebuilt bodies
+};
+
+}  // namespace
+
+LiveObjects live_objects_of(const World& world) {
+  LiveObjects objects;
+  for (const auto& shape : world.shapes()) objects.shapes.push_back(shape->id());
+  for (const auto& body : world.bodies()) objects.bodies.push_back(body->id());
+  return objects;
+}
+
+void apply(const ScenePatch& patch, LiveObjects& objects) { PatchApplier(patch).run(objects); }
+
+}  // namespace limber

@@ -1,0 +1,139 @@
+// SceneSpec: capturing the objects of a world.
+#include "engine/reload/scene_spec.h"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace limber {
+
+namespace {
+
+using Shapes = std::unordered_map<std::uint32_t, std::shared_ptr<const ShapeDescription>>;  // by slot
+
+bool is_explicit(const Store& store, NodeId id, std::string_view property) {
+  return (store.explicitly_set(id) >> store.table(id).at(property).index & 1u) != 0;
+}
+
+SpecValues spec_values_of(const Store& store, NodeId id) {
+  const PropertyTable& table = store.table(id);
+  const std::uint64_t explicitly_set = store.explicitly_set(id);
+  const std::uint64_t described = described_mask(table);
+  SpecValues result;
+  for (const Property& property : table.properties()) {
+    if ((described >> property.index & 1u) == 0) continue;
+    const double* const values = store.values(id, property);
+    const bool is_set = (explicitly_set >> property.index & 1u) != 0;
+    if (!is_set && std::equal(values, values + property.width, property.initial.begin())) continue;
+    SpecValue& entry = result.emplace_back(SpecValue{property.index, is_set, {}});
+    std::copy_n(values, property.width, entry.values.begin());
+  }
+  return result;
+}
+
+std::shared_ptr<const ShapeDescription> describe_shape(const Store& store, const Shape& shape) {
+  return std::make_shared<const ShapeDescription>(
+      ShapeDescription{shape.name(), spec_values_of(store, shape.id()), shape.model(), shape.children()});
+}
+
+StartPose start_pose_of(const Store& store, NodeId id, const Pose& pose) {
+  return {pose, is_explicit(store, id, "position"), is_explicit(store, id, "rotation")};
+}
+
+BodyDescription body_of(const Body& body, const Shapes& shapes) {
+  const Store& store = body.store();
+  BodyDescription out;
+  out.name = body.name();
+  out.values = spec_values_of(store, body.id());
+  out.start = start_pose_of(store, body.id(), body.pose());
+  out.model = body.model();
+  const std::vector<std::size_t> trees = body.trees();
+  std::unordered_map<const Part*, std::size_t> part_index;
+  for (const auto& part : body.parts()) {
+    part_index[part.get()] = out.parts.size();
+    const auto shape = shapes.find(part->shape().slot);
+    out.parts.push_back({part->name(), spec_values_of(store, part->id()),
+                         start_pose_of(store, part->id(), part->pose()), part->is_static(),
+                         shape == shapes.end() ? nullptr : shape->second, trees[out.parts.size()]});
+  }
+  if (!out.parts.empty()) {
+    // the root part and the body share one pose, which may be set through either
+    out.start.position_set |= out.parts.front().start.position_set;
+    out.start.rotation_set |= out.parts.front().start.rotation_set;
+  }
+  std::unordered_map<const Joint*, std::size_t> joint_index;
+  for (const auto& joint : body.joints()) {
+    joint_index[joint.get()] = out.joints.size();
+    const Pose from = joint->parent().pose() * joint->spec().frame_in_parent;
+    const Pose to = joint->child().pose() * joint->spec().frame_in_child;
+    out.joints.push_back({joint->name(), spec_values_of(store, joint->id()), joint->spec(),
+                          part_index[&joint->parent()], part_index[&joint->child()], from.inverse() * to});
+  }
+  for (const auto& motor : body.motors()) {
+    out.motors.push_back({joint_index[&motor->joint()], spec_values_of(store, motor->id())});
+  }
+  for (const PartPair& pair : body.pairs().list) {
+    if (pair.edit != PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
+  }
+  for (const Behavior* behavior : body.behaviors()) {
+    out.behaviors.push_back({behavior->name(), behavior->type().name, behavior->type().table, behavior->setup(),
+                             behavior->group() != nullptr, spec_values_of(store, behavior->id())});
+  }
+  return out;
+}
+
+}  // namespace
+
+std::uint64_t described_mask(const PropertyTable& table) {
+  std::uint64_t mask = 0;
+  for (const Property& property : table.properties()) {
+    const bool pose = &table == &Part::table() && (property.name == "position" || property.name == "rotation");
+    if (property.stored() && property.writable() && !pose) mask |= std::uint64_t{1} << property.index;
+  }
+  return mask;
+}
+
+std::uint64_t explicit_mask(const SpecValues& values) {
+  std::uint64_t mask = 0;
+  for (const SpecValue& value : values) mask |= std::uint64_t{value.is_set} << value.property;
+  return mask;
+}
+
+BodyDescription describe_body(const Body& body) {
+  const World& world = body.world();
+  Shapes shapes;
+  for (const auto& part : body.parts()) {
+    if (!world.store().alive(part->shape()) || shapes.contains(part->shape().slot)) continue;
+    shapes[part->shape().slot] =
+        describe_shape(world.store(), *static_cast<const Shape*>(world.store().object(part->shape())));
+  }
+  return body_of(body, shapes);
+}
+
+SceneSpec describe(const World& world) {
+  SceneSpec out;
+  out.world = spec_values_of(world.store(), world.id());
+  out.visuals = spec_values_of(world.store(), world.visuals().id());
+  out.camera = spec_values_of(world.store(), world.visuals().camera().id());
+  out.appearance = spec_values_of(world.store(), world.visuals().appearance().id());
+  Shapes shapes;
+  for (const auto& shape : world.shapes()) {
+    out.shapes.push_back(describe_shape(world.store(), *shape));
+    shapes[shape->id().slot] = out.shapes.back();
+  }
+  out.bodies.reserve(world.bodies().size());
+  for (const auto& body : world.bodies()) out.bodies.push_back(body_of(*body, shapes));
+  for (const auto& gear : world.gears()) {
+    const Joint& a = gear->joint_a();
+    const Joint& b = gear->joint_b();
+    out.gears.push_back({gear->name(), a.body().name(), a.name(), b.body().name(), b.name(),
+                         spec_values_of(world.store(), gear->id())});
+  }
+  for (const BehaviorGroup* group : world.behaviors().groups()) {
+    out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
+                          spec_values_of(world.store(), group->id())});
+  }
+  out.behavior_order = world.behaviors().order();
+  return out;
+}
+
+}  // namespace limber

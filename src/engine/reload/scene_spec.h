@@ -1,0 +1,118 @@
+// SceneSpec: plain data that describes the result of a scene's run: all objects by name, their construction, and the
+// value of each property: the one set last, else the default. Captured once after a run; can be compared on any thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/behavior/behavior_list.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+/// A property after the run: set by the script (or copied from another object), or a default of the object. Properties
+/// that were not set and have the table's default are omitted.
+struct SpecValue {
+  std::uint32_t property = 0;
+  bool is_set = false;
+  std::array<double, 4> values{};
+};
+using SpecValues = std::vector<SpecValue>;  ///< In the table's order.
+
+/// Start pose of a part or of a body's root.
+struct StartPose {
+  Pose pose;
+  bool position_set = false;
+  bool rotation_set = false;
+};
+
+struct ShapeDescription {
+  std::string name;
+  SpecValues values;
+  ShapeModel model;
+  std::vector<PlacedShape> children;
+};
+struct PartDescription {
+  std::string name;
+  SpecValues values;
+  StartPose start;
+  bool is_static = false;
+  std::shared_ptr<const ShapeDescription> shape;  ///< Null: a link of the body's model.
+  std::size_t tree = 0;                           ///< Index of the first part of its tree (Body::trees).
+};
+struct JointDescription {
+  std::string name;
+  SpecValues values;
+  JointSpec spec;
+  std::size_t parent = 0;  ///< Index of the part.
+  std::size_t child = 0;   ///< Index of the part.
+  Pose start;              ///< The child's joint frame in the parent's, at the start.
+};
+struct MotorDescription {
+  std::size_t joint = 0;  ///< Index of the joint.
+  SpecValues values;
+};
+/// A pair of parts, by index, that a script excluded from or included in collision.
+struct PairDescription {
+  std::size_t a = 0;
+  std::size_t b = 0;
+  PairEdit edit = PairEdit::none;
+};
+/// A behavior of a body. For members of a group only `values` is used.
+struct BehaviorDescription {
+  std::string name;
+  std::string type;
+  const PropertyTable* table = nullptr;
+  BehaviorSetup setup;
+  bool of_group = false;  ///< It is a member of a group.
+  SpecValues values;
+};
+struct GroupDescription {
+  std::string name;
+  std::string type;
+  const PropertyTable* table = nullptr;
+  GroupSetup setup;
+  SpecValues values;
+};
+struct GearDescription {
+  std::string name;
+  std::string body_a, joint_a;
+  std::string body_b, joint_b;
+  SpecValues values;
+};
+struct BodyDescription {
+  std::string name;
+  SpecValues values;
+  StartPose start;
+  std::shared_ptr<const BodyModel> model;
+  std::vector<PartDescription> parts;
+  std::vector<JointDescription> joints;
+  std::vector<MotorDescription> motors;
+  std::vector<PairDescription> pairs;
+  std::vector<BehaviorDescription> behaviors;
+};
+struct SceneSpec {
+  SpecValues world;
+  SpecValues visuals;
+  SpecValues camera;
+  SpecValues appearance;
+  std::vector<std::shared_ptr<const ShapeDescription>> shapes;
+  std::vector<BodyDescription> bodies;
+  std::vector<GearDescription> gears;
+  std::vector<GroupDescription> groups;
+  std::vector<std::string> behavior_order;  ///< BehaviorList::order()
+};
+
+/// Captures the objects of a world in their order. Call it right after a run, before anything else changes the world.
+SceneSpec describe(const World& world);
+BodyDescription describe_body(const Body& body);
+
+/// Returns a bit mask of the properties that a description contains: stored and writable ones, except poses of parts.
+std::uint64_t described_mask(const PropertyTable& table);
+/// Returns a bit mask of the properties that were explicitly set.
+std::uint64_t explicit_mask(const SpecValues& values);
+
+}  // namespace limber

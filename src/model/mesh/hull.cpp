@@ -1,0 +1,212 @@
+// Complete hulls by quickhull with outside sets; reduced hulls by repeatedly adding the farthest vertex.
+#include "model/mesh/hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <utility>
+
+#include "model/mesh/hull_surface.h"
+
+namespace limber {
+
+namespace {
+
+struct Extent {
+  double size = 0;      // largest edge of the bounding box
+  double farthest = 0;  // largest coordinate
+};
+
+Extent extent_of(std::span<const Vec3> points) {
+  Vec3 low = points[0], high = points[0];
+  for (const Vec3& p : points) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const Vec3 d = high - low;
+  const Vec3 m = glm::max(glm::abs(low), glm::abs(high));
+  return {std::max({d.x, d.y, d.z}), std::max({m.x, m.y, m.z})};
+}
+
+// mesh files hold single precision: points within its rounding error of a plane are treated as in the plane
+double tolerance_for(const Extent& e) { return 1e-6 * e.size + 2e-7 * e.farthest + 1e-12; }
+
+// a cloud thinner than a ten-thousandth of its size is treated as flat: the faces along its rim would be slivers, with
+// planes dominated by rounding errors
+double min_thickness_for(const Extent& e) { return 100 * tolerance_for(e); }
+
+/// Two copies of the cloud, shifted to both sides along each direction in which it has no thickness.
+std::vector<Vec3> thickened(std::span<const Vec3> points, const Extent& extent) {
+  const double min_extent = 2 * min_thickness_for(extent);
+  const double offset = std::max({1e-3 * extent.size, 1e-4, 0.75 * min_thickness_for(extent)});
+  const Vec3 base = points[0];
+  const auto farthest = [&](const auto& measure) {
+    return *std::max_element(points.begin(), points.end(),
+                             [&](const Vec3& a, const Vec3& b) { return measure(a) < measure(b); });
+  };
+  std::vector<Vec3> flat_directions{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const Vec3 far = farthest([&](const Vec3& p) { return glm::length(p - base); });
+  if (glm::length(far - base) > min_extent) {
+    const Vec3 along = normalized(far - base);
+    const Vec3 helper = std::abs(along.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+    const Vec3 side = farthest([&](const Vec3& p) { return glm::length(glm::cross(p - base, along)); });
+    const Vec3 out = glm::cross(along, side - base);
+    const Vec3 up = normalized(glm::cross(along, helper));
+    if (glm::length(out) > min_extent) {
+      flat_directions = {normalized(out)};
+    } else {
+      flat_directions = {up, glm::cross(along, up)};
+    }
+  }
+  std::vector<Vec3> out_points(points.begin(), points.end());
+  for (const Vec3& direction : flat_directions) {
+    const std::size_t count = out_points.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec3 p = out_points[i];
+      out_points[i] = p + offset * direction;
+      out_points.push_back(p - offset * direction);
+    }
+  }
+  return out_points;
+}
+
+/// Quickhull: assigns each point outside the surface to the face it is farthest above (the face's outside set), and
+/// adds the farthest point of each face until all sets are empty.
+class Quickhull {
+ public:
+  explicit Quickhull(HullSurface& surface) : surface_(surface) {}
+
+  void run(int points) {
+    std::vector<int> all(static_cast<std::size_t>(points));
+    for (int i = 0; i < points; ++i) all[static_cast<std::size_t>(i)] = i;
+    assign_points(all, {0, 1, 2, 3});
+    while (!pending_.empty()) {
+      const int f = pending_.back();
+      HullSurface::Face& face = surface_.faces()[static_cast<std::size_t>(f)];
+      if (!face.alive || face.outside_set.empty()) {
+        pending_.pop_back();
+        continue;
+      }
+      const int point = face.outside_set.back();
+      face.outside_set.pop_back();
+      if (surface_.add(point, f)) {
+        std::vector<int> unassigned;
+        for (const int dead : surface_.dead_faces()) {
+          std::vector<int>& list = surface_.faces()[static_cast<std::size_t>(dead)].outside_set;
+          unassigned.insert(unassigned.end(), list.begin(), list.end());
+          std::vector<int>().swap(list);
+        }
+        assign_points(unassigned, surface_.added_faces());
+      } else {
+        move_farthest_to_back(face);
+      }
+    }
+  }
+
+ private:
+  void assign_points(const std::vector<int>& points, const std::vector<int>& faces) {
+    for (const int p : points) {
+      int best = -1;
+      double max_height = surface_.epsilon();
+      for (const int f : faces) {
+        const double d = surface_.signed_distance(surface_.faces()[static_cast<std::size_t>(f)], p);
+        if (d > max_height) max_height = d, best = f;
+      }
+      if (best >= 0) surface_.faces()[static_cast<std::size_t>(best)].outside_set.push_back(p);
+    }
+    for (const int f : faces) {
+      HullSurface::Face& face = surface_.faces()[static_cast<std::size_t>(f)];
+      if (face.outside_set.empty()) continue;
+      move_farthest_to_back(face);
+      pending_.push_back(f);
+    }
+  }
+  void move_farthest_to_back(HullSurface::Face& face) {
+    if (face.outside_set.empty()) return;
+    const auto farthest = std::max_element(face.outside_set.begin(), face.outside_set.end(), [&](int a, int b) {
+      return surface_.signed_distance(face, a) < surface_.signed_distance(face, b);
+    });
+    std::iter_swap(farthest, face.outside_set.end() - 1);
+  }
+
+  HullSurface& surface_;
+  std::vector<int> pending_;
+};
+
+}  // namespace
+
+double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  // Ericson, Real-Time Collision Detection, 5.1.5: finds the corner, edge or interior region that is nearest
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+  if (d1 <= 0 && d2 <= 0) return glm::length(ap);
+  const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+  if (d3 >= 0 && d4 <= d3) return glm::length(bp);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return glm::length(ap - d1 / (d1 - d3) * ab);
+  const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+  if (d6 >= 0 && d5 <= d6) return glm::length(cp);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return glm::length(ap - d2 / (d2 - d6) * ac);
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return glm::length(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
+  const double sum = va + vb + vc;
+  return sum > 0 ? glm::length(ap - vb / sum * ab - vc / sum * ac) : glm::length(ap);
+}
+
+Hull convex_hull(std::span<const Vec3> points) {
+  if (points.empty()) return {};
+  const Extent extent = extent_of(points);
+  HullSurface surface(points, tolerance_for(extent));
+  if (surface.build_tetrahedron(min_thickness_for(extent))) {
+    Quickhull(surface).run(static_cast<int>(points.size()));
+    return surface.result();
+  }
+  const std::vector<Vec3> thick = thickened(points, extent);
+  HullSurface solid(thick, tolerance_for(extent_of(thick)));
+  if (!solid.build_tetrahedron(min_thickness_for(extent_of(thick)))) return {};
+  Quickhull(solid).run(static_cast<int>(thick.size()));
+  return solid.result();
+}
+
+Hull reduced_hull(const Hull& whole, const HullLimits& limits) {
+  const int count = static_cast<int>(whole.vertices.size());
+  if (count <= std::min(limits.min_vertices, limits.max_vertices)) return whole;
+  const Extent extent = extent_of(whole.vertices);
+  HullSurface surface(whole.vertices, tolerance_for(extent) * 0.1);
+  if (!surface.build_tetrahedron(10 * surface.epsilon())) return whole;
+  // distances only shrink while the surface grows: a stored distance is an upper bound, so only the top is recomputed
+  std::priority_queue<std::pair<double, int>> farthest;
+  for (int i = 0; i < count; ++i) farthest.emplace(surface.distance(i), -i);
+  int vertices = 4;
+  double max_omitted = 0;
+  while (!farthest.empty()) {
+    const auto [upper_bound, index] = farthest.top();
+    farthest.pop();
+    const double distance = surface.distance(-index);
+    if (!farthest.empty() && distance < farthest.top().first) {
+      farthest.emplace(distance, index);
+      continue;
+    }
+    const bool accurate_enough = distance <= limits.tolerance * extent.size && vertices >= limits.min_vertices;
+    if (distance <= surface.epsilon() || vertices >= limits.max_vertices || accurate_enough) {
+      max_omitted = std::max(max_omitted, distance);
+      break;
+    }
+    const int visible_face = surface.highest_visible_face(-index);
+    if (visible_face >= 0 && surface.add(-index, visible_face)) {
+      ++vertices;
+    } else {
+      max_omitted = std::max(max_omitted, distance);
+    }
+  }
+  Hull out = surface.result();
+  out.error = max_omitted;
+  return out;
+}
+
+Hull reduced_hull(std::span<const Vec3> points, const HullLimits& limits) {
+  return reduced_hull(convex_hull(points), limits);
+}
+
+}  // namespace limber

@@ -1,0 +1,138 @@
+// Search paths for meshes, and the cache of loaded meshes.
+#include "model/mesh/library.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "model/mesh/load.h"
+
+namespace limber {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMaxParentFolders = 8;
+constexpr std::size_t kMaxPathParts = 32;
+
+bool is_file(const fs::path& path) {
+  std::error_code fault;
+  return fs::is_regular_file(path, fault);
+}
+
+/// The path inside a URI, with backslashes replaced: "package://arm/x.stl" -> "arm/x.stl".
+std::string path_of(std::string uri) {
+  std::replace(uri.begin(), uri.end(), '\\', '/');
+  for (const std::string_view scheme : {"package://", "model://", "file://"}) {
+    if (uri.starts_with(scheme)) {
+      uri.erase(0, scheme.size());
+      break;
+    }
+  }
+  // an unexpanded xacro expression: $(find arm)/x.stl
+  if (uri.starts_with("$(find ")) {
+    const std::size_t close = uri.find(')');
+    if (close != std::string::npos) uri = uri.substr(7, close - 7) + uri.substr(close + 1);
+  }
+  return uri;
+}
+
+/// The path, and its suffixes without the first one, two, … components.
+std::vector<fs::path> path_suffixes(const fs::path& path) {
+  std::vector<fs::path> parts;
+  for (const fs::path& part : path) {
+    if (part != "/" && !part.empty()) parts.push_back(part);
+  }
+  std::vector<fs::path> out;
+  for (std::size_t from = 0; from < std::min(parts.size(), kMaxPathParts); ++from) {
+    fs::path rest;
+    for (std::size_t i = from; i < parts.size(); ++i) rest /= parts[i];
+    out.push_back(rest);
+  }
+  return out;
+}
+
+std::string canonical_path(const fs::path& path) {
+  std::error_code fault;
+  const fs::path whole = fs::weakly_canonical(path, fault);
+  return fault ? path.string() : whole.string();
+}
+
+}  // namespace
+
+Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
+                              const std::vector<std::string>& package_paths) {
+  if (uri.starts_with("http://") || uri.starts_with("https://")) {
+    return Error{fmt::format("'{}' is a network address, which is not supported. Copy the file next to the URDF.",
+                             printable(uri))};
+  }
+  if (uri.find('\0') != std::string::npos || uri.size() > 4096)
+    return Error{"its path is invalid. Use a shorter path."};
+  const fs::path path = path_of(uri);
+  if (path.is_absolute() && is_file(path)) return canonical_path(path);
+  std::error_code fault;
+  const fs::path start = fs::absolute(folder.empty() ? "." : folder, fault);
+  if (path.is_relative() && is_file(start / path)) return canonical_path(start / path);
+  const std::vector<fs::path> suffixes = path_suffixes(path);
+  std::string searched = printable(start.string());
+  for (const std::string& packages : package_paths) {
+    searched += ", " + printable(packages);
+    for (const fs::path& suffix : suffixes) {
+      if (is_file(fs::path(packages) / suffix)) return canonical_path(fs::path(packages) / suffix);
+    }
+  }
+  fs::path at = start;
+  for (int level = 0; level < kMaxParentFolders; ++level) {
+    for (const fs::path& suffix : suffixes) {
+      if (is_file(at / suffix)) return canonical_path(at / suffix);
+    }
+    if (!at.has_parent_path() || at.parent_path() == at) break;
+    at = at.parent_path();
+  }
+  return Error{fmt::format("'{}' not found in {}, and parent folders. Put the file there, or give --package-path DIR.",
+                           printable(uri), searched)};
+}
+
+Result<std::string> MeshLibrary::find(const std::string& uri, const std::string& folder,
+                                      const std::vector<std::string>& package_paths) const {
+  if (memory_files_ == nullptr) return find_mesh(uri, folder, package_paths);
+  const auto known = memory_files_->mesh_paths.find(FileSet::mesh_key(folder, uri));
+  if (known == memory_files_->mesh_paths.end())
+    return Error{
+        fmt::format("'{}' is not among the saved files. It was missing when they were saved.", printable(uri))};
+  return known->second;
+}
+
+Result<std::shared_ptr<const MeshModel>> MeshLibrary::load_from_memory(const std::string& path,
+                                                                       const Vec3& scale) const {
+  const std::string* const bytes = memory_files_->content(path);
+  if (bytes == nullptr) return Error{fmt::format("{}: is not among the saved files.", printable(path))};
+  const Result<MeshFormat> format = mesh_format_of(path);
+  if (!format) return Error{fmt::format("{}: {}", printable(path), format.error())};
+  return mesh_from_bytes(*bytes, *format, scale, fs::path(path).stem().string());
+}
+
+Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& path, const Vec3& scale) {
+  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = meshes_.find(key);
+    if (found != meshes_.end() && (memory_files_ != nullptr || found->second.stamp.is_current(path)))
+      return found->second.mesh;
+  }
+  // loaded without holding the lock: if two threads load the same mesh, the first one's is used
+  const FileStamp stamp = memory_files_ == nullptr ? FileStamp(path) : FileStamp();
+  auto mesh = memory_files_ == nullptr ? load_mesh(path, scale) : load_from_memory(path, scale);
+  if (!mesh) return mesh;
+  const std::lock_guard lock(mutex_);
+  Entry& entry = meshes_[key];
+  if (!entry.mesh || !(entry.stamp == stamp)) entry = {stamp, *mesh};
+  return entry.mesh;
+}
+
+}  // namespace limber

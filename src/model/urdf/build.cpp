@@ -1,0 +1,123 @@
+// Structure of the body: links, merging of fixed links, joint frames and limits.
+#include "model/urdf/build.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+
+/// A rotation that maps +z to the axis: identity for +z, half a turn about x for -z.
+Quat rotation_to_axis(const Vec3& axis) {
+  if (axis.z >= 1 - 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
+  if (axis.z <= -1 + 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
+  const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = normalized(glm::cross(axis, helper));
+  return glm::normalize(glm::quat_cast(Mat3(glm::cross(y, axis), y, axis)));
+}
+
+PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
+  PlacedShape out;
+  out.shape = from.shape;
+  out.origin = offset * from.origin.pose();
+  out.color = from.color;
+  out.alpha = from.alpha;
+  if (!collides || !from.shape.mesh || !from.shape.mesh->primitive) return out;
+  // a mesh recognized as a box, sphere or capsule collides as that primitive, at the primitive's pose
+  const PlacedShape& primitive = *from.shape.mesh->primitive;
+  out.shape = primitive.shape;
+  out.shape.mesh = from.shape.mesh;
+  out.shape.mesh_pose = primitive.origin.inverse();
+  out.origin = out.origin * primitive.origin;
+  return out;
+}
+
+void add_shapes(UrdfBuildContext& build, std::size_t node) {
+  LinkModel& to = build.model.links[static_cast<std::size_t>(build.body_link[node])];
+  const UrdfLink& from = build.link(node);
+  for (const UrdfShape& s : from.collisions) to.collisions.push_back(placed(s, build.offset[node], true));
+  for (const UrdfShape& s : from.visuals) to.visuals.push_back(placed(s, build.offset[node], false));
+}
+
+JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
+  const UrdfJoint& from = build.joint(node);
+  const auto parent = static_cast<std::size_t>(build.tree[node].parent);
+  const bool has_axis = from.type != JointType::fixed && from.type != JointType::floating;
+  const Quat rotation = has_axis ? rotation_to_axis(from.axis) : quat_identity();
+  JointModel out;
+  out.name = from.name;
+  out.type = from.type;
+  out.parent = build.body_link[parent];
+  out.child = build.body_link[node];
+  out.frame_in_parent = build.offset[parent] * from.origin.pose() * Pose{Vec3(0), rotation};
+  out.frame_in_child = {Vec3(0), rotation};
+  out.limited = from.limited;
+  out.lower = from.lower;
+  out.upper = from.upper;
+  out.velocity = from.velocity;
+  out.damping = from.damping;
+  out.friction = from.friction;
+  const bool driven =
+      from.type == JointType::revolute || from.type == JointType::continuous || from.type == JointType::prismatic;
+  if (from.effort > 0) {
+    out.effort = from.effort;
+  } else if (driven) {
+    build.problems.note(from.line,
+                        fmt::format("joint '{}': effort is 0 or absent; using {:g} {}", printable(from.name),
+                                    out.effort, from.type == JointType::prismatic ? "N" : "N·m"),
+                        "Write <limit effort=\"…\"/> with the motor's largest torque or force.");
+  }
+  return out;
+}
+
+bool is_merged(UrdfBuildContext& build, std::size_t node) {
+  if (build.tree[node].joint < 0 || build.joint(node).type != JointType::fixed) return false;
+  if (!build.options.keep_fixed) return true;
+  const UrdfLink& link = build.link(node);
+  if (link.inertial && link.inertial->mass > 0) return false;
+  build.problems.note(
+      link.line,
+      fmt::format("link '{}' has no mass; merged into its parent in spite of keep_fixed", printable(link.name)),
+      "Give it an <inertial> with a mass to keep it apart.");
+  return true;
+}
+
+}  // namespace
+
+void build_structure(UrdfBuildContext& build) {
+  const std::size_t count = build.tree.size();
+  build.body_link.assign(count, -1);
+  build.body_joint.assign(count, -1);
+  build.offset.assign(count, Pose{});
+  for (std::size_t node = 0; node < count; ++node) {
+    if (is_merged(build, node)) {
+      const auto parent = static_cast<std::size_t>(build.tree[node].parent);
+      build.body_link[node] = build.body_link[parent];
+      build.offset[node] = build.offset[parent] * build.joint(node).origin.pose();
+      build.model.merged.push_back({build.link(node).name, build.body_link[node], build.offset[node]});
+      const LinkModel& carrier = build.model.links[static_cast<std::size_t>(build.body_link[node])];
+      if (!build.link(node).self_collision.value_or(true) && carrier.self_collision) {
+        build.problems.warning(build.link(node).line,
+                               fmt::format("link '{}': <selfCollide> false ignored: it is merged into '{}'",
+                                           printable(build.link(node).name), printable(carrier.name)),
+                               "Write it for that link, or keep fixed joints (keep_fixed).");
+      }
+    } else {
+      build.body_link[node] = static_cast<int>(build.model.links.size());
+      LinkModel& link = build.model.links.emplace_back();
+      link.name = build.link(node).name;
+      link.self_collision = build.link(node).self_collision.value_or(true);
+      if (build.tree[node].joint >= 0) {
+        build.body_joint[node] = static_cast<int>(build.model.joints.size());
+        build.model.joints.push_back(make_joint(build, node));
+      }
+    }
+    add_shapes(build, node);
+  }
+}
+
+}  // namespace limber

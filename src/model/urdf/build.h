@@ -1,0 +1,43 @@
+// Steps that convert a checked URDF tree into a BodyModel: merge fixed links, repair masses, place links, find
+// overlaps. Internal to the module: only the urdf_*.cpp files include it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "model/problems.h"
+#include "model/urdf/file.h"
+#include "model/urdf/import.h"
+#include "model/urdf/tree.h"
+
+namespace limber {
+
+/// Inputs and intermediate results shared by the steps.
+struct UrdfBuildContext {
+  const UrdfFile& file;
+  const std::vector<UrdfNode>& tree;
+  const ImportOptions& options;
+  Problems& problems;
+  BodyModel& model;
+  std::vector<int> body_link;   ///< By node: index of the model's link that it is, or was merged into.
+  std::vector<Pose> offset;     ///< By node: its frame in that link's frame.
+  std::vector<int> body_joint;  ///< By node: index of the model's joint to its parent; -1: merged or root.
+
+  const UrdfLink& link(std::size_t node) const { return file.links[static_cast<std::size_t>(tree[node].link)]; }
+  const UrdfJoint& joint(std::size_t node) const { return file.joints[static_cast<std::size_t>(tree[node].joint)]; }
+};
+
+/// Creates links, merged links, and joints with frames and limits. The shapes' meshes must be loaded already. [any]
+void build_structure(UrdfBuildContext& build);
+/// Sets masses and inertia tensors, and decides if the root is static (urdf_mass.cpp). [any]
+void build_masses(UrdfBuildContext& build);
+/// Resolves mimic joints, sets start values, home and start poses, and fills `file_links` and `file_joints`
+/// (urdf_pose.cpp). The error names an unknown joint or an invalid value in `options.pose`. [any]
+Result<void> build_poses(UrdfBuildContext& build);
+/// Finds pairs of links that overlap at the home pose, and reports links without collision shapes and hulls that fill
+/// hollows of their mesh (urdf_collisions.cpp). [any]
+void build_collisions(UrdfBuildContext& build);
+
+}  // namespace limber

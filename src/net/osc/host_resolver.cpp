@@ -1,0 +1,91 @@
+// The look-up threads and HostResolver share ownership of the results, so either may end first.
+#include "net/osc/host_resolver.h"
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/system/thread.h"
+
+namespace limber {
+
+namespace {
+
+constexpr std::uint32_t kThisMachine = 0x7f000001;
+
+std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t port) {
+  if (const std::optional<std::uint32_t> ip = parse_ipv4(host)) return Endpoint{*ip, port};
+  if (host == "localhost") return Endpoint{kThisMachine, port};
+  return std::nullopt;
+}
+
+}  // namespace
+
+struct HostResolver::Shared {
+  std::function<void()> notify;
+  std::mutex mutex;                                                // guards the members below
+  std::map<std::string, std::optional<Result<Endpoint>>> results;  // by host; empty: pending
+  bool changed = false;
+  std::condition_variable look_up_ended;  // notified when a look-up ends
+};
+
+HostResolver::HostResolver(ResolveFunction look_up, std::function<void()> notify)
+    : look_up_(std::move(look_up)), shared_(std::make_shared<Shared>()) {
+  shared_->notify = std::move(notify);
+}
+
+std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std::uint16_t port) {
+  if (const std::optional<Endpoint> at = parse_literal(host, port)) return *at;
+  {
+    const std::scoped_lock lock(shared_->mutex);
+    const auto [entry, inserted] = shared_->results.try_emplace(host);
+    if (!inserted) {
+      if (!entry->second || !entry->second->ok()) return entry->second;
+      return Endpoint{(*entry->second)->ip, port};
+    }
+  }
+  const auto run_look_up = [host, port, look_up = look_up_, shared = shared_] {
+    Result<Endpoint> at = look_up(host, port);
+    {
+      const std::scoped_lock lock(shared->mutex);
+      shared->results[host] = std::move(at);
+      shared->changed = true;
+    }
+    shared->look_up_ended.notify_all();
+    shared->notify();
+  };
+  if (std::thread thread; system::start_thread(thread, run_look_up)) {
+    thread.detach();
+  } else {
+    run_look_up();  // no thread available: block this once
+  }
+  return std::nullopt;
+}
+
+std::optional<Result<Endpoint>> HostResolver::wait_for(const std::string& host, std::uint16_t port,
+                                                       std::chrono::milliseconds limit) {
+  if (std::optional<Result<Endpoint>> at = find(host, port)) return at;
+  {
+    std::unique_lock lock(shared_->mutex);
+    shared_->look_up_ended.wait_for(lock, limit, [&] { return shared_->results[host].has_value(); });
+  }
+  return find(host, port);
+}
+
+bool HostResolver::consume_changed() {
+  const std::scoped_lock lock(shared_->mutex);
+  return std::exchange(shared_->changed, false);
+}
+
+void HostResolver::invalidate() {
+  const std::scoped_lock lock(shared_->mutex);
+  std::erase_if(shared_->results, [](const auto& entry) { return entry.second.has_value(); });
+}
+
+void HostResolver::invalidate_failed() {
+  const std::scoped_lock lock(shared_->mutex);
+  std::erase_if(shared_->results, [](const auto& entry) { return entry.second && !entry.second->ok(); });
+}
+
+}  // namespace limber

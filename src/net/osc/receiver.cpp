@@ -1,0 +1,300 @@
+// Reads datagrams in batches of sixteen. Nothing here throws, and nothing is logged per datagram.
+#include "net/osc/receiver.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log/log.h"
+#include "base/text.h"
+#include "net/osc/packets/decode.h"
+#include "net/osc/packets/packet_parser.h"
+#include "net/osc/packets/validate.h"
+#include "net/osc/subscribers.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kMaxBatches = 64;
+constexpr int kReceiveBuffer = 4 << 20;
+constexpr std::size_t kDatagramOverhead = 256;  // budget per datagram in addition to its bytes
+constexpr const char* kInboxFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
+constexpr const char* kListenHint =
+    "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
+
+std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
+
+}  // namespace
+
+// `text` is called only if the warning is logged.
+template <class Text>
+void Receiver::warn_throttled(WarningThrottle& throttle, const Text& text) {
+  if (const std::optional<std::string> more = throttle.admit(clock_.steady())) log_warning("{}{}", text(), *more);
+}
+
+struct Receiver::ListenSocket {
+  ListenAddress address;
+  system::UdpSocket socket;
+  std::uint32_t kernel_drops = 0;  // the kernel's counter, which starts with the socket
+};
+
+Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks, const NetClock& clock)
+    : link_(link), allow_(std::move(allow)), callbacks_(std::move(callbacks)), clock_(clock), scheduled_(clock) {}
+
+Receiver::~Receiver() = default;
+
+void Receiver::close() { sockets_.clear(); }
+
+std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addresses) {
+  std::erase_if(sockets_, [&](const auto& s) { return std::ranges::find(addresses, s->address) == addresses.end(); });
+  std::vector<std::string> faults;
+  for (const ListenAddress& address : addresses) {
+    const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->address == address; });
+    if (open_already) continue;
+    if (std::optional<std::string> fault = open(address)) faults.push_back(*fault);
+  }
+  return faults;
+}
+
+bool Receiver::has_unopened(const std::vector<ListenAddress>& addresses) const {
+  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
+  return numbers && std::ranges::any_of(addresses, [this](const ListenAddress& address) {
+           return std::ranges::none_of(sockets_, [&](const auto& s) { return s->address == address; });
+         });
+}
+
+std::optional<std::string> Receiver::open(const ListenAddress& address) {
+  const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
+  const Result<Endpoint> at = resolve(address.address, address.port);
+  if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), kListenHint);
+  Result<system::UdpSocket> socket = system::open_udp(*at);
+  if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), kListenHint);
+
+  system::count_dropped(socket->fd());
+  const int granted = system::set_receive_buffer(socket->fd(), kReceiveBuffer);
+  if (granted < kReceiveBuffer && !reported_buffer_) {
+    reported_buffer_ = true;
+    log_info(
+        "OSC in: the system limits the receive buffer to {} KiB instead of {} KiB, so bursts may lose messages. "
+        "Increase it with sysctl -w net.core.rmem_max={}",
+        granted / 1024, kReceiveBuffer / 1024, kReceiveBuffer);
+  }
+  if (at->ip == 0) {
+    log_warning("OSC in {}: open to the network{}", name,
+                allow_.empty() ? ", every sender is accepted. Restrict it with --osc-allow CIDR"
+                               : ", senders in --osc-allow are accepted");
+  }
+  sockets_.push_back(std::make_unique<ListenSocket>(ListenSocket{address, std::move(*socket), 0}));
+  return std::nullopt;
+}
+
+std::vector<int> Receiver::descriptors() const {
+  std::vector<int> list;
+  for (const auto& s : sockets_) list.push_back(s->socket.fd());
+  return list;
+}
+
+std::vector<Endpoint> Receiver::bound() const {
+  std::vector<Endpoint> list;
+  for (const auto& s : sockets_) list.push_back(s->socket.local());
+  return list;
+}
+
+void Receiver::receive(int fd) {
+  const auto found = std::ranges::find_if(sockets_, [&](const auto& s) { return s->socket.fd() == fd; });
+  if (found == sockets_.end()) return;
+  ListenSocket& socket = **found;
+  for (int round = 0; round < kMaxBatches; round++) {
+    const std::span<const system::Datagram> datagrams = reader_.read(fd);
+    for (const system::Datagram& datagram : datagrams) {
+      if (datagram.dropped) record_kernel_drops(socket, *datagram.dropped);
+      enqueue(socket, datagram.data, datagram.size, datagram.from);
+    }
+    // an error (no data, a signal) is handled like an empty batch: poll reports further data
+    if (datagrams.size() < system::DatagramReader::kMaxBatch) break;
+  }
+}
+
+void Receiver::enqueue(ListenSocket& socket, const char* data, std::size_t size, const Endpoint& from) {
+  known_senders_[slot_of(from) % kKnownSlots] = {from, socket.socket.fd()};
+  callbacks_.received(from, size);
+  const ScanResult scanned = scan(data, size, {CommandSource::osc, from.ip, from.port});
+  wake_pending_ = wake_pending_ || scanned.urgent;
+  if (queue_.size() < kMaxQueued && queued_bytes_ + size <= kMaxQueuedBytes) {
+    queue_.push_back({{data, size}, from, scanned});
+    queued_bytes_ += size;
+    return;
+  }
+  link_.counters.dropped.fetch_add(1, std::memory_order_relaxed);
+  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
+}
+
+namespace {
+
+// Visitor that detects urgent addresses in a valid packet.
+struct UrgentAddresses {
+  bool any = false;
+  static void bundle(int, std::uint64_t) {}
+  void message(const char* address, const char*) { any = any || urgent_kind_of(address).has_value(); }
+  static void argument(char, const char*) {}
+  static void end_message() {}
+};
+
+// True for an /error message or a message with /error as an argument.
+bool answers_error(const Message& message) {
+  constexpr std::string_view kError = "/error";
+  return same_address(message.address, kError) || std::ranges::any_of(message.args, [&](const Arg& arg) {
+           return arg.is_text() && arg.text.starts_with('/') && same_address(arg.text, kError);
+         });
+}
+
+}  // namespace
+
+Receiver::ScanResult Receiver::scan(const char* data, std::size_t size, const CommandOrigin& origin) const {
+  ScanResult scanned{link_.command_queue.next_arrival(), false};
+  UrgentAddresses addresses;
+  if (!allowed(origin.ip) || PacketParser<UrgentAddresses>(addresses).packet(data, size) != nullptr || !addresses.any)
+    return scanned;
+  Result<Decoded> decoded = decode_packet(data, size);
+  if (!decoded || scheduled_.is_future(decoded->time_tag)) return scanned;
+  scanned.urgent = true;
+  for (Message& message : decoded->messages) {
+    if (const std::optional<UrgentKind> kind = urgent_kind(message))
+      link_.command_queue.push_urgent({*kind, std::move(message), origin, scanned.arrival});
+  }
+  return scanned;
+}
+
+void Receiver::decode_slice() {
+  for (std::size_t bytes = 0; !queue_.empty() && bytes < kDecodeSliceBytes;) {
+    const QueuedDatagram raw = std::move(queue_.front());
+    queue_.pop_front();
+    queued_bytes_ -= raw.bytes.size();
+    bytes += raw.bytes.size() + kDatagramOverhead;
+    process(raw.bytes.data(), raw.bytes.size(), {CommandSource::osc, raw.from.ip, raw.from.port}, raw.scanned);
+  }
+}
+
+void Receiver::process(const char* data, std::size_t size, CommandOrigin origin, ScanResult scanned) {
+  const Endpoint from{origin.ip, origin.port};
+  if (!allowed(from.ip)) {
+    link_.counters.denied.fetch_add(1, std::memory_order_relaxed);
+    warn_throttled(denied_log_, [&] {
+      return fmt::format("OSC from {} ignored: its address is not in --osc-allow", endpoint_text(from));
+    });
+    return;
+  }
+  const char* fault = packet_fault(data, size);
+  Result<Decoded> decoded = fault == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{fault});
+  if (!decoded) {
+    link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
+    warn_throttled(malformed_log_, [&] {
+      return fmt::format("OSC in: {} bytes from {} are not valid OSC: {}", size, endpoint_text(from), decoded.error());
+    });
+    return;
+  }
+  link_.counters.received.fetch_add(decoded->messages.size() + decoded->rejected.size(), std::memory_order_relaxed);
+  if (link_.message_log.enabled()) log_messages(origin, *decoded);
+  for (const RejectedMessage& r : decoded->rejected) reject(origin, r.address, r.reason);
+
+  // a ping is answered by this thread, not by the simulation
+  const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
+  for (std::size_t i = 0; i < pings; i++) callbacks_.pong(origin);
+  std::erase_if(decoded->messages, [&](const Message& m) {
+    if (m.address == "/token") {
+      callbacks_.token(m, origin);
+      return true;
+    }
+    if (answers_error(m)) callbacks_.error_answered(origin);
+    if (!Subscribers::handles(m)) return false;
+    if (const Result<void> done = callbacks_.subscribe(m, origin); !done) reject(origin, m.address, done.error());
+    return true;
+  });
+  origin.is_subscriber = origin.is_subscriber || callbacks_.is_subscriber(origin);
+  if (!decoded->messages.empty())
+    deliver(decoded->time_tag, {std::move(decoded->messages), origin, nullptr, scanned.arrival}, scanned.urgent);
+}
+
+void Receiver::log_messages(const CommandOrigin& origin, const Decoded& packet) {
+  const std::string end =
+      endpoint_text({origin.ip, origin.port}) + (origin.source == CommandSource::oscquery ? " (WebSocket)" : "");
+  for (const Message& message : packet.messages) link_.message_log.add(true, end, message);
+  for (const RejectedMessage& rejected : packet.rejected) link_.message_log.add(true, end, {rejected.address, {}});
+}
+
+// A packet that scan() found to be due is applied now, even if the clock has changed since.
+void Receiver::deliver(std::uint64_t time_tag, Command command, bool urgent_pushed) {
+  switch (urgent_pushed ? ScheduledCommands::ScheduleResult::now : scheduled_.schedule(time_tag, command)) {
+    case ScheduledCommands::ScheduleResult::scheduled:
+      return;
+    case ScheduledCommands::ScheduleResult::too_far:
+      warn_throttled(far_future_log_, [&] {
+        return fmt::format(
+            "OSC in: the time tag of a bundle from {} is more than 10 s ahead; applied now. Check the clocks of the "
+            "sender and of this machine",
+            endpoint_text({command.origin.ip, command.origin.port}));
+      });
+      break;
+    case ScheduledCommands::ScheduleResult::full:
+      warn_throttled(schedule_full_log_, [] {
+        return fmt::format("OSC in: {} bundles or {} MiB are scheduled; further ones are applied now",
+                           ScheduledCommands::kMaxCommands, ScheduledCommands::kMaxBytes >> 20);
+      });
+      break;
+    case ScheduledCommands::ScheduleResult::now:
+      break;
+  }
+  push(std::move(command), urgent_pushed);
+}
+
+void Receiver::process_pending() {
+  decode_slice();
+  while (std::optional<Command> command = scheduled_.pop_due()) {
+    command->arrival = 0;  // it counts as arriving now
+    push(std::move(*command));
+  }
+  if (std::exchange(wake_pending_, false)) link_.wake_engine();
+}
+
+void Receiver::push(Command command, bool urgent_pushed) {
+  const std::size_t count = command.messages.size();
+  if (link_.command_queue.push(std::move(command), urgent_pushed)) {
+    wake_pending_ = true;
+    return;
+  }
+  link_.counters.dropped.fetch_add(count, std::memory_order_relaxed);
+  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
+}
+
+void Receiver::reject(const CommandOrigin& origin, const std::string& address, const std::string& text) {
+  link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+  callbacks_.error({Outgoing::Destination::error, origin, error_message(address, text)});
+}
+
+void Receiver::record_kernel_drops(ListenSocket& socket, std::uint32_t count) {
+  // unsigned arithmetic is correct even if the kernel's counter wraps
+  const std::uint32_t new_drops = count - socket.kernel_drops;
+  socket.kernel_drops = count;
+  if (new_drops == 0) return;
+  link_.counters.dropped_kernel.fetch_add(new_drops, std::memory_order_relaxed);
+  warn_throttled(kernel_drops_log_, [&] {
+    return fmt::format(
+        "OSC in {}: the system dropped {} datagrams. Increase net.core.rmem_max, or send bundles instead of single "
+        "messages",
+        endpoint_text(socket.socket.local()), new_drops);
+  });
+}
+
+int Receiver::socket_of(const Endpoint& sender) const {
+  const KnownSender& known = known_senders_[slot_of(sender) % kKnownSlots];
+  if (known.sender != sender) return -1;
+  // the socket may have been closed and its descriptor reused
+  const bool ours = std::ranges::any_of(sockets_, [&](const auto& s) { return s->socket.fd() == known.fd; });
+  return ours ? known.fd : -1;
+}
+
+bool Receiver::allowed(std::uint32_t ip) const { return is_allowed(allow_, ip); }
+
+}  // namespace limber

@@ -1,0 +1,99 @@
+// Each pass reads one snapshot, so that all targets that are due get the same tick.
+#include "net/osc/streams.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "base/log/log.h"
+#include "base/system/net/udp_socket.h"
+#include "base/text.h"
+#include "net/osc/tap.h"
+
+namespace limber {
+
+namespace {
+
+std::int64_t period_of(const StreamTarget& config) {
+  return static_cast<std::int64_t>(1e9 / std::clamp(config.rate, 0.1, 1000.0));
+}
+
+bool wants_streams(const StreamTarget& config) { return config.pos || config.rot || config.relrot || config.relpos; }
+
+}  // namespace
+
+Streams::Streams(EngineLink& link, const TransientOffsets& offsets, const NetClock& clock, SendGate may_serve)
+    : link_(link), offsets_(offsets), clock_(clock), may_serve_(std::move(may_serve)) {}
+
+void Streams::set_targets(const std::vector<ResolvedTarget>& targets) {
+  std::vector<std::unique_ptr<Stream>> streams;
+  for (const ResolvedTarget& target : targets) {
+    if (!wants_streams(target.config)) continue;
+    const auto old = std::ranges::find_if(streams_, [&](const auto& s) { return s && s->target == target; });
+    streams.push_back(old != streams_.end() ? std::move(*old)
+                                            : std::make_unique<Stream>(target, offsets_, clock_.steady()));
+  }
+  streams_ = std::move(streams);
+}
+
+void Streams::send_due(system::UdpSender& sender) {
+  const std::int64_t now = clock_.steady();
+  std::shared_ptr<const Snapshot> snapshot;
+  const std::size_t begin = first_;
+  std::size_t served = 0;  // bytes to subscribers
+  for (std::size_t i = 0; i < streams_.size(); i++) {
+    Stream& stream = *streams_[(begin + i) % streams_.size()];
+    if (stream.next_due > now || (stream.target.subscribed && served >= kSliceBytes)) continue;
+    const std::int64_t period = period_of(stream.target.config);
+    stream.next_due += ((now - stream.next_due) / period + 1) * period;
+    if (!snapshot) snapshot = link_.snapshots.read();
+    if (!snapshot) continue;
+    const std::size_t bytes = send_frame(sender, stream, *snapshot);
+    if (!stream.target.subscribed) continue;
+    served += bytes;
+    if (served >= kSliceBytes) first_ = (begin + i + 1) % streams_.size();
+  }
+}
+
+// Returns the number of bytes of the frame, 0 if it was skipped.
+std::size_t Streams::send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot) {
+  stream.frame.lay_out(snapshot.body_list, stream.target.config);
+  if (!stream.frame.too_large().empty() && stream.reported_too_large != snapshot.body_list) {
+    stream.reported_too_large = snapshot.body_list;
+    log_warning("OSC out: body '{}' has too many joints for one message and is not streamed",
+                printable(stream.frame.too_large().front()));
+  }
+  const std::size_t bytes = stream.frame.bytes().size();
+  if (stream.target.subscribed && !may_serve_(stream.target.endpoint, bytes, stream.frame.datagram_sizes().size()))
+    return 0;
+  stream.frame.fill(snapshot);
+  const system::BatchResult result =
+      sender.send(stream.target.endpoint, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
+  link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
+  if (link_.message_log.enabled()) log_frame(stream, result.sent);
+  if (result.error == 0) return bytes;
+  link_.counters.unsent.fetch_add(stream.frame.datagram_sizes().size() - result.sent, std::memory_order_relaxed);
+  if (const auto more = lost_log_.admit(clock_.steady())) {
+    log_warning("OSC out {}: {} of {} datagrams of a frame not sent: {}. Stream fewer bodies or at a lower rate{}",
+                endpoint_text(stream.target.endpoint), stream.frame.datagram_sizes().size() - result.sent,
+                stream.frame.datagram_sizes().size(), std::generic_category().message(result.error), *more);
+  }
+  return bytes;
+}
+
+void Streams::log_frame(const Stream& stream, std::size_t datagrams) {
+  std::span<const char> left = stream.frame.bytes();
+  for (const std::size_t size : stream.frame.datagram_sizes()) {
+    if (datagrams-- == 0) return;
+    log_sent(link_.message_log, stream.target.endpoint, left.first(size));
+    left = left.subspan(size);
+  }
+}
+
+std::optional<std::int64_t> Streams::timeout() const {
+  if (streams_.empty()) return std::nullopt;
+  const auto next = std::ranges::min_element(streams_, {}, [](const auto& s) { return s->next_due; });
+  return std::max<std::int64_t>(0, (*next)->next_due - clock_.steady());
+}
+
+}  // namespace limber

@@ -1,0 +1,60 @@
+// Streams: sends frames of the latest snapshot to each target at its own rate, in real time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/output/engine_link.h"
+#include "net/osc/clock.h"
+#include "net/osc/sender.h"
+#include "net/osc/stream_frame.h"
+#include "net/osc/warning_throttle.h"
+
+namespace limber {
+
+/// Schedules stream frames without drift: frame n of a target is due n periods after its first. Frames more than a
+/// period late are skipped. [net]
+class Streams {
+ public:
+  /// Bytes sent to subscribers per call, except for the last frame.
+  static constexpr std::size_t kSliceBytes = 131072;
+
+  /// `may_serve` is asked for each frame to a subscriber; a rejected frame is skipped.
+  Streams(
+      EngineLink& link, const TransientOffsets& offsets, const NetClock& clock,
+      SendGate may_serve = [](const Endpoint&, std::size_t, std::size_t) { return true; });
+
+  /// Targets that are also in the old list keep their schedule.
+  void set_targets(const std::vector<ResolvedTarget>& targets);
+  /// Sends the frames that are due; those to subscribers in slices, so that input is not delayed. The snapshot of a
+  /// paused world is sent repeatedly.
+  void send_due(system::UdpSender& sender);
+  /// Nanoseconds until the next frame is due; empty if there are no streams.
+  std::optional<std::int64_t> timeout() const;
+
+ private:
+  struct Stream {
+    Stream(const ResolvedTarget& t, const TransientOffsets& offsets, std::int64_t now)
+        : target(t), next_due(now), frame(offsets) {}
+    ResolvedTarget target;
+    std::int64_t next_due;
+    StreamFrame frame;
+    std::shared_ptr<const BodyList> reported_too_large;  // the body list for which a too large message was reported
+    bool segmentation = true;                            // cleared if the route does not support segmentation offload
+  };
+
+  std::size_t send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot);
+  void log_frame(const Stream& stream, std::size_t datagrams);
+
+  EngineLink& link_;
+  const TransientOffsets offsets_;
+  const NetClock& clock_;
+  const SendGate may_serve_;
+  std::vector<std::unique_ptr<Stream>> streams_;
+  std::size_t first_ = 0;  // index of the stream to check first
+  WarningThrottle lost_log_;
+};
+
+}  // namespace limber

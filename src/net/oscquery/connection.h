@@ -1,0 +1,75 @@
+// A connection: a sequence of HTTP requests or, after an upgrade, a WebSocket. Boost.Beast parses the input; this file
+// sets the limits on sizes, counts and times. [query]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "net/oscquery/hub.h"
+
+namespace limber {
+
+/// Limits per client and for the whole server.
+struct QueryLimits {
+  static constexpr int kConnections = 256;
+  static constexpr int kConnectionsPerAddress = 64;             ///< So that one client can't use up all connections.
+  static constexpr std::uint32_t kHeader = 8192;                ///< Bytes of a request's header.
+  static constexpr std::size_t kFrame = std::size_t{64} << 10;  ///< Bytes of an incoming WebSocket message.
+  /// Bytes queued for a client; the connection is closed if there are more.
+  static constexpr std::size_t kQueue = std::size_t{1} << 20;
+  static constexpr std::size_t kResponses = std::size_t{256} << 20;  ///< Bytes of all responses being sent.
+  static constexpr int kSendBuffer = 64 << 10;                       ///< Send buffer of a WebSocket's socket, bytes.
+  static constexpr int kReadSeconds = 10;                            ///< Timeout for receiving a request.
+  static constexpr int kWriteSeconds = 5;                            ///< Timeout for a client that receives nothing.
+  static constexpr int kIdleSeconds = 60;                            ///< Timeout for an idle WebSocket.
+};
+
+/// State shared by all connections.
+struct QueryContext {
+  QueryHub& hub;
+  int connections = 0;
+  std::map<std::uint32_t, int> connections_by_address = {};  ///< By IPv4 address; 0: unknown.
+  int rejected = 0;                ///< Number of rejected connections that are still receiving the reason.
+  std::size_t response_bytes = 0;  ///< Bytes of responses being sent.
+
+  /// True if a further connection from this address must be rejected.
+  bool full(std::uint32_t address) const {
+    const auto used = connections_by_address.find(address);
+    return connections >= QueryLimits::kConnections ||
+           (used != connections_by_address.end() && used->second >= QueryLimits::kConnectionsPerAddress);
+  }
+};
+
+/// Counts an open connection during its lifetime.
+class ConnectionSlot {
+ public:
+  /// `accepted`: true for an accepted connection, false for a rejected one.
+  ConnectionSlot(QueryContext& context, std::uint32_t address, bool accepted)
+      : context_(&context), address_(address), accepted_(accepted) {
+    (accepted ? context.connections : context.rejected)++;
+    if (accepted) context.connections_by_address[address]++;
+  }
+  ConnectionSlot(ConnectionSlot&& other) noexcept
+      : context_(std::exchange(other.context_, nullptr)), address_(other.address_), accepted_(other.accepted_) {}
+  ConnectionSlot& operator=(ConnectionSlot&&) = delete;
+  ~ConnectionSlot() {
+    if (context_ == nullptr) return;
+    (accepted_ ? context_->connections : context_->rejected)--;
+    if (!accepted_) return;
+    const auto used = context_->connections_by_address.find(address_);
+    if (--used->second == 0) context_->connections_by_address.erase(used);
+  }
+
+ private:
+  QueryContext* context_;
+  std::uint32_t address_;
+  bool accepted_;
+};
+
+/// Serves a client for the whole lifetime of its connection. `context` must outlive the io_context's handlers.
+void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context);
+
+}  // namespace limber

@@ -1,0 +1,229 @@
+// C API: names and relations of objects, lists in stream order.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "script/api/script_context.h"
+
+namespace limber::calls {
+
+namespace {
+
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears };
+
+// The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
+template <class T>
+std::int32_t item(ScriptContext& c, std::span<const std::unique_ptr<T>> list, std::int32_t i) {
+  if (i < 0) return static_cast<std::int32_t>(list.size());
+  const auto at = static_cast<std::size_t>(i);
+  return c.set_id(at < list.size() ? list[at]->id() : NodeId{});
+}
+
+template <class T>
+std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
+  if (i < 0) return static_cast<std::int32_t>(list.size());
+  const auto at = static_cast<std::size_t>(i);
+  return c.set_id(at < list.size() ? list[at]->id() : NodeId{});
+}
+
+std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
+  if (kind == bodies) return item(c, c.world->bodies(), i);
+  if (kind == shapes) return item(c, c.world->shapes(), i);
+  if (kind == gears) return item(c, c.world->gears(), i);
+  if (kind == groups) {
+    const std::vector<BehaviorGroup*> all = c.world->behaviors().groups();
+    return item<BehaviorGroup>(c, all, i);
+  }
+  if (const Behavior* behavior = behavior_of(c, id)) {
+    c.world->behaviors().update_members();
+    if (kind == parts) return item(c, behavior->parts(), i);
+    if (kind == joints) return item(c, behavior->joints(), i);
+    return item(c, behavior->motors(), i);
+  }
+  const Body* body = object_of<Body>(c, id);
+  if (body == nullptr) return kRemoved;
+  if (kind == behaviors) return item(c, body->behaviors(), i);
+  if (kind == parts) return item(c, body->parts(), i);
+  if (kind == joints) return item(c, body->joints(), i);
+  return item(c, body->motors(), i);
+}
+
+// an object of a list by name
+template <class T>
+std::int32_t find_among(ScriptContext& c, std::span<T* const> list, std::string_view kind, NodeId of,
+                        std::string_view name) {
+  for (const T* each : list) {
+    if (each->name() == name) return c.set_id(each->id());
+  }
+  std::vector<std::string_view> names;
+  for (const T* each : list) names.push_back(each->name());
+  return c.reject(fmt::format("{} has no {} '{}'{}", label_of(c, of), kind, printable(name), name_hint(name, names)));
+}
+
+template <class T>
+std::int32_t id_or_error(ScriptContext& c, const T* object, std::span<const std::unique_ptr<T>> list,
+                         std::string_view kind, std::string_view where, std::string_view name) {
+  if (object != nullptr) return c.set_id(object->id());
+  std::vector<std::string_view> names;
+  for (const auto& each : list) names.push_back(each->name());
+  return c.reject(fmt::format("{} no {} '{}'{}", where, kind, printable(name), name_hint(name, names)));
+}
+
+template <class T>
+std::size_t index_in(std::span<const std::unique_ptr<T>> list, const T* object) {
+  const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == object; });
+  return static_cast<std::size_t>(at - list.begin());
+}
+
+}  // namespace
+
+std::int32_t structure(void* c) { return static_cast<std::int32_t>(context_of(c).world->store().structure_version()); }
+
+std::int32_t name(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kRemoved;
+  return context.set_text(context.world->store().name(id));
+}
+
+std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  // the objects of a body are in its store groups: parts, joints …
+  const Store& store = context.world->store();
+  const NodeId above = store.parent(store.parent(id_of(slot, generation)));
+  return context.set_id(object_of<Body>(context, above) == nullptr ? NodeId{} : above);
+}
+
+std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kRemoved;
+  if (const Joint* joint = object_of<Joint>(context, id)) {
+    if (which == 0) return context.set_id(joint->parent().id());
+    if (which == 1) return context.set_id(joint->child().id());
+    return context.set_id(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
+  }
+  if (const Motor* motor = object_of<Motor>(context, id)) return context.set_id(motor->joint().id());
+  if (const Gear* gear = object_of<Gear>(context, id)) {
+    return context.set_id(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
+  }
+  if (const Part* part = object_of<Part>(context, id)) {
+    return context.set_id(context.alive(part->shape()) ? part->shape() : NodeId{});
+  }
+  const Body* body = object_of<Body>(context, id);
+  return context.set_id(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
+}
+
+std::int32_t list_count(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind) {
+  return list_at(context_of(c), id_of(slot, generation), kind, -1);
+}
+
+std::int32_t list_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, std::int32_t index) {
+  return list_at(context_of(c), id_of(slot, generation), kind, index);
+}
+
+std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, const char* name,
+                  std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const World& world = *context.world;
+  const std::string_view wanted = text_of(name, length);
+  if (kind == bodies) return id_or_error(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
+  if (kind == shapes)
+    return id_or_error(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
+  if (kind == gears) return id_or_error(context, world.find_gear(wanted), world.gears(), "gear", "there is", wanted);
+  const NodeId id = id_of(slot, generation);
+  if (kind == groups) {
+    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
+    return find_among<BehaviorGroup>(context, all, "group behavior", id, wanted);
+  }
+  if (const Behavior* behavior = behavior_of(context, id)) {
+    if (kind == parts) return find_among(context, behavior->parts(), "part", id, wanted);
+    if (kind == joints) return find_among(context, behavior->joints(), "joint", id, wanted);
+    return find_among(context, behavior->motors(), "motor", id, wanted);
+  }
+  const Body* body = object_of<Body>(context, id);
+  if (body == nullptr) return kRemoved;
+  if (kind == behaviors) return find_among(context, body->behaviors(), "behavior", id, wanted);
+  // create texts only for errors: a look-up in every tick must not allocate
+  const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
+    if (thing != nullptr) return context.set_id(thing->id());
+    return id_or_error(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
+  };
+  if (kind == parts) return in_body(body->find_part(wanted), body->parts(), "part");
+  if (kind == joints) return in_body(body->find_joint(wanted), body->joints(), "joint");
+  return in_body(body->find_motor(wanted), body->motors(), "motor");
+}
+
+double order(void* c, std::int32_t slot, std::int32_t generation) {
+  // Sort order: bodies, each followed by its parts, joints, motors, behaviors; then shapes, gears, groups; removed
+  // objects last.
+  const ScriptContext& context = context_of(c);
+  const World& world = *context.world;
+  const NodeId id = id_of(slot, generation);
+  constexpr double kBody = 0x1p26;
+  constexpr double kKind = 0x1p23;
+  constexpr double kShapes = 0x1p52;
+  const auto within = [&](const Body& body, double kind, std::size_t at) {
+    return kBody * static_cast<double>(1 + index_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
+  };
+  if (const Body* body = object_of<Body>(context, id)) return within(*body, 0, 0);
+  if (const Part* part = object_of<Part>(context, id)) {
+    return within(part->body(), 1, index_in(part->body().parts(), part));
+  }
+  if (const Joint* joint = object_of<Joint>(context, id)) {
+    return within(joint->body(), 2, index_in(joint->body().joints(), joint));
+  }
+  if (const Motor* motor = object_of<Motor>(context, id)) {
+    const Body& body = motor->joint().body();
+    return within(body, 3, index_in(body.motors(), motor));
+  }
+  if (const Behavior* behavior = behavior_of(context, id)) {
+    const std::span<Behavior* const> all = behavior->body().behaviors();
+    return within(behavior->body(), 4,
+                  static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
+  }
+  if (const BehaviorGroup* group = group_of(context, id)) {
+    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
+    return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
+  }
+  if (const Gear* gear = object_of<Gear>(context, id)) {
+    return kShapes * 1.125 + static_cast<double>(index_in(world.gears(), gear));
+  }
+  if (const Shape* shape = object_of<Shape>(context, id)) {
+    return kShapes + static_cast<double>(index_in(world.shapes(), shape));
+  }
+  return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
+}
+
+std::int32_t joint_type(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const Joint* joint = object_of<Joint>(context, id_of(slot, generation));
+  if (joint == nullptr) return kRemoved;
+  return context.set_text(std::string(joint_type_name(joint->type())));
+}
+
+std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
+  ScriptContext& context = context_of(c);
+  const Body* body = object_of<Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kRemoved;
+  const Result<Pose> pose = body->link_pose(text_of(name, length));
+  if (!pose) return context.reject(pose.error());
+  const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
+                           pose->rotation.y, pose->rotation.z, pose->rotation.w};
+  std::copy(std::begin(values), std::end(values), context.answer.number);
+  return kOk;
+}
+
+std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (!context.alive(id)) return kRemoved;
+  if (const Body* body = object_of<Body>(context, id)) {
+    return context.set_text(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
+  }
+  return context.set_text(fmt::format("{:016x}", context.hash(context.world->state_hash())));
+}
+
+}  // namespace limber::calls

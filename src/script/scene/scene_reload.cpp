@@ -1,0 +1,116 @@
+// Scene: data for a detached run, and going live.
+#include <algorithm>
+
+#include "script/api/script_context.h"
+#include "script/behaviors/behavior_scripts.h"
+#include "script/scene/earlier_runs.h"
+#include "script/scene/scene.h"
+#include "script/vm/vm.h"
+
+namespace limber {
+
+RunInputs Scene::inputs() {
+  const ScriptContext& c = *context_;
+  RunInputs inputs;
+  inputs.tick = c.world->tick();
+  inputs.time = c.world->time();
+  inputs.state = vm_->state_text();
+  if (c.params != nullptr) inputs.params = c.params->values();
+  return inputs;
+}
+
+void Scene::prepare() { vm_->prepare(); }
+
+void Scene::capture_handles() {
+  const bool has_timers = context_->options.keep_timers && vm_->callback_timers().timers > 0;
+  earlier_->capture_handles();
+  handle_names_ = has_timers ? std::make_unique<HandleNames>() : nullptr;
+  if (!has_timers) return;
+  vm_->gather_handles();
+  handle_names_->capture(*context_);
+}
+
+void Scene::release_ended(std::uint64_t before_tick) { earlier_->release_ended(before_tick); }
+
+// takes over the earlier runs, and the replaced run if it has timers
+void Scene::adopt_run(Scene& previous) {
+  ScriptContext& old = *previous.context_;
+  old.behaviors->detach();  // it may be destroyed on another thread
+  run_number_ = previous.run_number_ + 1;
+  previous.earlier_->apply_cancellations(old, old.world->tick());
+  earlier_ = std::move(previous.earlier_);
+  carried_timers_ = {};
+  if (previous.handle_names_ == nullptr) {
+    old.set_world(nullptr);
+  } else {
+    EarlierRuns::Run run(std::move(previous.context_), std::move(previous.vm_));
+    run.handle_names = std::move(*previous.handle_names_);
+    run.number = previous.run_number_;
+    carried_timers_.handlers = run.vm->retire();
+    carried_timers_.ended = earlier_->add(std::move(run));
+  }
+  earlier_->resolve_handles(params());
+  const EarlierRuns::Counts counts = earlier_->counts();
+  carried_timers_.timers = counts.timers;
+  carried_timers_.repeating = counts.repeating;
+}
+
+std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
+  ScriptContext& c = *context_;
+  // map the handles to the ids in the live store
+  for (std::int32_t* const id : c.handle_ids) {
+    const NodeId live = live_id(id_of(id[0], id[1]));
+    id[0] = live.null() ? -1 : static_cast<std::int32_t>(live.slot);
+    id[1] = static_cast<std::int32_t>(live.generation);
+  }
+  c.handle_ids = {};
+  std::vector<Property> properties;
+  if (c.params != nullptr)
+    properties.assign(c.params->table().properties().begin(), c.params->table().properties().end());
+  const bool has_params = c.params != nullptr;
+  const PropertyTable* const table = has_params ? &c.params->table() : nullptr;
+  c.params = nullptr;
+  c.set_world(&world);
+
+  ScriptContext* const old = previous == nullptr ? nullptr : previous->context_.get();
+  std::vector<LiveParam> live;
+  if (old != nullptr && old->params != nullptr) live = old->params->values();
+  std::uint64_t defaults = 0;
+  if (has_params && old != nullptr && old->params != nullptr && &old->params->table() == table) {
+    c.params = std::move(old->params);  // same node, with all its values
+  } else {
+    if (old != nullptr) old->params = nullptr;
+    if (has_params) {
+      c.params = std::make_unique<ParamsNode>(world.store(), std::move(properties));
+      defaults = c.params->carry_over(live);
+    }
+  }
+  if (old != nullptr) {
+    vm_->adopt_state(previous->vm_->state_text());
+    if (c.options.keep_timers) vm_->adopt_afters(previous->vm_->afters_text());
+    c.timers_at = old->timers_at;
+    previous->disarm();
+    adopt_run(*previous);
+  }
+  vm_->set_run_number(run_number_);
+  vm_->become_live(c.timers_at);
+  arm();
+  c.host.configure_osc(c.osc_config);
+  return defaults;
+}
+
+NodeId Scene::params() const { return context_->params == nullptr ? NodeId{} : context_->params->id(); }
+
+void Scene::rerun_values(std::vector<double>& out) const {
+  const ScriptContext& c = *context_;
+  out.clear();
+  if (c.rerun_properties == 0 || c.params == nullptr) return;
+  const Store& store = c.world->store();
+  for (const Property& property : c.params->table().properties()) {
+    if ((c.rerun_properties >> property.index & 1u) == 0) continue;
+    const double* const values = store.values(c.params->id(), property);
+    out.insert(out.end(), values, values + property.width);
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,130 @@
+// Reading the files of a run from the disk or from an earlier run.
+#include "script/scene/sources.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/hash.h"
+
+namespace limber {
+
+namespace {
+
+// lives as long as the process, so that a reset or another scene loads the same file at no cost
+ModelLibrary& models() {
+  static ModelLibrary library;
+  return library;
+}
+
+}  // namespace
+
+template <class T>
+const T* Sources::find_known(std::map<std::string, T> Sources::*list, const std::string& key) const {
+  for (const Sources* from : {this, earlier_.get()}) {
+    if (from == nullptr) continue;
+    const auto found = (from->*list).find(key);
+    if (found != (from->*list).end()) return &found->second;
+  }
+  return nullptr;
+}
+
+Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+                 std::shared_ptr<ModelLibrary> library)
+    : archived_files_(files), library_(std::move(library)), found_(std::move(found)) {}
+
+// the result of an earlier run, else that of `find`
+template <class Find>
+Result<std::string> Sources::look_up(const std::string& key, Find find) {
+  if (const std::string* before = find_known(&Sources::found_, key)) return found_[key] = *before;
+  if (from_archive()) return Error{fmt::format("{} is not among the recorded files", key)};
+  Result<std::string> path = find();
+  if (path) found_[key] = *path;
+  return path;
+}
+
+Result<std::string> Sources::find(const ScriptFiles& files, std::string_view name) {
+  return look_up(fmt::format("file {}", name), [&] { return files.find(name, &tried_); });
+}
+
+Result<std::string> Sources::find_lib(const ScriptFiles& files, std::string_view name) {
+  return look_up(fmt::format("module {}", name), [&] { return files.find_lib(name, &tried_); });
+}
+
+Result<std::string> Sources::find_behavior_lib(const ScriptFiles& files, std::string_view name,
+                                               const std::string& behavior) {
+  return look_up(fmt::format("module {} of {}", name, behavior),
+                 [&] { return files.find_behavior_lib(name, behavior, &tried_); });
+}
+
+std::string Sources::find_behavior(const ScriptFiles& files, std::string_view type) {
+  const Result<std::string> path = look_up(fmt::format("behavior {}", type), [&]() -> Result<std::string> {
+    std::string file = files.find_behavior(type, &tried_);
+    return file.empty() ? Result<std::string>(Error{"none"}) : Result<std::string>(std::move(file));
+  });
+  return path ? *path : std::string();
+}
+
+Result<std::string> Sources::text(const std::string& path) {
+  if (const std::string* before = find_known(&Sources::texts_, path)) return texts_[path] = *before;
+  if (from_archive()) {
+    const std::string* const text = earlier_->archived_files_->content(path);
+    if (text == nullptr) return Error{fmt::format("file '{}' is not among the recorded files", path)};
+    return texts_[path] = *text;
+  }
+  Result<std::string> text = read_script(path);
+  contents_[path] = text ? hash_bytes(*text) : 0;
+  if (!text) return text;
+  if (text->starts_with("\xef\xbb\xbf")) text->erase(0, 3);
+  texts_[path] = *text;
+  return text;
+}
+
+Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path, const ImportOptions& options) {
+  const std::string key = model_key(path, options);
+  contents_.try_emplace(path, 0);  // watch unreadable files as well
+  const auto* before = find_known(&Sources::models_, key);
+  ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
+  Result<std::shared_ptr<const BodyModel>> model = before ? *before : library.load_urdf(path, options);
+  if (!model) return model;
+  for (std::size_t i = 0; i < (*model)->files.size(); i++) contents_[(*model)->files[i]] = (*model)->file_hashes[i];
+  return models_[key] = *model;
+}
+
+Result<std::shared_ptr<const MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale) {
+  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
+  contents_.try_emplace(path, 0);
+  const auto* before = find_known(&Sources::meshes_, key);
+  ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
+  Result<std::shared_ptr<const MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
+  if (!mesh) return mesh;
+  contents_[path] = (*mesh)->content_hash;
+  return meshes_[key] = *mesh;
+}
+
+SourcesRead Sources::read() const {
+  SourcesRead read{found_, texts_, {}, {}};
+  for (const auto& [key, model] : models_) {
+    const std::string folder = std::filesystem::path(model->file).parent_path().string();
+    for (const auto& [name, file] : model->mesh_paths) read.meshes[FileSet::mesh_key(folder, name)] = file;
+  }
+  for (const auto& [path, content] : contents_) {
+    if (!texts_.contains(path)) read.files.push_back(path);
+  }
+  return read;
+}
+
+std::vector<SourceFile> Sources::files() const {
+  std::map<std::string, std::uint64_t> all = contents_;
+  for (const auto& [path, text] : texts_) all.try_emplace(path, 0);
+  for (const std::string& path : tried_) all.try_emplace(path, 0);
+  std::vector<SourceFile> files;
+  files.reserve(all.size());
+  for (const auto& [path, content] : all) {
+    files.push_back({path, content == 0 ? std::nullopt : std::optional(content)});
+  }
+  return files;
+}
+
+}  // namespace limber

@@ -1,0 +1,78 @@
+// Sources: the files that a run of a scene reads (search results, scripts, models, meshes), stored so that the scene
+// can run again without the disk and the files can be watched for changes. [any]
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/model_library.h"
+#include "script/scene/script_files.h"
+
+namespace limber {
+
+/// A file that a run depends on, or a path where it searched for a file and found none.
+struct SourceFile {
+  std::string path;
+  std::optional<std::uint64_t> content;  ///< hash_bytes of the contents, if known.
+};
+
+/// All data that a run has read, sufficient to run it again after the files have changed.
+struct SourcesRead {
+  std::map<std::string, std::string> found;   ///< Search requests and the resulting paths.
+  std::map<std::string, std::string> texts;   ///< Script texts by path.
+  std::map<std::string, std::string> meshes;  ///< As FileSet::found.
+  std::vector<std::string> files;             ///< Models and meshes.
+};
+
+class Sources {
+ public:
+  /// `earlier`: an earlier run; its data are reused instead of reading the disk.
+  explicit Sources(std::shared_ptr<const Sources> earlier = nullptr) : earlier_(std::move(earlier)) {}
+
+  /// Sources of an archived run: files that it has not read are reported as missing, whatever is on the disk.
+  /// `library`: models created from these files before; runs that share it share models, as runs from the disk do.
+  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
+          std::shared_ptr<ModelLibrary> library);
+
+  /// Same as in ScriptFiles.
+  Result<std::string> find(const ScriptFiles& files, std::string_view name);
+  Result<std::string> find_lib(const ScriptFiles& files, std::string_view name);
+  Result<std::string> find_behavior_lib(const ScriptFiles& files, std::string_view name, const std::string& behavior);
+  /// Returns an empty string if there is none.
+  std::string find_behavior(const ScriptFiles& files, std::string_view type);
+  /// Returns a script's text.
+  Result<std::string> text(const std::string& path);
+  Result<std::shared_ptr<const BodyModel>> model(const std::string& path, const ImportOptions& options);
+  Result<std::shared_ptr<const MeshModel>> mesh(const std::string& path, const Vec3& scale);
+
+  /// Ends the run: drops the reference to the earlier run.
+  void close() { earlier_ = nullptr; }
+  /// All files that were read, and the paths that were searched without success.
+  std::vector<SourceFile> files() const;
+  SourcesRead read() const;
+
+ private:
+  template <class T>
+  const T* find_known(std::map<std::string, T> Sources::*list, const std::string& key) const;
+
+  bool from_archive() const { return earlier_ != nullptr && earlier_->library_ != nullptr; }
+  template <class Find>
+  Result<std::string> look_up(const std::string& key, Find find);
+
+  std::shared_ptr<const Sources> earlier_;
+  std::shared_ptr<const FileSet> archived_files_;
+  std::shared_ptr<ModelLibrary> library_;  // of the archived files
+  std::map<std::string, std::string> found_;
+  std::map<std::string, std::string> texts_;
+  std::map<std::string, std::uint64_t> contents_;  // hashes of all files read, by path; 0: unknown
+  std::map<std::string, std::shared_ptr<const BodyModel>> models_;
+  std::map<std::string, std::shared_ptr<const MeshModel>> meshes_;
+  std::vector<std::string> tried_;
+};
+
+}  // namespace limber

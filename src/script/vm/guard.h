@@ -1,0 +1,127 @@
+// Guard: calls script code safely. Stops code that fails, computes too long or uses too much memory, rolls back its
+// changes to the world, and reports a fault with its place. [sim]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "script/vm/limits.h"
+#include "script/vm/lua_memory.h"
+#include "script/vm/watchdog.h"
+
+struct lua_Debug;
+struct lua_State;
+
+namespace limber {
+
+class Archive;
+struct ScriptContext;
+
+/// The reason for a failed call, for display.
+struct ScriptFault {
+  std::string file;
+  int line = 0;
+  std::string text;      ///< "file:line: message", the source line, the traceback.
+  bool stopped = false;  ///< Stopped by the guard for time or memory; false: the script itself raised an error.
+};
+
+class Guard {
+ public:
+  enum class Kind : std::uint8_t {
+    call,  ///< A callback, handler or behavior step: budget ScriptLimits::call_ms; rolled back on failure.
+    run,   ///< A scene's top level: budget run_ms; not rolled back, since the scene of a failed run is discarded.
+  };
+
+  Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits);
+  ~Guard();
+  Guard(const Guard&) = delete;
+  Guard& operator=(const Guard&) = delete;
+
+  /// Calls the function below its `arguments` on the stack, like lua_pcall, on the state's main thread. Success:
+  /// replaces them with `results` values. Failure: leaves nothing on the stack, sets fault(), rolls back changes and
+  /// discards messages. Must not be called from inside another guarded call.
+  bool call(int arguments, int results, Kind kind = Kind::call);
+  const ScriptFault& fault() const { return fault_; }
+  /// Within a call: commits its effects so far and begins a new call with a fresh budget. Returns false if the call
+  /// should end first, because it is to be stopped or there is much garbage. Sets `changed` if the call did more than
+  /// apply forces.
+  bool next_call(bool& changed);
+  /// If the fault has no place, sets it to the function on top of the stack.
+  void attribute_to_function();
+  /// The same with a file that was run.
+  void attribute_to_file(std::string_view name);
+
+  /// Sets limits, effective from the next call.
+  void set_limits(const ScriptLimits& limits);
+  const ScriptLimits& limits() const { return limits_; }
+
+  /// Registry references of prelude functions: the message handler; one that creates the fault of a call that was
+  /// stopped without an error being raised; one to call after a failure.
+  void set_functions(int handler, int stopped_fault, int failed);
+
+  VmMode mode() const { return live_ ? VmMode::live : VmMode::interpreted; }
+  /// Switches to live mode; false while another state of the process is live.
+  bool arm();
+  /// Switches back to interpreted mode.
+  void disarm();
+
+  // queries of the prelude during a call
+  bool stopped() const { return error_raised_; }
+  /// True if the running call is going to be stopped; native code that takes long must end then.
+  bool stop_requested() { return running_ && (reason_ != Reason::none || watch_.stop_requested()); }
+  std::string_view stop_file() const { return stop_file_; }
+  int stop_line() const { return stop_line_; }
+  std::string stop_text() const;
+  /// Returns whether a call was stopped for memory since the last query.
+  bool consume_memory_stop() { return std::exchange(memory_stop_, false); }
+  const LuaMemory& memory() const { return memory_; }
+  /// Serializes the memory count for a checkpoint.
+  void serialize(Archive& archive);
+  /// While `on`, a recorded run is repeated: only the calls that the log lists are stopped, and those that need many
+  /// times the original budget because the runs have diverged.
+  void set_replaying(bool on) { replaying_ = on; }
+
+ private:
+  enum class Reason : std::uint8_t { none, time, memory };
+  void begin(Kind kind);
+  void end();
+  void stop(Reason reason);
+  void clear_hook_flag();
+  bool skip_call(int arguments);
+  std::string memory_text() const;
+  void capture_fault(int status, int function);
+  void set_place_to_function(int function);
+  void record_place(lua_State* state, int level = 0);
+  static int on_error(lua_State* state);
+  bool find_place(lua_State* state, int level);
+  static void on_hook(lua_State* state, lua_Debug* at);
+
+  lua_State* state_;
+  ScriptContext& context_;
+  ScriptLimits limits_;
+  LuaMemory memory_;
+  Watch watch_;
+  std::shared_ptr<Watchdog> watchdog_;
+  ScriptFault fault_;
+  int handler_ = -1;
+  int make_stop_fault_ = -1;
+  int failure_callback_ = -1;
+  Kind kind_ = Kind::call;
+  bool live_ = false;
+  bool running_ = false;
+  bool memory_stop_ = false;
+  bool replaying_ = false;
+  // also written by the signal handler
+  volatile bool hook_set_ = false;
+  volatile Reason reason_ = Reason::none;
+  bool overflowed_ = false;
+  // place in the script at the stop or stack overflow
+  bool error_raised_ = false;
+  int stop_line_ = 0;
+  char stop_file_[256] = {};
+};
+
+}  // namespace limber

@@ -1,0 +1,158 @@
+// Vm: the LuaJIT state of a scene, including the trusted prelude. Used on the simulation thread only.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "base/evaluation.h"
+#include "base/id.h"
+#include "base/memory/arena.h"
+#include "base/message.h"
+#include "base/result.h"
+#include "script/vm/garbage_collector.h"
+#include "script/vm/guard.h"
+#include "sim/behavior/behavior.h"
+
+struct lua_State;
+
+namespace limber {
+
+class Archive;
+struct ScriptContext;
+struct ScriptPlace;
+
+class Vm {
+ public:
+  /// The prelude's API calls work on `context`, which outlives the Vm. The mode is live only if `wanted` and no other
+  /// Vm of the process is live. [sim]
+  Vm(ScriptContext& context, VmMode wanted);
+  ~Vm();
+  Vm(const Vm&) = delete;
+  Vm& operator=(const Vm&) = delete;
+
+  /// Runs a scene's text in a fresh environment. The error has "file:line: message", the source line and the traceback;
+  /// `fault` receives its place. [sim]
+  Result<void> run(std::string_view text, std::string_view name, ScriptPlace& fault);
+  /// Runs the on_start callbacks. Errors are reported to the host. [sim]
+  void start();
+  /// Runs timers, contacts, on_step. Allocates no C++ memory. [sim]
+  void tick(double dt);
+  /// Runs the matching osc:on handlers; false if there are none. [sim]
+  bool handle_message(const Message& message, const CommandOrigin& origin);
+  /// Calls the prelude function `entry` of console.lua ("evaluate" or "complete") with a text. [sim]
+  Evaluation query(const char* entry, std::string_view text);
+  // Behaviors of behaviors_lua/ (behavior_scripts.h). A fault without text means success.
+  /// Creates the `self` of an instance and returns its number, from 1. [sim]
+  std::int32_t make_behavior(std::int32_t file, NodeId id);
+  BehaviorFault start_behavior(std::int32_t number);
+  BehaviorFault step_behavior(std::int32_t number, double dt);
+  /// Steps the instances that BehaviorScripts::next_step() returns, until it returns 0 or one fails. `stepping`: number
+  /// of the current one, updated by next_step().
+  BehaviorFault step_behaviors(double dt, const std::int32_t& stepping);
+  /// Sets the instance's `state` from text; `migrate`: through its `migrate` function, if it has one.
+  BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
+  /// Returns the instance's `state` serialized as text. The error names the key of a value that can't be serialized.
+  Result<std::string> behavior_state(std::int32_t number);
+  /// Releases the instance's data. Its number is not used again.
+  void drop_behavior(std::int32_t number);
+  /// All names that a scene sees, one per line: globals, library.member, thing.member, thing:method. [sim]
+  std::string names();
+  /// Guards all calls of script code, including those from C++. Runs on the main thread of `state()`.
+  Guard& guard() { return guard_; }
+  lua_State* state() const { return state_.get(); }
+  VmMode mode() const { return guard_.mode(); }
+  /// Switches to live mode; false while another Vm is live and not disarmed.
+  bool arm();
+  /// Switches back to interpreted mode.
+  void disarm() { guard_.disarm(); }
+
+  /// Returns `state` serialized as text; equal data give equal texts. [sim]
+  std::string state_text();
+  /// Before a detached run: sets `state`. Nothing is compiled until become_live().
+  void begin_detached(std::string_view state);
+  /// After the run: notes which keys of `state` it wrote, and collects all handles (ScriptContext::handle_ids).
+  void prepare();
+  /// Takes over `state` of the live run that is being replaced, except keys that this run wrote itself. [sim]
+  void adopt_state(std::string_view state);
+  /// Handles have been remapped; timers continue from the given time of the last check, if any. [sim]
+  void become_live(std::optional<double> timers_at);
+
+  // Functions for an earlier run, which has been replaced; only timers of its callbacks continue.
+  /// Timers set by callbacks, and how many of them repeat.
+  struct CallbackTimers {
+    std::uint64_t timers = 0;
+    std::uint64_t repeating = 0;
+  };
+  CallbackTimers callback_timers();
+  /// Ends everything but such timers. Returns the number of handlers registered by callbacks that ended.
+  std::uint64_t retire();
+  /// Serializes top-level timers of sim:after, and takes over those of the previous run.
+  std::string afters_text();
+  void adopt_afters(std::string_view afters);
+  /// Sets the run's number, by which timers in `state` identify it.
+  void set_run_number(std::uint64_t number);
+  /// Cancels a timer of this run by its number.
+  void cancel_timer(std::int32_t number);
+  /// Collects all handles in the context (ScriptContext::handle_ids).
+  void gather_handles();
+  /// Updates the prelude's tables after these handles were remapped.
+  void handles_moved();
+  /// True if a timer is due at the current simulation time.
+  bool timers_due();
+  /// Runs the due timers and returns the number of pending ones.
+  std::uint64_t run_timers();
+  /// Applies the difference between two texts of `state` to this run's `state`.
+  void apply_state_changes(std::string_view before, std::string_view after);
+
+  /// Between two ticks: copies Lua's heap, sharing pages with the older copy `previous` (may be null). Flushes compiled
+  /// code, which is outside the heap and compiled again when needed. [sim]
+  void copy_heap(PageStore& pages, const PageStore::PageList* previous, PageStore::PageList& out);
+  void restore_heap(const PageStore& pages, const PageStore::PageList& image);
+  /// Serializes the counters outside the heap.
+  void serialize_counts(Archive& archive);
+
+  /// Collects garbage for about 100 µs if there is enough. The collector is paused at all other times. [sim]
+  void collect_garbage();
+
+ private:
+  void load_prelude(ScriptContext& context);
+  void store_entries();
+  bool call(int arguments, int results);
+  void push_entry(const char* name);
+  std::string text_from(const char* entry);
+  std::uint64_t count_from(const char* entry);
+  void call_with(const char* entry, double number);
+  bool push_behavior(int functions, std::int32_t number);
+  BehaviorFault guarded_behavior(int arguments, int results);
+
+  struct Closer {
+    void operator()(lua_State* state) const;
+  };
+  Arena heap_;
+  std::unique_ptr<lua_State, Closer> state_;
+  Guard guard_;
+  std::optional<GarbageCollector> collector_;  // created after the prelude is loaded
+  int entries_ = -1;  // registry references: the table of the prelude's entries, and individual ones
+  int run_ = -1;
+  int start_ = -1;
+  int tick_ = -1;
+  int message_ = -1;
+  int names_ = -1;
+  int warm_ = -1;
+  int make_behavior_ = -1;
+  int clear_behavior_lists_ = -1;
+  int restore_behavior_ = -1;
+  int accept_migrated_state_ = -1;
+  int step_behaviors_ = -1;
+  int behavior_state_ = -1;
+  int drop_behavior_ = -1;
+  int behavior_self_ = -1;  // tables indexed by the instance's number
+  int behavior_start_ = -1;
+  int behavior_step_ = -1;
+  int behavior_migrate_ = -1;
+};
+
+}  // namespace limber

@@ -1,0 +1,368 @@
+// BehaviorList: adding, removing, copying, stepping.
+#include "sim/behavior/behavior_list.h"
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log/log.h"
+#include "base/system/clock.h"
+#include "base/text.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+namespace {
+
+// Warns about selected targets that the type doesn't use.
+void warn_unused_targets(const BehaviorType& type, const Body& body, std::string_view name,
+                         const BehaviorSetup& setup) {
+  const bool to_parts = type.targets == BehaviorTargets::parts || type.targets == BehaviorTargets::pairs;
+  const bool has_unused = to_parts ? !setup.joints.is_default() || !setup.motors.is_default()
+                                   : type.targets == BehaviorTargets::motors && !setup.parts.is_default();
+  if (!has_unused) return;
+  log_warning("behavior '{}/{}': {} acts on {}; the selected {} are ignored", body.name(), name, type.name,
+              to_parts ? "parts" : "motors", to_parts ? "joints and motors" : "parts");
+}
+
+// Searches from the end, since usually the newest element is removed first.
+template <class T, class Predicate>
+auto find_last(std::vector<T>& list, Predicate predicate) {
+  return std::find_if(list.rbegin(), list.rend(), predicate).base() - 1;
+}
+
+}  // namespace
+
+BehaviorList::BehaviorList(World& world, NodeId physics)
+    : world_(world), group_node_(world.store().add_group(physics, "group")) {}
+
+BehaviorList::~BehaviorList() { clear(); }
+
+void BehaviorList::clear() {
+  while (!entries_.empty()) destroy_last();
+}
+
+Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shared_ptr<const BehaviorType>& type,
+                                                     const std::string& name,
+                                                     const std::shared_ptr<const BehaviorSetup>& setup,
+                                                     BehaviorGroup* group) {
+  Store& store = world_.store();
+  const NodeId node = body.behavior_group_;
+  if (const auto fault = name_error(name)) return Error{fmt::format("behavior: {}", *fault)};
+  if (!store.child(node, name).null()) {
+    return Error{fmt::format("body '{}' has a behavior '{}' already; names are unique", body.name(), name)};
+  }
+  std::unique_ptr<Behavior> behavior = type->make();
+  behavior->attach(body, NodeId{}, type, setup, group);
+  if (const Result<void> resolved = behavior->resolve(); !resolved) return Error{resolved.error()};
+  behavior->id_ = store.add(*type->table, node, name, behavior.get());
+  body.behaviors_.push_back(behavior.get());
+  return behavior;
+}
+
+Result<Behavior*> BehaviorList::add(Body& body, std::string_view type_name, const std::string& name,
+                                    BehaviorSetup setup) {
+  const Result<std::shared_ptr<const BehaviorType>> type = types_.require(type_name);
+  if (!type) return Error{type.error()};
+  if ((*type)->is_group) {
+    return Error{fmt::format("'{}' acts on several bodies: attach it with sim:add_group_behavior", (*type)->name)};
+  }
+  warn_unused_targets(**type, body, name, setup);
+  auto shared = std::make_shared<const BehaviorSetup>(std::move(setup));
+  Result<std::unique_ptr<Behavior>> behavior = make(body, *type, name, shared, nullptr);
+  if (!behavior) return Error{behavior.error()};
+  record_entry_count();
+  entries_.push_back({std::move(*behavior), nullptr});
+  return entries_.back().single.get();
+}
+
+Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::string name, GroupSetup setup) {
+  const Result<std::shared_ptr<const BehaviorType>> type = types_.require(type_name);
+  if (!type) return Error{type.error()};
+  if (!(*type)->is_group) {
+    return Error{fmt::format("'{}' acts on one body: attach it with body:add_behavior", (*type)->name)};
+  }
+  if (const auto fault = name_error(name)) return Error{fmt::format("group behavior: {}", *fault)};
+  if (!world_.store().child(group_node_, name).null()) {
+    return Error{fmt::format("there is a group behavior '{}' already; names are unique", name)};
+  }
+  std::unique_ptr<BehaviorGroup> group(
+      new BehaviorGroup(world_, group_node_, std::move(name), *type, std::move(setup)));
+  Result<void> result = group->check_names();
+  if (result) result = group->update_members();
+  if (!result) {
+    const std::string& text = result.error();
+    while (!group->members_.empty()) destroy(*group->members_.back());
+    return Error{text};
+  }
+  record_entry_count();
+  entries_.push_back({nullptr, std::move(group)});
+  return entries_.back().group.get();
+}
+
+// Logs the number of entries, so that a guarded call that fails removes those that it added.
+void BehaviorList::record_entry_count() {
+  if (!world_.transaction().active()) return;
+  const auto rollback = [](void* list, std::size_t count) {
+    auto& self = *static_cast<BehaviorList*>(list);
+    while (self.entries_.size() > count) self.destroy_last();
+  };
+  world_.transaction().record(rollback, this, entries_.size());
+}
+
+void BehaviorList::remove(Behavior& behavior) {
+  world_.transaction().active() ? transaction_.hide(behavior) : destroy(behavior);
+}
+
+void BehaviorList::remove_group(BehaviorGroup& group) {
+  world_.transaction().active() ? transaction_.hide(group) : destroy_group(group);
+}
+
+void BehaviorList::destroy_last() {
+  const Entry& last = entries_.back();
+  if (last.group != nullptr) {
+    destroy_group(*last.group);
+  } else {
+    destroy(*last.single);
+  }
+}
+
+void BehaviorList::retire(std::unique_ptr<Behavior> behavior) {
+  behavior->body_ = nullptr;
+  if (stepping_) retired_.push_back(std::move(behavior));
+}
+
+void BehaviorList::retire(std::unique_ptr<BehaviorGroup> group) {
+  if (stepping_) retired_groups_.push_back(std::move(group));
+}
+
+// Erases an empty entry. While behaviors are stepped it stays, so that the indices of the others don't change.
+void BehaviorList::erase_entry(std::size_t index) {
+  if (!stepping_) entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+BehaviorList::Entry& BehaviorList::insert_entry(std::size_t index) {
+  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), Entry{});
+  return entries_[index];
+}
+
+void BehaviorList::destroy(Behavior& behavior) {
+  std::erase(behavior.body_->behaviors_, &behavior);
+  world_.store().remove(behavior.id_);
+  if (BehaviorGroup* group = behavior.group_) {
+    group->removed_bodies_.push_back(behavior.body_->id());
+    const auto at = find_last(group->members_, [&](const auto& member) { return member.get() == &behavior; });
+    retire(std::move(*at));
+    group->members_.erase(at);
+    group->layout_valid_ = false;
+    return;
+  }
+  const auto at = find_last(entries_, [&](const Entry& e) { return e.single.get() == &behavior; });
+  retire(std::move(at->single));
+  erase_entry(static_cast<std::size_t>(at - entries_.begin()));
+}
+
+void BehaviorList::destroy_group(BehaviorGroup& group) {
+  while (!group.members_.empty()) destroy(*group.members_.back());
+  world_.store().remove(group.id_);
+  const auto at = find_last(entries_, [&](const Entry& e) { return e.group.get() == &group; });
+  retire(std::move(at->group));
+  erase_entry(static_cast<std::size_t>(at - entries_.begin()));
+}
+
+BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
+  const NodeId id = world_.store().child(group_node_, name);
+  return id.null() ? nullptr : static_cast<BehaviorGroup*>(world_.store().object(id));
+}
+
+std::vector<BehaviorGroup*> BehaviorList::groups() const {
+  std::vector<BehaviorGroup*> list;
+  for (const Entry& entry : entries_) {
+    if (entry.group != nullptr) list.push_back(entry.group.get());
+  }
+  return list;
+}
+
+std::size_t BehaviorList::suspended_count() const {
+  std::size_t count = 0;
+  const auto count_suspended = [&](const std::unique_ptr<Behavior>& behavior) {
+    if (behavior != nullptr && !behavior->error().empty()) count++;
+  };
+  for (const Entry& entry : entries_) {
+    count_suspended(entry.single);
+    if (entry.group != nullptr) std::ranges::for_each(entry.group->members(), count_suspended);
+  }
+  return count;
+}
+
+void BehaviorList::copy_values(const Behavior& from, Behavior& to) {
+  Store& store = world_.store();
+  const double* values = std::as_const(store).persistent_block(from.id_);
+  std::copy_n(values, from.type_->table->persistent_width(), store.persistent_block(to.id_));
+  store.mark_explicitly_set(to.id_, store.explicitly_set(from.id_));  // copies the set of explicitly set properties too
+}
+
+void BehaviorList::copy(const Body& source, Body& copy) {
+  if (&source.world() != &world_) return;  // types and groups belong to one world
+  for (std::size_t i = 0; i < source.behaviors_.size(); i++) {
+    const Behavior& from = *source.behaviors_[i];
+    Result<std::unique_ptr<Behavior>> copied = make(copy, from.type_, from.name(), from.setup_, from.group_);
+    if (!copied) continue;  // can't happen: the copy has the same parts under the same names
+    copy_values(from, **copied);
+    if (from.group_ == nullptr) {
+      entries_.push_back({std::move(*copied), nullptr});
+      continue;
+    }
+    from.group_->members_.push_back(std::move(*copied));
+  }
+}
+
+void BehaviorList::on_body_destroyed(Body& body) {
+  while (!body.behaviors_.empty()) destroy(*body.behaviors_.back());
+  for (const Entry& entry : entries_) {
+    if (entry.group == nullptr) continue;
+    std::erase(entry.group->removed_bodies_, body.id());
+    entry.group->neighbors_->remove_body(body);
+  }
+}
+
+void BehaviorList::on_body_reset(Body& body) {
+  for (Behavior* behavior : body.behaviors_) behavior->restart();
+}
+
+std::shared_ptr<NeighborSet> BehaviorList::neighbor_set(std::vector<Part*> parts) {
+  std::erase_if(neighbor_sets_, [](const auto& known) { return known.expired(); });
+  for (const auto& cached : neighbor_sets_) {
+    if (std::shared_ptr<NeighborSet> set = cached.lock(); set->consists_of(parts)) return set;
+  }
+  auto set = std::make_shared<NeighborSet>(world_, std::move(parts));
+  neighbor_sets_.push_back(set);
+  return set;
+}
+
+void BehaviorList::update_members() {
+  if (stepping_) return;
+  const std::uint64_t structure = world_.store().structure_version();
+  if (std::exchange(structure_version_, structure) == structure) return;
+  for (const Entry& entry : entries_) {
+    if (entry.group == nullptr) continue;
+    if (const Result<void> updated = entry.group->update_members(); !updated) {
+      log_warning("group behavior '{}': {}", entry.group->name(), updated.error());
+    }
+  }
+  for (const auto& body : world_.bodies()) {
+    for (Behavior* behavior : body->behaviors_) {
+      if (std::exchange(behavior->resolved_structure_, body->structure_version_) == body->structure_version_) continue;
+      if (const Result<void> resolved = behavior->resolve(); !resolved) behavior->fail({resolved.error(), "", 0});
+    }
+  }
+  for (const Entry& entry : entries_) {
+    if (entry.group != nullptr) entry.group->layout_valid_ = false;
+  }
+  structure_version_ = world_.store().structure_version();  // includes members that were just added
+}
+
+std::string BehaviorList::key_of(const Entry& entry) {
+  if (entry.group != nullptr) return "/" + entry.group->name();
+  return entry.single->body().name() + "/" + entry.single->name();
+}
+
+std::vector<std::string> BehaviorList::order() const {
+  std::vector<std::string> keys;
+  keys.reserve(entries_.size());
+  for (const Entry& entry : entries_) keys.push_back(key_of(entry));
+  return keys;
+}
+
+void BehaviorList::set_order(const std::vector<std::string>& order) {
+  std::unordered_map<std::string_view, std::size_t> ranks;
+  for (std::size_t i = 0; i < order.size(); i++) ranks[order[i]] = i;
+  std::vector<std::pair<std::size_t, Entry>> ranked;
+  for (Entry& entry : entries_) {
+    const auto found = ranks.find(key_of(entry));
+    ranked.emplace_back(found == ranks.end() ? order.size() : found->second, std::move(entry));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  entries_.clear();
+  for (auto& [place, entry] : ranked) entries_.push_back(std::move(entry));
+  world_.store().bump_structure_version();
+}
+
+void BehaviorList::step(double dt) {
+  update_members();
+  step_count_++;
+  stepping_ = true;
+  double last_time = system::clock_seconds();
+  for (std::size_t i = 0; i < entries_.size(); i++) {
+    if (BehaviorGroup* group = entries_[i].group.get()) {
+      group->step(dt);
+      last_time = system::clock_seconds();
+      continue;
+    }
+    Behavior* const behavior = entries_[i].single.get();
+    if (behavior == nullptr) continue;  // removed in this step
+    if (behavior->runs()) behavior->prepare();
+    if (behavior->runs()) behavior->step(dt);
+    const double now = system::clock_seconds();
+    behavior->step_seconds_ = now - std::exchange(last_time, now);
+  }
+  stepping_ = false;
+  if (retired_.empty() && retired_groups_.empty()) return;
+  retired_.clear();
+  retired_groups_.clear();
+  std::erase_if(entries_, [](const Entry& e) { return e.single == nullptr && e.group == nullptr; });
+}
+
+void BehaviorList::report_fault(const Behavior& behavior) const {
+  if (on_fault_) return on_fault_(behavior);
+  log_error("behavior '{}/{}': {}", behavior.body().name(), behavior.name(), behavior.error());
+}
+
+void BehaviorList::replace_instances(std::string_view type_name) {
+  const std::shared_ptr<const BehaviorType> type = types_.find(type_name);
+  if (type == nullptr) return;
+  const auto outdated = [&](const Behavior& b) { return b.type_->name == type->name && b.type_ != type; };
+  for (Entry& entry : entries_) {
+    if (entry.single != nullptr && outdated(*entry.single)) entry.single = make_replacement(*entry.single, type);
+    if (entry.group == nullptr) continue;
+    for (auto& member : entry.group->members_) {
+      if (!outdated(*member)) continue;
+      member = make_replacement(*member, type);
+      entry.group->layout_valid_ = false;
+    }
+    if (entry.group->type_->name == type->name && entry.group->type_ != type) entry.group->set_type(type);
+  }
+}
+
+std::unique_ptr<Behavior> BehaviorList::make_replacement(Behavior& previous,
+                                                         const std::shared_ptr<const BehaviorType>& type) {
+  std::unique_ptr<Behavior> behavior = type->make();
+  behavior->attach(*previous.body_, previous.id_, type, previous.setup_, previous.group_);
+  behavior->parts_ = previous.parts_;
+  behavior->joints_ = previous.joints_;
+  behavior->motors_ = previous.motors_;
+  behavior->random_ = previous.random_;
+  behavior->seeded_with_ = previous.seeded_with_;
+  behavior->needs_start_ = previous.needs_start_;
+  behavior->id_ = world_.store().change_table(previous.id_, *type->table, behavior.get());
+  for (const Behavior::IntervalTimer& timer : previous.timers_) {
+    if (const Property* property = type->table->find(timer.property->name)) {
+      behavior->timers_.push_back(timer);
+      behavior->timers_.back().property = property;
+    }
+  }
+  std::replace(previous.body_->behaviors_.begin(), previous.body_->behaviors_.end(), &previous, behavior.get());
+  behavior->adopt_state(previous);
+  return behavior;
+}
+
+std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
+  for (const Entry& entry : entries_) {
+    if (entry.group != nullptr) hash = entry.group->state_hash(hash);
+  }
+  return hash;
+}
+
+}  // namespace limber

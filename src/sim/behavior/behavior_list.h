@@ -1,0 +1,136 @@
+// BehaviorList: a world's behaviors, built-in and Lua, in the order in which they are stepped: the order of their
+// creation, unless one was moved. A group is one entry. [sim]
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/behavior/behavior.h"
+#include "sim/behavior/behavior_group.h"
+#include "sim/behavior/behavior_transaction.h"
+#include "sim/behavior/behavior_type.h"
+#include "sim/neighbors/neighbor_set.h"
+
+namespace limber {
+
+class BehaviorList {
+ public:
+  explicit BehaviorList(World& world, NodeId physics);
+  ~BehaviorList();
+  BehaviorList(const BehaviorList&) = delete;
+  BehaviorList& operator=(const BehaviorList&) = delete;
+
+  BehaviorTypes& types() { return types_; }
+  const BehaviorTypes& types() const { return types_; }
+
+  /// Attaches a behavior to a body. Errors: unknown type, part, joint or motor (with a hint), the name is taken.
+  Result<Behavior*> add(Body& body, std::string_view type, const std::string& name, BehaviorSetup setup = {});
+  /// Attaches a behavior to each of several bodies. Errors as for add(), or a named body doesn't exist.
+  Result<BehaviorGroup*> add_group(std::string_view type, std::string name, GroupSetup setup = {});
+  /// Detaches a behavior; allowed while behaviors are stepped: it isn't stepped again. Rolled back if the guarded
+  /// call fails.
+  void remove(Behavior& behavior);
+  void remove_group(BehaviorGroup& group);
+  void clear();
+
+  BehaviorGroup* find_group(std::string_view name) const;
+  std::vector<BehaviorGroup*> groups() const;
+  NodeId group_node() const { return group_node_; }
+
+  /// Copies all behaviors of `source` with their values to its copy, as a new member if they belong to a group. Does
+  /// nothing if the source is of another world: the caller must add them then.
+  void copy(const Body& source, Body& copy);
+  void on_body_destroyed(Body& body);
+  /// Starts the body's behaviors again before the next step, with freshly seeded generators.
+  void on_body_reset(Body& body);
+  /// Replaces the instances of a reloaded type by instances of the type that now has its name. Properties that exist
+  /// in both keep their values (clamped). Targets, place, generator and intervals are preserved, and
+  /// Behavior::adopt_state() is called. Instances of a type that was removed are left unchanged.
+  void replace_instances(std::string_view type);
+
+  /// Updates group members and targets to the present bodies. Cheap if none was added, removed or changed.
+  void update_members();
+  /// Returns its position, from 1, among the behaviors that act on its body, including groups that the body is in.
+  std::size_t place(const Behavior& behavior) const;
+  /// Returns its position, from 1, among all names of behaviors and groups, ordered by their first entry.
+  std::size_t place(const BehaviorGroup& group) const;
+  /// Moves a behavior to position `place`, clamped to the last, from the next step on. The others keep their order.
+  /// Rolled back if the guarded call fails. Not allowed while behaviors are stepped, or for a group's member.
+  void move_to(Behavior& behavior, std::size_t place);
+  /// The same for a group, among all names: behaviors of the same name become adjacent in the order.
+  void move_to(BehaviorGroup& group, std::size_t place);
+  /// Returns an error while behaviors are being stepped.
+  Result<void> check_can_move() const;
+  /// Keys of all entries in step order: "body/behavior", or "/group".
+  std::vector<std::string> order() const;
+  /// Sorts the entries into such an order; those that it doesn't contain follow in their previous order.
+  void set_order(const std::vector<std::string>& order);
+  /// Steps every behavior that runs, in order.
+  void step(double dt);
+  /// Number of steps so far.
+  std::uint64_t step_count() const { return step_count_; }
+  /// Returns the neighbor set of these parts, which all groups with the same neighbors share.
+  std::shared_ptr<NeighborSet> neighbor_set(std::vector<Part*> parts);
+
+  /// Rolls back changes of behaviors by guarded calls.
+  BehaviorTransaction& transaction() { return transaction_; }
+
+  /// Number of behaviors, including group members, that are suspended by an error. O(n).
+  std::size_t suspended_count() const;
+  /// Sets the callback that is called once for each error.
+  void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
+  std::uint64_t state_hash(std::uint64_t start) const;
+
+ private:
+  friend class Behavior;
+  friend class BehaviorGroup;
+  friend class BehaviorTransaction;
+  friend class WorldCheckpoint;
+  /// A single behavior or a group.
+  struct Entry {
+    std::unique_ptr<Behavior> single;
+    std::unique_ptr<BehaviorGroup> group;
+  };
+
+  static std::string key_of(const Entry& entry);
+  static std::string_view name_of(const Entry& entry);
+  static bool acts_on(const Entry& entry, const Body& body);
+  std::vector<std::string_view> names() const;
+  void compute_places() const;
+  void save_order();
+  Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
+                                         const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
+                                         BehaviorGroup* group);
+  std::unique_ptr<Behavior> make_replacement(Behavior& previous, const std::shared_ptr<const BehaviorType>& type);
+  void copy_values(const Behavior& from, Behavior& to);
+  void report_fault(const Behavior& behavior) const;
+  void record_entry_count();
+  void destroy(Behavior& behavior);
+  void destroy_group(BehaviorGroup& group);
+  void destroy_last();
+  void retire(std::unique_ptr<Behavior> behavior);
+  void retire(std::unique_ptr<BehaviorGroup> group);
+  void erase_entry(std::size_t index);
+  Entry& insert_entry(std::size_t index);
+
+  World& world_;
+  NodeId group_node_;
+  BehaviorTypes types_;
+  std::vector<Entry> entries_;
+  std::vector<std::unique_ptr<Behavior>> retired_;  // removed while they were stepped
+  std::vector<std::unique_ptr<BehaviorGroup>> retired_groups_;
+  std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
+  std::uint64_t structure_version_ = 0;
+  mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
+  std::vector<std::vector<std::string>> saved_orders_;          // orders to restore if the guarded call fails
+  std::uint64_t step_count_ = 0;
+  bool stepping_ = false;
+  BehaviorTransaction transaction_{*this};
+  std::function<void(const Behavior&)> on_fault_;
+};
+
+}  // namespace limber

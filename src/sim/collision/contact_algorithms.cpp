@@ -1,0 +1,448 @@
+// Planes touch the lowest points of a shape. For two boxes the contact normal is the axis of least overlap (separating
+// axis test); for other convex shapes it is the direction of their distance (GJK). If a face of one of them has that
+// normal, it is the reference face, and the other's feature is clipped against its sides.
+#include "sim/collision/contact_algorithms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <utility>
+
+#include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
+#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
+
+#include "sim/collision/contact_features.h"
+#include "sim/collision/contact_manifold.h"
+
+namespace limber {
+namespace {
+
+/// A face is the reference face if its normal is within 1.1 degrees of the contact normal.
+constexpr btScalar kMinAlignment = 0.9998F;
+/// Tolerance outside of the reference face's sides, m.
+constexpr btScalar kClipSlack = 1e-5F;
+/// An axis of an edge pair or of the second box is preferred only if its separation is larger by this (relative, and in
+/// m), which keeps the choice stable from step to step.
+constexpr btScalar kMinRelativeGain = 0.02F;
+constexpr btScalar kMinGain = 1e-4F;
+
+/// Base class: owns the manifold of a pair.
+class PairAlgorithm : public btCollisionAlgorithm {
+ public:
+  PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                const btCollisionObjectWrapper* b)
+      : btCollisionAlgorithm(info),
+        manifold_(info.m_dispatcher1->getNewManifold(a->getCollisionObject(), b->getCollisionObject())) {}
+  ~PairAlgorithm() override { m_dispatcher->releaseManifold(manifold_); }
+  PairAlgorithm(const PairAlgorithm&) = delete;
+  PairAlgorithm& operator=(const PairAlgorithm&) = delete;
+
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override { manifolds.push_back(manifold_); }
+
+ protected:
+  btPersistentManifold& manifold() { return *manifold_; }
+
+ private:
+  btPersistentManifold* manifold_;
+};
+
+class PlaneAlgorithm : public PairAlgorithm {
+ public:
+  PlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                 const btCollisionObjectWrapper* b, bool plane_first)
+      : PairAlgorithm(info, plane_first ? b : a, plane_first ? a : b), plane_first_(plane_first) {}
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* out) override {
+    const btCollisionObjectWrapper& convex = plane_first_ ? *b : *a;
+    const btCollisionObjectWrapper& plane = plane_first_ ? *a : *b;
+    out->setPersistentManifold(&manifold());
+    const auto& shape = static_cast<const btConvexShape&>(*convex.getCollisionShape());
+    const auto& plane_shape = static_cast<const btStaticPlaneShape&>(*plane.getCollisionShape());
+    const btTransform& pose = convex.getWorldTransform();
+    const btVector3 normal = plane.getWorldTransform().getBasis() * plane_shape.getPlaneNormal();
+    const btScalar constant = plane_shape.getPlaneConstant() + normal.dot(plane.getWorldTransform().getOrigin());
+    ContactManifold points(manifold(), info.m_timeStep);
+    ContactFeature feature;
+    const btScalar height = normal.dot(pose.getOrigin()) - constant;
+    find_points_on_plane(shape, -(normal * pose.getBasis()), height, points.max_distance(), feature);
+    for (int i = 0; i < feature.count; ++i) {
+      const btVector3 point = pose(feature[i]) - normal * feature.margin;
+      const btScalar distance = normal.dot(point) - constant;
+      points.add(point - normal * distance, normal, distance);
+    }
+    points.write();
+  }
+
+ private:
+  bool plane_first_;
+};
+
+// Clips a polygon, segment or point to the inner side of the plane through `from` with the normal `outward`.
+void clip_by_plane(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
+  part.count = 0;
+  const int sides = whole.count > 2 ? whole.count : whole.count - 1;
+  btScalar p_out = outward.dot(whole[0] - from) - kClipSlack;
+  if (sides == 0 && p_out <= 0) part.add(whole[0]);
+  for (int i = 0; i < sides; ++i) {
+    const btVector3& p = whole[i];
+    const btVector3& q = whole[i + 1 < whole.count ? i + 1 : 0];
+    const btScalar q_out = outward.dot(q - from) - kClipSlack;
+    if (p_out <= 0) part.add(p);
+    if ((p_out <= 0) != (q_out <= 0)) part.add(p + (q - p) * (p_out / (p_out - q_out)));
+    if (whole.count == 2 && q_out <= 0) part.add(q);
+    p_out = q_out;
+  }
+}
+
+// Clips a polygon, segment or point against the sides of the reference face. `incident` is overwritten; the result is
+// `incident` or `spare`.
+const ContactFeature& clip(const ContactFeature& reference, ContactFeature& incident, ContactFeature& spare) {
+  spare.normal = incident.normal;
+  spare.margin = incident.margin;
+  ContactFeature* whole = &incident;
+  ContactFeature* part = &spare;
+  for (int side = 0; side < reference.count && whole->count > 0; ++side) {
+    const btVector3& from = reference[side];
+    const btVector3 edge = reference[side + 1 < reference.count ? side + 1 : 0] - from;
+    const btScalar length = edge.length();
+    if (!(length > SIMD_EPSILON)) continue;
+    clip_by_plane(*whole, from, edge.cross(reference.normal) / length, *part);
+    std::swap(whole, part);
+  }
+  return *whole;
+}
+
+// Adds the points of the incident feature near the reference face. `flipped`: the reference face is body A's.
+void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ContactManifold& points) {
+  ContactFeature spare;
+  const ContactFeature& clipped = clip(reference, incident, spare);
+  const btVector3& normal = reference.normal;
+  for (int i = 0; i < clipped.count; ++i) {
+    const btVector3 point = clipped[i] - normal * clipped.margin;
+    const btScalar distance = normal.dot(point - reference[0]) - reference.margin;
+    if (flipped) {
+      points.add(point, -normal, distance);
+    } else {
+      points.add(point - normal * distance, normal, distance);
+    }
+  }
+}
+
+struct Box {
+  const btVector3& center;
+  const btMatrix3x3& axes;  // columns
+  btVector3 half;
+
+  Box(const btBoxShape& shape, const btTransform& pose)
+      : center(pose.getOrigin()), axes(pose.getBasis()), half(shape.getHalfExtentsWithoutMargin()) {
+    const btScalar margin = shape.getMarginNV();
+    half += btVector3(margin, margin, margin);
+  }
+  btVector3 axis(int i) const { return axes.getColumn(i); }
+};
+
+class BoxAlgorithm : public PairAlgorithm {
+ public:
+  using PairAlgorithm::PairAlgorithm;
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* out) override {
+    out->setPersistentManifold(&manifold());
+    ContactManifold points(manifold(), info.m_timeStep);
+    const auto& shape_a = static_cast<const btBoxShape&>(*a->getCollisionShape());
+    const auto& shape_b = static_cast<const btBoxShape&>(*b->getCollisionShape());
+    const Box box_a(shape_a, a->getWorldTransform());
+    const Box box_b(shape_b, b->getWorldTransform());
+    if (separating_axis_.separates(box_a, box_b, points)) {
+      points.write();
+      return;
+    }
+    const Axis axis = find_axis(box_a, box_b, points, separating_axis_);
+    if (axis.kind == Axis::edges) {
+      add_edges(box_a, box_b, axis, points);
+    } else if (axis.kind != Axis::none) {
+      const bool first = axis.kind == Axis::face_a;
+      ContactFeature reference;
+      ContactFeature incident;
+      const btTransform& reference_pose = (first ? a : b)->getWorldTransform();
+      const btTransform& incident_pose = (first ? b : a)->getWorldTransform();
+      const btVector3 outward = first ? -axis.normal : axis.normal;
+      find_feature(first ? shape_a : shape_b, outward * reference_pose.getBasis(), reference);
+      find_feature(first ? shape_b : shape_a, -outward * incident_pose.getBasis(), incident);
+      reference.transform(reference_pose);
+      incident.transform(incident_pose);
+      add_points(reference, incident, first, points);
+    }
+    points.write();
+  }
+
+ private:
+  struct Axis {
+    enum Kind : unsigned char { none, face_a, face_b, edges } kind = none;
+    btVector3 normal{0, 0, 0};  // from b to a
+    btScalar separation = -BT_LARGE_FLOAT;
+    int edge_a = 0;
+    int edge_b = 0;
+  };
+
+  // The axis that separated the boxes in the last step; most likely it does so in the next one, too.
+  struct SeparatingAxis {
+    int a = kNone;  // axis of the first box
+    int b = kNone;  // of the second one; both: the cross product
+
+    // True if it separates the boxes until the end of the step by more than rounding errors, so that find_axis() would
+    // return none.
+    bool separates(const Box& first, const Box& second, const ContactManifold& points) const {
+      if (a == kNone && b == kNone) return false;
+      const btVector3 direction = b == kNone   ? first.axis(a)
+                                  : a == kNone ? second.axis(b)
+                                               : first.axis(a).cross(second.axis(b));
+      const btScalar radius =
+          (direction * first.axes).absolute().dot(first.half) + (direction * second.axes).absolute().dot(second.half);
+      const btScalar center_distance = direction.dot(second.center - first.center);
+      const btScalar length = a == kNone || b == kNone ? btScalar(1) : direction.length();
+      return std::fabs(center_distance) - radius -
+                 closing_distance(center_distance, direction.dot(points.relative_motion())) >
+             (points.max_rotation_distance() + kMinGain) * length;
+    }
+    static constexpr int kNone = -1;
+  };
+
+  // Decrease of the signed `distance` along an axis if the second box moves by `motion` along it.
+  static btScalar closing_distance(btScalar distance, btScalar motion) {
+    return std::max(distance > 0 ? -motion : motion, btScalar(0));
+  }
+
+  // Returns none if an axis separates the boxes until the end of the step; `apart_along` is that axis then.
+  static Axis find_axis(const Box& a, const Box& b, const ContactManifold& points, SeparatingAxis& separating_axis) {
+    const btScalar max_distance = points.max_rotation_distance();
+    const btVector3 motion_a = points.relative_motion() * a.axes;
+    const btVector3 motion_b = points.relative_motion() * b.axes;
+    const btMatrix3x3 rotation = a.axes.transposeTimes(b.axes);  // axes of b in the frame of a
+    const btVector3 from_a = (b.center - a.center) * a.axes;
+    const btVector3 from_b = (b.center - a.center) * b.axes;
+    btMatrix3x3 abs_rotation;
+    for (int i = 0; i < 3; ++i) abs_rotation[i] = rotation[i].absolute();
+    Axis best;
+    for (int i = 0; i < 3; ++i) {
+      const btScalar separation = std::fabs(from_a[i]) - a.half[i] - abs_rotation[i].dot(b.half);
+      if (separation - closing_distance(from_a[i], motion_a[i]) > max_distance)
+        return separated_along(i, SeparatingAxis::kNone, separating_axis);
+      if (separation > best.separation + (best.kind == Axis::none ? 0 : kMinGain)) {
+        best = {Axis::face_a, a.axis(i) * (from_a[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
+      }
+    }
+    for (int i = 0; i < 3; ++i) {
+      const btScalar separation = std::fabs(from_b[i]) - b.half[i] - abs_rotation.getColumn(i).dot(a.half);
+      if (separation - closing_distance(from_b[i], motion_b[i]) > max_distance)
+        return separated_along(SeparatingAxis::kNone, i, separating_axis);
+      if (separation > best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation)) {
+        best = {Axis::face_b, b.axis(i) * (from_b[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
+      }
+    }
+    const btScalar min_separation = best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation);
+    for (int i = 0; i < 3; ++i) {
+      const int i1 = (i + 1) % 3;
+      const int i2 = (i + 2) % 3;
+      for (int k = 0; k < 3; ++k) {
+        const int k1 = (k + 1) % 3;
+        const int k2 = (k + 2) % 3;
+        // axis: cross product of a's axis i and b's axis k, in the frame of a; its length is the sine of their angle
+        const btScalar sine2 = 1 - rotation[i][k] * rotation[i][k];
+        if (sine2 < 1e-4F) continue;
+        const btScalar along = from_a[i2] * rotation[i1][k] - from_a[i1] * rotation[i2][k];
+        const btScalar radius_a = a.half[i1] * abs_rotation[i2][k] + a.half[i2] * abs_rotation[i1][k];
+        const btScalar radius_b = b.half[k1] * abs_rotation[i][k2] + b.half[k2] * abs_rotation[i][k1];
+        const btScalar scaled = std::fabs(along) - radius_a - radius_b;  // times the sine
+        const btScalar threshold =
+            best.kind == Axis::edges ? std::max(min_separation, best.separation + kMinGain) : min_separation;
+        if (scaled <= std::min(threshold, btScalar(0))) continue;
+        const btScalar inverse = 1 / std::sqrt(sine2);
+        const btScalar separation = scaled * inverse;
+        const btScalar motion = (motion_a[i2] * rotation[i1][k] - motion_a[i1] * rotation[i2][k]) * inverse;
+        if (separation - closing_distance(along, motion) > max_distance) return separated_along(i, k, separating_axis);
+        if (separation > threshold) {
+          btVector3 normal = a.axis(i).cross(b.axis(k)) * inverse;
+          if (normal.dot(b.center - a.center) > 0) normal = -normal;
+          best = {Axis::edges, normal, separation, i, k};
+        }
+      }
+    }
+    return best;
+  }
+
+  static Axis separated_along(int a, int b, SeparatingAxis& separating_axis) {
+    separating_axis = {a, b};
+    return {};
+  }
+
+  static void add_edges(const Box& a, const Box& b, const Axis& axis, ContactManifold& points) {
+    btVector3 on_a = a.center;
+    btVector3 on_b = b.center;
+    for (int i = 0; i < 3; ++i) {
+      if (i != axis.edge_a) on_a += a.axis(i) * (a.axis(i).dot(axis.normal) > 0 ? -a.half[i] : a.half[i]);
+      if (i != axis.edge_b) on_b += b.axis(i) * (b.axis(i).dot(axis.normal) > 0 ? b.half[i] : -b.half[i]);
+    }
+    const btVector3 u = a.axis(axis.edge_a);
+    const btVector3 v = b.axis(axis.edge_b);
+    const btVector3 offset = on_b - on_a;
+    const btScalar uv = u.dot(v);
+    const btScalar scale = 1 / (1 - uv * uv);
+    const btScalar along_a = (offset.dot(u) - uv * offset.dot(v)) * scale;
+    const btScalar along_b = (uv * offset.dot(u) - offset.dot(v)) * scale;
+    // edges that pass each other don't touch
+    const btScalar overshoot =
+        std::max(std::fabs(along_a) - a.half[axis.edge_a], std::fabs(along_b) - b.half[axis.edge_b]);
+    if (axis.separation > 0 && overshoot > kClipSlack) return;
+    points.add(on_b + v * along_b, axis.normal, axis.separation);
+  }
+
+  SeparatingAxis separating_axis_;
+};
+
+// Closest points of two convex shapes.
+struct ClosestPoints : btDiscreteCollisionDetectorInterface::Result {
+  void setShapeIdentifiersA(int, int) override {}
+  void setShapeIdentifiersB(int, int) override {}
+  void addContactPoint(const btVector3& normal_on_b, const btVector3& point_on_b, btScalar signed_distance) override {
+    found = true;
+    normal = normal_on_b;
+    point = point_on_b;
+    distance = signed_distance;
+  }
+
+  bool found = false;
+  btVector3 normal{0, 0, 0};
+  btVector3 point{0, 0, 0};
+  btScalar distance = 0;
+};
+
+class ConvexAlgorithm : public PairAlgorithm {
+ public:
+  ConvexAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+                  const btCollisionObjectWrapper* b, btConvexPenetrationDepthSolver& depth_solver)
+      : PairAlgorithm(info, a, b), depth_solver_(depth_solver) {}
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* out) override {
+    out->setPersistentManifold(&manifold());
+    const auto& shape_a = static_cast<const btConvexShape&>(*a->getCollisionShape());
+    const auto& shape_b = static_cast<const btConvexShape&>(*b->getCollisionShape());
+    ContactManifold points(manifold(), info.m_timeStep);
+    ClosestPoints nearest;
+    const btScalar breaking = manifold().getContactBreakingThreshold();
+    find_nearest(*a, *b, std::max(points.max_distance(), breaking), nearest);
+    const bool has_sphere =
+        shape_a.getShapeType() == SPHERE_SHAPE_PROXYTYPE || shape_b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+    if (!nearest.found) {
+      points.write();
+    } else if (has_sphere) {
+      // exactly one point, on the line from the center; more accurate than GJK's
+      const bool first = shape_a.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
+      const btVector3& center = (first ? a : b)->getWorldTransform().getOrigin();
+      const btScalar radius = static_cast<const btSphereShape&>(first ? shape_a : shape_b).getRadius();
+      const btVector3 point =
+          first ? center - nearest.normal * (radius + nearest.distance) : center + nearest.normal * radius;
+      points.add(point, nearest.normal, nearest.distance);
+      points.write();
+    } else if (add_faces(*a, *b, nearest.normal, points)) {
+      points.write();
+    } else {
+      // edges and round sides: one point per step, as in Bullet
+      if (nearest.distance <= breaking) out->addContactPoint(nearest.normal, nearest.point, nearest.distance);
+      out->refreshContactPoints();
+    }
+  }
+
+ private:
+  void find_nearest(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar max_distance,
+                    ClosestPoints& nearest) {
+    const auto& shape_a = static_cast<const btConvexShape&>(*a.getCollisionShape());
+    const auto& shape_b = static_cast<const btConvexShape&>(*b.getCollisionShape());
+    btVoronoiSimplexSolver simplex;
+    btGjkPairDetector detector(&shape_a, &shape_b, &simplex, &depth_solver_);
+    btGjkPairDetector::ClosestPointInput input;
+    const btScalar max_core_distance = shape_a.getMargin() + shape_b.getMargin() + max_distance;
+    input.m_maximumDistanceSquared = max_core_distance * max_core_distance;
+    input.m_transformA = a.getWorldTransform();
+    input.m_transformB = b.getWorldTransform();
+    detector.getClosestPoints(input, nearest, nullptr);
+  }
+
+  // Returns false if no face of either shape has the contact normal.
+  static bool add_faces(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btVector3& normal,
+                        ContactManifold& points) {
+    ContactFeature feature_a;
+    ContactFeature feature_b;
+    find_world_feature(a, -normal, feature_a);
+    find_world_feature(b, normal, feature_b);
+    const btScalar alignment_a = feature_a.count > 2 ? -normal.dot(feature_a.normal) : btScalar(0);
+    const btScalar alignment_b = feature_b.count > 2 ? normal.dot(feature_b.normal) : btScalar(0);
+    if (std::max(alignment_a, alignment_b) < kMinAlignment) return false;
+    const bool first = alignment_a > alignment_b + (1 - kMinAlignment);
+    if (first || alignment_b < kMinAlignment) {
+      add_points(feature_a, feature_b, true, points);
+    } else {
+      add_points(feature_b, feature_a, false, points);
+    }
+    return !points.empty();
+  }
+
+  static void find_world_feature(const btCollisionObjectWrapper& object, const btVector3& direction,
+                                 ContactFeature& feature) {
+    const btTransform& pose = object.getWorldTransform();
+    find_feature(static_cast<const btConvexShape&>(*object.getCollisionShape()), direction * pose.getBasis(), feature);
+    feature.transform(pose);
+  }
+
+  btConvexPenetrationDepthSolver& depth_solver_;
+};
+
+template <class Algorithm, class... Args>
+btCollisionAlgorithm* create(btCollisionAlgorithmConstructionInfo& info, Args&&... args) {
+  void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(static_cast<int>(sizeof(Algorithm)));
+  return new (memory) Algorithm(info, std::forward<Args>(args)...);
+}
+
+}  // namespace
+
+btCollisionAlgorithm* ContactAlgorithms::CreatePlane::CreateCollisionAlgorithm(
+    btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
+  return create<PlaneAlgorithm>(info, a, b, m_swapped);
+}
+
+btCollisionAlgorithm* ContactAlgorithms::CreateBox::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                                             const btCollisionObjectWrapper* a,
+                                                                             const btCollisionObjectWrapper* b) {
+  return create<BoxAlgorithm>(info, a, b);
+}
+
+btCollisionAlgorithm* ContactAlgorithms::CreateConvex::CreateCollisionAlgorithm(
+    btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
+  return create<ConvexAlgorithm>(info, a, b, depth_solver);
+}
+
+void ContactAlgorithms::install(btCollisionDispatcher& dispatcher) {
+  plane_convex_.m_swapped = true;
+  for (const int convex : {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
+                           CAPSULE_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE}) {
+    dispatcher.registerCollisionCreateFunc(convex, STATIC_PLANE_PROXYTYPE, &convex_plane_);
+    dispatcher.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, convex, &plane_convex_);
+  }
+  for (const int solid :
+       {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE}) {
+    for (const int other : {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE,
+                            CYLINDER_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE}) {
+      dispatcher.registerCollisionCreateFunc(solid, other, &convex_convex_);
+      dispatcher.registerCollisionCreateFunc(other, solid, &convex_convex_);
+    }
+  }
+  dispatcher.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_box_);
+}
+
+}  // namespace limber

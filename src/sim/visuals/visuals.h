@@ -1,0 +1,57 @@
+// Visuals: properties of the view besides the shapes' materials: background, camera, look; rendering is elsewhere.
+// [sim]
+#pragma once
+
+#include "base/vec.h"
+#include "properties/store.h"
+#include "sim/visuals/appearance.h"
+
+namespace limber {
+
+/// The camera, with the conventions of ofxDabPhysics: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are
+/// derived from it.
+class Camera {
+ public:
+  static const PropertyTable& table();
+
+  Camera(Store& store, NodeId parent);
+  NodeId id() const { return id_; }
+
+  /// Position of the eye, and the point that it looks at, in world coordinates.
+  Vec3 eye() const;
+  Vec3 target() const;
+  /// Looks from one point at another, upright. Does nothing if the points coincide.
+  void look_at(const Vec3& eye, const Vec3& target);
+
+ private:
+  /// Rotation from world axes to eye axes.
+  Mat3 rotation() const;
+  void read_eye(double* out) const;
+  void write_eye(const double* in);
+  void read_target(double* out) const;
+  void write_target(const double* in);
+
+  Store& store_;
+  NodeId id_;
+};
+
+class Visuals {
+ public:
+  static const PropertyTable& table();
+
+  explicit Visuals(Store& store);
+  NodeId id() const { return id_; }
+  Camera& camera() { return camera_; }
+  const Camera& camera() const { return camera_; }
+  const Appearance& appearance() const { return appearance_; }
+  /// Resets all properties to their defaults.
+  void clear();
+
+ private:
+  Store& store_;
+  NodeId id_;
+  Camera camera_;
+  Appearance appearance_;
+};
+
+}  // namespace limber

@@ -1,0 +1,86 @@
+// Contacts: tracks pairs of reporting parts over the internal steps of a tick.
+#include "sim/world/contacts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/collision/contact_manifold.h"
+#include "sim/world/part.h"
+
+namespace limber {
+
+namespace {
+Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(object->getUserPointer()); }
+// initial distance of a pair: greater than that of any touching point, m
+constexpr double kNoDistance = 1;
+// a contact has closed if its surfaces are at most this far apart, m
+constexpr btScalar kClosedDistance = 1e-4F;
+}  // namespace
+
+Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
+  // Bullet may swap the objects of a pair that touches again. Pairs are few, so a linear search is fast enough.
+  if (b->id() < a->id()) std::swap(a, b);
+  for (Pair& pair : pairs_) {
+    if (pair.a == a && pair.b == b) return pair;
+  }
+  pairs_.push_back({a, b, 0, kNoDistance, Vec3(0), false, false, false, false});
+  return pairs_.back();
+}
+
+void Contacts::begin_tick() {
+  events_.clear();
+  for (Pair& pair : pairs_) {
+    pair.touched_before = pair.touching && !pair.event_pending;
+    pair.touching = false;
+    if (pair.event_pending) continue;
+    pair.impulse = 0;
+    pair.distance = kNoDistance;
+  }
+}
+
+void Contacts::collect(btDispatcher& dispatcher) {
+  if (reporting_ <= 0) return;
+  for (Pair& pair : pairs_) pair.closing = false;
+  for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
+    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
+    Part* a = part_of(manifold.getBody0());
+    Part* b = part_of(manifold.getBody1());
+    if (manifold.getNumContacts() == 0 || a == nullptr || b == nullptr) continue;
+    if (!a->reports_contacts() && !b->reports_contacts()) continue;
+    for (int k = 0; k < manifold.getNumContacts(); k++) {
+      btManifoldPoint& point = manifold.getContactPoint(k);
+      if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
+      Pair& pair = pair_of(a, b);
+      pair.touching = true;
+      if ((point.m_contactPointFlags & kContactClosed) == 0) {
+        pair.impulse += point.getAppliedImpulse();
+        if (point.getAppliedImpulse() > 0 && point.getDistance() <= kClosedDistance) {
+          point.m_contactPointFlags |= kContactClosed;
+        } else if (point.getAppliedImpulse() > 0) {
+          pair.closing = true;
+        }
+      }
+      if (point.getDistance() < pair.distance) {
+        pair.distance = point.getDistance();
+        pair.position = from_bt(point.getPositionWorldOnB());
+      }
+    }
+  }
+}
+
+void Contacts::end_tick() {
+  for (Pair& pair : pairs_) {
+    if (pair.touched_before || (!pair.touching && !pair.event_pending)) continue;
+    pair.event_pending = pair.closing && !pair.event_pending;
+    if (pair.event_pending) continue;
+    if (pair.a->reports_contacts()) events_.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
+    if (pair.b->reports_contacts()) events_.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
+  }
+  std::erase_if(pairs_, [](const Pair& pair) { return !pair.touching && !pair.touched_before && !pair.event_pending; });
+}
+
+void Contacts::remove_part(const Part& part) {
+  std::erase_if(pairs_, [&](const Pair& pair) { return pair.a == &part || pair.b == &part; });
+}
+
+}  // namespace limber

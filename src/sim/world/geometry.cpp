@@ -1,0 +1,105 @@
+// Geometry: converts placed shapes and an inertial to a Bullet shape in the center-of-mass frame.
+#include "sim/world/geometry.h"
+
+#include <algorithm>
+
+#include "model/mesh/mass_properties.h"
+
+namespace limber {
+
+namespace {
+
+constexpr btScalar kMargin = 0.001f;  // hulls and cones are enlarged by it; Bullet's default of 4 cm would be visible
+
+bool is_identity(const Pose& pose) {
+  return glm::length(pose.position) < 1e-9 && std::abs(std::abs(pose.rotation.w) - 1) < 1e-12;
+}
+
+std::shared_ptr<btCollisionShape> hull_shape(const MeshModel& mesh, const Pose& at) {
+  auto hull = std::make_shared<btConvexHullShape>();
+  for (const Vec3& v : mesh.hull) hull->addPoint(to_bt(at * v), false);
+  hull->setMargin(kMargin);
+  hull->recalcLocalAabb();
+  hull->initializePolyhedralFeatures();  // contact manifolds need its faces
+  return hull;
+}
+
+std::shared_ptr<btCollisionShape> primitive_shape(const ShapeModel& m) {
+  const btScalar radius = to_scalar(m.radius);
+  const btScalar height = to_scalar(m.height);
+  const btScalar half = height / 2;
+  switch (m.kind) {
+    case ShapeKind::plane:
+      return std::make_shared<btStaticPlaneShape>(to_bt(m.normal), btScalar(0));
+    case ShapeKind::sphere:
+      return std::make_shared<btSphereShape>(radius);
+    case ShapeKind::box:
+      return std::make_shared<btBoxShape>(to_bt(m.size * 0.5));
+    case ShapeKind::cylinder:
+      return std::make_shared<btCylinderShapeZ>(btVector3(radius, radius, half));
+    case ShapeKind::capsule:
+      return std::make_shared<btCapsuleShapeZ>(radius, height);
+    case ShapeKind::cone: {
+      auto cone = std::make_shared<btConeShapeZ>(radius, height);
+      cone->setMargin(std::min({kMargin, radius / 10, height / 10}));
+      return cone;
+    }
+    default:
+      return nullptr;
+  }
+}
+
+// Sets the center, the principal axes, and the moments per kilogram.
+void set_mass_properties(Geometry& geometry, const Inertial& inertial) {
+  geometry.frame.position = inertial.center;
+  const Mat3 tensor = inertial.tensor / inertial.mass;
+  const double trace = tensor[0][0] + tensor[1][1] + tensor[2][2];
+  const double off_diagonal = std::abs(tensor[0][1]) + std::abs(tensor[0][2]) + std::abs(tensor[1][2]);
+  if (off_diagonal <= 1e-9 * trace) {
+    // the tensor is diagonal already: shapes keep their axes, and no rotated compound is needed
+    geometry.unit_inertia = {tensor[0][0], tensor[1][1], tensor[2][2]};
+  } else {
+    const PrincipalAxes principal = principal_axes(tensor);
+    geometry.unit_inertia = principal.moments;
+    geometry.frame.rotation = glm::normalize(glm::quat_cast(principal.axes));
+  }
+  // a lower bound: the rotation about the axis of a thin rod would grow without bound in single precision
+  const double largest = std::max({geometry.unit_inertia.x, geometry.unit_inertia.y, geometry.unit_inertia.z, 1e-9});
+  geometry.unit_inertia = glm::max(geometry.unit_inertia, Vec3(1e-3 * largest));
+}
+
+}  // namespace
+
+std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial) {
+  auto geometry = std::make_shared<Geometry>();
+  geometry->placed = shapes;
+  std::vector<Inertial> solids;
+  for (const PlacedShape& placed : shapes) {
+    if (placed.shape.kind != ShapeKind::plane)
+      solids.push_back(transformed(unit_inertial_of(placed.shape), placed.origin));
+  }
+  const Inertial solid = combined(solids);
+  geometry->volume = solid.mass;
+  const bool given = inertial.mass > 0 && inertial.tensor[0][0] > 0;
+  if (given || solid.mass > 0) set_mass_properties(*geometry, given ? inertial : solid);
+
+  const Pose to_center = geometry->frame.inverse();
+  auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
+  for (const PlacedShape& placed : shapes) {
+    const Pose at = to_center * placed.origin;
+    const bool mesh = placed.shape.kind == ShapeKind::mesh && placed.shape.mesh != nullptr;
+    std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at) : primitive_shape(placed.shape);
+    if (shape == nullptr) continue;
+    if (placed.shape.mesh != nullptr) geometry->meshes.push_back(placed.shape.mesh);
+    if (shapes.size() == 1 && (mesh || is_identity(at))) {
+      geometry->shape = shape;
+      return geometry;
+    }
+    compound->addChildShape(mesh ? btTransform::getIdentity() : to_bt(at), shape.get());
+    geometry->children.push_back(std::move(shape));
+  }
+  geometry->shape = compound;
+  return geometry;
+}
+
+}  // namespace limber

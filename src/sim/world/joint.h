@@ -1,0 +1,117 @@
+// Joint: connects a child part to its parent. Limits are set here, drives in its motor. All quantities are
+// right-handed and describe the child relative to the parent. [sim]
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "properties/store.h"
+#include "sim/bullet/gear_constraint.h"
+#include "sim/bullet/joint_constraint.h"
+#include "sim/world/part.h"
+
+namespace limber {
+
+class Motor;
+
+/// Couples a follower to its leader, with reaction: value = multiplier · (leader's value) + offset.
+struct Mimic {
+  std::string leader;
+  double multiplier = 1;
+  double offset = 0;
+};
+
+/// Construction data of a joint.
+struct JointSpec {
+  JointType type = JointType::revolute;
+  Pose frame_in_parent;  ///< In the parent's link frame; z = the own axis.
+  Pose frame_in_child;
+  bool limited = false;  ///< Whether the own axis has limits; else it is free.
+  double lower = 0;
+  double upper = 0;
+  double friction = 0;  ///< Coulomb limit of the own axis, N·m or N (URDF <dynamics friction>).
+  std::optional<Mimic> mimic;
+};
+
+class Joint {
+ public:
+  static const PropertyTable& table();
+
+  Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec);
+  ~Joint();
+  Joint(const Joint&) = delete;
+  Joint& operator=(const Joint&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const;
+  JointType type() const { return spec_.type; }
+  const JointSpec& spec() const { return spec_; }
+  Body& body() const { return body_; }
+  Part& parent() const { return parent_; }
+  Part& child() const { return child_; }
+  Motor* motor() const { return motor_; }
+  void set_motor(Motor* motor) { motor_ = motor; }
+  JointConstraint& constraint() { return *constraint_; }
+  const JointConstraint& constraint() const { return *constraint_; }
+
+  /// Index of the joint's own axis, which `value`, `mode` and `target` refer to: 2 (linear z) for a prismatic joint, -1
+  /// for a fixed one, else 5 (angular z). Axes 0..2 are linear x y z, 3..5 angular x y z.
+  int own_axis() const;
+  /// True if the present limits of an axis don't lock it.
+  bool is_open(int axis) const { return (open_axes_ >> axis & 1) != 0; }
+  /// Position of the own axis, rad or m.
+  double value() const;
+
+  /// Publishes the readouts to the store's transient values. Call after Bullet's step, or after poses were set.
+  void publish();
+  /// Counts the ticks in which the gap between the two sides of the joint exceeds the size of its parts; returns true
+  /// when it has done so for several consecutive ticks. Call once per tick, after publish(). [any]
+  bool check_separation();
+  /// Distance between the two sides of the joint along its locked axes, without soft ones (stop_cfm), in m.
+  double gap() const;
+  /// Reads the position from the parts' poses again, after these were set. Chooses the turns closest to the published
+  /// angles.
+  void update_from_parts();
+  /// Saves the published angles, with full turns, as those of the start pose, for restore_start().
+  void save_start();
+  void save_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
+  void restore_start();
+  /// Adds the constraint, and the gear to its leader, to Bullet's world or removes them; called by the body.
+  void add_to_world();
+  void remove_from_world();
+  /// Wakes its parts in the next step. [any]
+  void wake();
+  bool in_world() const { return in_world_; }
+  /// Couples this joint to its leader with the ratio and offset of its `mimic` spec.
+  void couple_to(Joint& leader);
+  /// Adds the gear to Bullet's world, after both joints were added.
+  void add_mimic_gear();
+  /// The gear between this joint and its leader, or null if it has none.
+  GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
+  /// Writes limits, ERP and CFM of all axes to the constraint; the on-change callback of these properties.
+  void apply_limits();
+  /// Getter of the property `axis`: direction of the own axis, world.
+  void read_axis(double* out) const;
+
+ private:
+  friend class WorldCheckpoint;
+  static std::unique_ptr<JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
+
+  // fields that every tick reads come first
+  Body& body_;
+  NodeId id_;
+  std::uint8_t open_axes_ = 0;  // bit set of the axes that are not locked
+  bool in_world_ = false;
+  Motor* motor_ = nullptr;
+  Part& parent_;
+  Part& child_;
+  std::unique_ptr<JointConstraint> constraint_;
+  std::unique_ptr<GearConstraint> mimic_gear_;
+  bool gear_in_world_ = false;
+  JointSpec spec_;
+  Vec3 start_angles_{0};
+  int separated_ticks_ = 0;  // consecutive ticks with a gap larger than its parts
+};
+
+}  // namespace limber

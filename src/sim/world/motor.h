@@ -1,0 +1,80 @@
+// Motor: drives the axes of a joint, each in mode off, spin, servo or spring. It has the joint's name. [sim]
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "properties/store.h"
+#include "sim/world/joint.h"
+
+namespace limber {
+
+enum class MotorMode : std::uint8_t { off, spin, servo, spring };
+
+class Motor {
+ public:
+  static const PropertyTable& table();
+
+  /// Creates a servo on the own axis that holds the joint's present position.
+  Motor(Joint& joint, NodeId group);
+  ~Motor();
+  Motor(const Motor&) = delete;
+  Motor& operator=(const Motor&) = delete;
+
+  NodeId id() const { return id_; }
+  const std::string& name() const { return joint_.name(); }
+  Joint& joint() const { return joint_; }
+  /// The mode of an axis, derived from its three flags.
+  MotorMode mode(int axis) const;
+  /// Sets the three flags of the own axis according to a mode.
+  void set_mode(MotorMode mode);
+  /// Sets the servo position and the spring's rest position of the own axis, m or rad.
+  void set_target(double target);
+
+  /// Moves the targets of the angular axes that are servos or springs from the joint's present angles towards
+  /// `target` (rad, in the joint's own order), by at most `max_step` each. A free axis takes the shorter way: its
+  /// target may differ from `target` by full turns.
+  void step_towards(const Vec3& target, double max_step);
+
+  /// Stores the joint's present position as the one that a panic holds.
+  void save_held_position();
+  /// Warns once that a spring's stiffness is capped, and suggests more substeps.
+  void warn_capped();
+  /// Warns once that the target of a servo is outside the joint's limits.
+  void warn_target_outside();
+
+  // On-change callbacks, getters and setters of the properties; public for helper functions that build the table.
+  void apply_axes();
+  void apply_targets();
+  void read_force(double* out) const;
+  void read_torque(double* out) const;
+  void read_linear_stiffness(double* out) const;
+  void read_angular_stiffness(double* out) const;
+  void read_linear_damping(double* out) const;
+  void read_angular_damping(double* out) const;
+  void read_mode(double* out) const;
+  void write_mode(const double* in);
+  void read_target(double* out) const;
+  void write_target(const double* in);
+  void read_speed(double* out) const;
+  void write_speed(const double* in);
+  Result<void> validate_own_axis(const double* in) const;
+
+ private:
+  friend class WorldCheckpoint;
+  bool update_targets();
+  void set_own_axis(const Property& linear_property, const Property& angular_property, double value);
+  void warn_contradiction(int axis);
+
+  static void prefetch_targets(const void* object);
+
+  Joint& joint_;
+  JointConstraint& constraint_;  // of the joint
+  NodeId id_;
+  std::array<double, 6> held_position_{};
+  bool warned_contradiction_ = false;
+  bool warned_capped_ = false;
+  bool warned_target_outside_ = false;
+};
+
+}  // namespace limber

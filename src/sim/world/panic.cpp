@@ -1,0 +1,63 @@
+// Panic: replaces gravity, motor drives and velocities while it is on.
+#include "sim/world/panic.h"
+
+#include <cmath>
+
+#include "sim/world/body.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+void Panic::begin() { set_on(true); }
+void Panic::end() { set_on(false); }
+
+void Panic::set_on(bool on) {
+  static const Property& panicked = World::table().at("panicked");
+  if (on_ == on) return;
+  on_ = on;
+  first_second_over_ = false;
+  start_tick_ = world_.tick();
+  world_.store().mutable_values(world_.id(), panicked)[0] = on ? 1 : 0;
+  world_.bullet().wake_all();
+  world_.apply_gravity();
+  update_motors();
+}
+
+void Panic::update_motors() {
+  for (const auto& body : world_.bodies()) {
+    for (const auto& motor : body->motors()) {
+      motor->save_held_position();
+      motor->apply_axes();
+    }
+  }
+}
+
+Vec3 Panic::limited_gravity(const Vec3& gravity) const {
+  const double size = glm::length(gravity);
+  return on_ && size > kDamping * kTerminalSpeed ? gravity * (kDamping * kTerminalSpeed / size) : gravity;
+}
+
+bool Panic::holds_motors() const {
+  static const Property& motors = World::table().at("panic_motors");
+  return world_.store().values(world_.id(), motors)[0] == 0;
+}
+
+AxisDrive Panic::drive(MotorMode mode) const {
+  if (!on_) return static_cast<AxisDrive>(mode);
+  return mode != MotorMode::off && holds_motors() ? AxisDrive::servo : AxisDrive::off;
+}
+
+void Panic::damp(double h) {
+  const auto factor = static_cast<btScalar>(fixed::exp(-kDamping * h));
+  for (const auto& body : world_.bodies()) {
+    if (!body->in_world()) continue;
+    for (const auto& part : body->parts()) {
+      btRigidBody& rigid = part->rigid();
+      if (rigid.isStaticObject()) continue;
+      rigid.setLinearVelocity(rigid.getLinearVelocity() * factor);
+      rigid.setAngularVelocity(rigid.getAngularVelocity() * factor);
+    }
+  }
+}
+
+}  // namespace limber

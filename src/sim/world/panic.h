@@ -1,0 +1,65 @@
+// Panic: brings the world to rest, against all drives and forces, and keeps it there until end(). No property
+// changes: only the settings in Bullet differ meanwhile. [sim]
+#pragma once
+
+#include <cstdint>
+
+#include "base/vec.h"
+#include "sim/bullet/joint_constraint.h"
+#include "sim/world/motor.h"
+
+namespace limber {
+
+class World;
+
+class Panic {
+ public:
+  /// Damping of all velocities, 1/s. It is the same for all, so it does no work against joints. After t seconds the
+  /// remaining share of the initial kinetic energy is exp(-2·kDamping·t): 1 % after 0.4 s.
+  static constexpr double kDamping = 6;
+  /// Terminal velocity of falling bodies, m/s: gravity is limited to kDamping·kTerminalSpeed. The kinetic
+  /// energy of bodies of mass m never exceeds (sqrt(E0)·exp(-kDamping·t) + kTerminalSpeed·sqrt(m/2))². Joints that were
+  /// pushed away from their held position return at this speed, in rad/s or m/s.
+  static constexpr double kTerminalSpeed = 0.1;
+
+  static constexpr const char* kDoc =
+      "Brings everything to rest: behaviors, morphs, forces and the scene's callbacks stop. A second call, after the "
+      "first second, restores the newest good checkpoint.";
+
+  explicit Panic(World& world) : world_(world) {}
+
+  bool on() const { return on_; }
+  /// The world's tick when the panic began, while it is on.
+  std::uint64_t start_tick() const { return start_tick_; }
+  /// True once its first second is over; before, further requests are ignored.
+  bool first_second_over() const { return first_second_over_; }
+  void end_first_second() { first_second_over_ = true; }
+  /// Starts a panic: until end(), behaviors are paused, forces are discarded, and motors act as set by
+  /// `panic_motors`.
+  void begin();
+  /// Ends the panic: all drives and forces act as set.
+  void end();
+  /// Stores the present joint positions as the held ones, and applies `panic_motors`. Call when that has changed.
+  void update_motors();
+
+  /// Returns the gravity in force for a value of the property `gravity`.
+  Vec3 limited_gravity(const Vec3& gravity) const;
+  /// True if `panic_motors` is set to hold the motors.
+  bool holds_motors() const;
+  /// Returns the drive of an axis with motor mode `mode`: during a panic, it holds its position with its own
+  /// strength, or is off.
+  AxisDrive drive(MotorMode mode) const;
+  /// Damps all velocities; call after each internal step of h seconds.
+  void damp(double h);
+
+ private:
+  friend class WorldCheckpoint;
+  void set_on(bool on);
+
+  World& world_;
+  bool on_ = false;
+  bool first_second_over_ = false;
+  std::uint64_t start_tick_ = 0;
+};
+
+}  // namespace limber

@@ -1,0 +1,436 @@
+// Part: its properties, and the conversion between the link frame of the public interface and Bullet's frame.
+#include "sim/world/part.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "base/memory/prefetch.h"
+#include "sim/bullet/spin.h"
+#include "sim/collision/contact_friction.h"
+#include "sim/world/body.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+namespace {
+
+using namespace properties;
+
+// Properties that every tick reads and writes.
+struct MotionProperties {
+  const Property* position;
+  const Property* rotation;
+  const Property* linear_velocity;
+  const Property* angular_velocity;
+};
+
+const MotionProperties& motion_properties() {
+  static const MotionProperties found{&Part::table().at("position"), &Part::table().at("rotation"),
+                                      &Part::table().at("linear_velocity"), &Part::table().at("angular_velocity")};
+  return found;
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): a list of entries
+const PropertyTable& Part::table() {
+  static const PropertyTable table(
+      "part", "/physics/body/<body>/part/<part>", "/physics/part",
+      {
+          validated_by<&Part::validate_mass>(on_change<&Part::apply_mass>(number(
+              "mass", "kg", 1, 0.001, 1e6, "Mass; the inertia scales with it. A part created with mass 0 is static."))),
+          on_change<&Part::apply_damping>(
+              number("linear_damping", "1/s", 0, 0, 1, "Fraction of the velocity lost per second.")),
+          on_change<&Part::apply_damping>(
+              number("angular_damping", "1/s", 0, 0, 1, "Fraction of the angular velocity lost per second.")),
+          on_change<&Part::apply_surface>(
+              number("friction", "", 0.5, 0, 100, "Coulomb friction; the values of two touching parts multiply.")),
+          on_change<&Part::apply_surface>(number("rolling_friction", "m", 0, 0, 100,
+                                                 "Resistance to rolling; the values of two touching parts are mixed.")),
+          on_change<&Part::apply_surface>(
+              number("spinning_friction", "m", 0, 0, 100,
+                     "Resistance to spinning about the contact's normal; mixed like rolling "
+                     "friction.")),
+          on_change<&Part::apply_surface>(
+              vec3("friction_direction", "", {0, 0, 0}, -1, 1,
+                   "Direction in the link frame in which friction is scaled by friction_factor; zeros: none.")),
+          on_change<&Part::apply_surface>(number("friction_factor", "", 1, 0, 100,
+                                                 "Ratio of the friction along friction_direction to that across it.")),
+          on_change<&Part::apply_surface>(number(
+              "restitution", "", 0, 0, 1,
+              "Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.")),
+          on_change<&Part::apply_collision>(
+              boolean("self_collision", true, "Whether it collides with other parts of its body.")),
+          on_change<&Part::apply_collision>(integer(
+              "collision_group", 1, 0, 65535,
+              "Bit set of its groups (16). Two parts collide if each one's group has a bit in the other's mask.")),
+          on_change<&Part::apply_collision>(
+              integer("collision_mask", 65535, 0, 65535, "Bit set of the groups that it collides with (16).")),
+          on_change<&Part::apply_report_contacts>(
+              boolean("report_contacts", false, "Report when this part begins to touch another.")),
+          transient(state(on_change<&Part::apply_pose>(
+              vec3("position", "m", {0, 0, 0}, -1e6, 1e6,
+                   "Origin of the link frame, world. Beyond 10 km, the stability check restores the body.")))),
+          transient(state(on_change<&Part::apply_pose>(quat("rotation", "Link frame, world: x y z w.")))),
+          transient(state(on_change<&Part::apply_velocity>(
+              vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
+                   "Velocity of the center of mass, world. From 500 m/s on, the stability check restores the body.")))),
+          transient(state(on_change<&Part::apply_velocity>(vec3(
+              "angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
+              "Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, not counting "
+              "rotation about a driven joint's axis or a principal axis, and from 20000 rad/s on in any case.")))),
+          computed<&Part::read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Center of mass, world."))),
+          computed<&Part::read_inertia>(readout(vec3("inertia", "kg·m²", {0, 0, 0}, 0, kUnbounded,
+                                                     "Moments of inertia about the principal axes; static: 0."))),
+          computed<&Part::read_principal_axes>(
+              readout(properties::quat("principal_axes", "Principal axes of inertia, world: x y z w."))),
+          computed<&Part::read_rotation_clamped>(readout(number(
+              "rotation_clamped", "rad/s", 0, 0, kUnbounded,
+              "Angular speed clamped off in the last tick; 0: not clamped. Rotation is limited to π/4 per substep, "
+              "except about a driven joint's axis or a principal axis. More substeps raise the limit."))),
+          invokes<&Part::act_force>(
+              action("apply_force", 3, 6,
+                     "Force in N for one tick, world; at a world point, else the center. From 500 "
+                     "m/s on, the stability check restores the body.")),
+          invokes<&Part::act_impulse>(
+              action("apply_impulse", 3, 6,
+                     "Impulse in N·s, world; at a world point, else the center. From 500 m/s on, "
+                     "the stability check restores the body.")),
+          invokes<&Part::act_torque>(
+              action("apply_torque", 3, 3,
+                     "Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the "
+                     "stability check restores the body.")),
+      },
+      &Part::prefetch_rigid_body);
+  return table;
+}
+
+Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geometry> geometry, double mass,
+           const Pose& pose)
+    : body_(body),
+      id_(body.store().add(table(), group, std::move(name), this)),
+      accumulator_(body.world().force_accumulators().add(*this)),
+      geometry_(std::move(geometry)),
+      is_static_(mass <= 0),
+      start_(pose) {
+  body_.store().mutable_values(id_, table().at("mass"))[0] = is_static_ ? 0 : mass;
+  const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : to_bt(geometry_->unit_inertia * mass);
+  btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
+                                                geometry_->shape.get(), inertia);
+  info.m_startWorldTransform = to_bt(pose * geometry_->frame);
+  {
+    const BulletMemory::Scope scope(&body_.world().bullet_memory());
+    rigid_ = std::make_unique<btRigidBody>(info);
+  }
+  rigid_->setUserPointer(this);
+  rigid_->setActivationState(DISABLE_DEACTIVATION);
+  set_pose(pose);
+  body_.world().mass_table().add(*this);
+}
+
+Part::~Part() {
+  World& world = body_.world();
+  if (reports_contacts()) world.contact_log().set_reporting(false);
+  world.contact_log().remove_part(*this);
+  remove_from_world();
+  world.force_accumulators().remove(accumulator_);
+  body_.store().remove(id_);
+}
+
+void Part::add_to_world() {
+  if (rigid_->isInWorld()) return;
+  // it may have been removed while it was asleep
+  rigid_->forceActivationState(DISABLE_DEACTIVATION);
+  body_.world().bullet().addRigidBody(rigid_.get());
+  body_.world().bullet().sleep().allow(*rigid_, body_.can_sleep());
+}
+
+void Part::remove_from_world() {
+  if (rigid_->isInWorld()) body_.world().bullet().removeRigidBody(rigid_.get());
+}
+
+void Part::wake() {
+  if (rigid_->isInWorld()) body_.world().bullet().sleep().wake(*rigid_);
+}
+
+const std::string& Part::name() const { return body_.store().name(id_); }
+
+Pose Part::pose() const {
+  const Store& store = body_.store();
+  return {vec3_at(store.values(id_, *motion_properties().position)),
+          quat_at(store.values(id_, *motion_properties().rotation))};
+}
+
+Vec3 Part::center() const { return pose() * geometry_->frame.position; }
+
+double Part::mass() const {
+  static const Property& property = table().at("mass");
+  return body_.store().values(id_, property)[0];
+}
+
+Vec3 Part::linear_velocity() const { return vec3_at(body_.store().values(id_, *motion_properties().linear_velocity)); }
+Vec3 Part::angular_velocity() const {
+  return vec3_at(body_.store().values(id_, *motion_properties().angular_velocity));
+}
+
+void Part::set_pose(const Pose& pose) {
+  Store& store = body_.store();
+  store.save_before_write(id_, *motion_properties().position);
+  store.save_before_write(id_, *motion_properties().rotation);
+  put(store.mutable_values(id_, *motion_properties().position), pose.position);
+  put(store.mutable_values(id_, *motion_properties().rotation), pose.rotation);
+  store.mark_dirty(id_, *motion_properties().position);
+}
+
+void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
+  Store& store = body_.store();
+  store.save_before_write(id_, *motion_properties().linear_velocity);
+  store.save_before_write(id_, *motion_properties().angular_velocity);
+  put(store.mutable_values(id_, *motion_properties().linear_velocity), linear);
+  put(store.mutable_values(id_, *motion_properties().angular_velocity), angular);
+  store.mark_dirty(id_, *motion_properties().linear_velocity);
+}
+
+Part::State Part::capture_state() const {
+  return {pose(),
+          linear_velocity(),
+          angular_velocity(),
+          rigid_->getWorldTransform(),
+          rigid_->getLinearVelocity(),
+          rigid_->getAngularVelocity()};
+}
+
+void Part::set_state(const State& state) {
+  // writes Bullet's pose directly instead of marking the property dirty, which would round it: the store's pose is
+  // converted to a quaternion
+  double* const transient = body_.store().transient_block(id_);
+  put(transient + motion_properties().position->offset, state.pose.position);
+  put(transient + motion_properties().rotation->offset, state.pose.rotation);
+  put(transient + motion_properties().linear_velocity->offset, state.linear_velocity);
+  put(transient + motion_properties().angular_velocity->offset, state.angular_velocity);
+  rigid_->setWorldTransform(state.transform);
+  rigid_->setInterpolationWorldTransform(state.transform);
+  rigid_->setLinearVelocity(state.linear);
+  rigid_->setAngularVelocity(state.angular);
+  rigid_->updateInertiaTensor();
+}
+
+void Part::save_for_rollback() {
+  WorldTransaction& transaction = body_.world().transaction();
+  if (transaction.active()) transaction.save(*this);
+}
+
+void Part::flush() {
+  WorldTransaction& transaction = body_.world().transaction();
+  if (!transaction.active()) return body_.store().flush();
+  transaction.save_motion(*this);
+  body_.store().flush(id_);
+}
+
+void Part::apply_force(const Vec3& force) {
+  save_for_rollback();
+  body_.world().force_accumulators().wrench(accumulator_).force += force;
+}
+
+void Part::apply_torque(const Vec3& torque) {
+  save_for_rollback();
+  body_.world().force_accumulators().wrench(accumulator_).torque += torque;
+}
+
+void Part::apply_impulse(const Vec3& impulse) {
+  save_for_rollback();
+  body_.world().force_accumulators().impulse(accumulator_).linear += impulse;
+}
+
+void Part::apply_force_at(const Vec3& force, const Vec3& at) {
+  apply_force(force);
+  apply_torque(glm::cross(at - center(), force));
+}
+
+void Part::apply_impulse_at(const Vec3& impulse, const Vec3& at) {
+  apply_impulse(impulse);
+  body_.world().force_accumulators().impulse(accumulator_).angular += glm::cross(at - center(), impulse);
+}
+
+void Part::clear_forces() {
+  save_for_rollback();
+  body_.world().force_accumulators().clear(accumulator_);
+}
+
+void Part::apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse) {
+  if (is_static_ || !rigid_->isInWorld()) return;
+  const Vec3 none(0);
+  if (wrench.force == none && wrench.torque == none && impulse.linear == none && impulse.angular == none) return;
+  wake();
+  // clamped to more than any part withstands, but finite: NaN and infinities would spread to all parts that it
+  // touches
+  const Vec3 limit(1e15);
+  const auto clamped = [&](const Vec3& v) { return to_bt(glm::clamp(v, -limit, limit)); };
+  rigid_->applyCentralForce(clamped(wrench.force));
+  rigid_->applyTorque(clamped(wrench.torque));
+  rigid_->applyCentralImpulse(clamped(impulse.linear));
+  rigid_->applyTorqueImpulse(clamped(impulse.angular));
+}
+
+void Part::publish() {
+  double* const transient = body_.store().transient_block(id_);
+  const MotionProperties& properties = motion_properties();
+  const Pose pose = from_bt(rigid_->getWorldTransform()) * geometry_->frame.inverse();
+  put(transient + properties.position->offset, pose.position);
+  put(transient + properties.rotation->offset, pose.rotation);
+  put(transient + properties.linear_velocity->offset, from_bt(rigid_->getLinearVelocity()));
+  put(transient + properties.angular_velocity->offset, from_bt(rigid_->getAngularVelocity()));
+}
+
+bool Part::reports_contacts() const { return report_contacts_; }
+
+// Prefetches all of the rigid body, since on-change callbacks access fields all over it.
+void Part::prefetch_rigid_body(const void* object) {
+  prefetch(static_cast<const Part*>(object)->rigid_.get(), sizeof(btRigidBody));
+}
+
+void Part::apply_mass() {
+  static const Property& property = table().at("mass");
+  if (is_static_) return;
+  const double mass = body_.store().values(id_, property)[0];
+  const btScalar before = rigid_->getInvMass();
+  rigid_->setMassProps(static_cast<btScalar>(mass), to_bt(geometry_->unit_inertia * mass));
+  rigid_->updateInertiaTensor();
+  // Bullet stores gravity as a force, which was computed with the old mass
+  rigid_->setGravity(body_.world().bullet().getGravity());
+  if (rigid_->getInvMass() != before) wake();
+}
+
+void Part::apply_damping() {
+  static const Property& linear = table().at("linear_damping");
+  static const Property& angular = table().at("angular_damping");
+  const Store& store = body_.store();
+  const std::array<btScalar, 2> before{rigid_->getLinearDamping(), rigid_->getAngularDamping()};
+  rigid_->setDamping(static_cast<btScalar>(store.values(id_, linear)[0]),
+                     static_cast<btScalar>(store.values(id_, angular)[0]));
+  if (before != std::array<btScalar, 2>{rigid_->getLinearDamping(), rigid_->getAngularDamping()}) wake();
+}
+
+void Part::apply_surface() {
+  static const Property& friction = table().at("friction");
+  static const Property& rolling = table().at("rolling_friction");
+  static const Property& spinning = table().at("spinning_friction");
+  static const Property& direction = table().at("friction_direction");
+  static const Property& factor = table().at("friction_factor");
+  static const Property& bounce = table().at("restitution");
+  const Store& store = body_.store();
+  const auto surface = [this] {
+    const btVector3& anisotropic = rigid_->getAnisotropicFriction();
+    return std::array<btScalar, 8>{rigid_->getFriction(),
+                                   rigid_->getRollingFriction(),
+                                   rigid_->getSpinningFriction(),
+                                   rigid_->getRestitution(),
+                                   anisotropic.x(),
+                                   anisotropic.y(),
+                                   anisotropic.z(),
+                                   anisotropic.w()};
+  };
+  const std::array<btScalar, 8> before = surface();
+  rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
+  rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
+  rigid_->setSpinningFriction(static_cast<btScalar>(store.values(id_, spinning)[0]));
+  const Vec3 in_link = vec3_at(store.values(id_, direction));
+  set_friction_direction(*rigid_, to_bt(glm::inverse(geometry_->frame.rotation) * in_link),
+                         static_cast<btScalar>(store.values(id_, factor)[0]));
+  const auto restitution = static_cast<btScalar>(store.values(id_, bounce)[0]);
+  rigid_->setRestitution(restitution);
+  if (surface() != before) wake();
+  // A part that bounces must not be slowed down before it touches: contacts that Bullet predicts would absorb a share
+  // of the bounce.
+  const btScalar threshold = restitution > 0 && !is_static_ ? btScalar(0) : btScalar(BT_LARGE_FLOAT);
+  if (rigid_->getContactProcessingThreshold() == threshold) return;
+  rigid_->setContactProcessingThreshold(threshold);
+  // existing contacts keep the threshold that they were created with
+  IslandWorld& bullet = body_.world().bullet();
+  if (!rigid_->isInWorld()) return;
+  bullet.getPairCache()->cleanProxyFromPairs(rigid_->getBroadphaseHandle(), bullet.getDispatcher());
+}
+
+void Part::apply_pose() {
+  const btTransform t = to_bt(pose() * geometry_->frame);
+  if (!is_static_ || !(t == rigid_->getWorldTransform())) wake();
+  rigid_->setWorldTransform(t);
+  rigid_->setInterpolationWorldTransform(t);
+  rigid_->updateInertiaTensor();
+  body_.mark_joints_dirty();
+}
+
+void Part::apply_velocity() {
+  if (is_static_) {
+    if (linear_velocity() != Vec3(0) || angular_velocity() != Vec3(0)) {
+      body_.warn_static_velocity(fmt::format("part '{}' is", name()));
+    }
+    return;
+  }
+  const bool changes = to_bt(linear_velocity()) != rigid_->getLinearVelocity() ||
+                       to_bt(angular_velocity()) != rigid_->getAngularVelocity();
+  if (changes) wake();
+  rigid_->setLinearVelocity(to_bt(linear_velocity()));
+  rigid_->setAngularVelocity(to_bt(angular_velocity()));
+}
+
+void Part::apply_collision() {
+  static const Property& group = table().at("collision_group");
+  static const Property& mask = table().at("collision_mask");
+  static const Property& own = table().at("self_collision");
+  const Store& store = body_.store();
+  CollisionFilter filter;
+  filter.group = static_cast<std::uint16_t>(store.values(id_, group)[0]);
+  filter.mask = static_cast<std::uint16_t>(store.values(id_, mask)[0]);
+  filter.body = static_cast<std::int32_t>(body_.id().slot);
+  filter.self_collision = body_.self_collision() && store.values(id_, own)[0] != 0;
+  body_.world().bullet().set_filter(*rigid_, filter);
+}
+
+void Part::apply_report_contacts() {
+  const bool wanted = body_.store().values(id_, table().at("report_contacts"))[0] != 0;
+  if (wanted != report_contacts_) body_.world().contact_log().set_reporting(wanted);
+  report_contacts_ = wanted;
+}
+
+void Part::read_center(double* out) const { put(out, center()); }
+void Part::read_inertia(double* out) const {
+  put(out, geometry_->unit_inertia * body_.store().values(id_, table().at("mass"))[0]);
+}
+void Part::read_principal_axes(double* out) const { put(out, principal_axes()); }
+void Part::read_rotation_clamped(double* out) const { out[0] = clamped_by(*rigid_); }
+
+Result<void> Part::validate_mass(const double*) const {
+  if (!is_static_) return {};
+  return Error{"the part was created static (mass 0); create it with a mass instead"};
+}
+
+Result<void> Part::act_force(std::span<const double> a) {
+  if (a.size() == 3) {
+    apply_force(vec3_at(a.data()));
+  } else if (a.size() == 6) {
+    apply_force_at(vec3_at(a.data()), vec3_at(a.data() + 3));
+  } else {
+    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
+  }
+  return {};
+}
+
+Result<void> Part::act_impulse(std::span<const double> a) {
+  if (a.size() == 3) {
+    apply_impulse(vec3_at(a.data()));
+  } else if (a.size() == 6) {
+    apply_impulse_at(vec3_at(a.data()), vec3_at(a.data() + 3));
+  } else {
+    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
+  }
+  return {};
+}
+
+Result<void> Part::act_torque(std::span<const double> a) {
+  apply_torque(vec3_at(a.data()));
+  return {};
+}
+
+}  // namespace limber

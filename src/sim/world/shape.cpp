@@ -1,0 +1,135 @@
+// Shape: validation, compounds, geometry.
+#include "sim/world/shape.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/color.h"
+#include "sim/world/geometry.h"
+
+namespace limber {
+
+const PropertyTable& Shape::table() {
+  using namespace properties;
+  static const PropertyTable table(
+      "shape", "/visuals/shape/<shape>", "/visuals/shape",
+      {
+          number("transparency", "", 0, 0, 1, "0: opaque; 1: invisible."),
+          number("ambient_scale", "", 0.5, 0, 10, "Factor on the ambient light."),
+          number("diffuse_scale", "", 0.5, 0, 10, "Factor on the lamps' light."),
+          number("specular_scale", "", 0.5, 0, 10, "Brightness of highlights."),
+          number("specular_pow", "", 10, 0, 1000, "Shininess: the higher, the smaller the highlights."),
+          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1, "Color in ambient light: hue, saturation, brightness."),
+          vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "Color in the lamps' light: hue, saturation, brightness."),
+      });
+  return table;
+}
+
+namespace {
+
+constexpr double kMinLength = 1e-4;
+constexpr double kMaxLength = 1e4;
+
+Result<void> check_length(double value, std::string_view shape, std::string_view dimension) {
+  if (value >= kMinLength && value <= kMaxLength) return {};
+  return Error{fmt::format("a {} needs a {} of {} .. {} m, not {}", shape, dimension, kMinLength, kMaxLength, value)};
+}
+
+Result<void> first_error(Result<void> a, Result<void> b) { return a ? b : a; }
+
+}  // namespace
+
+std::string visual_shape_name(const BodyModel& model, const LinkModel& link, std::size_t number) {
+  std::string name = fmt::format("{}.{}", model.name, link.name);
+  if (number > 0) name += fmt::format(".{}", number + 1);
+  return name;
+}
+
+Result<void> check_shape(const ShapeModel& m) {
+  switch (m.kind) {
+    case ShapeKind::plane:
+      if (!is_finite(m.normal) || glm::length(m.normal) < 1e-9) return Error{"a plane needs a normal that is not zero"};
+      return {};
+    case ShapeKind::sphere:
+      return check_length(m.radius, "sphere", "radius");
+    case ShapeKind::box:
+      for (int i = 0; i < 3; i++) {
+        if (const Result<void> ok = check_length(m.size[i], "box", "size"); !ok) return ok;
+      }
+      return {};
+    case ShapeKind::cylinder:
+      return first_error(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
+    case ShapeKind::capsule:
+      return first_error(check_length(m.radius, "capsule", "radius"), check_length(m.height, "capsule", "height"));
+    case ShapeKind::cone:
+      return first_error(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
+    case ShapeKind::mesh:
+      if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
+      return {};
+    case ShapeKind::compound:
+      return {};
+  }
+  return {};
+}
+
+Shape::Shape(Store& store, NodeId group, std::string name, ShapeModel model)
+    : store_(store), id_(store.add(table(), group, std::move(name), this)), model_(std::move(model)) {
+  if (model_.kind == ShapeKind::plane) model_.normal = normalized(model_.normal);
+}
+
+Shape::~Shape() { store_.remove(id_); }
+
+Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
+  if (model_.kind != ShapeKind::compound) {
+    return Error{fmt::format("shape '{}' is not a compound; create one with sim:add_compound_shape", name())};
+  }
+  if (&child == this) return Error{fmt::format("compound '{}' can't contain itself", name())};
+  if (child.model().kind == ShapeKind::plane) return Error{fmt::format("compound '{}' can't contain a plane", name())};
+  if (children_.size() + child.placed().size() > 1000)
+    return Error{fmt::format("compound '{}' can contain at most 1000 shapes", name())};
+  for (PlacedShape placed : child.placed()) {
+    placed.origin = origin * placed.origin;
+    children_.push_back(placed);
+  }
+  geometry_ = nullptr;
+  store_.bump_structure_version();
+  return {};
+}
+
+void Shape::truncate_children(std::size_t count) {
+  children_.resize(std::min(count, children_.size()));
+  geometry_ = nullptr;
+  store_.bump_structure_version();
+}
+
+std::vector<PlacedShape> Shape::placed() const {
+  if (model_.kind == ShapeKind::compound) return children_;
+  PlacedShape self;
+  self.shape = model_;
+  return {self};
+}
+
+void Shape::assign_geometry(const Shape& source) {
+  model_ = source.model_;
+  children_ = source.children_;
+  geometry_ = source.geometry_;
+  store_.bump_structure_version();
+}
+
+void Shape::set_color(const PlacedShape& visual) {
+  if (!visual.color) return;
+  const Vec3 hsb = hsb_of(*visual.color);
+  for (const char* const property : {"ambient_color", "diffuse_color"}) {
+    double* const out = store_.mutable_values(id_, table().at(property));
+    for (int i = 0; i < 3; i++) out[i] = std::clamp(hsb[i], 0.0, 1.0);
+  }
+  store_.mutable_values(id_, table().at("transparency"))[0] = std::clamp(1 - visual.alpha, 0.0, 1.0);
+}
+
+std::shared_ptr<const Geometry> Shape::geometry() const {
+  if (geometry_ == nullptr) geometry_ = make_geometry(placed(), Inertial{});
+  return geometry_;
+}
+
+}  // namespace limber

@@ -1,0 +1,112 @@
+// Stability check: limits of speed, rotation and distance, and the diagnosis of their violation.
+#include "sim/world/stability.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sim/bullet/spin.h"
+#include "sim/world/body.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMaxSpeed = 500;
+/// Limits of speed (m/s), rotation (rad/s) and distance from the origin (m); kMaxTumblingRate is for rotation about an
+/// axis that is neither a driven joint's nor a principal axis.
+constexpr double kMaxTumblingRate = 1000;
+/// For any rotation: more than any property can request.
+constexpr double kMaxSpin = 2e4;
+constexpr double kMaxDistance = 1e4;
+
+/// Contacts deeper than this, in m, count as an overlap; a mass ratio of jointed parts above kMassRatio is a likely
+/// cause.
+constexpr double kOverlap = 0.002;
+constexpr double kMassRatio = 500;
+constexpr int kMaxSubsteps = 1000;
+
+double squared(const btVector3& v) {
+  const Vec3 d = from_bt(v);
+  return glm::dot(d, d);
+}
+
+}  // namespace
+
+const char* find_instability(const btRigidBody& part, double h) {
+  const double speed = squared(part.getLinearVelocity());
+  const double spin = squared(part.getAngularVelocity());
+  const double distance = squared(part.getWorldTransform().getOrigin());
+  if (speed < kMaxSpeed * kMaxSpeed && spin < kMaxTumblingRate * kMaxTumblingRate &&
+      distance < kMaxDistance * kMaxDistance) {
+    return nullptr;
+  }
+  if (!std::isfinite(speed) || !std::isfinite(spin) || !std::isfinite(distance))
+    return "has a position or velocity that is not a number";
+  if (speed >= kMaxSpeed * kMaxSpeed) return "is faster than 500 m/s";
+  if (distance >= kMaxDistance * kMaxDistance) return "is farther than 10 km from the origin";
+  if (spin >= kMaxSpin * kMaxSpin) return "rotates faster than 20000 rad/s";
+  return glm::length(tumbling_velocity(part, h)) < kMaxTumblingRate ? nullptr : "tumbles faster than 1000 rad/s";
+}
+
+namespace {
+
+// The deepest contact of a body: its depth (m) and the two parts.
+struct DeepContact {
+  double depth = 0;
+  const Part* a = nullptr;
+  const Part* b = nullptr;
+};
+
+DeepContact deepest_overlap(const Body& body, const btDispatcher& contacts) {
+  DeepContact deepest;
+  for (int i = 0; i < contacts.getNumManifolds(); ++i) {
+    const btPersistentManifold& manifold = *const_cast<btDispatcher&>(contacts).getManifoldByIndexInternal(i);
+    const auto* a = static_cast<const Part*>(manifold.getBody0()->getUserPointer());
+    const auto* b = static_cast<const Part*>(manifold.getBody1()->getUserPointer());
+    if (a == nullptr || b == nullptr || (&a->body() != &body && &b->body() != &body)) continue;
+    for (int k = 0; k < manifold.getNumContacts(); ++k) {
+      const double depth = -static_cast<double>(manifold.getContactPoint(k).getDistance());
+      if (depth > deepest.depth) deepest = {depth, a, b};
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+std::string likely_cause(const Body& body, const Part& part, const btDispatcher& contacts, int substeps) {
+  const int suggested_substeps = std::min(2 * substeps, kMaxSubsteps);
+  const DeepContact overlap = deepest_overlap(body, contacts);
+  if (overlap.depth > kOverlap) {
+    return fmt::format(
+        "likely cause: '{}/{}' and '{}/{}' overlap by {:.3g} m; move them apart, exclude the pair from "
+        "collision, or try substeps = {}",
+        overlap.a->body().name(), overlap.a->name(), overlap.b->body().name(), overlap.b->name(), overlap.depth,
+        suggested_substeps);
+  }
+  double ratio = 1;
+  const Joint* worst_joint = nullptr;
+  for (const auto& joint : body.joints()) {
+    const double a = joint->parent().mass();
+    const double b = joint->child().mass();
+    if (!(a > 0 && b > 0) || !(std::max(a / b, b / a) > ratio)) continue;
+    ratio = std::max(a / b, b / a);
+    worst_joint = joint.get();
+  }
+  if (ratio > kMassRatio) {
+    return fmt::format(
+        "likely cause: mass ratio {:.0f}:1 at joint '{}'; try substeps = {} or masses closer to each other", ratio,
+        worst_joint->name(), suggested_substeps);
+  }
+  if (body.joints().empty()) {
+    return "likely cause: a velocity, position, force or impulse that is too large; try a smaller one";
+  }
+  return fmt::format(
+      "likely cause: the time step is too long for the forces and speeds of part '{}'; try substeps = {}, "
+      "or smaller forces",
+      part.name(), suggested_substeps);
+}
+
+}  // namespace limber

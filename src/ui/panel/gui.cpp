@@ -1,0 +1,405 @@
+// The frame loop of the panel: input, snapshots, layout, drawing, help.
+#include "ui/panel/gui.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_impl_opengl3.h>
+
+#include "base/log/log.h"
+#include "ui/panel/imgui_versions.h"
+#include "ui/panel/theme.h"
+
+namespace limber {
+
+namespace {
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollbar |
+                                    ImGuiWindowFlags_NoScrollWithMouse;  // scrolling is done by child windows
+
+// windows above the panels
+constexpr ImGuiWindowFlags kOverlay = kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+void set_clipboard(void* options, const char* text) { static_cast<const GuiOptions*>(options)->copy(text); }
+const char* get_clipboard(void* options) {
+  static std::string pasted;
+  pasted = static_cast<const GuiOptions*>(options)->paste();
+  return pasted.c_str();
+}
+
+// Performs the hotkey actions that only need the context.
+void perform_in_context(HotkeyAction action, PanelContext& context) {
+  switch (action) {
+    case HotkeyAction::play_pause:
+      if (context.snapshot != nullptr) context.send(context.snapshot->paused ? "/transport/play" : "/transport/pause");
+      break;
+    case HotkeyAction::step:
+      context.step_time(1);
+      break;
+    case HotkeyAction::step_back:
+      context.step_time(-1);
+      break;
+    case HotkeyAction::rewind:
+      context.rewind(kRewindSeconds);
+      break;
+    case HotkeyAction::record:
+      context.record();
+      break;
+    case HotkeyAction::play_take:
+      context.play_take();
+      break;
+    case HotkeyAction::panic:
+      context.panic();
+      break;
+    case HotkeyAction::reset:
+      context.send("/transport/reset");
+      break;
+    case HotkeyAction::undo:
+      context.undo();
+      break;
+    case HotkeyAction::redo:
+      context.redo();
+      break;
+    case HotkeyAction::overlay:
+      context.toggle_overlay();
+      break;
+    default:
+      break;
+  }
+}
+
+}  // namespace
+
+Gui::Gui(EngineLink& link, GuiOptions options)
+    : options_(std::move(options)), imgui_context_(ImGui::CreateContext()), context_(link) {
+  ImGui::SetCurrentContext(imgui_context_);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.LogFilename = nullptr;
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  io.ConfigInputTextCursorBlink = options_.draws;
+  io.ClipboardUserData = &options_;
+  io.SetClipboardTextFn = set_clipboard;
+  io.GetClipboardTextFn = get_clipboard;
+  io.MousePos = {-1, -1};
+  imgui::start_input(io);
+  files_ = find_fonts(options_.font_root);
+  for (const std::string& warning : files_.warnings) log_warning("{}", warning);
+  context_.settings = options_.settings;
+  hotkeys_ = Hotkeys(context_.settings.keys);
+  for (const std::string& fault : hotkeys_.faults()) log_warning("panel settings: {}", fault);
+  context_.copy = options_.copy;
+  context_.options = &options_;
+  for (const PanelType& type : panel_types()) panels_.push_back({type, type.make()});
+  if (options_.draws && !ImGui_ImplOpenGL3_Init(options_.glsl.c_str())) {
+    log_error("the panel is not available: can't load libGL.so.1. On Debian: apt-get install libgl1");
+    options_.draws = false;
+  }
+}
+
+Gui::~Gui() {
+  ImGui::SetCurrentContext(imgui_context_);
+  if (options_.draws) ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext(imgui_context_);
+}
+
+void Gui::update_fonts(const GuiFrame& frame) {
+  const double scale = std::clamp(frame.display_scale, 0.5, 4.0);
+  const double pixels = std::floor(context_.settings.text_size * scale);
+  if (pixels == font_pixels_ && !std::exchange(characters_changed_, false)) return;
+  font_pixels_ = pixels;
+  context_.scale = pixels / 16;
+  context_.fonts = load_fonts(files_, pixels, extra_characters_);
+  apply_theme(context_.scale);
+  imgui::publish_fonts(options_.draws, fonts_drawn_);
+}
+
+// Names may contain characters that both fonts lack. Only these are loaded from the fallback font, which has thousands
+// of glyphs.
+void Gui::collect_name_characters() {
+  if (context_.value_snapshot == nullptr || context_.value_snapshot->tree == characters_tree_) return;
+  characters_tree_ = context_.value_snapshot->tree;
+  const bool had_fallback = !extra_characters_.empty();
+  for (std::uint32_t node = 0; node < characters_tree_->nodes().size(); node++)
+    characters_changed_ = collect_characters(characters_tree_->name(node), extra_characters_) || characters_changed_;
+  if (!characters_changed_ || !files_.fallback.empty()) return;
+  characters_changed_ = false;
+  if (!had_fallback)
+    log_warning(
+        "some names contain characters that no installed font has. Install one, for example with apt-get install "
+        "fonts-noto-cjk");
+}
+
+void Gui::frame(const GuiFrame& frame) {
+  ImGui::SetCurrentContext(imgui_context_);
+  ImGuiIO& io = ImGui::GetIO();
+  update_fonts(frame);
+  io.DisplaySize = {static_cast<float>(frame.width), static_cast<float>(frame.height)};
+  io.DeltaTime = static_cast<float>(std::clamp(frame.clock - last_clock_, 1e-4, 0.5));
+  last_clock_ = frame.clock;
+  if (options_.draws) {
+    ImGui_ImplOpenGL3_NewFrame();
+    fonts_drawn_ = true;
+  }
+  const std::vector<KeyPress> keys = input_.next_frame();
+  context_.begin_frame(frame.clock);
+  collect_name_characters();
+  context_.names.clear();
+  layout_ = lay_out(frame.width, frame.height, context_.scale);
+  handle_keys(keys);
+  ImGui::NewFrame();
+  for (const DockedPanel& docked : panels_) docked.panel->update(context_);
+  if (!context_.settings.hidden && context_.snapshot != nullptr && context_.value_snapshot != nullptr) {
+    for (std::size_t i = 0; i < layout_.slots.size(); i++) draw_slot(static_cast<PanelSlot>(i));
+  }
+  if (context_.spring_marker) draw_spring(*context_.spring_marker);
+  if (!context_.settings.hidden && context_.panicked()) draw_panic();
+  if (context_.show_help) draw_help();
+  if (context_.clock < context_.notice_until) draw_notice();
+  if (!ImGui::IsAnyItemActive()) context_.end_drag();
+  ImGui::Render();
+}
+
+void Gui::paint() {
+  ImGui::SetCurrentContext(imgui_context_);
+  if (options_.draws) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+bool Gui::wants_mouse() const {
+  ImGui::SetCurrentContext(imgui_context_);
+  return ImGui::GetIO().WantCaptureMouse;
+}
+
+std::vector<HotkeyAction> Gui::consume_actions() { return std::exchange(actions_, {}); }
+
+void Gui::handle_keys(const std::vector<KeyPress>& keys) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (!context_.show_help) rebinding_.clear();
+  for (const KeyPress& press : keys) {
+    if (!rebinding_.empty()) {
+      bind_key(press);
+      continue;
+    }
+    // during keyboard navigation these keys act on the selected widget
+    if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
+    const Hotkey* const hotkey = hotkeys_.match(press, io.WantTextInput);
+    if (hotkey != nullptr) perform(hotkey->action, press);
+  }
+}
+
+// Binds the pressed key to the hotkey that was clicked in the help. Escape cancels, Delete restores the default.
+void Gui::bind_key(const KeyPress& press) {
+  const std::string name = std::exchange(rebinding_, {});
+  if (press == KeyPress{GuiKey::escape, {}}) return;
+  KeyBindings& keys = context_.settings.keys;
+  if (press == KeyPress{GuiKey::erase, {}}) {
+    keys.erase(name);
+  } else if (const std::string reason = hotkeys_.conflict(name, press); !reason.empty()) {
+    context_.show_notice(fmt::format("{}: {}", key_text(press), reason));
+    return;
+  } else {
+    keys[name] = key_text(press);
+  }
+  hotkeys_ = Hotkeys(keys);
+  for (const std::string& fault : hotkeys_.faults()) context_.show_notice(fault);
+}
+
+void Gui::perform(HotkeyAction action, const KeyPress& press) {
+  PanelSettings& settings = context_.settings;
+  const auto text_size = [&](double change) {
+    settings.text_size =
+        std::clamp(settings.text_size + change, PanelSettings::kMinTextSize, PanelSettings::kMaxTextSize);
+    context_.show_notice(fmt::format("Text size {:.0f} px", settings.text_size));
+  };
+  const auto digit = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(GuiKey::digit_1) + 1;
+  switch (action) {
+    case HotkeyAction::hide:
+      settings.hidden = !settings.hidden;
+      break;
+    case HotkeyAction::help:
+      context_.show_help = !context_.show_help;
+      break;
+    case HotkeyAction::search:
+      context_.focus_search = true;
+      break;
+    case HotkeyAction::larger:
+      text_size(1);
+      break;
+    case HotkeyAction::smaller:
+      text_size(-1);
+      break;
+    case HotkeyAction::recall:
+      context_.recall(static_cast<double>(digit));
+      break;
+    case HotkeyAction::store_view:
+      context_.store_view(digit);
+      break;
+    case HotkeyAction::restore_view:
+      context_.restore_view(digit);
+      actions_.push_back(action);  // ends following an object
+      break;
+    case HotkeyAction::earlier:
+    case HotkeyAction::later:
+      context_.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
+      break;
+    case HotkeyAction::output:
+    case HotkeyAction::full_screen:
+    case HotkeyAction::default_view:
+      actions_.push_back(action);
+      break;
+    default:
+      perform_in_context(action, context_);
+      break;
+  }
+}
+
+// Draws the panels of a slot: side by side at the top, elsewhere as tabs.
+void Gui::draw_slot(PanelSlot slot) {
+  const PanelRect& rect = layout_.at(slot);
+  std::vector<DockedPanel*> panels;
+  for (DockedPanel& panel : panels_) {
+    if ((layout_.compact ? panel.type.compact_slot : panel.type.wide_slot) == slot) panels.push_back(&panel);
+  }
+  if (rect.empty() || panels.empty()) return;
+  std::stable_sort(panels.begin(), panels.end(),
+                   [](const DockedPanel* a, const DockedPanel* b) { return a->type.order < b->type.order; });
+  ImGui::SetNextWindowPos({static_cast<float>(rect.x), static_cast<float>(rect.y)});
+  ImGui::SetNextWindowSize({static_cast<float>(rect.width), static_cast<float>(rect.height)});
+  if (ImGui::Begin(fmt::format("##slot{}", static_cast<int>(slot)).c_str(), nullptr, kFixed)) {
+    if (slot == PanelSlot::top) {
+      for (DockedPanel* const panel : panels) panel->panel->draw(context_);
+    } else {
+      draw_tabs(static_cast<std::size_t>(slot), panels);
+    }
+  }
+  ImGui::End();
+}
+
+void Gui::draw_tabs(std::size_t slot, const std::vector<DockedPanel*>& panels) {
+  std::size_t& selected = selected_[slot];
+  selected = std::min(selected, panels.size() - 1);
+  for (std::size_t i = 0; i < panels.size(); i++) {
+    const PanelType& type = panels[i]->type;
+    const std::string badge = panels[i]->panel->badge(context_);
+    const std::string title = fmt::format("{}{}{}", type.title, badge.empty() ? "" : "  ", badge);
+    if (i > 0) ImGui::SameLine();
+    if (panels.size() == 1) {
+      ImGui::AlignTextToFramePadding();
+      ImGui::TextUnformatted(title.c_str());
+      continue;
+    }
+    ImGui::PushStyleColor(ImGuiCol_Button,
+                          packed_color(i == selected ? Tone::field : Tone::panel, i == selected ? 1 : 0));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(i == selected ? Tone::text : Tone::secondary));
+    if (ImGui::Button(fmt::format("{}###tab_{}", title, type.name).c_str())) selected = i;
+    ImGui::PopStyleColor(2);
+    context_.names.add(fmt::format("tab:{}", type.name));
+  }
+  ImGui::PushID(panels[selected]->type.name.data());
+  panels[selected]->panel->draw(context_);
+  ImGui::PopID();
+}
+
+// Draws a line of the help. After a click the next key press is bound to the hotkey.
+void Gui::draw_help_key(const Hotkey& hotkey) {
+  const bool rebinding = rebinding_ == hotkey.name;
+  const ImVec2 from = ImGui::GetCursorPos();
+  ImGui::PushID(hotkey.name);
+  const bool clicked = ImGui::Selectable("##key", rebinding);
+  ImGui::PopID();
+  context_.names.add(fmt::format("help:{}", hotkey.name));
+  if (clicked && hotkey.key_count == 1) rebinding_ = hotkey.name;
+  ImGui::SetCursorPos(from);
+  draw_key_text(rebinding ? std::string("Press a key") : keys_text(hotkey, key_labels_));
+  ImGui::SameLine(ImGui::GetFontSize() * 11);
+  ImGui::TextUnformatted(rebinding ? "Escape cancels, Delete restores the default" : hotkey.description);
+}
+
+void Gui::draw_key_text(const std::string& keys) const {
+  ImGui::PushFont(context_.fonts.code);
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
+  ImGui::TextUnformatted(keys.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopFont();
+}
+
+void Gui::draw_help() {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, 0, {0.5F, 0.5F});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
+  ImGui::SetNextWindowFocus();
+  ImGui::SetNextWindowBgAlpha(1);
+  if (ImGui::Begin("##help", nullptr, kOverlay | ImGuiWindowFlags_AlwaysAutoResize)) {
+    // reduce the spacing and then the text size if there are too many lines for the window
+    const float lines = static_cast<float>(hotkeys_.all().size()) + 7;
+    const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*context_.fonts.code));
+    const float line_space = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
+    ImGui::SetWindowFontScale(std::clamp(line_space / high, 0.5F, 1.0F));
+    ImGui::TextUnformatted("Keys and mouse (click a key to change it)");
+    ImGui::Separator();
+    const auto line = [&](const char* keys, const char* does) {
+      draw_key_text(keys);
+      context_.names.add(fmt::format("help:{}", keys));
+      ImGui::SameLine(ImGui::GetFontSize() * 11);
+      ImGui::TextUnformatted(does);
+    };
+    ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
+    spacing.y = std::clamp(line_space - high, 0.0F, spacing.y);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
+    for (const Hotkey& hotkey : hotkeys_.all()) draw_help_key(hotkey);
+    ImGui::Separator();
+    line("Drag", "Orbit the view; Shift: pan; wheel: zoom");
+    line("Part", "Click: select; double click: follow; drag: pull; Ctrl: push");
+    line("Drag a bar", "Set a value; Ctrl+click: type it; right click: copy its address");
+    line("Tab, arrows, Enter", "Navigate and set values by keyboard");
+    ImGui::PopStyleVar();
+  }
+  ImGui::End();
+}
+
+// Draws the mouse spring: a circle at the dragged point, a line to the mouse and the part's name.
+void Gui::draw_spring(const PanelContext::SpringMarker& spring) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const auto s = static_cast<float>(context_.scale);
+  const ImVec2 from{static_cast<float>(spring.x), static_cast<float>(spring.y)};
+  const ImVec2 to{static_cast<float>(spring.to_x), static_cast<float>(spring.to_y)};
+  list.AddCircle(from, 13 * s, packed_color(Tone::accent), 32, 2 * s);
+  list.AddLine(from, to, packed_color(Tone::text), 1.5F * s);
+  list.AddCircleFilled(to, 4 * s, packed_color(Tone::text), 16);
+  const ImVec2 size = ImGui::CalcTextSize(spring.name.c_str());
+  const ImVec2 at{to.x + 12 * s, to.y - size.y / 2};
+  list.AddRectFilled({at.x - 5 * s, at.y - 3 * s}, {at.x + size.x + 5 * s, at.y + size.y + 3 * s},
+                     packed_color(Tone::panel, 0.9), 4 * s);
+  list.AddText(at, packed_color(Tone::text), spring.name.c_str());
+}
+
+// Draws the panic banner in the middle of the view.
+void Gui::draw_panic() {
+  const auto x = static_cast<float>(layout_.view.x + layout_.view.width / 2);
+  const auto y = static_cast<float>(layout_.view.y + 8 * context_.scale);
+  ImGui::SetNextWindowPos({x, y}, 0, {0.5F, 0});
+  if (ImGui::Begin("##panic", nullptr,
+                   kOverlay | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                       ImGuiWindowFlags_NoFocusOnAppearing))
+    ImGui::TextUnformatted("PANIC: all motion is stopped\nPress Ctrl+. again to resume");
+  context_.names.add("panic.banner");
+  ImGui::End();
+}
+
+void Gui::draw_notice() const {
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const auto y = static_cast<float>(layout_.view.y + layout_.view.height - 8 * context_.scale);
+  const auto x = static_cast<float>(layout_.view.x + layout_.view.width / 2);
+  ImGui::SetNextWindowPos({std::min(x, size.x), std::min(y, size.y)}, 0, {0.5F, 1});
+  if (ImGui::Begin("##notice", nullptr,
+                   kOverlay | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                       ImGuiWindowFlags_NoFocusOnAppearing))
+    ImGui::TextUnformatted(context_.notice.c_str());
+  ImGui::End();
+}
+
+}  // namespace limber

@@ -1,0 +1,112 @@
+// Gui: the panel over the view, built with Dear ImGui. Read panel.h and property_widget.h next. It reads snapshots,
+// sends messages and holds no simulation state. It draws with OpenGL, or not at all in tests.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ui/panel/hotkeys.h"
+#include "ui/panel/input.h"
+#include "ui/panel/layout.h"
+#include "ui/panel/panel.h"
+#include "ui/panel/panel_context.h"
+
+struct ImGuiContext;
+
+namespace limber {
+
+struct GuiOptions {
+  bool draws = true;                       ///< Draw with OpenGL in the current context; false: nothing is drawn.
+  std::string glsl = "#version 330 core";  ///< First line of the shaders, as required by the context.
+  std::string font_root = "/";
+  PanelSettings settings;
+  std::vector<std::string> behavior_types;  ///< Types that can be added.
+  std::vector<std::string> history;         ///< Console lines of earlier sessions.
+  std::function<void(const std::string&)> store_line = [](const std::string&) {};  ///< Stores a console line.
+  std::function<void(const std::string&)> copy = [](const std::string&) {};        ///< Copies to the clipboard.
+  std::function<std::string()> paste = [] { return std::string(); };
+};
+
+/// Size, scale and time of a frame.
+struct GuiFrame {
+  double width = 0;  ///< Pixels.
+  double height = 0;
+  double display_scale = 1;  ///< Scale of the display: 2 on high-density screens.
+  double clock = 0;          ///< Monotonic time in s.
+};
+
+class Gui {
+ public:
+  /// `link` must outlive it. [main]
+  Gui(EngineLink& link, GuiOptions options);
+  ~Gui();
+  Gui(const Gui&) = delete;
+  Gui& operator=(const Gui&) = delete;
+
+  /// Queues an input event. [main]
+  void push(const InputEvent& event) { input_.push(event); }
+  /// True if queued events are left for further frames.
+  bool has_events() const { return !input_.empty(); }
+  /// Runs one frame: reads snapshots, lays out the panels, sends messages. [main]
+  void frame(const GuiFrame& frame);
+  /// Draws the last frame to the current OpenGL framebuffer. [main]
+  void paint();
+
+  /// True if the mouse is over the panel or drags one of its widgets, so that the view must ignore it.
+  bool wants_mouse() const;
+  /// Sets the labels of keys on the user's keyboard, for the help. [main]
+  void key_labels(KeyLabels labels) { key_labels_ = std::move(labels); }
+  /// Returns the hotkey actions since the last call that the window must perform.
+  std::vector<HotkeyAction> consume_actions();
+
+  const WidgetNames& names() const { return context_.names; }
+  const PanelSettings& settings() const { return context_.settings; }
+  const Layout& layout() const { return layout_; }
+  PanelContext& context() { return context_; }
+  const GuiOptions& options() const { return options_; }
+
+ private:
+  struct DockedPanel {
+    PanelType type;
+    std::unique_ptr<Panel> panel;
+  };
+
+  void update_fonts(const GuiFrame& frame);
+  void collect_name_characters();
+  void handle_keys(const std::vector<KeyPress>& keys);
+  void perform(HotkeyAction action, const KeyPress& press);
+  void bind_key(const KeyPress& press);
+  void draw_slot(PanelSlot slot);
+  void draw_tabs(std::size_t slot, const std::vector<DockedPanel*>& panels);
+  void draw_spring(const PanelContext::SpringMarker& spring) const;
+  void draw_help();
+  void draw_help_key(const Hotkey& hotkey);
+  void draw_key_text(const std::string& keys) const;
+  void draw_panic();
+  void draw_notice() const;
+
+  GuiOptions options_;
+  ImGuiContext* imgui_context_;
+  PanelContext context_;
+  InputQueue input_;
+  Layout layout_;
+  FontFiles files_;
+  std::vector<DockedPanel> panels_;
+  std::array<std::size_t, static_cast<std::size_t>(PanelSlot::count)> selected_{};  // selected tab of each slot
+  std::vector<HotkeyAction> actions_;
+  Hotkeys hotkeys_;
+  KeyLabels key_labels_;
+  std::string rebinding_;                // name of the hotkey that is being rebound; empty: none
+  double font_pixels_ = 0;               // current font size
+  std::set<unsigned> extra_characters_;  // characters of names that both fonts lack
+  std::shared_ptr<const TreeSnapshot> characters_tree_;
+  bool characters_changed_ = false;  // extra_characters_ has changed since the fonts were built
+  double last_clock_ = 0;
+  bool fonts_drawn_ = false;
+};
+
+}  // namespace limber

@@ -1,0 +1,55 @@
+// Panel: the interface of panels. Each panel is one file, panel_*.cpp, which registers it. A panel reads its data from
+// the context and sends user input to it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "ui/panel/layout.h"
+#include "ui/panel/panel_context.h"
+
+namespace limber {
+
+/// Base class of panels. [main]
+class Panel {
+ public:
+  Panel() = default;
+  virtual ~Panel() = default;
+  Panel(const Panel&) = delete;
+  Panel& operator=(const Panel&) = delete;
+
+  /// Draws into the current window.
+  virtual void draw(PanelContext& context) = 0;
+  /// Called in each frame before drawing, even if the panel is hidden; handles events that must not be missed.
+  virtual void update(PanelContext& context) { (void)context; }
+  /// Text after the title, for example a count.
+  virtual std::string badge(const PanelContext& context) const {
+    (void)context;
+    return {};
+  }
+};
+
+/// A registered kind of panel, with its slot in wide and compact windows.
+struct PanelType {
+  std::string_view name;   ///< From its file name: panel_<name>.cpp.
+  std::string_view title;  ///< Empty: no title.
+  PanelSlot wide_slot = PanelSlot::top;
+  PanelSlot compact_slot = PanelSlot::top;
+  int order = 0;  ///< Position within a slot.
+  std::unique_ptr<Panel> (*make)() = nullptr;
+};
+
+/// All registered panels, by slot and order. [main]
+std::vector<PanelType> panel_types();
+bool register_panel(const PanelType& type);
+
+/// Registers the panel class P. In the panel's file: `const bool kRegistered = register_panel_type<P>({…})`.
+template <class P>
+bool register_panel_type(PanelType type) {
+  type.make = [] { return std::unique_ptr<Panel>(std::make_unique<P>()); };
+  return register_panel(type);
+}
+
+}  // namespace limber

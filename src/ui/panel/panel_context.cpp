@@ -1,0 +1,212 @@
+// Reads snapshots and sends messages.
+#include "ui/panel/panel_context.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "engine/presets/morph.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kSnapshotInterval = 1.0 / 20;  // s; the simulation spends at most 1 % of its time on value snapshots
+constexpr double kNoticeDuration = 2.5;         // s
+constexpr double kRejectionDuration = 8;        // s; long enough to read the reason
+constexpr const char* kStyle = "/visuals/look/style";
+constexpr const char* kEye = "/visuals/camera/eye";
+constexpr const char* kTarget = "/visuals/camera/target";
+
+}  // namespace
+
+std::vector<std::string> easings() {
+  std::vector<std::string> names;
+  for (std::string_view name : split(easing_names(), ',')) {
+    if (name.starts_with(' ')) name.remove_prefix(1);
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values) {
+  Message message{path, {}};
+  const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
+  for (std::uint32_t i = 0; i < property.width; i++)
+    message.args.push_back(is_boolean ? Arg::of(values[i] != 0) : Arg::of(values[i]));
+  return message;
+}
+
+std::uint64_t PanelContext::send(Message message) {
+  Command command;
+  command.messages.push_back(std::move(message));
+  command.origin = CommandOrigin{CommandSource::panel, 0, edit_number_, false};
+  link.command_queue.push(std::move(command));
+  last_request_ = link.request_value_snapshot();
+  last_request_time_ = clock;
+  return last_request_;
+}
+
+std::uint64_t PanelContext::send(std::string address, std::vector<Arg> args) {
+  return send(Message{std::move(address), std::move(args)});
+}
+
+void PanelContext::set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging) {
+  if (!std::exchange(dragging_, dragging)) edit_number_++;
+  if (handle.path == kStyle) settings.style = handle.ref.property->choices[static_cast<std::size_t>(values[0])];
+  pending_.set(handle.path, values, send(set_message(handle.path, *handle.ref.property, values)));
+}
+
+void PanelContext::set_all(const std::string& pattern, double value) {
+  edit_number_++;
+  pending_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
+}
+
+std::optional<double> PanelContext::pending_value(const std::string& pattern) const {
+  const PendingValues::Values* const values = pending_.find(pattern);
+  return values == nullptr ? std::nullopt : std::optional((*values)[0]);
+}
+
+void PanelContext::undo_or_redo(const char* action, const char* description_path, const char* nothing_text) {
+  dragging_ = false;
+  const std::optional<PropertyHandle> handle = find(description_path);
+  const std::string_view description = handle ? text(handle->ref) : std::string_view();
+  show_notice(description.empty() ? std::string(nothing_text) : std::string(description));
+  send(action);  // even if the snapshot has nothing to undo: it may be older than the last edit
+}
+
+void PanelContext::toggle_overlay() {
+  constexpr const char* kAddress = "/visuals/look/overlay";
+  send(kAddress, {Arg::of(number(kAddress) == 0 ? 1.0 : 0.0)});
+}
+
+void PanelContext::undo() { undo_or_redo("/edit/undo", "/edit/undo_of", "Nothing to undo"); }
+void PanelContext::redo() { undo_or_redo("/edit/redo", "/edit/redo_of", "Nothing to redo"); }
+
+bool PanelContext::values(const PropertyHandle& handle, PendingValues::Values& values) const {
+  if (const PendingValues::Values* const pending = pending_.find(handle.path)) {
+    values = *pending;
+    return true;
+  }
+  const double* const numbers = value_snapshot->value(value_snapshot->tree->location(handle.ref)).numbers;
+  if (numbers == nullptr) return false;
+  std::copy_n(numbers, handle.ref.property->width, values.begin());
+  return true;
+}
+
+std::string_view PanelContext::text(const TreePropertyRef& ref) const {
+  return value_snapshot->value(value_snapshot->tree->location(ref)).text;
+}
+
+std::optional<PropertyHandle> PanelContext::find(std::string_view path) const {
+  if (value_snapshot == nullptr) return std::nullopt;
+  PatternBudget budget;
+  const Result<std::vector<TreePropertyRef>> matches = value_snapshot->tree->match(path, budget, 1);
+  if (!matches || matches->empty() || matches->front().property == nullptr) return std::nullopt;
+  return PropertyHandle{matches->front(), std::string(path)};
+}
+
+double PanelContext::number(std::string_view path, double fallback) const {
+  const std::optional<PropertyHandle> handle = find(path);
+  PendingValues::Values values{};
+  return handle && this->values(*handle, values) ? values[0] : fallback;
+}
+
+TakeState PanelContext::take_state() const {
+  TakeState state;
+  if (const auto name = find("/take/name")) state.name = text(name->ref);
+  if (state.name.empty()) return state;
+  const double timestep = number("/physics/sim/timestep");
+  state.replaying = number("/take/replays") != 0;
+  state.playing = number("/take/plays") != 0;
+  state.seconds = timestep * number("/take/ticks");
+  state.duration = timestep * number("/take/whole");
+  return state;
+}
+
+void PanelContext::select(std::string path) {
+  selected = std::move(path);
+  reveal_path = selected;
+}
+
+void PanelContext::store_view(std::size_t number) {
+  const auto eye = find(kEye);
+  const auto target = find(kTarget);
+  View view;
+  if (!eye || !target || !values(*eye, view.eye) || !values(*target, view.target)) return;
+  views_.at(number - 1) = view;
+  show_notice(fmt::format("View {} stored", number));
+}
+
+void PanelContext::restore_view(std::size_t number) {
+  const std::optional<View>& view = views_.at(number - 1);
+  if (!view) return show_notice(fmt::format("View {0} is empty; Ctrl+Shift+{0} stores one", number));
+  const auto point = [](const PendingValues::Values& v) {
+    return std::vector{Arg::of(v[0]), Arg::of(v[1]), Arg::of(v[2])};
+  };
+  for (const char* address : {kEye, kTarget, kEye}) send(address, point(address == kEye ? view->eye : view->target));
+}
+
+void PanelContext::recall(double number) {
+  if (number > this->number("/preset/count")) return show_notice(fmt::format("Preset {} not found", number));
+  const std::vector<std::string> names = easings();
+  const auto easing = std::min(static_cast<std::size_t>(std::max(settings.easing, 0)), names.size() - 1);
+  send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
+}
+
+void PanelContext::show_notice(std::string text) {
+  notice = std::move(text);
+  notice_until = clock + kNoticeDuration;
+}
+
+void PanelContext::copy_with_notice(const std::string& text) {
+  copy(text);
+  show_notice(fmt::format("Copied: {}", text));
+}
+
+// Handles replies: rejected messages, and rewinds that went back less than requested.
+void PanelContext::handle_replies() {
+  link.panel_output_queue.drain(replies_);
+  for (const Outgoing& reply : replies_) {
+    const std::vector<Arg>& args = reply.message.args;
+    if (reply.destination == Outgoing::Destination::error && args.size() == 2) {
+      rejection = fmt::format("{}: {}", args[0].text, args[1].text);
+      rejection_until = clock + kRejectionDuration;
+    } else if (reply.message.address == "/transport/rewound" && args.size() > 2) {
+      show_notice(fmt::format("Rewound only {:.2f} s: {}", args[0].number, args[2].text));
+    }
+  }
+}
+
+// Restores the style selected in the last session, except in a replay.
+void PanelContext::restore_style() {
+  if (settings.style.empty()) return;
+  const std::optional<PropertyHandle> style = find(kStyle);
+  if (!style || take_state().replaying) return;
+  const std::vector<std::string>& styles = style->ref.property->choices;
+  const auto found = std::ranges::find(styles, settings.style);
+  if (found == styles.end()) return;
+  send("/visuals/look/prefer", {Arg::of(static_cast<double>(found - styles.begin()))});
+}
+
+void PanelContext::begin_frame(double clock_now) {
+  clock = clock_now;
+  handle_replies();
+  snapshot = link.snapshots.read();
+  if (std::shared_ptr<const ValueSnapshot> newest = link.value_snapshots.read();
+      newest != nullptr && newest != value_snapshot) {
+    const bool first = value_snapshot == nullptr;
+    value_snapshot = std::move(newest);
+    pending_.remove_confirmed(value_snapshot->request);
+    if (first) restore_style();
+  }
+  const bool waiting = value_snapshot == nullptr || value_snapshot->request < last_request_;
+  if (last_request_ == 0 || (!waiting && clock - last_request_time_ >= kSnapshotInterval)) {
+    last_request_ = link.request_value_snapshot();
+    last_request_time_ = clock;
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,157 @@
+// PanelContext: the data and functions shared by all panels: the latest value snapshot and physics snapshot, sending
+// messages, and the state of the user interface. It holds no simulation state.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/output/engine_link.h"
+#include "ui/panel/fonts.h"
+#include "ui/panel/pending_values.h"
+#include "ui/panel/settings.h"
+#include "ui/panel/widgets/widget_names.h"
+
+namespace limber {
+
+/// A property in the snapshot's tree and its address.
+struct PropertyHandle {
+  TreePropertyRef ref;
+  std::string path;
+};
+
+struct GuiOptions;
+
+/// The take that is being recorded or replayed, from the value snapshot.
+struct TakeState {
+  std::string name;  ///< Empty: no take is active.
+  bool replaying = false;
+  bool playing = false;  ///< Plays instead of the live scene, until /take/stop.
+  double seconds = 0;    ///< Recorded duration, or position of a replay.
+  double duration = 0;   ///< Total duration of a replayed take.
+  bool recording() const { return !name.empty() && !replaying; }
+};
+
+/// Duration of one rewind, s.
+inline constexpr double kRewindSeconds = 2;
+
+/// [main]
+class PanelContext {
+ public:
+  explicit PanelContext(EngineLink& engine_link) : link(engine_link) {}
+
+  EngineLink& link;
+  std::shared_ptr<const ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
+  std::shared_ptr<const Snapshot> snapshot;  ///< Newer than the value snapshot; null until the first one arrives.
+  Fonts fonts;
+  double scale = 1;  ///< Pixels per unit, where a unit is a pixel at text size 16.
+  double clock = 0;  ///< Time of the frame in s, for animations.
+  WidgetNames names;
+  PanelSettings settings;
+  const GuiOptions* options = nullptr;  ///< The application's options.
+
+  // State shared by panels
+  std::string selected;            ///< Address of the selected object; empty: none.
+  std::string reveal_path;         ///< Address of an object that the tree scrolls to in the next frame; empty: none.
+  std::vector<std::string> plots;  ///< Addresses of plotted properties.
+  bool focus_search = false;       ///< Moves the keyboard focus to the search field in the next frame.
+  bool show_help = false;          ///< Shows the help (F2).
+  int move_behavior = 0;           ///< Requested move of the selected behavior: -1 earlier, 1 later.
+  std::string notice;              ///< A temporary notice, for example about copied text.
+  double notice_until = 0;         ///< s
+  std::string rejection;           ///< The panel's last rejected message, with the reason.
+  double rejection_until = 0;      ///< s
+  /// The mouse spring in the view: the dragged point and its target, in pixels.
+  struct SpringMarker {
+    double x = 0, y = 0, to_x = 0, to_y = 0;
+    std::string name;
+  };
+  std::optional<SpringMarker> spring_marker;
+  std::uint64_t errors = 0;  ///< Number of current errors, for the status lamp.
+
+  /// Copies text to the clipboard: the window's, or a test's own.
+  std::function<void(const std::string&)> copy = [](const std::string&) {};
+
+  /// Sends a message to the simulation for its next tick. Returns the number of the request for a value snapshot that
+  /// follows it.
+  std::uint64_t send(Message message);
+  std::uint64_t send(std::string address, std::vector<Arg> args = {});
+  /// Sets a property. `dragging`: the user is still dragging, so that a single undo reverts the whole drag.
+  void set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging);
+  /// Reads the displayed value of a property: the pending value if there is one, otherwise the snapshot's. Returns
+  /// false for actions and texts.
+  bool values(const PropertyHandle& handle, PendingValues::Values& values) const;
+  /// Returns the text of a property of type text.
+  std::string_view text(const TreePropertyRef& ref) const;
+  /// Returns the property with this address, or the first match of a pattern.
+  std::optional<PropertyHandle> find(std::string_view path) const;
+  /// Returns one number of a property by address, or `fallback` if there is none.
+  double number(std::string_view path, double fallback = 0) const;
+
+  /// Sets all properties that match the pattern. pending_value() returns the value until a snapshot contains it.
+  void set_all(const std::string& pattern, double value);
+  std::optional<double> pending_value(const std::string& pattern) const;
+  /// Ends the current drag: the next set value is a separate undo step.
+  void end_drag() { dragging_ = false; }
+
+  /// Selects the object with this address and reveals it in the tree.
+  void select(std::string path);
+  /// Toggles the debug overlay.
+  void toggle_overlay();
+  /// Stores the camera's view under a number from 1 to 9 until the window is closed, and restores it.
+  void store_view(std::size_t number);
+  void restore_view(std::size_t number);
+  /// Recalls a preset by its number from 1, with the configured morph time.
+  void recall(double number);
+
+  // Transport
+  bool panicked() const { return number("/physics/sim/panicked") != 0; }
+  void panic() { send("/transport/panic"); }
+  void step_time(int ticks) { send("/transport/step", {Arg::of(static_cast<double>(ticks))}); }
+  void rewind(double seconds) { send("/transport/rewind", {Arg::of(seconds)}); }
+  TakeState take_state() const;
+  /// Starts or stops recording a take.
+  void record() { send(take_state().recording() ? "/take/stop" : "/take/record"); }
+  /// Plays the latest take instead of the live scene, or stops it.
+  void play_take() { send(take_state().playing ? "/take/stop" : "/take/play"); }
+
+  /// Undo the latest edit, from any source, and redo it.
+  void undo();
+  void redo();
+  void show_notice(std::string text);
+  void copy_with_notice(const std::string& text);
+
+  /// Begins a frame: reads the latest snapshots and replies, and requests a value snapshot if it is time.
+  void begin_frame(double clock_now);
+
+ private:
+  void handle_replies();
+  void restore_style();
+  void undo_or_redo(const char* action, const char* description_path, const char* nothing_text);
+
+  // a stored view: the camera's properties eye and target
+  struct View {
+    PendingValues::Values eye{}, target{};
+  };
+  std::array<std::optional<View>, 9> views_;
+  PendingValues pending_;
+  bool dragging_ = false;
+  std::uint16_t edit_number_ = 0;
+  std::uint64_t last_request_ = 0;
+  double last_request_time_ = 0;
+  std::vector<Outgoing> replies_;  // scratch memory
+};
+
+/// Names of the easing functions for morphs.
+std::vector<std::string> easings();
+
+/// Returns the message that sets a property to these values.
+Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values);
+
+}  // namespace limber

@@ -1,0 +1,119 @@
+// Scene: the object tree; the parameters panel shows the properties of the selected object.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "ui/panel/panel.h"
+#include "ui/panel/theme.h"
+#include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/search_field.h"
+#include "ui/panel/widgets/tree_list.h"
+
+namespace limber {
+
+namespace {
+
+class ScenePanel : public Panel {
+ public:
+  std::string badge(const PanelContext& context) const override {
+    return context.snapshot == nullptr || context.snapshot->body_list == nullptr
+               ? ""
+               : fmt::format("{}", context.snapshot->body_list->bodies.size());
+  }
+
+  void draw(PanelContext& context) override {
+    search_field(context, "scene.search", "Filter bodies, parts, joints", words_, -1);
+    if (!ImGui::BeginChild("##tree", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
+    const std::shared_ptr<const TreeSnapshot>& tree = context.value_snapshot->tree;
+    // look up the selection only if it or the tree has changed
+    if (tree != selection_tree_ || context.selected != selection_path_) {
+      const Result<TreePropertyRef> ref = tree->find(context.selected.empty() ? "/" : context.selected);
+      selected_ = ref && ref->property == nullptr ? ref->node : 0;
+      selection_tree_ = tree;
+      selection_path_ = context.selected;
+    }
+    list_.lines(tree, words_);
+    if (!context.reveal_path.empty()) reveal(context);
+    const std::vector<TreeList::Line>& lines = list_.lines(tree, words_);
+    std::uint32_t toggled = 0;
+    const float height = ImGui::GetTextLineHeightWithSpacing();
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(lines.size()), height);
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++) {
+        if (draw_line(context, *tree, lines[static_cast<std::size_t>(i)]))
+          toggled = lines[static_cast<std::size_t>(i)].node;
+      }
+    }
+    if (scroll_to_ >= 0) ImGui::SetScrollY(height * static_cast<float>(scroll_to_) - ImGui::GetWindowHeight() / 2);
+    scroll_to_ = -1;
+    if (toggled != 0) list_.toggle(toggled);
+    if (lines.empty()) ImGui::TextDisabled("No results");
+    ImGui::EndChild();
+  }
+
+ private:
+  // Returns true if the line was expanded or collapsed.
+  bool draw_line(PanelContext& context, const TreeSnapshot& tree, const TreeList::Line& l) {
+    const TreeSnapshot::Node& node = tree.nodes()[l.node];
+    const float indent = ImGui::GetFontSize() * 0.85F;
+    const float height = ImGui::GetTextLineHeight();
+    ImGui::PushID(static_cast<int>(l.node));
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const float x = from.x + indent * (static_cast<float>(l.depth) + 1.2F);
+    const bool pressed = ImGui::Selectable("##line", l.node == selected_, 0, {0, height});
+    const std::string path = tree.path(l.node);
+    context.names.add("tree:" + path);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", path.c_str());
+    bool toggled = false;
+    const bool group = node.table->properties().empty();
+    if (pressed) {
+      const bool on_arrow = l.expandable && ImGui::GetIO().MousePos.x < x && !ImGui::GetIO().NavVisible;
+      toggled = l.expandable && (on_arrow || group || l.node == selected_);
+      if (!on_arrow && !group) context.selected = path;
+    }
+    if (l.expandable)
+      draw_icon(l.expanded ? Icon::down : Icon::right, x - indent * 0.62F, from.y + height / 2, height * 0.24F,
+                packed_color(Tone::secondary));
+    const std::string_view title = TreeList::title(tree, l.node);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddText({x, from.y}, packed_color(group ? Tone::secondary : Tone::text), title.data(),
+                 title.data() + title.size());
+    if (group && l.depth <= 3) draw_member_count(tree, l.node, from);
+    ImGui::PopID();
+    return toggled;
+  }
+
+  // Draws the number of members of a group.
+  static void draw_member_count(const TreeSnapshot& tree, std::uint32_t group, const ImVec2& from) {
+    int members = 0;
+    tree.each_child(group, [&](std::uint32_t) { return ++members < 100000; });
+    const std::string text = fmt::format("{}", members);
+    const float right = from.x + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
+    ImGui::GetWindowDrawList()->AddText({right, from.y}, packed_color(Tone::secondary), text.c_str());
+  }
+
+  void reveal(PanelContext& context) {
+    const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(context.reveal_path);
+    context.reveal_path.clear();
+    if (!ref) return;
+    words_.clear();
+    list_.reveal(ref->node);
+    const std::vector<TreeList::Line>& lines = list_.lines(context.value_snapshot->tree, words_);
+    for (std::size_t i = 0; i < lines.size(); i++) {
+      if (lines[i].node == ref->node) scroll_to_ = static_cast<int>(i);
+    }
+  }
+
+  TreeList list_;
+  std::string words_;
+  std::shared_ptr<const TreeSnapshot> selection_tree_;
+  std::string selection_path_;
+  std::uint32_t selected_ = 0;
+  int scroll_to_ = -1;
+};
+
+[[maybe_unused]] const bool kScenePanel = register_panel_type<ScenePanel>(
+    {.name = "scene", .title = "Scene", .wide_slot = PanelSlot::left, .compact_slot = PanelSlot::right, .order = 1});
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,230 @@
+// Converts a scene's pieces and poses to batched instances.
+#include "ui/render/draw_list.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/color.h"
+
+namespace limber {
+
+namespace {
+
+constexpr float kMinVisibleAlpha = 0.002F;  // alpha below which instances are not drawn
+constexpr float kMinShadowAlpha = 0.5F;     // alpha below which instances cast no shadow
+constexpr std::size_t kMaxBoundsSamples = 2000;
+
+float real(double v) { return static_cast<float>(v); }
+glm::vec3 real(const Vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
+
+double bounding_radius(const ShapeModel& shape) {
+  double far = 0;
+  if (shape.mesh != nullptr) {
+    for (const Vec3& v : shape.mesh->vertices) far = std::max(far, glm::length(shape.mesh_pose * v));
+    return far;
+  }
+  const double half = shape.height / 2;
+  switch (shape.kind) {
+    case ShapeKind::box:
+      return glm::length(shape.size) / 2;
+    case ShapeKind::sphere:
+      return shape.radius;
+    case ShapeKind::capsule:
+      return shape.radius + half;
+    default:
+      return std::hypot(shape.radius, half);
+  }
+}
+
+// ofxDabPhysics's scales of diffuse and ambient light are 0.5 for full reflection, hence the factor 2; its exponents
+// are for Phong highlights, the shader's for Blinn-Phong, hence the factor 4
+Instance instance_material(const Material& m) {
+  Instance out{};
+  const Vec3 diffuse = rgb_of(m.diffuse_color);
+  const Vec3 ambient = rgb_of(m.ambient_color);
+  for (int i = 0; i < 3; i++) {
+    out.diffuse[i] = real(2 * m.diffuse_scale * linear_light_of(diffuse[i]));
+    out.ambient[i] = real(2 * m.ambient_scale * linear_light_of(ambient[i]));
+  }
+  out.alpha = real(1 - m.transparency);
+  out.specular = real(m.specular_scale);
+  out.power = real(10 + 4 * m.specular_pow);
+  return out;
+}
+
+Pose interpolate(const double* a, const double* b, double mix, const TransientOffsets& at) {
+  const Vec3 p = vec3_at(b + at.part_position);
+  const Quat q = quat_at(b + at.part_rotation);
+  if (mix >= 1) return {p, q};
+  const Quat from = quat_at(a + at.part_rotation);
+  const Quat to = glm::dot(from, q) < 0 ? -q : q;
+  return {glm::mix(vec3_at(a + at.part_position), p, mix), glm::normalize(from * (1 - mix) + to * mix)};
+}
+
+}  // namespace
+
+void DrawList::rebuild_shapes(const Snapshot& now) {
+  scene_ = now.render_scene;
+  meshes_.clear();
+  shapes_.clear();
+  models_.clear();
+  std::map<MeshKey, std::uint32_t> numbers;
+  for (const RenderShape& render_shape : scene_->shapes) {
+    const ShapeModel& shape = render_shape.geometry;
+    ShapeDraw shape_draw;
+    shape_draw.material = render_shape.material;
+    shape_draw.normal = shape.normal;
+    shape_draw.bounding_radius = bounding_radius(shape);
+    shape_draw.mesh = {shape.kind, nullptr};
+    if (shape.mesh != nullptr) {
+      shape_draw.mesh = {ShapeKind::mesh, shape.mesh.get()};
+      shape_draw.offset = shape.mesh_pose;
+      models_[shape.mesh.get()] = shape.mesh;
+    }
+    const MeshSize size = shape.mesh != nullptr ? MeshSize{} : mesh_size(shape);
+    for (int i = 0; i < 3; i++) shape_draw.size.extent[i] = real(size.extent[i]);
+    shape_draw.size.rounding_radius = real(size.rounding_radius);
+    const auto [number, fresh] = numbers.try_emplace(shape_draw.mesh, static_cast<std::uint32_t>(meshes_.size()));
+    if (fresh) meshes_.push_back(shape_draw.mesh);
+    shape_draw.mesh_index = number->second;
+    shapes_.push_back(shape_draw);
+  }
+}
+
+void DrawList::update_materials(const Snapshot& now) {
+  materials_version_ = now.visuals_version;
+  std::uint32_t max_material = 0;
+  for (const ShapeDraw& shape : shapes_) max_material = std::max(max_material, shape.material);
+  materials_.clear();
+  for (std::uint32_t i = 0; i <= max_material; i++) materials_.push_back(instance_material(material_of(now, i)));
+}
+
+void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const DrawView& view) {
+  const Instance& material = materials_[shape.material];
+  if (material.alpha < kMinVisibleAlpha || !is_finite(pose.position) || !is_finite(pose.rotation)) return;
+  if (shape.mesh.kind == ShapeKind::plane) {
+    planes_.push_back({real(pose.position),
+                       real(pose.rotation * shape.normal),
+                       {material.diffuse[0], material.diffuse[1], material.diffuse[2]},
+                       material.alpha});
+    return;
+  }
+  const Pose at = pose * shape.offset;
+  Instance instance = material;
+  const glm::vec3 position = real(at.position);
+  for (int i = 0; i < 3; i++) {
+    instance.position[i] = position[i];
+    instance.extent[i] = shape.size.extent[i];
+  }
+  instance.rounding_radius = shape.size.rounding_radius;
+  instance.rotation[0] = real(at.rotation.x);
+  instance.rotation[1] = real(at.rotation.y);
+  instance.rotation[2] = real(at.rotation.z);
+  instance.rotation[3] = real(at.rotation.w);
+  const double depth = glm::dot(at.position - view.position, view.forward);
+  const double pixels = shape.bounding_radius * view.focal_pixels / std::max(depth, 0.1);
+  const int detail = std::min(kDetailLevels - 1, (pixels > 40   ? 0
+                                                  : pixels > 12 ? 1
+                                                  : pixels > 4  ? 2
+                                                                : 3) +
+                                                     view.detail_bias);
+  const auto key = shape.mesh_index * kDetailLevels + static_cast<std::uint32_t>(detail);
+  (material.alpha < 1 ? transparent_instances_ : opaque_instances_).push_back({instance, key, real(depth)});
+  positions_.push_back(position);
+  radii_.push_back(real(shape.bounding_radius));
+}
+
+void DrawList::update(const Snapshot& before, const Snapshot& now, double mix, const DrawView& eye) {
+  if (scene_ != now.render_scene) {
+    rebuild_shapes(now);
+    update_materials(now);
+  } else if (materials_version_ != now.visuals_version) {
+    update_materials(now);
+  }
+  const bool interpolates = before.render_scene == now.render_scene && before.transient.size() == now.transient.size();
+  const TransientOffsets& at = transient_offsets();
+  opaque_instances_.clear();
+  transparent_instances_.clear();
+  planes_.clear();
+  positions_.clear();
+  radii_.clear();
+  for (const RenderInstance& piece : scene_->instances) {
+    if (now.transient[piece.enabled_offset] == 0) continue;
+    const double* const to = now.transient.data() + piece.part_offset;
+    const Pose part =
+        interpolate(interpolates ? before.transient.data() + piece.part_offset : to, to, interpolates ? mix : 1, at);
+    add_instance(shapes_[piece.shape], part * piece.origin, eye);
+  }
+  compute_bounds();
+  build_batches();
+}
+
+// The center is the middle between the 10th and 90th percentile along each axis, the radius the 90th percentile of the
+// distance: a few bodies that fall forever change neither. Large scenes are sampled.
+void DrawList::compute_bounds() {
+  center_ = glm::vec3(0);
+  radius_ = 1;
+  if (positions_.empty()) return;
+  const std::size_t stride = (positions_.size() + kMaxBoundsSamples - 1) / kMaxBoundsSamples;
+  const auto fill = [&](auto&& number) {
+    scratch_numbers_.clear();
+    for (std::size_t i = 0; i < positions_.size(); i += stride) scratch_numbers_.push_back(number(i));
+  };
+  const auto value_at_rank = [&](double rank) {
+    std::nth_element(scratch_numbers_.begin(), scratch_numbers_.begin() + static_cast<std::ptrdiff_t>(rank),
+                     scratch_numbers_.end());
+    return scratch_numbers_[static_cast<std::size_t>(rank)];
+  };
+  const auto last = static_cast<double>((positions_.size() - 1) / stride);
+  for (int axis = 0; axis < 3; axis++) {
+    fill([&](std::size_t i) { return positions_[i][axis]; });
+    const float low = value_at_rank(std::floor(0.1 * last));
+    center_[axis] = (low + value_at_rank(std::ceil(0.9 * last))) / 2;
+  }
+  fill([&](std::size_t i) { return glm::distance(positions_[i], center_) + radii_[i]; });
+  radius_ = value_at_rank(std::ceil(0.9 * last));
+}
+
+// Stable counting sort by mesh and detail.
+void DrawList::sort_opaque() {
+  first_.assign(meshes_.size() * kDetailLevels + 1, 0);
+  for (const VisibleInstance& s : opaque_instances_) first_[s.key + 1]++;
+  for (std::size_t k = 1; k < first_.size(); k++) first_[k] += first_[k - 1];
+  order_.resize(opaque_instances_.size());
+  for (std::size_t i = 0; i < opaque_instances_.size(); i++)
+    order_[first_[opaque_instances_[i].key]++] = static_cast<std::uint32_t>(i);
+}
+
+void DrawList::sort_transparent() {
+  order_.resize(transparent_instances_.size());
+  for (std::size_t i = 0; i < order_.size(); i++) order_[i] = static_cast<std::uint32_t>(i);
+  std::stable_sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
+    return transparent_instances_[a].depth > transparent_instances_[b].depth;
+  });
+}
+
+void DrawList::add_in_order(std::vector<Batch>& batches, const std::vector<VisibleInstance>& visible) {
+  batches.clear();
+  std::uint32_t last = 0;
+  for (const std::uint32_t i : order_) {
+    const VisibleInstance& s = visible[i];
+    const bool casts = s.instance.alpha >= kMinShadowAlpha;
+    if (batches.empty() || s.key != last || batches.back().casts_shadow != casts) {
+      batches.push_back({meshes_[s.key / kDetailLevels], static_cast<int>(s.key % kDetailLevels),
+                         static_cast<std::uint32_t>(instances_.size()), 0, casts});
+      last = s.key;
+    }
+    instances_.push_back(s.instance);
+    batches.back().count++;
+  }
+}
+
+void DrawList::build_batches() {
+  instances_.clear();
+  sort_opaque();
+  add_in_order(opaque_, opaque_instances_);
+  sort_transparent();
+  add_in_order(transparent_, transparent_instances_);
+}
+
+}  // namespace limber

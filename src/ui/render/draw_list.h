@@ -1,0 +1,125 @@
+// DrawList: instances to draw, interpolated between two snapshots and batched by mesh and level of detail, and the
+// bounds of the scene.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/output/snapshot.h"
+#include "ui/render/mesh.h"
+
+namespace limber {
+
+/// Per-instance vertex attributes, in the layout of shaders/shape.vert.
+struct Instance {
+  float position[3];
+  float rounding_radius;
+  float rotation[4];  // x y z w
+  float extent[3];
+  float specular;
+  float diffuse[3];  // linear, scaled
+  float alpha;
+  float ambient[3];
+  float power;
+};
+
+/// Identifies a mesh: a primitive's, or one from a file (`model` is set).
+struct MeshKey {
+  ShapeKind kind = ShapeKind::box;
+  const MeshModel* model = nullptr;
+  // NOLINTNEXTLINE(modernize-use-nullptr): reported for the comparison that the compiler generates
+  auto operator<=>(const MeshKey&) const = default;
+};
+
+/// Consecutive instances of one mesh and level of detail, for one draw call.
+struct Batch {
+  MeshKey mesh;
+  int detail = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  bool casts_shadow = true;  ///< False for instances with an alpha below 0.5.
+};
+
+/// An infinite plane of the scene.
+struct PlaneView {
+  glm::vec3 origin;
+  glm::vec3 normal;
+  glm::vec3 tint;  ///< Linear.
+  float alpha = 1;
+};
+
+/// The camera, for choosing levels of detail and sorting transparent instances.
+struct DrawView {
+  Vec3 position{0};
+  Vec3 forward{0, 1, 0};
+  double focal_pixels = 1000;  ///< Focal length in pixels: size of 1 m at a distance of 1 m.
+  int detail_bias = 0;         ///< Number of finest levels of detail to skip.
+};
+
+/// [main]
+class DrawList {
+ public:
+  /// Rebuilds the lists. `mix`: interpolation from 0 (`before`) to 1 (`now`). Snapshots of different scenes are not
+  /// interpolated: then only `now` is used. [main]
+  void update(const Snapshot& before, const Snapshot& now, double mix, const DrawView& eye);
+
+  const std::vector<Instance>& instances() const { return instances_; }
+  const std::vector<Batch>& opaque() const { return opaque_; }
+  /// Transparent batches, farthest first.
+  const std::vector<Batch>& transparent() const { return transparent_; }
+  const std::vector<PlaneView>& planes() const { return planes_; }
+  /// Center and radius of a sphere around nearly all instances; robust against a few stray bodies.
+  const glm::vec3& center() const { return center_; }
+  float radius() const { return radius_; }
+  /// The scene of the last update(); null before the first.
+  const std::shared_ptr<const RenderScene>& scene() const { return scene_; }
+  /// The meshes from files that the scene uses.
+  const std::map<const MeshModel*, std::shared_ptr<const MeshModel>>& models() const { return models_; }
+
+ private:
+  struct ShapeDraw {
+    MeshKey mesh;
+    std::uint32_t mesh_index = 0;
+    Instance size{};             // only extent and rounding radius are set
+    double bounding_radius = 0;  // m
+    Pose offset;                 // pose of the mesh in the shape's frame
+    std::uint32_t material = 0;
+    Vec3 normal{0, 0, 1};  // planes only
+  };
+  struct VisibleInstance {
+    Instance instance{};
+    std::uint32_t key = 0;  // mesh number * kDetailLevels + detail
+    float depth = 0;
+  };
+  void rebuild_shapes(const Snapshot& now);
+  void update_materials(const Snapshot& now);
+  void add_instance(const ShapeDraw& shape, const Pose& pose, const DrawView& view);
+  void compute_bounds();
+  void sort_opaque();
+  void sort_transparent();
+  void add_in_order(std::vector<Batch>& batches, const std::vector<VisibleInstance>& visible);
+  void build_batches();
+
+  std::shared_ptr<const RenderScene> scene_;
+  std::uint64_t materials_version_ = 0;
+  std::vector<MeshKey> meshes_;  // by mesh number
+  std::vector<ShapeDraw> shapes_;
+  std::vector<Instance> materials_;  // by material; only the material's attributes are set
+  std::map<const MeshModel*, std::shared_ptr<const MeshModel>> models_;
+  std::vector<VisibleInstance> opaque_instances_, transparent_instances_;
+  std::vector<std::uint32_t> first_, order_;  // scratch
+  std::vector<glm::vec3> positions_;
+  std::vector<float> radii_, scratch_numbers_;
+  std::vector<Instance> instances_;
+  std::vector<Batch> opaque_, transparent_;
+  std::vector<PlaneView> planes_;
+  glm::vec3 center_{0};
+  float radius_ = 1;
+};
+
+}  // namespace limber

@@ -1,0 +1,44 @@
+// OverlayLines: the lines of the debug overlay, interpolated between two snapshots.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/output/snapshot.h"
+
+namespace limber {
+
+/// One line, in the layout of shaders/overlay.vert.
+struct OverlayLine {
+  float from[3];
+  float width;  ///< Pixels.
+  float to[3];
+  float unused;
+  float color[4];  ///< Linear.
+};
+
+/// [main]
+class OverlayLines {
+ public:
+  /// Rebuilds the lines. `mix`: interpolation from 0 (`before`) to 1 (`now`); marks that are only in `now` are not
+  /// interpolated. `pixels`: width of a symbol's lines. Allocates only when it grows. [main]
+  void update(const Snapshot& before, const Snapshot& now, double mix, double pixels);
+  std::span<const OverlayLine> lines() const { return lines_; }
+
+ private:
+  void draw(const OverlayMark& mark);
+  void hinge(const OverlayMark& mark);
+  void slider(const OverlayMark& mark);
+  void arrow(const Vec3& from, const Vec3& vector, double head);
+  void cross(const Vec3& at, const Quat& rotation, double half);
+  void arc(const Vec3& at, const Vec3& x, const Vec3& y, double low, double high);
+  void line(const Vec3& from, const Vec3& to, double width = 1);
+
+  std::vector<OverlayLine> lines_;
+  glm::vec3 color_{1};
+  double width_ = 1;
+};
+
+}  // namespace limber

@@ -1,0 +1,61 @@
+// Keys as text, and rebound hotkeys.
+#include "ui/panel/hotkeys.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace limber {
+namespace {
+
+TEST(Hotkeys, HaveUniqueNamesAndKeys) {
+  const Hotkeys hotkeys;
+  std::set<std::string> names;
+  for (const Hotkey& hotkey : hotkeys.all()) {
+    EXPECT_TRUE(names.insert(hotkey.name).second) << hotkey.name;
+    for (int i = 0; i < hotkey.key_count; i++) {
+      KeyPress press = hotkey.press;
+      press.key = static_cast<GuiKey>(static_cast<int>(press.key) + i);
+      EXPECT_EQ(hotkeys.match(press, false), &hotkey) << hotkey.name;
+      EXPECT_EQ(parse_key(key_text(press)), press) << key_text(press);
+    }
+  }
+}
+
+TEST(Hotkeys, PanicUsesKeyOfEveryKeyboard) {
+  const Hotkeys hotkeys;
+  for (const bool typing : {false, true})
+    EXPECT_EQ(hotkeys.match({GuiKey::f12, {}}, typing)->action, HotkeyAction::panic);
+  EXPECT_EQ(hotkeys.match({GuiKey::period, {true, false, false}}, true)->action, HotkeyAction::panic);
+}
+
+TEST(Hotkeys, BindingsReplaceDefaults) {
+  const Hotkeys hotkeys(KeyBindings{{"panic", "ctrl+SHIFT+p"}, {"step", "N"}, {"reset", "K"}});
+  EXPECT_TRUE(hotkeys.faults().empty());
+  EXPECT_EQ(hotkeys.match({GuiKey::p, {true, true, false}}, true)->action, HotkeyAction::panic);
+  EXPECT_EQ(hotkeys.match({GuiKey::f12, {}}, false), nullptr);
+  EXPECT_EQ(hotkeys.match({GuiKey::n, {}}, false)->action, HotkeyAction::step);
+  EXPECT_EQ(hotkeys.match({GuiKey::k, {}}, false)->action, HotkeyAction::reset);
+  EXPECT_EQ(hotkeys.match({GuiKey::k, {}}, true), nullptr) << "it types a letter";
+  EXPECT_EQ(keys_text(*hotkeys.find("panic"), {}), "Ctrl+Shift+P");
+  EXPECT_EQ(keys_text(*hotkeys.find("recall"), {}), "1 .. 8");
+}
+
+TEST(Hotkeys, ReportInvalidBindings) {
+  const auto fault = [](const std::string& name, const std::string& key) {
+    const Hotkeys hotkeys(KeyBindings{{name, key}});
+    EXPECT_EQ(hotkeys.faults().size(), 1u) << name << " " << key;
+    EXPECT_EQ(hotkeys.all().size(), Hotkeys().all().size());
+    return hotkeys.faults().empty() ? "" : hotkeys.faults().front();
+  };
+  EXPECT_EQ(fault("panic", "Ctrl+R"), "key 'Ctrl+R' for 'panic': already used by 'record'");
+  EXPECT_EQ(fault("step", "5"), "key '5' for 'step': already used by 'recall'");
+  EXPECT_EQ(fault("panic", "Hyper+R"), "key 'Hyper+R' for 'panic': not a key; expected for example Ctrl+Shift+R");
+  EXPECT_EQ(fault("panick", "F9"), "key 'F9' for 'panick': hotkey not found or not configurable");
+  EXPECT_EQ(fault("recall", "F9"), "key 'F9' for 'recall': hotkey not found or not configurable");
+  EXPECT_EQ(fault("play", "Escape"), "key 'Escape' for 'play': reserved for navigation and text fields");
+  for (const char* text : {"", "Ctrl+", "Ctrl", "RR", "F13"}) EXPECT_FALSE(parse_key(text)) << text;
+}
+
+}  // namespace
+}  // namespace limber

@@ -1,0 +1,33 @@
+// Colors: the examples of WCAG, and the contrast of all text.
+#include "ui/panel/theme.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace limber {
+namespace {
+
+TEST(Theme, ContrastMatchesWcag) {
+  EXPECT_NEAR(contrast({255, 255, 255}, {0, 0, 0}), 21, 1e-9);
+  EXPECT_NEAR(contrast({0x77, 0x77, 0x77}, {255, 255, 255}), 4.478, 0.001) << "the well-known grey that just fails";
+  EXPECT_NEAR(contrast({255, 0, 0}, {255, 255, 255}), 3.998, 0.001);
+  EXPECT_EQ(contrast({1, 2, 3}, {9, 8, 7}), contrast({9, 8, 7}, {1, 2, 3}));
+}
+
+TEST(Theme, TextHasEnoughContrast) {
+  for (const TextOnTone& pair : text_combinations()) {
+    EXPECT_GE(contrast(tone(pair.text), tone(pair.background)), kMinContrast)
+        << "tone " << static_cast<int>(pair.text) << " on " << static_cast<int>(pair.background);
+  }
+}
+
+TEST(Theme, CoversAllCombinationsOfTones) {
+  for (const Tone words : {Tone::text, Tone::secondary, Tone::accent, Tone::red, Tone::green, Tone::blue}) {
+    EXPECT_TRUE(std::any_of(text_combinations().begin(), text_combinations().end(),
+                            [&](const TextOnTone& w) { return w.text == words && w.background == Tone::panel; }));
+  }
+}
+
+}  // namespace
+}  // namespace limber
