@@ -263,7 +263,7 @@ changed_files() {
 # their names collide, as in a unity build.
 lint_groups() {
   awk '{ folder = $0; sub("/[^/]*$", "", folder)
-         if (folder != last || count == 6 || folder == "src/behaviors") { if (NR > 1) print ""; count = 0 }
+         if (folder != last || count == 6 || folder == "src/sim/behavior/builtin") { if (NR > 1) print ""; count = 0 }
          printf "%s%s", (count++ ? " " : ""), $0; last = folder } END { print "" }'
 }
 

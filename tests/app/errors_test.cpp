@@ -173,7 +173,7 @@ TEST(Errors, TableIsComplete) {
   std::string all;
   for (const ErrorCase& r : error_cases()) all += r.text + "\n";
   std::size_t found = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/app")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(LIMBER_SOURCE_DIR "/src/app")) {
     if (entry.path().extension() != ".cpp") continue;
     // excluded: files with results only, or with errors of other files; console and monitor need a running
     // program (console_test.cpp, monitor_test.cpp); window and film_file need a display or a machine without ffmpeg

@@ -1,7 +1,7 @@
 // Every file begins with a comment and is short, and src/README.md names every module.
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,7 +43,7 @@ TEST(Files, MathIsTheSameOnEveryMachine) {
   }
   EXPECT_EQ(math_complaints("src/sim/a.cpp", "x = std::sin(y) + glm::slerp(a, b, 1);").size(), 2U);
   EXPECT_TRUE(math_complaints("src/sim/a.cpp", "x = fixed::sin(std::sqrt(y)) + std::exchange(a, b);").empty());
-  EXPECT_TRUE(math_complaints("src/view/a.cpp", "x = std::sin(y);").empty());
+  EXPECT_TRUE(math_complaints("src/ui/render/a.cpp", "x = std::sin(y);").empty());
 }
 
 TEST(Files, TextIsWrittenByOneModule) {
@@ -58,15 +58,19 @@ TEST(Files, TextIsWrittenByOneModule) {
     EXPECT_TRUE(output_complaints("src/app/a.cpp", line).empty()) << line;
 }
 
+TEST(Files, FoldersOfSourcesAreSmall) {
+  std::map<std::string, int> files_of;
+  for (const SourceFile& file : source_files("src", {".h", ".cpp", ".inc", ".lua"}))
+    ++files_of[file.path.substr(0, file.path.rfind('/'))];
+  for (const auto& [folder, files] : files_of) EXPECT_LE(files, 30) << folder << " has too many files: split it";
+}
+
 TEST(Files, ReadmeNamesEveryModule) {
   std::ifstream in(LIMBER_SOURCE_DIR "/src/README.md");
   const std::string map{std::istreambuf_iterator<char>(in), {}};
   ASSERT_FALSE(map.empty()) << "src/README.md is missing";
-  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src")) {
-    if (!entry.is_directory() || std::filesystem::is_empty(entry.path())) continue;
-    const std::string name = entry.path().filename().string();
+  for (const std::string& name : modules())
     EXPECT_NE(map.find("`" + name + "/`"), std::string::npos) << "src/README.md does not name `" << name << "/`";
-  }
 }
 
 }  // namespace

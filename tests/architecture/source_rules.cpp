@@ -7,35 +7,40 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 namespace limber::rules {
 namespace {
 
-/// A module and the modules that it may include besides itself and base.
+/// A module, that is a folder of src/, and the modules that it may include besides itself and base.
 struct Module {
   std::string_view name;
   std::string_view may_include;
 };
 constexpr std::array kModules{
     Module{"base", ""},
-    Module{"params", ""},
+    Module{"properties", ""},
     Module{"model", ""},
-    Module{"sim", "params model"},
-    Module{"behaviors", "params model sim"},
-    Module{"script", "params model sim"},
-    Module{"engine", "params model sim behaviors script"},
+    Module{"sim", "properties model"},
+    Module{"script", "properties model sim"},
+    Module{"engine", "properties model sim script"},
     // Modules outside the simulation thread see commands, snapshots and the catalog, but no simulation objects.
-    Module{"osc", "params model engine"},
-    Module{"console", "params model engine"},
-    Module{"query", "params model engine"},
-    Module{"view", "params model engine"},
-    Module{"gui", "params model engine"},
+    Module{"net/osc", "properties model engine"},
+    Module{"net/console", "properties model engine"},
+    Module{"net/oscquery", "properties model engine"},
+    Module{"ui/render", "properties model engine"},
+    Module{"ui/panel", "properties model engine"},
     // motion files, without access to the scene
-    Module{"motion", ""},
-    Module{"app", "params model sim behaviors script engine osc console query view gui motion"},
+    Module{"export", ""},
+    Module{"app", "properties model sim script engine net/osc net/console net/oscquery ui/render ui/panel export"},
 };
+
+/// Folders that only files of their own module include.
+constexpr std::array kInternalFolders{"sim/bullet/",     "sim/collision/",   "sim/solver/",      "script/api/",
+                                      "engine/history/", "ui/panel/panels/", "net/oscquery/web/"};
 
 /// The start of an external library's header names, and the module that may include it ("": all modules).
 struct Library {
@@ -55,14 +60,14 @@ constexpr std::array kLibraries{
     Library{"lua", "script"},
     Library{"lauxlib.h", "script"},
     Library{"luajit-2.1/", "script"},
-    Library{"oscpack/", "osc"},
-    Library{"boost/", "query"},
-    Library{"epoxy/", "view"},
-    Library{"GL/", "view"},
-    Library{"EGL/", "view"},
-    Library{"stb_", "view"},
-    Library{"imgui", "gui"},
-    Library{"tiny_gltf.h", "motion"},
+    Library{"oscpack/", "net/osc"},
+    Library{"boost/", "net/oscquery"},
+    Library{"epoxy/", "ui/render"},
+    Library{"GL/", "ui/render"},
+    Library{"EGL/", "ui/render"},
+    Library{"stb_", "ui/render"},
+    Library{"imgui", "ui/panel"},
+    Library{"tiny_gltf.h", "export"},
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},
     Library{"histedit.h", "app"},
@@ -99,16 +104,12 @@ bool has_word(std::string_view words, std::string_view word) {
   return std::find(std::istream_iterator<std::string>(in), {}, word) != std::istream_iterator<std::string>();
 }
 
-/// Returns the module of a path: "sim" for "src/sim/world/world.cpp"; files in src/ itself belong to app.
-std::string module_of(std::string_view path) {
-  path.remove_prefix(std::string_view("src/").size());
-  const auto slash = path.find('/');
-  return slash == std::string_view::npos ? "app" : std::string(path.substr(0, slash));
-}
-
-const Module* find_module(std::string_view name) {
-  const auto* found =
-      std::find_if(kModules.begin(), kModules.end(), [&](const Module& module) { return module.name == name; });
+/// Returns the module of a path relative to src/; null if it is in none. Files in src/ itself belong to app.
+const Module* module_of(std::string_view path) {
+  if (path.find('/') == std::string_view::npos) return &kModules.back();
+  const auto* found = std::find_if(kModules.begin(), kModules.end(), [&](const Module& module) {
+    return path.starts_with(module.name) && path.substr(module.name.size()).starts_with('/');
+  });
   return found == kModules.end() ? nullptr : found;
 }
 
@@ -134,13 +135,18 @@ Include include_of(std::string_view line) {
 
 /// Returns the reason why the module may not include the project's file `name`; empty if it may.
 std::string project_complaint(const Module& module, std::string_view name) {
-  const auto slash = name.find('/');
-  if (slash == std::string_view::npos || name.starts_with('.')) return "must be relative to src/, like \"base/vec.h\"";
-  const std::string_view target = name.substr(0, slash);
-  if (find_module(target) == nullptr) return "is in no module of src/";
-  if (target == module.name || target == "base" || has_word(module.may_include, target)) return {};
-  return "is not in a lower module: " + std::string(module.name) + " may include base " +
-         std::string(module.may_include);
+  if (name.find('/') == std::string_view::npos || name.starts_with('.'))
+    return "must be relative to src/, like \"base/vec.h\"";
+  const Module* target = module_of(name);
+  if (target == nullptr) return "is in no module of src/";
+  if (target == &module) return {};
+  if (target->name != "base" && !has_word(module.may_include, target->name)) {
+    return "is not in a lower module: " + std::string(module.name) + " may include base " +
+           std::string(module.may_include);
+  }
+  const auto contains = [name](const char* folder) { return name.starts_with(folder); };
+  if (std::ranges::any_of(kInternalFolders, contains)) return "is internal to " + std::string(target->name);
+  return {};
 }
 
 /// Returns the reason why the file may not include an external header; empty if it may.
@@ -170,7 +176,7 @@ std::vector<std::string> modules() {
 }
 
 std::vector<std::string> include_complaints(std::string_view path, std::string_view text) {
-  const Module* module = find_module(module_of(path));
+  const Module* module = module_of(path.substr(std::string_view("src/").size()));
   if (module == nullptr) return {std::string(path) + ": unknown module; add it to source_rules.cpp"};
   std::vector<std::string> complaints;
   std::istringstream lines{std::string(text)};
@@ -184,6 +190,43 @@ std::vector<std::string> include_complaints(std::string_view path, std::string_v
     if (!why.empty()) {
       complaints.push_back(std::string(path) + ":" + std::to_string(number) + ": '" + std::string(include.name) + "' " +
                            why);
+    }
+  }
+  return complaints;
+}
+
+std::vector<std::string> indirect_include_complaints(const std::vector<SourceFile>& files) {
+  struct Includes {
+    std::vector<std::string> headers;    // of the project
+    std::vector<std::string> libraries;  // headers that one module alone may include
+  };
+  std::map<std::string, Includes> includes;
+  for (const SourceFile& file : files) {
+    const std::string path = file.path.substr(std::string_view("src/").size());
+    std::istringstream lines(file.text);
+    for (std::string line; std::getline(lines, line);) {
+      const Include include = include_of(line);
+      if (include.delimiter == '"') includes[path].headers.emplace_back(include.name);
+      if (include.delimiter == '<') includes[path].libraries.emplace_back(include.name);
+    }
+  }
+  std::vector<std::string> complaints;
+  for (const auto& [path, own] : includes) {
+    const Module* module = module_of(path);
+    if (module == nullptr) continue;
+    std::set<std::string> seen{path};
+    std::vector<std::string> open{own.headers};
+    while (!open.empty()) {
+      const std::string header = open.back();
+      open.pop_back();
+      if (!seen.insert(header).second || !includes.contains(header)) continue;
+      const Includes& next = includes[header];
+      open.insert(open.end(), next.headers.begin(), next.headers.end());
+      for (const std::string& library : next.libraries) {
+        const std::string why = library_complaint(*module, "src/" + header, library);
+        if (why.empty()) continue;
+        complaints.push_back("src/" + path + ": includes '" + library + "' through '" + header + "', which " + why);
+      }
     }
   }
   return complaints;
@@ -225,7 +268,7 @@ std::vector<std::string> shape_complaints(std::string_view path, std::string_vie
 }
 
 std::vector<std::string> math_complaints(std::string_view path, std::string_view text) {
-  static const std::regex modules("src/(base|params|model|sim|behaviors|script|engine)/.*");
+  static const std::regex modules("src/(base|properties|model|sim|script|engine)/.*");
   static const std::regex call(
       R"((std::(a?(sin|cos|tan)h?|atan2|exp[2m]?1?|log(2|10|1p)?|pow|cbrt|hypot|[lt]gamma|erfc?)f?|)"
       R"(glm::(angleAxis|slerp|eulerAngles|pow|exp2?|log2?|a?(sin|cos|tan)h?|rotate|angle))\()");

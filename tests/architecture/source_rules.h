@@ -11,6 +11,16 @@ namespace limber::rules {
 /// Returns the complaints about the includes of one file. `path` is relative to the root: "src/sim/world/world.cpp".
 std::vector<std::string> include_complaints(std::string_view path, std::string_view text);
 
+/// A source file; `path` is relative to the root.
+struct SourceFile {
+  std::string path;
+  std::string text;
+};
+
+/// Returns a complaint for each library that a file of another module includes indirectly, through project headers.
+/// Without such includes, a module compiles without the libraries of the others, and fast. `files`: all files of src/.
+std::vector<std::string> indirect_include_complaints(const std::vector<SourceFile>& files);
+
 /// Returns complaints about calls, types and files of the operating system outside src/base/system/, except in
 /// comments.
 std::vector<std::string> system_complaints(std::string_view path, std::string_view text);
@@ -28,11 +38,6 @@ std::vector<std::string> output_complaints(std::string_view path, std::string_vi
 /// Returns the modules, which are the folders that src/ may have; base is first.
 std::vector<std::string> modules();
 
-/// A source file; `path` is relative to the root.
-struct SourceFile {
-  std::string path;
-  std::string text;
-};
 /// Returns all files below `folder` (relative to the root) with one of these file name endings.
 std::vector<SourceFile> source_files(std::string_view folder, const std::vector<std::string>& endings);
 

@@ -1,4 +1,4 @@
-// Every file of src/behaviors registers a type of its name, and every type has the documented properties.
+// Every file of src/sim/behavior/builtin registers a type of its name, and every type has the documented properties.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace {
 
 TEST(BuiltInBehaviors, HaveOneFileEach) {
   std::set<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/behaviors")) {
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/sim/behavior/builtin")) {
     EXPECT_EQ(entry.path().extension(), ".cpp") << entry.path();
     files.insert(entry.path().stem().string());
   }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "bench/contender.h"
+#include "sim/bullet/bullet.h"
 
 namespace limber {
 namespace {

@@ -141,7 +141,7 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
   EXPECT_EQ(set, std::vector<std::string>{"/physics/body/arm/part/tip/friction"});
   EXPECT_EQ(live.world.body_names(), (std::vector<std::string_view>{"arm", "floor", "extra"}));
   EXPECT_EQ(live.body("arm").find_part("tip")->id(), tip);
-  EXPECT_EQ(live.body("arm").find_part("tip")->capture_state().transform, state.transform);
+  EXPECT_EQ(live.body("arm").find_part("tip")->capture_state().bullet_pose, state.bullet_pose);
   EXPECT_EQ(live.body("extra").root()->pose().position, Vec3(9, 0, 0));
   EXPECT_EQ(live.body("extra").root()->shape(), live.world.find_shape("ball")->id());
   EXPECT_EQ(objects.bodies.size(), 3u);

@@ -5,6 +5,7 @@
 
 #include "base/vec.h"
 #include "engine/edited.h"
+#include "sim/bullet/bullet.h"
 
 namespace limber::engine_test {
 namespace {

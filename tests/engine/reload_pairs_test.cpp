@@ -2,6 +2,7 @@
 #include <string>
 
 #include "engine/edited.h"
+#include "sim/bullet/collision_filter.h"
 
 namespace limber::engine_test {
 namespace {

@@ -1,6 +1,7 @@
 // The rule for values in a reload: changed values are applied, values set as before keep their overrides, values that
 // are no longer set return to their default.
 #include "engine/edited.h"
+#include "sim/bullet/bullet.h"
 
 namespace limber::engine_test {
 namespace {

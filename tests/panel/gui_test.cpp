@@ -14,10 +14,8 @@ namespace {
 
 TEST(Gui, EveryPanelFileRegistersItself) {
   std::set<std::string> files;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(LIMBER_SOURCE_DIR) + "/src/gui")) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("panel_") && name.ends_with(".cpp")) files.insert(name.substr(6, name.size() - 10));
-  }
+  for (const auto& entry : std::filesystem::directory_iterator(LIMBER_SOURCE_DIR "/src/ui/panel/panels"))
+    files.insert(entry.path().stem().string());
   std::set<std::string> kinds;
   for (const PanelType& kind : panel_types()) kinds.insert(std::string(kind.name));
   EXPECT_EQ(kinds, files);

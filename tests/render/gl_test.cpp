@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include <epoxy/gl.h>
 #include "render/stage.h"
 
 namespace limber::view_test {

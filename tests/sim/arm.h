@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "sim/bullet/bullet.h"
 #include "sim/stage.h"
 
 namespace limber::test {

@@ -14,14 +14,13 @@ BehaviorType probe_type(std::string name, std::vector<Property> properties = pro
 
 TEST(BehaviorTypes, LookupIgnoresCaseUnderscoresAndSuffix) {
   BehaviorTypes types;
-  ASSERT_TRUE(types.add(probe_type("random_force")).ok());
-  for (const char* name :
-       {"random_force", "RandomForce", "randomforce", "RandomForceBehavior", "RANDOM_FORCE_BEHAVIOR"})
+  ASSERT_TRUE(types.add(probe_type("random_push")).ok());
+  for (const char* name : {"random_push", "RandomPush", "randompush", "RandomPushBehavior", "RANDOM_PUSH_BEHAVIOR"})
     EXPECT_NE(types.find(name), nullptr) << name;
   EXPECT_EQ(types.find("random"), nullptr);
   EXPECT_EQ(types.find("behavior"), nullptr);
-  EXPECT_EQ(types.require("RandomFroceBehavior").error(),
-            "there is no behavior type 'RandomFroceBehavior'; did you mean 'random_force'?");
+  EXPECT_EQ(types.require("RandomPsuhBehavior").error(),
+            "there is no behavior type 'RandomPsuhBehavior'; did you mean 'random_push'?");
 }
 
 TEST(BehaviorTypes, ReplacesAndRemovesTypes) {

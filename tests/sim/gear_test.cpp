@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/arm.h"
+#include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 #include "sim/state/world_checkpoint.h"
 

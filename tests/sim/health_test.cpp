@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/arm.h"
+#include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 
 namespace limber {

@@ -11,6 +11,8 @@
 #include "base/hash.h"
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
+#include "sim/bullet/bullet.h"
+#include "sim/bullet/joint_constraint.h"
 #include "sim/stage.h"
 
 namespace limber::test {

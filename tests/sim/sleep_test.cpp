@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "sim/arm.h"
+#include "sim/bullet/island_world.h"
 #include "sim/collision/dispatcher.h"
 #include "sim/stage.h"
 

@@ -1,6 +1,7 @@
 // The effects of the properties of the world and of bodies, measured in the world.
 #include <cmath>
 
+#include "sim/bullet/island_world.h"
 #include "sim/row_effects.h"
 #include "sim/stage.h"
 

@@ -6,6 +6,7 @@
 #include <bit>
 
 #include "sim/arm.h"
+#include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 
 namespace limber {

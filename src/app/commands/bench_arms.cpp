@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "base/system/process.h"
 #include "sim/bullet/bullet_phases.h"
+#include "sim/bullet/joint_constraint.h"
 
 namespace limber {
 

@@ -51,7 +51,7 @@ Result<void> OutputWindow::draw(Renderer& renderer, const Snapshot& before, cons
   const int height = window_->height();
   if (width == 0 || height == 0) return {};
   if (Result<void> drawn = renderer.draw_output(before, now, mix, width, height); !drawn) return drawn;
-  glFlush();  // otherwise the other context may see an older frame
+  Renderer::flush();  // otherwise the other context may see an older frame
   window_->make_current();
   renderer.present_output(framebuffer_, width, height);
   window_->swap();

@@ -1,5 +1,5 @@
 // Behavior: base class of procedural controllers of a body, which apply forces to its parts and set targets of its
-// motors at every tick. Built-in types are in src/behaviors, Lua's in the script module. [sim]
+// motors at every tick. Built-in types are in src/sim/behavior/builtin, Lua's in the script module. [sim]
 #pragma once
 
 #include <cstdint>

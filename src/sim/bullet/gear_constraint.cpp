@@ -15,7 +15,7 @@ constexpr double kMaxCorrectionSpeed = 20;
 /// the position error that it allows under load is far below 1e-6 rad.
 constexpr double kSoftness = 1e-8;
 /// Warm-start factor of the sweeps, as for joints.
-constexpr float kWarmStart = 0.5f;
+constexpr float kGearWarmStart = 0.5f;
 
 // Returns one dynamic body of the joint; the joint itself connects the other one to the island.
 btRigidBody& moving_body(JointConstraint& joint) {
@@ -75,7 +75,7 @@ void GearConstraint::plan(btScalar h) {
   row_.mobility = mobility;
   row_.softness = kSoftness * mobility;
   row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * kTreeInfinity;
-  warm_impulse_ = kWarmStart * std::exchange(last_impulse_, 0.0f);
+  warm_impulse_ = kGearWarmStart * std::exchange(last_impulse_, 0.0f);
 }
 
 void GearConstraint::set_impulse(double impulse) {

@@ -17,16 +17,9 @@
 #include "sim/bullet/sleep.h"
 #include "sim/collision/broadphase.h"
 #include "sim/solver/direct_solver.h"
+#include "sim/world/world_setup.h"
 
 namespace limber {
-
-/// Settings of a world.
-struct WorldSetup {
-  double broadphase_margin = 0.01;  ///< Margin of fattened bounding boxes, m.
-  int solver_iterations = 50;
-  std::shared_ptr<ThreadPool> thread_pool{};  ///< Threads that share the work of a step; the result doesn't depend on
-                                              ///< them. Null: the calling thread only.
-};
 
 /// Sequential impulses with our own joint rows, whose softness has physical units (rate + softness·impulse = velocity)
 /// and which are stable for any softness. Also applies gyroscopic torques, which Bullet omits for light bodies (its 3x3

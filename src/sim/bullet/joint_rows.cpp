@@ -33,7 +33,7 @@ constexpr btScalar kBrakingForceFraction = btScalar(0.7);
 
 /// Warm-start factor of locks and motors. On long arms it has the effect of doubling the iterations; from 0.7 on, arms
 /// of six parts and more begin to oscillate.
-constexpr btScalar kWarmStart = btScalar(0.5);
+constexpr btScalar kBlockWarmStart = btScalar(0.5);
 
 btScalar limit_margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
 double stop_tolerance(int axis) { return axis < 3 ? kLinearStopTolerance : kAngularStopTolerance; }
@@ -145,7 +145,7 @@ void JointConstraint::plan_rows() {
   const int first = unlocked_rows - (bounded_row_ ? 1 : 0);
   for (int r = first; r < row_count_; ++r) {
     const Row& row = rows_[r];
-    warm_impulses_[at(r - first)] = std::clamp(kWarmStart * last_impulse_[row.axis], row.lower, row.upper);
+    warm_impulses_[at(r - first)] = std::clamp(kBlockWarmStart * last_impulse_[row.axis], row.lower, row.upper);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float last = last_impulse_[axis];

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sim/bullet/island_world.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/bullet/island_world.h"
 #include "sim/world/force_accumulators.h"
 #include "sim/world/joint.h"
 #include "sim/world/world.h"

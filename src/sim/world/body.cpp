@@ -13,6 +13,9 @@
 #include "base/text.h"
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/bullet/gear_constraint.h"
+#include "sim/bullet/island_world.h"
+#include "sim/bullet/joint_constraint.h"
 #include "sim/bullet/spin.h"
 #include "sim/world/world.h"
 

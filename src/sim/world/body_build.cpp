@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/bullet/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sim/bullet/bullet.h"
 #include "sim/collision/contact_manifold.h"
 #include "sim/world/part.h"
 

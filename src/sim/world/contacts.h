@@ -7,7 +7,8 @@
 
 #include "base/id.h"
 #include "base/vec.h"
-#include "sim/bullet/bullet.h"
+
+class btDispatcher;
 
 namespace limber {
 

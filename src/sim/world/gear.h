@@ -6,11 +6,11 @@
 #include <string>
 
 #include "properties/store.h"
-#include "sim/bullet/gear_constraint.h"
 
 namespace limber {
 
 class Body;
+class GearConstraint;
 class Joint;
 class World;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "model/mesh/mass_properties.h"
+#include "sim/bullet/bullet.h"
 
 namespace limber {
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "model/body_model.h"
-#include "sim/bullet/bullet.h"
+
+class btCollisionShape;
 
 namespace limber {
 

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/bullet/gear_constraint.h"
+#include "sim/bullet/island_world.h"
+#include "sim/bullet/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/motor.h"
 #include "sim/world/world.h"
@@ -220,6 +223,7 @@ void Joint::update_from_parts() {
 }
 
 void Joint::save_start() { start_angles_ = constraint_->angles(); }
+void Joint::save_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
 
 void Joint::restore_start() {
   Store& store = body_.store();

@@ -7,12 +7,12 @@
 #include <string>
 
 #include "properties/store.h"
-#include "sim/bullet/gear_constraint.h"
-#include "sim/bullet/joint_constraint.h"
 #include "sim/world/part.h"
 
 namespace limber {
 
+class GearConstraint;
+class JointConstraint;
 class Motor;
 
 /// Couples a follower to its leader, with reaction: value = multiplier · (leader's value) + offset.
@@ -75,7 +75,7 @@ class Joint {
   void update_from_parts();
   /// Saves the published angles, with full turns, as those of the start pose, for restore_start().
   void save_start();
-  void save_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
+  void save_start(const Joint& other);
   void restore_start();
   /// Adds the constraint, and the gear to its leader, to Bullet's world or removes them; called by the body.
   void add_to_world();

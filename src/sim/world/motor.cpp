@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/log/log.h"
+#include "sim/bullet/bullet.h"
+#include "sim/bullet/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 

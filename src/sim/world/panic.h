@@ -5,12 +5,12 @@
 #include <cstdint>
 
 #include "base/vec.h"
-#include "sim/bullet/joint_constraint.h"
 #include "sim/world/motor.h"
 
 namespace limber {
 
 class World;
+enum class AxisDrive : std::uint8_t;
 
 class Panic {
  public:

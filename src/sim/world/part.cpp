@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/memory/prefetch.h"
+#include "sim/bullet/island_world.h"
 #include "sim/bullet/spin.h"
 #include "sim/collision/contact_friction.h"
 #include "sim/world/body.h"
@@ -192,13 +193,20 @@ void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   store.mark_dirty(id_, *motion_properties().linear_velocity);
 }
 
+bool Part::asleep() const { return !is_static_ && !rigid_->isActive(); }
+
 Part::State Part::capture_state() const {
-  return {pose(),
-          linear_velocity(),
-          angular_velocity(),
-          rigid_->getWorldTransform(),
-          rigid_->getLinearVelocity(),
-          rigid_->getAngularVelocity()};
+  const btMatrix3x3& r = rigid_->getWorldTransform().getBasis();
+  const btVector3& p = rigid_->getWorldTransform().getOrigin();
+  const btVector3& v = rigid_->getLinearVelocity();
+  const btVector3& w = rigid_->getAngularVelocity();
+  return {.pose = pose(),
+          .linear_velocity = linear_velocity(),
+          .angular_velocity = angular_velocity(),
+          .bullet_pose = {r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2], p[0], p[1],
+                          p[2]},
+          .bullet_linear_velocity = {v[0], v[1], v[2]},
+          .bullet_angular_velocity = {w[0], w[1], w[2]}};
 }
 
 void Part::set_state(const State& state) {
@@ -209,10 +217,14 @@ void Part::set_state(const State& state) {
   put(transient + motion_properties().rotation->offset, state.pose.rotation);
   put(transient + motion_properties().linear_velocity->offset, state.linear_velocity);
   put(transient + motion_properties().angular_velocity->offset, state.angular_velocity);
-  rigid_->setWorldTransform(state.transform);
-  rigid_->setInterpolationWorldTransform(state.transform);
-  rigid_->setLinearVelocity(state.linear);
-  rigid_->setAngularVelocity(state.angular);
+  const auto& m = state.bullet_pose;
+  const btTransform transform(btMatrix3x3(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]),
+                              btVector3(m[9], m[10], m[11]));
+  const auto vector = [](const std::array<float, 3>& v) { return btVector3(v[0], v[1], v[2]); };
+  rigid_->setWorldTransform(transform);
+  rigid_->setInterpolationWorldTransform(transform);
+  rigid_->setLinearVelocity(vector(state.bullet_linear_velocity));
+  rigid_->setAngularVelocity(vector(state.bullet_angular_velocity));
   rigid_->updateInertiaTensor();
 }
 

@@ -2,6 +2,7 @@
 // center-of-mass frame. [sim]
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -9,6 +10,8 @@
 #include "properties/store.h"
 #include "sim/world/force_accumulators.h"
 #include "sim/world/geometry.h"
+
+class btRigidBody;
 
 namespace limber {
 
@@ -54,8 +57,8 @@ class Part {
   struct State {
     Pose pose;
     Vec3 linear_velocity, angular_velocity;
-    btTransform transform;
-    btVector3 linear, angular;
+    std::array<float, 12> bullet_pose;  ///< Rotation matrix by rows, then the origin.
+    std::array<float, 3> bullet_linear_velocity, bullet_angular_velocity;
   };
   State capture_state() const;
   void set_state(const State& state);
@@ -82,7 +85,7 @@ class Part {
   /// Wakes it in the next step; if it is static, wakes the parts that touch it. [any]
   void wake();
   /// True if it is at rest and skipped by steps until something wakes it.
-  bool asleep() const { return !is_static_ && !rigid_->isActive(); }
+  bool asleep() const;
 
   /// Applies pending forces and impulses to Bullet; called by ForceAccumulators::apply().
   void apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse);

@@ -8,6 +8,7 @@
 
 #include "base/log/log.h"
 #include "model/overlap.h"
+#include "sim/bullet/island_world.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "sim/bullet/bullet.h"
 #include "sim/bullet/spin.h"
 #include "sim/world/body.h"
 

@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "sim/bullet/bullet.h"
+class btDispatcher;
+class btRigidBody;
 
 namespace limber {
 

@@ -13,7 +13,7 @@
 
 #include "properties/store.h"
 #include "sim/behavior/behavior_list.h"
-#include "sim/bullet/island_world.h"
+#include "sim/bullet/bullet_memory.h"
 #include "sim/neighbors/mass_table.h"
 #include "sim/state/motion_hash.h"
 #include "sim/state/world_transaction.h"
@@ -25,8 +25,14 @@
 #include "sim/world/gear.h"
 #include "sim/world/panic.h"
 #include "sim/world/shape.h"
+#include "sim/world/world_setup.h"
+
+class btDynamicsWorld;
 
 namespace limber {
+
+class IslandWorld;
+struct DirectCounts;
 
 /// Durations of the phases of the last tick, in seconds.
 struct TickTimes {
@@ -176,7 +182,7 @@ class World {
   void log_overlaps();
   bool awake_bodies_valid() const;
   void restore_body(Body& body, const Part& part, const std::string& instability);
-  static void after_internal_step(btDynamicsWorld* bullet, btScalar h);
+  static void after_internal_step(btDynamicsWorld* bullet, float h);
   Result<void> check_new_name(NodeId group, std::string_view kind, std::string_view name) const;
   Result<void> act_reset(std::span<const double> args);
   Result<void> act_panic(std::span<const double> args);

@@ -1,10 +1,11 @@
-// Table of OpenGL versions, and error messages about missing drivers.
+// Creates and deletes OpenGL objects; the table of OpenGL versions, and error messages about missing drivers.
 #include "ui/render/gl.h"
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 
+#include <epoxy/gl.h>
 #include <fmt/format.h>
 
 #include "base/system/process.h"
@@ -37,6 +38,54 @@ std::string missing_library() {
 }
 
 }  // namespace
+
+std::uint32_t make_gl_object(GlKind kind) {
+  GLuint name = 0;
+  switch (kind) {
+    case GlKind::buffer:
+      glGenBuffers(1, &name);
+      break;
+    case GlKind::vertex_array:
+      glGenVertexArrays(1, &name);
+      break;
+    case GlKind::texture:
+      glGenTextures(1, &name);
+      break;
+    case GlKind::renderbuffer:
+      glGenRenderbuffers(1, &name);
+      break;
+    case GlKind::framebuffer:
+      glGenFramebuffers(1, &name);
+      break;
+    case GlKind::program:
+      name = glCreateProgram();
+      break;
+  }
+  return name;
+}
+
+void delete_gl_object(GlKind kind, std::uint32_t name) {
+  switch (kind) {
+    case GlKind::buffer:
+      glDeleteBuffers(1, &name);
+      break;
+    case GlKind::vertex_array:
+      glDeleteVertexArrays(1, &name);
+      break;
+    case GlKind::texture:
+      glDeleteTextures(1, &name);
+      break;
+    case GlKind::renderbuffer:
+      glDeleteRenderbuffers(1, &name);
+      break;
+    case GlKind::framebuffer:
+      glDeleteFramebuffers(1, &name);
+      break;
+    case GlKind::program:
+      glDeleteProgram(name);
+      break;
+  }
+}
 
 const GlApiInfo& gl_api_info(GlApi api) { return kApis[static_cast<std::size_t>(api)]; }
 

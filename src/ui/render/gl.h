@@ -1,8 +1,6 @@
 // RAII wrappers for OpenGL objects, and the supported OpenGL versions with the features that each of them has.
 #pragma once
 
-#include <epoxy/gl.h>
-
 #include <cstdint>
 #include <span>
 #include <string>
@@ -15,40 +13,31 @@ namespace limber {
 /// Kinds of OpenGL objects.
 enum class GlKind : std::uint8_t { buffer, vertex_array, texture, renderbuffer, framebuffer, program };
 
+/// Creates an OpenGL object and returns its name. [main]
+std::uint32_t make_gl_object(GlKind kind);
+/// Deletes an OpenGL object; its context must be current. [main]
+void delete_gl_object(GlKind kind, std::uint32_t name);
+
 /// Owns an OpenGL object and deletes it. Must not outlive its context. [main]
 template <GlKind Kind>
 class GlHandle {
  public:
   GlHandle() = default;
-  explicit GlHandle(GLuint name) : name_(name) {}
+  explicit GlHandle(std::uint32_t name) : name_(name) {}
   GlHandle(GlHandle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   GlHandle& operator=(GlHandle&& other) noexcept {
     std::swap(name_, other.name_);
     return *this;
   }
   ~GlHandle() {
-    if (name_ == 0) return;
-    if constexpr (Kind == GlKind::buffer) glDeleteBuffers(1, &name_);
-    if constexpr (Kind == GlKind::vertex_array) glDeleteVertexArrays(1, &name_);
-    if constexpr (Kind == GlKind::texture) glDeleteTextures(1, &name_);
-    if constexpr (Kind == GlKind::renderbuffer) glDeleteRenderbuffers(1, &name_);
-    if constexpr (Kind == GlKind::framebuffer) glDeleteFramebuffers(1, &name_);
-    if constexpr (Kind == GlKind::program) glDeleteProgram(name_);
+    if (name_ != 0) delete_gl_object(Kind, name_);
   }
-  static GlHandle make() {
-    GLuint name = 0;
-    if constexpr (Kind == GlKind::buffer) glGenBuffers(1, &name);
-    if constexpr (Kind == GlKind::vertex_array) glGenVertexArrays(1, &name);
-    if constexpr (Kind == GlKind::texture) glGenTextures(1, &name);
-    if constexpr (Kind == GlKind::renderbuffer) glGenRenderbuffers(1, &name);
-    if constexpr (Kind == GlKind::framebuffer) glGenFramebuffers(1, &name);
-    return GlHandle(name);
-  }
-  GLuint operator*() const { return name_; }
+  static GlHandle make() { return GlHandle(make_gl_object(Kind)); }
+  std::uint32_t operator*() const { return name_; }
   explicit operator bool() const { return name_ != 0; }
 
  private:
-  GLuint name_ = 0;
+  std::uint32_t name_ = 0;
 };
 
 using GlBuffer = GlHandle<GlKind::buffer>;

@@ -1,6 +1,8 @@
 // Framebuffers: multisampled, resolved and finished.
 #include "ui/render/render_target.h"
 
+#include <epoxy/gl.h>
+
 #include <algorithm>
 
 #include <fmt/format.h>

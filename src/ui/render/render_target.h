@@ -1,6 +1,7 @@
 // RenderTarget: the framebuffers for one image, and copying the image to a window or to memory.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "base/result.h"
@@ -41,7 +42,7 @@ class RenderTarget {
   void present_shared(const GlFramebuffer& frame, int width, int height) const;
 
  private:
-  void copy_to_window(GLuint from, int width, int height) const;
+  void copy_to_window(std::uint32_t from, int width, int height) const;
 
   const GlApiInfo& api_;
   GlFramebuffer multisampled_framebuffer_ = GlFramebuffer::make();

@@ -2,6 +2,8 @@
 // debug overlay.
 #include "ui/render/renderer.h"
 
+#include <epoxy/gl.h>
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -356,5 +358,6 @@ Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, c
 }
 
 void Renderer::finish() { glFinish(); }
+void Renderer::flush() { glFlush(); }
 
 }  // namespace limber

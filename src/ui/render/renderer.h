@@ -42,6 +42,8 @@ class Renderer {
   Pixels read() const { return target_.read(); }
   /// Waits until the GPU has finished drawing. [main]
   static void finish();
+  /// Sends the drawing to the GPU without waiting, so that another context sees the new image. [main]
+  static void flush();
   /// Copies draw()'s last image to the window's default framebuffer, scaled to that size. [main]
   void present(int width, int height) const { target_.present(width, height); }
   /// Copies draw_output()'s last image; called with another context current, which shares objects with the first.
@@ -63,7 +65,7 @@ class Renderer {
   struct GpuMesh {
     GlVertexArray array;
     GlBuffer vertices, indices;
-    GLsizei count = 0;
+    int count = 0;
   };
   // a depth texture with its framebuffer
   struct DepthMap {

@@ -1,6 +1,8 @@
 // Reads, compiles and links shaders; adds file names to the line numbers in the driver's messages.
 #include "ui/render/shaders.h"
 
+#include <epoxy/gl.h>
+
 #include <array>
 #include <fstream>
 #include <iterator>

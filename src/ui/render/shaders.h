@@ -2,6 +2,7 @@
 // compile, the error is logged and the last working one stays in use.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <string_view>
@@ -27,9 +28,9 @@ class Shaders {
   bool reload();
 
   /// The OpenGL name of a program, such as "shape". [main]
-  GLuint program(std::string_view name) const;
+  std::uint32_t program(std::string_view name) const;
   /// Location of a uniform; -1 if the program does not use it. [main]
-  GLint uniform(std::string_view name, const char* uniform) const;
+  int uniform(std::string_view name, const char* uniform) const;
   /// The error of the last (re)build; empty if it succeeded. [main]
   const std::string& error() const { return error_; }
 
@@ -42,7 +43,8 @@ class Shaders {
   };
   std::string source_of(const std::string& file, bool embedded) const;
   Result<GlProgram> build(const Program& files, bool embedded) const;
-  Result<GLuint> compile(GLenum kind, const std::string& file, const std::string& defines, bool embedded) const;
+  Result<std::uint32_t> compile(std::uint32_t kind, const std::string& file, const std::string& defines,
+                                bool embedded) const;
   std::string with_file_names(const std::string& log, const std::string& file, bool embedded) const;
   void report_error(const std::string& text);
 
