@@ -30,7 +30,7 @@ source_time() {
 
 # packages with headers or static libraries, which become part of the program
 compiled_in='libimgui-dev libcli11-dev libglm-dev nlohmann-json3-dev libstb-dev libboost-dev libtinygltf-dev
-  libfmt-dev libspdlog-dev'
+  libfmt-dev'
 
 # install_licences FOLDER PACKAGE...: copies their license texts.
 install_licences() {

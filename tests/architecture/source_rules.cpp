@@ -71,7 +71,6 @@ constexpr std::array kLibraries{
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},
     Library{"histedit.h", "app"},
-    Library{"spdlog/", "base"},
     Library{"sanitizer/", "base"},
     Library{"valgrind/", "base"},
     Library{"fmt/", ""},
