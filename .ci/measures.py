@@ -2,6 +2,7 @@
 """Prints measures of the sources' structure: folders, classes, complexity, friends, lines, wording.
 
     .ci/measures.py            all but the cost of a rebuild
+    .ci/measures.py --check  fails if one of them exceeds its limit (LIMITS)
     .ci/measures.py --rebuild src/sim/world/motor.h
                                processor seconds that a change of this header costs in a debug build (a full build first)
 """
@@ -69,29 +70,45 @@ def classes_of(tokens):
     return found
 
 
-def report():
+# The largest permitted values, which --check enforces.
+LIMITS = {"files in a folder": 30, "functions of a class": 45, "fields of a class": 20, "cyclomatic complexity": 15,
+          "friend declarations": 8}
+
+
+def measure():
+    """Returns the lines of src, and for each of LIMITS the values with their places, largest first."""
     texts = sources()
-    folders = collections.Counter(os.path.dirname(name) for name in texts)
-    classes, complexity, friends, lines = [], [], 0, 0
+    values = {name: [] for name in LIMITS}
+    friends = 0
     for name, text in texts.items():
         tokens = cpp_source.tokens_of(text)
-        lines += text.count("\n")
         friends += sum(token.text == "friend" for token in tokens)
-        classes += [(functions, fields, title, name) for title, functions, fields in classes_of(tokens)]
+        for title, functions, fields in classes_of(tokens):
+            values["functions of a class"].append((functions, f"{title} ({name})"))
+            values["fields of a class"].append((fields, f"{title} ({name})"))
         for function in cpp_source.functions_of(tokens):
-            body = tokens[function.opening : function.closing]
-            complexity.append((1 + sum(token.text in BRANCHES for token in body), function.name, name))
-    largest = folders.most_common(1)[0]
+            branches = sum(token.text in BRANCHES for token in tokens[function.opening : function.closing])
+            values["cyclomatic complexity"].append((1 + branches, f"{function.name} ({name})"))
+    for folder, files in collections.Counter(os.path.dirname(name) for name in texts).items():
+        values["files in a folder"].append((files, folder))
+    values["friend declarations"].append((friends, "src"))
+    return sum(text.count("\n") for text in texts.values()), {k: sorted(v, reverse=True) for k, v in values.items()}
+
+
+def report():
+    lines, values = measure()
     print(f"lines in src: {lines}")
-    print(f"largest folder: {largest[0]}, {largest[1]} files")
-    most = max(classes)
-    print(f"most functions in a class: {most[2]} ({most[3]}), {most[0]}")
-    most = max(classes, key=lambda c: c[1])
-    print(f"most fields in a class: {most[2]} ({most[3]}), {most[1]}")
-    for value, title, name in sorted(complexity, reverse=True)[:5]:
-        print(f"cyclomatic complexity: {title} ({name}), {value}")
-    print(f"friend declarations: {friends}")
+    for name, found in values.items():
+        for value, place in found[:5]:
+            print(f"{name}: {value}, {place}" + (" (too many)" if value > LIMITS[name] else ""))
     subprocess.run([sys.executable, pathlib.Path(__file__).parent / "words.py", "--share"], check=False)
+
+
+def check():
+    too_many = [f"{place}: {value} {name}, at most {LIMITS[name]} are allowed"
+                for name, found in measure()[1].items() for value, place in found if value > LIMITS[name]]
+    print("\n".join(too_many) or "all measures are within their limits")
+    return 1 if too_many else 0
 
 
 def rebuild(header):
@@ -110,5 +127,7 @@ def rebuild(header):
 if __name__ == "__main__":
     if "--rebuild" in sys.argv:
         rebuild(sys.argv[sys.argv.index("--rebuild") + 1])
+    elif "--check" in sys.argv:
+        sys.exit(check())
     else:
         report()
