@@ -25,10 +25,12 @@ inline constexpr bool kAddressSanitizer = true;
 inline constexpr bool kAddressSanitizer = false;
 #endif
 
-#if defined(LIMBER_ADDRESS_SANITIZER) || defined(LIMBER_THREAD_SANITIZER)
-inline constexpr bool kSanitized = true;
+#ifdef LIMBER_THREAD_SANITIZER
+inline constexpr bool kThreadSanitizer = true;
 #else
-inline constexpr bool kSanitized = false;
+inline constexpr bool kThreadSanitizer = false;
 #endif
+
+inline constexpr bool kSanitized = kAddressSanitizer || kThreadSanitizer;
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 #include "engine/edited.h"
 #include "engine/rewound.h"
 #include "engine/taken.h"
+#include "support/left_out.h"
 
 namespace limber::engine_test {
 namespace {
@@ -50,7 +51,13 @@ std::string reply_to(Show& show, const char* address) {
   return {};
 }
 
-TEST(PanicButton, EveryShowComesToRest) {
+class PanicButton : public testing::Test {
+ protected:
+  void SetUp() override { LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "its tests use one thread"); }
+};
+
+TEST_F(PanicButton, EveryShowComesToRest) {
+  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
   for (const char* scene : {"arms", "hello", "live", "quadruped", "swarm"}) {
     for (const double motors : {0.0, 1.0}) {
       Show show(std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene + ".lua");
@@ -72,7 +79,7 @@ TEST(PanicButton, EveryShowComesToRest) {
   }
 }
 
-TEST(PanicButton, StopsScriptsButNotMessages) {
+TEST_F(PanicButton, StopsScriptsButNotMessages) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.ticks(60);
@@ -93,7 +100,7 @@ TEST(PanicButton, StopsScriptsButNotMessages) {
   EXPECT_EQ(show.read("/physics/body/ball/behavior/wind/active"), 1);
 }
 
-TEST(PanicButton, AScriptCanRequestAPanic) {
+TEST_F(PanicButton, AScriptCanRequestAPanic) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/panic");
@@ -111,7 +118,7 @@ TEST(PanicButton, AScriptCanRequestAPanic) {
   EXPECT_EQ(show.read(kPanicked), 0) << "twice in a tick is once";
 }
 
-TEST(PanicButton, ReleasingTheButtonDoesNothing) {
+TEST_F(PanicButton, ReleasingTheButtonDoesNothing) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/transport/panic", 1);
@@ -121,7 +128,7 @@ TEST(PanicButton, ReleasingTheButtonDoesNothing) {
   EXPECT_EQ(show.read(kPanicked), 1);
 }
 
-TEST(PanicButton, StopsMorphsAndRemovesMouseSprings) {
+TEST_F(PanicButton, StopsMorphsAndRemovesMouseSprings) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/preset/store", "calm");
@@ -139,7 +146,7 @@ TEST(PanicButton, StopsMorphsAndRemovesMouseSprings) {
   EXPECT_EQ(show.read("/preset/progress"), 1);
 }
 
-TEST(PanicButton, EndsWithAResetOrASavedScene) {
+TEST_F(PanicButton, EndsWithAResetOrASavedScene) {
   EditedShow edited(kPanicScene);
   edited.show().send("/transport/panic");
   edited.show().ticks(5);
@@ -156,7 +163,7 @@ TEST(PanicButton, EndsWithAResetOrASavedScene) {
   EXPECT_GT(edited.show().read(kBallSpeed, 1), before);
 }
 
-TEST(PanicButton, IsNeitherAnEditNorAnOverride) {
+TEST_F(PanicButton, IsNeitherAnEditNorAnOverride) {
   const SceneFile file(kPanicScene);
   Show show(file.path());
   show.send("/physics/sim/gravity", 0, 0, -1);
@@ -187,7 +194,7 @@ void expect_restored(Show& show, std::uint64_t ticks_pressed, std::vector<std::u
   ASSERT_TRUE(replays_identically(show, panic_tick, send_messages, hashes));
 }
 
-TEST(PanicButton, TheSecondPressRestoresTheLastCheckpoint) {
+TEST_F(PanicButton, TheSecondPressRestoresTheLastCheckpoint) {
   const ShowFolder folder;
   write_rewind_scene(folder);
   Show show(rewind_options(folder));
@@ -203,7 +210,7 @@ TEST(PanicButton, TheSecondPressRestoresTheLastCheckpoint) {
   }
 }
 
-TEST(PanicButton, TheCheckpointOutlivesTheHistory) {
+TEST_F(PanicButton, TheCheckpointOutlivesTheHistory) {
   const ShowFolder folder;
   write_rewind_scene(folder);
   EngineOptions options = rewind_options(folder);
@@ -215,7 +222,7 @@ TEST(PanicButton, TheCheckpointOutlivesTheHistory) {
   expect_restored(show, 3, hashes, no_inputs);
 }
 
-TEST(PanicButton, TheSecondPressWithoutHistoryContinuesFromRest) {
+TEST_F(PanicButton, TheSecondPressWithoutHistoryContinuesFromRest) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kPanicScene);
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
@@ -230,7 +237,7 @@ TEST(PanicButton, TheSecondPressWithoutHistoryContinuesFromRest) {
   EXPECT_EQ(show.engine.world().tick(), 201U);
 }
 
-TEST(PanicButton, ATakeWithPanicsReplaysToItsHash) {
+TEST_F(PanicButton, ATakeWithPanicsReplaysToItsHash) {
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kPanicScene);
   const std::string take = folder.path("panic.take");

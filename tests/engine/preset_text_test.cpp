@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
+#include "support/left_out.h"
 
 namespace limber {
 namespace {
@@ -39,7 +40,12 @@ bool same(const Preset& a, const Preset& b) {
          std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(double)) == 0;
 }
 
-TEST(PresetText, RoundTripIsExact) {
+class PresetText : public testing::Test {
+ protected:
+  void SetUp() override { LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "its tests use one thread"); }
+};
+
+TEST_F(PresetText, RoundTripIsExact) {
   Random random(1, "text");
   for (int i = 0; i < 50; i++) {
     const PresetList list{sample("one", random), sample("two", random)};
@@ -53,7 +59,7 @@ TEST(PresetText, RoundTripIsExact) {
   }
 }
 
-TEST(PresetText, WritesOneValuePerLine) {
+TEST_F(PresetText, WritesOneValuePerLine) {
   Random random(1, "text");
   const std::string text = text_of({sample("one", random)});
   EXPECT_TRUE(text.starts_with(R"({
@@ -74,7 +80,7 @@ TEST(PresetText, WritesOneValuePerLine) {
   EXPECT_EQ(text_of(PresetList{}), "{\n  \"limber presets\": 1,\n  \"presets\": []\n}\n");
 }
 
-TEST(PresetText, RejectsTruncatedText) {
+TEST_F(PresetText, RejectsTruncatedText) {
   Random random(2, "text");
   const std::string text = text_of({sample("one", random), sample("two", random)});
   for (std::size_t size = 1; size + 2 < text.size(); size++) {
@@ -87,7 +93,7 @@ TEST(PresetText, RejectsTruncatedText) {
   EXPECT_TRUE(parse_presets(" \n")->presets.empty());
 }
 
-TEST(PresetText, RejectsOtherText) {
+TEST_F(PresetText, RejectsOtherText) {
   struct Case {
     const char* text;
     const char* error;  // prefix
@@ -124,7 +130,7 @@ std::string problem_of(const std::string& values) {
   return read->problems.empty() ? "" : read->problems[0];
 }
 
-TEST(PresetText, ReportsInvalidValues) {
+TEST_F(PresetText, ReportsInvalidValues) {
   EXPECT_EQ(problem_of(R"("/scene": { "x": "NaN" })"), "") << "text is the label of a choice";
   EXPECT_EQ(problem_of(R"("/scene": { "x": null })"), "preset 'a', /scene: 'x' has a value of no known type");
   EXPECT_EQ(problem_of(R"("/scene": { "x": [1, "a"] })"), "preset 'a', /scene: 'x' has a value of no known type");
@@ -138,7 +144,7 @@ TEST(PresetText, ReportsInvalidValues) {
   EXPECT_EQ(problem_of(R"("/)" + std::string(10000, '/') + R"(": { "x": 1 })").substr(0, 17), "preset 'a': '////");
 }
 
-TEST(PresetText, MakesNamesUnique) {
+TEST_F(PresetText, MakesNamesUnique) {
   const auto read = parse_presets(R"({ "limber presets": 1, "presets": [
     { "name": "a", "values": { "/scene": { "x": 1 } } },
     { "name": "a", "values": { "/scene": { "x": 2 } } },
@@ -154,7 +160,8 @@ TEST(PresetText, MakesNamesUnique) {
   EXPECT_EQ(read->presets[1]->values, (std::vector<double>{2}));
 }
 
-TEST(PresetText, ReadsAHundredMegabytes) {
+TEST_F(PresetText, ReadsAHundredMegabytes) {
+  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
   std::string text = R"({ "limber presets": 1, "presets": [ { "name": "large", "values": {)";
   std::size_t node_count = 0;
   while (text.size() < 100'000'000) {

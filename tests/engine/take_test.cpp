@@ -3,6 +3,7 @@
 
 #include "engine/taken.h"
 #include "engine/takes/writer.h"
+#include "support/left_out.h"
 
 namespace limber::engine_test {
 namespace {
@@ -39,6 +40,7 @@ struct SmallTake {
 };
 
 TEST(Take, ReplaysARandomSessionExactly) {
+  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   write_take_scene(folder);
   const std::string take = folder.path("wild.take");

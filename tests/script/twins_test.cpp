@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <ostream>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/sanitized.h"
 #include "behavior_stage.h"
+#include "support/left_out.h"
 
 namespace limber {
 namespace {
@@ -144,7 +146,13 @@ std::pair<double, double> deviation(const Trajectory& a, const Trajectory& b) {
   return {max_deviation, max_travel};
 }
 
+bool is_quick(const Twin& twin) {
+  const auto types = {"force", "torque", "speed", "target_attraction", "cohesion"};
+  return std::find(types.begin(), types.end(), std::string_view(twin.type)) != types.end();
+}
+
 TEST_P(Twins, MoveAlike) {
+  LIMBER_LEAVE_OUT_IF(kAddressSanitizer && !is_quick(GetParam()), "quicker types execute the same code");
   const Twin& twin = GetParam();
   const Trajectory alone = played("force", "amp = 0", false);
   for (std::size_t set = 0; set < std::min(twin.sets.size(), kSets); set++) {
