@@ -44,14 +44,6 @@ ShapeModel hull_prism(double radius, double height, int corners) {
   return hull_model(points, {2 * radius, 2 * radius, height});
 }
 
-ShapeModel round_model(ShapeKind kind, double radius, double height) {
-  ShapeModel m;
-  m.kind = kind;
-  m.radius = radius;
-  m.height = height;
-  return m;
-}
-
 struct Solid {
   const char* name;
   ShapeModel model;

@@ -14,14 +14,6 @@ namespace {
 
 using namespace test;
 
-ShapeModel round_model(ShapeKind kind, double radius, double height) {
-  ShapeModel m;
-  m.kind = kind;
-  m.radius = radius;
-  m.height = height;
-  return m;
-}
-
 // A cuboid as a mesh of points.
 ShapeModel hull_model(const Vec3& size) {
   auto mesh = std::make_shared<MeshModel>();
