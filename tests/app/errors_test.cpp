@@ -182,7 +182,7 @@ TEST(Errors, TableIsComplete) {
     const std::string name = entry.path().stem().string();
     if (name == "console" || name == "monitor" || name.starts_with("describe") || name == "doctor" ||
         name == "exit_code" || name == "window" || name == "film_file" || name == "inspect" || name == "man_page" ||
-        name.starts_with("service") || name == "show" || name.starts_with("bench_") || name.starts_with("completion_"))
+        name.starts_with("service") || name == "show" || name.starts_with("completion_"))
       continue;
     for (const std::string& text : error_literals(read_file(entry.path()))) {
       found++;

@@ -177,7 +177,7 @@ TEST(BashCompletion, OffersMatchingWords) {
                              {"limber --osc-in ''", "off"},
                              {"limber --set ''", ""},
                              {"limber export --format g", "gltf"},
-                             {"limber bench solver pan", "panel"},
+                             {"limber bench --j", "--json"},
                              {"limber completion ''", "bash zsh"}}) {
     EXPECT_EQ(sorted_words(offered(folder, offer.line)), sorted_words(offer.words)) << offer.line;
   }

@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "bench/raw/loop.h"
 #include "sim/arm.h"
 #include "sim/counted_new.h"
 #include "sim/stage.h"
-#include "sim/world/raw_loop.h"
 
 namespace limber {
 namespace {

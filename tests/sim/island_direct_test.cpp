@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/raw/machines.h"
 #include "joint_rig.h"
-#include "sim/world/raw_machines.h"
 #include "stage.h"
 
 namespace limber {
@@ -268,8 +268,8 @@ TEST(DirectSolver, ClosesJointsOfClampedBodies) {
   }
 }
 
-// `limber bench solver` runs 300 such trees. Without closing the joints, seven of these drift apart by more than 10 cm,
-// and nearly all of stock Bullet's.
+// `limber_measure solver` runs 300 such trees. Without closing the joints, seven of these drift apart by more than 10
+// cm, and nearly all of stock Bullet's.
 TEST(DirectSolver, RandomTreesKeepTheirJointsClosed) {
   for (unsigned seed = 500; seed < 530; ++seed) {
     const RawScene s = raw_with_step(raw_random_tree(seed, true), 1.0 / 30);

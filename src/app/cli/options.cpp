@@ -129,13 +129,9 @@ void add_describe(CLI::App& app, CommandLine& line) {
 }
 
 void add_bench(CLI::App& app, CommandLine& line) {
-  CLI::App* bench = app.add_subcommand("bench", "Measure the speed on this machine.");
-  bench->add_option("scene", line.bench.scenes, "Benchmarks to run; default: all.")
-      ->type_name("SCENE:{" + bench_scene_list() + "}");
-  bench->add_flag("--compare-raw", line.bench.compare_raw, "Compare with a plain Bullet loop.");
+  CLI::App* bench = app.add_subcommand("bench", "Measure how many arms this machine plays in real time.");
   bench->add_flag("--json", line.bench.json, "Print JSON.");
-  add_gl_option(*bench, line.bench.gl);
-  bench->add_option("--ticks", line.bench.ticks, "Number of timed ticks; default: depends on the benchmark.")
+  bench->add_option("--ticks", line.bench.ticks, "Number of timed ticks for each number of arms; default: 60.")
       ->type_name("N")
       ->check(whole_number());
 }
