@@ -1,5 +1,6 @@
 // Name comparison, OSC pattern matching, edit distance, escaping, numbers.
 #include "base/text.h"
+#include "base/utf8.h"
 
 #include <algorithm>
 #include <charconv>
@@ -90,26 +91,6 @@ struct Matcher {
     return false;
   }
 };
-
-// Returns the number of bytes of the UTF-8 character at the start of s, or 0 if it is invalid.
-std::size_t utf8_length(std::string_view s) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(s[i]); };
-  const unsigned char a = byte(0);
-  const std::size_t n = a < 0x80                  ? 1
-                        : (a >= 0xc2 && a < 0xe0) ? 2
-                        : (a >= 0xe0 && a < 0xf0) ? 3
-                        : (a >= 0xf0 && a < 0xf5) ? 4
-                                                  : 0;
-  if (n == 0 || s.size() < n) return 0;
-  for (std::size_t i = 1; i < n; i++) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  }
-  if (a == 0xe0 && byte(1) < 0xa0) return 0;
-  if (a == 0xed && byte(1) >= 0xa0) return 0;
-  if (a == 0xf0 && byte(1) < 0x90) return 0;
-  if (a == 0xf4 && byte(1) >= 0x90) return 0;
-  return n;
-}
 
 // Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbors; ignores case.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -206,6 +187,30 @@ std::string name_hint(std::string_view written, std::span<const std::string_view
 std::string name_hint(std::string_view written, const std::vector<std::string>& names) {
   const std::vector<std::string_view> views(names.begin(), names.end());
   return name_hint(written, std::span<const std::string_view>(views));
+}
+
+std::size_t utf8_length(std::string_view text) {
+  // The valid ranges of the first two bytes (Unicode, table 3-7): no overlong forms, surrogates or values above 10FFFF.
+  struct Form {
+    unsigned char first, last;  // of the first byte
+    std::size_t length;
+    unsigned char second_first, second_last;
+  };
+  static constexpr Form kForms[] = {
+      {0x00, 0x7f, 1, 0x00, 0x00}, {0xc2, 0xdf, 2, 0x80, 0xbf}, {0xe0, 0xe0, 3, 0xa0, 0xbf},
+      {0xe1, 0xec, 3, 0x80, 0xbf}, {0xed, 0xed, 3, 0x80, 0x9f}, {0xee, 0xef, 3, 0x80, 0xbf},
+      {0xf0, 0xf0, 4, 0x90, 0xbf}, {0xf1, 0xf3, 4, 0x80, 0xbf}, {0xf4, 0xf4, 4, 0x80, 0x8f}};
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  for (const Form& form : kForms) {
+    if (byte(0) < form.first || byte(0) > form.last) continue;
+    if (form.length == 1) return 1;
+    if (text.size() < form.length || byte(1) < form.second_first || byte(1) > form.second_last) return 0;
+    for (std::size_t i = 2; i < form.length; i++) {
+      if ((byte(i) & 0xc0) != 0x80) return 0;
+    }
+    return form.length;
+  }
+  return 0;
 }
 
 std::string printable(std::string_view text) {

@@ -1,4 +1,4 @@
-// Sanitizes a URDF's bytes: encoding, control characters, and (with urdf_markup.h) the markup.
+// Sanitizes a URDF's bytes: encoding, control characters, and (in urdf_markup.cpp) the markup.
 #include "model/xml_text.h"
 
 #include <filesystem>
@@ -8,37 +8,18 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "model/urdf/markup.h"
+#include "base/utf8.h"
 
 namespace limber {
 
 namespace {
-
-/// Length of the UTF-8 sequence that starts at `at`, or 0 if it is invalid (overlong, surrogate, truncated).
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
-  const unsigned first = byte(at);
-  const std::size_t length = first < 0x80                    ? 1
-                             : first >= 0xC2 && first < 0xE0 ? 2
-                             : first >= 0xE0 && first < 0xF0 ? 3
-                             : first >= 0xF0 && first < 0xF5 ? 4
-                                                             : 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xC0u) != 0x80u) return 0;
-  }
-  const unsigned second = byte(at + 1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool surrogate = first == 0xED && second >= 0xA0;
-  const bool beyond = first == 0xF4 && second >= 0x90;
-  return overlong || surrogate || beyond ? 0 : length;
-}
 
 std::string to_utf8(std::string_view bytes, Problems& problems) {
   std::string out;
   out.reserve(bytes.size());
   std::size_t invalid_bytes = 0;
   for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t length = utf8_length(bytes, i);
+    const std::size_t length = utf8_length(bytes.substr(i));
     if (length > 0) {
       out.append(bytes.substr(i, length));
       i += length;

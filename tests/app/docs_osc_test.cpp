@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/describe_page.h"
+#include "app/commands/describe.h"
 #include "app/commands/send.h"
 #include "app/program.h"
 #include "engine/engine.h"

@@ -1,4 +1,5 @@
-// The command line as plain data: the source of the man page and of the completions for shells.
+// The command line as plain data, and the manual page and the completions for shells that are generated from it, so
+// that no option is missing.
 #pragma once
 
 #include <string>
@@ -37,5 +38,14 @@ CommandInfo command_info(const CLI::App& app);
 /// Returns the file name extension that completes the option's value: "lua" for "SCENE.lua", "take" for "TAKE"; "*" for
 /// any file, "/" for a folder; empty if the value is not a file. [any]
 std::string file_extension(const OptionInfo& option);
+
+/// Returns limber(1) in the man macros of roff, with all commands on one page. [any]
+std::string man_page(const CommandInfo& program);
+
+/// Returns a bash script that completes `limber`. It depends on no other script. [any]
+std::string bash_completion(const CommandInfo& program);
+
+/// Returns a function for zsh's completion system, to be saved as `_limber` in `fpath`. [any]
+std::string zsh_completion(const CommandInfo& program);
 
 }  // namespace limber

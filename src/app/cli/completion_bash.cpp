@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/completion.h"
+#include "app/cli/command_info.h"
 
 namespace limber {
 
@@ -95,15 +95,20 @@ struct BashTables {
   std::string commands, valued, options, values, arguments;
 };
 
+void append_word(std::string& list, std::string_view separator, const std::string& word) {
+  if (!list.empty()) list += separator;
+  list += word;
+}
+
 void add_to_tables(BashTables& tables, const CommandInfo& command, const std::string& path) {
   std::string inner, valued, options;
-  for (const CommandInfo& one : command.commands) inner += (inner.empty() ? "" : " ") + one.name;
+  for (const CommandInfo& one : command.commands) append_word(inner, " ", one.name);
   for (const OptionInfo& option : command.options) {
     std::string patterns;
     for (const std::string& name : option.names) {
-      options += (options.empty() ? "" : " ") + name;
-      if (!option.value.empty()) valued += (valued.empty() ? "" : " ") + name;
-      patterns += fmt::format("{}'{} {}'", patterns.empty() ? "" : " | ", path, name);
+      append_word(options, " ", name);
+      if (!option.value.empty()) append_word(valued, " ", name);
+      append_word(patterns, " | ", fmt::format("'{} {}'", path, name));
     }
     if (const std::string completions = bash_completions(option); !completions.empty())
       tables.values += fmt::format("    {}) printf '%s\\n'{} ;;\n", patterns, completions);

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/cli/completion.h"
+#include "app/cli/command_info.h"
 
 namespace limber {
 

@@ -1,5 +1,5 @@
 // Writes roff. Help texts are plain text: a line that begins with two spaces is an example, "command   explanation".
-#include "app/cli/man_page.h"
+#include "app/cli/command_info.h"
 
 #include <string_view>
 

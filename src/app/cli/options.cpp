@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 #include <new>
 #include <optional>
 #include <sstream>
@@ -15,13 +16,10 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/command_info.h"
-#include "app/cli/completion.h"
-#include "app/cli/man_page.h"
 #include "app/cli/play_options.h"
 #include "app/commands/annotate.h"
 #include "app/commands/bench.h"
 #include "app/commands/describe.h"
-#include "app/commands/describe_page.h"
 #include "app/commands/doctor.h"
 #include "app/commands/export.h"
 #include "app/commands/inspect.h"
@@ -382,6 +380,33 @@ int run_service(ServiceCommand& command) {
   return service_command(command);
 }
 
+struct CommandRunner {
+  std::string_view name;
+  int (*run)(CommandLine& line);
+};
+// all but those that need the command line's description: completion and man
+constexpr CommandRunner kRunners[] = {
+    {"play", [](CommandLine& l) { return play_command(l.play); }},
+    {"inspect", [](CommandLine& l) { return inspect_command(l.robot, l.json, l.package_paths); }},
+    {"describe",
+     [](CommandLine& l) {
+       if (!l.markdown) return describe_command(l.scene, l.json);
+       print_result("{}", describe_page());
+       return kSuccess;
+     }},
+    {"console", [](CommandLine& l) { return console_command(l.console); }},
+    {"monitor", [](CommandLine& l) { return monitor_command(l.monitor); }},
+    {"send", [](CommandLine& l) { return send_command(l.send); }},
+    {"new", [](CommandLine& l) { return new_command(l.create); }},
+    {"preset", [](CommandLine& l) { return preset_command(l.preset); }},
+    {"take", [](CommandLine& l) { return take_command(l.take); }},
+    {"export", [](CommandLine& l) { return export_command(l.exported); }},
+    {"annotate", [](CommandLine& l) { return annotate_command(l.definitions); }},
+    {"bench", [](CommandLine& l) { return bench_command(l.bench); }},
+    {"doctor", [](CommandLine& l) { return doctor_command(l.doctor); }},
+    {"service", [](CommandLine& l) { return run_service(l.service); }},
+};
+
 int run_command(int argc, char** argv) {
   CLI::App app{kAbout, "limber"};
   CommandLine line;
@@ -406,25 +431,8 @@ int run_command(int argc, char** argv) {
     return kUsageError;
   }
   const std::string command = app.get_subcommands().front()->get_name();
-  if (command == "inspect") return inspect_command(line.robot, line.json, line.package_paths);
-  if (command == "describe" && line.markdown) {
-    print_result("{}", describe_page());
-    return 0;
-  }
-  if (command == "describe") return describe_command(line.scene, line.json);
-  if (command == "console") return console_command(line.console);
-  if (command == "monitor") return monitor_command(line.monitor);
-  if (command == "send") return send_command(line.send);
-  if (command == "new") return new_command(line.create);
-  if (command == "preset") return preset_command(line.preset);
-  if (command == "take") return take_command(line.take);
-  if (command == "export") return export_command(line.exported);
-  if (command == "annotate") return annotate_command(line.definitions);
-  if (command == "bench") return bench_command(line.bench);
-  if (command == "doctor") return doctor_command(line.doctor);
-  if (command == "service") return run_service(line.service);
-  if (command == "completion" || command == "man") return print_shell_file(app, command, line.shell);
-  return play_command(line.play);
+  const auto* const runner = std::ranges::find(kRunners, command, &CommandRunner::name);
+  return runner != std::end(kRunners) ? runner->run(line) : print_shell_file(app, command, line.shell);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 // Writes one table per class, with one line per property.
-#include "app/commands/describe_page.h"
+#include "app/commands/describe.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "app/commands/describe.h"
 #include "base/text.h"
 #include "engine/commands/message_dispatcher.h"
 #include "properties/property_text.h"

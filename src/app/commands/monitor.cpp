@@ -59,13 +59,15 @@ int monitor_command(const MonitorCommand& command) {
   MessagePrinter printer(command);
   while (end_requested == 0) {
     const std::optional<ConsoleLine> line = link->next(-1);
-    if (line && line->kind == Kind::error) return fail(kInputError, "monitor: " + line->text);
-    if (line && line->kind == Kind::rejected) return fail(kInputError, "monitor: " + line->text);
-    if (line && line->kind == Kind::done && line->id == 1)
+    if (!line) {
+      if (link->ended() || result_error() != 0) return kSuccess;
+      continue;
+    }
+    if (line->kind == Kind::error || line->kind == Kind::rejected) return fail(kInputError, "monitor: " + line->text);
+    if (line->kind == Kind::done && line->id == 1)
       print_notice("watching {} of {} ({})", command.changes ? "changes" : "messages in (<) and out (>)", hello.pid,
                    hello.text);
-    if ((line && !printer.show(*line)) || result_error() != 0) return kSuccess;
-    if (!line && link->ended()) return kSuccess;
+    if (!printer.show(*line) || result_error() != 0) return kSuccess;
   }
   return kSuccess;
 }

@@ -19,28 +19,33 @@ bool is_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdefABCDEF") == std::string_view::npos;
 }
 
+template <std::size_t Digits>
+bool is_hexadecimal_of(const std::string& word) {
+  return word.size() == Digits && is_hexadecimal(word);
+}
+
+struct WordFormat {
+  std::string_view tags;
+  bool (*fits)(const std::string& word);
+  const char* expected;  // for an error message
+};
+constexpr WordFormat kFormats[] = {
+    {"ihfd", [](const std::string& word) { return parse_number(word).has_value(); }, "a number"},
+    {"c", [](const std::string& word) { return word.size() == 1 && static_cast<unsigned char>(word[0]) < 128; },
+     "one ASCII character"},
+    {"r", &is_hexadecimal_of<8>, "8 hexadecimal digits: red, green, blue, alpha"},
+    {"m", &is_hexadecimal_of<8>, "8 hexadecimal digits: port, status, data, data"},
+    {"t", &is_hexadecimal_of<16>, "16 hexadecimal digits: seconds since 1900, fraction"},
+    {"b", [](const std::string& word) { return word.size() % 2 == 0 && is_hexadecimal(word); },
+     "pairs of hexadecimal digits"},
+};
+
 // describes the expected word for an error message; null: the word is valid
 const char* expected_word(char tag, const std::string& word) {
-  switch (tag) {
-    case 'i':
-    case 'h':
-    case 'f':
-    case 'd':
-      return parse_number(word) ? nullptr : "a number";
-    case 'c':
-      return word.size() == 1 && static_cast<unsigned char>(word[0]) < 128 ? nullptr : "one ASCII character";
-    case 'r':
-      return word.size() == 8 && is_hexadecimal(word) ? nullptr : "8 hexadecimal digits: red, green, blue, alpha";
-    case 'm':
-      return word.size() == 8 && is_hexadecimal(word) ? nullptr : "8 hexadecimal digits: port, status, data, data";
-    case 't':
-      return word.size() == 16 && is_hexadecimal(word) ? nullptr
-                                                       : "16 hexadecimal digits: seconds since 1900, fraction";
-    case 'b':
-      return word.size() % 2 == 0 && is_hexadecimal(word) ? nullptr : "pairs of hexadecimal digits";
-    default:
-      return nullptr;
+  for (const WordFormat& format : kFormats) {
+    if (format.tags.find(tag) != std::string_view::npos) return format.fits(word) ? nullptr : format.expected;
   }
+  return nullptr;
 }
 
 Arg arg_of_tag(char tag, const std::string& word) {

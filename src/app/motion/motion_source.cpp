@@ -190,25 +190,28 @@ Result<void> MotionSource::add_frame(double time, const Snapshot& before, const 
       samples_.emplace_back();
       if (Result<void> added = writer.add_body(track.body); !added) return added;
     }
-    MotionSample& sample = samples_[*track.writer_number];
-    sample.present = true;
-    sample.links.resize(a.part_offsets.size());
-    sample.values.resize(track.values.size());
     const bool continues = interpolates && number < next.body_of.size() && next.body_of[number] >= 0;
     const BodyEntry& b = continues ? now.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
-    const Snapshot& to = continues ? now : snapshot;
-    const double part = continues ? mix : 0;
-    for (std::size_t k = 0; k < a.part_offsets.size(); k++)
-      sample.links[k] = interpolate(pose_in(snapshot, a.part_offsets[k]), pose_in(to, b.part_offsets[k]), part);
-    for (std::size_t k = 0; k < track.values.size(); k++) {
-      const Value& value = track.values[k];
-      const double from = snapshot.transient[a.joint_offsets[value.joint] + value.offset];
-      double difference = to.transient[b.joint_offsets[value.joint] + value.offset] - from;
-      if (value.is_angle) difference -= 2 * kPi * std::round(difference / (2 * kPi));
-      sample.values[k] = from + difference * part;
-    }
+    fill_sample(track, {snapshot, a}, {continues ? now : snapshot, b}, continues ? mix : 0);
   }
   return writer.add_frame(time, samples_);
+}
+
+void MotionSource::fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix) {
+  MotionSample& sample = samples_[*track.writer_number];
+  sample.present = true;
+  sample.links.resize(from.body.part_offsets.size());
+  sample.values.resize(track.values.size());
+  for (std::size_t k = 0; k < sample.links.size(); k++)
+    sample.links[k] = interpolate(pose_in(from.snapshot, from.body.part_offsets[k]),
+                                  pose_in(to.snapshot, to.body.part_offsets[k]), mix);
+  for (std::size_t k = 0; k < track.values.size(); k++) {
+    const Value& value = track.values[k];
+    const double start = from.snapshot.transient[from.body.joint_offsets[value.joint] + value.offset];
+    double difference = to.snapshot.transient[to.body.joint_offsets[value.joint] + value.offset] - start;
+    if (value.is_angle) difference -= 2 * kPi * std::round(difference / (2 * kPi));
+    sample.values[k] = start + difference * mix;
+  }
 }
 
 }  // namespace limber

@@ -56,6 +56,13 @@ class MotionSource {
     std::vector<int> body_of;
   };
 
+  // a body in a snapshot
+  struct BodyAt {
+    const Snapshot& snapshot;
+    const BodyEntry& body;
+  };
+  void fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix);
+
   int find_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
   Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
   bool is_selected(const std::string& name) const;

@@ -106,13 +106,14 @@ int install(const ServiceCommand& command) {
   const Result<std::string> text = service_unit_text(unit);
   if (!text) return fail(kInputError, text.error());
   const std::string file = unit_file(name);
-  if (!command.print && owner_of(file) == Owner::other) return fail_not_ours(file);
-  if (!command.print) {
-    if (const Result<void> written = write_unit(file, *text); !written)
-      return fail(kMachineError, fmt::format("{} can't be written: {}", file, written.error()));
+  if (command.print) {
+    print_result("{}", *text);
+    return kSuccess;
   }
+  if (owner_of(file) == Owner::other) return fail_not_ours(file);
+  if (const Result<void> written = write_unit(file, *text); !written)
+    return fail(kMachineError, fmt::format("{} can't be written: {}", file, written.error()));
   print_result("{}", *text);
-  if (command.print) return kSuccess;
   print_notice("written: {}", file);
   print_notice("systemctl --user daemon-reload && systemctl --user enable --now {}", unit.name);
   if (!unit.window) print_notice("to start it without a login: loginctl enable-linger");

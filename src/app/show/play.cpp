@@ -319,6 +319,13 @@ Result<void> open_output(const PlayOptions& options) {
   return {};
 }
 
+Result<void> check_options(const PlayOptions& options) {
+  if (Result<void> display = check_display_options(options.display, options.duration); !display) return display;
+  if (options.recover && options.display.offline())
+    return Error{"--recover can't be combined with --render and --screenshot; leave them out"};
+  return {};
+}
+
 }  // namespace
 
 int play_command(const PlayOptions& options) {
@@ -330,10 +337,7 @@ int play_command(const PlayOptions& options) {
   write_message(
       MessageLevel::info,
       fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.replay : options.scene)), "");
-  if (Result<void> display_check = check_display_options(options.display, options.duration); !display_check)
-    return fail(kUsageError, display_check.error());
-  if (options.recover && options.display.offline())
-    return fail(kUsageError, "--recover can't be combined with --render and --screenshot; leave them out");
+  if (const Result<void> fits = check_options(options); !fits) return fail(kUsageError, fits.error());
   Result<OscOptions> osc = parse_osc(options);
   if (!osc) return fail(kUsageError, osc.error());
   Result<QueryAddresses> query = parse_query(options.query);

@@ -117,26 +117,29 @@ inline double pow_common(std::uint64_t x_bits, double y) {
   return detail::scaled(detail::exp_sum(detail::exp_terms(exponent, low, exponent + low)));
 }
 
+// The power if it is too large or too small for a number: infinity or 0.
+double infinite_power(double x_size, double y) { return (x_size > 1) == (y > 0) ? kInfinity : 0; }
+
+// The bits of a positive number; a subnormal one gets a negative exponent instead.
+std::uint64_t normalized_bits(double x_size) {
+  const std::uint64_t bits = bits_of(x_size);
+  return bits < kMinNormalBits ? bits_of(x_size * 0x1p52) - (std::uint64_t{52} << 52) : bits;
+}
+
 double pow_of_negative_or_special(double x, double y) {
   if (y == 0 || x == 1) return 1;
   if (x != x || y != y) return kNaN;
   const double x_size = magnitude(x);
   const double y_size = magnitude(y);
-  if (y_size == kInfinity) {
-    if (x_size == 1) return 1;
-    return (x_size > 1) == (y > 0) ? kInfinity : 0;
-  }
+  if (y_size == kInfinity) return x_size == 1 ? 1 : infinite_power(x_size, y);
   const bool negative = (bits_of(x) & kSignBit) != 0;
   const Parity parity = negative ? parity_of(y) : Parity::even;
   const double sign = parity == Parity::odd ? -1 : 1;
-  if (x_size == 0) return sign * (y < 0 ? kInfinity : 0);
-  if (x_size == kInfinity) return sign * (y < 0 ? 0 : kInfinity);
+  if (x_size == 0 || x_size == kInfinity) return sign * infinite_power(x_size, y);
   if (parity == Parity::not_integer) return kNaN;
   if (x_size == 1 || y_size < 0x1p-65) return sign;
-  if (y_size >= 0x1p63) return sign * ((x_size > 1) == (y > 0) ? kInfinity : 0);
-  std::uint64_t bits = bits_of(x_size);
-  if (bits < kMinNormalBits) bits = bits_of(x_size * 0x1p52) - (std::uint64_t{52} << 52);
-  return sign * pow_common(bits, y);
+  if (y_size >= 0x1p63) return sign * infinite_power(x_size, y);
+  return sign * pow_common(normalized_bits(x_size), y);
 }
 
 }  // namespace

@@ -62,6 +62,21 @@ void add_fan(std::span<const Vec3> corners, MeshSoup& soup) {
   }
 }
 
+// Reads the positions of X, Y and Z among the parameters of an accessor. Returns a bit for each that it names.
+template <class Axes>
+int read_axes(const Element& accessor, Axes& axes) {
+  int found = 0;
+  std::size_t at = 0;
+  for (const Element* e = accessor.FirstChildElement("param"); e; e = e->NextSiblingElement("param"), ++at) {
+    const char* name = e->Attribute("name");
+    const std::size_t axis = name && name[0] != 0 && name[1] == 0 ? std::string_view("XYZ").find(*name) : 3;
+    if (axis >= 3) continue;
+    axes[axis] = at;
+    found |= 1 << axis;
+  }
+  return found;
+}
+
 }  // namespace
 
 Result<const std::vector<double>*> GeometryReader::array_of(const Element* source, const Element* accessor,
@@ -99,15 +114,7 @@ Result<GeometryReader::Points> GeometryReader::points_of(const Element* source, 
     if (!*attribute) return Error{attribute->error()};
   }
   points.count = *count, points.stride = *stride, points.offset = *offset;
-  int axes_found = 0;
-  std::size_t at = 0;
-  for (const Element* e = accessor->FirstChildElement("param"); e; e = e->NextSiblingElement("param"), ++at) {
-    const char* name = e->Attribute("name");
-    const std::size_t axis = name && name[0] != 0 && name[1] == 0 ? std::string_view("XYZ").find(*name) : 3;
-    if (axis >= 3) continue;
-    points.axis[axis] = at;
-    axes_found |= 1 << axis;
-  }
+  const int axes_found = read_axes(*accessor, points.axis);
   const std::size_t farthest = *std::max_element(points.axis.begin(), points.axis.end());
   if ((axes_found != 0 && axes_found != 7) || farthest >= points.stride) {
     return error_at(accessor, "an accessor of positions has no X, Y and Z");

@@ -133,6 +133,11 @@ class Quickhull {
   std::vector<int> pending_;
 };
 
+// True if the nearest point of a triangle is on an edge: the point is outside of it (`area`) and between its ends.
+bool is_beside_edge(double area, double from_begin, double from_end) {
+  return area <= 0 && from_begin >= 0 && from_end <= 0;
+}
+
 }  // namespace
 
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -143,11 +148,11 @@ double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
   if (d3 >= 0 && d4 <= d3) return glm::length(bp);
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return glm::length(ap - d1 / (d1 - d3) * ab);
+  if (is_beside_edge(vc, d1, d3)) return glm::length(ap - d1 / (d1 - d3) * ab);
   const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
   if (d6 >= 0 && d5 <= d6) return glm::length(cp);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return glm::length(ap - d2 / (d2 - d6) * ac);
+  if (is_beside_edge(vb, d2, d6)) return glm::length(ap - d2 / (d2 - d6) * ac);
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 >= d3 && d5 >= d6) return glm::length(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
   const double sum = va + vb + vc;

@@ -63,6 +63,18 @@ std::string canonical_path(const fs::path& path) {
   return fault ? path.string() : whole.string();
 }
 
+// Searches a folder and its parents for a file with one of these relative paths; empty: not found.
+fs::path find_upwards(fs::path at, const std::vector<fs::path>& suffixes) {
+  for (int level = 0; level < kMaxParentFolders; ++level) {
+    for (const fs::path& suffix : suffixes) {
+      if (is_file(at / suffix)) return at / suffix;
+    }
+    if (!at.has_parent_path() || at.parent_path() == at) break;
+    at = at.parent_path();
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
@@ -86,14 +98,7 @@ Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
       if (is_file(fs::path(packages) / suffix)) return canonical_path(fs::path(packages) / suffix);
     }
   }
-  fs::path at = start;
-  for (int level = 0; level < kMaxParentFolders; ++level) {
-    for (const fs::path& suffix : suffixes) {
-      if (is_file(at / suffix)) return canonical_path(at / suffix);
-    }
-    if (!at.has_parent_path() || at.parent_path() == at) break;
-    at = at.parent_path();
-  }
+  if (const fs::path found = find_upwards(start, suffixes); !found.empty()) return canonical_path(found);
   return Error{fmt::format("'{}' not found in {}, and parent folders. Put the file there, or give --package-path DIR.",
                            printable(uri), searched)};
 }

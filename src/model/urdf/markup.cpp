@@ -1,13 +1,11 @@
 // Markup scanner: tags, comments, CDATA and declarations; tracks nesting without recursion.
-#include "model/urdf/markup.h"
+#include "model/xml_text.h"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include "model/xml_text.h"
 
 namespace limber {
 
@@ -84,35 +82,54 @@ class Scanner {
     problems_.error(line_of(text_, open), "DOCTYPE ignored: it could include other files",
                     "Remove the DOCTYPE and expand its entities.");
   }
+  enum class TagKind { start, end, empty };
+  struct Tag {
+    TagKind kind = TagKind::start;
+    std::size_t end = 0;                            // of its '>'; the size of the text if there is none
+    std::size_t too_many_from = std::string::npos;  // end of the last attribute that is allowed
+  };
+
   /// Scans a start or end tag at `open`; true if it ends the first element.
   bool scan_tag(std::size_t open) {
-    const bool closing = starts_with("</");
+    const Tag tag = read_tag(open);
+    position_ = std::min(tag.end + 1, text_.size());
+    has_element_ = true;
+    if (tag.too_many_from != std::string::npos)
+      blank_attributes(tag.too_many_from, tag.kind == TagKind::empty ? tag.end - 1 : tag.end);
+    if (tag.end >= text_.size()) return false;
+    track_depth(tag.kind, open);
+    return depth_ <= 0;
+  }
+  Tag read_tag(std::size_t open) {
+    Tag tag;
+    if (starts_with("</")) tag.kind = TagKind::end;
     char quote = 0;
     int attributes = 0;
-    std::size_t too_many = std::string::npos;
     std::size_t i = open + 1;
     for (; i < text_.size() && (quote != 0 || text_[i] != '>'); ++i) {
       if (quote != 0) {
         quote = text_[i] == quote ? '\0' : quote;
       } else if (text_[i] == '"' || text_[i] == '\'') {
         quote = text_[i];
-      } else if (text_[i] == '=' && !closing) {
-        if (++attributes == kMaxAttributes) too_many = text_.find_last_of(" \t\r\n", i);
+      } else if (text_[i] == '=' && tag.kind != TagKind::end) {
+        if (++attributes == kMaxAttributes) tag.too_many_from = text_.find_last_of(" \t\r\n", i);
         i = record_unquoted_value(i);
       }
     }
-    const bool empty = !closing && i > open + 1 && text_[i - 1] == '/';
-    position_ = std::min(i + 1, text_.size());
-    has_element_ = true;
-    if (too_many != std::string::npos) blank_attributes(too_many, empty ? i - 1 : i);
-    if (i >= text_.size()) return false;
-    depth_ += closing ? -1 : (empty ? 0 : 1);
-    if (!closing && depth_ + (empty ? 1 : 0) > kMaxUrdfDepth && deep_from_ == std::string::npos) {
+    tag.end = i;
+    if (tag.kind == TagKind::start && i > open + 1 && text_[i - 1] == '/') tag.kind = TagKind::empty;
+    return tag;
+  }
+  /// Updates the depth after a tag at `open`; blanks an element that is nested too deep as soon as it ends.
+  void track_depth(TagKind kind, std::size_t open) {
+    if (kind == TagKind::end) {
+      --depth_;
+    } else if (depth_ + 1 > kMaxUrdfDepth && deep_from_ == std::string::npos) {
       deep_from_ = open;
-      deep_depth_ = depth_ - (empty ? 0 : 1);
+      deep_depth_ = depth_;
     }
-    if (deep_from_ != std::string::npos && depth_ <= deep_depth_ && (closing || empty)) blank_deep_element();
-    return depth_ <= 0;
+    if (kind == TagKind::start) ++depth_;
+    if (deep_from_ != std::string::npos && depth_ <= deep_depth_ && kind != TagKind::start) blank_deep_element();
   }
   void blank_attributes(std::size_t from, std::size_t to) {
     if (!attributes_reported_) {

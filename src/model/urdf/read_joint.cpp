@@ -72,17 +72,22 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
                                joint_type_name(out.type), printable(ignored->joint)),
                    "Make it revolute, continuous or prismatic, or remove the <mimic>.");
   }
-  const Element* dynamics = unique_child(element, "dynamics", owner);
-  if (dynamics) check_attributes(*dynamics, {"damping", "friction"});
-  if (dynamics && !dynamics->Attribute("damping") && !dynamics->Attribute("friction")) {
-    problems.warning(dynamics->GetLineNum(),
+  dynamics(element, owner, out);
+  return out;
+}
+
+void UrdfReader::dynamics(const Element& element, const std::string& owner, UrdfJoint& out) {
+  const Element* found = unique_child(element, "dynamics", owner);
+  if (!found) return;
+  check_attributes(*found, {"damping", "friction"});
+  if (!found->Attribute("damping") && !found->Attribute("friction")) {
+    problems.warning(found->GetLineNum(),
                      fmt::format("{}: <dynamics> has neither damping nor friction; ignored", owner),
                      "Write damping=\"…\" or friction=\"…\", or remove the element.");
-  } else if (dynamics && out.type != JointType::fixed) {
-    out.damping = number(*dynamics, "damping", owner, kDampingRange).value_or(0);
-    out.friction = number(*dynamics, "friction", owner, kDampingRange).value_or(0);
+  } else if (out.type != JointType::fixed) {
+    out.damping = number(*found, "damping", owner, kDampingRange).value_or(0);
+    out.friction = number(*found, "friction", owner, kDampingRange).value_or(0);
   }
-  return out;
 }
 
 JointType UrdfReader::joint_type(const Element& element, const std::string& owner) {

@@ -36,6 +36,11 @@ struct NumberText {
   const char* fix = "";
 };
 
+bool has_negative_exponent(std::string_view digits) {
+  const std::size_t e = digits.find_first_of("eE");
+  return e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-';
+}
+
 NumberText read_number(std::string_view text) {
   if (text.empty()) return {0, "is empty", "Write a number."};
   if (text.find("${") != std::string_view::npos || text.find("$(") != std::string_view::npos) {
@@ -48,8 +53,7 @@ NumberText read_number(std::string_view text) {
   const bool whole = end == digits.data() + digits.size();
   if (fault == std::errc::result_out_of_range && whole) {
     // an underflow is 0, an overflow is an error
-    const std::size_t e = digits.find_first_of("eE");
-    if (e != std::string_view::npos && e + 1 < digits.size() && digits[e + 1] == '-') return {0, "", ""};
+    if (has_negative_exponent(digits)) return {0, "", ""};
     return {0, "is too large for a number", "Write a number of a sensible size."};
   }
   if (fault != std::errc() || !whole) {

@@ -90,6 +90,7 @@ class UrdfReader {
   void limit(const Element& element, const std::string& owner, UrdfJoint& out);
   void bounds(const Element& limit, const std::string& owner, UrdfJoint& out);
   std::optional<UrdfMimic> mimic(const Element& element, const std::string& owner);
+  void dynamics(const Element& element, const std::string& owner, UrdfJoint& out);
 
   std::string prefix_;
   int nonstandard_numbers_ = 0;

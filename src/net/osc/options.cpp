@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -60,10 +62,11 @@ std::optional<std::string> set_option(StreamTarget& target, std::string_view key
     if (!rate || *rate < 0.1 || *rate > 1000) return "rate must be 0.1 to 1000 frames per second";
     target.rate = *rate;
   } else if (key == "bundle") {
-    if (value != "off" && value != "1472" && value != "8192" && value != "65504") {
-      return "bundle must be off, 1472, 8192 or 65504 bytes";
-    }
-    target.bundle = value == "off" ? 0 : value == "1472" ? 1472 : value == "8192" ? 8192 : 65504;
+    constexpr std::pair<std::string_view, int> kSizes[] = {
+        {"off", 0}, {"1472", 1472}, {"8192", 8192}, {"65504", 65504}};
+    const auto* const size = std::ranges::find(kSizes, value, &std::pair<std::string_view, int>::first);
+    if (size == std::end(kSizes)) return "bundle must be off, 1472, 8192 or 65504 bytes";
+    target.bundle = size->second;
   } else if (key == "streams") {
     return set_streams(target, value);
   } else if (key == "bodies") {

@@ -49,15 +49,17 @@ Subscribers::Subscriber* Subscribers::find(const CommandOrigin& origin) const {
   return found == subscribers_.end() ? nullptr : found->get();
 }
 
+Result<void> Subscribers::handle_unsubscribe(const std::vector<Arg>& args, const CommandOrigin& origin) {
+  if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
+    return Error{"takes a subscribed path or stream, or nothing for all"};
+  const std::string path = args.empty() ? "" : normalize_stream(args[0].text);
+  unsubscribe(origin, args.empty() ? nullptr : &path);
+  return {};
+}
+
 Result<void> Subscribers::handle(const Message& message, const CommandOrigin& origin) {
   const std::vector<Arg>& args = message.args;
-  if (message.address == "/unsubscribe") {
-    if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
-      return Error{"takes a subscribed path or stream, or nothing for all"};
-    const std::string path = args.empty() ? "" : normalize_stream(args[0].text);
-    unsubscribe(origin, args.empty() ? nullptr : &path);
-    return {};
-  }
+  if (message.address == "/unsubscribe") return handle_unsubscribe(args, origin);
   if (origin.source != CommandSource::osc)
     return Error{"is for UDP only; use {\"COMMAND\":\"LISTEN\",\"DATA\":path} here"};
   const bool fits =

@@ -77,6 +77,7 @@ class Subscribers {
   };
 
   Subscriber* find(const CommandOrigin& origin) const;
+  Result<void> handle_unsubscribe(const std::vector<Arg>& args, const CommandOrigin& origin);
   Result<void> subscribe(const CommandOrigin& origin, const std::string& path, double rate);
   void unsubscribe(const CommandOrigin& origin, const std::string* path);
   void expire(std::int64_t now);

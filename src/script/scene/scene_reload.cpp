@@ -55,15 +55,23 @@ void Scene::adopt_run(Scene& previous) {
   carried_timers_.repeating = counts.repeating;
 }
 
-std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
-  ScriptContext& c = *context_;
-  // map the handles to the ids in the live store
+namespace {
+
+// Maps the handles to the ids in the live store.
+void map_handles(ScriptContext& c, const std::function<NodeId(NodeId)>& live_id) {
   for (std::int32_t* const id : c.handle_ids) {
     const NodeId live = live_id(id_of(id[0], id[1]));
     id[0] = live.null() ? -1 : static_cast<std::int32_t>(live.slot);
     id[1] = static_cast<std::int32_t>(live.generation);
   }
   c.handle_ids = {};
+}
+
+}  // namespace
+
+std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
+  ScriptContext& c = *context_;
+  map_handles(c, live_id);
   std::vector<Property> properties;
   if (c.params != nullptr)
     properties.assign(c.params->table().properties().begin(), c.params->table().properties().end());

@@ -14,44 +14,50 @@ constexpr std::int64_t kSteps = 4'000'000;
 constexpr std::int64_t kStepsPerByte = 8;
 constexpr std::int64_t kPollInterval = 1 << 16;
 
+constexpr bool is_between(unsigned char c, int low, int high) { return c >= low && c <= high; }
+constexpr bool is_ascii_letter(unsigned char c) { return is_between(c, 'a', 'z') || is_between(c, 'A', 'Z'); }
+constexpr bool is_ascii_digit(unsigned char c) { return is_between(c, '0', '9'); }
+constexpr bool is_ascii_space(unsigned char c) { return c == 32 || is_between(c, 9, 13); }
+constexpr bool is_ascii_control(unsigned char c) { return c < 32 || c == 127; }
+constexpr bool is_hex_digit(unsigned char c) {
+  return is_ascii_digit(c) || is_between(c, 'a', 'f') || is_between(c, 'A', 'F');
+}
+
 // %a %c %d … in the C locale: only ASCII letters count as letters
 bool in_class(unsigned char c, unsigned char wanted) {
-  const auto between = [c](int low, int high) { return c >= low && c <= high; };
-  const bool lower = between('a', 'z');
-  const bool upper = between('A', 'Z');
-  const bool digit = between('0', '9');
-  const bool graph = between(33, 126);
+  const bool graph = is_between(c, 33, 126);
+  const bool letter_or_digit = is_ascii_letter(c) || is_ascii_digit(c);
   bool in = false;
   switch (wanted | 0x20) {
     case 'a':
-      in = lower || upper;
+      in = is_ascii_letter(c);
       break;
     case 'c':
-      in = c < 32 || c == 127;
+      in = is_ascii_control(c);
       break;
     case 'd':
-      in = digit;
+      in = is_ascii_digit(c);
       break;
     case 'g':
       in = graph;
       break;
     case 'l':
-      in = lower;
+      in = is_between(c, 'a', 'z');
       break;
     case 'p':
-      in = graph && !lower && !upper && !digit;
+      in = graph && !letter_or_digit;
       break;
     case 's':
-      in = c == 32 || between(9, 13);
+      in = is_ascii_space(c);
       break;
     case 'u':
-      in = upper;
+      in = is_between(c, 'A', 'Z');
       break;
     case 'w':
-      in = lower || upper || digit;
+      in = letter_or_digit;
       break;
     case 'x':
-      in = digit || between('a', 'f') || between('A', 'F');
+      in = is_hex_digit(c);
       break;
     case 'z':
       in = c == 0;
@@ -133,6 +139,24 @@ const char* MatchSearch::match(const char* s, const char* p) {
   return e;
 }
 
+// Consumes %bxy, %f[set] or %1 at p; s becomes null if it does not match. False: the escape is part of a single item.
+bool MatchSearch::consume_escape(const char*& s, const char*& p) {
+  const char kind = p + 1 == pattern_end_ ? '\0' : p[1];
+  if (kind == 'b') {
+    s = balance(s, p + 2);
+    p += 4;
+  } else if (kind == 'f') {
+    p += 2;
+    if (!frontier(s, p)) s = nullptr;
+  } else if (kind >= '0' && kind <= '9') {
+    s = back_reference(s, kind);
+    p += 2;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 // Returns the end of the match of pattern p at s; null: no match, or ended().
 const char* MatchSearch::match_here(const char* s, const char* p) {
   while (p != pattern_end_) {
@@ -146,27 +170,12 @@ const char* MatchSearch::match_here(const char* s, const char* p) {
       case '$':
         if (p + 1 == pattern_end_) return s == end_ ? s : nullptr;
         break;
-      case '%': {
-        const char kind = p + 1 == pattern_end_ ? '\0' : p[1];
-        if (kind == 'b') {
-          s = balance(s, p + 2);
+      case '%':
+        if (consume_escape(s, p)) {
           if (s == nullptr) return nullptr;
-          p += 4;
-          continue;
-        }
-        if (kind == 'f') {
-          p += 2;
-          if (!frontier(s, p)) return nullptr;
-          continue;
-        }
-        if (kind >= '0' && kind <= '9') {
-          s = back_reference(s, kind);
-          if (s == nullptr) return nullptr;
-          p += 2;
           continue;
         }
         break;
-      }
       default:
         break;
     }

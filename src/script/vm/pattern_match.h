@@ -53,6 +53,7 @@ class MatchSearch {
   const char* back_reference(const char* s, char digit);
   const char* balance(const char* s, const char* p);
   bool frontier(const char* s, const char*& p);
+  bool consume_escape(const char*& s, const char*& p);
   const char* class_end(const char* p);
   bool matches_single(const char* s, const char* p, const char* ep);
   bool in_set(unsigned char c, const char* p, const char* last);

@@ -22,6 +22,12 @@ PanelRect scaled(const PanelRect& r, double scale) {
   return {r.x * scale, r.y * scale, std::max(r.width, 0.0) * scale, std::max(r.height, 0.0) * scale};
 }
 
+// Height of the panel at the top; 0: none.
+double top_height(double width, double height, bool compact) {
+  if (width < kMinForTop || height < 2 * kTop) return 0;
+  return compact ? kTopCompact : kTop;
+}
+
 }  // namespace
 
 Layout lay_out(double width, double height, double scale) {
@@ -32,7 +38,7 @@ Layout lay_out(double width, double height, double scale) {
   const auto put = [&](PanelSlot slot, const PanelRect& r) {
     layout.slots[static_cast<std::size_t>(slot)] = scaled(r, scale);
   };
-  const double top = w < kMinForTop || h < 2 * kTop ? 0 : layout.compact ? kTopCompact : kTop;
+  const double top = top_height(w, h, layout.compact);
   const double begin = top > 0 ? top + 2 * kGap : kGap;
   if (top > 0) put(PanelSlot::top, {kGap, kGap, w - 2 * kGap, top});
   const bool has_sides = w >= kMinWidthForSides && h >= kMinForTop;

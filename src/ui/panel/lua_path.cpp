@@ -19,21 +19,33 @@ std::string lua_text(std::string_view name) {
 
 namespace {
 
+// The expression of an object below /visuals.
+std::string visuals_text(const std::vector<std::string_view>& names) {
+  const std::size_t n = names.size();
+  if (n == 1) return "visuals";
+  if (names[1] == "shape") return n == 3 ? fmt::format("visuals:shape({})", lua_text(names[2])) : std::string();
+  return n == 2 ? fmt::format("visuals.{}", names[1]) : std::string();
+}
+
+// The expression of an object below /physics.
+std::string physics_text(const std::vector<std::string_view>& names) {
+  const std::size_t n = names.size();
+  if (n == 2) return names[1] == "sim" ? "sim" : "";
+  if (n < 3) return {};
+  const std::string name = lua_text(names[2]);
+  if (n == 3 && names[1] == "group") return fmt::format("sim:group_behavior({})", name);
+  if (n == 3 && names[1] == "gear") return fmt::format("sim:gear({})", name);
+  if (names[1] != "body") return {};
+  if (n == 3) return fmt::format("sim:body({})", name);
+  return n == 5 ? fmt::format("sim:body({}):{}({})", name, names[3], lua_text(names[4])) : std::string();
+}
+
 // Returns the expression of an object; empty if Lua has no equivalent.
 std::string object_text(const std::vector<std::string_view>& names) {
-  const auto is = [&](std::size_t i, std::string_view name) { return i < names.size() && names[i] == name; };
-  const std::size_t n = names.size();
-  if (is(0, "scene") && n == 1) return "params";
-  if (is(0, "physics") && is(1, "sim") && n == 2) return "sim";
-  if (is(0, "physics") && is(1, "group") && n == 3) return fmt::format("sim:group_behavior({})", lua_text(names[2]));
-  if (is(0, "physics") && is(1, "gear") && n == 3) return fmt::format("sim:gear({})", lua_text(names[2]));
-  if (is(0, "visuals") && n == 1) return "visuals";
-  if (is(0, "visuals") && is(1, "shape") && n == 3) return fmt::format("visuals:shape({})", lua_text(names[2]));
-  if (is(0, "visuals") && n == 2 && !is(1, "shape")) return fmt::format("visuals.{}", names[1]);
-  if (!is(0, "physics") || !is(1, "body") || n < 3) return {};
-  std::string body = fmt::format("sim:body({})", lua_text(names[2]));
-  if (n == 3) return body;
-  return n == 5 ? fmt::format("{}:{}({})", body, names[3], lua_text(names[4])) : std::string();
+  if (names.empty()) return {};
+  if (names[0] == "physics") return physics_text(names);
+  if (names[0] == "visuals") return visuals_text(names);
+  return names[0] == "scene" && names.size() == 1 ? "params" : "";
 }
 
 }  // namespace

@@ -27,6 +27,19 @@ double number_of(const Json& json, const char* name, double fallback, double low
   return found != json.end() && found->is_number() ? std::clamp(found->get<double>(), low, high) : fallback;
 }
 
+void read_lists(const Json& json, PanelSettings& settings) {
+  if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
+    for (const Json& path : *list) {
+      if (path.is_string()) settings.favorites.insert(path.get<std::string>());
+    }
+  }
+  if (const auto keys = json.find("keys"); keys != json.end() && keys->is_object()) {
+    for (const auto& [name, key] : keys->items()) {
+      if (key.is_string()) settings.keys[name] = key.get<std::string>();
+    }
+  }
+}
+
 }  // namespace
 
 Result<PanelSettings> read_settings(std::string_view text) {
@@ -48,16 +61,7 @@ Result<PanelSettings> read_settings(std::string_view text) {
     if (const auto found = json.find(name); found != json.end() && found->is_string())
       *value = found->get<std::string>();
   }
-  if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
-    for (const Json& path : *list) {
-      if (path.is_string()) settings.favorites.insert(path.get<std::string>());
-    }
-  }
-  if (const auto keys = json.find("keys"); keys != json.end() && keys->is_object()) {
-    for (const auto& [name, key] : keys->items()) {
-      if (key.is_string()) settings.keys[name] = key.get<std::string>();
-    }
-  }
+  read_lists(json, settings);
   return settings;
 }
 

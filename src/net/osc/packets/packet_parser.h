@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 
 #include "net/osc/packets/validate.h"
 #include "net/osc/packets/wire.h"
@@ -72,11 +73,8 @@ const char* PacketParser<Visitor>::bundle(const char* data, std::size_t size, in
   return nullptr;
 }
 
-/// Advances `at` past the argument.
-template <class Visitor>
-const char* PacketParser<Visitor>::one_argument(char tag, const char* data, std::size_t size, std::size_t& at) {
-  const std::size_t left = size - at;
-  std::size_t length = 0;
+/// Returns the size of an argument if its type tag determines it.
+inline std::optional<std::size_t> fixed_argument_size(char tag) {
   switch (tag) {
     case 'T':
     case 'F':
@@ -84,34 +82,40 @@ const char* PacketParser<Visitor>::one_argument(char tag, const char* data, std:
     case 'I':
     case '[':
     case ']':
-      return nullptr;
+      return 0;
     case 'i':
     case 'f':
     case 'c':
     case 'r':
     case 'm':
-      length = 4;
-      break;
+      return 4;
     case 'h':
     case 'd':
     case 't':
-      length = 8;
-      break;
-    case 's':
-    case 'S':
-      length = string_size(data + at, left);
-      if (length == 0) return "a string that does not end";
-      if (length > OscLimits::kString + 4) return "a string longer than 1024 bytes";
-      break;
-    case 'b': {
-      if (left < 4) return "a blob without its size";
-      const std::uint32_t blob = load_u32(data + at);
-      if (blob > left - 4) return "a blob larger than its message";
-      length = 4 + (std::size_t{blob} + 3) / 4 * 4;
-      break;
-    }
+      return 8;
     default:
-      return "an unknown type tag";
+      return std::nullopt;
+  }
+}
+
+/// Advances `at` past the argument.
+template <class Visitor>
+const char* PacketParser<Visitor>::one_argument(char tag, const char* data, std::size_t size, std::size_t& at) {
+  const std::size_t left = size - at;
+  std::size_t length = 0;
+  if (const std::optional<std::size_t> fixed = fixed_argument_size(tag)) {
+    length = *fixed;
+  } else if (tag == 's' || tag == 'S') {
+    length = string_size(data + at, left);
+    if (length == 0) return "a string that does not end";
+    if (length > OscLimits::kString + 4) return "a string longer than 1024 bytes";
+  } else if (tag == 'b') {
+    if (left < 4) return "a blob without its size";
+    const std::uint32_t blob = load_u32(data + at);
+    if (blob > left - 4) return "a blob larger than its message";
+    length = 4 + (std::size_t{blob} + 3) / 4 * 4;
+  } else {
+    return "an unknown type tag";
   }
   if (length > left) return "fewer arguments than type tags";
   at += length;

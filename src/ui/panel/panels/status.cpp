@@ -1,6 +1,9 @@
 // Status, at the right end of the top bar: frame rate, number of bodies, lamps for incoming and outgoing messages and
 // errors.
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -37,22 +40,20 @@ class StatusPanel : public Panel {
     const bool wide = ImGui::GetWindowWidth() > 1500 * s;
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
     std::string text = fmt::format("{:3.0f} fps", frame_rate_);
-    if (wide && context.snapshot->body_list != nullptr) {
-      std::size_t parts = 0;
-      for (const BodyEntry& body : context.snapshot->body_list->bodies) parts += body.part_offsets.size();
-      text += fmt::format("   {} bodies   {} parts", context.snapshot->body_list->bodies.size(), parts);
-    }
+    if (wide) text += counts_text(*context.snapshot);
     const float lamp = ImGui::GetFontSize() * 0.9F;
     const bool show_names = wide || compact;
-    const char* const names[] = {"IN", "OUT", "LUA"};
     float width = ImGui::CalcTextSize(text.c_str()).x;
     const std::vector<HealthEntry> losses = context.link.health.entries();
     const std::string lost = losses.empty() ? "" : fmt::format("{}", losses.size());
     if (!losses.empty()) width += lamp + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
-    for (const char* const name : names) width += lamp + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
-    // in a compact window beside the transport controls, in the first of two rows
-    if (compact) ImGui::SetCursorPos({0, ImGui::GetStyle().WindowPadding.y});
-    if (!compact) ImGui::SameLine();
+    for (const char* const name : kNames) width += lamp + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
+    if (compact) {
+      // beside the transport controls, in the first of two rows
+      ImGui::SetCursorPos({0, ImGui::GetStyle().WindowPadding.y});
+    } else {
+      ImGui::SameLine();
+    }
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width - 14 * s));
     ImGui::AlignTextToFramePadding();
     if (!losses.empty()) {
@@ -61,35 +62,54 @@ class StatusPanel : public Panel {
     }
     ImGui::TextUnformatted(text.c_str());
     context.names.add("status.text");
-    const Tone tones[] = {context.clock < in_until_ ? Tone::blue : Tone::line,
-                          context.clock < out_until_ ? Tone::green : Tone::line,
-                          context.errors > 0 ? Tone::red : Tone::green};
-    const std::string tips[] = {
-        fmt::format("OSC in: {} messages", received_), fmt::format("OSC out: {} datagrams", sent_),
-        context.errors > 0 ? fmt::format("Scripts: {} errors, see Errors", context.errors) : "Scripts: no errors"};
-    for (std::size_t i = 0; i < 3; i++) {
+    for (const Lamp& each : lamps(context)) {
       ImGui::SameLine(0, 6 * s);
-      const ImVec2 at = ImGui::GetCursorScreenPos();
-      const float high = ImGui::GetFrameHeight();
-      // errors are shown as a square, so that color is not the only cue
-      const ImVec2 center{at.x + lamp / 2, at.y + high / 2};
-      ImDrawList& list = *ImGui::GetWindowDrawList();
-      const float half = lamp * 0.28F;
-      if (i == 2 && context.errors > 0) {
-        list.AddRectFilled({center.x - half * 1.2F, center.y - half * 1.2F},
-                           {center.x + half * 1.2F, center.y + half * 1.2F}, packed_color(tones[i]));
-      } else {
-        list.AddCircleFilled(center, half, packed_color(tones[i]), 16);
-      }
-      ImGui::Dummy({lamp + (show_names ? ImGui::CalcTextSize(names[i]).x : 0), high});
-      context.names.add(fmt::format("status.{}", names[i]));
-      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tips[i].c_str());
-      if (show_names)
-        list.AddText({at.x + lamp, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(Tone::secondary), names[i]);
+      draw_lamp(lamp, each, show_names);
+      context.names.add(fmt::format("status.{}", each.name));
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", each.tip.c_str());
     }
   }
 
  private:
+  static constexpr const char* kNames[] = {"IN", "OUT", "LUA"};
+  struct Lamp {
+    const char* name;
+    Tone tone;
+    bool square;
+    std::string tip;
+  };
+  std::array<Lamp, 3> lamps(const PanelContext& context) const {
+    const bool in = context.clock < in_until_;
+    const bool out = context.clock < out_until_;
+    const std::uint64_t errors = context.errors;
+    // errors are shown as a square, so that color is not the only cue
+    return {Lamp{kNames[0], in ? Tone::blue : Tone::line, false, fmt::format("OSC in: {} messages", received_)},
+            Lamp{kNames[1], out ? Tone::green : Tone::line, false, fmt::format("OSC out: {} datagrams", sent_)},
+            errors > 0 ? Lamp{kNames[2], Tone::red, true, fmt::format("Scripts: {} errors, see Errors", errors)}
+                       : Lamp{kNames[2], Tone::green, false, "Scripts: no errors"}};
+  }
+  static std::string counts_text(const Snapshot& snapshot) {
+    if (snapshot.body_list == nullptr) return {};
+    std::size_t parts = 0;
+    for (const BodyEntry& body : snapshot.body_list->bodies) parts += body.part_offsets.size();
+    return fmt::format("   {} bodies   {} parts", snapshot.body_list->bodies.size(), parts);
+  }
+  static void draw_lamp(float size, const Lamp& lamp, bool show_name) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float high = ImGui::GetFrameHeight();
+    const ImVec2 center{at.x + size / 2, at.y + high / 2};
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const float half = size * 0.28F;
+    if (lamp.square) {
+      list.AddRectFilled({center.x - half * 1.2F, center.y - half * 1.2F},
+                         {center.x + half * 1.2F, center.y + half * 1.2F}, packed_color(lamp.tone));
+    } else {
+      list.AddCircleFilled(center, half, packed_color(lamp.tone), 16);
+    }
+    ImGui::Dummy({size + (show_name ? ImGui::CalcTextSize(lamp.name).x : 0), high});
+    if (show_name)
+      list.AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(Tone::secondary), lamp.name);
+  }
   // A warning sign and the number of kinds of losses; a click copies the list.
   static void draw_losses(PanelContext& context, const std::vector<HealthEntry>& losses, const std::string& number,
                           float size) {

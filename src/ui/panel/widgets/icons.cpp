@@ -28,6 +28,27 @@ struct Pen {
   void box(float x0, float y0, float x1, float y1) const { list.AddRectFilled(at(x0, y0), at(x1, y1), color); }
 };
 
+struct IconBox {
+  Icon icon;
+  float x0, y0, x1, y1;
+};
+constexpr IconBox kBoxes[] = {
+    {Icon::back, -0.75F, -0.75F, -0.5F, 0.75F},   {Icon::pause, -0.65F, -0.75F, -0.18F, 0.75F},
+    {Icon::pause, 0.18F, -0.75F, 0.65F, 0.75F},   {Icon::step, -0.8F, -0.75F, -0.5F, 0.75F},
+    {Icon::step_back, 0.5F, -0.75F, 0.8F, 0.75F}, {Icon::stop, -0.75F, -0.75F, 0.75F, 0.75F}};
+
+struct IconTriangle {
+  Icon icon;
+  float x[3], y[3];
+};
+constexpr IconTriangle kTriangles[] = {{Icon::back, {0.75F, 0.75F, -0.45F}, {-0.75F, 0.75F, 0}},
+                                       {Icon::play, {-0.55F, 0.8F, -0.55F}, {-0.8F, 0, 0.8F}},
+                                       {Icon::step, {-0.3F, 0.85F, -0.3F}, {-0.75F, 0, 0.75F}},
+                                       {Icon::step_back, {0.3F, -0.85F, 0.3F}, {-0.75F, 0, 0.75F}},
+                                       {Icon::up, {-0.7F, 0, 0.7F}, {0.4F, -0.6F, 0.4F}},
+                                       {Icon::down, {-0.7F, 0.7F, 0}, {-0.4F, -0.4F, 0.6F}},
+                                       {Icon::right, {-0.4F, 0.6F, -0.4F}, {-0.7F, 0, 0.7F}}};
+
 void star(const Pen& pen, bool full) {
   std::array<ImVec2, 10> points;
   for (std::size_t i = 0; i < points.size(); i++) {
@@ -82,63 +103,32 @@ void warning_sign(const Pen& pen) {
 
 void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
   const Pen pen{*ImGui::GetWindowDrawList(), {x, y}, half, color};
+  for (const IconBox& b : kBoxes) {
+    if (b.icon == icon) pen.box(b.x0, b.y0, b.x1, b.y1);
+  }
+  for (const IconTriangle& t : kTriangles) {
+    if (t.icon == icon) pen.triangle(pen.at(t.x[0], t.y[0]), pen.at(t.x[1], t.y[1]), pen.at(t.x[2], t.y[2]));
+  }
   switch (icon) {
-    case Icon::back:
-      pen.box(-0.75F, -0.75F, -0.5F, 0.75F);
-      pen.triangle(pen.at(0.75F, -0.75F), pen.at(0.75F, 0.75F), pen.at(-0.45F, 0));
-      break;
-    case Icon::play:
-      pen.triangle(pen.at(-0.55F, -0.8F), pen.at(0.8F, 0), pen.at(-0.55F, 0.8F));
-      break;
-    case Icon::pause:
-      pen.box(-0.65F, -0.75F, -0.18F, 0.75F);
-      pen.box(0.18F, -0.75F, 0.65F, 0.75F);
-      break;
-    case Icon::step:
-      pen.box(-0.8F, -0.75F, -0.5F, 0.75F);
-      pen.triangle(pen.at(-0.3F, -0.75F), pen.at(0.85F, 0), pen.at(-0.3F, 0.75F));
-      break;
-    case Icon::step_back:
-      pen.box(0.5F, -0.75F, 0.8F, 0.75F);
-      pen.triangle(pen.at(0.3F, -0.75F), pen.at(-0.85F, 0), pen.at(0.3F, 0.75F));
-      break;
     case Icon::rewind:
-      double_arrow(pen);
-      break;
+      return double_arrow(pen);
     case Icon::record:
-      pen.list.AddCircleFilled(pen.center, half * 0.85F, color, 20);
-      break;
-    case Icon::stop:
-      pen.box(-0.75F, -0.75F, 0.75F, 0.75F);
-      break;
+      return pen.list.AddCircleFilled(pen.center, half * 0.85F, color, 20);
     case Icon::star:
     case Icon::star_empty:
-      star(pen, icon == Icon::star);
-      break;
+      return star(pen, icon == Icon::star);
     case Icon::undo:
-      arrow_back(pen);
-      break;
+      return arrow_back(pen);
     case Icon::search:
-      magnifier(pen);
-      break;
+      return magnifier(pen);
     case Icon::warning:
-      warning_sign(pen);
-      break;
+      return warning_sign(pen);
     case Icon::close:
-      cross(pen);
-      break;
+      return cross(pen);
     case Icon::plus:
-      plus(pen);
-      break;
-    case Icon::up:
-      pen.triangle(pen.at(-0.7F, 0.4F), pen.at(0, -0.6F), pen.at(0.7F, 0.4F));
-      break;
-    case Icon::down:
-      pen.triangle(pen.at(-0.7F, -0.4F), pen.at(0.7F, -0.4F), pen.at(0, 0.6F));
-      break;
-    case Icon::right:
-      pen.triangle(pen.at(-0.4F, -0.7F), pen.at(0.6F, 0), pen.at(-0.4F, 0.7F));
-      break;
+      return plus(pen);
+    default:  // boxes and triangles only
+      return;
   }
 }
 

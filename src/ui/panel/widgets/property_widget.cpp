@@ -218,6 +218,29 @@ void name_text(PanelContext& context, const PropertyHandle& handle, const Proper
   property_hint(context, handle);
 }
 
+void property_tooltip(const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+  ImGui::TextUnformatted(property.doc.c_str());
+  const std::string values = range_or_choices_text(property);
+  const std::string initial = initial_text(property);
+  if (!values.empty() && property.type != PropertyType::text)
+    ImGui::TextDisabled("%s%s%s", values.c_str(), property.unit.empty() ? "" : "  ", property.unit.c_str());
+  if (!initial.empty() && property.kind == PropertyKind::setting) ImGui::TextDisabled("Default %s", initial.c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
+  ImGui::TextUnformatted(handle.path.c_str());
+  ImGui::PopStyleColor();
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+// True if the unit is shown beside the widget.
+bool shows_unit(const Property& property) {
+  return !property.unit.empty() && property.unit != "hsb" && property.unit.size() <= 8 &&
+         property.kind != PropertyKind::action;
+}
+
 }  // namespace
 
 std::string property_label(const Property& property) {
@@ -238,21 +261,7 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
 
 void property_hint(PanelContext& context, const PropertyHandle& handle) {
   const Property& property = *handle.ref.property;
-  if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) {
-    ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::TextUnformatted(property.doc.c_str());
-    const std::string values = range_or_choices_text(property);
-    const std::string initial = initial_text(property);
-    if (!values.empty() && property.type != PropertyType::text)
-      ImGui::TextDisabled("%s%s%s", values.c_str(), property.unit.empty() ? "" : "  ", property.unit.c_str());
-    if (!initial.empty() && property.kind == PropertyKind::setting) ImGui::TextDisabled("Default %s", initial.c_str());
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
-    ImGui::TextUnformatted(handle.path.c_str());
-    ImGui::PopStyleColor();
-    ImGui::PopTextWrapPos();
-    ImGui::EndTooltip();
-  }
+  if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) property_tooltip(handle);
   if (!ImGui::BeginPopupContextItem("##copy")) return;
   if (ImGui::Selectable("Copy OSC address")) context.copy_with_notice(handle.path);
   context.names.add("copy_address");
@@ -299,10 +308,12 @@ void property_line(PanelContext& context, const PropertyHandle& handle, const Pr
   const float left = options.star ? side + gap * 0.5F : 0;
   const float name = below ? width - left : static_cast<float>(options.name_fraction) * width - left;
   name_text(context, handle, options, differs || !property.writable(), name - gap);
-  if (!below) ImGui::SameLine(left + name + ImGui::GetCursorStartPos().x);
-  if (below) ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
-  const bool unit = !property.unit.empty() && property.unit != "hsb" && property.unit.size() <= 8 &&
-                    property.kind != PropertyKind::action;
+  if (below) {
+    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
+  } else {
+    ImGui::SameLine(left + name + ImGui::GetCursorStartPos().x);
+  }
+  const bool unit = shows_unit(property);
   const float units = unit ? ImGui::GetFontSize() * 2.3F : 0;
   property_widget(context, handle, width - left - (below ? 0 : name) - side - gap - units);
   if (unit) {
