@@ -10,7 +10,7 @@
 
 #include "base/log/log.h"
 #include "base/text.h"
-#include "net/osc/tap.h"
+#include "net/osc/packets/decode.h"
 
 namespace limber {
 
@@ -174,6 +174,13 @@ void Sender::handle_result(int error, const Endpoint& to, std::span<const char> 
   if (const auto more = failed_log_.admit(clock_.steady())) {
     log_warning("OSC out: can't send to {}: {}{}", endpoint_text(to), reason, *more);
   }
+}
+
+void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet) {
+  // stream frames exist only as bytes, so packets are decoded again
+  const Result<Decoded> decoded = decode_packet(packet.data(), packet.size());
+  if (!decoded) return;
+  for (const Message& message : decoded->messages) message_log.add(false, endpoint_text(to), message);
 }
 
 }  // namespace limber

@@ -97,4 +97,8 @@ class Sender {
   WarningThrottle failed_log_, too_large_log_;
 };
 
+/// Logs each message of a packet that this program encoded. Costs a decoding, so call it only while the log is enabled.
+/// [net]
+void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet);
+
 }  // namespace limber

@@ -8,7 +8,7 @@
 #include "base/log/log.h"
 #include "base/system/net/udp_socket.h"
 #include "base/text.h"
-#include "net/osc/tap.h"
+#include "net/osc/sender.h"
 
 namespace limber {
 
