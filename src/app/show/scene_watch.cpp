@@ -41,7 +41,7 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
       mode_(mode) {
   link_.on_scene_request = [this](const Message& message, const CommandOrigin& origin) {
     const bool take = message.address.starts_with("/take/");
-    const std::uint64_t stops = take ? Engine::take_stop_count(link_) : link_.panics.load();
+    const std::uint64_t stops = take ? link_.take_stop_count() : link_.panics.load();
     if (!requests_.push({{message}, origin, nullptr, stops}))
       return reject(message, origin, "too many requests for scenes at once");
     wake_.notify();

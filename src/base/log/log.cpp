@@ -77,12 +77,13 @@ void log_line(LogLevel level, std::string_view text, std::string_view source) {
 }
 
 void log_print(std::string_view text, OutputTo to) {
+  if (silence_depth > 0) return;
   const std::string shown = printable(text);
   Log& log = the_log();
   std::uint64_t missing = 0;
   {
     const std::scoped_lock lock(log.mutex);
-    if (silence_depth == 0) add_to_ring(log, LogLevel::print, shown);
+    add_to_ring(log, LogLevel::print, shown);
     if (output_is_live() && !log.printed.try_consume(log_time())) {
       log.suppressed_prints++;
       log.suppressed_since_print++;

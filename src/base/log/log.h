@@ -59,7 +59,7 @@ inline constexpr std::string_view kResolvedSuffix = ": errors resolved";
 /// Enables or disables output to stderr, for tests and `--quiet`. The ring still gets all lines. [any]
 void log_to_stderr(bool on);
 
-/// While an object of this class exists, this thread logs nothing.
+/// While an object of this class exists, this thread neither logs nor prints.
 class LogSilence {
  public:
   LogSilence();

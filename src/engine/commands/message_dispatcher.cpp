@@ -423,8 +423,7 @@ Outcome MessageDispatcher::request_scene(const Message& message) {
 
 Outcome MessageDispatcher::answer_health(const Message& message) {
   if (!message.args.empty()) return Outcome::rejected("takes no arguments");
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::answered;
+  Outcome outcome = Outcome::answered();
   Message& answer = outcome.answers.emplace_back(Message{"/list/health", {}});
   if (health_ != nullptr) answer = health_->answer_message("/list/health");
   if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // an answer must not look like a query

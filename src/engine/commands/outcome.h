@@ -25,6 +25,11 @@ struct Outcome {
   std::string warning;  ///< Warning about values that were skipped.
   std::vector<Message> answers;
 
+  static Outcome answered() {
+    Outcome outcome;
+    outcome.kind = Kind::answered;
+    return outcome;
+  }
   static Outcome rejected(std::string reason) {
     Outcome outcome;
     outcome.kind = Kind::rejected;

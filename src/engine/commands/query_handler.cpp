@@ -19,8 +19,7 @@ constexpr std::size_t kMaxValues = 256;  // maximum number of values in the answ
 // two programs that send to each other would query each other forever.
 Outcome answered(Message answer, std::size_t query_args) {
   if (answer.args.size() == query_args) answer.args.push_back(Arg::of(""));
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::answered;
+  Outcome outcome = Outcome::answered();
   outcome.answers.push_back(std::move(answer));
   return outcome;
 }
@@ -76,8 +75,7 @@ Outcome QueryHandler::get(std::span<const Arg> args) const {
     return Outcome::rejected(
         fmt::format("'{}' matches more than {} values; query fewer at a time", printable(path), kMaxValues));
   }
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::answered;
+  Outcome outcome = Outcome::answered();
   for (const PropertyRef& ref : *refs) {
     if (ref.property == nullptr || ref.property->kind == PropertyKind::action) continue;
     std::array<double, 4> values{};

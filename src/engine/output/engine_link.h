@@ -21,7 +21,7 @@ namespace limber {
 struct EngineLink {
   static constexpr std::size_t kMaxItems = 65536;                  ///< Maximum number of waiting outgoing messages.
   static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
-  /// Maximum number of waiting datagrams: about twenty ticks of work if they are expensive (Engine::kTickWork).
+  /// Maximum number of waiting datagrams: about twenty ticks of work if they are expensive (LiveInput::kTickWork).
   static constexpr std::size_t kMaxCommands = 16384;
   static constexpr std::size_t kMaxPanelItems = 1024;  ///< Maximum number of waiting answers to the panel.
   CommandQueue command_queue{kMaxCommands, kMaxBytes};
@@ -31,6 +31,7 @@ struct EngineLink {
   /// not begin after it.
   std::atomic<std::uint64_t> panics{0};
   std::atomic<std::uint64_t> take_stops{0};
+  std::uint64_t take_stop_count() const { return panics.load() + take_stops.load(); }
   BoundedQueue<Outgoing> output_queue{kMaxItems, kMaxBytes};
   BoundedQueue<Outgoing> query_output_queue{kMaxItems, kMaxBytes};       ///< Answers to CommandSource::oscquery.
   BoundedQueue<Outgoing> panel_output_queue{kMaxPanelItems, kMaxBytes};  ///< Answers to CommandSource::panel.

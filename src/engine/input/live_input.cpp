@@ -1,0 +1,231 @@
+// LiveInput: urgent requests, commands, rejections during a replay, and decisions that depend on real time.
+#include "engine/input/live_input.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/text.h"
+
+namespace limber {
+
+namespace {
+// Costs in units of LiveInput::kTickWork: a console evaluation, a rejected message.
+constexpr int kEvaluationWork = 512;
+constexpr int kRejectionWork = 8;
+}  // namespace
+
+void HandlerBudget::begin(double now) {
+  const double elapsed = std::max(now - std::exchange(begun_, now), 0.0);
+  seconds_ = std::min(seconds_ + kShare * elapsed, kMaxSeconds);
+}
+
+bool PanicTimer::update(const Panic& panic, double now, std::optional<double> step) {
+  const double elapsed = now - std::exchange(last_update_, now);
+  if (!panic.on() || panic.first_second_over()) {
+    age_ = 0;
+    return false;
+  }
+  age_ += step.value_or(elapsed);
+  return age_ >= kSeconds - 1e-9;
+}
+
+void PanicTimer::restart(double now) {
+  age_ = 0;
+  last_update_ = now;
+}
+
+bool PendingQueries::postpone(const Message& message, const CommandOrigin& origin, int steps) {
+  const bool known = std::ranges::find(step_origins_, origin) != step_origins_.end();
+  if (same_address(message.address, "/transport/step")) {
+    if (!known && step_origins_.size() < kMax) step_origins_.push_back(origin);
+    return false;
+  }
+  if (!known || steps == 0 || !same_address(message.address, "/get")) return false;
+  if (queries_.size() >= kMax) return false;
+  queries_.push_back({message, origin});
+  return true;
+}
+
+std::vector<PendingQueries::Query> PendingQueries::consume() {
+  step_origins_.clear();
+  return std::exchange(queries_, {});
+}
+
+void LiveInput::execute_messages(bool may_step) {
+  update_panic_timer(may_step);
+  EditScope edit_scope = show_.edit_scope();
+  execute_urgent(edit_scope);
+  if (show_.session->transport.steps() == 0) {
+    for (PendingQueries::Query& query : pending_queries_.consume()) {
+      edit_scope.begin(query.origin);
+      executor_.execute(query.message, query.origin, *this);
+    }
+  }
+  const double start_time = show_.options.clock();
+  bool drained = false;
+  for (int work = kTickWork; work > 0;) {
+    if (next_command_ < commands_.size()) {
+      Command& command = commands_[next_command_++];
+      work -= execute(command, edit_scope);
+      const bool slow = command.evaluation != nullptr && !show_.options.fast &&
+                        show_.options.clock() - start_time > HandlerBudget::kMaxSeconds;
+      if (slow) break;
+      continue;
+    }
+    snapshot_requests_ = snapshot_requests_of_batch_;
+    if (std::exchange(drained, true)) break;
+    // before the queue is drained, because a value snapshot must contain all commands that came before its request
+    snapshot_requests_of_batch_ = show_.link.value_snapshot_requests.load();
+    show_.link.command_queue.drain(commands_);
+    next_command_ = 0;
+  }
+}
+
+// Measures the age of a panic in real time, or with --fast in simulated time, so that equal runs have equal results.
+void LiveInput::update_panic_timer(bool may_step) {
+  World& world = show_.session->world;
+  std::optional<double> step;
+  if (show_.options.fast) step = may_step ? world.timestep() : 0;
+  if (!panic_timer_.update(world.panic(), show_.options.clock(), step)) return;
+  world.panic().end_first_second();
+  record_event({TakeEvent::Kind::panic_settled, 0});
+}
+
+// Executes urgent requests ahead of all queued commands.
+void LiveInput::execute_urgent(EditScope& edit_scope) {
+  EngineLink& link = show_.link;
+  link.command_queue.drain_urgent(urgent_);
+  link.counters.discarded.fetch_add(link.command_queue.fetch_discarded(), std::memory_order_relaxed);
+  if (link.panic_signal.exchange(false))
+    urgent_.push_back({UrgentKind::panic,
+                       {"/transport/panic", {}},
+                       {CommandSource::command_line},
+                       link.command_queue.next_arrival()});
+  for (UrgentRequest& request : urgent_) {
+    urgent_precedence_.record(request);
+    if (request.kind == UrgentKind::panic && !show_.session->world.panic().on()) link.panics.fetch_add(1);
+    if (request.kind == UrgentKind::take_stop) link.take_stops.fetch_add(1);
+    edit_scope.begin(request.origin);
+    executor_.execute(request.message, request.origin, *this);
+  }
+}
+
+// Executes the messages and the evaluation of a command; returns their work.
+int LiveInput::execute(Command& command, EditScope& edit_scope) {
+  int work = 0;
+  edit_scope.begin(command.origin);
+  for (Message& message : command.messages) {
+    work++;
+    if (discard_if_overtaken(message, command.arrival)) continue;
+    if (pending_queries_.postpone(message, command.origin, show_.session->transport.steps())) continue;
+    const CommandExecutor::Execution execution = executor_.execute(message, command.origin, *this);
+    work += execution.work;
+    if (execution.rewound) edit_scope.begin(command.origin);  // the undo stack was restored
+  }
+  if (command.evaluation == nullptr) return work;
+  executor_.evaluate(*command.evaluation, command.origin, *this);
+  return work + kEvaluationWork;
+}
+
+bool LiveInput::discard_if_overtaken(const Message& message, std::uint64_t arrival) {
+  if (!urgent_precedence_.discards(message, arrival)) return false;
+  show_.link.counters.discarded.fetch_add(1, std::memory_order_relaxed);
+  return true;
+}
+
+bool LiveInput::advances_time(bool may_step) {
+  Transport& transport = show_.session->transport;
+  return may_step && (!transport.paused() || transport.consume_step());
+}
+
+void LiveInput::begin_handlers() { handler_budget_.begin(show_.options.clock()); }
+
+// With --fast there is no limit.
+bool LiveInput::may_call_handler(std::uint64_t) const {
+  return show_.options.fast || !handler_budget_.exceeded(show_.options.clock());
+}
+
+// The number of calls depends on real time, so it is recorded as an input if messages wait for the next pass.
+void LiveInput::end_handlers(std::uint64_t called) {
+  handler_budget_.end(show_.options.clock());
+  if (!show_.handler_queue.empty()) record_event({TakeEvent::Kind::messages_handled, called});
+}
+
+void LiveInput::record(const Message& message, const CommandOrigin& origin, bool evaluate) {
+  recording_.record(message, origin, evaluate);
+  show_.history.record_input(message, origin, evaluate);
+}
+
+void LiveInput::record_event(const TakeEvent& event) { record(message_of(event), {}, false); }
+
+// Records the ticks that were actually rewound: the history of a replay may reach back further, or less far.
+Outcome LiveInput::rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) {
+  const World& world = show_.session->world;
+  const std::uint64_t tick = world.tick();
+  Outcome outcome = rewinder_.rewind(request);
+  if (outcome.kind == Outcome::Kind::rejected) return outcome;
+  if (request.pause) recording_.record({"/transport/pause", {}}, origin, false);
+  recording_.record({"/transport/rewind_ticks", {Arg::of(static_cast<double>(tick - world.tick()))}}, origin, false);
+  return outcome;
+}
+
+bool LiveInput::reruns_at_once() {
+  if (!show_.link.on_rerun || show_.options.fast) return true;
+  show_.link.on_rerun();
+  return false;
+}
+
+void LiveInput::reject_messages(const char* reason, bool* stop) {
+  panic_timer_.restart(show_.options.clock());
+  reject_urgent(reason, stop);
+  if (next_command_ >= commands_.size()) {
+    show_.link.command_queue.drain(commands_);
+    next_command_ = 0;
+  }
+  reject_commands(reason, stop);
+}
+
+void LiveInput::reject_commands(const char* reason, bool* stop) {
+  for (int work = kTickWork; work > 0 && next_command_ < commands_.size(); next_command_++) {
+    const Command& command = commands_[next_command_];
+    for (const Message& message : command.messages) reject(message, command.origin, reason, stop);
+    if (command.evaluation != nullptr) command.evaluation->on_result({Evaluation::Kind::error, reason, 0, 0, 0});
+    work -= kRejectionWork * static_cast<int>(1 + command.messages.size());
+  }
+  snapshot_requests_ = show_.link.value_snapshot_requests.load();
+}
+
+void LiveInput::reject_urgent(const char* reason, bool* stop) {
+  EngineLink& link = show_.link;
+  link.command_queue.drain_urgent(urgent_);
+  for (const UrgentRequest& request : urgent_) {
+    urgent_precedence_.record(request);
+    // a panic stops playback in the next pass, and is executed then
+    if (stop != nullptr && request.kind == UrgentKind::panic) {
+      link.command_queue.push_urgent(request);
+      continue;
+    }
+    if (request.kind == UrgentKind::take_stop) link.take_stops.fetch_add(1);
+    reject(request.message, request.origin, reason, stop);
+  }
+}
+
+void LiveInput::reject(const Message& message, const CommandOrigin& origin, const char* reason, bool* stop) {
+  const std::string address = plain_name(message.address);
+  Outcome outcome = Outcome::rejected(reason);
+  if (stop != nullptr && address == "/take/stop") {
+    *stop = true;
+    outcome = Outcome::answered();
+    outcome.answers.push_back({"/take/stopped", {}});
+  } else if (address == "/get" || address.starts_with("/list/")) {
+    outcome = show_.session->dispatcher.execute(message);
+  }
+  Output& output = show_.output();
+  for (Message& answer : outcome.answers) output.push({Outgoing::Destination::sender, origin, std::move(answer)});
+  if (outcome.kind == Outcome::Kind::scene_request && output.accepts_scene_requests())
+    return output.request_scene(message, origin);
+  if (outcome.kind != Outcome::Kind::answered)
+    output.push({Outgoing::Destination::error, origin, error_message(message.address, outcome.error)});
+}
+
+}  // namespace limber

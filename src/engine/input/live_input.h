@@ -1,0 +1,122 @@
+// LiveInput: executes the commands of controllers: urgent requests first, then the queued commands within a work budget
+// per pass. While a take is replayed, it rejects them. [sim]
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "engine/commands/urgent.h"
+#include "engine/history/rewinder.h"
+#include "engine/takes/recording.h"
+
+namespace limber {
+
+/// Time budget of handlers (osc:on), a token bucket: it refills by kShare of real time, up to kMaxSeconds. One call may
+/// overdraw it; the next calls then wait until it is positive again. Messages are handled in order, and the values that
+/// they set take effect at once.
+class HandlerBudget {
+ public:
+  static constexpr double kShare = 0.5;
+  static constexpr double kMaxSeconds = 0.008;
+
+  /// Refills the budget; the calls of a pass begin `now` (s).
+  void begin(double now);
+  bool exceeded(double now) const { return now >= begun_ + seconds_; }
+  void end(double now) { seconds_ -= now - begun_; }
+
+ private:
+  double seconds_ = 0;  // time left; negative: debt
+  double begun_ = 0;    // s, time of the last begin()
+};
+
+/// Measures the first second of a panic, in which another request for a panic is ignored, so that pressing the button
+/// twice does not end it.
+class PanicTimer {
+ public:
+  static constexpr double kSeconds = 1;
+
+  /// Call it once per pass, at the real time `now` (s). `step`: seconds that the panic grows older; nothing: those
+  /// since the last call. True when the first second is over.
+  bool update(const Panic& panic, double now, std::optional<double> step);
+  /// Restarts the measurement at real time `now`.
+  void restart(double now);
+
+ private:
+  double age_ = 0;          // s
+  double last_update_ = 0;  // s
+};
+
+/// Queries (/get) that wait for an earlier /transport/step of the same sender.
+class PendingQueries {
+ public:
+  static constexpr std::size_t kMax = 256;
+
+  /// Postpones a query if the sender has requested ticks that are not done (`steps`); notes requests for ticks.
+  bool postpone(const Message& message, const CommandOrigin& origin, int steps);
+  struct Query {
+    Message message;
+    CommandOrigin origin;
+  };
+  /// Returns the postponed queries and removes them.
+  std::vector<Query> consume();
+
+ private:
+  std::vector<CommandOrigin> step_origins_;  // senders of an unfinished /transport/step
+  std::vector<Query> queries_;
+};
+
+class LiveInput final : public InputSource {
+ public:
+  /// Work budget of the messages of one pass: 1 per message and per value, more if a text is formatted or the scene has
+  /// handlers. The remaining messages wait in order for the next passes, so a flood does not stop time. A datagram is
+  /// never split.
+  static constexpr int kTickWork = 8192;
+
+  LiveInput(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, TakeRecording& recording)
+      : show_(show), executor_(executor), rewinder_(rewinder), recording_(recording) {}
+
+  void execute_messages(bool may_step) override;
+  bool advances_time(bool may_step) override;
+  void begin_handlers() override;
+  bool may_call_handler(std::uint64_t called) const override;
+  void end_handlers(std::uint64_t called) override;
+  void record(const Message& message, const CommandOrigin& origin, bool evaluate) override;
+  Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
+  Outcome request_take(const Message& message) override { return recording_.request(message); }
+  bool reruns_at_once() override;
+  bool is_paced() const override { return !show_.options.fast || show_.session->transport.paused(); }
+
+  /// Answers queries and rejects all other commands of this pass. `stop`: set by /take/stop; null: /take/stop is
+  /// rejected, too, and so is a panic, which otherwise waits.
+  void reject_messages(const char* reason, bool* stop);
+  /// Rejects the commands that have left the queue, within the work budget of a pass.
+  void reject_commands(const char* reason, bool* stop = nullptr);
+  /// Number of the last request for a value snapshot that can be served now: it must contain the effect of all commands
+  /// that arrived before the request.
+  std::uint64_t snapshot_requests() const { return snapshot_requests_; }
+
+ private:
+  void update_panic_timer(bool may_step);
+  void execute_urgent(EditScope& edit_scope);
+  int execute(Command& command, EditScope& edit_scope);
+  bool discard_if_overtaken(const Message& message, std::uint64_t arrival);
+  void reject_urgent(const char* reason, bool* stop);
+  void reject(const Message& message, const CommandOrigin& origin, const char* reason, bool* stop);
+  void record_event(const TakeEvent& event);
+
+  ShowState& show_;
+  CommandExecutor& executor_;
+  Rewinder& rewinder_;
+  TakeRecording& recording_;
+  std::vector<Command> commands_;
+  std::size_t next_command_ = 0;                  // index of the first command that is not executed
+  std::uint64_t snapshot_requests_of_batch_ = 0;  // value snapshot requests made before commands_ was drained
+  std::uint64_t snapshot_requests_ = 0;
+  std::vector<UrgentRequest> urgent_;   // scratch
+  UrgentPrecedence urgent_precedence_;  // decides which messages urgent requests discard
+  PendingQueries pending_queries_;
+  PanicTimer panic_timer_;
+  HandlerBudget handler_budget_;
+};
+
+}  // namespace limber

@@ -1,0 +1,287 @@
+// SceneRunner: start, reset, reload and change of the scene.
+#include "engine/reload/scene_runner.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log/log.h"
+#include "base/text.h"
+#include "engine/reload/reload_candidate.h"
+
+namespace limber {
+
+SceneRunner::Run SceneRunner::begin_run(TakeSceneRun::Kind kind, bool reuse_files, const std::string& scene) {
+  Run run;
+  run.index = recording_.begin_run({kind, false, reuse_files, 0, scene});
+  run.files = show_.input->begin_run(kind);
+  return run;
+}
+
+// Captures the result of a run, for reloads and for the preset "script".
+void SceneRunner::capture_run(const Session& session, const SceneOptions& options, const std::string& file,
+                              std::vector<SourceFile> failed_files) {
+  reloader_.capture(session, options, file, std::move(failed_files));
+  show_.presets.set_script_preset(reloader_.script_preset());
+}
+
+Result<void> SceneRunner::start() {
+  const Run run = begin_run(TakeSceneRun::Kind::start);
+  const SceneOptions options = show_.scene_options();
+  SceneOptions run_options = options;
+  run_options.sources = run.files.sources;
+  if (run.files.fails) return Error{"the scene failed when the take was recorded, too"};
+  std::unique_ptr<Session>& session = show_.session;
+  const std::string& file = show_.options.scene;
+  if (Result<void> result = session->run(file, host_, run_options); !result) {
+    std::vector<SourceFile> tried_files = session->scene->sources()->files();
+    session = show_.new_session();
+    capture_run(*session, options, file, std::move(tried_files));
+    return result;
+  }
+  if (session->scene != nullptr) session->scene->set_call_log(show_.call_log);
+  recording_.run_succeeded(run.index, *session, show_.presets.list(), show_.presets.file());
+  capture_run(*session, options, file);
+  if (show_.options.scene_options.seed) {
+    const auto seed = static_cast<double>(*show_.options.scene_options.seed);
+    (void)session->store.set(session->world.id(), "seed", {&seed, 1});  // can't fail: any 53-bit seed is in range
+  }
+  show_.scene_seed = session->world.seed();
+  if (Result<void> set = apply_initial_overrides(); !set) return set;
+  begin_show();
+  return {};
+}
+
+// The initial overrides may require another run of the scene (parameters with `rerun`), before its on_start.
+void SceneRunner::begin_show() {
+  if (reloader_.consume_rerun(*show_.session)) run_now(TakeSceneRun::Kind::rerun, true);
+  show_.session->world.flush();
+  if (show_.session->scene != nullptr) show_.session->scene->start();
+  show_.presets.finish_planning(show_.session->world);
+}
+
+bool SceneRunner::reset() {
+  show_.pacer.excuse_stall();
+  const Run run = begin_run(TakeSceneRun::Kind::reset);
+  auto fresh = show_.new_session();
+  SceneOptions options = show_.scene_options();
+  const World& before = show_.session->world;
+  if (before.seed() != show_.scene_seed) options.seed = before.seed();  // the performer has set it
+  SceneOptions run_options = options;
+  run_options.sources = run.files.sources;
+  const Result<void> result = run.files.fails ? Result<void>(Error{"it failed when the take was recorded, too"})
+                                              : fresh->run(show_.options.scene, host_, run_options);
+  if (!result) {
+    show_.output().report_fault(
+        fmt::format("reset: the scene file has an error, so the show continues unchanged: {}", result.error()));
+    return false;
+  }
+  recording_.run_succeeded(run.index, *fresh);
+  capture_run(*fresh, options, show_.options.scene);
+  if (options.seed) copy_session_value(*fresh, "seed");
+  install_session(std::move(fresh));
+  if (show_.session->scene != nullptr) show_.session->scene->arm();  // the JIT was off while two scenes existed
+  reapply_overrides();
+  begin_show();
+  show_.send_transport();
+  return true;
+}
+
+// Copies a value that is session state, not scene state (paused, speed, history), into a new session.
+void SceneRunner::copy_session_value(Session& fresh, std::string_view name) const {
+  const Property& property = World::table().at(name);
+  const Session& session = *show_.session;
+  (void)fresh.store.set(fresh.world.id(), property, {session.store.values(session.world.id(), property), 1});
+}
+
+// Makes a session the show, with the session state that survives a reset. Returns the previous session.
+std::unique_ptr<Session> SceneRunner::install_session(std::unique_ptr<Session> fresh) {
+  for (const char* state : {"paused", "speed", "history"}) copy_session_value(*fresh, state);
+  return swap_session(std::move(fresh));
+}
+
+// The debug overlay belongs to the user, so it stays as it is across scenes.
+std::unique_ptr<Session> SceneRunner::swap_session(std::unique_ptr<Session> fresh) {
+  std::unique_ptr<Session>& session = show_.session;
+  const Property& overlay = Appearance::table().at("overlay");
+  (void)fresh->store.set(fresh->world.visuals().appearance().id(), overlay,
+                         {session->store.values(session->world.visuals().appearance().id(), overlay), 1});
+  LiveOutput& output = show_.outputs.live();
+  output.add_faults(session->world.health_events());
+  show_.handler_queue.clear();
+  std::swap(session, fresh);
+  show_.history.clear("the scene starts there");
+  show_.undo_stack.rebind(fresh->store, session->store);
+  if (session->scene != nullptr) session->scene->set_call_log(show_.call_log);
+  output.value_snapshotter().reset_store();
+  show_.presets.forget_store();
+  return fresh;
+}
+
+// Applies the overrides to the new session in their order. A value that a reload has released since gets the value of
+// the scene again.
+void SceneRunner::reapply_overrides() {
+  struct Value {
+    PropertyRef ref;
+    std::array<double, 4> values{};
+  };
+  const std::vector<Override> steps = show_.overrides.in_order();
+  Session& session = *show_.session;
+  Store& store = session.store;
+  std::vector<Value> scene_values;
+  for (const Override& step : steps) {
+    if (step.address == nullptr) continue;
+    const Result<PropertyRef> ref = find_property(store, *step.address);
+    scene_values.push_back({ref ? *ref : PropertyRef{}, {}});
+    if (ref && ref->property != nullptr) store.get(ref->node, *ref->property, scene_values.back().values.data());
+  }
+  auto next = scene_values.begin();
+  for (const Override& step : steps) {
+    if (step.message != nullptr) (void)session.dispatcher.execute(*step.message);
+    if (step.blend != nullptr) show_.presets.reapply(session.world, *step.blend);
+    if (step.address == nullptr) continue;
+    const Value& value = *next++;
+    if (value.ref.property != nullptr)
+      (void)store.set(value.ref.node, *value.ref.property, {value.values.data(), value.ref.property->width});
+  }
+}
+
+// Applies the values of the command line: --recover, --preset, --set.
+Result<void> SceneRunner::apply_initial_overrides() {
+  if (Result<void> recovered = recovery_.apply(); !recovered) return recovered;
+  MessageDispatcher& dispatcher = show_.session->dispatcher;
+  if (!show_.options.preset.empty()) {
+    const Outcome outcome = dispatcher.execute({"/preset/recall", {Arg::of(show_.options.preset)}});
+    if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("--preset: {}", outcome.error)};
+    if (!outcome.warning.empty()) show_.output().warn_once(outcome.warning);
+  }
+  for (const Message& message : show_.options.sets) {
+    const Outcome outcome = dispatcher.execute(message);
+    if (outcome.kind == Outcome::Kind::answered) {
+      return Error{
+          fmt::format("--set {}: this is a query, not a value; set a path, such as /physics/sim/gravity=0,0,-1.6",
+                      message.address)};
+    }
+    if (outcome.kind != Outcome::Kind::applied)
+      return Error{fmt::format("--set {}: {}", printable(message.address), outcome.error)};
+    if (outcome.clamped != nullptr) show_.output().report_clamped(message, *outcome.clamped);
+    show_.overrides.add(message);
+  }
+  return {};
+}
+
+Presets::Bank SceneRunner::read_presets(const std::string& scene) {
+  PresetFile::WriteAccess access =
+      PresetFile::write_access_for(scene, show_.options.lock_folder, !show_.options.recovery_folder.empty());
+  // called by the thread that writes the file: not through Output, which belongs to the simulation thread
+  return Presets::read(scene, std::move(access), [&link = show_.link](const std::string& why) {
+    link.push_out({Outgoing::Destination::error, {}, error_message("/preset/store", why)});
+  });
+}
+
+Result<void> SceneRunner::run_between_ticks(const std::function<void()>& work) {
+  Result<void> done = Error{"the show has ended"};
+  const auto work_of_show = [&] {
+    done = show_.input->accepts_changes();
+    if (done) work();
+  };
+  requests_.run_and_wait(work_of_show, [this] { show_.pacer.wake(); });
+  return done;
+}
+
+bool SceneRunner::reload(bool reuse_files) {
+  constexpr int kTries = 3;
+  for (int i = 0; i < kTries; i++) {
+    ReloadRequest request;
+    const auto copy_request = [&] {
+      begin_run(TakeSceneRun::Kind::reload_requested, reuse_files);
+      request = reloader_.make_request(*show_.session, reuse_files);
+    };
+    if (!run_between_ticks(copy_request)) return false;
+    ReloadCandidate candidate(std::move(request), host_);
+    SceneReloader::ApplyResult result = SceneReloader::ApplyResult::outdated;
+    const auto apply_request = [&] {
+      const Run run = begin_run(TakeSceneRun::Kind::reload_finished);
+      result = apply_candidate(candidate);
+      if (result == SceneReloader::ApplyResult::applied) recording_.run_succeeded(run.index, *show_.session);
+    };
+    if (!run_between_ticks(apply_request)) return false;
+    if (result != SceneReloader::ApplyResult::outdated) return true;
+  }
+  // resets have made each candidate outdated, so reload within a tick
+  return run_between_ticks([&] { run_now(TakeSceneRun::Kind::reload, reuse_files); }).ok();
+}
+
+SceneReloader::ApplyResult SceneRunner::run_now(TakeSceneRun::Kind kind, bool reuse_files) {
+  const Run run = begin_run(kind, reuse_files);
+  ReloadRequest request = reloader_.make_request(*show_.session, reuse_files);
+  if (run.files.fails) return SceneReloader::ApplyResult::failed;
+  request.options.sources = run.files.sources;
+  ReloadCandidate candidate(std::move(request), host_);
+  const SceneReloader::ApplyResult result = apply_candidate(candidate);
+  if (result == SceneReloader::ApplyResult::applied) recording_.run_succeeded(run.index, *show_.session);
+  return result;
+}
+
+SceneReloader::ApplyResult SceneRunner::apply_candidate(ReloadCandidate& candidate) {
+  Session& session = *show_.session;
+  const bool is_start = session.scene == nullptr;
+  candidate.scene()->set_call_log(show_.call_log);
+  const SceneReloader::ApplyResult result = [&] {
+    const EditScope edit_scope = show_.edit_scope();
+    return reloader_.apply_candidate(candidate, session);
+  }();
+  if (result != SceneReloader::ApplyResult::applied) return result;
+  show_.history.clear("the scene was run again there");
+  show_.presets.set_script_preset(reloader_.script_preset());
+  static const Property& seed = World::table().at("seed");
+  if ((candidate.diff().world >> seed.index & 1u) != 0) show_.scene_seed = session.world.seed();
+  if (!is_start) return result;
+  show_.scene_seed = session.world.seed();
+  if (const Result<void> set = apply_initial_overrides(); !set) log_error("{}", set.error());
+  begin_show();
+  return result;
+}
+
+Result<void> SceneRunner::change_scene(const std::string& file, std::optional<std::uint64_t> panics) {
+  const std::uint64_t panics_at_request = panics.value_or(show_.link.panics.load());
+  auto fresh = show_.new_session();
+  Result<void> run_result = fresh->run_detached(file, host_, show_.options.scene_options);
+  if (!run_result) return run_result;
+  Presets::Bank bank = read_presets(file);
+  // the previous session and presets are destroyed at the end of this function, on this thread
+  Result<void> result;
+  const Result<void> done = run_between_ticks([&] {
+    if (show_.link.panics.load() != panics_at_request) {
+      show_.output().count(&Counters::discarded);
+      result = Error{"discarded: a panic was requested before it could start"};
+      return;
+    }
+    const Run run = begin_run(TakeSceneRun::Kind::scene, false, file);
+    recording_.run_succeeded(run.index, *fresh, bank.list, bank.file);
+    play_scene(file, fresh, bank);
+  });
+  return done ? result : done;
+}
+
+void SceneRunner::play_scene(const std::string& file, std::unique_ptr<Session>& fresh, Presets::Bank& bank) {
+  show_.options.scene = file;
+  show_.overrides.clear();
+  show_.undo_stack.clear();
+  capture_run(*fresh, show_.scene_options(), file);
+  bank = show_.presets.open(std::move(bank));
+  if (show_.session->scene != nullptr) show_.session->scene->disarm();
+  fresh = install_session(std::move(fresh));
+  show_.session->make_live(host_);
+  show_.scene_seed = show_.session->world.seed();
+  begin_show();
+  show_.send_transport();
+}
+
+void SceneRunner::rerun_if_requested() {
+  if (!reloader_.consume_rerun(*show_.session)) return;
+  if (show_.input->reruns_at_once()) run_now(TakeSceneRun::Kind::rerun, true);
+}
+
+}  // namespace limber

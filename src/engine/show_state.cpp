@@ -1,0 +1,56 @@
+// ShowState: sessions, and the parts of the state that are saved and restored together.
+#include "engine/show_state.h"
+
+#include <utility>
+
+namespace limber {
+
+ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
+    : link(engine_link),
+      options(std::move(engine_options)),
+      thread_pool(options.threads > 1 ? std::make_shared<ThreadPool>(options.threads) : nullptr),
+      session(new_session()) {}
+
+std::unique_ptr<Session> ShowState::new_session() {
+  WorldSetup setup;
+  setup.thread_pool = thread_pool;
+  return std::make_unique<Session>(link, presets, undo_stack, setup);
+}
+
+SceneOptions ShowState::scene_options() const {
+  SceneOptions scene_options = options.scene_options;
+  if (rules.limits) scene_options.limits = *rules.limits;
+  if (!rules.keeps_timers) scene_options.keep_timers = false;
+  if (!rules.current) scene_options.limits.disable_failed_handlers = false;
+  return scene_options;
+}
+
+void ShowState::end_history_pass(bool running) {
+  history.end_pass(*session, call_log, running, session->world_value("history"));
+}
+
+bool ShowState::restore_before(std::uint64_t tick) {
+  const PresetList list = presets.list();
+  if (!history.validate(*session) || !history.restore_before(*session, tick)) return false;
+  presets.set_list(list);
+  handler_queue.clear();
+  preset_requests.clear();
+  call_log.record_rewind();
+  return true;
+}
+
+void ShowState::send_transport() {
+  was_paused = session->transport.paused();
+  output().push({Outgoing::Destination::event,
+                 {},
+                 {"/transport/state",
+                  {Arg::of(was_paused), Arg::of(static_cast<double>(session->world.tick())),
+                   Arg::of(session->world.time()), Arg::of(pacer.speed_reached())}}});
+}
+
+std::uint64_t ShowState::state_hash() const {
+  const std::uint64_t hash = session->world.state_hash();
+  return session->scene == nullptr ? hash : session->scene->state_hash(hash);
+}
+
+}  // namespace limber

@@ -1,0 +1,70 @@
+// ShowState: the running show, shared by the parts of the engine: its session, and everything that outlives the session
+// when a reset or another scene replaces it. [sim]
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/commands/handler_queue.h"
+#include "engine/edits/edit_scope.h"
+#include "engine/edits/overrides.h"
+#include "engine/engine_options.h"
+#include "engine/history/history.h"
+#include "engine/input/input_source.h"
+#include "engine/output/show_output.h"
+#include "engine/pacer.h"
+#include "engine/presets/presets.h"
+#include "engine/session.h"
+#include "script/vm/call_log.h"
+
+namespace limber {
+
+/// Rules of the version that recorded the take that is replayed. In a live show the current ones.
+struct ShowRules {
+  bool current = true;                 ///< See kTakeRules; false: the rules before the first revision.
+  bool keeps_timers = true;            ///< Reloads keep timers, and console texts set overrides.
+  std::optional<ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
+};
+
+struct ShowState {
+  /// Starts with an empty session.
+  ShowState(EngineLink& link, EngineOptions options);
+
+  /// Returns an empty session. [any]
+  std::unique_ptr<Session> new_session();
+  /// Options for runs of the scene, by the rules in force.
+  SceneOptions scene_options() const;
+  Output& output() { return outputs.current(); }
+  /// Makes the writes during its lifetime edits of a controller.
+  EditScope edit_scope() { return {session->world, presets, undo_stack, output().changes()}; }
+  /// Ends a pass in the history.
+  void end_history_pass(bool running);
+  /// Restores the newest checkpoint before this tick and discards everything since, except presets. False, without a
+  /// change, if there is none.
+  bool restore_before(std::uint64_t tick);
+  /// Sends /transport/state.
+  void send_transport();
+  /// Hash of the world, the scene and the random number generators.
+  std::uint64_t state_hash() const;
+
+  EngineLink& link;
+  EngineOptions options;
+  const std::shared_ptr<ThreadPool> thread_pool;  ///< Null: the simulation thread alone.
+  std::shared_ptr<const Preset> recovered;        ///< Values to restore at the start; null: none.
+  ShowRules rules;
+  InputSource* input = nullptr;  ///< The source of inputs: live controllers, or the take that is replayed.
+  Outputs outputs{link};
+  Pacer pacer;
+  Overrides overrides;
+  Presets presets{overrides};
+  UndoStack undo_stack{overrides};
+  HandlerQueue handler_queue;            ///< Messages that wait for the scene's handlers.
+  std::vector<Message> preset_requests;  ///< Preset commands of scripts in this tick.
+  History history{overrides, undo_stack, presets, handler_queue};
+  CallLog call_log;
+  std::unique_ptr<Session> session;
+  std::uint64_t scene_seed = 0;  ///< The random seed after the scene's run.
+  bool was_paused = false;       ///< As last sent by send_transport().
+};
+
+}  // namespace limber

@@ -1,0 +1,98 @@
+// TakePlayback: the take that is replayed, if there is one: by --replay, or inside a running show (/take/play). [sim,
+// except where noted]
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "engine/input/live_input.h"
+#include "engine/reload/scene_runner.h"
+#include "engine/takes/player.h"
+
+namespace limber {
+
+/// The inputs of a take. Commands of controllers are rejected meanwhile.
+class TakeInput final : public RecordedInput {
+ public:
+  /// `in_show`: the take plays in a running show, until its end, /take/stop or a panic.
+  TakeInput(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, LiveInput& live,
+            std::unique_ptr<TakePlayer> player, bool in_show)
+      : RecordedInput(show, executor),
+        rewinder_(rewinder),
+        live_(live),
+        player_(std::move(player)),
+        in_show_(in_show) {}
+
+  TakePlayer& player() { return *player_; }
+  const TakePlayer& player() const { return *player_; }
+  bool in_show() const { return in_show_; }
+  /// True if /take/stop was requested.
+  bool stop_requested() const { return stop_requested_; }
+
+  void execute_messages(bool may_step) override;
+  bool advances_time(bool may_step) override;
+  void end_handlers(std::uint64_t called) override;
+  void record(const Message& message, const CommandOrigin& origin, bool evaluate) override;
+  Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
+  Outcome request_take(const Message&) override { return Outcome::answered(); }
+  SceneFiles begin_run(TakeSceneRun::Kind kind) override;
+  bool reruns_at_once() override;
+  void end_pass() override;
+  bool is_paced() const override { return !show_.options.fast && player_->steps_next(); }
+  bool finished() const override { return !in_show_ && player_->finished(); }
+  Result<void> accepts_changes() const override;
+
+ private:
+  Rewinder& rewinder_;
+  LiveInput& live_;
+  const std::unique_ptr<TakePlayer> player_;
+  const bool in_show_;
+  bool stop_requested_ = false;
+};
+
+class TakePlayback {
+ public:
+  TakePlayback(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, LiveInput& live, SceneRunner& scenes,
+               TakeRecording& recording, RecoveryControl& recovery);
+
+  /// Starts the replay of the take in the options, with its first tick.
+  Result<void> start();
+  /// See Engine::play_take(). [any but sim]
+  Result<void> play(const std::string& file, std::optional<std::uint64_t> stops);
+  /// Prepares the inputs of a pass, and ends a take that has no more of them or must end because of a panic. False if
+  /// there are none, because the replay by --replay has ended.
+  bool begin_pass();
+  /// Ends the take if /take/stop has requested that.
+  void end_if_requested();
+
+  /// The player of the take; null if none is replayed.
+  const TakePlayer* player() const { return input_ == nullptr ? nullptr : &input_->player(); }
+  /// The state for TakeNode; nothing if no take is replayed.
+  std::optional<TakeNode::Status> status() const;
+
+ private:
+  Result<void> check(TakePlayer& player);
+  std::unique_ptr<Session> begin_in_show(std::unique_ptr<TakePlayer> player, const std::string& file,
+                                         Presets::Bank& bank);
+  Result<void> begin(std::unique_ptr<TakePlayer> player, const std::string& file, bool in_show);
+  Result<void> run_start();
+  void end();
+  bool next_tick();
+  void run_scene(const TakeSceneRun& run);
+  void load_scene(const TakeSceneRun& run, const SceneRunner::Run& scene_run);
+
+  ShowState& show_;
+  CommandExecutor& executor_;
+  Rewinder& rewinder_;
+  LiveInput& live_;
+  SceneRunner& scenes_;
+  TakeRecording& recording_;
+  RecoveryControl& recovery_;
+  std::unique_ptr<TakeInput> input_;
+  std::string name_;
+  Presets::Bank presets_after_;                  // the presets to restore after a take that plays in the show
+  std::optional<ReloadRequest> reload_request_;  // of the take
+};
+
+}  // namespace limber
