@@ -176,7 +176,7 @@ TEST(Take, ReplaysATruncatedFileToItsLastCompleteTick) {
     auto reader = TakeReader::from_stream(std::make_unique<std::istringstream>(whole.substr(0, size)), "cut.take");
     std::uint64_t ticks = 0;
     while (reader.ok()) {
-      TakeTick tick;
+      RecordedPass tick;
       if (!(*reader)->next(tick)) {
         EXPECT_FALSE((*reader)->next(tick)) << "also when called again";
         break;

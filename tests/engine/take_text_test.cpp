@@ -18,16 +18,16 @@ bool same_arg(const Arg& a, const Arg& b) {
 TEST(TakeText, NumbersRoundTripExactly) {
   std::string text;
   TakeEncoder out(text);
-  TakeMessageCodec encoder;
+  InputCodec encoder;
   std::vector<double> numbers = {0,           -0.0,  1,       -1,    127,   128,
                                  -64,         1e9,   1e9 - 1, 0.5,   0.1,   double{0.1F},
                                  3e38,        1e300, 5e-324,  1e-40, -2e-7, std::numeric_limits<double>::infinity(),
                                  std::nan("")};
   for (const double v : numbers) encoder.encode(out, message("/a", v), {});
   TakeDecoder in(text);
-  TakeMessageCodec decoder;
+  InputCodec decoder;
   for (const double v : numbers) {
-    TakeMessage m;
+    InputRecord m;
     ASSERT_TRUE(decoder.decode(in, m)) << v;
     ASSERT_EQ(m.message.args.size(), 1u);
     EXPECT_TRUE(same_arg(m.message.args[0], Arg::of(v))) << v;
@@ -41,18 +41,18 @@ TEST(TakeText, MessagesRoundTripWithSenders) {
   const CommandOrigin origins[] = {{CommandSource::osc, 0x7f000001, 4000}, {CommandSource::panel, 0, 0}};
   std::string text;
   TakeEncoder out(text);
-  TakeMessageCodec encoder;
+  InputCodec encoder;
   for (int i = 0; i < 3; i++) {
     for (const Message& m : messages) {
       for (const CommandOrigin& origin : origins) encoder.encode(out, m, origin);
     }
   }
   TakeDecoder in(text);
-  TakeMessageCodec decoder;
+  InputCodec decoder;
   for (int i = 0; i < 3; i++) {
     for (const Message& m : messages) {
       for (const CommandOrigin& origin : origins) {
-        TakeMessage taken;
+        InputRecord taken;
         ASSERT_TRUE(decoder.decode(in, taken));
         EXPECT_EQ(taken.message.address, m.address);
         EXPECT_EQ(taken.origin, origin);
@@ -67,7 +67,7 @@ TEST(TakeText, MessagesRoundTripWithSenders) {
 TEST(TakeText, WritesMessageHeadersOnce) {
   std::string text;
   TakeEncoder out(text);
-  TakeMessageCodec encoder;
+  InputCodec encoder;
   const Message sent = message("/physics/body/arm1/motor/m/target", double{0.3F});
   encoder.encode(out, sent, {});
   const std::size_t first = text.size();
@@ -76,7 +76,7 @@ TEST(TakeText, WritesMessageHeadersOnce) {
 }
 
 TEST(TakeText, TicksRoundTrip) {
-  TakeTick tick;
+  RecordedPass tick;
   tick.running = true;
   tick.runs = {{TakeSceneRun::Kind::scene, true, false, 3, "other.lua"},
                {TakeSceneRun::Kind::rerun, false, true, 0, ""}};
@@ -86,15 +86,14 @@ TEST(TakeText, TicksRoundTrip) {
   tick.state_hash = 5;
   tick.first_body = 32;
   tick.body_hashes = {1, 65535};
-  std::string messages;
-  TakeEncoder out(messages);
-  TakeMessageCodec encoder;
-  encoder.encode(out, message("/a", 1), {});
+  InputLog log;
+  log.record(message("/a", 1), {}, false);
   std::string text;
-  append_tick(text, tick, 1, messages);
-  TakeTick again;
-  TakeMessageCodec decoder;
-  ASSERT_TRUE(read_tick(text, decoder, again));
+  log.append_pass(text, tick);
+  EXPECT_TRUE(log.empty());
+  RecordedPass again;
+  InputCodec decoder;
+  ASSERT_TRUE(read_pass(text, decoder, again));
   ASSERT_EQ(again.runs.size(), 2u);
   EXPECT_EQ(again.runs[0].scene, "other.lua");
   EXPECT_TRUE(again.runs[0].succeeded && !again.runs[1].succeeded && again.runs[1].reuses_files);
@@ -107,36 +106,34 @@ TEST(TakeText, TicksRoundTrip) {
   EXPECT_EQ(again.state_hash, tick.state_hash);
   EXPECT_EQ(again.body_hashes, tick.body_hashes);
   for (std::size_t size = 0; size < text.size(); size++) {
-    TakeMessageCodec fresh;
-    EXPECT_FALSE(read_tick(text.substr(0, size), fresh, again)) << size;
+    InputCodec fresh;
+    EXPECT_FALSE(read_pass(text.substr(0, size), fresh, again)) << size;
   }
 }
 
 TEST(TakeText, ReadingATickReplacesThePreviousOne) {
-  TakeMessageCodec encoder;
-  TakeMessageCodec decoder;
-  const auto bytes = [&](const TakeTick& tick, const std::vector<Message>& messages) {
-    std::string sent;
-    TakeEncoder out(sent);
-    for (const Message& m : messages) encoder.encode(out, m, {});
+  InputLog log;
+  InputCodec decoder;
+  const auto bytes = [&](const RecordedPass& tick, const std::vector<Message>& messages) {
+    for (const Message& m : messages) log.record(m, {}, false);
     std::string text;
-    append_tick(text, tick, messages.size(), sent);
+    log.append_pass(text, tick);
     return text;
   };
-  TakeTick full;
+  RecordedPass full;
   full.running = true;
   full.runs = {{TakeSceneRun::Kind::scene, true, false, 3, "other.lua"}};
   full.stopped_calls = {{12, "a.lua", 7, "stopped"}};
   full.state_hash = 5;
   full.first_body = 32;
   full.body_hashes = {1, 2};
-  TakeTick tick;
+  RecordedPass tick;
   // console input has no address
-  ASSERT_TRUE(read_tick(bytes(full, {message("", "sim.time"), message("/a", "x", 2), message("/b")}), decoder, tick));
+  ASSERT_TRUE(read_pass(bytes(full, {message("", "sim.time"), message("/a", "x", 2), message("/b")}), decoder, tick));
   ASSERT_EQ(tick.messages.size(), 3U);
   EXPECT_TRUE(tick.messages[0].evaluate);
   EXPECT_EQ(tick.messages[0].message.address, "sim.time");
-  ASSERT_TRUE(read_tick(bytes({}, {message("/b", 1), message("/a", 1)}), decoder, tick));
+  ASSERT_TRUE(read_pass(bytes({}, {message("/b", 1), message("/a", 1)}), decoder, tick));
   ASSERT_EQ(tick.messages.size(), 2U);
   EXPECT_FALSE(tick.messages[0].evaluate);
   EXPECT_EQ(tick.messages[0].message.address, "/b");
@@ -145,8 +142,27 @@ TEST(TakeText, ReadingATickReplacesThePreviousOne) {
   EXPECT_FALSE(tick.running || tick.state_hash);
   EXPECT_TRUE(tick.runs.empty() && tick.stopped_calls.empty() && tick.body_hashes.empty());
   EXPECT_EQ(tick.first_body, 0U);
-  ASSERT_TRUE(read_tick(bytes({}, {}), decoder, tick));
+  ASSERT_TRUE(read_pass(bytes({}, {}), decoder, tick));
   EXPECT_TRUE(tick.messages.empty());
+}
+
+TEST(InputLog, WithoutHeaderTableDecodesFromAnyPass) {
+  InputLog log(0);
+  std::vector<std::string> passes(2);
+  for (std::string& text : passes) {
+    log.record(message("/a", 1), {}, false);
+    log.record({"sim.time", {}}, {}, true);
+    log.append_pass(text, {});
+  }
+  InputCodec decoder(0);
+  for (const std::string& text : {passes[1], passes[0], passes[1]}) {
+    RecordedPass pass;
+    ASSERT_TRUE(read_pass(text, decoder, pass));
+    ASSERT_EQ(pass.messages.size(), 2U);
+    EXPECT_EQ(pass.messages[0].message.address, "/a");
+    EXPECT_TRUE(pass.messages[1].evaluate);
+    EXPECT_EQ(pass.messages[1].message.address, "sim.time");
+  }
 }
 
 TEST(TakeText, RejectsNewerVersions) {

@@ -14,20 +14,15 @@ namespace {
 
 using limber::must;
 
-void check_round_trip(const limber::TakeTick& tick) {
-  limber::TakeMessageCodec written;
-  std::string messages;
-  limber::TakeEncoder out(messages);
-  for (const limber::TakeMessage& recorded : tick.messages) {
-    limber::Message message = recorded.message;
-    if (recorded.evaluate) message = {"", {limber::Arg::of(std::string_view(recorded.message.address))}};
-    written.encode(out, message, recorded.origin);
-  }
+void check_round_trip(const limber::RecordedPass& tick) {
+  limber::InputLog log;
+  for (const limber::InputRecord& recorded : tick.messages)
+    log.record(recorded.message, recorded.origin, recorded.evaluate);
   std::string text;
-  limber::append_tick(text, tick, tick.messages.size(), messages);
-  limber::TakeMessageCodec read;
-  limber::TakeTick again;
-  must(limber::read_tick(text, read, again));
+  log.append_pass(text, tick);
+  limber::InputCodec read;
+  limber::RecordedPass again;
+  must(limber::read_pass(text, read, again));
   must(again.messages.size() == tick.messages.size() && again.runs.size() == tick.runs.size());
   must(again.motion_hash == tick.motion_hash && again.body_hashes == tick.body_hashes &&
        again.state_hash == tick.state_hash);
@@ -44,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   limber::TakeReader& reader = **opened;
-  for (limber::TakeTick tick; reader.next(tick);) {
+  for (limber::RecordedPass tick; reader.next(tick);) {
     check_round_trip(tick);
     for (const limber::TakeSceneRun& run : tick.runs) {
       must(run.files == 0 || reader.sources(run.files) != nullptr);

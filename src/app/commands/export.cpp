@@ -105,7 +105,7 @@ Result<std::uint64_t> ticks_of(const std::string& take) {
   auto opened = TakeReader::open(take);
   if (!opened) return Error{opened.error()};
   std::uint64_t ticks = 0;
-  for (TakeTick tick; (*opened)->next(tick);) ticks += tick.running ? 1 : 0;
+  for (RecordedPass tick; (*opened)->next(tick);) ticks += tick.running ? 1 : 0;
   return ticks;
 }
 

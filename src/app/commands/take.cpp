@@ -22,9 +22,9 @@ struct Count {
 
 Count count_all(TakeReader& reader) {
   Count count;
-  for (TakeTick tick; reader.next(tick);) {
+  for (RecordedPass tick; reader.next(tick);) {
     if (tick.running) count.ticks++;
-    for (const TakeMessage& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
+    for (const InputRecord& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
     for (const TakeSceneRun& run : tick.runs) {
       if (run.succeeded) count.runs[run.kind]++;
     }

@@ -10,8 +10,6 @@ namespace limber {
 
 namespace {
 
-enum class Record : std::uint8_t { input, stopped_call, paused_pass, running_pass };
-
 constexpr std::size_t kMaxInputBytes = std::size_t{4} << 20;  // bytes of inputs after one checkpoint
 constexpr std::uint64_t kTicksBetweenStops = 15;  // ticks: limits checkpoints caused by repeatedly stopped calls
 
@@ -21,7 +19,7 @@ std::size_t History::bytes() const {
   std::size_t total = pages_.bytes();
   const UndoStack::State* last_undo = nullptr;
   for (const auto& checkpoint : checkpoints_) {
-    total += const_cast<Archive&>(checkpoint->inputs).bytes().capacity() + checkpoint->handler_queue.bytes();
+    total += checkpoint->passes.capacity() + checkpoint->handler_queue.bytes();
     if (checkpoint->undo.get() != last_undo) total += checkpoint->undo->size();
     last_undo = checkpoint->undo.get();
   }
@@ -54,14 +52,14 @@ void History::recycle(std::unique_ptr<Checkpoint> checkpoint) {
   checkpoint->world.release(pages_);
   checkpoint->scene.release(pages_);
   checkpoint->handler_queue.clear();
-  checkpoint->inputs.resume_saving(0);
+  checkpoint->passes.clear();
   free_.push_back(std::move(checkpoint));
 }
 
 void History::drop_oldest() {
   if (checkpoints_.front()->tick != pinned_tick_) return drop(0);
   pinned_ = std::move(checkpoints_.front());
-  pinned_->inputs.resume_saving(0);
+  pinned_->passes.clear();
   checkpoints_.erase(checkpoints_.begin());
 }
 
@@ -71,26 +69,7 @@ void History::pin() {
 }
 
 void History::record_input(const Message& message, const CommandOrigin& origin, bool evaluate) {
-  if (checkpoints_.empty()) return;
-  input_.message = message;
-  input_.origin = origin;
-  input_.evaluate = evaluate;
-  Archive& inputs = checkpoints_.back()->inputs;
-  auto record = Record::input;
-  inputs.serialize(record);
-  serialize_input(inputs, input_);
-}
-
-void History::serialize_input(Archive& bytes, TakeMessage& input) {
-  bytes.serialize_all(input.evaluate, input.origin, input.message.address);
-  std::size_t count = input.message.args.size();
-  bytes.serialize(count);
-  input.message.args.resize(count);
-  for (Arg& arg : input.message.args) bytes.serialize_all(arg.kind, arg.number, arg.text);
-}
-
-void History::serialize_stop(Archive& bytes, StoppedCall& stop) {
-  bytes.serialize_all(stop.number, stop.file, stop.line, stop.text);
+  if (!checkpoints_.empty()) inputs_.record(message, origin, evaluate);
 }
 
 void History::end_pass(Session& session, const CallLog& calls, bool running, double seconds) {
@@ -102,24 +81,20 @@ void History::end_pass(Session& session, const CallLog& calls, bool running, dou
     release_ended_runs(session);
     return;
   }
-  if (validate(session)) {
-    Archive& inputs = checkpoints_.back()->inputs;
-    for (const StoppedCall& stop : calls.stopped_since_rewind()) {
-      auto record = Record::stopped_call;
-      inputs.serialize(record);
-      stop_ = stop;
-      serialize_stop(inputs, stop_);
-    }
-    const bool empty = inputs.bytes().size() == pass_start_;
-    if (running || !empty) {
-      auto record = running ? Record::running_pass : Record::paused_pass;
-      inputs.serialize(record);
-    }
-    pass_start_ = inputs.bytes().size();
-  }
+  if (validate(session)) append_pass(calls, running);
+  inputs_.clear();
   if (checkpoint_due(session.world, !calls.stopped().empty())) capture_checkpoint(session);
   trim(session.world, seconds);
   release_ended_runs(session);
+}
+
+void History::append_pass(const CallLog& calls, bool running) {
+  pass_.running = running;
+  pass_.stopped_calls = calls.stopped_since_rewind();
+  if (!running && inputs_.empty() && pass_.stopped_calls.empty()) return;
+  payload_.clear();
+  inputs_.append_pass(payload_, pass_);
+  TakeEncoder(checkpoints_.back()->passes).string(payload_);
 }
 
 // Releases scene runs with no timer that was active at or after the oldest checkpoint.
@@ -136,7 +111,7 @@ bool History::checkpoint_due(const World& world, bool stopped) const {
   if (interval_over) return true;
   // changes that a call made in Lua before it was stopped can't be reproduced from inputs
   if (stopped && world.tick() >= checkpoint_tick_ + kTicksBetweenStops) return true;
-  return pass_start_ > kMaxInputBytes;
+  return checkpoints_.back()->passes.size() > kMaxInputBytes;
 }
 
 void History::capture_checkpoint(Session& session) {
@@ -160,8 +135,6 @@ void History::capture_checkpoint(Session& session) {
   presets_.capture(checkpoint->presets);
   checkpoint->mouse_springs = session.dispatcher.mouse_springs();
   checkpoint->handler_queue = handler_queue_;
-  checkpoint->inputs.begin_saving();
-  pass_start_ = 0;
   checkpoints_.push_back(std::move(checkpoint));
 }
 
@@ -199,8 +172,8 @@ void History::restore_checkpoint(Session& session, std::size_t index) {
   handler_queue_ = checkpoint.handler_queue;
   checkpoint_tick_ = checkpoint.tick;
   checkpoint_time_ = checkpoint.time;
-  checkpoint.inputs.begin_loading();
-  last_pass_start_ = 0;
+  inputs_.clear();  // they belong to the discarded future
+  next_pass_ = last_pass_start_ = 0;
 }
 
 void History::restore(Session& session, const RewindTarget& target) {
@@ -210,36 +183,21 @@ void History::restore(Session& session, const RewindTarget& target) {
     const Checkpoint& checkpoint = *checkpoints_[index];
     if (target.time ? checkpoint.time <= *target.time + half_tick : checkpoint.tick <= target.tick) break;
   }
-  // the inputs of the current, unfinished pass belong to the discarded future
-  checkpoints_.back()->inputs.resume_saving(pass_start_);
   restore_checkpoint(session, index);
 }
 
 bool History::next(RecordedPass& pass) {
-  Archive& inputs = checkpoints_.back()->inputs;
-  pass.messages.clear();
-  pass.stopped.clear();
-  last_pass_start_ = inputs.position();
-  while (inputs.position() < inputs.bytes().size()) {
-    auto record = Record::input;
-    inputs.serialize(record);
-    if (record == Record::input) {
-      serialize_input(inputs, pass.messages.emplace_back());
-    } else if (record == Record::stopped_call) {
-      serialize_stop(inputs, pass.stopped.emplace_back());
-    } else {
-      pass.running = record == Record::running_pass;
-      return true;
-    }
-  }
-  return false;
+  const std::string& passes = checkpoints_.back()->passes;
+  last_pass_start_ = next_pass_;
+  TakeDecoder in(std::string_view(passes).substr(next_pass_));
+  const std::string_view bytes = in.string();
+  if (in.failed()) return false;
+  next_pass_ = passes.size() - in.left();
+  InputCodec codec(0);
+  return read_pass(bytes, codec, pass);
 }
 
-void History::truncate(bool last) {
-  Archive& inputs = checkpoints_.back()->inputs;
-  pass_start_ = last ? last_pass_start_ : inputs.position();
-  inputs.resume_saving(pass_start_);
-}
+void History::truncate(bool last) { checkpoints_.back()->passes.resize(last ? last_pass_start_ : next_pass_); }
 
 bool History::restore_before(Session& session, std::uint64_t tick) {
   std::size_t index = checkpoints_.size();

@@ -17,19 +17,12 @@
 #include "engine/edits/undo_stack.h"
 #include "engine/presets/presets.h"
 #include "engine/session.h"
-#include "engine/takes/take.h"
+#include "engine/takes/encoding.h"
 #include "script/scene/scene_checkpoint.h"
 #include "script/vm/call_log.h"
 #include "sim/state/world_checkpoint.h"
 
 namespace limber {
-
-/// All inputs of one pass of the engine (Engine::run_pass).
-struct RecordedPass {
-  bool running = false;  ///< Simulated time advanced.
-  std::vector<TakeMessage> messages;
-  std::vector<StoppedCall> stopped;
-};
 
 /// Target of a rewind.
 struct RewindTarget {
@@ -52,8 +45,8 @@ class History {
 
   /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
   void clear(std::string_view why);
-  /// Records a message, or Lua code from a console, as input of the current pass.
-  void record_input(const Message& message, const CommandOrigin& origin, bool evaluate = false);
+  /// Records an input of the current pass; see InputLog::record().
+  void record_input(const Message& message, const CommandOrigin& origin, bool evaluate);
   /// Ends the pass: records the stopped calls in `calls`, captures a checkpoint if one is due and discards everything
   /// older than `seconds`; 0 switches history off.
   void end_pass(Session& session, const CallLog& calls, bool running, double seconds);
@@ -97,7 +90,7 @@ class History {
     Presets::State presets;
     MouseSprings mouse_springs;
     HandlerQueue handler_queue;
-    Archive inputs;  // inputs of the passes after the checkpoint
+    std::string passes;  // encoded passes after the checkpoint, each after its length
   };
   /// A shared copy and the version of the original, to avoid copying unchanged data.
   template <class T>
@@ -107,6 +100,7 @@ class History {
   };
 
   static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
+  void append_pass(const CallLog& calls, bool running);
   bool checkpoint_due(const World& world, bool stopped) const;
   void capture_checkpoint(Session& session);
   void restore_checkpoint(Session& session, std::size_t index);
@@ -115,8 +109,6 @@ class History {
   void drop_oldest();
   void trim(const World& world, double seconds);
   void release_ended_runs(Session& session) const;
-  static void serialize_input(Archive& bytes, TakeMessage& input);
-  static void serialize_stop(Archive& bytes, StoppedCall& stop);
 
   Overrides& overrides_;
   UndoStack& undo_;
@@ -124,7 +116,7 @@ class History {
   HandlerQueue& handler_queue_;
   PageStore pages_;
   std::vector<std::unique_ptr<Checkpoint>> checkpoints_;  // oldest first
-  std::unique_ptr<Checkpoint> pinned_;                    // pinned checkpoint that left the list, without inputs
+  std::unique_ptr<Checkpoint> pinned_;                    // pinned checkpoint that left the list, without passes
   std::uint64_t pinned_tick_ = kNoTick;                   // tick of the pinned checkpoint
   std::vector<std::unique_ptr<Checkpoint>> free_;         // discarded checkpoints; their memory is reused
   Shared<Overrides> shared_overrides_;
@@ -135,12 +127,13 @@ class History {
   bool too_large_ = false;
   bool shortage_reported_ = false;
   std::size_t max_bytes_ = kMaxBytes;
-  std::size_t pass_start_ = 0;       // offset of the current pass in the inputs of the newest checkpoint
+  InputLog inputs_{0};               // inputs of the current pass
+  RecordedPass pass_;                // scratch
+  std::string payload_;              // scratch
+  std::size_t next_pass_ = 0;        // offset of the pass that next() will read
   std::size_t last_pass_start_ = 0;  // offset of the pass that next() has read last
   std::string limit_reason_ = "the scene starts there";
   Archive scratch_;
-  TakeMessage input_;  // scratch
-  StoppedCall stop_;   // scratch
 };
 
 }  // namespace limber

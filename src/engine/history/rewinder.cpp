@@ -35,11 +35,8 @@ class HistoryInput final : public RecordedInput {
 class UnaffectedState {
  public:
   explicit UnaffectedState(ShowState& show)
-      : show_(show),
-        steps_(show.session->transport.steps()),
-        presets_(show.presets.list()),
-        calls_(show.call_log),
-        listener_(show.session->store.set_listener({})) {
+      : show_(show), steps_(show.session->transport.steps()), presets_(show.presets.list()), calls_(show.call_log) {
+    listener_ = show.session->store.set_listener({});
     for (std::size_t i = 0; i < kProperties.size(); i++) values_[i] = show.session->world_value(kProperties[i]);
   }
   ~UnaffectedState() {
@@ -59,11 +56,11 @@ class UnaffectedState {
   static constexpr std::array<const char*, 3> kProperties = {"paused", "speed", "history"};
 
   ShowState& show_;
-  std::array<double, kProperties.size()> values_{};
+  std::array<double, 3> values_{};
   const int steps_;
   PresetList presets_;
   CallLog calls_;
-  const Store::Listener listener_;
+  Store::Listener listener_;
 };
 
 // While an object of this class exists, recorded passes are simulated: the show has no output and saves nothing, and
@@ -154,7 +151,7 @@ bool Rewinder::resimulate_passes(const RewindTarget& target) {
 
 void Rewinder::resimulate(RecordedPass& pass) {
   Session& session = *show_.session;
-  show_.call_log.begin_tick(std::move(pass.stopped));
+  show_.call_log.begin_tick(std::move(pass.stopped_calls));
   session.dispatcher.begin_tick();
   HistoryInput input(show_, executor_, pass);
   input.execute_messages(pass.running);

@@ -5,10 +5,10 @@
 
 namespace limber {
 
-void RecordedInput::execute(std::span<TakeMessage> inputs) {
+void RecordedInput::execute(std::span<InputRecord> inputs) {
   EditScope edit_scope = show_.edit_scope();
   handler_calls_.reset();
-  for (TakeMessage& input : inputs) {
+  for (InputRecord& input : inputs) {
     if (!input.evaluate && execute_event(input.message)) {
       record(input.message, input.origin, false);
       continue;

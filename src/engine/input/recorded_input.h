@@ -16,7 +16,7 @@ class RecordedInput : public InputSource {
  protected:
   RecordedInput(ShowState& show, CommandExecutor& executor) : show_(show), executor_(executor) {}
   /// Executes messages, console texts and events (TakeEvent). Moves parts of them.
-  void execute(std::span<TakeMessage> inputs);
+  void execute(std::span<InputRecord> inputs);
 
   ShowState& show_;
 

@@ -60,8 +60,6 @@ class LiveOutput final : public Output {
 
   /// Suppresses answers to senders, because the messages that are executed come from a take.
   void mute_answers(bool on) { answers_muted_ = on; }
-  /// Sends an answer or an error even while answers are suppressed.
-  void push_unmuted(Outgoing out) { link_.push_out(std::move(out)); }
   /// Number of faults so far.
   std::uint64_t faults() const { return faults_; }
   void add_faults(std::uint64_t count) { faults_ += count; }

@@ -32,7 +32,7 @@ bool read_presets(TakeDecoder& in, PresetList& list) {
   return true;
 }
 
-void write_override(TakeEncoder& out, TakeMessageCodec& codec, const TakeOverride& entry) {
+void write_override(TakeEncoder& out, InputCodec& codec, const TakeOverride& entry) {
   out.byte(static_cast<std::uint8_t>(entry.kind));
   if (entry.kind == TakeOverride::Kind::blend) {
     // each preset is a text of its own: one text can't hold two presets of the same name
@@ -44,12 +44,12 @@ void write_override(TakeEncoder& out, TakeMessageCodec& codec, const TakeOverrid
   }
 }
 
-bool read_override(TakeDecoder& in, TakeMessageCodec& codec, TakeOverride& entry) {
+bool read_override(TakeDecoder& in, InputCodec& codec, TakeOverride& entry) {
   const std::uint8_t kind = in.byte();
   if (kind > static_cast<std::uint8_t>(TakeOverride::Kind::blend)) return false;
   entry.kind = static_cast<TakeOverride::Kind>(kind);
   if (entry.kind != TakeOverride::Kind::blend) {
-    TakeMessage message;
+    InputRecord message;
     if (!codec.decode(in, message)) return false;
     entry.message = std::move(message.message);
     return true;
@@ -80,11 +80,11 @@ bool read_runs(TakeDecoder& in, std::vector<TakeSceneRun>& runs) {
 }
 
 // Overwrites the elements of `messages` in place, to reuse their memory.
-bool read_messages(TakeDecoder& in, TakeMessageCodec& codec, bool present, std::vector<TakeMessage>& messages) {
+bool read_messages(TakeDecoder& in, InputCodec& codec, bool present, std::vector<InputRecord>& messages) {
   const std::size_t count = present ? in.count() : 0;
   for (std::size_t i = 0; i < count; i++) {
     if (i == messages.size()) messages.emplace_back();
-    TakeMessage& message = messages[i];
+    InputRecord& message = messages[i];
     if (!codec.decode(in, message)) return false;
     // an empty address marks console input, with the Lua code as its only argument
     message.evaluate = message.message.address.empty() && message.message.args.size() == 1;
@@ -155,7 +155,7 @@ Result<TakeHeader> header_of(std::string_view first_line, std::string_view secon
 std::string text_of(const TakeInitialState& initial_state) {
   std::string text;
   TakeEncoder out(text);
-  TakeMessageCodec codec;
+  InputCodec codec;
   out.byte(initial_state.reset ? 1 : 0);
   out.string(initial_state.scene);
   out.byte(initial_state.seed ? 1 : 0);
@@ -179,7 +179,7 @@ std::string text_of(const TakeInitialState& initial_state) {
 
 bool read_initial_state(std::string_view bytes, TakeInitialState& state) {
   TakeDecoder in(bytes);
-  TakeMessageCodec codec;
+  InputCodec codec;
   state.reset = in.byte() != 0;
   state.scene = in.string();
   const bool seeded = in.byte() != 0;
@@ -187,7 +187,7 @@ bool read_initial_state(std::string_view bytes, TakeInitialState& state) {
   for (std::size_t left = in.count(); left > 0 && !in.failed(); left--) state.package_paths.emplace_back(in.string());
   state.preset = in.string();
   for (std::size_t left = in.count(); left > 0; left--) {
-    TakeMessage set;
+    InputRecord set;
     if (!codec.decode(in, set)) return false;
     state.sets.push_back(std::move(set.message));
   }
@@ -203,72 +203,88 @@ bool read_initial_state(std::string_view bytes, TakeInitialState& state) {
   return in.at_end() || (!in.failed() && read_presets(in, state.recovered) && in.at_end());
 }
 
-void append_tick(std::string& text, const TakeTick& tick, std::size_t message_count, std::string_view messages) {
+void InputLog::record(const Message& message, const CommandOrigin& origin, bool evaluate) {
+  TakeEncoder out(messages_);
+  count_++;
+  if (!evaluate) return codec_.encode(out, message, origin);
+  console_message_.args.resize(1);
+  console_message_.args[0].kind = Arg::Kind::text;
+  console_message_.args[0].text = message.address;
+  codec_.encode(out, console_message_, origin);
+}
+
+void InputLog::clear() {
+  messages_.clear();
+  count_ = 0;
+}
+
+void InputLog::append_pass(std::string& text, const RecordedPass& pass) {
   TakeEncoder out(text);
   const auto flag = [](bool present, std::uint8_t bit) { return present ? bit : std::uint8_t{0}; };
-  out.byte(static_cast<std::uint8_t>(flag(tick.running, kRunning) | flag(!tick.runs.empty(), kRuns) |
-                                     flag(message_count > 0, kMessages) | flag(!tick.stopped_calls.empty(), kStopped) |
-                                     flag(tick.state_hash.has_value(), kState) |
-                                     flag(!tick.body_hashes.empty(), kBodies)));
-  if (!tick.runs.empty()) {
-    out.varint(tick.runs.size());
-    for (const TakeSceneRun& run : tick.runs) {
+  out.byte(static_cast<std::uint8_t>(flag(pass.running, kRunning) | flag(!pass.runs.empty(), kRuns) |
+                                     flag(count_ > 0, kMessages) | flag(!pass.stopped_calls.empty(), kStopped) |
+                                     flag(pass.state_hash.has_value(), kState) |
+                                     flag(!pass.body_hashes.empty(), kBodies)));
+  if (!pass.runs.empty()) {
+    out.varint(pass.runs.size());
+    for (const TakeSceneRun& run : pass.runs) {
       out.byte(static_cast<std::uint8_t>(run.kind));
       out.byte(static_cast<std::uint8_t>((run.succeeded ? 1u : 0u) | (run.reuses_files ? 2u : 0u)));
       out.varint(run.files);
       out.string(run.scene);
     }
   }
-  if (message_count > 0) {
-    out.varint(message_count);
-    text.append(messages);
+  if (count_ > 0) {
+    out.varint(count_);
+    text.append(messages_);
   }
-  if (!tick.stopped_calls.empty()) {
-    out.varint(tick.stopped_calls.size());
-    for (const StoppedCall& stop : tick.stopped_calls) {
+  if (!pass.stopped_calls.empty()) {
+    out.varint(pass.stopped_calls.size());
+    for (const StoppedCall& stop : pass.stopped_calls) {
       out.varint(stop.number);
       out.string(stop.file);
       out.varint(static_cast<std::uint64_t>(stop.line));
       out.string(stop.text);
     }
   }
-  out.varint(tick.tick);
-  out.fixed_int(tick.motion_hash, 8);
-  if (tick.state_hash) out.fixed_int(*tick.state_hash, 8);
-  if (tick.body_hashes.empty()) return;
-  out.varint(tick.first_body);
-  out.varint(tick.body_hashes.size());
-  for (const std::uint16_t body : tick.body_hashes) out.fixed_int(body, 2);
+  out.varint(pass.tick);
+  out.fixed_int(pass.motion_hash, 8);
+  if (pass.state_hash) out.fixed_int(*pass.state_hash, 8);
+  clear();
+  if (pass.body_hashes.empty()) return;
+  out.varint(pass.first_body);
+  out.varint(pass.body_hashes.size());
+  for (const std::uint16_t body : pass.body_hashes) out.fixed_int(body, 2);
 }
 
 bool advances_time(std::uint8_t first_byte) { return (first_byte & kRunning) != 0; }
 
-bool read_tick(std::string_view bytes, TakeMessageCodec& codec, TakeTick& tick) {
+bool read_pass(std::string_view bytes, InputCodec& codec, RecordedPass& pass) {
   TakeDecoder in(bytes);
   const std::uint8_t parts = in.byte();
-  tick.running = (parts & kRunning) != 0;
-  tick.runs.clear();
-  if ((parts & kRuns) != 0 && !read_runs(in, tick.runs)) return false;
-  if (!read_messages(in, codec, (parts & kMessages) != 0, tick.messages)) return false;
-  tick.stopped_calls.clear();
+  pass.running = (parts & kRunning) != 0;
+  pass.runs.clear();
+  if ((parts & kRuns) != 0 && !read_runs(in, pass.runs)) return false;
+  if (!read_messages(in, codec, (parts & kMessages) != 0, pass.messages)) return false;
+  pass.stopped_calls.clear();
   for (std::size_t left = (parts & kStopped) != 0 ? in.count() : 0; left > 0 && !in.failed(); left--) {
     StoppedCall stop;
     stop.number = in.varint();
     stop.file = in.string();
     stop.line = static_cast<int>(in.varint() & 0x7fffffffu);
     stop.text = in.string();
-    tick.stopped_calls.push_back(std::move(stop));
+    pass.stopped_calls.push_back(std::move(stop));
   }
-  tick.tick = in.varint();
-  tick.motion_hash = in.fixed_int(8);
-  tick.state_hash.reset();
-  if ((parts & kState) != 0) tick.state_hash = in.fixed_int(8);
-  tick.first_body = 0;
-  tick.body_hashes.clear();
+  pass.tick = in.varint();
+  pass.motion_hash = in.fixed_int(8);
+  pass.state_hash.reset();
+  if ((parts & kState) != 0) pass.state_hash = in.fixed_int(8);
+  pass.first_body = 0;
+  pass.body_hashes.clear();
   if ((parts & kBodies) != 0) {
-    tick.first_body = static_cast<std::uint32_t>(in.varint());
+    pass.first_body = static_cast<std::uint32_t>(in.varint());
     for (std::size_t left = in.count(); left > 0 && !in.failed(); left--)
-      tick.body_hashes.push_back(static_cast<std::uint16_t>(in.fixed_int(2)));
+      pass.body_hashes.push_back(static_cast<std::uint16_t>(in.fixed_int(2)));
   }
   return in.at_end();
 }

@@ -115,7 +115,7 @@ std::size_t TakeDecoder::count() {
   return 0;
 }
 
-void TakeMessageCodec::encode(TakeEncoder& out, const Message& message, const CommandOrigin& origin) {
+void InputCodec::encode(TakeEncoder& out, const Message& message, const CommandOrigin& origin) {
   key_.clear();
   TakeEncoder key(key_);
   key.byte(static_cast<std::uint8_t>(origin.source));
@@ -129,7 +129,7 @@ void TakeMessageCodec::encode(TakeEncoder& out, const Message& message, const Co
     out.varint(entry->second);
   } else {
     // 1: a new header, added to the table; 0: a new header that is not added because the table is full
-    const bool add_to_table = header_numbers_.size() < kMaxHeaders;
+    const bool add_to_table = header_numbers_.size() < max_headers_;
     if (add_to_table) header_numbers_.emplace(key_, static_cast<std::uint32_t>(header_numbers_.size() + 2));
     out.varint(add_to_table ? 1 : 0);
     out.string(key_);
@@ -137,7 +137,7 @@ void TakeMessageCodec::encode(TakeEncoder& out, const Message& message, const Co
   for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[kTypesOffset + i], message.args[i]);
 }
 
-std::optional<TakeMessageCodec::Header> TakeMessageCodec::parse_header(std::string_view key) {
+std::optional<InputCodec::Header> InputCodec::parse_header(std::string_view key) {
   const std::size_t end = key.size() > kTypesOffset ? key.find('\0', kTypesOffset) : key.npos;
   if (end == key.npos) return {};
   TakeDecoder in(key);
@@ -152,7 +152,7 @@ std::optional<TakeMessageCodec::Header> TakeMessageCodec::parse_header(std::stri
   return header;
 }
 
-bool TakeMessageCodec::decode(TakeDecoder& in, TakeMessage& message) {
+bool InputCodec::decode(TakeDecoder& in, InputRecord& message) {
   const std::uint64_t number = in.varint();
   std::optional<Header> new_header;
   if (number < 2) {

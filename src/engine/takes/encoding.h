@@ -41,6 +41,8 @@ class TakeDecoder {
   std::size_t count();
   bool failed() const { return failed_; }
   void fail() { failed_ = true; }
+  /// Number of bytes that are not decoded yet.
+  std::size_t left() const { return bytes_.size(); }
   bool at_end() const { return bytes_.empty() && !failed_; }
 
  private:
@@ -50,13 +52,18 @@ class TakeDecoder {
 };
 
 /// Encodes messages. The header (address, sender, types of arguments) is written once; later messages refer to it.
-class TakeMessageCodec {
+class InputCodec {
  public:
+  /// Bounds the memory when each message has another header. With 0 each message has its header, so that the codec is
+  /// stateless: decoding may begin with any message.
+  static constexpr std::size_t kMaxHeaders = 65536;
+  explicit InputCodec(std::size_t max_headers = kMaxHeaders) : max_headers_(max_headers) {}
+
   void encode(TakeEncoder& out, const Message& message, const CommandOrigin& origin);
-  bool decode(TakeDecoder& in, TakeMessage& message);
+  bool decode(TakeDecoder& in, InputRecord& message);
 
  private:
-  static constexpr std::size_t kMaxHeaders = 65536;  // bounds the memory when each message has another header
+  std::size_t max_headers_;
   std::unordered_map<std::string, std::uint32_t> header_numbers_;  // encoder
   struct Header {
     CommandOrigin origin;
@@ -78,11 +85,28 @@ Result<TakeHeader> header_of(std::string_view first_line, std::string_view secon
 std::string text_of(const TakeInitialState& initial_state);
 bool read_initial_state(std::string_view bytes, TakeInitialState& state);
 
-/// Appends a tick. `messages` are the encoded messages: the recorder encodes them as they arrive.
-void append_tick(std::string& out, const TakeTick& tick, std::size_t message_count, std::string_view messages);
+/// Encodes the messages and console texts of a pass as they arrive, for takes and for the history. Doesn't allocate
+/// once its buffers have grown.
+class InputLog {
+ public:
+  explicit InputLog(std::size_t max_headers = InputCodec::kMaxHeaders) : codec_(max_headers) {}
+  /// Records a message, or Lua code from a console (`evaluate`, in the address).
+  void record(const Message& message, const CommandOrigin& origin, bool evaluate);
+  bool empty() const { return count_ == 0; }
+  void clear();
+  /// Appends a pass to `out`, with the recorded messages instead of its own, and clears the log.
+  void append_pass(std::string& out, const RecordedPass& pass);
+
+ private:
+  InputCodec codec_;
+  std::string messages_;
+  std::size_t count_ = 0;
+  Message console_message_;  // scratch
+};
+
 /// True if simulated time advances in the tick that begins with this byte.
 bool advances_time(std::uint8_t first_byte);
-bool read_tick(std::string_view bytes, TakeMessageCodec& codec, TakeTick& tick);
+bool read_pass(std::string_view bytes, InputCodec& codec, RecordedPass& pass);
 
 std::string text_of(const TakeEnd& end);
 bool read_end(std::string_view bytes, TakeEnd& end);

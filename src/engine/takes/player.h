@@ -45,9 +45,9 @@ class TakePlayer {
   bool steps_next() const { return has_more() && ahead_[ahead_at_].running; }
   /// True once next() has returned false.
   bool finished() const { return finished_; }
-  const TakeTick& tick() const { return tick_; }
+  const RecordedPass& tick() const { return tick_; }
   /// The messages of the tick; the caller may modify them while executing them.
-  std::span<TakeMessage> messages() { return tick_.messages; }
+  std::span<InputRecord> messages() { return tick_.messages; }
   /// The calls of the tick that must be stopped as in the recording; none with `current_scripts`, where calls may
   /// differ.
   std::vector<StoppedCall> stopped_calls() const {
@@ -87,9 +87,9 @@ class TakePlayer {
   std::unique_ptr<TakeReader> reader_;
   bool current_scripts_;
   bool finished_ = false;
-  TakeTick tick_;
+  RecordedPass tick_;
   // a batch of ticks is read at once, for locality of the code and data of the reader
-  std::array<TakeTick, 16> ahead_;
+  std::array<RecordedPass, 16> ahead_;
   std::size_t ahead_at_ = 0, ahead_end_ = 0;
   std::size_t next_run_ = 0;
   std::uint64_t total_ticks_ = 0;

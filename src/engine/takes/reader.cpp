@@ -112,7 +112,7 @@ std::optional<TakeFrame> TakeReader::frame() {
   return kind;
 }
 
-bool TakeReader::next(TakeTick& tick) {
+bool TakeReader::next(RecordedPass& tick) {
   while (!at_end_) {
     const std::uint64_t before = position_;
     const std::optional<TakeFrame> kind = frame();
@@ -137,9 +137,9 @@ std::uint64_t TakeReader::count_ticks() {
   return count;
 }
 
-bool TakeReader::decode_frame(TakeFrame kind, TakeTick& tick) {
+bool TakeReader::decode_frame(TakeFrame kind, RecordedPass& tick) {
   if (kind == TakeFrame::tick) {
-    if (!read_tick(payload_, codec_, tick)) return false;
+    if (!read_pass(payload_, codec_, tick)) return false;
     for (const TakeSceneRun& run : tick.runs) {
       if (run.files > file_lists_.size()) return false;
     }

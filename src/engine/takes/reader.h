@@ -22,7 +22,7 @@ class TakeReader {
   const TakeHeader& header() const { return header_; }
   const TakeInitialState& initial_state() const { return initial_state_; }
   /// Reads the next tick into `tick`, reusing its memory. False at the end of the take.
-  bool next(TakeTick& tick);
+  bool next(RecordedPass& tick);
   /// Counts the remaining ticks in which simulated time advances, reading only the heads of frames. The reader is at
   /// the end afterwards.
   std::uint64_t count_ticks();
@@ -61,7 +61,7 @@ class TakeReader {
   std::optional<TakeFrame> frame();
   bool read_bytes(std::size_t count, std::string& out);
   /// Decodes the payload. False if it is invalid.
-  bool decode_frame(TakeFrame kind, TakeTick& tick);
+  bool decode_frame(TakeFrame kind, RecordedPass& tick);
   void set_damage(const std::string& description);
 
   std::string name_;
@@ -71,7 +71,7 @@ class TakeReader {
   std::string payload_;
   TakeHeader header_;
   TakeInitialState initial_state_;
-  TakeMessageCodec codec_;
+  InputCodec codec_;
   std::vector<std::shared_ptr<const std::string>> contents_;
   std::vector<TakeFileList> file_lists_;
   std::vector<std::shared_ptr<const Sources>> sources_;

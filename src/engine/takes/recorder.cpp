@@ -43,22 +43,9 @@ void TakeRecorder::run_succeeded(std::size_t run, TakeFiles files) {
   writer_->write(std::move(files));
 }
 
-void TakeRecorder::record_message(const Message& message, const CommandOrigin& origin) {
-  TakeEncoder out(messages_);
-  codec_.encode(out, message, origin);
-  message_count_++;
-}
-
-void TakeRecorder::record_evaluation(const std::string& text, const CommandOrigin& origin) {
-  console_message_.args.resize(1);
-  console_message_.args[0].kind = Arg::Kind::text;
-  console_message_.args[0].text = text;
-  record_message(console_message_, origin);
-}
-
 void TakeRecorder::end_tick(bool running, World& world, const CallLog& calls,
                             const std::function<std::uint64_t()>& state_hash, bool with_state_hash) {
-  if (!running && !with_state_hash && tick_.runs.empty() && message_count_ == 0 && calls.stopped().empty()) return;
+  if (!running && !with_state_hash && tick_.runs.empty() && inputs_.empty() && calls.stopped().empty()) return;
   tick_.running = running;
   if (running) ticks_++;
   tick_.stopped_calls = calls.stopped();
@@ -77,13 +64,11 @@ void TakeRecorder::end_tick(bool running, World& world, const CallLog& calls,
   tick_.body_hashes.clear();
   for (; next_body_ < end; next_body_++) tick_.body_hashes.push_back(static_cast<std::uint16_t>(bodies[next_body_]));
   payload_.clear();
-  append_tick(payload_, tick_, message_count_, messages_);
+  inputs_.append_pass(payload_, tick_);
   frame_.clear();
   append_frame(frame_, TakeFrame::tick, payload_);
   writer_->write(frame_);
   tick_.runs.clear();
-  messages_.clear();
-  message_count_ = 0;
 }
 
 std::unique_ptr<TakeWriter> TakeRecorder::finish(const TakeEnd& end) {

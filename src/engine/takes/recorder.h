@@ -35,8 +35,10 @@ class TakeRecorder {
   std::size_t begin_run(TakeSceneRun run);
   /// Records that the run succeeded, and the files that it has read.
   void run_succeeded(std::size_t run, TakeFiles files);
-  void record_message(const Message& message, const CommandOrigin& origin);
-  void record_evaluation(const std::string& text, const CommandOrigin& origin);
+  /// Records an input; see InputLog::record().
+  void record_message(const Message& message, const CommandOrigin& origin, bool evaluate = false) {
+    inputs_.record(message, origin, evaluate);
+  }
   /// Writes the pass; a pass without inputs while paused is skipped. `with_state_hash`: include the state hash in any
   /// case. Doesn't allocate once its buffers have grown.
   void end_tick(bool running, World& world, const CallLog& calls, const std::function<std::uint64_t()>& state_hash,
@@ -49,15 +51,12 @@ class TakeRecorder {
 
  private:
   std::unique_ptr<TakeWriter> writer_;
-  TakeMessageCodec codec_;
-  TakeTick tick_;
-  std::string messages_;
-  std::size_t message_count_ = 0;
+  InputLog inputs_;
+  RecordedPass tick_;
   std::uint32_t files_ = 0;
   std::uint64_t ticks_ = 0;
   std::size_t state_hash_budget_ = 0;
   std::size_t next_body_ = 0;
-  Message console_message_;      // scratch
   std::string payload_, frame_;  // scratch
 };
 

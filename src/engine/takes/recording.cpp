@@ -164,12 +164,7 @@ void TakeRecording::abandon() {
 }
 
 void TakeRecording::record(const Message& message, const CommandOrigin& origin, bool evaluate) {
-  if (recorder_ == nullptr) return;
-  if (evaluate) {
-    recorder_->record_evaluation(message.address, origin);
-  } else {
-    recorder_->record_message(message, origin);
-  }
+  if (recorder_ != nullptr) recorder_->record_message(message, origin, evaluate);
 }
 
 void TakeRecording::run_succeeded(std::size_t run, const Session& session, std::optional<PresetList> presets,

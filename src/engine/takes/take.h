@@ -34,7 +34,7 @@ enum class TakeFrame : std::uint8_t {
   content = 'c',  ///< Content of a file; numbered from 1 in order of appearance.
   files = 'f',    ///< The files that a run of the scene has read; numbered from 1.
   begin = 'b',    ///< TakeInitialState.
-  tick = 't',     ///< TakeTick.
+  tick = 't',     ///< RecordedPass.
   end = 'e',      ///< TakeEnd: the recording was stopped, not interrupted.
 };
 
@@ -101,7 +101,7 @@ struct TakeSceneRun {
 };
 
 /// A message as the tick received it, or Lua code that was entered in a console.
-struct TakeMessage {
+struct InputRecord {
   Message message;
   CommandOrigin origin;
   bool evaluate = false;  ///< `message.address` is the Lua code.
@@ -122,11 +122,12 @@ Message message_of(const TakeEvent& event);
 /// Decodes an event. Returns nothing if `message` is an ordinary message.
 std::optional<TakeEvent> event_of(const Message& message);
 
-/// All inputs of one pass of the engine (a tick, or a pass while paused), with hashes of the resulting state.
-struct TakeTick {
+/// All inputs of one pass of the engine (a tick, or a pass while paused), for takes and for the history. In a take also
+/// hashes of the resulting state.
+struct RecordedPass {
   bool running = false;  ///< Simulated time advanced.
   std::vector<TakeSceneRun> runs;
-  std::vector<TakeMessage> messages;
+  std::vector<InputRecord> messages;
   std::vector<StoppedCall> stopped_calls;
   std::uint64_t tick = 0;                   ///< Tick of the world after the pass.
   std::uint64_t motion_hash = 0;            ///< MotionHash::now().
