@@ -387,6 +387,34 @@ TEST(History, TakesWithRewindsReplay) {
   expect_replay(take, hash);
 }
 
+TEST(History, ReplayedRewindSendsNoAnswers) {
+  const ShowFolder folder;
+  write_rewind_scene(folder);
+  const std::string take = folder.path("rewound.take");
+  {
+    EngineOptions options = rewind_options(folder);
+    options.record = take;
+    Show show(options);
+    show.ticks(100);
+    show.send("/transport/rewind", 0.5);
+    show.send("/get", "/physics/sim/gravity");
+    show.ticks(1);
+    const std::vector<std::string> sent = show.sent_texts();
+    EXPECT_TRUE(std::ranges::any_of(sent, [](const auto& text) { return text.starts_with("/physics/sim/gravity "); }));
+    show.engine.end_take();
+    show.engine.finish_saving();
+  }
+  EngineOptions options = fast_options();
+  options.replay = take;
+  Show show(options);
+  while (!show.engine.replay_finished()) show.ticks(1);
+  EXPECT_FALSE(show.engine.replay_result().diverged_at);
+  for (const std::string& text : show.sent_texts()) {
+    EXPECT_FALSE(text.starts_with("/physics/sim/gravity ")) << text;
+    EXPECT_FALSE(text.starts_with("/transport/rewound")) << text;
+  }
+}
+
 TEST(History, RestoresTheCheckpointBeforeATick) {
   const ShowFolder folder;
   write_rewind_scene(folder);

@@ -23,6 +23,10 @@ bool is_flag(const Property& property) {
   return property.type == PropertyType::boolean || property.type == PropertyType::flags3;
 }
 
+bool has_labels(const Property& property) {
+  return property.type == PropertyType::choice || property.type == PropertyType::boolean;
+}
+
 // True if one number is accepted, possibly expanded to three.
 bool accepts_one(const Property& property) {
   return property.width == 1 || property.type == PropertyType::flags3 || property.own_axis || is_gravity(property);
@@ -111,12 +115,11 @@ Result<ValueSplit> split_value(const Property& property, std::span<const Arg> ar
   while (convertible < args.size() && number_of(property, args[args.size() - 1 - convertible])) convertible++;
   if (accepts_count(property, convertible)) return ValueSplit{convertible, false};
   // a word in place of a label is the value: coerce() reports the valid labels
-  const bool labels = property.type == PropertyType::choice || property.type == PropertyType::boolean;
-  if (labels && convertible == 0 && !args.empty() && args.back().is_text()) return ValueSplit{1, false};
+  if (has_labels(property) && convertible == 0 && !args.empty() && args.back().is_text()) return ValueSplit{1, false};
   // bodies may be named "1": surplus leading numbers are names
+  if (property.kind == PropertyKind::action) return wrong_count(property, convertible);
   const std::size_t words = args.size() - convertible;
-  for (std::size_t names = 1; property.kind != PropertyKind::action && names + words <= 2 && names < convertible;
-       names++) {
+  for (std::size_t names = 1; names + words <= 2 && names < convertible; names++) {
     if (accepts_count(property, convertible - names)) return ValueSplit{convertible - names, true};
   }
   return wrong_count(property, convertible);

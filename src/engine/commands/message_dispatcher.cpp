@@ -89,6 +89,19 @@ bool is_button_release(std::span<const Arg> value) {
   return value[0].is_text() ? parse_number(value[0].text) == 0.0 : value[0].number == 0;
 }
 
+// Returns the arguments of an action; nothing if one is not a finite number. `is_trigger`: an argument without a value
+// (OSC types N, I) is a trigger without arguments.
+std::optional<std::vector<double>> action_numbers(std::span<const Arg> args, bool is_trigger) {
+  std::vector<double> numbers;
+  for (const Arg& arg : args) {
+    if (arg.kind == Arg::Kind::nil && is_trigger) continue;
+    const std::optional<double> number = arg.is_text() ? parse_number(arg.text) : std::optional(arg.number);
+    if (!number || arg.kind == Arg::Kind::nil || !std::isfinite(*number)) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 }  // namespace
 
 std::string MessageDispatcher::legacy_address(const PropertyTable& table, const Property& property) {
@@ -195,14 +208,7 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
   auto known = paths_.find(address);
   if (known == paths_.end()) {
     const Result<PropertyRef> ref = find_property(store_, address, false);
-    if (!ref) {
-      const bool shape = address.starts_with("/visuals/shape/") && std::ranges::count(address, '/') > 3;
-      const bool is_own_path = shape || address.starts_with("/physics/body/") ||
-                               address.starts_with("/physics/group/") || !address.starts_with("/");
-      if (is_own_path) return Outcome::unknown(hints_.consume() ? find_property(store_, address).error() : ref.error());
-      return Outcome::unknown(fmt::format("there is no address {}{}", printable(address),
-                                          query_handler_.address_hint(address, addresses_)));
-    }
+    if (!ref) return unknown_path(address, ref.error());
     known = paths_.emplace(std::string(address), *ref).first;
   }
   const PropertyRef ref = known->second;
@@ -215,6 +221,16 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
   if (ref.property->kind == PropertyKind::action) return execute_action(message.args);
   if (!ref.property->writable()) return Outcome::rejected("this property is read-only");
   return apply(true, message.args);
+}
+
+// `error`: without hints.
+Outcome MessageDispatcher::unknown_path(std::string_view address, const std::string& error) {
+  const bool shape = address.starts_with("/visuals/shape/") && std::ranges::count(address, '/') > 3;
+  const bool is_own_path = shape || address.starts_with("/physics/body/") || address.starts_with("/physics/group/") ||
+                           !address.starts_with("/");
+  if (is_own_path) return Outcome::unknown(hints_.consume() ? find_property(store_, address).error() : error);
+  return Outcome::unknown(
+      fmt::format("there is no address {}{}", printable(address), query_handler_.address_hint(address, addresses_)));
 }
 
 Outcome MessageDispatcher::execute_pattern(const Message& message) {
@@ -280,15 +296,9 @@ Outcome MessageDispatcher::execute_action(std::span<const Arg> value) {
   const bool all_triggers =
       std::all_of(refs_.begin(), refs_.end(), [](const PropertyRef& p) { return p.property->min_args == 0; });
   if (all_triggers && is_button_release(value)) return {};
-  std::vector<double> numbers;
-  for (const Arg& arg : value) {
-    // an argument without a value (OSC types N, I) is a trigger without arguments
-    if (arg.kind == Arg::Kind::nil && all_triggers) continue;
-    const std::optional<double> number = arg.is_text() ? parse_number(arg.text) : std::optional(arg.number);
-    if (!number || arg.kind == Arg::Kind::nil || !std::isfinite(*number))
-      return Outcome::rejected(fmt::format("takes {}, each a number", expected_text(*refs_.front().property)));
-    numbers.push_back(*number);
-  }
+  std::optional<std::vector<double>> given = action_numbers(value, all_triggers);
+  if (!given) return Outcome::rejected(fmt::format("takes {}, each a number", expected_text(*refs_.front().property)));
+  std::vector<double>& numbers = *given;
   for (const PropertyRef& ref : refs_) {
     if (ref.property->invoke == nullptr)
       return Outcome::rejected(fmt::format("this matches both actions and the value {}", ref.property->name));

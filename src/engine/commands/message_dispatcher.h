@@ -90,6 +90,7 @@ class MessageDispatcher {
   Outcome execute_named(const AddressEntry& entry, const Message& message);
   Outcome execute_path(const Message& message);
   Outcome execute_pattern(const Message& message);
+  Outcome unknown_path(std::string_view address, const std::string& error);
   /// Sets all properties in `refs_` to the value. If `single` is false, objects that don't accept the value are
   /// skipped; the message is rejected if no object accepts it.
   Outcome apply(bool single, std::span<const Arg> value);

@@ -27,23 +27,21 @@ Outcome answered(Message answer, std::size_t query_args) {
 }  // namespace
 
 Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) const {
+  const bool of_world = kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups";
+  if (!of_world) return list_of_body(kind, args);
+  if (!args.empty()) return Outcome::rejected("takes no arguments");
   Message answer{fmt::format("/list/{}", kind), {}};
-  if (kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups") {
-    if (!args.empty()) return Outcome::rejected("takes no arguments");
-    for (const auto& body : world_.bodies()) {
-      if (kind == "bodies") answer.args.push_back(Arg::of(body->name()));
-    }
-    for (const auto& shape : world_.shapes()) {
-      if (kind == "shapes") answer.args.push_back(Arg::of(shape->name()));
-    }
-    for (const auto& gear : world_.gears()) {
-      if (kind == "gears") answer.args.push_back(Arg::of(gear->name()));
-    }
-    for (const BehaviorGroup* group : world_.behaviors().groups()) {
-      if (kind == "groups") answer.args.push_back(Arg::of(group->name()));
-    }
-    return answered(std::move(answer), 0);
-  }
+  const auto add_names = [&](const auto& objects) {
+    for (const auto& object : objects) answer.args.push_back(Arg::of(object->name()));
+  };
+  if (kind == "bodies") add_names(world_.bodies());
+  if (kind == "shapes") add_names(world_.shapes());
+  if (kind == "gears") add_names(world_.gears());
+  if (kind == "groups") add_names(world_.behaviors().groups());
+  return answered(std::move(answer), 0);
+}
+
+Outcome QueryHandler::list_of_body(std::string_view kind, std::span<const Arg> args) const {
   if (args.size() != 1 || args[0].kind == Arg::Kind::nil) return Outcome::rejected("takes the name of a body");
   const std::string name = Selector::name_text(args[0]);
   const Body* body = world_.find_body(name);
@@ -51,7 +49,7 @@ Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) con
     return Outcome::rejected(fmt::format("there is no body '{}'{}", printable(name),
                                          hints_.consume() ? name_hint(name, world_.body_names()) : ""));
   }
-  answer.args.push_back(Arg::of(name));
+  Message answer{fmt::format("/list/{}", kind), {Arg::of(name)}};
   const Store& store = world_.store();
   if (kind == "behaviors") {
     const BehaviorList& list = world_.behaviors();

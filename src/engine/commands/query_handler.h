@@ -26,6 +26,8 @@ class QueryHandler {
   std::string address_hint(std::string_view address, const std::vector<std::string>& by_name) const;
 
  private:
+  Outcome list_of_body(std::string_view kind, std::span<const Arg> args) const;
+
   World& world_;
   HintBudget& hints_;
   PatternBudget& budget_;

@@ -45,25 +45,30 @@ void Selector::add_elements(const Body& body, const PropertyTable& table, const 
   }
 }
 
+template <class Visit>
+bool Selector::visit_bodies(std::string_view name, bool any, Visit visit) const {
+  bool found = false;
+  if (!is_pattern(name)) {
+    const Body* const body = world_.find_body(name);
+    if (body != nullptr) visit(*body);
+    return body != nullptr;
+  }
+  for (const auto& body : world_.bodies()) {
+    if (budget_.exceeded()) break;
+    if (!any && !budget_.match(name, body->name())) continue;
+    found = true;
+    visit(*body);
+  }
+  return found;
+}
+
 Result<void> Selector::select(const PropertyTable& table, const Property& property, std::span<const Arg> names,
                               std::vector<PropertyRef>& out) const {
   std::string buffers[2];
   const std::string_view first = names.empty() ? "*" : view_of(names[0], buffers[0]);
   const std::string_view second = names.size() < 2 ? "" : view_of(names[1], buffers[1]);
-  bool body_found = false;
-  if (!is_pattern(first)) {
-    if (const Body* body = world_.find_body(first)) {
-      body_found = true;
-      add_elements(*body, table, property, second, out);
-    }
-  } else {
-    for (const auto& body : world_.bodies()) {
-      if (budget_.exceeded()) break;
-      if (!names.empty() && !budget_.match(first, body->name())) continue;
-      body_found = true;
-      add_elements(*body, table, property, second, out);
-    }
-  }
+  const bool body_found =
+      visit_bodies(first, names.empty(), [&](const Body& body) { add_elements(body, table, property, second, out); });
   // a single name that is not a body: an element in any body
   if (names.size() == 1 && !body_found) {
     for (const auto& body : world_.bodies()) add_elements(*body, table, property, first, out);
@@ -90,7 +95,7 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
       without_parameter = &behavior;
     }
   };
-  const auto search = [&](const Body& body) {
+  visit_bodies(body_name, names.size() < 2, [&](const Body& body) {
     if (!is_pattern(name)) {
       if (const Behavior* behavior = body.find_behavior(name)) add(*behavior);
       return;
@@ -98,27 +103,11 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
     for (const Behavior* behavior : body.behaviors()) {
       if (budget_.match(name, behavior->name())) add(*behavior);
     }
-  };
-  if (!is_pattern(body_name)) {
-    if (const Body* body = world_.find_body(body_name)) search(*body);
-  } else {
-    for (const auto& body : world_.bodies()) {
-      if (budget_.exceeded()) break;
-      if (names.size() < 2 || budget_.match(body_name, body->name())) search(*body);
-    }
-  }
+  });
   if (budget_.exceeded()) return budget_exceeded();
   if (!out.empty()) return {};
   if (without_parameter != nullptr) return no_parameter(*without_parameter, parameter_name);
-  if (names.size() == 2) return no_such_element("behavior", body_name, name);
-  std::vector<std::string_view> candidates;
-  for (const auto& body : world_.bodies()) {
-    for (const Behavior* behavior : body->behaviors()) {
-      if (std::find(candidates.begin(), candidates.end(), behavior->name()) == candidates.end())
-        candidates.push_back(behavior->name());
-    }
-  }
-  return Error{fmt::format("there is no behavior '{}'{}", printable(name), hint(name, candidates))};
+  return names.size() == 2 ? no_such_element("behavior", body_name, name) : no_such_behavior(name);
 }
 
 Result<void> Selector::select_shapes(const Property& property, std::span<const Arg> names,
@@ -151,6 +140,17 @@ Error Selector::no_parameter(const Behavior& behavior, std::string_view paramete
   }
   return Error{fmt::format("behavior '{}/{}' ({}) has no parameter '{}'{}", behavior.body().name(), behavior.name(),
                            behavior.type().name, printable(parameter), hint(parameter, candidates))};
+}
+
+Error Selector::no_such_behavior(std::string_view name) const {
+  std::vector<std::string_view> candidates;
+  for (const auto& body : world_.bodies()) {
+    for (const Behavior* behavior : body->behaviors()) {
+      if (std::find(candidates.begin(), candidates.end(), behavior->name()) == candidates.end())
+        candidates.push_back(behavior->name());
+    }
+  }
+  return Error{fmt::format("there is no behavior '{}'{}", printable(name), hint(name, candidates))};
 }
 
 Error Selector::no_such_name(std::string_view kind, std::string_view name) const {

@@ -47,6 +47,11 @@ class Selector {
  private:
   void add_elements(const Body& body, const PropertyTable& table, const Property& property, std::string_view element,
                     std::vector<PropertyRef>& out) const;
+  /// Visits the body of that name, or all bodies that match it as a pattern (`any`: all) while the budget suffices.
+  /// Returns false if there is none.
+  template <class Visit>
+  bool visit_bodies(std::string_view name, bool any, Visit visit) const;
+  Error no_such_behavior(std::string_view name) const;
   Error no_such_name(std::string_view kind, std::string_view name) const;
   Error no_such_element(std::string_view kind, std::string_view body, std::string_view element) const;
   Error no_parameter(const Behavior& behavior, std::string_view parameter) const;

@@ -1,4 +1,4 @@
-// Capture, restore and disposal of checkpoints, and the recorded inputs between them.
+// Which checkpoints are captured, discarded and restored, and the recorded inputs between them.
 #include "engine/history/history.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr std::uint64_t kTicksBetweenStops = 15;  // ticks: limits checkpoints c
 }  // namespace
 
 std::size_t History::bytes() const {
-  std::size_t total = pages_.bytes();
+  std::size_t total = store_.bytes();
   const UndoStack::State* last_undo = nullptr;
   for (const auto& checkpoint : checkpoints_) {
     total += checkpoint->passes.capacity() + checkpoint->handler_queue.bytes();
@@ -28,7 +28,7 @@ std::size_t History::bytes() const {
 
 void History::clear(std::string_view why) {
   while (!checkpoints_.empty()) drop(checkpoints_.size() - 1);
-  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  if (pinned_ != nullptr) store_.recycle(std::move(pinned_));
   pinned_tick_ = kNoTick;
   limit_reason_ = why;
   too_large_ = false;
@@ -45,15 +45,7 @@ bool History::validate(const Session& session) {
 void History::drop(std::size_t index) {
   std::unique_ptr<Checkpoint> checkpoint = std::move(checkpoints_[index]);
   checkpoints_.erase(checkpoints_.begin() + static_cast<std::ptrdiff_t>(index));
-  recycle(std::move(checkpoint));
-}
-
-void History::recycle(std::unique_ptr<Checkpoint> checkpoint) {
-  checkpoint->world.release(pages_);
-  checkpoint->scene.release(pages_);
-  checkpoint->handler_queue.clear();
-  checkpoint->passes.clear();
-  free_.push_back(std::move(checkpoint));
+  store_.recycle(std::move(checkpoint));
 }
 
 void History::drop_oldest() {
@@ -64,7 +56,7 @@ void History::drop_oldest() {
 }
 
 void History::pin() {
-  if (pinned_ != nullptr) recycle(std::move(pinned_));
+  if (pinned_ != nullptr) store_.recycle(std::move(pinned_));
   pinned_tick_ = checkpoints_.empty() ? kNoTick : checkpoints_.back()->tick;
 }
 
@@ -76,8 +68,7 @@ void History::end_pass(Session& session, const CallLog& calls, bool running, dou
   if (seconds <= 0) {
     if (!checkpoints_.empty()) clear("history is switched off");
     limit_reason_ = "history is switched off";
-    free_.clear();
-    if (pages_.bytes() == 0) pages_.clear();
+    store_.free_memory();
     release_ended_runs(session);
     return;
   }
@@ -92,9 +83,7 @@ void History::append_pass(const CallLog& calls, bool running) {
   pass_.running = running;
   pass_.stopped_calls = calls.stopped_since_rewind();
   if (!running && inputs_.empty() && pass_.stopped_calls.empty()) return;
-  payload_.clear();
-  inputs_.append_pass(payload_, pass_);
-  TakeEncoder(checkpoints_.back()->passes).string(payload_);
+  checkpoints_.back()->passes.append(inputs_, pass_);
 }
 
 // Releases scene runs with no timer that was active at or after the oldest checkpoint.
@@ -115,27 +104,9 @@ bool History::checkpoint_due(const World& world, bool stopped) const {
 }
 
 void History::capture_checkpoint(Session& session) {
-  if (free_.empty()) free_.push_back(std::make_unique<Checkpoint>());
-  std::unique_ptr<Checkpoint> checkpoint = std::move(free_.back());
-  free_.pop_back();
-  const Checkpoint* const previous = checkpoints_.empty() ? nullptr : checkpoints_.back().get();
-  checkpoint->tick = checkpoint_tick_ = session.world.tick();
-  checkpoint->time = checkpoint_time_ = session.world.time();
-  checkpoint->world.capture(session.world, pages_, previous == nullptr ? nullptr : &previous->world, scratch_);
-  checkpoint->has_scene = session.scene != nullptr;
-  if (checkpoint->has_scene)
-    checkpoint->scene.capture(*session.scene, pages_, previous == nullptr ? nullptr : &previous->scene, scratch_);
-  if (const std::uint64_t now = overrides_.version();
-      shared_overrides_.copy == nullptr || shared_overrides_.version != now)
-    shared_overrides_ = {std::make_shared<const Overrides>(overrides_), now};
-  if (const std::uint64_t now = undo_.version(); shared_undo_.copy == nullptr || shared_undo_.version != now)
-    shared_undo_ = {undo_.state(), now};
-  checkpoint->overrides = shared_overrides_.copy;
-  checkpoint->undo = shared_undo_.copy;
-  presets_.capture(checkpoint->presets);
-  checkpoint->mouse_springs = session.dispatcher.mouse_springs();
-  checkpoint->handler_queue = handler_queue_;
-  checkpoints_.push_back(std::move(checkpoint));
+  checkpoints_.push_back(store_.capture(session, checkpoints_.empty() ? nullptr : checkpoints_.back().get()));
+  checkpoint_tick_ = session.world.tick();
+  checkpoint_time_ = session.world.time();
 }
 
 void History::trim(const World& world, double seconds) {
@@ -161,19 +132,11 @@ void History::trim(const World& world, double seconds) {
 void History::restore_checkpoint(Session& session, std::size_t index) {
   while (checkpoints_.size() > index + 1) drop(checkpoints_.size() - 1);
   Checkpoint& checkpoint = *checkpoints_[index];
-  checkpoint.world.restore(session.world, pages_, scratch_);
-  if (checkpoint.has_scene) checkpoint.scene.restore(*session.scene, pages_, scratch_);
-  overrides_.restore(*checkpoint.overrides);
-  undo_.restore(*checkpoint.undo);
-  presets_.restore(checkpoint.presets);
-  shared_overrides_ = {checkpoint.overrides, overrides_.version()};
-  shared_undo_ = {checkpoint.undo, undo_.version()};
-  session.dispatcher.mouse_springs() = checkpoint.mouse_springs;
-  handler_queue_ = checkpoint.handler_queue;
+  store_.restore(session, checkpoint);
   checkpoint_tick_ = checkpoint.tick;
   checkpoint_time_ = checkpoint.time;
+  checkpoint.passes.begin_reading();
   inputs_.clear();  // they belong to the discarded future
-  next_pass_ = last_pass_start_ = 0;
 }
 
 void History::restore(Session& session, const RewindTarget& target) {
@@ -185,19 +148,6 @@ void History::restore(Session& session, const RewindTarget& target) {
   }
   restore_checkpoint(session, index);
 }
-
-bool History::next(RecordedPass& pass) {
-  const std::string& passes = checkpoints_.back()->passes;
-  last_pass_start_ = next_pass_;
-  TakeDecoder in(std::string_view(passes).substr(next_pass_));
-  const std::string_view bytes = in.string();
-  if (in.failed()) return false;
-  next_pass_ = passes.size() - in.left();
-  InputCodec codec(0);
-  return read_pass(bytes, codec, pass);
-}
-
-void History::truncate(bool last) { checkpoints_.back()->passes.resize(last ? last_pass_start_ : next_pass_); }
 
 bool History::restore_before(Session& session, std::uint64_t tick) {
   std::size_t index = checkpoints_.size();

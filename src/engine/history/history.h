@@ -9,18 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/memory/archive.h"
-#include "base/memory/page_store.h"
-#include "engine/commands/handler_queue.h"
-#include "engine/commands/mouse_springs.h"
-#include "engine/edits/overrides.h"
-#include "engine/edits/undo_stack.h"
-#include "engine/presets/presets.h"
-#include "engine/session.h"
-#include "engine/takes/encoding.h"
-#include "script/scene/scene_checkpoint.h"
+#include "engine/history/checkpoint.h"
 #include "script/vm/call_log.h"
-#include "sim/state/world_checkpoint.h"
 
 namespace limber {
 
@@ -41,7 +31,7 @@ class History {
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  ///< Memory limit of the history, in bytes.
 
   History(Overrides& overrides, UndoStack& undo, Presets& presets, HandlerQueue& handler_queue)
-      : overrides_(overrides), undo_(undo), presets_(presets), handler_queue_(handler_queue) {}
+      : store_(overrides, undo, presets, handler_queue) {}
 
   /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
   void clear(std::string_view why);
@@ -70,70 +60,38 @@ class History {
   /// supplies the recorded passes after the checkpoint.
   void restore(Session& session, const RewindTarget& target);
   /// Reads the next recorded pass. False at the end of the recording.
-  bool next(RecordedPass& pass);
+  bool next(RecordedPass& pass) { return checkpoints_.back()->passes.next(pass); }
   /// Discards the passes that next() has not read yet. `last`: also the last one that it has read.
-  void truncate(bool last = false);
+  void truncate(bool last = false) { checkpoints_.back()->passes.truncate(last); }
   /// Keeps the newest checkpoint, regardless of its age, for restore_before(), until clear() or the next pin().
   void pin();
   /// Restores the newest checkpoint before a tick and discards everything after it. False if there is none.
   bool restore_before(Session& session, std::uint64_t tick);
 
  private:
-  struct Checkpoint {
-    std::uint64_t tick = 0;
-    double time = 0;
-    WorldCheckpoint world;
-    SceneCheckpoint scene;
-    bool has_scene = false;
-    std::shared_ptr<const Overrides> overrides;
-    std::shared_ptr<const UndoStack::State> undo;
-    Presets::State presets;
-    MouseSprings mouse_springs;
-    HandlerQueue handler_queue;
-    std::string passes;  // encoded passes after the checkpoint, each after its length
-  };
-  /// A shared copy and the version of the original, to avoid copying unchanged data.
-  template <class T>
-  struct Shared {
-    std::shared_ptr<const T> copy;
-    std::uint64_t version = 0;
-  };
-
   static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
   void append_pass(const CallLog& calls, bool running);
   bool checkpoint_due(const World& world, bool stopped) const;
   void capture_checkpoint(Session& session);
   void restore_checkpoint(Session& session, std::size_t index);
   void drop(std::size_t index);
-  void recycle(std::unique_ptr<Checkpoint> checkpoint);
   void drop_oldest();
   void trim(const World& world, double seconds);
   void release_ended_runs(Session& session) const;
 
-  Overrides& overrides_;
-  UndoStack& undo_;
-  Presets& presets_;
-  HandlerQueue& handler_queue_;
-  PageStore pages_;
+  CheckpointStore store_;
   std::vector<std::unique_ptr<Checkpoint>> checkpoints_;  // oldest first
   std::unique_ptr<Checkpoint> pinned_;                    // pinned checkpoint that left the list, without passes
   std::uint64_t pinned_tick_ = kNoTick;                   // tick of the pinned checkpoint
-  std::vector<std::unique_ptr<Checkpoint>> free_;         // discarded checkpoints; their memory is reused
-  Shared<Overrides> shared_overrides_;
-  Shared<UndoStack::State> shared_undo_;
   std::uint64_t structure_version_ = 0;  // structure version of the store, the same for all checkpoints
   std::uint64_t checkpoint_tick_ = 0;    // of the last checkpoint
   double checkpoint_time_ = 0;
   bool too_large_ = false;
   bool shortage_reported_ = false;
   std::size_t max_bytes_ = kMaxBytes;
-  InputLog inputs_{0};               // inputs of the current pass
-  RecordedPass pass_;                // scratch
-  std::string payload_;              // scratch
-  std::size_t next_pass_ = 0;        // offset of the pass that next() will read
-  std::size_t last_pass_start_ = 0;  // offset of the pass that next() has read last
   std::string limit_reason_ = "the scene starts there";
-  Archive scratch_;
+  InputLog inputs_{0};  // of the current pass
+  RecordedPass pass_;   // scratch
 };
 
 }  // namespace limber

@@ -17,12 +17,12 @@ class RecordedInput : public InputSource {
   RecordedInput(ShowState& show, CommandExecutor& executor) : show_(show), executor_(executor) {}
   /// Executes messages, console texts and events (TakeEvent). Moves parts of them.
   void execute(std::span<InputRecord> inputs);
-
-  ShowState& show_;
+  ShowState& show() const { return show_; }
 
  private:
   bool execute_event(const Message& message);
 
+  ShowState& show_;
   CommandExecutor& executor_;
   std::optional<std::uint64_t> handler_calls_;  // number of handler calls in this pass; nothing: all
 };

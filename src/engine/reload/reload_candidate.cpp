@@ -49,6 +49,7 @@ void ReloadCandidate::index_slots() {
 NodeId ReloadCandidate::live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
                                 const std::vector<NodeId>& bodies) const {
   if (id.slot >= slots_.size()) return {};
+  const auto id_of = [](const auto* object) { return object == nullptr ? NodeId{} : object->id(); };
   const SlotObject slot = slots_[id.slot];
   if (slot.kind == Kind::none) return {};
   if (slot.kind == Kind::world) return live.id();
@@ -56,21 +57,13 @@ NodeId ReloadCandidate::live_id(NodeId id, const World& live, const std::vector<
   if (slot.kind == Kind::camera) return live.visuals().camera().id();
   if (slot.kind == Kind::appearance) return live.visuals().appearance().id();
   if (slot.kind == Kind::shape) return shapes[slot.owner];
-  if (slot.kind == Kind::gear) {
-    const Gear* const gear = live.find_gear(spec_->gears[slot.index].name);
-    return gear == nullptr ? NodeId{} : gear->id();
-  }
-  if (slot.kind == Kind::group) {
-    const BehaviorGroup* const group = live.behaviors().find_group(spec_->groups[slot.index].name);
-    return group == nullptr ? NodeId{} : group->id();
-  }
+  if (slot.kind == Kind::gear) return id_of(live.find_gear(spec_->gears[slot.index].name));
+  if (slot.kind == Kind::group) return id_of(live.behaviors().find_group(spec_->groups[slot.index].name));
   const NodeId body_id = bodies[slot.owner];
   if (slot.kind == Kind::body) return body_id;
   const Body& body = *static_cast<const Body*>(live.store().object(body_id));
-  if (slot.kind == Kind::behavior) {
-    const Behavior* const behavior = body.find_behavior(spec_->bodies[slot.owner].behaviors[slot.index].name);
-    return behavior == nullptr ? NodeId{} : behavior->id();
-  }
+  if (slot.kind == Kind::behavior)
+    return id_of(body.find_behavior(spec_->bodies[slot.owner].behaviors[slot.index].name));
   if (slot.kind == Kind::part) return body.parts()[slot.index]->id();
   if (slot.kind == Kind::joint) return body.joints()[slot.index]->id();
   return body.motors()[slot.index]->id();

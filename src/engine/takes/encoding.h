@@ -41,8 +41,6 @@ class TakeDecoder {
   std::size_t count();
   bool failed() const { return failed_; }
   void fail() { failed_ = true; }
-  /// Number of bytes that are not decoded yet.
-  std::size_t left() const { return bytes_.size(); }
   bool at_end() const { return bytes_.empty() && !failed_; }
 
  private:

@@ -39,25 +39,25 @@ ShowRules rules_of(const TakePlayer& player, bool in_show) {
 
 void TakeInput::execute_messages(bool) {
   live_.reject_messages(in_show_ ? kPlayingError : kReplayingError, in_show_ ? &stop_requested_ : nullptr);
-  show_.outputs.live().mute_answers(true);
+  show().outputs.live().mute_answers(true);
   execute(player_->messages());
 }
 
 // The take decides. Ticks requested by a recorded /transport/step are consumed as in the recorded session.
 bool TakeInput::advances_time(bool) {
   const bool running = player_->tick().running;
-  Transport& transport = show_.session->transport;
+  Transport& transport = show().session->transport;
   if (running && transport.paused()) (void)transport.consume_step();
   return running;
 }
 
 void TakeInput::end_handlers(std::uint64_t called) {
   RecordedInput::end_handlers(called);
-  show_.outputs.live().mute_answers(false);
+  show().outputs.live().mute_answers(false);
 }
 
 void TakeInput::record(const Message& message, const CommandOrigin& origin, bool evaluate) {
-  show_.history.record_input(message, origin, evaluate);
+  show().history.record_input(message, origin, evaluate);
 }
 
 Outcome TakeInput::rewind(const Transport::RewindRequest& request, const CommandOrigin&) {
@@ -79,7 +79,7 @@ bool TakeInput::reruns_at_once() {
 }
 
 void TakeInput::end_pass() {
-  player_->compare(show_.session->world, show_.call_log, [this] { return show_.state_hash(); });
+  player_->compare(show().session->world, show().call_log, [this] { return show().state_hash(); });
 }
 
 Result<void> TakeInput::accepts_changes() const { return Error{kPlayingError}; }

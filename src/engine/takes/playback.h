@@ -39,7 +39,7 @@ class TakeInput final : public RecordedInput {
   SceneFiles begin_run(TakeSceneRun::Kind kind) override;
   bool reruns_at_once() override;
   void end_pass() override;
-  bool is_paced() const override { return !show_.options.fast && player_->steps_next(); }
+  bool is_paced() const override { return !show().options.fast && player_->steps_next(); }
   bool finished() const override { return !in_show_ && player_->finished(); }
   Result<void> accepts_changes() const override;
 
