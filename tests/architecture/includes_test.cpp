@@ -129,7 +129,7 @@ TEST(Includes, AllowedIncludesPass) {
       {"src/engine/engine.cpp", "#include \"script/vm/vm.h\"", nullptr},
       {"src/net/osc/receive.cpp", "#include \"engine/commands/command.h\"", nullptr},
       {"src/base/system/net/socket.cpp", "#include <sys/socket.h>", nullptr},
-      {"src/sim/solver/dense_kernels.cpp", "#include <immintrin.h>", nullptr},
+      {"src/sim/solver/lcp/dense_kernels.cpp", "#include <immintrin.h>", nullptr},
       {"src/app/app.cpp", "#include \"net/osc/receive.h\"", nullptr},
       {"src/main.cpp", "#include \"app/app.h\"", nullptr},
       {"src/script/vm/vm.cpp", "#include <lua.hpp>", nullptr},

@@ -1,5 +1,5 @@
 // Dense kernels of every vector width return the same as scalar loops, to the bit.
-#include "sim/solver/dense_kernels.h"
+#include "sim/solver/lcp/dense_kernels.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 namespace limber::test {
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kStandardGravity = 9.81;
 
 /// A part on a revolute joint to another one, driven by a spin motor.
 struct Rotor : WorldFixture {
@@ -72,7 +72,7 @@ struct Top : WorldFixture {
                   {axis * kArm, quat_axis(Vec3(0, 1, 0), kPi / 2 - tilt)})),
         joint(*robot.add_joint("joint", base, disc, JointType::spherical, Vec3(0), Vec3(0, 0, 1)).value()) {
     set(world.id(), "solver", {solver});
-    gravity({0, 0, -kGravity});
+    gravity({0, 0, -kStandardGravity});
     const Vec3 inertia = vec(disc.id(), "inertia");
     along = inertia.z;
     across = inertia.x + kArm * kArm;
@@ -86,7 +86,7 @@ struct Top : WorldFixture {
   // Rate W of steady precession, for a total spin w about the axis and c, the cosine of the angle to the vertical:
   // across·c·W² - along·w·W + m·g·arm = 0, with m = 1.
   double precession(double w, double c) const {
-    const double torque = kGravity * kArm;
+    const double torque = kStandardGravity * kArm;
     if (std::fabs(c) < 1e-9) return torque / (along * w);
     const double root = std::sqrt(along * w * along * w - 4 * across * c * torque);
     return (along * w - root) / (2 * across * c);
@@ -95,7 +95,7 @@ struct Top : WorldFixture {
     const Vec3 v = disc.linear_velocity();
     const Vec3 local = glm::conjugate(disc.principal_axes()) * disc.angular_velocity();
     const Vec3 inertia = vec(disc.id(), "inertia");
-    return glm::dot(v, v) / 2 + glm::dot(inertia * local, local) / 2 + kGravity * disc.center().z;
+    return glm::dot(v, v) / 2 + glm::dot(inertia * local, local) / 2 + kStandardGravity * disc.center().z;
   }
 
   Body& robot;
@@ -149,7 +149,7 @@ TEST(Spin, NutatingTopFollowsRungeKutta) {
     const auto rate = [&](const State& x) {
       const double sine = std::sin(x[0]);
       const double turn = (up - spin * std::cos(x[0])) / (s.across * sine * sine);
-      const double pull = s.across * turn * turn * std::cos(x[0]) - spin * turn + kGravity * Top::kArm;
+      const double pull = s.across * turn * turn * std::cos(x[0]) - spin * turn + kStandardGravity * Top::kArm;
       return State(x[1], sine * pull / s.across, turn);
     };
     State x(std::acos(s.axis.z), 0, 0);

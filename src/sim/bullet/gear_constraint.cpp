@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/solver/forest/axis_active_set.h"
+
 namespace limber {
 namespace {
 
@@ -74,7 +76,7 @@ void GearConstraint::plan(btScalar h) {
   row_.velocity = std::clamp(kCorrectedFraction * error() / step, -kMaxCorrectionSpeed, kMaxCorrectionSpeed);
   row_.mobility = mobility;
   row_.softness = kSoftness * mobility;
-  row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * kTreeInfinity;
+  row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * AxisRow::kInfinity;
   warm_impulse_ = kGearWarmStart * std::exchange(last_impulse_, 0.0f);
 }
 

@@ -62,9 +62,7 @@ class GearConstraint : public btTypedConstraint {
   void plan(btScalar h);
   const Row& row() const { return row_; }
   /// Dynamic bodies, each once.
-  std::span<const BodyJacobian> jacobians() const {
-    return {jacobians_.data(), static_cast<std::size_t>(jacobian_count_)};
-  }
+  IndexedSpan<const BodyJacobian> jacobians() const { return {jacobians_.data(), jacobian_count_}; }
   /// Warm-start impulse of the sweeps.
   double warm_impulse() const { return static_cast<double>(warm_impulse_); }
   /// Stores the impulse of the step, for warm starting and the mean force.

@@ -23,7 +23,7 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
 // Joints hold pointers to their rows, which therefore must not move until the step is solved.
 void IslandSolver::reserve_rows(int joints) {
   planned_count_ = 0;
-  const std::size_t max_rows = static_cast<std::size_t>(joints) * JointConstraint::kMaxRows;
+  const int max_rows = joints * JointConstraint::kMaxRows;
   if (planned_.size() < max_rows) planned_.resize(max_rows);
 }
 
@@ -79,8 +79,8 @@ void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const 
     if (!(gear.row().mobility > 0)) continue;
     GearRow& row = gears_.emplace_back();
     row.gear = &gear;
-    row.count = static_cast<int>(gear.jacobians().size());
-    for (std::size_t k = 0; k < gear.jacobians().size(); ++k) {
+    row.count = gear.jacobians().size();
+    for (int k = 0; k < row.count; ++k) {
       row.bodies[k] = getOrInitSolverBody(*gear.jacobians()[k].body, info.m_timeStep);
     }
   }
@@ -121,7 +121,7 @@ void IslandSolver::convert_constraints(btTypedConstraint** constraints, int coun
     size = {0, 0};
     if (!constraints[i]->isEnabled()) continue;
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
-      size.m_numConstraintRows = static_cast<int>(static_cast<JointConstraint*>(constraints[i])->planned().size());
+      size.m_numConstraintRows = static_cast<JointConstraint*>(constraints[i])->planned().size();
     } else {
       constraints[i]->getInfo1(&size);
     }
@@ -155,9 +155,9 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
     const GearConstraint::Row& planned = row.gear->row();
     btScalar rate = 0;
     for (int k = 0; k < row.count; ++k) {
-      GearSide& side = row.sides[at(k)];
-      const GearConstraint::BodyJacobian& from = row.gear->jacobians()[at(k)];
-      const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
+      GearSide& side = row.sides[k];
+      const GearConstraint::BodyJacobian& from = row.gear->jacobians()[k];
+      const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
       side.linear = from.linear;
       side.angular = from.angular;
       side.linear_per_impulse = from.linear * from.body->getInvMass() * from.body->getLinearFactor();
@@ -177,11 +177,11 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
 
 // Returns the squared change of the impulse.
 btScalar IslandSolver::sweep_gear(int gear) {
-  GearRow& row = gears_[at(gear)];
+  GearRow& row = gears_[gear];
   btScalar residual = row.target_rate - row.softness * row.impulse;
   for (int k = 0; k < row.count; ++k) {
-    const GearSide& side = row.sides[at(k)];
-    const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
+    const GearSide& side = row.sides[k];
+    const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
     residual -= side.linear.dot(body.m_deltaLinearVelocity) + side.angular.dot(body.m_deltaAngularVelocity);
   }
   const btScalar after = std::clamp(row.impulse + residual * row.step, -row.bound, row.bound);
@@ -192,9 +192,9 @@ btScalar IslandSolver::sweep_gear(int gear) {
 
 void IslandSolver::apply_gear_impulse(const GearRow& row, btScalar impulse) {
   for (int k = 0; k < row.count; ++k) {
-    btSolverBody& body = m_tmpSolverBodyPool[row.bodies[at(k)]];
-    body.m_deltaLinearVelocity += row.sides[at(k)].linear_per_impulse * impulse;
-    body.m_deltaAngularVelocity += row.sides[at(k)].angular_per_impulse * impulse;
+    btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
+    body.m_deltaLinearVelocity += row.sides[k].linear_per_impulse * impulse;
+    body.m_deltaAngularVelocity += row.sides[k].angular_per_impulse * impulse;
   }
 }
 
@@ -270,7 +270,7 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
 // the largest squared change of an impulse.
 btScalar IslandSolver::sweep_joints() {
   btScalar largest = 0;
-  for (int i = 0; i < static_cast<int>(gears_.size()); ++i) largest = std::max(largest, sweep_gear(i));
+  for (int i = 0; i < gears_.size(); ++i) largest = std::max(largest, sweep_gear(i));
   for (int i = 0; i < joints_.size(); ++i) {
     JointRows& joint = joints_[i];
     btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];

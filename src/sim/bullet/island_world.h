@@ -87,8 +87,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   struct GearRow {
     GearConstraint* gear;
-    std::array<int, 4> bodies;
-    std::array<GearSide, 4> sides;
+    FixedArray<int, 4> bodies;
+    FixedArray<GearSide, 4> sides;
     int count;
     btScalar target_rate;  // rate that is missing without the impulses of this step
     btScalar softness;
@@ -98,10 +98,10 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   void apply_gear_impulse(const GearRow& row, btScalar impulse);
 
-  std::vector<GearRow> gears_;  // of the present island
+  IndexedArray<GearRow> gears_;  // of the present island
   bool gears_swept_ = false;
-  std::vector<JointConstraint::Row> planned_;  // of all joints of the island, in their order
-  std::size_t planned_count_ = 0;
+  IndexedArray<JointConstraint::Row> planned_;  // of all joints of the island, in their order
+  int planned_count_ = 0;
   btAlignedObjectArray<JointRows> joints_;
   ContactSweep contacts_;
   DirectSolver direct_;

@@ -10,7 +10,7 @@
 #include "base/vec.h"
 #include "sim/bullet/axis_goals.h"
 #include "sim/bullet/bullet.h"
-#include "sim/solver/axis_rows.h"
+#include "sim/solver/indexed_array.h"
 
 namespace limber {
 
@@ -155,11 +155,11 @@ class JointConstraint : public btTypedConstraint {
     btVector3 angular_b;
   };
   /// Maximum number of rows: for each of six axes a motor or spring, damping, friction and two limits.
-  static constexpr std::size_t kMaxRows = std::size_t{6} * 5;
+  static constexpr int kMaxRows = 6 * 5;
   /// Reads the pose and plans the rows of the next internal step into `rows`, an array of kMaxRows that must stay
   /// valid until the step is solved.
-  std::span<const Row> plan(Row* rows);
-  std::span<const Row> planned() const { return {rows_, static_cast<std::size_t>(row_count_)}; }
+  IndexedSpan<const Row> plan(Row* rows);
+  IndexedSpan<const Row> planned() const { return {rows_, row_count_}; }
   Jacobian jacobian(int axis) const;
   /// Vectors from the centers of mass of the parent (a) and the child (b) to the child's pivot, world.
   const btVector3& arm_a() const { return arm_a_; }
@@ -174,12 +174,12 @@ class JointConstraint : public btTypedConstraint {
   btVector3 lock_impulse() const {
     return axis_a_[0] * lock_impulse_[0] + axis_a_[1] * lock_impulse_[1] + axis_a_[2] * lock_impulse_[2];
   }
-  /// Active set of the last step, the warm start of TreeRows.
-  ActiveSetMemory& active_set_memory() { return active_set_memory_; }
+  /// Active set of the last step, the warm start of AxisActiveSet.
+  FixedArray<std::uint8_t, 6>& active_set_memory() { return active_set_memory_; }
   /// Energy that the locks of a tree have absorbed and may return, J, >= 0; stored in the tree's first joint.
   double& lock_energy() { return lock_energy_; }
   /// Sets the impulses of the planned rows, in their order, once the step is solved.
-  void set_impulses(std::span<const double> impulses);
+  void set_impulses(IndexedSpan<const double> impulses);
   /// Sets the length of the next internal step, s, and its position in the tick: `steps_left` of `count` steps, this
   /// one included, are still ahead.
   void set_step(btScalar h, int steps_left = 1, int count = 1) {
@@ -250,7 +250,7 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> last_impulse_{};   // of locks and motors, by axis
   std::array<float, 3> lock_impulse_{};   // along the parent-side axes; see lock_impulse()
   std::array<float, 7> warm_impulses_{};
-  ActiveSetMemory active_set_memory_{};
+  FixedArray<std::uint8_t, 6> active_set_memory_{};
   double lock_energy_ = 0;
   std::array<float, 6> repair_impulse_{};  // of the last internal step, on a limit that is exceeded
   std::array<float, 6> tick_impulse_{};    // sum over the current tick

@@ -43,7 +43,7 @@ btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.sto
 
 }  // namespace
 
-std::span<const JointConstraint::Row> JointConstraint::plan(Row* rows) {
+IndexedSpan<const JointConstraint::Row> JointConstraint::plan(Row* rows) {
   rows_ = rows;
   read_pose();
   plan_rows();
@@ -87,8 +87,8 @@ void JointConstraint::set_impulses(const btSolverConstraint* rows, int count) {
   tick_time_ += h_;
 }
 
-void JointConstraint::set_impulses(std::span<const double> impulses) {
-  for (std::size_t r = 0; r < impulses.size() && r < planned().size(); ++r) {
+void JointConstraint::set_impulses(IndexedSpan<const double> impulses) {
+  for (int r = 0; r < impulses.size() && r < planned().size(); ++r) {
     const Row& row = rows_[r];
     btScalar inverse_mobility = 0;
     if (row.kind == RowKind::repair || row.kind == RowKind::motor) {

@@ -1,48 +1,46 @@
-// Spin clamp: if a body rotates by more than kMaxTurnPerStep in a step, Bullet rotates it by less than its angular
-// velocity implies. In a tree with such a body (spins, see spin.h, excluded) the motion relative to the tree's rigid
-// motion is scaled down. Momentum and every homogeneous constraint on the rates are unaffected.
-#include <algorithm>
+// SpinClamp: clamps velocities relative to the tree's rigid motion, and limits the target rates of motors.
+#include "sim/solver/spin_clamp.h"
 
-#include "sim/solver/direct_solver.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace limber {
 namespace {
 
-/// Target of the clamp after the solve, as a fraction of kMaxTurnPerStep, since contacts and motors will restore some
-/// of the motion.
+/// Target of the clamp after the solve, as a fraction of kMaxRotationPerStep, since contacts and motors will restore
+/// some of the motion.
 constexpr double kClampTarget = 0.5;
-/// Margin that tolerates rotations that were just clamped to kMaxTurnPerStep.
+/// Margin that tolerates rotations that were just clamped to kMaxRotationPerStep.
 constexpr double kClampTolerance = 1.01;
+/// Motors and limits must not rotate a body by more than this in one step, rad; otherwise their rates are scaled down
+/// to a rotation of kRotationGoal, which is less, since the other causes of the rotation don't scale with them.
+constexpr double kMaxRotation = 0.5;
+constexpr double kRotationGoal = 0.44;
 
 Vec3 center_of(const btRigidBody& body) { return from_bt(body.getCenterOfMassPosition()); }
 
 }  // namespace
 
-Vec3 DirectSolver::angular_velocity(int node, const IslandPools& pools, ClampStage stage) const {
-  const int body = body_of_[at(node)];
-  if (stage == ClampStage::after) return solved_velocity(body, pools).angular;
-  return from_bt(pools.bodies[body].m_angularVelocity);
+Spatial SpinClamp::velocity(int node, Stage stage) const {
+  const int body = trees_.body_of(node);
+  return stage == Stage::after ? trees_.velocity(body) : island_.start_velocity(body);
 }
 
-// Velocity of a body without its spin.
-Spatial DirectSolver::velocity_without_spin(int node, const IslandPools& pools, ClampStage stage, double h) const {
-  const int body = body_of_[at(node)];
-  const btSolverBody& b = pools.bodies[body];
-  Spatial v{from_bt(b.m_linearVelocity), from_bt(b.m_angularVelocity)};
-  if (stage == ClampStage::after) v = velocity(body, pools) + tree_rows_.change(node);
-  const RotationStep turn = rotation_step(body, v.angular, pools, h);
+Spatial SpinClamp::velocity_without_spin(int node, Stage stage) const {
+  const Spatial v = velocity(node, stage);
+  const RotationStep turn = island_.rotation_step(trees_.body_of(node), v.angular);
   return {v.linear - turn.spin * glm::cross(turn.axis, turn.lever), turn.tumble};
 }
 
 // Rigid motion of a floating tree with the same momentum and angular momentum; zero for a tree attached to a static
 // body.
-DirectSolver::RigidMotion DirectSolver::rigid_motion(const Tree& tree, const IslandPools& pools, ClampStage stage,
-                                                     double h) const {
+SpinClamp::RigidMotion SpinClamp::rigid_motion(const Tree& tree, Stage stage) const {
   RigidMotion rigid;
-  if (link_of_[at(tree.first)] >= 0) return rigid;
-  const auto center = [&](int node) { return center_of(*pools.bodies[body_of_[at(node)]].m_originalBody); };
-  // without add_geometric_inertia(), which has no momentum
-  const auto inertia = [&](int node) { return inertia_of(*pools.bodies[body_of_[at(node)]].m_originalBody); };
+  if (trees_.link_of(tree.first) >= 0) return rigid;
+  const auto center = [&](int node) { return center_of(trees_.rigid(node)); };
+  // without geometric stiffness, which has no momentum
+  const auto inertia = [&](int node) { return inertia_of(trees_.rigid(node)); };
   double mass = 0;
   for (int i = tree.first; i < tree.last; ++i) {
     mass += inertia(i).mass.xx;
@@ -55,7 +53,7 @@ DirectSolver::RigidMotion DirectSolver::rigid_motion(const Tree& tree, const Isl
   for (int i = tree.first; i < tree.last; ++i) {
     const Vec3 arm = center(i) - rigid.center;
     tree_inertia.add_translated(inertia(i), arm);
-    momentum += translated_back(inertia(i) * velocity_without_spin(i, pools, stage, h), arm);
+    momentum += translated_back(inertia(i) * velocity_without_spin(i, stage), arm);
   }
   const Sym3& m = tree_inertia.moment;
   const Mat3 moment(Vec3(m.xx, m.xy, m.xz), Vec3(m.xy, m.yy, m.yz), Vec3(m.xz, m.yz, m.zz));
@@ -63,54 +61,102 @@ DirectSolver::RigidMotion DirectSolver::rigid_motion(const Tree& tree, const Isl
   return rigid;
 }
 
-// Clamps all trees. Returns true if something changed; the forest must then be rebuilt, starting from the changed
-// velocities.
-bool DirectSolver::clamp_spin(IslandPools& pools, double h, ClampStage stage) {
+double SpinClamp::fastest_rotation(const Tree& tree, Stage stage) const {
+  double fastest = 0;
+  for (int i = tree.first; i < tree.last; ++i) {
+    const Vec3 w = velocity(i, stage).angular;
+    if (glm::dot(w, w) * island_.h * island_.h <= kMaxRotationPerStep * kMaxRotationPerStep) continue;
+    fastest = std::max(fastest, glm::length(velocity_without_spin(i, stage).angular));
+  }
+  return fastest;
+}
+
+double SpinClamp::fastest_relative_rotation(const Tree& tree, Stage stage, const RigidMotion& rigid) const {
+  double fastest = 0;
+  for (int i = tree.first; i < tree.last; ++i) {
+    fastest = std::max(fastest, glm::length(velocity_without_spin(i, stage).angular - rigid.velocity.angular));
+  }
+  return fastest;
+}
+
+// Scales the motion of a body relative to the rigid motion.
+void SpinClamp::scale_motion(int node, Stage stage, const RigidMotion& rigid, double scale_change) {
+  btSolverBody& body = trees_.body(node);
+  const Vec3 arm = center_of(*body.m_originalBody) - rigid.center;
+  const Spatial relative = velocity_without_spin(node, stage) - translated(rigid.velocity, arm);
+  if (glm::length(relative.angular) * island_.h > kClampTolerance * kMaxRotationPerStep) {
+    record_clamp(*body.m_originalBody, -glm::length(relative.angular) * scale_change);
+  }
+  body.m_deltaLinearVelocity += to_bt(relative.linear * scale_change);
+  body.m_deltaAngularVelocity += to_bt(relative.angular * scale_change);
+}
+
+bool SpinClamp::clamp(Stage stage) {
+  const double h = island_.h;
   bool changed = false;
   for (const Tree& t : trees_) {
-    if (t.last - t.first == 1 && link_of_[at(t.first)] < 0) continue;
-    double fastest = 0;
-    for (int i = t.first; i < t.last; ++i) {
-      const Vec3 w = angular_velocity(i, pools, stage);
-      if (glm::dot(w, w) * h * h <= kMaxRotationPerStep * kMaxRotationPerStep) continue;
-      fastest = std::max(fastest, glm::length(velocity_without_spin(i, pools, stage, h).angular));
-    }
+    if (trees_.is_single_body(t)) continue;
+    if (!(fastest_rotation(t, stage) * h > kClampTolerance * kMaxRotationPerStep)) continue;
+    const RigidMotion rigid = rigid_motion(t, stage);
+    const double fastest = fastest_relative_rotation(t, stage, rigid);
     if (!(fastest * h > kClampTolerance * kMaxRotationPerStep)) continue;
-    const RigidMotion rigid = rigid_motion(t, pools, stage, h);
-    fastest = 0;
-    for (int i = t.first; i < t.last; ++i) {
-      fastest =
-          std::max(fastest, glm::length(velocity_without_spin(i, pools, stage, h).angular - rigid.velocity.angular));
-    }
-    if (!(fastest * h > kClampTolerance * kMaxRotationPerStep)) continue;
-    if (!changed && before_clamp_.empty()) {
-      for (int i = 0; i < pools.bodies.size(); ++i)
-        before_clamp_.emplace_back(pools.bodies[i].m_deltaLinearVelocity, pools.bodies[i].m_deltaAngularVelocity);
+    if (before_.empty()) {
+      for (int i = 0; i < island_.pools->bodies.size(); ++i)
+        before_.emplace_back(island_.body(i).m_deltaLinearVelocity, island_.body(i).m_deltaAngularVelocity);
     }
     changed = true;
-    const double scale_change =
-        (stage == ClampStage::before ? 1 : kClampTarget) * kMaxRotationPerStep / (fastest * h) - 1;
-    for (int i = t.first; i < t.last; ++i) {
-      btSolverBody& body = pools.bodies[body_of_[at(i)]];
-      const Vec3 arm = center_of(*body.m_originalBody) - rigid.center;
-      const Spatial relative = velocity_without_spin(i, pools, stage, h) - translated(rigid.velocity, arm);
-      if (glm::length(relative.angular) * h > kClampTolerance * kMaxRotationPerStep) {
-        record_clamp(*body.m_originalBody, -glm::length(relative.angular) * scale_change);
-      }
-      body.m_deltaLinearVelocity += to_bt(relative.linear * scale_change);
-      body.m_deltaAngularVelocity += to_bt(relative.angular * scale_change);
-    }
+    const double scale_change = (stage == Stage::before ? 1 : kClampTarget) * kMaxRotationPerStep / (fastest * h) - 1;
+    for (int i = t.first; i < t.last; ++i) scale_motion(i, stage, rigid, scale_change);
   }
   return changed;
 }
 
-// Restores the velocity changes for the iterative solver.
-void DirectSolver::undo_spin_clamp(IslandPools& pools) const {
-  for (std::size_t i = 0; i < before_clamp_.size(); ++i) {
-    btSolverBody& body = pools.bodies[static_cast<int>(i)];
-    body.m_deltaLinearVelocity = before_clamp_[i].first;
-    body.m_deltaAngularVelocity = before_clamp_[i].second;
+void SpinClamp::undo() const {
+  for (int i = 0; i < before_.size(); ++i) {
+    island_.body(i).m_deltaLinearVelocity = before_[i].first;
+    island_.body(i).m_deltaAngularVelocity = before_[i].second;
   }
+}
+
+// True if a motor on this axis of a joint drives a spin of one of its bodies.
+bool SpinClamp::drives_spin(int link, int axis) const {
+  if (link < 0 || axis < 3) return false;
+  const Island::Link& l = island_.links[link];
+  const Vec3 axis_direction = from_bt(l.joint->linear_axis(axis - 3));
+  return std::ranges::any_of(std::array{l.body_a, l.body_b}, [&](int body) {
+    const RotationStep turn = island_.rotation_step(body, trees_.velocity(body).angular);
+    return turn.spin != 0 && std::fabs(glm::dot(turn.axis, axis_direction)) > 0.99;
+  });
+}
+
+// Fastest rotation without spin in a tree with joints; 0: none of its bodies rotates too far. Records those that do.
+double SpinClamp::fastest_tumbling(const Tree& tree) const {
+  const double h = island_.h;
+  double fastest = 0;
+  for (int i = tree.first; i < tree.last; ++i) {
+    const Spatial v = trees_.velocity(trees_.body_of(i));
+    if (glm::dot(v.angular, v.angular) * h * h <= kMaxRotation * kMaxRotation) continue;
+    const double tumble_speed = glm::length(island_.rotation_step(trees_.body_of(i), v.angular).tumble);
+    if (!trees_.is_single_body(tree)) fastest = std::max(fastest, tumble_speed);
+    if (tumble_speed * h > kMaxRotation) record_clamp(trees_.rigid(i), tumble_speed - kRotationGoal / h);
+  }
+  return fastest;
+}
+
+bool SpinClamp::limit_target_rates() {
+  bool changed = false;
+  for (const Tree& t : trees_) {
+    const double rotation = fastest_tumbling(t) * island_.h;
+    if (!(rotation > kMaxRotation)) continue;
+    for (int i = t.first; i < t.last; ++i) {
+      for (AxisRow& row : trees_.axes.rows(i)) {
+        if (!row.bounded() || row.constant() || drives_spin(trees_.link_of(i), row.axis)) continue;
+        row.velocity *= kRotationGoal / rotation;
+        changed = true;
+      }
+    }
+  }
+  return changed;
 }
 
 }  // namespace limber

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
+#include "sim/solver/indexed_array.h"
 
 #include "sim/solver/work_budget.h"
 
@@ -14,31 +14,30 @@ namespace limber {
 class IncrementalLdlt {
  public:
   /// Reserves memory for matrices of up to `usual_rows` rows.
-  explicit IncrementalLdlt(WorkBudget& budget, std::size_t usual_rows = 0);
+  explicit IncrementalLdlt(WorkBudget& budget, int usual_rows = 0);
   /// Sets a symmetric matrix with `stride` (even) elements per line, which must not change while rows are selected. No
   /// rows are selected at first.
-  void reset(std::span<const double> matrix, int stride);
+  void reset(IndexedSpan<const double> matrix, int stride);
   /// Selects the rows with a nonzero element in `free` and factors them. Rows that were selected before keep their
   /// order, new ones are appended. Returns false if there are more than `max_rows`, or the matrix is not positive
   /// definite; solve() must not be called then.
-  bool select(std::span<const unsigned char> free, int max_rows);
+  bool select(IndexedSpan<const unsigned char> free, int max_rows);
   /// The selected rows, in the order of the factor.
-  std::span<const int> rows() const { return rows_; }
+  IndexedSpan<const int> rows() const { return rows_; }
   /// Solves in place: the right-hand side of each of rows() becomes its solution.
-  void solve(std::span<double> rhs) const;
+  void solve(IndexedSpan<double> rhs) const;
 
  private:
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   bool factor(int valid_rows);
 
   WorkBudget& budget_;
-  std::span<const double> matrix_;
+  IndexedSpan<const double> matrix_;
   int stride_ = 0;
-  std::vector<int> rows_;
-  std::vector<unsigned char> selected_;  // by row of the matrix
-  std::vector<double> factor_;           // L below the diagonal, D·Lᵀ on and above it
-  std::vector<double> inverse_;          // of D
-  int factored_count_ = 0;               // number of leading rows_ that are factored
+  IndexedArray<int> rows_;
+  IndexedArray<unsigned char> selected_;  // by row of the matrix
+  IndexedArray<double> factor_;           // L below the diagonal, D·Lᵀ on and above it
+  IndexedArray<double> inverse_;          // of D
+  int factored_count_ = 0;                // number of leading rows_ that are factored
 };
 
 }  // namespace limber

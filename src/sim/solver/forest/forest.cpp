@@ -1,7 +1,7 @@
 // Articulated-body factorization: from the leaves to the roots, each free axis is eliminated like a joint of its own (a
 // rank-one update); prescribed axes cost nothing. A solve carries impulses up to the roots and velocities down to the
 // leaves.
-#include "sim/solver/forest.h"
+#include "sim/solver/forest/forest.h"
 
 #include <bit>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kMinRelativeInertia = 1e-9;
 
 }  // namespace
 
-void Forest::clear(int capacity) { clear_and_reserve(nodes_, static_cast<std::size_t>(capacity)); }
+void Forest::clear(int capacity) { nodes_.clear_and_reserve(capacity); }
 
 TreeNode& Forest::add(int parent) {
   TreeNode& n = nodes_.emplace_back();
@@ -32,7 +32,7 @@ bool Forest::factor(int first, int last) {
   }
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
-    for (std::size_t k = 0; k < 6; ++k) {
+    for (int k = 0; k < 6; ++k) {
       if ((n.prescribed >> k & 1) != 0) continue;
       n.inertia_axis[k] = n.articulated_inertia * n.axis[k];
       const double d = dot(n.axis[k], n.inertia_axis[k]) + n.conductance[k];
@@ -54,7 +54,7 @@ void Forest::solve(int first, int last) {
     Spatial& bias_impulse = n.velocity_change;
     n.prescribed_motion = {};
     bool has_motion = false;
-    for (std::size_t k = 0; k < 6; ++k) {
+    for (int k = 0; k < 6; ++k) {
       if ((n.prescribed >> k & 1) != 0) {
         if (n.input[k] == 0) continue;
         n.prescribed_motion += n.axis[k] * n.input[k];
@@ -73,7 +73,7 @@ void Forest::solve(int first, int last) {
     Spatial v = n.prescribed_motion;
     if (n.parent >= 0) v += translated(node(n.parent).velocity_change, n.offset);
     const Spatial transmitted = n.prescribed != 0 ? n.articulated_inertia * v - n.velocity_change : Spatial{};
-    for (std::size_t j = 6; j-- > 0;) {
+    for (int j = 6; j-- > 0;) {
       if ((n.prescribed >> j & 1) != 0) {
         n.rate[j] = n.input[j];
         n.impulse[j] = dot(n.axis[j], transmitted);
@@ -92,7 +92,7 @@ void Forest::respond(int first, int last) {
   for (int i = last - 1; i >= first; --i) {
     TreeNode& n = node(i);
     Spatial& bias_impulse = n.velocity_change;
-    for (std::size_t k = 0; k < 6; ++k) {
+    for (int k = 0; k < 6; ++k) {
       if ((n.prescribed >> k & 1) != 0) continue;
       n.free_rate[k] = (n.input[k] + dot(n.axis[k], bias_impulse)) * n.inverse_d[k];
       bias_impulse = bias_impulse - n.inertia_axis[k] * n.free_rate[k];
@@ -103,7 +103,7 @@ void Forest::respond(int first, int last) {
     TreeNode& n = node(i);
     Spatial v;
     if (n.parent >= 0) v = translated(node(n.parent).velocity_change, n.offset);
-    for (std::size_t j = 6; j-- > 0;) {
+    for (int j = 6; j-- > 0;) {
       if ((n.prescribed >> j & 1) != 0) continue;
       n.rate[j] = n.free_rate[j] - dot(n.inertia_axis[j], v) * n.inverse_d[j];
       v += n.axis[j] * n.rate[j];
@@ -112,7 +112,7 @@ void Forest::respond(int first, int last) {
   }
 }
 
-void Forest::half_response(TreeLoad a, TreeLoad b, std::span<double> half) const {
+void Forest::half_response(TreeLoad a, TreeLoad b, IndexedSpan<double> half) const {
   while (a.node >= 0 || b.node >= 0) {
     if (a.node < b.node) std::swap(a, b);
     if (a.node == b.node) {
@@ -120,8 +120,8 @@ void Forest::half_response(TreeLoad a, TreeLoad b, std::span<double> half) const
       b.node = -1;
     }
     const TreeNode& n = node(a.node);
-    auto index = static_cast<std::size_t>(n.first_free);
-    for (std::size_t k = 0; k < 6; ++k) {
+    auto index = n.first_free;
+    for (int k = 0; k < 6; ++k) {
       if ((n.prescribed >> k & 1) != 0) continue;
       const double axis_impulse = n.input[k] + dot(n.axis[k], a.impulse);
       a.impulse = a.impulse - n.inertia_axis[k] * (axis_impulse * n.inverse_d[k]);

@@ -1,25 +1,26 @@
-// TreeRows: constraint rows of the joint axes of a forest (locks, motors, servos, limits, friction, springs), solved
-// exactly together with the trees by block principal pivoting. docs/solver.md. Doesn't depend on Bullet.
+// AxisActiveSet: constraint rows of the joint axes of a forest (locks, motors, servos, limits, friction, springs),
+// solved exactly together with the trees by block principal pivoting. docs/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <vector>
+#include "sim/solver/indexed_array.h"
 
-#include "sim/solver/forest.h"
+#include "sim/solver/forest/forest.h"
 #include "sim/solver/work_budget.h"
 
 namespace limber {
 
 /// A constraint row: rate + softness·impulse = velocity, with the impulse in [lower, upper]. The left side may be
 /// larger while the impulse is at its lower bound, and smaller while it is at its upper bound.
-struct TreeRow {
+struct AxisRow {
   enum Kind : std::uint8_t { motor, friction, lower_limit, upper_limit, other };
   enum Status : std::uint8_t { active, at_lower, at_upper, deferred };
+  static constexpr double kInfinity = 1e15;
 
   double velocity = 0;
   double softness = 0;  ///< >= 0; 0: a hard row.
-  double lower = 0;     ///< Beyond ±kTreeInfinity: no bound.
+  double lower = 0;     ///< Beyond ±kInfinity: no bound.
   double upper = 0;
   double impulse = 0;
   int node = 0;
@@ -32,45 +33,42 @@ struct TreeRow {
   double initial_impulse = 0;  ///< Of a deferred row: impulse that the LCP solver starts with.
 
   bool hard() const { return softness == 0; }
-  bool bounded() const;
+  bool bounded() const { return lower > -kInfinity || upper < kInfinity; }
   bool constant() const { return lower == upper; }
 };
-inline constexpr double kTreeInfinity = 1e15;
-inline bool TreeRow::bounded() const { return lower > -kTreeInfinity || upper < kTreeInfinity; }
 
 /// Warm start of the active set of a joint: for each axis the row that was active, and whether contacts changed it. 0:
 /// unknown.
-using ActiveSetMemory = std::array<std::uint8_t, 6>;
+using ActiveSetMemory = FixedArray<std::uint8_t, 6>;
 
 /// Constraint rows of a forest, their impulses and the bodies' velocity changes. Rows that contacts change are deferred
 /// to the coupled system, which applies impulses to them by add_pending(). [sim]
-class TreeRows {
+class AxisActiveSet {
  public:
-  explicit TreeRows(WorkBudget& budget) : budget_(budget) {}
+  explicit AxisActiveSet(WorkBudget& budget) : budget_(budget) {}
 
   Forest forest;
 
   /// Removes all nodes and rows and reserves memory for `capacity` nodes.
   void clear(int capacity = 0);
   /// Adds a row to the last node of `forest`. Call between two calls of end_node().
-  TreeRow& add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Kind kind);
+  AxisRow& add(int axis, double velocity, double softness, double lower, double upper, AxisRow::Kind kind);
   /// Completes the last node. `rates`: of its axes before the step's impulses; `previous`: its active set in the last
   /// step.
-  void end_node(const std::array<double, 6>& rates, const ActiveSetMemory& previous);
+  void end_node(const FixedArray<double, 6>& rates, const ActiveSetMemory& previous);
   ActiveSetMemory active_set(int node) const;
 
-  std::span<TreeRow> rows(int node);
-  int index_of(const TreeRow& row) const { return static_cast<int>(&row - rows_.data()); }
-  std::span<const TreeRow> rows(int node) const {
-    const auto first = at(row_start_[at(node)]);
-    return std::span(rows_).subspan(first, at(row_start_[at(node) + 1]) - first);
+  IndexedSpan<AxisRow> rows(int node);
+  int index_of(const AxisRow& row) const { return static_cast<int>(&row - rows_.data()); }
+  IndexedSpan<const AxisRow> rows(int node) const {
+    return IndexedSpan<const AxisRow>(rows_).subspan(row_start_[node], row_start_[node + 1] - row_start_[node]);
   }
-  std::span<TreeRow> rows() { return rows_; }
-  double rate(int node, int axis) const { return rates_[at(node)][at(axis)]; }
+  IndexedSpan<AxisRow> rows() { return rows_; }
+  double rate(int node, int axis) const { return rates_[node][axis]; }
   /// Change of a node's velocity by all solves so far.
-  const Spatial& change(int node) const { return changes_[at(node)]; }
+  const Spatial& change(int node) const { return changes_[node]; }
   /// Sets a velocity change that was applied to the body from outside; rates must include it already.
-  void set_change(int node, const Spatial& change) { changes_[at(node)] = change; }
+  void set_change(int node, const Spatial& change) { changes_[node] = change; }
 
   /// Solves the whole trees of nodes first .. last - 1 until no row is violated, in at most `max_exchanges` exchanges
   /// of the active set. Rows of axes that have not converged by then are deferred. Returns false if an axis moves no
@@ -97,13 +95,12 @@ class TreeRows {
   /// Factors the trees for the present status of the rows. Returns false if an axis moves no mass.
   bool factor(int first, int last);
   /// Adds an impulse of a deferred row that the next correct() applies.
-  void add_pending(TreeRow& row, double impulse) { pending_[static_cast<std::size_t>(&row - rows_.data())] += impulse; }
+  void add_pending(AxisRow& row, double impulse) { pending_[index_of(row)] += impulse; }
   /// Violation of the row's equation: velocity - softness·impulse - rate.
-  double residual(const TreeRow& row) const {
+  double residual(const AxisRow& row) const {
     return row.velocity - row.softness * row.impulse - rate(row.node, row.axis);
   }
 
-  int exchanges() const { return exchanges_; }
   /// Changes with each factorization.
   std::uint64_t factor_version() const { return factor_version_; }
 
@@ -121,43 +118,44 @@ class TreeRows {
     bool deferred = false;
     bool deferred_before = false;  // contacts changed its state in the step before
   };
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  TreeRow& row_of(const OrderedBounds& s, int i) { return rows_[at(bound_rows_[at(s.first + i)])]; }
-  const TreeRow& row_of(const OrderedBounds& s, int i) const { return rows_[at(bound_rows_[at(s.first + i)])]; }
+  AxisRow& row_of(const OrderedBounds& s, int i) { return rows_[bound_rows_[s.first + i]]; }
+  const AxisRow& row_of(const OrderedBounds& s, int i) const { return rows_[bound_rows_[s.first + i]]; }
   void build_bounds(int node, int axis, std::uint8_t remembered);
+  void reconcile_limits(const OrderedBounds& s);
+  void sort_bounds(const OrderedBounds& s);
   bool admissible(const OrderedBounds& s, int state) const;
   int remembered_state(const OrderedBounds& s, std::uint8_t code) const;
   int default_state(const OrderedBounds& s) const;
   int final_state(const OrderedBounds& s) const;
   void apply_state(OrderedBounds& s);
-  void defer(OrderedBounds& s);
-  void defer_row(TreeRow& row);
+  template <class F>
+  int defer_if(int first, int last, F&& matches);
+  void defer_row(AxisRow& row);
   int required_state(const OrderedBounds& s) const;
   int find_violations(int first, int last);
-  bool is_violated(const TreeRow& row) const;
+  bool is_violated(const AxisRow& row) const;
   void exchange(int first, int last, bool only_last);
   void prepare_node(int i);
   void accumulate_node(int i);
-  std::span<OrderedBounds> ordered_bounds(int first, int last);
+  IndexedSpan<OrderedBounds> ordered_bounds(int first, int last);
 
   /// Cost of a factorization or of a solve per node, in vectors of six elements.
   static constexpr int kNodeVectors = 28;
 
   WorkBudget& budget_;
-  std::vector<TreeRow> rows_;
-  std::vector<double> pending_;
-  std::vector<int> row_start_;  // by node
-  std::vector<OrderedBounds> ordered_bounds_;
-  std::vector<int> bounds_start_;  // by node
-  std::vector<int> bound_rows_;
-  std::vector<std::array<double, 6>> rates_;
-  std::vector<std::array<double, 6>> known_impulses_;  // known impulse changes on prescribed axes
-  std::vector<Spatial> changes_;
-  std::vector<double> saved_impulses_;
-  std::vector<std::array<double, 6>> saved_rates_;
-  std::vector<Spatial> saved_changes_;
-  std::vector<unsigned char> factored_;  // by node: the factor of its tree is that of the present states
-  int exchanges_ = 0;
+  IndexedArray<AxisRow> rows_;
+  IndexedArray<double> pending_;
+  IndexedArray<int> row_start_;  // by node
+  IndexedArray<OrderedBounds> ordered_bounds_;
+  IndexedArray<int> bounds_start_;  // by node
+  IndexedArray<int> bound_rows_;
+  IndexedArray<FixedArray<double, 6>> rates_;
+  IndexedArray<FixedArray<double, 6>> known_impulses_;  // known impulse changes on prescribed axes
+  IndexedArray<Spatial> changes_;
+  IndexedArray<double> saved_impulses_;
+  IndexedArray<FixedArray<double, 6>> saved_rates_;
+  IndexedArray<Spatial> saved_changes_;
+  IndexedArray<unsigned char> factored_;  // by node: the factor of its tree is that of the present states
   std::uint64_t factor_version_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // Kernels for vectors of two (any processor) and four (AVX2) elements.
-#include "sim/solver/dense_kernels.h"
+#include "sim/solver/lcp/dense_kernels.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>

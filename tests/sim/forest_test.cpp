@@ -1,5 +1,5 @@
 // Forest: compares random trees with dense elimination of the whole system.
-#include "sim/solver/forest.h"
+#include "sim/solver/forest/forest.h"
 
 #include <gtest/gtest.h>
 
@@ -12,27 +12,27 @@
 namespace limber {
 namespace {
 
-using Matrix = std::vector<std::vector<double>>;
+using Matrix = IndexedArray<IndexedArray<double>>;
 
 // solves a·x = b by Gaussian elimination with row exchange
-std::vector<double> dense_solve(Matrix a, std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (std::size_t c = 0; c < n; ++c) {
-    std::size_t best = c;
-    for (std::size_t r = c; r < n; ++r) {
+IndexedArray<double> dense_solve(Matrix a, IndexedArray<double> b) {
+  const int n = b.size();
+  for (int c = 0; c < n; ++c) {
+    int best = c;
+    for (int r = c; r < n; ++r) {
       if (std::fabs(a[r][c]) > std::fabs(a[best][c])) best = r;
     }
     std::swap(a[c], a[best]);
     std::swap(b[c], b[best]);
-    for (std::size_t r = c + 1; r < n; ++r) {
+    for (int r = c + 1; r < n; ++r) {
       const double f = a[r][c] / a[c][c];
       if (f == 0) continue;
-      for (std::size_t k = c; k < n; ++k) a[r][k] -= f * a[c][k];
+      for (int k = c; k < n; ++k) a[r][k] -= f * a[c][k];
       b[r] -= f * b[c];
     }
   }
-  for (std::size_t r = n; r-- > 0;) {
-    for (std::size_t k = r + 1; k < n; ++k) b[r] -= a[r][k] * b[k];
+  for (int r = n; r-- > 0;) {
+    for (int k = r + 1; k < n; ++k) b[r] -= a[r][k] * b[k];
     b[r] /= a[r][r];
   }
   return b;
@@ -58,7 +58,7 @@ constexpr unsigned kFree[] = {1u << 5, 1u << 2, 1u << 0 | 1u << 1 | 1u << 5, 0, 
 struct ForestRig {
   // `decades`: range of the masses
   ForestRig(unsigned seed, int bodies, double decades) : draw(seed) {
-    std::vector<Vec3> places;
+    IndexedArray<Vec3> places;
     for (int i = 0; i < bodies; ++i) {
       // a third of the nodes start a new tree or branch off; roots are attached to the world or float
       int parent = i - 1;
@@ -69,8 +69,8 @@ struct ForestRig {
       add(parent, parent < 0 && draw.below(2) == 0 ? 5 : draw.below(5), decades, places);
     }
   }
-  void add(int parent, int kind, double decades, std::vector<Vec3>& places) {
-    const Vec3 from = parent < 0 ? Vec3(0, 0, 1) : places[static_cast<std::size_t>(parent)];
+  void add(int parent, int kind, double decades, IndexedArray<Vec3>& places) {
+    const Vec3 from = parent < 0 ? Vec3(0, 0, 1) : places[parent];
     const Vec3 place = from + draw.vec(0.3);
     const Vec3 pivot = from + draw.vec(0.2);
     places.push_back(place);
@@ -80,14 +80,14 @@ struct ForestRig {
     n.offset = place - from;
     n.inertia = SpatialInertia(mass, tensor(mass * 0.01 * Vec3(draw(0.5, 1), draw(0.5, 1), draw(0.5, 1)), turned));
     const Vec3 arm = pivot - place;  // rotations are about the pivot
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k) {
       const auto column = static_cast<int>(k);
       n.axis[k] = {turned[column], Vec3(0)};
       const Vec3 e = normalized(turned[column] + draw.vec(0.2));
       n.axis[3 + k] = {glm::cross(arm, e), e};
     }
     n.prescribed = 63 & ~kFree[kind];
-    for (std::size_t k = 0; k < 6; ++k) {
+    for (int k = 0; k < 6; ++k) {
       n.input[k] = draw(-1, 1);
       if ((n.prescribed >> k & 1) == 0 && draw.below(3) == 0) n.conductance[k] = std::pow(10, draw(-4, 4));
     }
@@ -96,24 +96,24 @@ struct ForestRig {
 
   // Unknowns: all body velocities, rates and joint impulses. Equations: the joint's motion, the body's momentum, and
   // the axis's law.
-  std::vector<double> dense() const {
-    const auto n = static_cast<std::size_t>(solver.size());
-    Matrix a(18 * n, std::vector<double>(18 * n, 0));
-    std::vector<double> b(18 * n, 0);
-    const auto unit = [](std::size_t d) {
+  IndexedArray<double> dense() const {
+    const auto n = solver.size();
+    Matrix a(18 * n, IndexedArray<double>(18 * n, 0));
+    IndexedArray<double> b(18 * n, 0);
+    const auto unit = [](int d) {
       Spatial s;
       (d < 3 ? s.linear : s.angular)[static_cast<int>(d % 3)] = 1;
       return s;
     };
-    for (std::size_t i = 0; i < n; ++i) {
+    for (int i = 0; i < n; ++i) {
       const TreeNode& node = solver.node(static_cast<int>(i));
-      const auto p = static_cast<std::size_t>(std::max(node.parent, 0));
-      for (std::size_t d = 0; d < 6; ++d) {
+      const auto p = std::max(node.parent, 0);
+      for (int d = 0; d < 6; ++d) {
         // v - translated(v parent) - axis·rate = 0;  inertia·v - force + children's forces = load;  axis·force: the law
         a[18 * i + d][18 * i + d] = 1;
         b[18 * i + 6 + d] = dot(unit(d), node.load);
         a[18 * i + 6 + d][18 * i + 12 + d] = -1;
-        for (std::size_t k = 0; k < 6; ++k) {
+        for (int k = 0; k < 6; ++k) {
           a[18 * i + d][18 * i + 6 + k] = -dot(unit(d), node.axis[k]);
           a[18 * i + 6 + d][18 * i + k] = dot(unit(d), node.inertia * unit(k));
           if (node.parent < 0) continue;
@@ -123,8 +123,7 @@ struct ForestRig {
         const bool prescribed = (node.prescribed >> d & 1) != 0;
         a[18 * i + 12 + d][18 * i + 6 + d] = prescribed ? 1 : node.conductance[d];
         b[18 * i + 12 + d] = node.input[d];
-        for (std::size_t k = 0; k < 6 && !prescribed; ++k)
-          a[18 * i + 12 + d][18 * i + 12 + k] = dot(node.axis[d], unit(k));
+        for (int k = 0; k < 6 && !prescribed; ++k) a[18 * i + 12 + d][18 * i + 12 + k] = dot(node.axis[d], unit(k));
       }
     }
     return dense_solve(std::move(a), std::move(b));
@@ -135,15 +134,15 @@ struct ForestRig {
   int tree_start = 0;
 };
 
-double max_error(const ForestRig& f, const std::vector<double>& x) {
+double max_error(const ForestRig& f, const IndexedArray<double>& x) {
   double worst = 0;
   for (int i = 0; i < f.solver.size(); ++i) {
     const TreeNode& n = f.solver.node(i);
-    const double* row = &x[18 * static_cast<std::size_t>(i)];
+    const double* row = &x[18 * i];
     const double v[6] = {n.velocity_change.linear.x,  n.velocity_change.linear.y,  n.velocity_change.linear.z,
                          n.velocity_change.angular.x, n.velocity_change.angular.y, n.velocity_change.angular.z};
     Spatial force{{row[12], row[13], row[14]}, {row[15], row[16], row[17]}};
-    for (std::size_t d = 0; d < 6; ++d) {
+    for (int d = 0; d < 6; ++d) {
       worst = std::max(worst, std::fabs(v[d] - row[d]) / (1 + std::fabs(row[d])));
       worst = std::max(worst, std::fabs(n.rate[d] - row[6 + d]) / (1 + std::fabs(row[6 + d])));
       const double impulse = dot(n.axis[d], force);
@@ -172,12 +171,11 @@ TEST(Forest, RespondMatchesSolve) {
     }
     ASSERT_TRUE(s.factor(0, s.size()));
     s.solve(0, s.size());
-    std::vector<Spatial> whole;
-    whole.reserve(static_cast<std::size_t>(s.size()));
+    IndexedArray<Spatial> whole;
     for (int i = 0; i < s.size(); ++i) whole.push_back(s.node(i).velocity_change);
     s.respond(0, s.size());
     for (int i = 0; i < s.size(); ++i) {
-      const Spatial d = s.node(i).velocity_change - whole[static_cast<std::size_t>(i)];
+      const Spatial d = s.node(i).velocity_change - whole[i];
       EXPECT_LT(glm::length(d.linear) + glm::length(d.angular), 1e-9) << seed << " " << i;
     }
   }
@@ -203,13 +201,12 @@ ContactRow random_contact_row(ForestRig& f) {
 }
 
 // Half response of a row. Axes that are not on the way to the root stay zero; the others are below free_axis_count().
-std::vector<double> half_response_of(Forest& s, const ContactRow& t) {
-  const auto count =
-      static_cast<std::size_t>(std::max(s.free_axis_count(t.a.node), t.b.node < 0 ? 0 : s.free_axis_count(t.b.node)));
-  std::vector<double> half_response(static_cast<std::size_t>(6 * s.size()), 0);
-  if (t.node >= 0) s.node(t.node).input[static_cast<std::size_t>(t.axis)] = 1;
+IndexedArray<double> half_response_of(Forest& s, const ContactRow& t) {
+  const auto count = std::max(s.free_axis_count(t.a.node), t.b.node < 0 ? 0 : s.free_axis_count(t.b.node));
+  IndexedArray<double> half_response(6 * s.size(), 0);
+  if (t.node >= 0) s.node(t.node).input[t.axis] = 1;
   s.half_response(t.a, t.b, std::span(half_response).first(count));
-  if (t.node >= 0) s.node(t.node).input[static_cast<std::size_t>(t.axis)] = 0;
+  if (t.node >= 0) s.node(t.node).input[t.axis] = 0;
   return half_response;
 }
 
@@ -222,18 +219,18 @@ TEST(Forest, ProductOfHalfResponsesIsTheResponse) {
     for (int i = 0; i < s.size(); ++i) s.node(i).input.fill(0);
     const ContactRow first = random_contact_row(f);
     const ContactRow second = random_contact_row(f);
-    const std::vector<double> one = half_response_of(s, first);
-    const std::vector<double> other = half_response_of(s, second);
+    const IndexedArray<double> one = half_response_of(s, first);
+    const IndexedArray<double> other = half_response_of(s, second);
     double product = 0;
-    for (std::size_t k = 0; k < one.size(); ++k) product += one[k] * other[k];
+    for (int k = 0; k < one.size(); ++k) product += one[k] * other[k];
 
     for (int i = 0; i < s.size(); ++i) s.node(i).load = {};
     for (const TreeLoad& load : {first.a, first.b}) {
       if (load.node >= 0) s.node(load.node).load += load.impulse;
     }
-    if (first.node >= 0) s.node(first.node).input[static_cast<std::size_t>(first.axis)] = 1;
+    if (first.node >= 0) s.node(first.node).input[first.axis] = 1;
     s.respond(0, s.size());
-    double rate = second.node < 0 ? 0 : s.node(second.node).rate[static_cast<std::size_t>(second.axis)];
+    double rate = second.node < 0 ? 0 : s.node(second.node).rate[second.axis];
     for (const TreeLoad& load : {second.a, second.b}) {
       if (load.node >= 0) rate += dot(load.impulse, s.node(load.node).velocity_change);
     }
@@ -255,8 +252,8 @@ TEST(Forest, SolvesALongChainOfUnequalMasses) {
     for (int k = 0; k < 3; ++k) {
       Vec3 e(0);
       e[k] = 1;
-      n.axis[static_cast<std::size_t>(k)] = {e, Vec3(0)};
-      n.axis[3 + static_cast<std::size_t>(k)] = {glm::cross(Vec3(0, 0, -0.1), e), e};
+      n.axis[k] = {e, Vec3(0)};
+      n.axis[3 + k] = {glm::cross(Vec3(0, 0, -0.1), e), e};
     }
     n.prescribed = 63 & ~(1u << (3 + i % 2));
     n.load = {{0.3, 0, -mass}, Vec3(0)};
@@ -265,8 +262,8 @@ TEST(Forest, SolvesALongChainOfUnequalMasses) {
   s.solve(0, s.size());
   for (int i = 1; i < s.size(); ++i) {
     const TreeNode& n = s.node(i);
-    const Spatial error = n.velocity_change - translated(s.node(i - 1).velocity_change, n.offset) -
-                          n.axis[static_cast<std::size_t>(3 + i % 2)] * n.rate[static_cast<std::size_t>(3 + i % 2)];
+    const Spatial error =
+        n.velocity_change - translated(s.node(i - 1).velocity_change, n.offset) - n.axis[3 + i % 2] * n.rate[3 + i % 2];
     EXPECT_LT(glm::length(error.linear) + glm::length(error.angular),
               1e-12 * (1 + glm::length(n.velocity_change.linear)))
         << i;

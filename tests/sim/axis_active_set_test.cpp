@@ -1,5 +1,5 @@
-// TreeRows: the active set is restored from the step before.
-#include "sim/solver/axis_rows.h"
+// AxisActiveSet: the active set is restored from the step before.
+#include "sim/solver/forest/axis_active_set.h"
 
 #include <gtest/gtest.h>
 
@@ -15,11 +15,12 @@ struct Hinge {
     one.xx = one.yy = one.zz = 1;
     n.inertia = SpatialInertia(1, one);
     for (int i = 0; i < 3; ++i) {
-      n.axis[static_cast<std::size_t>(i)].linear[i] = 1;
-      n.axis[3 + static_cast<std::size_t>(i)].angular[i] = 1;
+      n.axis[i].linear[i] = 1;
+      n.axis[3 + i].angular[i] = 1;
     }
-    for (int axis = 0; axis < 5; ++axis) rows.add(axis, 0, 0, -2 * kTreeInfinity, 2 * kTreeInfinity, TreeRow::other);
-    rows.add(5, 0.05, 0, -0.1, 0.1, TreeRow::motor);
+    for (int axis = 0; axis < 5; ++axis)
+      rows.add(axis, 0, 0, -2 * AxisRow::kInfinity, 2 * AxisRow::kInfinity, AxisRow::other);
+    rows.add(5, 0.05, 0, -0.1, 0.1, AxisRow::motor);
     rows.end_node({}, before);
     EXPECT_TRUE(rows.solve(0, 1, 8));
   }
@@ -28,14 +29,14 @@ struct Hinge {
     rows.forest.node(0).load.angular.z = impulse;
     rows.correct(0, 1);
   }
-  const TreeRow& motor() { return rows.rows().back(); }
+  const AxisRow& motor() { return rows.rows().back(); }
   WorkBudget budget;
-  TreeRows rows{budget};
+  AxisActiveSet rows{budget};
 };
 
 // The motor reaches its speed until a larger impulse acts against it. It is deferred then, and the next step defers it
 // at once, with the status at its bound.
-TEST(TreeRows, RemembersAxesChangedByContacts) {
+TEST(AxisActiveSet, RemembersAxesChangedByContacts) {
   Hinge first{{}};
   EXPECT_NEAR(first.motor().impulse, 0.05, 1e-12);
   EXPECT_EQ(first.rows.defer_remembered(0, 1), 0);
@@ -46,10 +47,10 @@ TEST(TreeRows, RemembersAxesChangedByContacts) {
   EXPECT_NEAR(first.motor().impulse, 0.1, 1e-12);
 
   Hinge second{first.rows.active_set(0)};
-  EXPECT_EQ(second.motor().initial_status, TreeRow::at_upper);
+  EXPECT_EQ(second.motor().initial_status, AxisRow::at_upper);
   EXPECT_EQ(second.rows.defer_remembered(0, 1), 1);
   EXPECT_EQ(second.rows.defer_remembered(0, 1), 0) << "only once";
-  EXPECT_EQ(second.motor().status, TreeRow::deferred);
+  EXPECT_EQ(second.motor().status, AxisRow::deferred);
 
   // no impulse this time: the active set is again that of the tree alone
   Hinge third{second.rows.active_set(0)};

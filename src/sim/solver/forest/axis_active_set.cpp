@@ -1,12 +1,12 @@
-// TreeRows: the choice of prescribed and free axes, one exact solve, and the update of impulses and rates.
-#include "sim/solver/axis_rows.h"
+// AxisActiveSet: the choice of prescribed and free axes, one exact solve, and the update of impulses and rates.
+#include "sim/solver/forest/axis_active_set.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace limber {
 
-void TreeRows::clear(int capacity) {
+void AxisActiveSet::clear(int capacity) {
   forest.clear(capacity);
   rows_.clear();
   pending_.clear();
@@ -18,11 +18,11 @@ void TreeRows::clear(int capacity) {
   known_impulses_.clear();
   changes_.clear();
   factored_.clear();
-  exchanges_ = 0;
 }
 
-TreeRow& TreeRows::add(int axis, double velocity, double softness, double lower, double upper, TreeRow::Kind kind) {
-  TreeRow& row = rows_.emplace_back();
+AxisRow& AxisActiveSet::add(int axis, double velocity, double softness, double lower, double upper,
+                            AxisRow::Kind kind) {
+  AxisRow& row = rows_.emplace_back();
   row.velocity = velocity;
   row.softness = softness;
   row.lower = lower;
@@ -33,44 +33,43 @@ TreeRow& TreeRows::add(int axis, double velocity, double softness, double lower,
   return row;
 }
 
-void TreeRows::end_node(const std::array<double, 6>& rates, const ActiveSetMemory& previous) {
+void AxisActiveSet::end_node(const FixedArray<double, 6>& rates, const ActiveSetMemory& previous) {
   const int node = forest.size() - 1;
-  row_start_.push_back(static_cast<int>(rows_.size()));
+  row_start_.push_back(rows_.size());
   pending_.resize(rows_.size(), 0);
   rates_.push_back(rates);
   known_impulses_.push_back({});
   changes_.push_back({});
   factored_.push_back(0);
   unsigned bounded_axes = 0;
-  for (TreeRow& row : rows(node)) {
+  for (AxisRow& row : rows(node)) {
     if (!row.bounded()) continue;
     if (row.constant()) {
-      row.status = TreeRow::at_lower;
+      row.status = AxisRow::at_lower;
     } else if (row.hard()) {
       bounded_axes |= 1u << row.axis;
     } else {
       // a soft stop starts at rest: at the bound nearest to zero impulse
-      row.status = std::fabs(row.lower) <= std::fabs(row.upper) ? TreeRow::at_lower : TreeRow::at_upper;
+      row.status = std::fabs(row.lower) <= std::fabs(row.upper) ? AxisRow::at_lower : AxisRow::at_upper;
     }
   }
   for (int axis = 0; axis < 6; ++axis) {
-    if ((bounded_axes >> axis & 1) != 0) build_bounds(node, axis, previous[at(axis)]);
+    if ((bounded_axes >> axis & 1) != 0) build_bounds(node, axis, previous[axis]);
   }
-  bounds_start_.push_back(static_cast<int>(ordered_bounds_.size()));
+  bounds_start_.push_back(ordered_bounds_.size());
 }
 
-std::span<TreeRow> TreeRows::rows(int node) {
-  const auto first = at(row_start_[at(node)]);
-  return std::span(rows_).subspan(first, at(row_start_[at(node) + 1]) - first);
+IndexedSpan<AxisRow> AxisActiveSet::rows(int node) {
+  return IndexedSpan<AxisRow>(rows_).subspan(row_start_[node], row_start_[node + 1] - row_start_[node]);
 }
 
-bool TreeRows::factor(int first, int last) {
+bool AxisActiveSet::factor(int first, int last) {
   for (int i = first; i < last; ++i) {
     TreeNode& n = forest.node(i);
     n.prescribed = 0;
     n.conductance.fill(0);
-    for (const TreeRow& row : rows(i)) {
-      if (row.status != TreeRow::active) continue;
+    for (const AxisRow& row : rows(i)) {
+      if (row.status != AxisRow::active) continue;
       if (row.hard()) {
         n.prescribed |= 1u << row.axis;
       } else {
@@ -79,35 +78,35 @@ bool TreeRows::factor(int first, int last) {
     }
   }
   budget_.charge(kNodeVectors * (last - first), 6);
-  factored_[at(first)] = 1;
+  factored_[first] = 1;
   factor_version_++;
   return forest.factor(first, last);
 }
 
-void TreeRows::prepare_node(int i) {
+void AxisActiveSet::prepare_node(int i) {
   TreeNode& n = forest.node(i);
-  const std::array<double, 6>& rate = rates_[at(i)];
-  std::array<double, 6>& known_impulses = known_impulses_[at(i)];
+  const FixedArray<double, 6>& rate = rates_[i];
+  FixedArray<double, 6>& known_impulses = known_impulses_[i];
   n.input.fill(0);
   known_impulses.fill(0);
-  const std::span<TreeRow> all = rows(i);
-  for (const TreeRow& row : all) {
-    if (row.status == TreeRow::active && row.hard()) n.input[row.axis] = row.velocity - rate[row.axis];
+  const IndexedSpan<AxisRow> all = rows(i);
+  for (const AxisRow& row : all) {
+    if (row.status == AxisRow::active && row.hard()) n.input[row.axis] = row.velocity - rate[row.axis];
   }
-  for (TreeRow& row : all) {
+  for (AxisRow& row : all) {
     const bool prescribed = (n.prescribed >> row.axis & 1) != 0;
     double change = 0;
-    if (row.status == TreeRow::active) {
+    if (row.status == AxisRow::active) {
       if (row.hard()) continue;
       const double after = rate[row.axis] + (prescribed ? n.input[row.axis] : 0);
       change = (row.velocity - after) / row.softness - row.impulse;
-    } else if (row.status == TreeRow::deferred) {
-      double& pending = pending_[at(static_cast<int>(&row - rows_.data()))];
+    } else if (row.status == AxisRow::deferred) {
+      double& pending = pending_[index_of(row)];
       change = pending;
       pending = 0;
       row.impulse += change;
     } else {
-      const double bound = row.status == TreeRow::at_lower ? row.lower : row.upper;
+      const double bound = row.status == AxisRow::at_lower ? row.lower : row.upper;
       change = bound - row.impulse;
       row.impulse = bound;
     }
@@ -115,23 +114,23 @@ void TreeRows::prepare_node(int i) {
   }
 }
 
-void TreeRows::accumulate_node(int i) {
+void AxisActiveSet::accumulate_node(int i) {
   TreeNode& n = forest.node(i);
-  std::array<double, 6>& rate = rates_[at(i)];
-  for (std::size_t k = 0; k < 6; ++k) rate[k] += n.rate[k];
-  for (TreeRow& row : rows(i)) {
-    if (row.status != TreeRow::active) continue;
+  FixedArray<double, 6>& rate = rates_[i];
+  for (int k = 0; k < 6; ++k) rate[k] += n.rate[k];
+  for (AxisRow& row : rows(i)) {
+    if (row.status != AxisRow::active) continue;
     if (row.hard()) {
-      row.impulse += n.impulse[row.axis] - known_impulses_[at(i)][row.axis];
+      row.impulse += n.impulse[row.axis] - known_impulses_[i][row.axis];
     } else {
       row.impulse = (row.velocity - rate[row.axis]) / row.softness;
     }
   }
-  changes_[at(i)] += n.velocity_change;
+  changes_[i] += n.velocity_change;
   n.load = {};
 }
 
-void TreeRows::correct(int first, int last) {
+void AxisActiveSet::correct(int first, int last) {
   budget_.charge(kNodeVectors * (last - first), 6);
   for (int i = first; i < last; ++i) prepare_node(i);
   forest.solve(first, last);

@@ -6,9 +6,9 @@
 
 #include <array>
 #include <span>
-#include <vector>
+#include "sim/solver/indexed_array.h"
 
-#include "sim/solver/spatial.h"
+#include "sim/solver/forest/spatial_algebra.h"
 
 namespace limber {
 
@@ -19,25 +19,25 @@ struct TreeNode {
   int parent = -1;              ///< Index of a node before this one; -1: the world.
   Vec3 offset{0};               ///< From the parent's center of mass to this one's.
   SpatialInertia inertia;       ///< Of the body alone, at its center of mass.
-  std::array<Spatial, 6> axis;  ///< Motion subspace S: motion of the body at rate 1 of each axis.
+  FixedArray<Spatial, 6> axis;  ///< Motion subspace S: motion of the body at rate 1 of each axis.
 
   // input of solve()
   unsigned prescribed = 0;              ///< Bit i is set: axis i is prescribed.
-  std::array<double, 6> conductance{};  ///< Free axis: impulse that it loses per rate, >= 0.
-  std::array<double, 6> input{};  ///< Prescribed axis: its change of rate. Free axis: its impulse at no change of rate.
+  FixedArray<double, 6> conductance{};  ///< Free axis: impulse that it loses per rate, >= 0.
+  FixedArray<double, 6> input{};  ///< Prescribed axis: its change of rate. Free axis: its impulse at no change of rate.
   Spatial load;                   ///< External impulse on the body.
 
   // output of solve()
   Spatial velocity_change;          ///< Change of the body's velocity.
-  std::array<double, 6> rate{};     ///< Change of each axis's rate.
-  std::array<double, 6> impulse{};  ///< Impulse of the joint on the body, about each axis.
+  FixedArray<double, 6> rate{};     ///< Change of each axis's rate.
+  FixedArray<double, 6> impulse{};  ///< Impulse of the joint on the body, about each axis.
 
   // factor (in brackets: Featherstone's symbols)
   SpatialInertia articulated_inertia;   ///< Articulated-body inertia of the subtree, as the parent sees it [I^A].
-  std::array<Spatial, 6> inertia_axis;  ///< Free axes: inertia · axis at the time of their elimination [U].
-  std::array<double, 6> inverse_d{};    ///< Free axes: 1 / (axis · inertia_axis + conductance) [1/D].
+  FixedArray<Spatial, 6> inertia_axis;  ///< Free axes: inertia · axis at the time of their elimination [U].
+  FixedArray<double, 6> inverse_d{};    ///< Free axes: 1 / (axis · inertia_axis + conductance) [1/D].
   int first_free = 0;                   ///< Index of its first free axis, among those of its tree.
-  std::array<double, 6> free_rate{};
+  FixedArray<double, 6> free_rate{};
   Spatial prescribed_motion;
 };
 
@@ -55,9 +55,9 @@ class Forest {
   /// Appends a node; its parent must exist, and nodes of one tree must be contiguous. All fields have their defaults.
   /// Invalidates references to other nodes.
   TreeNode& add(int parent);
-  int size() const { return static_cast<int>(nodes_.size()); }
-  TreeNode& node(int i) { return nodes_[static_cast<std::size_t>(i)]; }
-  const TreeNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  int size() const { return nodes_.size(); }
+  TreeNode& node(int i) { return nodes_[i]; }
+  const TreeNode& node(int i) const { return nodes_[i]; }
 
   /// Factors the nodes first .. last - 1, which must be whole trees. Returns false if an axis moves (nearly) no mass;
   /// the factor must not be used then.
@@ -70,12 +70,12 @@ class Forest {
   /// the root), the impulse about each free axis on the way times sqrt(1/D), stored at the axis's index in `half`;
   /// other elements stay unchanged. The dot product of two half responses is the rate that a unit impulse of one load
   /// gives the other.
-  void half_response(TreeLoad a, TreeLoad b, std::span<double> half) const;
+  void half_response(TreeLoad a, TreeLoad b, IndexedSpan<double> half) const;
   /// Free axes on the way from a node to its root have indices below this number.
   int free_axis_count(int node) const;
 
  private:
-  std::vector<TreeNode> nodes_;
+  IndexedArray<TreeNode> nodes_;
 };
 
 }  // namespace limber

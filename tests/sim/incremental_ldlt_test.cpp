@@ -1,5 +1,5 @@
 // IncrementalLdlt: changes the selection repeatedly and compares each solution with the matrix itself.
-#include "sim/solver/incremental_ldlt.h"
+#include "sim/solver/lcp/incremental_ldlt.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,246 @@
+// SpanningTrees: finds the trees by union-find, and adds their nodes, motion axes and rows.
+#include "sim/solver/forest/spanning_trees.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/solver/geometric_stiffness.h"
+
+namespace limber {
+namespace {
+
+// Inertia tensor from the principal moments: R·diag(1/inverse)·R'.
+Sym3 world_inertia(const btRigidBody& body) {
+  const btVector3& inverse = body.getInvInertiaDiagLocal();
+  const btMatrix3x3& r = body.getCenterOfMassTransform().getBasis();
+  Sym3 out;
+  for (int k = 0; k < 3; ++k) {
+    const double moment = 1 / static_cast<double>(inverse[k]);
+    const Vec3 e = from_bt(r.getColumn(k));
+    out.subtract_outer_product(e, -moment);
+  }
+  return out;
+}
+
+// True if the body can move and rotate along all axes.
+bool is_supported(const btRigidBody& body) {
+  const btVector3& inverse = body.getInvInertiaDiagLocal();
+  const btVector3 one(1, 1, 1);
+  return inverse[0] > 0 && inverse[1] > 0 && inverse[2] > 0 && body.getLinearFactor() == one &&
+         body.getAngularFactor() == one;
+}
+
+Vec3 any_perpendicular(const Vec3& v) {
+  const Vec3 a = std::fabs(v.x) < 0.6 * glm::length(v) ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  return normalized(glm::cross(v, a));
+}
+
+// Computes the body's motion per rate of each axis, with the other body at rest. Angular axes without rows are chosen
+// to complete the basis. Returns false near a singular pose.
+bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, FixedArray<Spatial, 6>& out) {
+  unsigned used = 0;
+  for (const JointConstraint::Row& row : joint.planned()) used |= 1u << row.axis;
+  FixedArray<Vec3, 3> dual{Vec3(0), Vec3(0), Vec3(0)};
+  int known_count = 0;
+  for (int i = 0; i < 3; ++i) {
+    if ((used >> (3 + i) & 1) == 0) continue;
+    dual[i] = from_bt(joint.dual_axis(i));
+    known_count++;
+  }
+  for (int i = 0; i < 3; ++i) {
+    if ((used >> (3 + i) & 1) != 0) continue;
+    Vec3& a = dual[(i + 1) % 3];
+    Vec3& b = dual[(i + 2) % 3];
+    if (known_count == 0) {
+      dual[i][i] = 1;
+    } else if (known_count == 1) {
+      const bool first = (used >> (3 + (i + 1) % 3) & 1) != 0;
+      dual[i] = any_perpendicular(first ? a : b);
+      (first ? b : a) = normalized(glm::cross(first ? a : b, dual[i]));
+      break;
+    } else {
+      dual[i] = normalized(glm::cross(a, b));
+    }
+  }
+  const double volume = glm::dot(dual[0], glm::cross(dual[1], dual[2]));
+  const double length_product = glm::length(dual[0]) * glm::length(dual[1]) * glm::length(dual[2]);
+  if (!(std::fabs(volume) > 1e-3 * length_product)) return false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 e = glm::cross(dual[(i + 1) % 3], dual[(i + 2) % 3]) * (sign / volume);
+    out[i] = {from_bt(joint.linear_axis(i)) * sign, Vec3(0)};
+    out[3 + i] = {glm::cross(arm, e), e};
+  }
+  return true;
+}
+
+AxisRow::Kind row_kind_of(const JointConstraint::Row& row) {
+  if (row.kind == JointConstraint::RowKind::motor) return AxisRow::motor;
+  const bool below = static_cast<double>(row.lower) > -AxisRow::kInfinity;
+  const bool above = static_cast<double>(row.upper) < AxisRow::kInfinity;
+  if (below && above) return AxisRow::friction;
+  return below ? AxisRow::lower_limit : (above ? AxisRow::upper_limit : AxisRow::other);
+}
+
+}  // namespace
+
+SpatialInertia inertia_of(const btRigidBody& body) {
+  return {1 / static_cast<double>(body.getInvMass()), world_inertia(body)};
+}
+
+void make_floating(TreeNode& node) {
+  for (int k = 0; k < 3; ++k) {
+    node.axis[k].linear[k] = 1;
+    node.axis[3 + k].angular[k] = 1;
+  }
+}
+
+bool attach(TreeNode& node, const JointConstraint& joint, bool forward) {
+  const Vec3 arm_a = from_bt(joint.arm_a());
+  const Vec3 arm_b = from_bt(joint.arm_b());
+  node.offset = forward ? arm_a - arm_b : arm_b - arm_a;
+  return motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, node.axis);
+}
+
+// Marks the bodies on which contacts, drives or gears act.
+void SpanningTrees::find_acted_on() {
+  acted_on_.assign(island_.pools->bodies.size(), 0);
+  const btConstraintArray& contacts = island_.pools->contacts;
+  for (int i = 0; i < contacts.size(); ++i) {
+    acted_on_[contacts[i].m_solverBodyIdA] = acted_on_[contacts[i].m_solverBodyIdB] = 1;
+  }
+  for (const Island::Link& link : island_.links) {
+    if (link.joint->has_drive()) acted_on_[link.body_a] = acted_on_[link.body_b] = 1;
+  }
+  for (const Island::GearLink& link : island_.gears) {
+    for (int i = 0; i < link.gear->jacobians().size(); ++i) acted_on_[link.bodies[i]] = 1;
+  }
+}
+
+int SpanningTrees::root_of(int body) {
+  while (group_[body] != body) body = group_[body] = group_[group_[body]];
+  return body;
+}
+
+// Finds the joints that belong to trees, and lists them by body. All static bodies are one vertex: a second joint to it
+// closes a loop.
+void SpanningTrees::unite_links() {
+  const int bodies = island_.pools->bodies.size();
+  const auto vertex = [&](int body) { return island_.is_dynamic(body) ? body : bodies; };
+  group_.resize(bodies + 1);
+  for (int i = 0; i < bodies; ++i) group_[i] = vertex(i);
+  group_[bodies] = bodies;
+  link_start_.assign(bodies + 2, 0);
+  node_of_link_.clear();
+  for (const Island::Link& link : island_.links) {
+    const int a = root_of(vertex(link.body_a));
+    const int b = root_of(vertex(link.body_b));
+    node_of_link_.push_back(a == b ? -1 : 0);
+    if (a == b) continue;
+    group_[std::min(a, b)] = std::max(a, b);
+    link_start_[vertex(link.body_a) + 1]++;
+    link_start_[vertex(link.body_b) + 1]++;
+  }
+  for (int i = 1; i < link_start_.size(); ++i) link_start_[i] += link_start_[i - 1];
+  body_links_.resize(link_start_.back());
+  stack_.assign(link_start_.begin(), link_start_.end() - 1);
+  for (int i = 0; i < island_.links.size(); ++i) {
+    if (node_of_link_[i] < 0) continue;
+    for (const int body : {island_.links[i].body_a, island_.links[i].body_b}) body_links_[stack_[vertex(body)]++] = i;
+  }
+}
+
+bool SpanningTrees::build() {
+  const int bodies = island_.pools->bodies.size();
+  axes.clear(bodies);
+  trees_.clear();
+  tree_of_.clear();
+  body_of_.clear();
+  link_of_.clear();
+  node_of_.assign(bodies, -1);
+  find_acted_on();
+  unite_links();
+  // trees attached to static bodies first, then floating ones
+  for (const int i : links_at(bodies)) {
+    const Island::Link& link = island_.links[i];
+    if (!add_tree(island_.is_dynamic(link.body_a) ? link.body_a : link.body_b, i)) return false;
+  }
+  for (int body = 0; body < bodies; ++body) {
+    if (island_.is_dynamic(body) && node_of(body) < 0 && !add_tree(body, -1)) return false;
+  }
+  return true;
+}
+
+// Adds the tree with the root `body`, parents before children.
+bool SpanningTrees::add_tree(int body, int link) {
+  trees_.push_back({axes.forest.size(), 0});
+  stack_.clear();
+  stack_.insert(stack_.end(), {body, -1, link});
+  while (!stack_.empty()) {
+    const int depth = stack_.size();
+    const int parent_link = stack_[depth - 1];
+    const int parent_node = stack_[depth - 2];
+    const int current = stack_[depth - 3];
+    stack_.resize(depth - 3);
+    if (!add_node(current, parent_node, parent_link)) return false;
+    const int node = axes.forest.size() - 1;
+    const IndexedSpan<const int> links = links_at(current);
+    for (int i = links.size(); i-- > 0;) {
+      if (links[i] == parent_link) continue;
+      const Island::Link& l = island_.links[links[i]];
+      const int other = l.body_a == current ? l.body_b : l.body_a;
+      if (island_.is_dynamic(other)) stack_.insert(stack_.end(), {other, node, links[i]});
+    }
+  }
+  trees_.back().last = axes.forest.size();
+  return true;
+}
+
+bool SpanningTrees::add_node(int body, int parent, int link) {
+  const btSolverBody& solver_body = island_.body(body);
+  const btRigidBody& rigid = *solver_body.m_originalBody;
+  if (!is_supported(rigid)) return false;
+  TreeNode& n = axes.forest.add(parent);
+  const int node = axes.forest.size() - 1;
+  node_of_[body] = node;
+  body_of_.push_back(body);
+  link_of_.push_back(link);
+  tree_of_.push_back(trees_.size() - 1);
+  n.inertia = inertia_of(rigid);
+  if (acted_on_[body] == 0) add_geometric_inertia(n, island_, body, links_at(body));
+  if (link < 0) {
+    make_floating(n);
+    axes.end_node({}, {});
+  } else {
+    const Island::Link& l = island_.links[link];
+    node_of_link_[link] = node;
+    if (!attach(n, *l.joint, l.body_b == body)) return false;
+    add_rows(l);
+  }
+  axes.set_change(node, make_spatial(solver_body.m_deltaLinearVelocity, solver_body.m_deltaAngularVelocity));
+  return true;
+}
+
+// Adds the rows of a joint to the last node. Present rates include the velocity changes before the solve.
+void SpanningTrees::add_rows(const Island::Link& link) {
+  JointConstraint& joint = *link.joint;
+  const auto current_velocity = [&](int id) {
+    const btSolverBody& b = island_.body(id);
+    return island_.velocity(id) + make_spatial(b.m_deltaLinearVelocity, b.m_deltaAngularVelocity);
+  };
+  const Spatial a = current_velocity(link.body_a);
+  const Spatial b = current_velocity(link.body_b);
+  const Vec3 drift = translated(b, from_bt(joint.arm_b())).linear - translated(a, from_bt(joint.arm_a())).linear;
+  const Vec3 spin = b.angular - a.angular;
+  FixedArray<double, 6> rates{};
+  for (int k = 0; k < 3; ++k) {
+    rates[k] = glm::dot(from_bt(joint.linear_axis(k)), drift);
+    rates[3 + k] = glm::dot(from_bt(joint.dual_axis(k)), spin);
+  }
+  for (const JointConstraint::Row& row : joint.planned()) {
+    axes.add(row.axis, static_cast<double>(row.velocity), static_cast<double>(row.softness),
+             static_cast<double>(row.lower), static_cast<double>(row.upper), row_kind_of(row));
+  }
+  axes.end_node(rates, joint.active_set_memory());
+}
+
+}  // namespace limber

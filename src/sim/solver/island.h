@@ -1,0 +1,63 @@
+// Island: input of the direct solver, and Bullet's velocities and rotations in its types.
+#pragma once
+
+#include "sim/bullet/bullet.h"
+#include "sim/bullet/gear_constraint.h"
+#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/spin.h"
+#include "sim/solver/direct_solver.h"
+#include "sim/solver/forest/axis_active_set.h"
+#include "sim/solver/forest/spatial_algebra.h"
+#include "sim/solver/indexed_array.h"
+
+namespace limber {
+
+inline Spatial make_spatial(const btVector3& linear, const btVector3& angular) {
+  return {from_bt(linear), from_bt(angular)};
+}
+
+/// One island of bodies during one internal step. [sim]
+struct Island {
+  struct Link {  ///< A joint between two solver bodies.
+    JointConstraint* joint;
+    int body_a;
+    int body_b;
+  };
+  struct GearLink {
+    GearConstraint* gear;
+    FixedArray<int, 4> bodies;
+  };
+
+  IndexedArray<Link> links;
+  IndexedArray<GearLink> gears;
+  // set by DirectSolver::solve()
+  const IslandPools* pools = nullptr;
+  const btContactSolverInfo* info = nullptr;
+  double h = 0;  ///< Length of the step, s.
+
+  btSolverBody& body(int i) const { return pools->bodies[i]; }
+  btRigidBody& rigid(int i) const { return *body(i).m_originalBody; }
+  bool is_dynamic(int i) const { return body(i).m_invMass.x() > 0; }
+  /// Velocity at the start of the step.
+  Spatial start_velocity(int i) const { return make_spatial(body(i).m_linearVelocity, body(i).m_angularVelocity); }
+  /// Velocity that external forces give the body, before the solve.
+  Spatial velocity(int i) const {
+    const btSolverBody& b = body(i);
+    return make_spatial(b.m_linearVelocity + b.m_externalForceImpulse, b.m_angularVelocity + b.m_externalTorqueImpulse);
+  }
+  /// Splits the angular velocity `w` of a body into spin and rest.
+  RotationStep rotation_step(int i, const Vec3& w) const {
+    if (body(i).m_originalBody != nullptr) return split_rotation(rigid(i), w, h);
+    RotationStep turn;
+    turn.tumble = w;
+    return turn;
+  }
+};
+
+/// True for a lock without bounds or softness.
+inline bool is_hard_lock(const JointConstraint::Row& row) {
+  return row.softness == 0 && static_cast<double>(row.lower) <= -AxisRow::kInfinity &&
+         static_cast<double>(row.upper) >= AxisRow::kInfinity;
+}
+
+}  // namespace limber

@@ -1,0 +1,87 @@
+// LockEnergy: the work of locks, and the energy that they may return.
+#include "sim/solver/lock_energy.h"
+
+#include <algorithm>
+
+namespace limber {
+namespace {
+
+/// Drift corrections are scaled down by a little more than linear interpolation yields.
+constexpr double kEnergySafety = 0.95;
+/// Fraction of the energy absorbed by locks that they may return, and the maximum of the stored energy, J.
+constexpr double kReturnedFraction = 0.75;
+constexpr double kMaxStoredEnergy = 1e6;
+
+}  // namespace
+
+void LockEnergy::begin() {
+  uncorrected_work_.clear();
+  for (const Tree& t : trees_) uncorrected_work_.push_back(is_passive(t) ? work_of_locks(t) : 0);
+}
+
+// Work of a tree's locks in the step, J: each impulse times the mean of its rate before and after the step.
+double LockEnergy::work_of_locks(const Tree& tree) const {
+  double work = 0;
+  for (int i = tree.first; i < tree.last; ++i) {
+    if (trees_.link_of(i) < 0) continue;
+    const Island::Link& link = island_.links[trees_.link_of(i)];
+    const JointConstraint& joint = *link.joint;
+    const Spatial a = island_.start_velocity(link.body_a);
+    const Spatial b = island_.start_velocity(link.body_b);
+    const Vec3 drift = translated(b, from_bt(joint.arm_b())).linear - translated(a, from_bt(joint.arm_a())).linear;
+    const Vec3 spin = b.angular - a.angular;
+    for (const AxisRow& row : trees_.axes.rows(i)) {
+      if (row.bounded() || !row.hard()) continue;
+      const double rate = row.axis < 3 ? glm::dot(from_bt(joint.linear_axis(row.axis)), drift)
+                                       : glm::dot(from_bt(joint.dual_axis(row.axis - 3)), spin);
+      work += row.impulse * (rate + trees_.axes.rate(i, row.axis)) / 2;
+    }
+  }
+  return work;
+}
+
+// Energy that the locks of a tree may return; stored in its first joint.
+double& LockEnergy::stored_energy(const Tree& tree) const {
+  const int first = trees_.link_of(tree.first) < 0 ? tree.first + 1 : tree.first;
+  return island_.links[trees_.link_of(first)].joint->lock_energy();
+}
+
+// True if the tree has joints, and no motor drives any of them.
+bool LockEnergy::is_passive(const Tree& tree) const {
+  if (trees_.is_single_body(tree)) return false;
+  for (int i = tree.first; i < tree.last; ++i) {
+    for (const AxisRow& row : trees_.axes.rows(i)) {
+      if (row.kind == AxisRow::motor && row.upper > row.lower) return false;
+    }
+  }
+  return true;
+}
+
+bool LockEnergy::limit() {
+  bool changed = false;
+  for (int t = 0; t < trees_.count(); ++t) {
+    const Tree& tree = trees_[t];
+    if (!is_passive(tree)) continue;
+    const double work = work_of_locks(tree);
+    const double allowed_work = stored_energy(tree);
+    if (!(work > allowed_work)) continue;
+    const double uncorrected = uncorrected_work_[t];
+    const double fraction =
+        uncorrected < allowed_work ? kEnergySafety * (allowed_work - uncorrected) / (work - uncorrected) : 0;
+    for (int i = tree.first; i < tree.last; ++i) {
+      if (trees_.link_of(i) >= 0 && drift_.scale(trees_.link_of(i), fraction)) changed = true;
+    }
+  }
+  return changed;
+}
+
+void LockEnergy::store() {
+  for (const Tree& t : trees_) {
+    if (!is_passive(t)) continue;
+    double& energy = stored_energy(t);
+    const double work = work_of_locks(t);
+    energy = std::clamp(energy - (work < 0 ? kReturnedFraction : 1.0) * work, 0.0, kMaxStoredEnergy);
+  }
+}
+
+}  // namespace limber
