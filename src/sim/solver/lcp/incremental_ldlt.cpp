@@ -27,11 +27,11 @@ void IncrementalLdlt::reset(IndexedSpan<const double> matrix, int stride) {
 bool IncrementalLdlt::select(IndexedSpan<const unsigned char> free, int max_rows) {
   int count = 0;
   for (int i = 0; i < rows_.size(); ++i) {
-    const auto row = rows_[i];
+    const int row = rows_[i];
     if (free[row] != 0) {
       rows_[count++] = rows_[i];
     } else {
-      factored_count_ = std::min(factored_count_, static_cast<int>(count));
+      factored_count_ = std::min(factored_count_, count);
       selected_[row] = 0;
     }
   }
@@ -39,7 +39,7 @@ bool IncrementalLdlt::select(IndexedSpan<const unsigned char> free, int max_rows
   for (int row = 0; row < free.size(); ++row) {
     if (free[row] == 0 || selected_[row] != 0) continue;
     selected_[row] = 1;
-    rows_.push_back(static_cast<int>(row));
+    rows_.push_back(row);
   }
   return rows_.size() <= max_rows && factor(factored_count_);
 }
