@@ -1,7 +1,12 @@
-// Property tables: layout of the properties in blocks, lookup by name, builders.
+// Property tables: layout of the properties in blocks, lookup by name, tables that are defined at run time, builders.
 #include "properties/property_table.h"
 
+#include <algorithm>
 #include <bit>
+#include <memory>
+#include <mutex>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -94,6 +99,30 @@ std::vector<std::string_view> PropertyTable::property_names() const {
   std::vector<std::string_view> names;
   for (const Property& property : properties_) names.push_back(property.name);
   return names;
+}
+
+namespace {
+
+// The fields that declare a property.
+auto declaration(const Property& p) {
+  return std::tie(p.name, p.type, p.kind, p.unit, p.min, p.max, p.axis_min, p.axis_max, p.step, p.initial, p.doc,
+                  p.choices, p.own_axis, p.euler, p.transient, p.on_change, p.read, p.write, p.read_text, p.validate,
+                  p.invoke, p.on_write, p.min_args, p.max_args);
+}
+
+}  // namespace
+
+const PropertyTable& shared_table(std::string name, std::string path, std::vector<Property> properties) {
+  static std::mutex mutex;
+  static auto& tables =
+      *new std::vector<std::unique_ptr<const PropertyTable>>;  // never destroyed: a store may outlive static objects
+  const std::scoped_lock lock(mutex);
+  for (const auto& table : tables) {
+    if (table->name() != name || table->path() != path) continue;
+    if (std::ranges::equal(properties, table->properties(), {}, declaration, declaration)) return *table;
+  }
+  tables.push_back(std::make_unique<const PropertyTable>(std::move(name), std::move(path), "", std::move(properties)));
+  return *tables.back();
 }
 
 namespace properties {

@@ -28,6 +28,41 @@ void reserve(std::vector<T>& v, std::size_t more) {
   if (v.size() + more > v.capacity()) v.reserve(v.size() + v.size() / 4 + more);
 }
 
+// Rounds a number to one that the type has.
+double round_to_type(PropertyType type, double v) {
+  if (type == PropertyType::boolean || type == PropertyType::flags3) return v >= 0.5 ? 1 : 0;
+  return type == PropertyType::integer || type == PropertyType::choice ? std::round(v) : v;
+}
+
+// Scales a quaternion to unit length; false if it is zero. A unit quaternion up to rounding stays bit-identical, so
+// that setting a value that was read does not change it.
+bool normalize(double* q) {
+  const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+  if (square < 1e-18) return false;
+  if (std::abs(square - 1) > 1e-14) {
+    for (std::size_t i = 0; i < 4; i++) q[i] /= std::sqrt(square);
+  }
+  return true;
+}
+
+// Rounds, clamps and normalizes values of a property. The error follows the property's path.
+Result<SetOutcome> accept_values(const Property& property, std::span<const double> values, double* accepted) {
+  if (values.size() != property.width)
+    return Error{
+        fmt::format("takes {} number{}, not {}", property.width, property.width == 1 ? "" : "s", values.size())};
+  SetOutcome outcome;
+  for (std::size_t i = 0; i < property.width; i++) {
+    if (!std::isfinite(values[i])) return Error{fmt::format("takes finite numbers, not {}", values[i])};
+    const double v = round_to_type(property.type, values[i]);
+    accepted[i] = std::clamp(v, property.low(i), property.high(i));
+    outcome.clamped |= accepted[i] != v;
+  }
+  if (property.type == PropertyType::choice && outcome.clamped)
+    return Error{fmt::format("must be one of {} (got {})", fmt::join(property.choices, ", "), values[0])};
+  if (property.type == PropertyType::quat && !normalize(accepted)) return Error{"takes a rotation, not 0 0 0 0"};
+  return outcome;
+}
+
 }  // namespace
 
 Store::Store() {
@@ -246,45 +281,17 @@ Result<SetOutcome> Store::set(NodeId id, std::string_view property, std::span<co
 
 Result<SetOutcome> Store::validate(NodeId id, const Property& property, std::span<const double> values,
                                    double* accepted) const {
-  const auto where = [&] { return fmt::format("{}/{}", path(id), property.name); };
   if (!alive(id)) return Error{"this object no longer exists"};
-  if (!property.writable() || (property.computed() && property.write == nullptr)) {
-    return Error{
-        fmt::format("{} can be {}, not set", where(), property.kind == PropertyKind::action ? "called" : "read")};
-  }
-  if (values.size() != property.width) {
-    return Error{fmt::format("{} takes {} number{}, not {}", where(), property.width, property.width == 1 ? "" : "s",
-                             values.size())};
-  }
-  SetOutcome outcome;
-  for (std::size_t i = 0; i < property.width; i++) {
-    double v = values[i];
-    if (!std::isfinite(v)) return Error{fmt::format("{} takes finite numbers, not {}", where(), v)};
-    if (property.type == PropertyType::boolean || property.type == PropertyType::flags3) {
-      v = v >= 0.5 ? 1 : 0;
-    } else if (property.type == PropertyType::integer || property.type == PropertyType::choice) {
-      v = std::round(v);
-    }
-    accepted[i] = std::clamp(v, property.low(i), property.high(i));
-    const bool flag = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
-    if (!flag && accepted[i] != v) outcome.clamped = true;
-  }
-  if (property.type == PropertyType::choice && outcome.clamped) {
-    return Error{fmt::format("{} must be one of {} (got {})", where(), fmt::join(property.choices, ", "), values[0])};
-  }
-  if (property.type == PropertyType::quat) {
-    const double square =
-        accepted[0] * accepted[0] + accepted[1] * accepted[1] + accepted[2] * accepted[2] + accepted[3] * accepted[3];
-    if (square < 1e-18) return Error{fmt::format("{} takes a rotation, not 0 0 0 0", where())};
-    // A unit quaternion up to rounding stays bit-identical, so that setting a value that was read does not change it.
-    if (std::abs(square - 1) > 1e-14) {
-      for (std::size_t i = 0; i < 4; i++) accepted[i] /= std::sqrt(square);
-    }
-  }
+  const auto rejected = [&](std::string_view why) {
+    return Error{fmt::format("{}/{}{}", path(id), property.name, why)};
+  };
+  if (!property.writable() || (property.computed() && property.write == nullptr))
+    return rejected(property.kind == PropertyKind::action ? " can be called, not set" : " can be read, not set");
+  const Result<SetOutcome> outcome = accept_values(property, values, accepted);
+  if (!outcome) return rejected(" " + outcome.error());
   if (property.validate != nullptr) {
-    if (const Result<void> allowed = property.validate(nodes_[id.slot].object, accepted); !allowed) {
-      return Error{fmt::format("{}: {}", where(), allowed.error())};
-    }
+    const Result<void> allowed = property.validate(nodes_[id.slot].object, accepted);
+    if (!allowed) return rejected(": " + allowed.error());
   }
   return outcome;
 }
