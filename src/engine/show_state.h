@@ -3,8 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "engine/background_writer.h"
 #include "engine/commands/handler_queue.h"
 #include "engine/edits/edit_scope.h"
 #include "engine/edits/overrides.h"
@@ -49,6 +51,7 @@ struct ShowState {
 
   EngineLink& link;
   EngineOptions options;
+  BackgroundWriter writer;                        ///< Of presets, takes and recovered values.
   const std::shared_ptr<ThreadPool> thread_pool;  ///< Null: the simulation thread alone.
   std::shared_ptr<const Preset> recovered;        ///< Values to restore at the start; null: none.
   ShowRules rules;

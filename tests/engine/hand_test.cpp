@@ -55,7 +55,7 @@ TEST(Overrides, APresetReplacesOneOfTheSameProperties) {
     PresetBuilder builder;
     PresetLayout layout;
     layout.add({property, PropertyType::number, 1, {}});
-    builder.set_values(builder.node("/scene"), std::move(layout), {1});
+    builder.add("/scene", std::move(layout), {1});
     return builder.finish(name, {});
   };
   const auto dusk = preset("dusk", "wind");

@@ -196,7 +196,8 @@ TEST(Health, ReportsThatAnotherProgramOwnsTheScene) {
   const SceneFile file("");
   EngineOptions options = fast_options(file.path());
   options.recovery_folder = file.path() + ".recovery";
-  RecoverySaver other(options.recovery_folder);
+  BackgroundWriter writer;
+  RecoverySaver other(writer, options.recovery_folder);
   ASSERT_TRUE(other.open(file.path()).ok());
   ASSERT_TRUE(other.owned());
   Show show(std::move(options));

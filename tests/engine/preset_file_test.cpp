@@ -46,7 +46,7 @@ struct PresetFileTest : testing::Test {
     for (int i = 0; i < node_count; i++) {
       PresetLayout layout;
       layout.add({"x", PropertyType::number, 1, {}});
-      builder.set_values(builder.node(fmt::format("/physics/body/b{}", i)), std::move(layout), {value});
+      builder.add(fmt::format("/physics/body/b{}", i), std::move(layout), {value});
     }
     return {builder.finish("only", {})};
   }

@@ -1,7 +1,8 @@
 // Import of pattrstorage files as Max writes them, and rejection of other files.
-#include "engine/presets/pattrstorage.h"
 
 #include <gtest/gtest.h>
+
+#include "engine/presets/text.h"
 
 namespace limber {
 namespace {

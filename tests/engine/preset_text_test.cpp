@@ -29,7 +29,7 @@ std::shared_ptr<const Preset> sample(const std::string& name, Random& random) {
     layout.add({"other", PropertyType::none, 2, {}});
     std::vector<double> values{number(), 1, 0, number(), -0.0, number(), 1, 0, 1};
     for (int i = 0; i < 6; i++) values.push_back(number());
-    builder.set_values(builder.node(path), std::move(layout), values);
+    builder.add(path, std::move(layout), values);
   }
   return builder.finish(name, {{"/physics//*"}, {"/scene/x*"}, true, false});
 }

@@ -53,7 +53,7 @@ std::shared_ptr<const Preset> numbers(const std::vector<std::pair<std::string, s
     PresetLayout layout;
     layout.add(number_property("x"));
     layout.add(number_property("y"));
-    builder.set_values(builder.node(path), std::move(layout), values);
+    builder.add(path, std::move(layout), values);
   }
   return builder.finish("p", {});
 }
@@ -75,7 +75,7 @@ TEST(ChangedValues, ComparesChoicesByLabel) {
     PresetBuilder builder;
     PresetLayout layout;
     layout.add({"mode", PropertyType::choice, 1, std::move(labels)});
-    builder.set_values(builder.node("/a"), std::move(layout), {value});
+    builder.add("/a", std::move(layout), {value});
     return builder.finish("p", {});
   };
   EXPECT_EQ(changed_values(*choice_preset({"on", "off"}, 1), *choice_preset({"off", "on"}, 0)), nullptr);

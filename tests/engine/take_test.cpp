@@ -300,10 +300,11 @@ TEST(Take, TakesWithOneNameThatAreWrittenAtOnceAreBothKept) {
   const ShowFolder folder;
   const auto fail = [](const std::string& why) { ADD_FAILURE() << why; };
   const TakeWriter::Target target{folder.path("takes/one.take"), true};
+  BackgroundWriter writer;
   {
-    TakeWriter first(target, {}, fail);
+    TakeWriter first(writer, target, {}, fail);
     ASSERT_TRUE(first.wait_until_open().ok());
-    TakeWriter second(target, {}, fail);
+    TakeWriter second(writer, target, {}, fail);
     ASSERT_TRUE(second.wait_until_open().ok());
     first.write("first");
     second.write("second");

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <string_view>
 
-#include "engine/presets/pattrstorage.h"
 #include "engine/presets/text.h"
 #include "fuzz/target.h"
 

@@ -13,7 +13,6 @@
 #include "base/system/file.h"
 #include "base/text.h"
 #include "engine/presets/file.h"
-#include "engine/presets/pattrstorage.h"
 
 namespace limber {
 

@@ -18,8 +18,6 @@ namespace limber::system {
 
 namespace {
 
-std::string reason() { return std::generic_category().message(errno); }
-
 int flags_of(OpenMode mode) {
   switch (mode) {
     case OpenMode::read:
@@ -60,6 +58,8 @@ FileStatus status_of(const struct stat& info) {
 
 }  // namespace
 
+std::string error_reason() { return std::generic_category().message(errno); }
+
 Descriptor open_file(const std::string& path, OpenMode mode, unsigned permissions) {
   return Descriptor(open(path.c_str(), flags_of(mode) | O_CLOEXEC, static_cast<mode_t>(permissions)));
 }
@@ -85,7 +85,7 @@ Result<std::string> read_file(const std::string& path, std::uintmax_t max_bytes)
   // O_NONBLOCK: don't wait for the writer of a named pipe.
   const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
-  if (!file.is_open() || fstat(file.fd(), &info) != 0) return Error{reason()};
+  if (!file.is_open() || fstat(file.fd(), &info) != 0) return Error{error_reason()};
   const FileStatus status = status_of(info);
   if (!status.file) return Error{"it is a folder or a device, not a file"};
   if (status.size > max_bytes)
@@ -94,7 +94,7 @@ Result<std::string> read_file(const std::string& path, std::uintmax_t max_bytes)
   std::size_t count = 0;
   while (count < bytes.size()) {
     const std::ptrdiff_t n = read_some(file.fd(), bytes.data() + count, bytes.size() - count);
-    if (n < 0) return Error{reason()};
+    if (n < 0) return Error{error_reason()};
     if (n == 0) break;  // the file was truncated meanwhile
     count += static_cast<std::size_t>(n);
   }
@@ -116,8 +116,8 @@ bool sync_data(int fd) {
 
 Result<void> replace_file(const std::string& path, std::string_view text, unsigned permissions) {
   const Descriptor file = open_file(path, OpenMode::replace, permissions);
-  if (!file.is_open() || !write_all(file.fd(), text)) return Error{reason()};
-  if (fchmod(file.fd(), static_cast<mode_t>(permissions)) != 0 || !sync_file(file.fd())) return Error{reason()};
+  if (!file.is_open() || !write_all(file.fd(), text)) return Error{error_reason()};
+  if (fchmod(file.fd(), static_cast<mode_t>(permissions)) != 0 || !sync_file(file.fd())) return Error{error_reason()};
   return {};
 }
 
@@ -141,10 +141,10 @@ bool is_executable(const std::string& path) { return access(path.c_str(), X_OK) 
 Result<Descriptor> lock_file(const std::string& path) {
   while (true) {
     Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600));
-    if (!file.is_open()) return Error{fmt::format("{}: {}", printable(path), reason())};
+    if (!file.is_open()) return Error{fmt::format("{}: {}", printable(path), error_reason())};
     if (flock(file.fd(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EWOULDBLOCK) return Descriptor();
-      return Error{fmt::format("{}: {}", printable(path), reason())};
+      return Error{fmt::format("{}: {}", printable(path), error_reason())};
     }
     struct stat locked {};
     struct stat named {};

@@ -13,6 +13,9 @@
 
 namespace limber::system {
 
+/// Returns the system's message for errno.
+std::string error_reason();
+
 enum class OpenMode : std::uint8_t {
   read,
   write,       ///< Opens an existing file without truncating it.

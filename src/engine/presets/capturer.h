@@ -1,5 +1,5 @@
 // PresetCapturer: captures presets from the live world. The list of values to copy (PresetPlan) is cached until nodes
-// are added or removed, so that a capture is a few memory copies. Updating the list visits only changed nodes. [sim]
+// are added or removed, so that a capture is a few memory copies. [sim]
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,30 @@
 #include <vector>
 
 #include "base/result.h"
-#include "engine/presets/planner.h"
 #include "engine/presets/preset.h"
 #include "properties/store.h"
 
 namespace limber {
+
+class PresetPlanner;
+
+/// The values to copy from the store into a preset.
+struct PresetPlan {
+  struct CopyRange {  // a range of values that is contiguous in the store and in the preset
+    std::uint32_t source = 0;
+    std::uint32_t count = 0;
+    bool transient = false;
+  };
+  struct Node {
+    NodeId id;
+    const PropertyTable* table = nullptr;
+    std::uint64_t properties = 0;  // bit mask
+  };
+  PresetSelection selection;
+  std::shared_ptr<const PresetSchema> schema;
+  std::vector<CopyRange> ranges;  // in the order of the preset
+  std::vector<Node> nodes;        // those with values
+};
 
 class PresetCapturer {
  public:
@@ -49,10 +68,6 @@ class PresetCapturer {
   static std::shared_ptr<const Preset> capture_script(const Store& store);
 
  private:
-  /// Copies the values. `buffer`: memory to reuse if it is large enough.
-  static std::shared_ptr<const Preset> copy(const Store& store, const PresetPlan& plan, std::string name,
-                                            std::vector<double> buffer);
-
   void allocate_buffer(const Store& store);
   void discard_outdated(const Store& store);
   void advance_plan(const Store& store, std::size_t nodes);
@@ -61,7 +76,6 @@ class PresetCapturer {
 
   std::optional<PresetPlan> everything_;    // for all properties
   std::vector<PresetPlan> selections_;      // for recent selections
-  std::optional<PresetPlan> previous_;      // the previous plan for all properties, from before a structural change
   std::unique_ptr<PresetPlanner> planner_;  // builds the next plan for all properties
   std::uint64_t structure_version_ = 0;     // structure version of the plans
   int settled_calls_ = 0;

@@ -10,9 +10,11 @@
 
 #include <fmt/format.h>
 
+#include "base/log/log.h"
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/text.h"
+#include "engine/output/health.h"
 #include "script/scene/script_files.h"
 
 namespace limber {
@@ -20,8 +22,6 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-
-std::string reason() { return std::generic_category().message(errno); }
 
 Error file_error(const std::string& path, std::string_view description) {
   return Error{fmt::format("{}: {}", printable(path), description)};
@@ -112,7 +112,7 @@ Result<void> PresetFile::back_up(const std::string& path, std::string& notice) c
     }
     if (errno != EEXIST) break;
   }
-  return Error{reason()};
+  return Error{system::error_reason()};
 }
 
 Result<void> PresetFile::save(const PresetList& presets, std::string& notice) {
@@ -142,11 +142,48 @@ Result<void> PresetFile::write(const PresetList& presets, std::string& notice) {
   if (now && (has_unparsed_ || !last_stamp_.is_current(path))) {
     if (const Result<void> backed_up = back_up(path, notice); !backed_up) return failed(backed_up.error());
   }
-  if (std::rename(temporary.c_str(), path.c_str()) != 0) return failed(reason());
+  if (std::rename(temporary.c_str(), path.c_str()) != 0) return failed(system::error_reason());
   system::sync_folder(path);
   last_stamp_ = FileStamp(path);
   has_unparsed_ = false;
   return {};
+}
+
+PresetSaver::PresetSaver(BackgroundWriter& writer, PresetFile file, std::function<void(const std::string&)> on_failure)
+    : writer_(writer), file_(std::move(file)), on_failure_(std::move(on_failure)) {
+  writer_.add(*this);
+}
+
+PresetSaver::~PresetSaver() {
+  finish();
+  writer_.remove(*this);
+}
+
+void PresetSaver::save(std::shared_ptr<const PresetList> presets) {
+  {
+    const std::scoped_lock lock(mutex_);
+    pending_.swap(presets);
+    saved_.store(false);
+  }
+  if (!writer_.request(*this)) on_failure_("could not create a thread to save presets; the next save tries again");
+}
+
+BackgroundWriter::Clock::time_point PresetSaver::run() {
+  std::unique_lock lock(mutex_);
+  const std::shared_ptr<const PresetList> presets = std::exchange(pending_, nullptr);
+  lock.unlock();
+  if (presets == nullptr) return BackgroundWriter::kNever;
+  std::string notice;
+  const Result<void> saved = file_.save(*presets, notice);
+  if (!notice.empty()) log_warning("{}", notice);
+  if (!saved) {
+    count_failed_write();
+    log_error("{}: {}", printable(file_.path()), saved.error());
+    on_failure_(saved.error());
+  }
+  lock.lock();
+  if (saved.ok() && pending_ == nullptr) saved_.store(true);
+  return BackgroundWriter::kNever;
 }
 
 }  // namespace limber

@@ -1,11 +1,17 @@
 // PresetFile: the file with the presets of a scene, next to the scene's file. It is replaced atomically. A file that
 // could not be parsed completely, or that another program has changed, is backed up first. [one thread]
+// PresetSaver: saves the file in the background.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <string>
 
 #include "base/result.h"
+#include "engine/background_writer.h"
 #include "engine/presets/scene_lock.h"
 #include "engine/presets/text.h"
 #include "model/file_stamp.h"
@@ -58,6 +64,34 @@ class PresetFile {
   bool keep_lock_ = false;
   FileStamp last_stamp_;       // stamp when it was last read or written
   bool has_unparsed_ = false;  // it has content that could not be parsed
+};
+
+/// Of several saves in a burst only the last one is written.
+class PresetSaver : private BackgroundWriter::Task {
+ public:
+  /// `on_failure` is called with the reason when a save fails. [the writer's thread]
+  PresetSaver(BackgroundWriter& writer, PresetFile file, std::function<void(const std::string&)> on_failure);
+  /// Completes the pending save.
+  ~PresetSaver() override;
+
+  /// Reads the file. Call before the first save().
+  Result<ParsedPresets> load() { return file_.load(); }
+  /// Requests a save and returns at once. [sim]
+  void save(std::shared_ptr<const PresetList> presets);
+  /// True if the latest presets passed to save() are on the disk. [any]
+  bool saved() const { return saved_.load(); }
+  /// Waits until the pending save has succeeded or failed. [any but sim]
+  void finish() { writer_.finish(*this); }
+
+ private:
+  BackgroundWriter::Clock::time_point run() override;
+
+  BackgroundWriter& writer_;
+  PresetFile file_;  // used only by the writer's thread after load()
+  std::function<void(const std::string&)> on_failure_;
+  std::mutex mutex_;  // never locked while writing
+  std::shared_ptr<const PresetList> pending_;
+  std::atomic<bool> saved_{true};
 };
 
 }  // namespace limber

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/text.h"
-#include "engine/presets/recall.h"
 #include "sim/behavior/behavior.h"
 
 namespace limber {

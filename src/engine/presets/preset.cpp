@@ -2,7 +2,6 @@
 #include "engine/presets/preset.h"
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <utility>
 
@@ -45,12 +44,6 @@ bool PresetSchema::operator==(const PresetSchema& other) const {
                                               });
 }
 
-void PresetSchema::reserve(std::size_t nodes) {
-  constexpr std::size_t kTypicalNameSize = 8;  // most names are shorter
-  nodes_.reserve(nodes);
-  names_.reserve(nodes * kTypicalNameSize);
-}
-
 std::uint32_t PresetSchema::add(std::uint32_t parent, std::string_view name) {
   nodes_.push_back(
       {parent, kNoLayout, 0, static_cast<std::uint32_t>(names_.size()), static_cast<std::uint32_t>(name.size())});
@@ -64,38 +57,29 @@ void PresetSchema::set_layout(std::uint32_t node, std::uint32_t layout) {
   value_count_ += layouts_[layout]->value_count;
 }
 
-std::uint32_t PresetSchema::copy_subtree(const PresetSchema& from, std::uint32_t node, std::uint32_t parent) {
-  const auto first_copy = static_cast<std::uint32_t>(nodes_.size());
-  const std::uint32_t names = from.nodes_[node].name_offset;
-  const std::uint32_t values = from.first_value(node);
-  const auto names_here = static_cast<std::uint32_t>(names_.size());
-  const std::uint32_t values_here = value_count_;
-  std::uint32_t i = node;
-  do {
-    Node copy = from.nodes_[i];
-    copy.parent = i == node ? parent : copy.parent - node + first_copy;
-    copy.name_offset += names_here - names;
-    if (copy.layout != kNoLayout) {
-      copy.offset += values_here - values;
-      value_count_ = copy.offset + layouts_[copy.layout]->value_count;
-    }
-    nodes_.push_back(copy);
-  } while (++i < from.nodes_.size() && from.nodes_[i].parent >= node);
-  const Node& last = from.nodes_[i - 1];
-  names_.append(from.names_, names, last.name_offset + last.name_size - names);
-  return first_copy;
+namespace {
+
+// Key of a node by its parent and name.
+std::string node_key(std::uint32_t parent, std::string_view name) { return fmt::format("{}/{}", parent, name); }
+
+}  // namespace
+
+std::vector<std::uint32_t> corresponding_nodes(const PresetSchema& from, const PresetSchema& to) {
+  std::unordered_map<std::string, std::uint32_t> targets;
+  for (std::uint32_t i = 1; i < to.nodes().size(); i++)
+    targets.emplace(node_key(to.nodes()[i].parent, to.name(to.nodes()[i])), i);
+  std::vector<std::uint32_t> out(from.nodes().size(), kNoNode);
+  out[0] = 0;
+  for (std::uint32_t i = 1; i < out.size(); i++) {
+    const PresetSchema::Node& node = from.nodes()[i];
+    if (out[node.parent] == kNoNode) continue;
+    const auto target = targets.find(node_key(out[node.parent], from.name(node)));
+    if (target != targets.end()) out[i] = target->second;
+  }
+  return out;
 }
 
-std::uint32_t PresetSchema::first_value(std::uint32_t node) const {
-  while (node < nodes_.size() && nodes_[node].layout == kNoLayout) node++;
-  return node < nodes_.size() ? nodes_[node].offset : value_count_;
-}
-
-std::uint32_t PresetSchema::add_layout(std::shared_ptr<const PresetLayout> layout) {
-  layouts_.push_back(std::move(layout));
-  return static_cast<std::uint32_t>(layouts_.size() - 1);
-}
-
+// Returns the node of a path; adds it if it doesn't exist.
 std::uint32_t PresetBuilder::node(std::string_view path) {
   while (!path.empty() && path.back() == '/') path.remove_suffix(1);
   if (path.empty()) return 0;
@@ -103,12 +87,15 @@ std::uint32_t PresetBuilder::node(std::string_view path) {
   const std::uint32_t parent = slash == path.npos ? 0 : node(path.substr(0, slash));
   // the same node, however its name is escaped
   const std::string name = unescape_name(path.substr(slash + 1));
-  const auto [entry, inserted] = nodes_.try_emplace(fmt::format("{}/{}", parent, name), 0);
+  const auto [entry, inserted] = nodes_.try_emplace(node_key(parent, name), 0);
   if (inserted) entry->second = schema_->add(parent, name);
   return entry->second;
 }
 
-void PresetBuilder::set_values(std::uint32_t node, PresetLayout layout, const std::vector<double>& values) {
+bool PresetBuilder::add(std::string_view path, PresetLayout layout, const std::vector<double>& values) {
+  if (layout.properties.empty()) return true;
+  const std::uint32_t index = node(path);
+  if (schema_->nodes()[index].layout != PresetSchema::kNoLayout) return false;
   std::string key;
   for (const PresetProperty& property : layout.properties) {
     key += fmt::format("{}\n{} {} {}\n", property.name, static_cast<int>(property.type), property.width,
@@ -116,29 +103,20 @@ void PresetBuilder::set_values(std::uint32_t node, PresetLayout layout, const st
     for (const std::string& label : property.labels) key += fmt::format("{} {}\n", label.size(), label);
   }
   const auto [entry, inserted] = layouts_.try_emplace(std::move(key), 0);
-  if (inserted) entry->second = schema_->add_layout(std::make_shared<const PresetLayout>(std::move(layout)));
-  schema_->set_layout(node, entry->second);
+  if (inserted) entry->second = schema_->add_layout(std::move(layout));
+  schema_->set_layout(index, entry->second);
   values_.insert(values_.end(), values.begin(), values.end());
+  return true;
 }
 
-std::shared_ptr<const Preset> PresetBuilder::finish(std::string name, PresetSelection selection) {
+std::shared_ptr<const Preset> PresetBuilder::finish(std::string name, PresetSelection selection,
+                                                    const std::shared_ptr<const PresetSchema>& shared) {
+  const bool same = shared != nullptr && *shared == *schema_;
   return std::make_shared<const Preset>(
-      Preset{std::move(name), std::move(selection), std::move(schema_), std::move(values_)});
+      Preset{std::move(name), std::move(selection), same ? shared : std::move(schema_), std::move(values_)});
 }
 
 namespace {
-
-// Key of a node: parent and name.
-struct NodeKey {
-  std::uint32_t parent;
-  std::string_view name;
-  bool operator==(const NodeKey&) const = default;
-};
-struct NodeKeyHash {
-  std::size_t operator()(const NodeKey& key) const {
-    return std::hash<std::string_view>{}(key.name) ^ (key.parent * 0x9e3779b97f4a7c15u);
-  }
-};
 
 // Reduces two presets to the properties that both have.
 class PresetAligner {
@@ -146,26 +124,18 @@ class PresetAligner {
   PresetAligner(const Preset& a, const Preset& b) : a_(a), b_(b) {}
 
   Blend run() {
-    const PresetSchema& from = *a_.schema;
-    const PresetSchema& to = *b_.schema;
-    for (std::uint32_t i = 1; i < to.nodes().size(); i++)
-      nodes_of_b_.emplace(NodeKey{to.nodes()[i].parent, to.name(to.nodes()[i])}, i);
-    std::vector<std::uint32_t> node_in_b(from.nodes().size(), 0);
-    std::vector<std::uint32_t> aligned_node(from.nodes().size(), 0);
-    for (std::uint32_t i = 0; i < from.nodes().size(); i++) {
-      const PresetSchema::Node& node = from.nodes()[i];
-      if (i != 0) {
-        if (node.parent != 0 && node_in_b[node.parent] == 0) continue;
-        const auto match = nodes_of_b_.find(NodeKey{node_in_b[node.parent], from.name(node)});
-        if (match == nodes_of_b_.end()) continue;
-        node_in_b[i] = match->second;
-        aligned_node[i] = schema_->add(aligned_node[node.parent], from.name(node));
-      }
-      const PresetSchema::Node& other = to.nodes()[node_in_b[i]];
-      if (from.layout(node) != nullptr && to.layout(other) != nullptr) set_values(aligned_node[i], node, other);
+    const std::vector<PresetSchema::Node>& nodes = a_.schema->nodes();
+    const std::vector<std::uint32_t> node_in_b = corresponding_nodes(*a_.schema, *b_.schema);
+    std::vector<std::uint32_t> aligned_node(nodes.size(), 0);
+    for (std::uint32_t i = 0; i < nodes.size(); i++) {
+      if (node_in_b[i] == kNoNode) continue;
+      if (i != 0) aligned_node[i] = schema_->add(aligned_node[nodes[i].parent], a_.schema->name(nodes[i]));
+      const PresetSchema::Node& other = b_.schema->nodes()[node_in_b[i]];
+      if (a_.schema->layout(nodes[i]) != nullptr && b_.schema->layout(other) != nullptr)
+        set_values(aligned_node[i], nodes[i], other);
     }
-    const auto first = std::make_shared<const Preset>(Preset{a_.name, a_.selection, schema_, std::move(in_a_)});
-    return {first, std::make_shared<const Preset>(Preset{b_.name, b_.selection, schema_, std::move(in_b_)}), 0};
+    return {std::make_shared<const Preset>(Preset{a_.name, a_.selection, schema_, std::move(in_a_)}),
+            std::make_shared<const Preset>(Preset{b_.name, b_.selection, schema_, std::move(in_b_)}), 0};
   }
 
  private:
@@ -197,7 +167,7 @@ class PresetAligner {
     const auto [entry, inserted] = common_layouts_.try_emplace({&a, &b});
     CommonLayout& common = entry->second;
     if (!inserted) return common;
-    auto layout = std::make_shared<PresetLayout>();
+    PresetLayout layout;
     for (std::size_t i = 0; i < a.properties.size(); i++) {
       const int at = b.find(a.properties[i].name);
       if (at < 0) continue;
@@ -212,16 +182,15 @@ class PresetAligner {
         common_property.labels.push_back(static_cast<double>(known_label - property.labels.begin()));
       }
       common.properties.push_back(std::move(common_property));
-      layout->add(std::move(property));
+      layout.add(std::move(property));
     }
-    if (!layout->properties.empty()) common.layout = schema_->add_layout(std::move(layout));
+    if (!layout.properties.empty()) common.layout = schema_->add_layout(std::move(layout));
     return common;
   }
 
   const Preset& a_;
   const Preset& b_;
   std::shared_ptr<PresetSchema> schema_ = std::make_shared<PresetSchema>();
-  std::unordered_map<NodeKey, std::uint32_t, NodeKeyHash> nodes_of_b_;  // of b
   std::map<std::pair<const PresetLayout*, const PresetLayout*>, CommonLayout> common_layouts_;
   std::vector<double> in_a_, in_b_;
 };

@@ -67,22 +67,18 @@ class PresetSchema {
   std::string path(std::uint32_t node) const;
   /// Number of values of a preset.
   std::uint32_t value_count() const { return value_count_; }
-  /// Index of the first value of a node or, if it has none, of the first descendant with values. The nodes must be in
-  /// the order that copy_subtree() requires.
-  std::uint32_t first_value(std::uint32_t node) const;
   std::size_t property_count() const;
   bool operator==(const PresetSchema& other) const;
 
   // Construction:
-  /// Reserves memory for a number of nodes.
-  void reserve(std::size_t nodes);
+  void reserve(std::size_t nodes) { nodes_.reserve(nodes); }
   std::uint32_t add(std::uint32_t parent, std::string_view name);
   /// Sets the properties of a node. Its values follow those of all nodes before.
   void set_layout(std::uint32_t node, std::uint32_t layout);
-  std::uint32_t add_layout(std::shared_ptr<const PresetLayout> layout);
-  /// Copies a node and all its descendants from another schema with the same layouts, and returns the new index. The
-  /// nodes of `from` must be in depth-first order, and must have been given their properties in this order.
-  std::uint32_t copy_subtree(const PresetSchema& from, std::uint32_t node, std::uint32_t parent);
+  std::uint32_t add_layout(PresetLayout layout) {
+    layouts_.push_back(std::make_shared<const PresetLayout>(std::move(layout)));
+    return static_cast<std::uint32_t>(layouts_.size() - 1);
+  }
 
  private:
   std::vector<Node> nodes_;
@@ -90,6 +86,10 @@ class PresetSchema {
   std::string names_;
   std::uint32_t value_count_ = 0;
 };
+
+/// Returns for each node of `from` the index of the node of the same path in `to`, or kNoNode.
+inline constexpr std::uint32_t kNoNode = UINT32_MAX;
+std::vector<std::uint32_t> corresponding_nodes(const PresetSchema& from, const PresetSchema& to);
 
 /// Selects the values of a preset.
 struct PresetSelection {
@@ -125,14 +125,16 @@ class PresetBuilder {
  public:
   PresetBuilder() : schema_(std::make_shared<PresetSchema>()) {}
 
-  /// Returns the node of a path, which must begin with /; adds it if it doesn't exist.
-  std::uint32_t node(std::string_view path);
-  bool has_layout(std::uint32_t node) const { return schema_->nodes()[node].layout != PresetSchema::kNoLayout; }
-  /// Sets the properties of a node and their values. At most once per node.
-  void set_values(std::uint32_t node, PresetLayout layout, const std::vector<double>& values);
-  std::shared_ptr<const Preset> finish(std::string name, PresetSelection selection);
+  /// Adds a node with its properties, if there are any, and their values. `path` must begin with /. False if the node
+  /// has properties already.
+  bool add(std::string_view path, PresetLayout layout, const std::vector<double>& values);
+  /// Returns the preset. `shared`: schema of another preset, which is shared if it is equal; or null.
+  std::shared_ptr<const Preset> finish(std::string name, PresetSelection selection,
+                                       const std::shared_ptr<const PresetSchema>& shared = nullptr);
 
  private:
+  std::uint32_t node(std::string_view path);
+
   std::shared_ptr<PresetSchema> schema_;
   std::vector<double> values_;
   std::unordered_map<std::string, std::uint32_t> nodes_;    // by parent and name

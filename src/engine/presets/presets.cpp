@@ -12,8 +12,6 @@
 
 #include "base/log/log.h"
 #include "base/text.h"
-#include "engine/presets/commands.h"
-#include "engine/presets/recall.h"
 
 namespace limber {
 
@@ -39,9 +37,124 @@ std::string name_of(const Blend& blend) {
   return fmt::format("presets '{}' and '{}'", printable(blend.a->name), printable(blend.b->name));
 }
 
+// Returns the outcome of apply().
+Outcome outcome_of(Result<std::string> notice) {
+  if (!notice) return Outcome::rejected(notice.error());
+  Outcome outcome;
+  outcome.warning = std::move(*notice);
+  return outcome;
+}
+
+std::string quoted_text(const Arg& arg) {
+  return fmt::format("'{}'", arg.is_text() ? printable(shortened(arg.text, 100)) : number_text(arg.number));
+}
+
+// Arguments: name [word …]. Words: path patterns, behaviors, looks, all, poses, velocities; patterns after `except`
+// are excluded from recalls.
+struct StoreCommand {
+  std::string name;
+  std::optional<double> number;              // Number of an existing preset, instead of a name.
+  std::optional<PresetSelection> selection;  // Nothing: the selection of the preset that is replaced, else all.
+};
+
+// Arguments: name|number [seconds [easing]]
+struct RecallCommand {
+  Arg preset;
+  double seconds = 0;
+  Easing easing = Easing::smooth;
+};
+
+// Arguments: name|number name|number amount
+struct MorphCommand {
+  Arg a, b;
+  double amount = 0;  // 0 .. 1
+};
+
+std::optional<double> number_of(const Arg& arg) {
+  if (arg.is_text()) return parse_number(arg.text);
+  if (arg.kind == Arg::Kind::nil || !std::isfinite(arg.number)) return {};
+  return arg.number;
+}
+
+bool is_preset_reference(const Arg& arg) {
+  return arg.is_text() || (arg.kind == Arg::Kind::number && std::isfinite(arg.number));
+}
+
+// Parses one word after the name. False if the word is unknown.
+bool parse_word(std::string_view word, bool& after_except, PresetSelection& selection) {
+  std::vector<std::string>& patterns = after_except ? selection.except : selection.include;
+  if (word.starts_with('/')) {
+    patterns.emplace_back(word);
+  } else if (same_name(word, "behaviors")) {
+    patterns.insert(patterns.end(), {"/physics/body/*/behavior//*", "/physics/group//*"});
+  } else if (same_name(word, "looks")) {
+    patterns.emplace_back("/visuals//*");
+  } else if (same_name(word, "poses")) {
+    selection.poses = true;
+  } else if (same_name(word, "velocities")) {
+    selection.velocities = true;
+  } else if (same_name(word, "except")) {
+    after_except = true;
+  } else {
+    return same_name(word, "all");
+  }
+  return true;
+}
+
+Result<StoreCommand> parse_store(const Message& message) {
+  const std::vector<Arg>& args = message.args;
+  if (args.empty() || !is_preset_reference(args[0]))
+    return Error{"expected a name, and optionally the properties to store"};
+  StoreCommand command;
+  if (args[0].is_text()) {
+    command.name = args[0].text;
+    if (const auto fault = name_error(command.name)) return Error{fmt::format("invalid name: {}", *fault)};
+    if (command.name == kScript) return Error{"'script' is reserved for the values of the scene; use another name"};
+  } else {
+    command.number = args[0].number;
+  }
+  bool after_except = false;
+  for (std::size_t i = 1; i < args.size(); i++) {
+    if (!command.selection) command.selection.emplace();
+    if (args[i].is_text() && parse_word(args[i].text, after_except, *command.selection)) continue;
+    return Error{
+        fmt::format("unknown word {}; expected path patterns, behaviors, looks, all, poses, velocities, except",
+                    quoted_text(args[i]))};
+  }
+  return command;
+}
+
+Result<RecallCommand> parse_recall(const Message& message) {
+  const std::vector<Arg>& args = message.args;
+  if (args.empty() || args.size() > 3 || !is_preset_reference(args[0]))
+    return Error{"expected a name or a number, optionally seconds and an easing: " + std::string(easing_names())};
+  RecallCommand command{args[0], 0, Easing::smooth};
+  if (args.size() > 1) {
+    const std::optional<double> seconds = number_of(args[1]);
+    if (!seconds || *seconds < 0 || *seconds > Presets::kMaxMorphSeconds)
+      return Error{fmt::format("the duration must be 0 to {} s", Presets::kMaxMorphSeconds)};
+    command.seconds = *seconds;
+  }
+  if (args.size() > 2) {
+    const std::optional<Easing> easing = args[2].is_text() ? easing_of(args[2].text) : std::nullopt;
+    if (!easing)
+      return Error{fmt::format("unknown easing {}; expected one of: {}", quoted_text(args[2]), easing_names())};
+    command.easing = *easing;
+  }
+  return command;
+}
+
+Result<MorphCommand> parse_morph(const Message& message) {
+  const std::vector<Arg>& args = message.args;
+  const std::optional<double> amount = args.size() == 3 ? number_of(args[2]) : std::nullopt;
+  if (!amount || !is_preset_reference(args[0]) || !is_preset_reference(args[1]))
+    return Error{"expected two presets and an amount from 0 to 1"};
+  return MorphCommand{args[0], args[1], std::clamp(*amount, 0.0, 1.0)};
+}
+
 }  // namespace
 
-Presets::Bank Presets::read(const std::string& scene, PresetFile::WriteAccess access,
+Presets::Bank Presets::read(BackgroundWriter& writer, const std::string& scene, PresetFile::WriteAccess access,
                             std::function<void(const std::string&)> on_failure) {
   Bank bank;
   if (scene.empty()) return bank;
@@ -49,7 +162,7 @@ Presets::Bank Presets::read(const std::string& scene, PresetFile::WriteAccess ac
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
   bank.file = error ? path : canonical.string();
-  bank.saver = std::make_unique<PresetSaver>(PresetFile(path, std::move(access)), std::move(on_failure));
+  bank.saver = std::make_unique<PresetSaver>(writer, PresetFile(path, std::move(access)), std::move(on_failure));
   Result<ParsedPresets> read = bank.saver->load();
   if (!read) {
     log_error("{}; the file stays unchanged, and is backed up when a preset is stored", read.error());
@@ -60,19 +173,17 @@ Presets::Bank Presets::read(const std::string& scene, PresetFile::WriteAccess ac
   return bank;
 }
 
-Presets::Bank Presets::open(Bank bank) { return bank.file == file_ ? std::move(bank) : exchange(std::move(bank)); }
+Presets::Bank Presets::open(Bank bank) { return bank.file == bank_.file ? std::move(bank) : exchange(std::move(bank)); }
 
 Presets::Bank Presets::exchange(Bank bank) {
-  std::swap(list_, bank.list);
-  std::swap(saver_, bank.saver);
-  std::swap(file_, bank.file);
+  std::swap(bank_, bank);
   pairs_.clear();
   update_names();
   return bank;
 }
 
 void Presets::save() {
-  if (saver_ != nullptr && !replaying_) saver_->save(std::make_shared<const PresetList>(list_));
+  if (bank_.saver != nullptr && !replaying_) bank_.saver->save(std::make_shared<const PresetList>(bank_.list));
 }
 
 void Presets::restore(const State& state) {
@@ -81,23 +192,19 @@ void Presets::restore(const State& state) {
 }
 
 void Presets::set_list(PresetList list) {
-  list_ = std::move(list);
+  bank_.list = std::move(list);
   update_names();
 }
 
 void Presets::update_names() {
   names_.clear();
-  for (const auto& preset : list_) names_ += (names_.empty() ? "" : "\n") + preset->name;
+  for (const auto& preset : bank_.list) names_ += (names_.empty() ? "" : "\n") + preset->name;
 }
 
 void Presets::forget_store() {
   capturer_.forget_store();
   bindings_.clear();
   morphs_.clear();
-}
-
-void Presets::finish_saving() {
-  if (saver_ != nullptr) saver_->finish();
 }
 
 void Presets::advance(World& world) {
@@ -114,13 +221,13 @@ Outcome Presets::execute(std::string_view command, const Message& message, World
 
 const std::shared_ptr<const Preset>* Presets::find(std::string_view name) const {
   if (name == kScript) return script_ == nullptr ? nullptr : &script_;
-  const auto at = std::find_if(list_.begin(), list_.end(), [&](const auto& p) { return p->name == name; });
-  return at == list_.end() ? nullptr : &*at;
+  const auto at = std::find_if(bank_.list.begin(), bank_.list.end(), [&](const auto& p) { return p->name == name; });
+  return at == bank_.list.end() ? nullptr : &*at;
 }
 
 Error Presets::not_found(std::string_view name) const {
   std::vector<std::string_view> names{kScript};
-  for (const auto& preset : list_) names.push_back(preset->name);
+  for (const auto& preset : bank_.list) names.push_back(preset->name);
   return Error{fmt::format("there is no preset '{}'{}", printable(shortened(name, 100)), name_hint(name, names))};
 }
 
@@ -131,22 +238,23 @@ Result<std::shared_ptr<const Preset>> Presets::resolve(const Arg& arg) const {
     return *found;
   }
   const double number = arg.number;
-  if (arg.kind == Arg::Kind::nil || !(number >= 1 && number <= static_cast<double>(list_.size())) ||
+  if (arg.kind == Arg::Kind::nil || !(number >= 1 && number <= static_cast<double>(bank_.list.size())) ||
       number != std::floor(number))
     return not_found(arg.kind == Arg::Kind::nil ? "" : number_text(number));
-  return list_[static_cast<std::size_t>(number) - 1];
+  return bank_.list[static_cast<std::size_t>(number) - 1];
 }
 
 Result<Blend> Presets::blend_at(double number) {
-  const auto count = static_cast<double>(list_.size());
+  const auto count = static_cast<double>(bank_.list.size());
   if (!(number >= 1 && number <= count)) {
-    return Error{list_.empty() ? std::string("there is no preset yet; /preset/store makes one")
-                               : fmt::format("the number of a preset must be 1 to {}, got {}", list_.size(), number)};
+    return Error{bank_.list.empty()
+                     ? std::string("there is no preset yet; /preset/store makes one")
+                     : fmt::format("the number of a preset must be 1 to {}, got {}", bank_.list.size(), number)};
   }
   const auto index = static_cast<std::size_t>(number);
   const double part = number - std::floor(number);
-  if (part <= 0) return Blend::of(list_[index - 1]);
-  return blend_of(list_[index - 1], list_[index], part);
+  if (part <= 0) return Blend::of(bank_.list[index - 1]);
+  return blend_of(bank_.list[index - 1], bank_.list[index], part);
 }
 
 Blend Presets::blend_of(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b, double amount) {
@@ -165,25 +273,26 @@ Blend Presets::blend_of(const std::shared_ptr<const Preset>& a, const std::share
 Outcome Presets::store(const Message& message, World& world) {
   Result<StoreCommand> command = parse_store(message);
   if (!command) return Outcome::rejected(command.error());
-  auto existing = list_.end();
+  auto existing = bank_.list.end();
   if (command->number) {
     const auto at = resolve(Arg::of(*command->number));
     if (!at) return Outcome::rejected(at.error());
-    existing = std::find(list_.begin(), list_.end(), *at);
+    existing = std::find(bank_.list.begin(), bank_.list.end(), *at);
     command->name = (*at)->name;
   } else {
-    existing = std::find_if(list_.begin(), list_.end(), [&](const auto& p) { return p->name == command->name; });
+    existing =
+        std::find_if(bank_.list.begin(), bank_.list.end(), [&](const auto& p) { return p->name == command->name; });
   }
-  if (existing == list_.end() && list_.size() >= kMax)
+  if (existing == bank_.list.end() && bank_.list.size() >= kMax)
     return Outcome::rejected(fmt::format("there are {} presets already; delete one", kMax));
   // without words: the selection of the preset that is replaced
-  const PresetSelection selection = command->selection        ? *command->selection
-                                    : existing != list_.end() ? (*existing)->selection
-                                                              : PresetSelection{};
+  const PresetSelection selection = command->selection             ? *command->selection
+                                    : existing != bank_.list.end() ? (*existing)->selection
+                                                                   : PresetSelection{};
   auto captured = capturer_.capture(world.store(), command->name, selection);
   if (!captured) return Outcome::rejected(captured.error());
-  if (existing == list_.end()) {
-    list_.push_back(std::move(*captured));
+  if (existing == bank_.list.end()) {
+    bank_.list.push_back(std::move(*captured));
   } else {
     *existing = std::move(*captured);
   }
@@ -197,7 +306,7 @@ Outcome Presets::erase(const Message& message) {
   const auto preset = resolve(message.args[0]);
   if (!preset) return Outcome::rejected(preset.error());
   if (*preset == script_) return Outcome::rejected("'script' has the values of the scene; it can't be deleted");
-  std::erase(list_, *preset);
+  std::erase(bank_.list, *preset);
   update_names();
   save();
   return {};
@@ -214,11 +323,7 @@ Outcome Presets::recall(const Message& message, World& world) {
     blend = blend_at(command->preset.number);
   }
   if (!blend) return Outcome::rejected(blend.error());
-  Result<std::string> notice = apply(world, *blend, command->seconds, command->easing);
-  if (!notice) return Outcome::rejected(notice.error());
-  Outcome outcome;
-  outcome.warning = std::move(*notice);
-  return outcome;
+  return outcome_of(apply(world, *blend, command->seconds, command->easing));
 }
 
 Result<void> Presets::recall_number(World& world, double number, double seconds) {
@@ -234,11 +339,7 @@ Outcome Presets::morph(const Message& message, World& world) {
   if (!a) return Outcome::rejected(a.error());
   const auto b = resolve(command->b);
   if (!b) return Outcome::rejected(b.error());
-  Result<std::string> notice = apply(world, blend_of(*a, *b, command->amount), 0, Easing::linear);
-  if (!notice) return Outcome::rejected(notice.error());
-  Outcome outcome;
-  outcome.warning = std::move(*notice);
-  return outcome;
+  return outcome_of(apply(world, blend_of(*a, *b, command->amount), 0, Easing::linear));
 }
 
 Outcome Presets::list_names(const Message& message) const {
@@ -246,9 +347,9 @@ Outcome Presets::list_names(const Message& message) const {
   Outcome outcome;
   outcome.kind = Outcome::Kind::answered;
   Message& answer = outcome.answers.emplace_back(Message{"/list/presets", {}});
-  for (const auto& preset : list_) answer.args.push_back(Arg::of(preset->name));
+  for (const auto& preset : bank_.list) answer.args.push_back(Arg::of(preset->name));
   // a reply without arguments would look like a query
-  if (list_.empty()) answer.args.push_back(Arg::of(""));
+  if (bank_.list.empty()) answer.args.push_back(Arg::of(""));
   return outcome;
 }
 

@@ -15,8 +15,8 @@
 #include "engine/commands/outcome.h"
 #include "engine/edits/overrides.h"
 #include "engine/presets/capturer.h"
+#include "engine/presets/file.h"
 #include "engine/presets/morph.h"
-#include "engine/presets/saver.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -35,9 +35,9 @@ class Presets {
     std::unique_ptr<PresetSaver> saver;
     std::string file;  ///< Canonical path of the file.
   };
-  /// Loads the presets of a scene from the file next to it; logs problems. `on_failure` is called with the reason when
-  /// a save fails. May wait for the disk. [any]
-  static Bank read(const std::string& scene, PresetFile::WriteAccess access,
+  /// Loads the presets of a scene from the file next to it; logs problems. `writer` must outlive the bank. `on_failure`
+  /// is called with the reason when a save fails. May wait for the disk. [any]
+  static Bank read(BackgroundWriter& writer, const std::string& scene, PresetFile::WriteAccess access,
                    std::function<void(const std::string&)> on_failure);
   /// Replaces the bank, unless the same file is open already. Returns the bank that isn't used, which must be destroyed
   /// on a thread that may wait for the disk. [sim]
@@ -50,7 +50,7 @@ class Presets {
   void forget_store();
 
   /// Canonical path of the preset file; empty: none.
-  const std::string& file() const { return file_; }
+  const std::string& file() const { return bank_.file; }
 
   /// Executes /preset/store, recall, morph, delete or /list/presets, selected by the last word of the address.
   Outcome execute(std::string_view command, const Message& message, World& world);
@@ -75,17 +75,19 @@ class Presets {
   /// True if capture_all() costs no more than copying the values.
   bool ready(const Store& store) const { return capturer_.ready(store); }
   /// True if all stored presets are on the disk.
-  bool saved() const { return saver_ == nullptr || saver_->saved(); }
+  bool saved() const { return bank_.saver == nullptr || bank_.saver->saved(); }
   /// Applies a recall again that was recorded as an override, after a reset.
   void reapply(World& world, const Blend& blend);
 
-  const PresetList& list() const { return list_; }
+  const PresetList& list() const { return bank_.list; }
   /// Names, one per line.
   std::string_view names() const { return names_; }
   /// Progress of the running morph that is least advanced, 0 to 1; 1 if none runs.
   double progress(const World& world) const { return morphs_.progress(world.time()); }
   /// Waits until all presets are on the disk. [any but sim]
-  void finish_saving();
+  void finish_saving() {
+    if (bank_.saver != nullptr) bank_.saver->finish();
+  }
 
   /// The part of the state that messages can change, for checkpoints.
   struct State {
@@ -93,7 +95,7 @@ class Presets {
     Morphs morphs;
   };
   void capture(State& state) const {
-    state.list = list_;
+    state.list = bank_.list;
     state.morphs = morphs_;
   }
   void restore(const State& state);
@@ -124,9 +126,7 @@ class Presets {
 
   Overrides& overrides_;
   bool replaying_ = false;
-  PresetList list_;
-  std::unique_ptr<PresetSaver> saver_;
-  std::string file_;
+  Bank bank_;
   std::string names_;
   std::shared_ptr<const Preset> script_;
   PresetCapturer capturer_;

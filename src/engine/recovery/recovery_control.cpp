@@ -15,7 +15,7 @@ constexpr std::uint32_t kCheapNodeCount = 4096;  // nodes that can be visited in
 void RecoveryControl::open() {
   const EngineOptions& options = show_.options;
   if (options.recovery_folder.empty() || options.scene.empty()) return;
-  saver_ = std::make_unique<RecoverySaver>(options.recovery_folder, options.recovery_interval);
+  saver_ = std::make_unique<RecoverySaver>(show_.writer, options.recovery_folder, options.recovery_interval);
   const Result<std::optional<RecoverableValues>> recoverable = saver_->open(options.scene);
   if (!saver_->owned()) {
     log_warning("{}{}", options.recover ? "--recover: " : "", RecoverySaver::kOwnedElsewhere);

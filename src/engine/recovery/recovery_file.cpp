@@ -6,7 +6,6 @@
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,8 +25,6 @@ namespace {
 constexpr const char* kFormatKey = "limber recovery";
 constexpr int kVersion = 1;
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20u;
-
-std::string reason() { return std::generic_category().message(errno); }
 
 bool same_values(const double* a, const double* b, std::uint32_t count) {
   return std::memcmp(a, b, count * sizeof *a) == 0;
@@ -61,20 +58,15 @@ std::string RecoverableValues::message() const {
 }
 
 std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& script) {
-  std::unordered_map<std::string, std::uint32_t> script_nodes;
-  for (std::uint32_t i = 0; i < script.schema->nodes().size(); i++) {
-    if (script.schema->layout(script.schema->nodes()[i]) != nullptr) script_nodes.emplace(script.schema->path(i), i);
-  }
+  const std::vector<std::uint32_t> script_nodes = corresponding_nodes(*now.schema, *script.schema);
   PresetBuilder builder;
   bool any = false;
   for (std::uint32_t i = 0; i < now.schema->nodes().size(); i++) {
     const PresetSchema::Node& node = now.schema->nodes()[i];
     const PresetLayout* const layout = now.schema->layout(node);
     if (layout == nullptr) continue;
-    const std::string path = now.schema->path(i);
-    const auto match = script_nodes.find(path);
     const PresetSchema::Node* const script_node =
-        match == script_nodes.end() ? nullptr : &script.schema->nodes()[match->second];
+        script_nodes[i] == kNoNode ? nullptr : &script.schema->nodes()[script_nodes[i]];
     const PresetLayout* const script_layout = script_node == nullptr ? nullptr : script.schema->layout(*script_node);
     PresetLayout changed;
     std::vector<double> values;
@@ -91,9 +83,8 @@ std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& sc
       changed.add(property);
       values.insert(values.end(), in_now, in_now + property.width);
     }
-    if (changed.properties.empty()) continue;
-    any = true;
-    builder.set_values(builder.node(path), std::move(changed), values);
+    any = any || !changed.properties.empty();
+    builder.add(now.schema->path(i), std::move(changed), values);
   }
   if (!any) return nullptr;
   PresetSelection selection;
@@ -146,7 +137,8 @@ Result<void> RecoveryFile::save(const std::shared_ptr<const Preset>& values, std
   const std::string text =
       header.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n" + text_of(PresetList{values});
   Result<void> written = system::replace_file(temporary_file(), text, 0600);
-  if (written && std::rename(temporary_file().c_str(), saved_file().c_str()) != 0) written = Error{reason()};
+  if (written && std::rename(temporary_file().c_str(), saved_file().c_str()) != 0)
+    written = Error{system::error_reason()};
   if (!written) {
     system::remove_file(temporary_file());
     return Error{fmt::format("{}: {}", printable(saved_file()), written.error())};

@@ -1,4 +1,4 @@
-// The mutex is locked only to swap the values out, never while writing.
+// Periodic requests, and the file of each scene.
 #include "engine/recovery/recovery_saver.h"
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/log/log.h"
-#include "base/system/thread.h"
 #include "base/text.h"
 #include "engine/output/health.h"
 
@@ -14,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kOverdueIntervals = 6;  // intervals after which values are overdue
+constexpr int kOverdueRequests = 6;  // unanswered requests after which values are overdue
 
 bool same(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b) {
   if (a == nullptr || b == nullptr) return a == b;
@@ -22,11 +21,6 @@ bool same(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Pr
 }
 
 }  // namespace
-
-RecoverySaver::RecoverySaver(std::string folder, std::chrono::milliseconds interval)
-    : folder_(std::move(folder)), interval_(interval) {}
-
-RecoverySaver::~RecoverySaver() { stop(); }
 
 Result<std::optional<RecoverableValues>> RecoverySaver::open(const std::string& scene) {
   scene_ = scene;
@@ -39,8 +33,9 @@ Result<std::optional<RecoverableValues>> RecoverySaver::open(const std::string& 
 }
 
 void RecoverySaver::begin() {
-  if (!thread_.joinable() && !system::start_thread(thread_, [this] { run(); }))
-    log_warning("values can't be saved for recovery: could not create a thread");
+  next_ = BackgroundWriter::Clock::now() + interval_;
+  writer_.add(*this);
+  if (!writer_.request(*this, next_)) log_warning("values can't be saved for recovery: could not create a thread");
 }
 
 void RecoverySaver::submit(const std::string& scene, std::shared_ptr<const Preset> now,
@@ -48,50 +43,35 @@ void RecoverySaver::submit(const std::string& scene, std::shared_ptr<const Prese
   wants_values_.store(false, std::memory_order_relaxed);
   overdue_.store(false, std::memory_order_relaxed);
   if (now == nullptr) return;
-  Values values{scene, std::move(now), std::move(script)};
-  std::optional<Values> replaced(std::move(values));
+  std::optional<Values> replaced(Values{scene, std::move(now), std::move(script)});
   {
     const std::scoped_lock lock(mutex_);
     submitted_.swap(replaced);
   }
-  changed_.notify_all();
-}
-
-void RecoverySaver::stop() {
-  {
-    const std::scoped_lock lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) thread_.join();
+  (void)writer_.request(*this);
 }
 
 void RecoverySaver::end() {
-  stop();
+  writer_.remove(*this);
   if (file_ != nullptr) file_->end(recovered_);
   file_ = nullptr;
 }
 
-void RecoverySaver::run() {
-  system::name_this_thread("limber-recover");
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point next = Clock::now() + interval_;
-  int intervals = 0;
-  std::unique_lock lock(mutex_);
-  while (true) {
-    const bool submitted = changed_.wait_until(lock, next, [this] { return stopping_ || submitted_.has_value(); });
-    if (stopping_) return;
-    if (!submitted) {
-      next = std::max(next + interval_, Clock::now());
-      intervals = wants_values_.exchange(true) ? intervals + 1 : 0;
-      overdue_.store(intervals >= kOverdueIntervals);
-      if (!unsaved_) continue;
-    }
-    const Values values = submitted ? *std::exchange(submitted_, std::nullopt) : *unsaved_;
-    lock.unlock();
-    write(values);
-    lock.lock();
+BackgroundWriter::Clock::time_point RecoverySaver::run() {
+  std::optional<Values> values;
+  {
+    const std::scoped_lock lock(mutex_);
+    values.swap(submitted_);
   }
+  const auto now = BackgroundWriter::Clock::now();
+  if (!values && now >= next_) {
+    next_ = std::max(next_ + interval_, now);
+    unanswered_requests_ = wants_values_.exchange(true) ? unanswered_requests_ + 1 : 0;
+    overdue_.store(unanswered_requests_ >= kOverdueRequests);
+    values = unsaved_;
+  }
+  if (values) write(*values);
+  return next_;
 }
 
 void RecoverySaver::write(const Values& submitted) {

@@ -1,32 +1,30 @@
-// RecoverySaver: saves the property values every few seconds for recovery after a crash, on its own thread; a tick
-// only copies the values.
+// RecoverySaver: saves the property values every few seconds for recovery after a crash, in the background; a tick only
+// copies the values.
 #pragma once
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
+#include "engine/background_writer.h"
 #include "engine/recovery/recovery_file.h"
 
 namespace limber {
 
-class RecoverySaver {
+class RecoverySaver : private BackgroundWriter::Task {
  public:
   static constexpr auto kInterval = std::chrono::seconds(5);
   static constexpr const char* kOwnedElsewhere =
       "another program plays this scene and owns its presets and recovery file; this one saves neither until the "
       "other has ended; takes can be recorded with --record FILE";
 
-  explicit RecoverySaver(std::string folder, std::chrono::milliseconds interval = kInterval);
+  RecoverySaver(BackgroundWriter& writer, std::string folder, std::chrono::milliseconds interval = kInterval)
+      : writer_(writer), folder_(std::move(folder)), interval_(interval) {}
   /// Keeps the saved file, as after a crash.
-  ~RecoverySaver();
-  RecoverySaver(const RecoverySaver&) = delete;
-  RecoverySaver& operator=(const RecoverySaver&) = delete;
+  ~RecoverySaver() override { writer_.remove(*this); }
 
   /// Opens the recovery file of a scene and returns the values left by a crashed run, if there are any. Error: the file
   /// is damaged, or nothing can be saved. Before begin().
@@ -36,7 +34,7 @@ class RecoverySaver {
   bool owned() const { return !owned_elsewhere_; }
   /// Notes that the values from open() were restored, so that end() removes them. Before begin().
   void set_recovered() { recovered_ = true; }
-  /// Starts the thread, which requests values periodically.
+  /// Starts to request values periodically.
   void begin();
 
   /// True if values are due. A relaxed atomic load. [sim]
@@ -55,15 +53,18 @@ class RecoverySaver {
     std::string scene;
     std::shared_ptr<const Preset> now, script;
   };
-  void run();
+  BackgroundWriter::Clock::time_point run() override;
   void write(const Values& submitted);
   void switch_scene(const std::string& scene);
   void try_take_over();
-  void stop();
 
+  BackgroundWriter& writer_;
   std::string folder_;
   std::chrono::milliseconds interval_;
-  std::unique_ptr<RecoveryFile> file_;  // used only by the thread, once it runs; null: not available
+  // used only by the writer's thread after begin():
+  BackgroundWriter::Clock::time_point next_;  // time at which values are requested again
+  int unanswered_requests_ = 0;
+  std::unique_ptr<RecoveryFile> file_;  // null: not available
   std::string scene_;                   // as passed to open()
   std::shared_ptr<const Preset> saved_;
   bool recovered_ = false;
@@ -72,11 +73,8 @@ class RecoverySaver {
   bool failure_reported_ = false;             // a failure to save was reported
   std::atomic<bool> wants_values_{false};
   std::atomic<bool> overdue_{false};
-  std::mutex mutex_;
-  std::condition_variable changed_;
+  std::mutex mutex_;  // never locked while writing
   std::optional<Values> submitted_;
-  bool stopping_ = false;
-  std::thread thread_;
 };
 
 }  // namespace limber

@@ -26,9 +26,10 @@ TakeHeader header_of(const TakeInitialState& initial_state) {
 
 }  // namespace
 
-TakeRecorder::TakeRecorder(TakeWriter::Target target, TakeInitialState initial_state,
+TakeRecorder::TakeRecorder(BackgroundWriter& writer, TakeWriter::Target target, TakeInitialState initial_state,
                            std::function<void(const std::string&)> on_failure)
-    : writer_(std::make_unique<TakeWriter>(std::move(target), header_of(initial_state), std::move(on_failure))) {
+    : writer_(
+          std::make_unique<TakeWriter>(writer, std::move(target), header_of(initial_state), std::move(on_failure))) {
   writer_->write(std::move(initial_state));
 }
 

@@ -22,7 +22,7 @@ class TakeRecorder {
   static constexpr std::size_t kStateBytesPerTick = 4096;
 
   /// `on_failure` is called with the reason when the file can't be written. [the writer's thread]
-  TakeRecorder(TakeWriter::Target target, TakeInitialState initial_state,
+  TakeRecorder(BackgroundWriter& writer, TakeWriter::Target target, TakeInitialState initial_state,
                std::function<void(const std::string&)> on_failure);
 
   /// Waits until the file has been created, or returns the reason why it can't be. Call before the first tick.

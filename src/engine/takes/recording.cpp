@@ -135,8 +135,8 @@ Outcome TakeRecording::request(const Message& message) {
 Result<void> TakeRecording::start() {
   show_.call_log.begin_tick();
   const std::string& file = show_.options.record;
-  recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Target{file, false}, capture_initial_state(show_, false),
-                                             failure_reporter());
+  recorder_ = std::make_unique<TakeRecorder>(show_.writer, TakeWriter::Target{file, false},
+                                             capture_initial_state(show_, false), failure_reporter());
   Result<void> opened = recorder_->wait_until_open();
   if (!opened) recorder_ = nullptr;
   name_ = title_of_take(file);
@@ -146,8 +146,8 @@ Result<void> TakeRecording::start() {
 std::string TakeRecording::begin_requested() {
   std::string file = *std::exchange(requested_file_, std::nullopt);
   name_ = title_of_take(file);
-  recorder_ = std::make_unique<TakeRecorder>(TakeWriter::Target{file, true}, capture_initial_state(show_, true),
-                                             failure_reporter());
+  recorder_ = std::make_unique<TakeRecorder>(show_.writer, TakeWriter::Target{file, true},
+                                             capture_initial_state(show_, true), failure_reporter());
   return file;
 }
 

@@ -1,9 +1,8 @@
-// TakeWriter: writes a take to the disk on its own thread, so that a tick never waits for the disk. It only appends:
+// TakeWriter: writes a take to the disk in the background, so that a tick never waits for the disk. It only appends:
 // data that was written stays valid if the program crashes.
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -11,16 +10,16 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include "base/result.h"
 #include "base/system/descriptor.h"
+#include "engine/background_writer.h"
 #include "engine/takes/take.h"
 
 namespace limber {
 
-class TakeWriter {
+class TakeWriter : private BackgroundWriter::Task {
  public:
   /// The file to be written.
   struct Target {
@@ -29,11 +28,10 @@ class TakeWriter {
     bool make_unique = false;
   };
   /// `on_failure` is called once with the reason when writing fails. [the writer's thread]
-  TakeWriter(Target target, TakeHeader header, std::function<void(const std::string&)> on_failure);
+  TakeWriter(BackgroundWriter& writer, Target target, TakeHeader header,
+             std::function<void(const std::string&)> on_failure);
   /// Writes the pending data, and waits for it.
-  ~TakeWriter();
-  TakeWriter(const TakeWriter&) = delete;
-  TakeWriter& operator=(const TakeWriter&) = delete;
+  ~TakeWriter() override;
 
   /// Waits until the file has been created, or returns the reason why it can't be. [any; sim only before the first
   /// tick]
@@ -55,42 +53,52 @@ class TakeWriter {
  private:
   /// A frame that the writer's thread has to encode.
   struct Job {
-    std::size_t offset = 0;  // offset in the pending data at which it belongs
+    std::size_t offset = 0;  // offset in the data at which it belongs
     std::optional<TakeInitialState> initial_state;
     std::optional<TakeFiles> files;
   };
-  void run();
+  /// Queued data.
+  struct Block {
+    std::string bytes;
+    std::vector<Job> jobs;
+    bool last = false;
+    bool overflowed = false;
+    bool abandoned = false;
+  };
+  void write(Job job);
+  BackgroundWriter::Clock::time_point run() override;
   Result<void> open_file();
-  Result<void> find_free_path(const std::string& requested_path);
-  void rename_to_target(const std::string& requested_path);
+  Result<void> find_free_path();
+  void rename_to_target();
   void fail(const std::string& why);
+  bool block_is_written() const { return bytes_written_ == block_.bytes.size() && jobs_written_ == block_.jobs.size(); }
+  void fetch_block();
+  void write_part();
+  void end_block();
   void append(std::string_view bytes);
   void append(const Job& job);
   std::uint32_t content_number(const std::string& bytes);
-  void write_all(std::string_view bytes, std::vector<Job>& jobs);
 
+  BackgroundWriter& writer_;
   Target target_;
   TakeHeader header_;
   std::function<void(const std::string&)> on_failure_;
   std::atomic<bool> failed_{false};
   std::atomic<bool> done_{false};
-  // used only by the thread:
+  std::string error_;  // reason why the file couldn't be created
+  // used only by the writer's thread:
   system::Descriptor file_;
   std::map<std::uint64_t, std::uint32_t> content_numbers_;  // numbers of content frames, by hash
   std::string frame_;
-  std::string temporary_path_;  // temporary name of the file; empty once it has its final name
+  std::string path_;                                  // the first unused name
+  std::string temporary_path_;                        // temporary name of the file; empty once it has its final name
+  Block block_;                                       // the data that is being written
+  std::size_t bytes_written_ = 0, jobs_written_ = 0;  // of the block
+  std::size_t unsynced_bytes_ = 0;
 
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::string pending_;  // pending data
-  std::vector<Job> jobs_;
+  std::mutex mutex_;  // never locked while writing
+  Block pending_;
   bool first_write_ = true;  // nothing was queued yet
-  bool open_ = false;
-  bool closing_ = false;
-  bool overflowed_ = false;
-  bool abandoned_ = false;
-  std::string error_;
-  std::thread thread_;
 };
 
 }  // namespace limber

@@ -124,7 +124,8 @@ Recording measure_recording(const ShowFolder& folder, int ticks) {
   Engine engine(link, show_options(folder));
   LIMBER_CHECK(engine.start().ok());
   const std::string file = folder.file("beside.take");
-  TakeRecorder recorder({file, false}, {}, [](const std::string&) {});
+  BackgroundWriter writer;
+  TakeRecorder recorder(writer, {file, false}, {}, [](const std::string&) {});
   LIMBER_CHECK(recorder.wait_until_open().ok());
   const double head = size_of(file);
   Random random(1, "sliders");
