@@ -287,7 +287,7 @@ Result<SetOutcome> Store::validate(NodeId id, const Property& property, std::spa
   };
   if (!property.writable() || (property.computed() && property.write == nullptr))
     return rejected(property.kind == PropertyKind::action ? " can be called, not set" : " can be read, not set");
-  const Result<SetOutcome> outcome = accept_values(property, values, accepted);
+  Result<SetOutcome> outcome = accept_values(property, values, accepted);
   if (!outcome) return rejected(" " + outcome.error());
   if (property.validate != nullptr) {
     const Result<void> allowed = property.validate(nodes_[id.slot].object, accepted);
