@@ -186,12 +186,12 @@ bool DelassusMatrix::factor_released_axes(IndexedSpan<const int> rows, int width
   updates_.assign(released * width, 0);
   columns_.resize((released + 1) * count);
   for (int n = 0; n < released; ++n) {
-    double* line = updates_.data() + n * width;
+    double* line = &updates_[n * width];
     compute_column(released_[n], rows, column(n), {line + axes, released});
     std::copy_n(column(n).data(), count, line);
     const double initial_rate = line[axes + n];
     for (int m = 0; m < n; ++m) {
-      const double* before = updates_.data() + m * width;
+      const double* before = &updates_[m * width];
       subtract_scaled(line, before, before[axes + n], width);
     }
     if (!(line[axes + n] > kMinRateRatio * initial_rate)) return false;

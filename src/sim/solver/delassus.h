@@ -54,7 +54,9 @@ class DelassusMatrix {
   static ImpulseSite impulse_site(const CoupledRow& row);
   void compute_column(const ImpulseSite& site, IndexedSpan<const int> rows, IndexedSpan<double> rates,
                       IndexedSpan<double> axes);
-  IndexedSpan<double> column(int n) { return {columns_.data() + n * row_ids_.size(), row_ids_.size()}; }
+  IndexedSpan<double> column(int n) {
+    return IndexedSpan<double>(columns_).subspan(n * row_ids_.size(), row_ids_.size());
+  }
 
   SpanningTrees& trees_;
   CoupledRows& rows_;

@@ -49,7 +49,7 @@ class IndexedSpan : public std::span<T> {
  public:
   IndexedSpan() = default;
   template <std::convertible_to<Base> Range>
-  IndexedSpan(Range&& range) : Base(range) {}
+  IndexedSpan(Range&& range) : Base(range) {}  // NOLINT(bugprone-forwarding-reference-overload): copies alike
   IndexedSpan(T* first, int count) : Base(first, count_of(count)) {}
   T& operator[](int i) const { return Base::operator[](count_of(i)); }
   int size() const { return static_cast<int>(Base::size()); }

@@ -14,7 +14,7 @@ class DenseLu {
   DenseLu(WorkBudget& budget, int usual_size) : budget_(budget) { lu_.clear_and_reserve(usual_size * usual_size); }
   /// Sets the size; all elements are 0.
   void reset(int size);
-  double* row(int i) { return lu_.data() + i * width_; }
+  double* row(int i) { return &lu_[i * width_]; }
   /// Returns false if the matrix is singular.
   bool factor();
   /// Solves in place: the right-hand side becomes the solution.
