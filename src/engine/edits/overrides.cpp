@@ -28,11 +28,11 @@ void Overrides::add(const Message& message) {
   if (known == values_.end()) {
     if (values_.size() >= kMaxOverrides) return;
     known = values_.emplace(key_, Value{}).first;
-    if (backup_ != nullptr) backup_->values_.try_emplace(key_);
-  } else if (backup_ != nullptr && known->second.backup != backup_->number_) {
-    backup_->values_.try_emplace(key_, known->second);
+    if (backup_ != nullptr) backup_->values.try_emplace(key_);
+  } else if (backup_ != nullptr && known->second.backup != backup_->number) {
+    backup_->values.try_emplace(key_, known->second);
   }
-  if (backup_ != nullptr) known->second.backup = backup_->number_;
+  if (backup_ != nullptr) known->second.backup = backup_->number;
   known->second.message = message;
   known->second.order = ++order_;
 }
@@ -46,7 +46,7 @@ void Overrides::release(const std::string& address) {
 
 void Overrides::add_recall(const Blend& blend) {
   version_++;
-  if (backup_ != nullptr && !backup_->recalls_) backup_->recalls_ = recalls_;
+  if (backup_ != nullptr && !backup_->recalls) backup_->recalls = recalls_;
   std::erase_if(recalls_, [&](const Recall& recall) { return replaces(recall.blend, blend); });
   if (recalls_.size() >= kMaxRecalls) recalls_.erase(recalls_.begin());
   recalls_.push_back({blend, ++order_});
@@ -54,7 +54,7 @@ void Overrides::add_recall(const Blend& blend) {
 
 void Overrides::swap(Backup& backup) {
   version_++;
-  for (auto& [key, value] : backup.values_) {
+  for (auto& [key, value] : backup.values) {
     std::optional<Value> now;
     if (const auto known = values_.find(key); known != values_.end()) now = known->second;
     if (value) {
@@ -64,7 +64,7 @@ void Overrides::swap(Backup& backup) {
     }
     value = std::move(now);
   }
-  if (backup.recalls_) std::swap(recalls_, *backup.recalls_);
+  if (backup.recalls) std::swap(recalls_, *backup.recalls);
 }
 
 std::vector<Override> Overrides::in_order() const {

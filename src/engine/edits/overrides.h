@@ -35,16 +35,15 @@ class Overrides {
 
  public:
   /// The previous state of replaced overrides, for undo.
-  class Backup {
-    friend class Overrides;
-    std::uint64_t number_ = 0;
-    std::unordered_map<std::string, std::optional<Value>> values_;
-    std::optional<std::vector<Recall>> recalls_;
+  struct Backup {
+    std::uint64_t number = 0;
+    std::unordered_map<std::string, std::optional<Value>> values;
+    std::optional<std::vector<Recall>> recalls;
   };
   /// From now on stores the previous state of each override that is replaced in `backup`; null: stops.
   void record_into(Backup* backup) {
     backup_ = backup;
-    if (backup != nullptr && backup->number_ == 0) backup->number_ = ++backup_count_;
+    if (backup != nullptr && backup->number == 0) backup->number = ++backup_count_;
   }
   /// Restores the state in `backup`, and stores the current state there.
   void swap(Backup& backup);

@@ -255,38 +255,38 @@ void UndoStack::clear() {
 
 std::shared_ptr<const UndoStack::State> UndoStack::state() const {
   auto state = std::make_shared<State>();
-  for (const auto& step : undo_steps_) state->undo_steps_.push_back(*step);
-  for (const auto& step : redo_steps_) state->redo_steps_.push_back(*step);
+  for (const auto& step : undo_steps_) state->undo_steps.push_back(*step);
+  for (const auto& step : redo_steps_) state->redo_steps.push_back(*step);
   for (const OpenStep& open : open_steps_) {
     const auto at =
         std::find_if(undo_steps_.begin(), undo_steps_.end(), [&](const auto& step) { return step.get() == open.step; });
-    std::optional<State::OpenRef>& ref = state->open_steps_.emplace_back();
+    std::optional<State::OpenRef>& ref = state->open_steps.emplace_back();
     if (at != undo_steps_.end()) ref = {static_cast<std::size_t>(at - undo_steps_.begin()), open.number, open.last_use};
   }
-  state->uses_ = uses_;
-  state->pass_ = pass_;
-  state->values_ = values_;
-  state->undo_text_ = undo_text_;
-  state->redo_text_ = redo_text_;
+  state->uses = uses_;
+  state->pass = pass_;
+  state->values = values_;
+  state->undo_text = undo_text_;
+  state->redo_text = redo_text_;
   return state;
 }
 
 void UndoStack::restore(const State& state) {
   clear();
-  for (const Step& step : state.undo_steps_) undo_steps_.push_back(std::make_unique<Step>(step));
-  for (const Step& step : state.redo_steps_) redo_steps_.push_back(std::make_unique<Step>(step));
-  pass_ = state.pass_;
-  values_ = state.values_;
-  undo_text_ = state.undo_text_;
-  redo_text_ = state.redo_text_;
-  uses_ = state.uses_;
-  for (std::size_t i = 0; i < state.open_steps_.size(); i++) {
+  for (const Step& step : state.undo_steps) undo_steps_.push_back(std::make_unique<Step>(step));
+  for (const Step& step : state.redo_steps) redo_steps_.push_back(std::make_unique<Step>(step));
+  pass_ = state.pass;
+  values_ = state.values;
+  undo_text_ = state.undo_text;
+  redo_text_ = state.redo_text;
+  uses_ = state.uses;
+  for (std::size_t i = 0; i < state.open_steps.size(); i++) {
     OpenStep& open = open_steps_[i];
     open.masks.clear();
-    if (!state.open_steps_[i]) continue;
-    open.step = undo_steps_[state.open_steps_[i]->step].get();
-    open.number = state.open_steps_[i]->number;
-    open.last_use = state.open_steps_[i]->last_use;
+    if (!state.open_steps[i]) continue;
+    open.step = undo_steps_[state.open_steps[i]->step].get();
+    open.number = state.open_steps[i]->number;
+    open.last_use = state.open_steps[i]->last_use;
     for (const Edit& edit : open.step->edits) open.add(edit.id, *edit.property);
   }
 }

@@ -82,22 +82,20 @@ class UndoStack {
 
  public:
   /// A copy of the whole stack, for checkpoints.
-  class State {
-    friend class UndoStack;
+  struct State {
     struct OpenRef {
-      std::size_t step = 0;  // index in done_
+      std::size_t step = 0;  ///< Index in undo_steps.
       std::uint64_t number = 0, last_use = 0;
     };
-    std::vector<Step> undo_steps_, redo_steps_;
-    std::vector<std::optional<OpenRef>> open_steps_;
-    std::uint64_t uses_ = 0, pass_ = 0;
-    std::size_t values_ = 0;
-    std::string undo_text_, redo_text_;
+    std::vector<Step> undo_steps, redo_steps;
+    std::vector<std::optional<OpenRef>> open_steps;
+    std::uint64_t uses = 0, pass = 0;
+    std::size_t values = 0;
+    std::string undo_text, redo_text;
 
-   public:
     /// Approximate size in bytes.
     std::size_t size() const {
-      return values_ * 2 * sizeof(double) + (undo_steps_.size() + redo_steps_.size()) * sizeof(Step);
+      return values * 2 * sizeof(double) + (undo_steps.size() + redo_steps.size()) * sizeof(Step);
     }
   };
   std::shared_ptr<const State> state() const;

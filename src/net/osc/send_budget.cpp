@@ -2,6 +2,7 @@
 #include "net/osc/send_budget.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace limber {
 
@@ -17,9 +18,17 @@ bool SendBudget::Account::try_consume(std::size_t bytes, std::size_t values) {
   return true;
 }
 
+std::optional<SendBudget::Report> SendBudget::Account::end_window(std::int64_t now, double seconds) {
+  const bool reduced = std::exchange(withheld_, 0) > 0;
+  const bool changed = std::exchange(reduced_, reduced) != reduced;
+  const SendLimits spent = std::exchange(spent_, {});
+  if (!changed && !(reduced && now - reported_ >= kReportInterval)) return {};
+  reported_ = now;
+  return Report{this, reduced, spent.bytes / seconds, spent.values / seconds};
+}
+
 SendBudget::Account* SendBudget::open_account() {
-  Account& account = accounts_.emplace_back();
-  account.available_ = {each_.bytes * kBurst, each_.values * kBurst};
+  Account& account = accounts_.emplace_back(SendLimits{each_.bytes * kBurst, each_.values * kBurst});
   demands_.reserve(accounts_.size());
   reports_.reserve(accounts_.size());
   return &account;
@@ -45,7 +54,7 @@ void SendBudget::refill(std::int64_t now) {
 void SendBudget::distribute(double SendLimits::*member, double seconds) {
   const double max = each_.*member * seconds;
   const auto demand_of = [&](const Account& account) {
-    return std::clamp(each_.*member * kBurst - account.available_.*member, 0.0, max);
+    return std::clamp(each_.*member * kBurst - account.available(member), 0.0, max);
   };
   demands_.clear();
   for (const Account& account : accounts_) demands_.push_back(demand_of(account));
@@ -61,7 +70,7 @@ void SendBudget::distribute(double SendLimits::*member, double seconds) {
     }
     remaining -= demands_[i];
   }
-  for (Account& account : accounts_) account.available_.*member += std::min(demand_of(account), level);
+  for (Account& account : accounts_) account.refill(member, std::min(demand_of(account), level));
 }
 
 const std::vector<SendBudget::Report>& SendBudget::reports(std::int64_t now) {
@@ -70,21 +79,13 @@ const std::vector<SendBudget::Report>& SendBudget::reports(std::int64_t now) {
   const double seconds = static_cast<double>(now - window_start_) * 1e-9;
   window_start_ = now;
   for (Account& account : accounts_) {
-    const bool reduced = account.withheld_ > 0;
-    const bool changed = reduced != account.reduced_;
-    if (changed || (reduced && now - account.reported_ >= kReportInterval)) {
-      reports_.push_back({&account, reduced, account.spent_.bytes / seconds, account.spent_.values / seconds});
-      account.reported_ = now;
-    }
-    account.reduced_ = reduced;
-    account.withheld_ = 0;
-    account.spent_ = {};
+    if (const std::optional<Report> report = account.end_window(now, seconds)) reports_.push_back(*report);
   }
   return reports_;
 }
 
 std::size_t SendBudget::reduced() const {
-  return static_cast<std::size_t>(std::ranges::count_if(accounts_, [](const Account& a) { return a.reduced_; }));
+  return static_cast<std::size_t>(std::ranges::count_if(accounts_, [](const Account& a) { return a.reduced(); }));
 }
 
 }  // namespace limber

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <list>
+#include <optional>
 #include <vector>
 
 namespace limber {
@@ -29,15 +30,31 @@ class SendBudget {
 
   explicit SendBudget(SendLimits each = kPerSender, SendLimits all = kTotal) : each_(each), all_(all) {}
 
+  class Account;
+  /// Reports that a sender's reduction has begun, continues or has ended.
+  struct Report {
+    const Account* account = nullptr;
+    bool reduced = false;  ///< False: the sender is no longer reduced.
+    double bytes = 0;      ///< Per second, in the last window.
+    double values = 0;
+  };
   /// The budget of one sender.
   class Account {
    public:
+    explicit Account(SendLimits available) : available_(available) {}
     /// Charges the amount. Returns false if nothing is left. A charge larger than the rest is allowed; the debt is paid
     /// by later refills.
     bool try_consume(std::size_t bytes, std::size_t values);
 
+    // Called by SendBudget.
+    double available(double SendLimits::*member) const { return available_.*member; }
+    void refill(double SendLimits::*member, double amount) { available_.*member += amount; }
+    /// Ends a window of `seconds`; returns a report if one is due.
+    std::optional<Report> end_window(std::int64_t now, double seconds);
+    /// True if charges were rejected in the last window.
+    bool reduced() const { return reduced_; }
+
    private:
-    friend class SendBudget;
     SendLimits available_;
     SendLimits spent_;            // in this window
     std::uint64_t withheld_ = 0;  // number of rejected charges in this window
@@ -53,13 +70,6 @@ class SendBudget {
   /// of accounts stays the same.
   void refill(std::int64_t now);
 
-  /// Reports that a sender's reduction has begun, continues or has ended.
-  struct Report {
-    const Account* account = nullptr;
-    bool reduced = false;  ///< False: the sender is no longer reduced.
-    double bytes = 0;      ///< Per second, in the last window.
-    double values = 0;
-  };
   /// Returns the reports of the window that has ended; empty within a window.
   const std::vector<Report>& reports(std::int64_t now);
   /// Number of senders that are currently reduced.

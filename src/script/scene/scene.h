@@ -110,11 +110,17 @@ class Scene {
   Evaluation complete(std::string_view text);
   /// All names that a scene sees, one per line: globals, library.member, thing.member, thing:method.
   std::string names();
+  /// What has state beyond the world's, for SceneCheckpoint.
+  struct Components {
+    Vm& vm;
+    ScriptContext& context;
+    EarlierRuns& earlier;
+  };
+  Components components() { return {*vm_, *context_, *earlier_}; }
   /// The folder that contains the scene's `scripts/`.
   const std::string& show_folder() const;
 
  private:
-  friend class SceneCheckpoint;
   void adopt_run(Scene& previous);
   std::unique_ptr<EarlierRuns> earlier_;
   std::unique_ptr<ScriptContext> context_;

@@ -50,10 +50,11 @@ void SceneCheckpoint::restore(const State& from, Vm& vm, const PageStore& pages,
 }
 
 void SceneCheckpoint::capture(Scene& scene, PageStore& pages, const SceneCheckpoint* previous, Archive& scratch) {
-  const auto serialize_scene = [&](Archive& archive) { serialize_context(archive, *scene.context_); };
-  capture(state_, *scene.vm_, pages, previous == nullptr ? nullptr : &previous->state_, scratch, serialize_scene);
+  const Scene::Components components = scene.components();
+  const auto serialize_scene = [&](Archive& archive) { serialize_context(archive, components.context); };
+  capture(state_, components.vm, pages, previous == nullptr ? nullptr : &previous->state_, scratch, serialize_scene);
   earlier_.clear();
-  for (EarlierRuns::Run& run : scene.earlier_->all()) {
+  for (EarlierRuns::Run& run : components.earlier.all()) {
     if (run.timers == 0) continue;
     const State* older = nullptr;
     if (previous != nullptr) {
@@ -68,8 +69,10 @@ void SceneCheckpoint::capture(Scene& scene, PageStore& pages, const SceneCheckpo
 }
 
 void SceneCheckpoint::restore(Scene& scene, const PageStore& pages, Archive& scratch) const {
-  restore(state_, *scene.vm_, pages, scratch, [&](Archive& archive) { serialize_context(archive, *scene.context_); });
-  for (EarlierRuns::Run& run : scene.earlier_->all()) {
+  const Scene::Components components = scene.components();
+  restore(state_, components.vm, pages, scratch,
+          [&](Archive& archive) { serialize_context(archive, components.context); });
+  for (EarlierRuns::Run& run : components.earlier.all()) {
     const auto known =
         std::ranges::find_if(earlier_, [&](const EarlierState& state) { return state.number == run.number; });
     if (known == earlier_.end()) {
