@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "base/check.h"
+#include "base/memory/archive.h"
 #include "base/text.h"
 
 namespace limber {
@@ -321,9 +322,18 @@ void Store::get(NodeId id, const Property& property, double* out) const {
 void Store::mark_dirty(NodeId id, const Property& property) {
   if (property.on_change == nullptr || !alive(id)) return;
   Node& node = nodes_[id.slot];
-  if (node.dirty == 0) dirty_nodes_.push_back(id);
+  if (node.dirty == 0) state_.dirty_nodes.push_back(id);
   node.dirty |= std::uint64_t{1} << property.index;
-  dirty_are_independent_ = dirty_are_independent_ && property.independent;
+  state_.dirty_are_independent = state_.dirty_are_independent && property.independent;
+}
+
+void Store::serialize(Archive& archive) {
+  auto& [dirty_nodes, dirty_are_independent] = state_;
+  if (archive.loading()) {
+    for (const NodeId id : dirty_nodes) nodes_[id.slot].dirty = 0;
+  }
+  archive.serialize_all(dirty_nodes, dirty_are_independent);
+  for (const NodeId id : dirty_nodes) archive.serialize(nodes_[id.slot].dirty);
 }
 
 void Store::mark_all_dirty(NodeId id) {
@@ -332,10 +342,10 @@ void Store::mark_all_dirty(NodeId id) {
 
 void Store::flush(ThreadPool* pool) {
   // A callback may set other properties; at most four rounds, in case of a cycle.
-  for (int round = 0; round < 4 && !dirty_nodes_.empty(); round++) {
+  for (int round = 0; round < 4 && !state_.dirty_nodes.empty(); round++) {
     flushing_.clear();
-    flushing_.swap(dirty_nodes_);
-    ThreadPool* const usable_pool = std::exchange(dirty_are_independent_, true) ? pool : nullptr;
+    flushing_.swap(state_.dirty_nodes);
+    ThreadPool* const usable_pool = std::exchange(state_.dirty_are_independent, true) ? pool : nullptr;
     parallel_for_ranges(usable_pool, static_cast<int>(flushing_.size()), [this](int, int first, int end) {
       for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(end); i++) {
         prefetch_ahead(i, flushing_.size(), [this](std::size_t index) { return flushing_[index]; });
@@ -347,7 +357,7 @@ void Store::flush(ThreadPool* pool) {
 
 // The node stays in the list of dirty nodes, without dirty bits: to search the list would cost more.
 void Store::flush(NodeId id) {
-  dirty_are_independent_ = false;
+  state_.dirty_are_independent = false;
   flush_node(id);
 }
 

@@ -42,6 +42,8 @@ struct SetOutcome {
   bool clamped = false;
 };
 
+class Archive;
+
 class Store {
  public:
   Store();
@@ -223,6 +225,14 @@ class Store {
 
   std::span<const double> persistent_values() const { return persistent_; }
   std::span<const double> transient_values() const { return transient_; }
+  /// Write access to all values, to restore a checkpoint of the same structure.
+  std::span<double> restore_persistent_values() {
+    persistent_version_++;
+    return persistent_;
+  }
+  std::span<double> restore_transient_values() { return transient_; }
+  /// For checkpoints: the properties with pending on-change callbacks, in the order in which these will be called.
+  void serialize(Archive& archive);
   /// Counts writes to persistent values and changes of the structure. Copies are out of date when it has changed.
   std::uint64_t persistent_version() const { return persistent_version_; }
   std::uint64_t structure_version() const { return structure_version_; }
@@ -250,7 +260,6 @@ class Store {
   }
 
  private:
-  friend class WorldCheckpoint;
   struct Node {
     const PropertyTable* table = nullptr;
     void* object = nullptr;
@@ -325,8 +334,11 @@ class Store {
   std::vector<std::vector<std::uint32_t>> free_transient_;
   std::unordered_set<std::uint32_t, ChildHash, ChildEqual> child_of_{0, ChildHash{{&nodes_}}, ChildEqual{{&nodes_}}};
   std::vector<const PropertyTable*> tables_;
-  std::vector<NodeId> dirty_nodes_;
-  bool dirty_are_independent_ = true;  // all pending callbacks are independent, and no node is in the list twice
+  // what persists from tick to tick, besides the values and the dirty flags of the nodes in the list
+  struct State {
+    std::vector<NodeId> dirty_nodes;
+    bool dirty_are_independent = true;  // all pending callbacks are independent, and no node is in the list twice
+  } state_;
   std::vector<NodeId> flushing_;
   StoreTransaction transaction_;
   NodeId root_;

@@ -14,7 +14,7 @@ void Store::begin_transaction() {
   transaction_.number++;
   transaction_.values.clear();
   transaction_.notifications.clear();
-  transaction_.dirty_before = dirty_nodes_.size();
+  transaction_.dirty_before = state_.dirty_nodes.size();
 }
 
 void Store::commit_transaction() {
@@ -74,11 +74,11 @@ void Store::rollback() {
     }
   }
   // Callbacks run in the order in which nodes became dirty, so nodes that are no longer dirty must leave the list.
-  const auto first =
-      dirty_nodes_.begin() + static_cast<std::ptrdiff_t>(std::min(transaction_.dirty_before, dirty_nodes_.size()));
-  dirty_nodes_.erase(
-      std::remove_if(first, dirty_nodes_.end(), [&](NodeId id) { return !alive(id) || nodes_[id.slot].dirty == 0; }),
-      dirty_nodes_.end());
+  const auto first = state_.dirty_nodes.begin() +
+                     static_cast<std::ptrdiff_t>(std::min(transaction_.dirty_before, state_.dirty_nodes.size()));
+  state_.dirty_nodes.erase(std::remove_if(first, state_.dirty_nodes.end(),
+                                          [&](NodeId id) { return !alive(id) || nodes_[id.slot].dirty == 0; }),
+                           state_.dirty_nodes.end());
 }
 
 void Store::set_hidden(NodeId id, bool hidden) {

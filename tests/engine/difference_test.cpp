@@ -134,14 +134,14 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
   const SceneDiff diff = compare(last, now);
   std::vector<std::string> set;
   const NodeId tip = live.body("arm").find_part("tip")->id();
-  const Part::State state = live.body("arm").find_part("tip")->capture_state();
+  const Part::Motion state = live.body("arm").find_part("tip")->capture_motion();
   apply({live.world, candidate.world, last, now, diff,
          [&](NodeId id, const Property& r) { set.push_back(live.store.path(id) + "/" + r.name); }},
         objects);
   EXPECT_EQ(set, std::vector<std::string>{"/physics/body/arm/part/tip/friction"});
   EXPECT_EQ(live.world.body_names(), (std::vector<std::string_view>{"arm", "floor", "extra"}));
   EXPECT_EQ(live.body("arm").find_part("tip")->id(), tip);
-  EXPECT_EQ(live.body("arm").find_part("tip")->capture_state().bullet_pose, state.bullet_pose);
+  EXPECT_EQ(live.body("arm").find_part("tip")->capture_motion().bullet_pose, state.bullet_pose);
   EXPECT_EQ(live.body("extra").root()->pose().position, Vec3(9, 0, 0));
   EXPECT_EQ(live.body("extra").root()->shape(), live.world.find_shape("ball")->id());
   EXPECT_EQ(objects.bodies.size(), 3u);

@@ -73,7 +73,7 @@ struct EditedShow {
 
 /// Pose and velocity of a part, as bits.
 inline std::vector<double> motion_of(const Part& part) {
-  const Part::State s = part.capture_state();
+  const Part::Motion s = part.capture_motion();
   std::vector<double> all;
   for (int i = 0; i < 3; i++) {
     for (const double v : {s.pose.position[i], s.linear_velocity[i], s.angular_velocity[i]}) all.push_back(v);

@@ -1,5 +1,6 @@
 // Store: the setter, dirty properties, computed properties, slots and generations, reuse of blocks.
 #include "properties/store.h"
+#include "base/memory/archive.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -483,6 +484,24 @@ TEST_F(ManyMarbles, ANodeListedTwicePreventsParallelFlush) {
     reset();
     store.flush(&pool);
     ASSERT_EQ(rolls.order.size(), ids.size());
+    ASSERT_EQ(rolls.threads, std::set{std::this_thread::get_id()});
+  }
+}
+
+TEST_F(ManyMarbles, CheckpointRestoresDependentCallbacks) {
+  Archive checkpoint;
+  for (int repetition = 0; repetition < kRepetitions; repetition++) {
+    spin_all();
+    ASSERT_TRUE(set(store, ids[kCount / 2], "weight", {1}));
+    checkpoint.begin_saving();
+    store.serialize(checkpoint);
+    store.flush();
+    reset();
+    checkpoint.begin_loading();
+    store.serialize(checkpoint);
+    store.flush(&pool);
+    ASSERT_EQ(rolls.order.size(), ids.size());
+    ASSERT_TRUE(in_dirty_order());
     ASSERT_EQ(rolls.threads, std::set{std::this_thread::get_id()});
   }
 }

@@ -212,7 +212,7 @@ TEST(BehaviorTransaction, RestoresGeneratorsTimersAndErrors) {
   const Property& beat = one.type().table->at("beat");
   const std::uint64_t before = one.state_hash(0);
   s.world.transaction().begin();
-  s.list().transaction().save(one);
+  one.save_for_rollback();
   (void)one.random().uniform();
   s.set(one.id(), "beat", {1});
   EXPECT_TRUE(one.interval_elapsed(beat)) << "every tick";

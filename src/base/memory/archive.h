@@ -13,6 +13,14 @@
 
 namespace limber {
 
+class Archive;
+
+/// A type with a function `void serialize(Archive&)` of its own.
+template <class T>
+concept HasSerialize = requires(T& value, Archive& archive) {
+  value.serialize(archive);
+};
+
 class Archive {
  public:
   /// Starts saving: clears the buffer; serialize() appends to it.
@@ -36,9 +44,16 @@ class Archive {
   /// The buffer. To load saved data, fill it before begin_loading().
   std::vector<std::byte>& bytes() { return bytes_; }
 
+  /// A type is serialized by its own function, or else byte by byte.
   template <class T>
-  requires std::is_trivially_copyable_v<T>
-  void serialize(T& value) { serialize_raw(&value, sizeof value); }
+  requires HasSerialize<T> || std::is_trivially_copyable_v<T>
+  void serialize(T& value) {
+    if constexpr (HasSerialize<T>) {
+      value.serialize(*this);
+    } else {
+      serialize_raw(&value, sizeof value);
+    }
+  }
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void serialize(std::vector<T>& list) {

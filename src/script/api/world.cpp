@@ -23,7 +23,7 @@ Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generatio
   // an rng object that outlives its behavior draws from the scene's generator
   if (slot < 0 || !c.alive(id)) return c.generator();
   auto& behavior = *static_cast<Behavior*>(c.world->store().object(id));
-  c.world->behaviors().transaction().save(behavior);
+  behavior.save_for_rollback();
   return behavior.random();
 }
 

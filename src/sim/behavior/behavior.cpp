@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
+#include "base/memory/archive.h"
 #include "base/text.h"
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_group.h"
@@ -68,12 +69,13 @@ Result<void> check_names(const Body& body, std::string_view kind, const Selectio
 std::vector<Property> Behavior::common_properties() {
   Property active = boolean("active", true, "Whether it acts; setting it also clears an error.");
   active.on_write = &Behavior::on_active_written;
-  return {std::move(active),
-          computed<&Behavior::read_time>(
-              readout(properties::number("time", "µs", 0, 0, kUnbounded, "Time that it took in the last tick."))),
-          invokes<&Behavior::act_remove>(action("remove", 0, 0, "Removes the behavior.")),
-          validated_by<&Behavior::validate_place>(state(computed<&Behavior::read_place, &Behavior::write_place>(
-              integer("place", 1, 1, 1e6, "Position in the step order of its body's behaviors, from 1."))))};
+  return {
+      std::move(active),
+      computed<&Behavior::read_time>(
+          readout(properties::number("time", "µs", 0, 0, kUnbounded, "Time that it took in the last tick."))),
+      invokes<&Behavior::act_remove>(action("remove", 0, 0, "Removes the behavior.")),
+      validated_by<&Behavior::validate_place>(properties::state(computed<&Behavior::read_place, &Behavior::write_place>(
+          integer("place", 1, 1, 1e6, "Position in the step order of its body's behaviors, from 1."))))};
 }
 
 Behavior::Behavior() = default;
@@ -89,6 +91,13 @@ void Behavior::adopt_state(Behavior&) {}
 
 void Behavior::serialize(Archive&) {}
 
+void Behavior::serialize_all(Archive& archive) {
+  auto& [timers, random, seeded_with, fault, resolved_structure, needs_start] = state_;
+  auto& [text, file, line] = fault;
+  archive.serialize_all(timers, random, seeded_with, text, file, line, resolved_structure, needs_start);
+  serialize(archive);
+}
+
 const std::string& Behavior::name() const { return store().name(id_); }
 Store& Behavior::store() const { return world_->store(); }
 
@@ -97,7 +106,7 @@ const double* Behavior::values(std::uint32_t parameter) const {
 }
 
 bool Behavior::active() const { return store().values(id_, type_->table->property(0))[0] != 0; }
-bool Behavior::runs() const { return !removed() && active() && fault_.text.empty() && body_->enabled(); }
+bool Behavior::runs() const { return !removed() && active() && state_.fault.text.empty() && body_->enabled(); }
 double Behavior::step_microseconds() const {
   return 1e6 * (group_ == nullptr ? step_seconds_ : group_->seconds_per_member());
 }
@@ -115,12 +124,21 @@ Result<void> Behavior::validate_place(const double*) const {
 
 void Behavior::on_active_written(void* object, const Property&) {
   auto& behavior = *static_cast<Behavior*>(object);
-  behavior.world().behaviors().transaction().save(behavior);
-  behavior.fault_ = {};
+  behavior.save_for_rollback();
+  behavior.state_.fault = {};
 }
 
 void Behavior::request_preparation() {
-  if (group_ != nullptr) group_->needs_preparation_ = true;
+  if (group_ != nullptr) group_->request_preparation();
+}
+
+void Behavior::save_for_rollback() {
+  if (world().transaction().first_in_call(saved_in_call_)) world().behaviors().transaction().save(*this);
+}
+
+void Behavior::restore(const State& state) {
+  state_ = state;
+  request_preparation();
 }
 
 Result<void> Behavior::act_remove(std::span<const double>) {
@@ -130,8 +148,8 @@ Result<void> Behavior::act_remove(std::span<const double>) {
 
 void Behavior::fail(BehaviorFault fault) {
   if (removed()) return;
-  world().behaviors().transaction().save(*this);
-  fault_ = std::move(fault);
+  save_for_rollback();
+  state_.fault = std::move(fault);
   request_preparation();
   world().behaviors().report_fault(*this);
 }
@@ -143,16 +161,16 @@ Vec3 Behavior::random_between(const Vec3& a, const Vec3& b) {
 }
 
 bool Behavior::interval_elapsed(const Property& property) {
-  world().behaviors().transaction().save(*this);
+  save_for_rollback();
   const double now = world().time();
   const double tick = world().timestep();
   const double interval = 1e-3 * store().values(id_, property)[0];
   // a sum of time steps deviates from a multiple of the interval by a few bits
   const double tolerance = 1e-4 * tick;
-  const auto existing =
-      std::find_if(timers_.begin(), timers_.end(), [&](const IntervalTimer& b) { return b.property == &property; });
-  if (existing == timers_.end()) {
-    timers_.push_back({&property, now, interval, 0});
+  const auto existing = std::find_if(state_.timers.begin(), state_.timers.end(),
+                                     [&](const IntervalTimer& b) { return b.property == &property; });
+  if (existing == state_.timers.end()) {
+    state_.timers.push_back({&property, now, interval, 0});
     return true;
   }
   IntervalTimer& timer = *existing;
@@ -166,15 +184,43 @@ bool Behavior::interval_elapsed(const Property& property) {
   return count > std::exchange(timer.count, std::max(count, timer.count));
 }
 
-void Behavior::attach(Body& body, NodeId id, std::shared_ptr<const BehaviorType> type,
-                      std::shared_ptr<const BehaviorSetup> setup, BehaviorGroup* group) {
+Result<void> Behavior::attach(Body& body, std::shared_ptr<const BehaviorType> type,
+                              std::shared_ptr<const BehaviorSetup> setup, BehaviorGroup* group) {
   world_ = &body.world();
   body_ = &body;
-  id_ = id;
   type_ = std::move(type);
   setup_ = std::move(setup);
   group_ = group;
-  timers_.reserve(4);
+  state_.timers.reserve(4);
+  return resolve();
+}
+
+void Behavior::add_node(const std::string& name) {
+  id_ = store().add(*type_->table, body_->behavior_group(), name, this);
+  body_->insert_behavior(body_->behaviors().size(), *this);
+}
+
+std::unique_ptr<Behavior> Behavior::make_replacement(const std::shared_ptr<const BehaviorType>& type) {
+  std::unique_ptr<Behavior> behavior = type->make();
+  behavior->world_ = world_;
+  behavior->body_ = body_;
+  behavior->group_ = group_;
+  behavior->type_ = type;
+  behavior->setup_ = setup_;
+  behavior->targets_ = targets_;
+  State& state = behavior->state_;
+  state.random = state_.random;
+  state.seeded_with = state_.seeded_with;
+  state.needs_start = state_.needs_start;
+  state.timers.reserve(4);
+  for (const IntervalTimer& timer : state_.timers) {
+    const Property* const property = type->table->find(timer.property->name);
+    if (property != nullptr) state.timers.push_back({property, timer.anchor, timer.interval, timer.count});
+  }
+  behavior->id_ = store().change_table(id_, *type->table, behavior.get());
+  body_->replace_behavior(*this, *behavior);
+  behavior->adopt_state(*this);
+  return behavior;
 }
 
 // Resolves the selections to targets. A missing name is an error; all other targets are resolved nevertheless.
@@ -182,30 +228,28 @@ Result<void> Behavior::resolve() {
   const BehaviorSetup& s = *setup_;
   const Body& body = *body_;
   const bool pairs = type_->targets == BehaviorTargets::pairs;
-  std::vector<Part*> parts = pairs ? selected_in_order(s.parts, body.parts()) : selected(s.parts, body.parts());
-  std::vector<Joint*> joints = selected(s.joints, body.joints());
-  std::vector<Motor*> motors;
+  Targets targets;
+  targets.parts = pairs ? selected_in_order(s.parts, body.parts()) : selected(s.parts, body.parts());
+  targets.joints = selected(s.joints, body.joints());
   // if a type acts on motors, a selection of joints adds the motors of these joints to the selected motors, or
   // replaces "all"
   const bool by_joints = type_->targets == BehaviorTargets::motors && !s.joints.is_default();
   for (const auto& motor : body.motors()) {
     const bool explicitly_selected = !(by_joints && s.motors.is_default()) && s.motors.selects(motor->name());
-    if (explicitly_selected || (by_joints && s.joints.selects(motor->joint().name()))) motors.push_back(motor.get());
+    if (explicitly_selected || (by_joints && s.joints.selects(motor->joint().name())))
+      targets.motors.push_back(motor.get());
   }
-  const bool changed = parts != parts_ || joints != joints_ || motors != motors_;
-  resolved_structure_ = body.structure_version_;
-  if (changed) {
+  if (targets != targets_) {
     if (!id_.null()) world().behaviors().transaction().save_targets(*this);  // else it is under construction
-    parts_ = std::move(parts);
-    joints_ = std::move(joints);
-    motors_ = std::move(motors);
-    needs_start_ = true;
+    targets_ = std::move(targets);
+    state_.needs_start = true;
   }
+  state_.resolved_structure = body.structure_version();
   if (group_ != nullptr) return {};  // bodies selected by a pattern need not have all names: the group checks them
   if (Result<void> exist = check_names(body, "part", s.parts, body.parts()); !exist) return exist;
   if (Result<void> exist = check_names(body, "joint", s.joints, body.joints()); !exist) return exist;
   if (Result<void> exist = check_names(body, "motor", s.motors, body.motors()); !exist) return exist;
-  for (const Joint* joint : joints_) {
+  for (const Joint* joint : targets_.joints) {
     const bool named =
         std::find(s.joints.words().begin(), s.joints.words().end(), joint->name()) != s.joints.words().end();
     if (!by_joints || !named || joint->motor() != nullptr) continue;
@@ -214,29 +258,33 @@ Result<void> Behavior::resolve() {
   return {};
 }
 
-void Behavior::restart() {
-  world().behaviors().transaction().save(*this);
-  request_preparation();
-  needs_start_ = true;
-  seeded_with_ = kNoSeed;
+void Behavior::update_targets() {
+  if (state_.resolved_structure == body_->structure_version()) return;
+  if (const Result<void> resolved = resolve(); !resolved) fail({resolved.error(), "", 0});
 }
 
-// Called before a step: seeds the generator again if the seed has changed, and starts the behavior if necessary.
+void Behavior::restart() {
+  save_for_rollback();
+  request_preparation();
+  state_.needs_start = true;
+  state_.seeded_with = kNoSeed;
+}
+
 void Behavior::prepare() {
-  if (const std::uint64_t seed = world().seed(); seed != seeded_with_) {
-    seeded_with_ = seed;
-    random_ = Random(seed, store().path(id_));
+  if (const std::uint64_t seed = world().seed(); seed != state_.seeded_with) {
+    state_.seeded_with = seed;
+    state_.random = Random(seed, store().path(id_));
   }
-  if (!std::exchange(needs_start_, false)) return;
-  timers_.clear();
+  if (!std::exchange(state_.needs_start, false)) return;
+  state_.timers.clear();
   start();
 }
 
 std::uint64_t Behavior::state_hash(std::uint64_t hash) const {
   NumberHash numbers(hash_bytes(type_->name, hash_bytes(name(), hash)));
   numbers.add_word(persistent_hash(store(), id_));
-  if (random_.used()) numbers.add(random_.state());
-  for (const IntervalTimer& timer : timers_) numbers.add(timer.anchor, timer.interval, timer.count);
+  if (state_.random.used()) numbers.add(state_.random.state());
+  for (const IntervalTimer& timer : state_.timers) numbers.add(timer.anchor, timer.interval, timer.count);
   return numbers.value();
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/random.h"
@@ -64,6 +65,9 @@ class Behavior {
   /// Serializes its state beyond properties, random generator and intervals, for checkpoints.
   virtual void serialize(Archive& archive);
 
+  /// Serializes its whole state, for checkpoints.
+  void serialize_all(Archive& archive);
+
   // Identity, valid from start() on. A behavior that is removed while it steps has no body and an empty name.
   NodeId id() const { return id_; }
   const std::string& name() const;
@@ -75,22 +79,24 @@ class Behavior {
   /// The group that it is a member of, or null.
   BehaviorGroup* group() const { return group_; }
   const BehaviorSetup& setup() const { return *setup_; }
+  const std::shared_ptr<const BehaviorType>& shared_type() const { return type_; }
+  const std::shared_ptr<const BehaviorSetup>& shared_setup() const { return setup_; }
 
   /// Its targets in stream order (root to tip), without duplicates; a type that acts on pairs has its parts in the
   /// order in which the scene names them. "all" leaves out parts without mass.
-  std::span<Part* const> parts() const { return parts_; }
-  std::span<Joint* const> joints() const { return joints_; }
-  std::span<Motor* const> motors() const { return motors_; }
+  std::span<Part* const> parts() const { return targets_.parts; }
+  std::span<Joint* const> joints() const { return targets_.joints; }
+  std::span<Motor* const> motors() const { return targets_.motors; }
 
   bool active() const;
   /// The reason why it is suspended although it is active, or empty. Setting `active` to any value clears it.
-  const std::string& error() const { return fault_.text; }
-  const BehaviorFault& fault() const { return fault_; }
+  const std::string& error() const { return state_.fault.text; }
+  const BehaviorFault& fault() const { return state_.fault; }
   /// True if it is stepped: active, without error, its body in the world.
   bool runs() const;
   /// Its own random generator, seeded with the world's seed and the behavior's path; seeded again after a reset and
   /// when the seed changes.
-  Random& random() { return random_; }
+  Random& random() { return state_.random; }
   /// True if the interval in `property` (simulated ms) has elapsed: at the first active tick after start(), and then
   /// once per interval without drift; at every tick if the interval is shorter than a tick. Each property has its own
   /// timer. Call once per tick and property.
@@ -99,6 +105,62 @@ class Behavior {
   double step_microseconds() const;
 
   std::uint64_t state_hash(std::uint64_t start) const;
+
+  static constexpr std::uint64_t kNoSeed = ~std::uint64_t{0};  ///< Not a valid value of the property `seed`.
+  /// State of an interval timer. Time is counted in intervals from an anchor, so that rounding errors don't
+  /// accumulate.
+  struct IntervalTimer {
+    const Property* property = nullptr;
+    double anchor = 0;    ///< s
+    double interval = 0;  ///< s
+    double count = 0;
+  };
+  /// What persists from tick to tick, besides its properties, targets and the state of its type.
+  struct State {
+    std::vector<IntervalTimer> timers;
+    Random random;
+    std::uint64_t seeded_with = kNoSeed;
+    BehaviorFault fault;
+    std::uint32_t resolved_structure = 0;  ///< The body's structure version when its targets were resolved.
+    bool needs_start = true;               ///< start() has to be called before the next step.
+  };
+  struct Targets {
+    std::vector<Part*> parts;
+    std::vector<Joint*> joints;
+    std::vector<Motor*> motors;
+    bool operator==(const Targets&) const = default;
+  };
+
+  // Called by BehaviorList, BehaviorGroup and BehaviorTransaction. [sim]
+  /// First call: sets its body, type, targets and group (or null). Error: a target doesn't exist.
+  Result<void> attach(Body& body, std::shared_ptr<const BehaviorType> type, std::shared_ptr<const BehaviorSetup> setup,
+                      BehaviorGroup* group);
+  /// Adds its node and adds it to the list of its body.
+  void add_node(const std::string& name);
+  /// Marks it as removed.
+  void detach() { body_ = nullptr; }
+  /// Returns an instance of a reloaded type that takes its place, with its targets, generator and intervals.
+  std::unique_ptr<Behavior> make_replacement(const std::shared_ptr<const BehaviorType>& type);
+  /// Resolves its targets again if the structure of its body has changed.
+  void update_targets();
+  /// Requests start() before the next step, with a freshly seeded generator.
+  void restart();
+  /// To be called before a step: seeds the generator again if the seed has changed, and starts it if necessary.
+  void prepare();
+  /// True if it has to be started or has an error: its group then handles each member individually.
+  bool needs_preparation() const {
+    return state_.needs_start || state_.seeded_with == kNoSeed || !state_.fault.text.empty();
+  }
+  void set_step_seconds(double seconds) { step_seconds_ = seconds; }
+  /// Its place as computed by the last BehaviorList::compute_places().
+  std::uint32_t place() const { return place_; }
+  void set_place(std::uint32_t place) { place_ = place; }
+  /// Saves its state, once in each guarded call. To be called before it changes.
+  void save_for_rollback();
+  const State& state() const { return state_; }
+  const Targets& targets() const { return targets_; }
+  void restore(const State& state);
+  void restore(Targets targets) { targets_ = std::move(targets); }
 
  protected:
   /// Suspends it with this error, which is reported once.
@@ -112,7 +174,7 @@ class Behavior {
   }
   /// Random value between two values, or random point in the box between two corners (x is drawn first). The bounds
   /// may be in any order.
-  double random_between(double a, double b) { return random_.uniform(a, b); }
+  double random_between(double a, double b) { return state_.random.uniform(a, b); }
   Vec3 random_between(const Vec3& a, const Vec3& b);
   bool interval_elapsed(std::uint32_t parameter) {
     return interval_elapsed(type_->table->property(kCommonBehaviorProperties + parameter));
@@ -120,27 +182,7 @@ class Behavior {
   const double* values(std::uint32_t parameter) const;
 
  private:
-  friend class BehaviorList;
-  friend class BehaviorGroup;
-  friend class BehaviorTransaction;
-  friend class WorldCheckpoint;
-  /// State of an interval timer. Time is counted in intervals from an anchor, so that rounding errors don't
-  /// accumulate.
-  struct IntervalTimer {
-    const Property* property = nullptr;
-    double anchor = 0;    // s
-    double interval = 0;  // s
-    double count = 0;
-  };
-
-  static constexpr std::uint64_t kNoSeed = ~std::uint64_t{0};  // not a valid value of the property `seed`
-  void attach(Body& body, NodeId id, std::shared_ptr<const BehaviorType> type,
-              std::shared_ptr<const BehaviorSetup> setup, BehaviorGroup* group);
   Result<void> resolve();
-  void restart();
-  void prepare();
-  /// True if it has to be started or has an error: its group then handles each member individually.
-  bool needs_preparation() const { return needs_start_ || seeded_with_ == kNoSeed || !fault_.text.empty(); }
   void request_preparation();
   void read_time(double* out) const;
   void read_place(double* out) const;
@@ -155,18 +197,11 @@ class Behavior {
   NodeId id_;
   std::shared_ptr<const BehaviorType> type_;
   std::shared_ptr<const BehaviorSetup> setup_;
-  std::vector<Part*> parts_;
-  std::vector<Joint*> joints_;
-  std::vector<Motor*> motors_;
-  std::vector<IntervalTimer> timers_;
-  Random random_;
-  std::uint64_t seeded_with_ = kNoSeed;
-  BehaviorFault fault_;
-  double step_seconds_ = 0;               // duration of the last tick
-  std::uint32_t resolved_structure_ = 0;  // the body's structure counter when its targets were resolved
-  std::uint32_t place_ = 0;               // as computed by the last BehaviorList::compute_places()
-  std::uint64_t saved_in_call_ = 0;       // the last guarded call that saved its state
-  bool needs_start_ = true;               // start() has to be called before the next step
+  Targets targets_;
+  State state_;
+  double step_seconds_ = 0;  // duration of the last tick
+  std::uint32_t place_ = 0;
+  std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 
 }  // namespace limber

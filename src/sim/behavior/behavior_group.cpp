@@ -9,6 +9,7 @@
 
 #include "base/hash.h"
 #include "base/log/log.h"
+#include "base/memory/archive.h"
 #include "base/system/clock.h"
 #include "base/text.h"
 #include "properties/values_hash.h"
@@ -108,8 +109,6 @@ const Selection& BehaviorGroup::neighbor_selection() const {
   return setup_.neighbor_parts.is_default() ? setup_.parts : setup_.neighbor_parts;
 }
 
-// Checks that every named body exists and has every named part. If bodies are selected by a pattern, one of them must
-// have the part.
 Result<void> BehaviorGroup::check_names() const {
   const std::vector<std::string_view> bodies = world_.body_names();
   if (const std::string_view missing = setup_.bodies.first_missing(bodies); !missing.empty()) {
@@ -147,25 +146,68 @@ Result<void> BehaviorGroup::update_members() {
       if (selection.selects(part->name(), !part->is_static())) neighbor_parts.push_back(part.get());
     }
     if (member_of(*body) != nullptr || !has_selected_part(*body, setup_.parts)) continue;
-    if (const Result<Behavior*> member = add_member(*body); !member && result) result = Error{member.error()};
+    if (Result<void> added = add_member(*body); !added && result) result = std::move(added);
   }
   if (neighbors_ == nullptr || !neighbors_->consists_of(neighbor_parts))
     neighbors_ = world_.behaviors().neighbor_set(std::move(neighbor_parts));
   return result;
 }
 
-Result<Behavior*> BehaviorGroup::add_member(Body& body) {
+Result<void> BehaviorGroup::add_member(Body& body) {
   Result<std::unique_ptr<Behavior>> member = world_.behaviors().make(body, type_, name(), member_setup_, this);
   if (!member) return Error{member.error()};
   Store& store = world_.store();
   const std::size_t width = type_->table->persistent_width();
   std::copy_n(std::as_const(store).persistent_block(id_), width, store.persistent_block((*member)->id()));
-  members_.push_back(std::move(*member));
-  world_.behaviors().transaction().member_added(*members_.back());
-  return members_.back().get();
+  append_member(std::move(*member));
+  // undo, unless it has been removed with its group
+  constexpr unsigned kHalf = 32;
+  const NodeId added = members_.back()->id();
+  world_.transaction().record(
+      [](void* owner, std::size_t value) {
+        const World& world = *static_cast<World*>(owner);
+        const NodeId id{static_cast<std::uint32_t>(value >> kHalf), static_cast<std::uint32_t>(value)};
+        if (!world.store().alive(id)) return;
+        auto& behavior = *static_cast<Behavior*>(world.store().object(id));
+        BehaviorGroup& group = *behavior.group();
+        behavior.world().behaviors().remove(behavior);
+        group.removed_bodies_.pop_back();  // not an explicit removal
+      },
+      &world_, std::size_t{added.slot} << kHalf | added.generation);
+  return {};
 }
 
-void BehaviorGroup::set_type(const std::shared_ptr<const BehaviorType>& type) {
+RemovedBehavior BehaviorGroup::remove_member(const Behavior& member) {
+  removed_bodies_.push_back(member.body().id());
+  layout_valid_ = false;
+  // searches from the end, since usually the newest member is removed first
+  const auto is_member = [&](const std::unique_ptr<Behavior>& each) { return each.get() == &member; };
+  const auto at = std::find_if(members_.rbegin(), members_.rend(), is_member).base() - 1;
+  RemovedBehavior removed;
+  removed.index = static_cast<std::size_t>(at - members_.begin());
+  removed.behavior = std::move(*at);
+  members_.erase(at);
+  return removed;
+}
+
+void BehaviorGroup::insert_member(RemovedBehavior removed) {
+  removed_bodies_.pop_back();
+  layout_valid_ = false;
+  members_.insert(members_.begin() + static_cast<std::ptrdiff_t>(removed.index), std::move(removed.behavior));
+}
+
+void BehaviorGroup::remove_body(const Body& body) {
+  std::erase(removed_bodies_, body.id());
+  neighbors_->remove_body(body);
+}
+
+void BehaviorGroup::replace_type(const std::shared_ptr<const BehaviorType>& type) {
+  for (auto& member : members_) {
+    if (!type->replaces(member->type())) continue;
+    member = member->make_replacement(type);
+    layout_valid_ = false;
+  }
+  if (!type->replaces(*type_)) return;
   id_ = world_.store().change_table(id_, *type->group_table, this);
   type_ = type;
 }
@@ -227,6 +269,11 @@ void BehaviorGroup::step(double dt) {
   }
   if (!running_.empty()) running_.front()->step_group(running_, dt);
   step_seconds_ = system::clock_seconds() - start;
+}
+
+void BehaviorGroup::serialize(Archive& archive) {
+  for (const auto& member : members_) member->serialize_all(archive);
+  if (archive.loading()) layout_valid_ = false;
 }
 
 std::uint64_t BehaviorGroup::state_hash(std::uint64_t hash) const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/behavior/behavior.h"
@@ -20,12 +21,18 @@ struct GroupSetup {
   bool operator==(const GroupSetup&) const = default;
 };
 
+/// A behavior or a group that was removed from BehaviorList, with the places to insert it again.
+struct RemovedBehavior;
+
 class BehaviorGroup {
  public:
   static std::vector<Property> common_properties();
   /// Callback after a property of a group was set: sets it on all members.
   static void set_on_members(void* object, const Property& property);
 
+  /// Adds its node. BehaviorList adds members by update_members().
+  BehaviorGroup(World& world, NodeId parent, std::string name, std::shared_ptr<const BehaviorType> type,
+                GroupSetup setup);
   ~BehaviorGroup();
   BehaviorGroup(const BehaviorGroup&) = delete;
   BehaviorGroup& operator=(const BehaviorGroup&) = delete;
@@ -62,28 +69,42 @@ class BehaviorGroup {
 
   std::uint64_t state_hash(std::uint64_t start) const;
 
- private:
-  friend class Behavior;
-  friend class BehaviorList;
-  friend class BehaviorTransaction;
-  friend class WorldCheckpoint;
-  BehaviorGroup(World& world, NodeId parent, std::string name, std::shared_ptr<const BehaviorType> type,
-                GroupSetup setup);
-
-  Behavior* member_of(const Body& body) const;
-  /// True if the selection includes the body, or it has a member already (copies of a member's body).
-  bool includes(const Body& body) const;
-  const Selection& neighbor_selection() const;
+  // Called by BehaviorList, Behavior and BehaviorTransaction. [sim]
+  /// Checks that every named body exists and has every named part. If bodies are selected by a pattern, one of them
+  /// must have the part.
+  Result<void> check_names() const;
   /// Updates members and neighbors after bodies were added, removed or changed. The error names a missing body or
   /// part.
   Result<void> update_members();
-  Result<Behavior*> add_member(Body& body);
-  /// Replaces its type by the reloaded one of the same name; BehaviorList replaces the members.
-  void set_type(const std::shared_ptr<const BehaviorType>& type);
+  Behavior* member_of(const Body& body) const;
+  void append_member(std::unique_ptr<Behavior> member) { members_.push_back(std::move(member)); }
+  /// Removes a member explicitly: its body gets no other one.
+  RemovedBehavior remove_member(const Behavior& member);
+  /// Undoes remove_member().
+  void insert_member(RemovedBehavior removed);
+  /// Releases what refers to a body that is being destroyed.
+  void remove_body(const Body& body);
+  /// If `type` is a newer version of its type or of that of its members, replaces these.
+  void replace_type(const std::shared_ptr<const BehaviorType>& type);
+  /// Steps the members that run.
+  void step(double dt);
+  /// The members or their parts have changed.
+  void invalidate_layout() { layout_valid_ = false; }
+  /// A member has to be started or has an error.
+  void request_preparation() { needs_preparation_ = true; }
+  /// Its place as computed by the last BehaviorList::compute_places().
+  std::uint32_t place() const { return place_; }
+  void set_place(std::uint32_t place) { place_ = place; }
+  /// Serializes the state of its members, for checkpoints.
+  void serialize(Archive& archive);
+
+ private:
+  /// True if the selection includes the body, or it has a member already (copies of a member's body).
+  bool includes(const Body& body) const;
+  const Selection& neighbor_selection() const;
+  Result<void> add_member(Body& body);
   void build_layout();
   void prepare_members();
-  void step(double dt);
-  Result<void> check_names() const;
   void read_time(double* out) const;
   void read_place(double* out) const;
   void write_place(const double* in);
@@ -106,7 +127,14 @@ class BehaviorGroup {
   std::vector<NodeId> removed_bodies_;           // bodies that a member was removed from explicitly
   std::shared_ptr<NeighborSet> neighbors_;
   double step_seconds_ = 0;  // duration of the last tick
-  std::uint32_t place_ = 0;  // as computed by the last BehaviorList::compute_places()
+  std::uint32_t place_ = 0;
+};
+
+struct RemovedBehavior {
+  std::unique_ptr<Behavior> behavior;  ///< One of the two is set.
+  std::unique_ptr<BehaviorGroup> group;
+  std::size_t index = 0;          ///< In the list, or among the members of its group.
+  std::size_t index_on_body = 0;  ///< Among the behaviors of its body.
 };
 
 }  // namespace limber

@@ -27,12 +27,6 @@ void warn_unused_targets(const BehaviorType& type, const Body& body, std::string
               to_parts ? "parts" : "motors", to_parts ? "joints and motors" : "parts");
 }
 
-// Searches from the end, since usually the newest element is removed first.
-template <class T, class Predicate>
-auto find_last(std::vector<T>& list, Predicate predicate) {
-  return std::find_if(list.rbegin(), list.rend(), predicate).base() - 1;
-}
-
 }  // namespace
 
 BehaviorList::BehaviorList(World& world, NodeId physics)
@@ -48,17 +42,14 @@ Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shar
                                                      const std::string& name,
                                                      const std::shared_ptr<const BehaviorSetup>& setup,
                                                      BehaviorGroup* group) {
-  Store& store = world_.store();
-  const NodeId node = body.behavior_group_;
   if (const auto fault = name_error(name)) return Error{fmt::format("behavior: {}", *fault)};
-  if (!store.child(node, name).null()) {
+  if (!world_.store().child(body.behavior_group(), name).null()) {
     return Error{fmt::format("body '{}' has a behavior '{}' already; names are unique", body.name(), name)};
   }
   std::unique_ptr<Behavior> behavior = type->make();
-  behavior->attach(body, NodeId{}, type, setup, group);
-  if (const Result<void> resolved = behavior->resolve(); !resolved) return Error{resolved.error()};
-  behavior->id_ = store.add(*type->table, node, name, behavior.get());
-  body.behaviors_.push_back(behavior.get());
+  if (const Result<void> attached = behavior->attach(body, type, setup, group); !attached)
+    return Error{attached.error()};
+  behavior->add_node(name);
   return behavior;
 }
 
@@ -88,13 +79,12 @@ Result<BehaviorGroup*> BehaviorList::add_group(std::string_view type_name, std::
   if (!world_.store().child(group_node_, name).null()) {
     return Error{fmt::format("there is a group behavior '{}' already; names are unique", name)};
   }
-  std::unique_ptr<BehaviorGroup> group(
-      new BehaviorGroup(world_, group_node_, std::move(name), *type, std::move(setup)));
+  auto group = std::make_unique<BehaviorGroup>(world_, group_node_, std::move(name), *type, std::move(setup));
   Result<void> result = group->check_names();
   if (result) result = group->update_members();
   if (!result) {
     const std::string& text = result.error();
-    while (!group->members_.empty()) destroy(*group->members_.back());
+    while (!group->members().empty()) destroy(*group->members().back());
     return Error{text};
   }
   record_entry_count();
@@ -129,47 +119,54 @@ void BehaviorList::destroy_last() {
   }
 }
 
-void BehaviorList::retire(std::unique_ptr<Behavior> behavior) {
-  behavior->body_ = nullptr;
-  if (stepping_) retired_.push_back(std::move(behavior));
+// Removes an entry, searching from the end, since usually the newest one is removed first. While behaviors are stepped
+// an empty entry stays, so that the indices of the others don't change.
+template <class Predicate>
+RemovedBehavior BehaviorList::extract_last(Predicate predicate) {
+  const auto at = std::find_if(entries_.rbegin(), entries_.rend(), predicate).base() - 1;
+  RemovedBehavior removed{std::move(at->single), std::move(at->group)};
+  removed.index = static_cast<std::size_t>(at - entries_.begin());
+  if (!stepping_) entries_.erase(at);
+  return removed;
 }
 
-void BehaviorList::retire(std::unique_ptr<BehaviorGroup> group) {
-  if (stepping_) retired_groups_.push_back(std::move(group));
+RemovedBehavior BehaviorList::extract(Behavior& behavior) {
+  BehaviorGroup* const group = behavior.group();
+  RemovedBehavior removed = group != nullptr
+                                ? group->remove_member(behavior)
+                                : extract_last([&](const Entry& e) { return e.single.get() == &behavior; });
+  removed.index_on_body = behavior.body().remove_behavior(behavior);
+  return removed;
 }
 
-// Erases an empty entry. While behaviors are stepped it stays, so that the indices of the others don't change.
-void BehaviorList::erase_entry(std::size_t index) {
-  if (!stepping_) entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(index));
+RemovedBehavior BehaviorList::extract(BehaviorGroup& group) {
+  return extract_last([&](const Entry& e) { return e.group.get() == &group; });
 }
 
-BehaviorList::Entry& BehaviorList::insert_entry(std::size_t index) {
-  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(index), Entry{});
-  return entries_[index];
+void BehaviorList::insert(RemovedBehavior removed) {
+  if (removed.behavior != nullptr) {
+    Behavior& behavior = *removed.behavior;
+    behavior.body().insert_behavior(removed.index_on_body, behavior);
+    if (BehaviorGroup* const group = behavior.group()) return group->insert_member(std::move(removed));
+  }
+  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), Entry{});
+  entries_[removed.index] = {std::move(removed.behavior), std::move(removed.group)};
+}
+
+void BehaviorList::retire(RemovedBehavior removed) {
+  if (removed.behavior != nullptr) removed.behavior->detach();
+  if (stepping_) retired_.push_back(std::move(removed));
 }
 
 void BehaviorList::destroy(Behavior& behavior) {
-  std::erase(behavior.body_->behaviors_, &behavior);
-  world_.store().remove(behavior.id_);
-  if (BehaviorGroup* group = behavior.group_) {
-    group->removed_bodies_.push_back(behavior.body_->id());
-    const auto at = find_last(group->members_, [&](const auto& member) { return member.get() == &behavior; });
-    retire(std::move(*at));
-    group->members_.erase(at);
-    group->layout_valid_ = false;
-    return;
-  }
-  const auto at = find_last(entries_, [&](const Entry& e) { return e.single.get() == &behavior; });
-  retire(std::move(at->single));
-  erase_entry(static_cast<std::size_t>(at - entries_.begin()));
+  world_.store().remove(behavior.id());
+  retire(extract(behavior));
 }
 
 void BehaviorList::destroy_group(BehaviorGroup& group) {
-  while (!group.members_.empty()) destroy(*group.members_.back());
-  world_.store().remove(group.id_);
-  const auto at = find_last(entries_, [&](const Entry& e) { return e.group.get() == &group; });
-  retire(std::move(at->group));
-  erase_entry(static_cast<std::size_t>(at - entries_.begin()));
+  while (!group.members().empty()) destroy(*group.members().back());
+  world_.store().remove(group.id());
+  retire(extract(group));
 }
 
 BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
@@ -199,37 +196,36 @@ std::size_t BehaviorList::suspended_count() const {
 
 void BehaviorList::copy_values(const Behavior& from, Behavior& to) {
   Store& store = world_.store();
-  const double* values = std::as_const(store).persistent_block(from.id_);
-  std::copy_n(values, from.type_->table->persistent_width(), store.persistent_block(to.id_));
-  store.mark_explicitly_set(to.id_, store.explicitly_set(from.id_));  // copies the set of explicitly set properties too
+  const double* values = std::as_const(store).persistent_block(from.id());
+  std::copy_n(values, from.type().table->persistent_width(), store.persistent_block(to.id()));
+  store.mark_explicitly_set(to.id(), store.explicitly_set(from.id()));
 }
 
 void BehaviorList::copy(const Body& source, Body& copy) {
   if (&source.world() != &world_) return;  // types and groups belong to one world
-  for (std::size_t i = 0; i < source.behaviors_.size(); i++) {
-    const Behavior& from = *source.behaviors_[i];
-    Result<std::unique_ptr<Behavior>> copied = make(copy, from.type_, from.name(), from.setup_, from.group_);
+  for (std::size_t i = 0; i < source.behaviors().size(); i++) {
+    const Behavior& from = *source.behaviors()[i];
+    Result<std::unique_ptr<Behavior>> copied =
+        make(copy, from.shared_type(), from.name(), from.shared_setup(), from.group());
     if (!copied) continue;  // can't happen: the copy has the same parts under the same names
     copy_values(from, **copied);
-    if (from.group_ == nullptr) {
+    if (from.group() == nullptr) {
       entries_.push_back({std::move(*copied), nullptr});
-      continue;
+    } else {
+      from.group()->append_member(std::move(*copied));
     }
-    from.group_->members_.push_back(std::move(*copied));
   }
 }
 
 void BehaviorList::on_body_destroyed(Body& body) {
-  while (!body.behaviors_.empty()) destroy(*body.behaviors_.back());
+  while (!body.behaviors().empty()) destroy(*body.behaviors().back());
   for (const Entry& entry : entries_) {
-    if (entry.group == nullptr) continue;
-    std::erase(entry.group->removed_bodies_, body.id());
-    entry.group->neighbors_->remove_body(body);
+    if (entry.group != nullptr) entry.group->remove_body(body);
   }
 }
 
 void BehaviorList::on_body_reset(Body& body) {
-  for (Behavior* behavior : body.behaviors_) behavior->restart();
+  for (Behavior* behavior : body.behaviors()) behavior->restart();
 }
 
 std::shared_ptr<NeighborSet> BehaviorList::neighbor_set(std::vector<Part*> parts) {
@@ -253,13 +249,10 @@ void BehaviorList::update_members() {
     }
   }
   for (const auto& body : world_.bodies()) {
-    for (Behavior* behavior : body->behaviors_) {
-      if (std::exchange(behavior->resolved_structure_, body->structure_version_) == body->structure_version_) continue;
-      if (const Result<void> resolved = behavior->resolve(); !resolved) behavior->fail({resolved.error(), "", 0});
-    }
+    for (Behavior* behavior : body->behaviors()) behavior->update_targets();
   }
   for (const Entry& entry : entries_) {
-    if (entry.group != nullptr) entry.group->layout_valid_ = false;
+    if (entry.group != nullptr) entry.group->invalidate_layout();
   }
   structure_version_ = world_.store().structure_version();  // includes members that were just added
 }
@@ -306,12 +299,11 @@ void BehaviorList::step(double dt) {
     if (behavior->runs()) behavior->prepare();
     if (behavior->runs()) behavior->step(dt);
     const double now = system::clock_seconds();
-    behavior->step_seconds_ = now - std::exchange(last_time, now);
+    behavior->set_step_seconds(now - std::exchange(last_time, now));
   }
   stepping_ = false;
-  if (retired_.empty() && retired_groups_.empty()) return;
+  if (retired_.empty()) return;
   retired_.clear();
-  retired_groups_.clear();
   std::erase_if(entries_, [](const Entry& e) { return e.single == nullptr && e.group == nullptr; });
 }
 
@@ -323,39 +315,20 @@ void BehaviorList::report_fault(const Behavior& behavior) const {
 void BehaviorList::replace_instances(std::string_view type_name) {
   const std::shared_ptr<const BehaviorType> type = types_.find(type_name);
   if (type == nullptr) return;
-  const auto outdated = [&](const Behavior& b) { return b.type_->name == type->name && b.type_ != type; };
   for (Entry& entry : entries_) {
-    if (entry.single != nullptr && outdated(*entry.single)) entry.single = make_replacement(*entry.single, type);
-    if (entry.group == nullptr) continue;
-    for (auto& member : entry.group->members_) {
-      if (!outdated(*member)) continue;
-      member = make_replacement(*member, type);
-      entry.group->layout_valid_ = false;
+    if (entry.group != nullptr) {
+      entry.group->replace_type(type);
+    } else if (entry.single != nullptr && type->replaces(entry.single->type())) {
+      entry.single = entry.single->make_replacement(type);
     }
-    if (entry.group->type_->name == type->name && entry.group->type_ != type) entry.group->set_type(type);
   }
 }
 
-std::unique_ptr<Behavior> BehaviorList::make_replacement(Behavior& previous,
-                                                         const std::shared_ptr<const BehaviorType>& type) {
-  std::unique_ptr<Behavior> behavior = type->make();
-  behavior->attach(*previous.body_, previous.id_, type, previous.setup_, previous.group_);
-  behavior->parts_ = previous.parts_;
-  behavior->joints_ = previous.joints_;
-  behavior->motors_ = previous.motors_;
-  behavior->random_ = previous.random_;
-  behavior->seeded_with_ = previous.seeded_with_;
-  behavior->needs_start_ = previous.needs_start_;
-  behavior->id_ = world_.store().change_table(previous.id_, *type->table, behavior.get());
-  for (const Behavior::IntervalTimer& timer : previous.timers_) {
-    if (const Property* property = type->table->find(timer.property->name)) {
-      behavior->timers_.push_back(timer);
-      behavior->timers_.back().property = property;
-    }
+void BehaviorList::serialize(Archive& archive) {
+  for (const Entry& entry : entries_) {
+    if (entry.single != nullptr) entry.single->serialize_all(archive);
+    if (entry.group != nullptr) entry.group->serialize(archive);
   }
-  std::replace(previous.body_->behaviors_.begin(), previous.body_->behaviors_.end(), &previous, behavior.get());
-  behavior->adopt_state(previous);
-  return behavior;
 }
 
 std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {

@@ -84,12 +84,27 @@ class BehaviorList {
   /// Sets the callback that is called once for each error.
   void on_fault(std::function<void(const Behavior&)> hook) { on_fault_ = std::move(hook); }
   std::uint64_t state_hash(std::uint64_t start) const;
+  World& world() const { return world_; }
+
+  // Called by Behavior, BehaviorGroup and BehaviorTransaction. [sim]
+  /// Makes a behavior of the body that is in no list of behaviors or members yet. Errors as for add().
+  Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
+                                         const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
+                                         BehaviorGroup* group);
+  /// Removes a behavior, or a group without members, from all lists; its node stays.
+  RemovedBehavior extract(Behavior& behavior);
+  RemovedBehavior extract(BehaviorGroup& group);
+  /// Undoes extract().
+  void insert(RemovedBehavior removed);
+  /// Destroys a removed behavior or group; at the end of the step if behaviors are being stepped.
+  void retire(RemovedBehavior removed);
+  /// The next update_members() checks all members and targets.
+  void request_update() { structure_version_ = 0; }
+  void report_fault(const Behavior& behavior) const;
+  /// Serializes the state of all behaviors, for checkpoints.
+  void serialize(Archive& archive);
 
  private:
-  friend class Behavior;
-  friend class BehaviorGroup;
-  friend class BehaviorTransaction;
-  friend class WorldCheckpoint;
   /// A single behavior or a group.
   struct Entry {
     std::unique_ptr<Behavior> single;
@@ -101,32 +116,22 @@ class BehaviorList {
   static bool acts_on(const Entry& entry, const Body& body);
   std::vector<std::string_view> names() const;
   void compute_places() const;
-  void save_order();
-  Result<std::unique_ptr<Behavior>> make(Body& body, const std::shared_ptr<const BehaviorType>& type,
-                                         const std::string& name, const std::shared_ptr<const BehaviorSetup>& setup,
-                                         BehaviorGroup* group);
-  std::unique_ptr<Behavior> make_replacement(Behavior& previous, const std::shared_ptr<const BehaviorType>& type);
   void copy_values(const Behavior& from, Behavior& to);
-  void report_fault(const Behavior& behavior) const;
   void record_entry_count();
   void destroy(Behavior& behavior);
   void destroy_group(BehaviorGroup& group);
   void destroy_last();
-  void retire(std::unique_ptr<Behavior> behavior);
-  void retire(std::unique_ptr<BehaviorGroup> group);
-  void erase_entry(std::size_t index);
-  Entry& insert_entry(std::size_t index);
+  template <class Predicate>
+  RemovedBehavior extract_last(Predicate predicate);
 
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
   std::vector<Entry> entries_;
-  std::vector<std::unique_ptr<Behavior>> retired_;  // removed while they were stepped
-  std::vector<std::unique_ptr<BehaviorGroup>> retired_groups_;
+  std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
   std::uint64_t structure_version_ = 0;
   mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
-  std::vector<std::vector<std::string>> saved_orders_;          // orders to restore if the guarded call fails
   std::uint64_t step_count_ = 0;
   bool stepping_ = false;
   BehaviorTransaction transaction_{*this};

@@ -37,40 +37,29 @@ void BehaviorList::compute_places() const {
   std::uint32_t count = 0;
   for (const Entry& entry : entries_) {
     if (entry.group != nullptr) {
-      entry.group->place_ = ++count;
-      for (const auto& member : entry.group->members_) member->place_ = ++on_body[&member->body()];
+      entry.group->set_place(++count);
+      for (const auto& member : entry.group->members()) member->set_place(++on_body[&member->body()]);
       continue;
     }
     if (entry.single == nullptr) continue;
     if (seen.insert(name_of(entry)).second) count++;
-    entry.single->place_ = ++on_body[&entry.single->body()];
+    entry.single->set_place(++on_body[&entry.single->body()]);
   }
 }
 
 std::size_t BehaviorList::place(const Behavior& behavior) const {
   compute_places();
-  return behavior.place_;
+  return behavior.place();
 }
 
 std::size_t BehaviorList::place(const BehaviorGroup& group) const {
   compute_places();
-  return group.place_;
+  return group.place();
 }
 
 Result<void> BehaviorList::check_can_move() const {
   if (!stepping_) return {};
   return Error{"behaviors can't be moved while they are stepped; move them from a scene's callback"};
-}
-
-// Saves the order before it changes, so that a guarded call that fails restores it.
-void BehaviorList::save_order() {
-  if (!world_.transaction().active()) return;
-  saved_orders_.push_back(order());
-  const auto rollback = [](void* list, std::size_t number) {
-    auto& self = *static_cast<BehaviorList*>(list);
-    self.set_order(self.saved_orders_[number]);
-  };
-  world_.transaction().record(rollback, this, saved_orders_.size() - 1);
 }
 
 void BehaviorList::move_to(Behavior& behavior, std::size_t place) {
@@ -89,7 +78,7 @@ void BehaviorList::move_to(Behavior& behavior, std::size_t place) {
   // insert before the entry at the requested position, or behind the last
   std::size_t insert_index = new_index < others.size() ? others[new_index] : others.back() + 1;
   if (this->place(behavior) == new_index + 1) return;
-  save_order();
+  transaction_.save_order();
   Entry entry = std::move(entries_[current]);
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(current));
   if (insert_index > current) insert_index--;
@@ -102,7 +91,7 @@ void BehaviorList::move_to(BehaviorGroup& group, std::size_t place) {
   const std::size_t old_index = this->place(group) - 1;
   const std::size_t new_index = std::min(std::max<std::size_t>(place, 1), order.size()) - 1;
   if (new_index == old_index) return;
-  save_order();
+  transaction_.save_order();
   // index of each name in the new order; a group may have the same name as a body's behavior
   std::vector<std::size_t> new_ranks(order.size());
   for (std::size_t i = 0; i < order.size(); i++) {

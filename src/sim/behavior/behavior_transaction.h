@@ -4,7 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/behavior/behavior.h"
@@ -22,13 +22,12 @@ class BehaviorTransaction {
   void begin();
   /// The call succeeded: destroys the behaviors that it removed.
   void commit();
-  /// Saves random generator, interval timers, error and start flag. Call before they change. Does nothing outside of
-  /// guarded calls.
+  /// Saves the state of a behavior; called by Behavior::save_for_rollback().
   void save(Behavior& behavior);
-  /// Saves the targets. Call before they are resolved again.
+  /// Saves the targets. Call before they are resolved again. Does nothing outside of guarded calls.
   void save_targets(Behavior& behavior);
-  /// Logs that a group got a new member.
-  void member_added(const Behavior& member);
+  /// Saves the order of the list. Call before it changes. Does nothing outside of guarded calls.
+  void save_order();
   /// Removes a behavior, or a group with its members, from its list and keeps it hidden until the call ends.
   void hide(Behavior& behavior);
   void hide(BehaviorGroup& group);
@@ -36,36 +35,27 @@ class BehaviorTransaction {
  private:
   struct SavedState {
     Behavior* behavior = nullptr;
-    Random random;
-    std::uint64_t seeded_with = 0;
-    bool needs_start = false;
-    BehaviorFault fault;
-    std::vector<Behavior::IntervalTimer> timers;
+    Behavior::State state;
   };
   struct SavedTargets {
     Behavior* behavior = nullptr;
-    std::vector<Part*> parts;
-    std::vector<Joint*> joints;
-    std::vector<Motor*> motors;
+    Behavior::Targets targets;
   };
   struct Hidden {
-    std::unique_ptr<Behavior> behavior;  // one of the two is set
-    std::unique_ptr<BehaviorGroup> group;
+    RemovedBehavior removed;
     NodeId id;
-    bool node_hidden = false;  // its node was hidden here; else it is hidden with its body
-    std::size_t index = 0;     // index in the list, or among the members of its group
-    std::size_t index_on_body = 0;
+    bool node_hidden = false;       // its node was hidden here; else it is hidden with its body
     std::size_t sibling_index = 0;  // index among its node's siblings
   };
-  void hide_node(Hidden& hidden) const;
-  void record_hidden(Hidden hidden);
+  template <class T>
+  void hide_from_list(T& behavior);
   void show_last();
 
   BehaviorList& list_;
-  std::uint64_t call_ = 0;
   std::vector<SavedState> saved_;  // the first saved_count_ are valid; the others are reused to avoid allocations
   std::size_t saved_count_ = 0;
   std::vector<SavedTargets> saved_targets_;
+  std::vector<std::vector<std::string>> saved_orders_;
   std::vector<Hidden> hidden_;
 };
 

@@ -38,6 +38,9 @@ struct BehaviorType {
   const PropertyTable* group_table = nullptr;
   std::function<std::unique_ptr<Behavior>()> make;
 
+  /// True if this is a newer version of `other`, after a reload.
+  bool replaces(const BehaviorType& other) const { return name == other.name && this != &other; }
+
   /// Creates a type with its property tables, which live as long as the program. `parameters`: at most 61 stored
   /// properties; names must be unique under the naming rule and differ from the common properties.
   static BehaviorType create(std::string name, std::string doc, BehaviorTargets targets, bool is_group,

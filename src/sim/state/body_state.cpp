@@ -18,7 +18,7 @@ Vec3 velocity_at(const Part& part, const Vec3& point) {
 
 BodyState::BodyState(const Body& body) {
   for (const auto& part : body.parts())
-    parts_.push_back({part->name(), part->geometry()->frame, part->capture_state()});
+    parts_.push_back({part->name(), part->geometry()->frame, part->capture_motion()});
   for (const auto& joint : body.joints()) {
     const Part& parent = joint->parent();
     const Part& child = joint->child();
@@ -95,11 +95,11 @@ class BodyState::StateTransfer {
   Outcome restore_part(std::size_t i, const PartState& saved) {
     Part& part = *body_.parts()[i];
     if (nearly_same(part.geometry()->frame, saved.frame)) {
-      part.set_state(saved.state);
+      part.set_motion(saved.motion);
       return part.name() == saved.name ? Outcome::unchanged : Outcome::placed;
     }
-    part.set_pose(saved.state.pose);
-    part.set_velocity(saved.state.linear_velocity, saved.state.angular_velocity);
+    part.set_pose(saved.motion.pose);
+    part.set_velocity(saved.motion.linear_velocity, saved.motion.angular_velocity);
     return Outcome::placed;
   }
 

@@ -23,7 +23,7 @@ class BodyState {
   struct PartState {
     std::string name;
     Pose frame;  ///< of the center of mass in the link's frame
-    Part::State state;
+    Part::Motion motion;
   };
   struct JointState {
     std::string name, parent, child;

@@ -9,10 +9,6 @@
 
 namespace limber {
 
-class Behavior;
-class BehaviorList;
-class Body;
-class Store;
 class World;
 
 class WorldCheckpoint {
@@ -27,13 +23,6 @@ class WorldCheckpoint {
   void release(PageStore& pages);
 
  private:
-  static void serialize(Archive& archive, World& world);
-  static void serialize(Archive& archive, Store& store);
-  static void serialize(Archive& archive, Body& body);
-  static void serialize(Archive& archive, Behavior& behavior);
-  static void serialize(Archive& archive, BehaviorList& behaviors);
-  static void serialize_forces(Archive& archive, World& world);
-
   PageStore::PageList bullet_, persistent_, transient_, objects_;
   std::size_t objects_size_ = 0;
 };

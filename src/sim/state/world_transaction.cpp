@@ -1,6 +1,7 @@
 // WorldTransaction: the log of a guarded call's changes, newest last.
 #include "sim/state/world_transaction.h"
 
+#include <cstring>
 #include <utility>
 
 #include "base/check.h"
@@ -10,16 +11,9 @@
 namespace limber {
 
 struct WorldTransaction::SavedForces {
-  Part* part;
+  std::uint32_t accumulator;
   ForceAccumulators::Wrench wrench;
   ForceAccumulators::Impulse impulse;
-};
-
-struct WorldTransaction::SavedBody {
-  Body* body;
-  Pose initial_pose;
-  std::size_t good_pose_count;
-  bool joints_dirty, restored_once;
 };
 
 struct WorldTransaction::SavedMotion {
@@ -29,17 +23,12 @@ struct WorldTransaction::SavedMotion {
   bool wake_requested;
 };
 
-struct WorldTransaction::HiddenBody {
-  std::unique_ptr<Body> body;
+template <class T>
+struct WorldTransaction::Hidden {
+  std::vector<std::unique_ptr<T>>* list;
+  std::unique_ptr<T> object;
   NodeId id;
-  std::size_t index;          // index among the bodies
-  std::size_t sibling_index;  // index among its node's siblings
-};
-
-struct WorldTransaction::HiddenGear {
-  std::unique_ptr<Gear> gear;
-  NodeId id;
-  std::size_t index;          // index among the gears
+  std::size_t index;          // index in the list
   std::size_t sibling_index;  // index among its node's siblings
 };
 
@@ -52,93 +41,73 @@ void WorldTransaction::begin() {
   active_ = true;
   call_++;
   entries_.clear();
+  saved_bytes_.clear();
   forces_.clear();
-  bodies_.clear();
   motions_.clear();
-  reset_requested_ = world_.reset_requested_;
-  panic_requested_ = world_.panic_requested_;
-  panic_end_requested_ = world_.panic_end_requested_;
-  world_.behaviors_->transaction().begin();
-  world_.store_.begin_transaction();
+  requests_ = world_.requests();
+  world_.behaviors().transaction().begin();
+  world_.store().begin_transaction();
 }
 
 void WorldTransaction::commit() {
   active_ = false;
-  world_.store_.commit_transaction();
-  world_.behaviors_->transaction().commit();
-  for (HiddenGear& hidden : hidden_gears_) {
-    hidden.gear.reset();
-    world_.store_.remove_hidden(hidden.id);
+  world_.store().commit_transaction();
+  world_.behaviors().transaction().commit();
+  destroy(hidden_gears_);
+  destroy(hidden_bodies_);
+}
+
+template <class T>
+void WorldTransaction::destroy(std::vector<Hidden<T>>& hidden) {
+  for (Hidden<T>& each : hidden) {
+    each.object.reset();
+    world_.store().remove_hidden(each.id);
   }
-  hidden_gears_.clear();
-  for (HiddenBody& hidden : hidden_bodies_) {
-    hidden.body.reset();
-    world_.store_.remove_hidden(hidden.id);
-  }
-  hidden_bodies_.clear();
+  hidden.clear();
 }
 
 void WorldTransaction::rollback() {
   // from here on, additions and removals are final
   active_ = false;
   // restore the structure first, so that the store finds the objects that it saved values of
-  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) entry->undo(entry->owner, entry->value);
-  world_.store_.rollback();
-  world_.reset_requested_ = reset_requested_;
-  world_.panic_requested_ = panic_requested_;
-  world_.panic_end_requested_ = panic_end_requested_;
+  for (auto entry = entries_.rbegin(); entry != entries_.rend(); ++entry) {
+    if (entry->undo != nullptr) {
+      entry->undo(entry->owner, entry->value);
+    } else {
+      std::memcpy(entry->owner, saved_bytes_.data() + entry->value, saved_bytes_.size() - entry->value);
+      saved_bytes_.resize(entry->value);
+    }
+  }
+  world_.store().rollback();
+  world_.requests() = requests_;
 }
 
 bool WorldTransaction::is_empty() const {
-  return entries_.empty() && world_.store_.transaction_is_empty() && world_.reset_requested_ == reset_requested_ &&
-         world_.panic_requested_ == panic_requested_ && world_.panic_end_requested_ == panic_end_requested_;
+  return entries_.empty() && world_.store().transaction_is_empty() && world_.requests() == requests_;
 }
 
 void WorldTransaction::record(UndoFunction undo, void* owner, std::size_t value) {
   if (active_) entries_.push_back({undo, owner, value});
 }
 
-bool WorldTransaction::first_in_call(std::uint64_t& saved_in_call) const {
-  return std::exchange(saved_in_call, call_) != call_;
+void WorldTransaction::save_bytes(void* field, std::size_t size) {
+  entries_.push_back({nullptr, field, saved_bytes_.size()});
+  const auto* const bytes = static_cast<const std::byte*>(field);
+  saved_bytes_.insert(saved_bytes_.end(), bytes, bytes + size);
 }
 
-void WorldTransaction::save(Part& part) {
-  if (!first_in_call(part.saved_in_call_)) return;
-  forces_.push_back({&part, world_.force_accumulators().wrench(part.accumulator_),
-                     world_.force_accumulators().impulse(part.accumulator_)});
+void WorldTransaction::save_forces(const Part& part) {
+  ForceAccumulators& accumulators = world_.force_accumulators();
+  const std::uint32_t index = part.accumulator_index();
+  forces_.push_back({index, accumulators.wrench(index), accumulators.impulse(index)});
   record(
-      [](void* transaction, std::size_t index) {
+      [](void* transaction, std::size_t at) {
         auto& self = *static_cast<WorldTransaction*>(transaction);
-        const SavedForces& saved = self.forces_[index];
-        self.world_.force_accumulators().wrench(saved.part->accumulator_) = saved.wrench;
-        self.world_.force_accumulators().impulse(saved.part->accumulator_) = saved.impulse;
+        const SavedForces& saved = self.forces_[at];
+        self.world_.force_accumulators().wrench(saved.accumulator) = saved.wrench;
+        self.world_.force_accumulators().impulse(saved.accumulator) = saved.impulse;
       },
       this, forces_.size() - 1);
-}
-
-void WorldTransaction::save(Body& body) {
-  if (!first_in_call(body.saved_in_call_)) return;
-  bodies_.push_back({&body, body.initial_pose_, body.good_pose_count_, body.joints_dirty_, body.restored_once_});
-  record(
-      [](void* transaction, std::size_t index) {
-        const SavedBody& saved = static_cast<WorldTransaction*>(transaction)->bodies_[index];
-        saved.body->initial_pose_ = saved.initial_pose;
-        saved.body->good_pose_count_ = saved.good_pose_count;
-        saved.body->joints_dirty_ = saved.joints_dirty;
-        saved.body->restored_once_ = saved.restored_once;
-      },
-      this, bodies_.size() - 1);
-}
-
-void WorldTransaction::save(CameraMoves& camera_moves) {
-  if (!active_ || !first_in_call(camera_moves.saved_in_call_)) return;
-  camera_moves_ = camera_moves.state_;
-  record(
-      [](void* transaction, std::size_t) {
-        const auto& self = *static_cast<WorldTransaction*>(transaction);
-        self.world_.camera_moves_.state_ = self.camera_moves_;
-      },
-      this);
 }
 
 void WorldTransaction::save(Shape& shape) {
@@ -166,76 +135,29 @@ void WorldTransaction::save_motion(Part& part) {
       this, motions_.size() - 1);
 }
 
-void WorldTransaction::body_added() {
-  record([](void* world, std::size_t) { static_cast<World*>(world)->bodies_.pop_back(); }, &world_);
-}
-
-void WorldTransaction::gear_added() {
-  record([](void* world, std::size_t) { static_cast<World*>(world)->gears_.pop_back(); }, &world_);
-}
-
-void WorldTransaction::shape_added() {
-  record([](void* world, std::size_t) { static_cast<World*>(world)->shapes_.pop_back(); }, &world_);
-}
-
-void WorldTransaction::part_added(Body& body) {
+template <auto kHidden, class T>
+void WorldTransaction::hide_in(std::vector<std::unique_ptr<T>>& list, std::size_t index) {
+  const auto at = list.begin() + static_cast<std::ptrdiff_t>(index);
+  const NodeId id = (*at)->id();
+  (this->*kHidden).push_back({&list, std::move(*at), id, index, world_.store().hide(id)});
+  list.erase(at);
   record(
       [](void* owner, std::size_t) {
-        auto& body = *static_cast<Body*>(owner);
-        body.parts_.pop_back();
-        body.structure_version_++;
-      },
-      &body);
-}
-
-void WorldTransaction::joint_added(Body& body) {
-  record(
-      [](void* owner, std::size_t) {
-        auto& body = *static_cast<Body*>(owner);
-        body.joints_.pop_back();
-        body.structure_version_++;
-      },
-      &body);
-}
-
-void WorldTransaction::motor_added(Body& body) {
-  record(
-      [](void* owner, std::size_t) {
-        auto& body = *static_cast<Body*>(owner);
-        body.motors_.pop_back();
-        body.structure_version_++;
-      },
-      &body);
-}
-
-void WorldTransaction::hide(std::unique_ptr<Gear> gear, std::size_t index) {
-  const NodeId id = gear->id();
-  hidden_gears_.push_back({std::move(gear), id, index, world_.store_.hide(id)});
-  record(
-      [](void* owner, std::size_t) {
-        auto& transaction = *static_cast<WorldTransaction*>(owner);
-        HiddenGear& last = transaction.hidden_gears_.back();
-        transaction.world_.store_.show(last.id, last.sibling_index);
-        auto& gears = transaction.world_.gears_;
-        gears.insert(gears.begin() + static_cast<std::ptrdiff_t>(last.index), std::move(last.gear));
-        transaction.hidden_gears_.pop_back();
+        auto& self = *static_cast<WorldTransaction*>(owner);
+        Hidden<T>& last = (self.*kHidden).back();
+        self.world_.store().show(last.id, last.sibling_index);
+        last.list->insert(last.list->begin() + static_cast<std::ptrdiff_t>(last.index), std::move(last.object));
+        (self.*kHidden).pop_back();
       },
       this);
 }
 
-void WorldTransaction::hide(std::unique_ptr<Body> body, std::size_t index) {
-  const NodeId id = body->id();
-  hidden_bodies_.push_back({std::move(body), id, index, world_.store_.hide(id)});
-  record(
-      [](void* owner, std::size_t) {
-        auto& transaction = *static_cast<WorldTransaction*>(owner);
-        HiddenBody& last = transaction.hidden_bodies_.back();
-        transaction.world_.store_.show(last.id, last.sibling_index);
-        auto& bodies = transaction.world_.bodies_;
-        bodies.insert(bodies.begin() + static_cast<std::ptrdiff_t>(last.index), std::move(last.body));
-        transaction.hidden_bodies_.pop_back();
-      },
-      this);
+void WorldTransaction::hide(std::vector<std::unique_ptr<Body>>& list, std::size_t index) {
+  hide_in<&WorldTransaction::hidden_bodies_>(list, index);
+}
+
+void WorldTransaction::hide(std::vector<std::unique_ptr<Gear>>& list, std::size_t index) {
+  hide_in<&WorldTransaction::hidden_gears_>(list, index);
 }
 
 }  // namespace limber

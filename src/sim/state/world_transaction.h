@@ -1,14 +1,15 @@
 // WorldTransaction: the undo log of a guarded script call; rolls back the call's changes to the world if it fails. The
-// store logs property values; this class logs forces, and objects that were added or removed. [sim]
+// store logs property values; this class logs other fields, forces, and objects that were added or removed. [sim]
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "base/vec.h"
-#include "sim/visuals/camera_motion.h"
+#include "base/id.h"
 
 namespace limber {
 
@@ -17,6 +18,14 @@ class Gear;
 class Part;
 class Shape;
 class World;
+
+/// Requests to the owner of a scene, which fulfills them between two ticks.
+struct WorldRequests {
+  bool reset = false;
+  bool panic = false;
+  bool panic_end = false;
+  bool operator==(const WorldRequests&) const = default;
+};
 
 class WorldTransaction {
  public:
@@ -36,56 +45,55 @@ class WorldTransaction {
   /// True if nothing was logged since begin(), so there is nothing to roll back.
   bool is_empty() const;
 
-  /// Save the pending forces of a part, and the state of a body that isn't in its properties. Call before a change.
-  void save(Part& part);
-  void save(Body& body);
-  /// Saves the state of the camera moves. Call before a change.
-  void save(CameraMoves& camera_moves);
+  /// True once in each guarded call for each `saved_in_call`, in which it notes the call; false outside of calls.
+  bool first_in_call(std::uint64_t& saved_in_call) const {
+    return active_ && std::exchange(saved_in_call, call_) != call_;
+  }
+  /// Saves the values of fields, which must not move in memory until the call ends. Call before a change.
+  template <class... T>
+  requires(std::is_trivially_copyable_v<T>&&...) void save_fields(T&... fields) {
+    if (active_) (save_bytes(&fields, sizeof fields), ...);
+  }
+  /// Saves the pending forces of a part. Call before a change, within a call.
+  void save_forces(const Part& part);
   /// Saves the number of children of a compound. Call before adding one.
   void save(Shape& shape);
   /// Saves Bullet's pose and velocity of a part. Call before its pending changes are applied ahead of the next step.
   void save_motion(Part& part);
-  // Log that the last element of the list was added.
-  void body_added();
-  void gear_added();
-  void shape_added();
-  void part_added(Body& body);
-  void joint_added(Body& body);
-  void motor_added(Body& body);
-  /// Hides a removed body or gear, which was at `index` of its list, until the call ends.
-  void hide(std::unique_ptr<Body> body, std::size_t index);
-  void hide(std::unique_ptr<Gear> gear, std::size_t index);
+  /// Removes the object at `index` of its list, and hides it until the call ends.
+  void hide(std::vector<std::unique_ptr<Body>>& list, std::size_t index);
+  void hide(std::vector<std::unique_ptr<Gear>>& list, std::size_t index);
 
-  /// Logs a change made by another module. rollback() calls the logged functions from newest to oldest.
+  /// Logs any other change. rollback() calls the logged functions from newest to oldest.
   using UndoFunction = void (*)(void* owner, std::size_t value);
   void record(UndoFunction undo, void* owner, std::size_t value = 0);
 
  private:
   struct Entry {
-    UndoFunction undo;
+    UndoFunction undo;  // null: `owner` is a field, whose bytes were saved from index `value` on
     void* owner;
     std::size_t value;
   };
   struct SavedForces;
-  struct SavedBody;
   struct SavedMotion;
-  struct HiddenBody;
-  struct HiddenGear;
-  bool first_in_call(std::uint64_t& saved_in_call) const;
+  template <class T>
+  struct Hidden;
+  void save_bytes(void* field, std::size_t size);
+  template <auto kHidden, class T>
+  void hide_in(std::vector<std::unique_ptr<T>>& list, std::size_t index);
+  template <class T>
+  void destroy(std::vector<Hidden<T>>& hidden);
 
   World& world_;
   bool active_ = false;
-  bool reset_requested_ = false;
-  bool panic_requested_ = false;
-  bool panic_end_requested_ = false;
+  WorldRequests requests_;
   std::uint64_t call_ = 0;
   std::vector<Entry> entries_;
+  std::vector<std::byte> saved_bytes_;
   std::vector<SavedForces> forces_;
-  std::vector<SavedBody> bodies_;
-  CameraMoves::State camera_moves_;
   std::vector<SavedMotion> motions_;
-  std::vector<HiddenBody> hidden_bodies_;
-  std::vector<HiddenGear> hidden_gears_;  // destroyed before the bodies
+  std::vector<Hidden<Body>> hidden_bodies_;
+  std::vector<Hidden<Gear>> hidden_gears_;  // destroyed before the bodies
 };
 
 }  // namespace limber

@@ -64,15 +64,19 @@ std::optional<Vec3> CameraMoves::position_of(NodeId object) const {
   return part->pose().position;
 }
 
+void CameraMoves::save_for_rollback() {
+  if (world_.transaction().first_in_call(saved_in_call_)) world_.transaction().save_fields(state_);
+}
+
 void CameraMoves::glide(const Vec3& eye, const Vec3& target, double seconds) {
-  world_.transaction().save(*this);
+  save_for_rollback();
   const Camera& camera = world_.visuals().camera();
   state_ = {};
   state_.glide = Glide{camera.eye(), camera.target(), eye, target, world_.time(), seconds, view()};
 }
 
 void CameraMoves::follow(NodeId object) {
-  world_.transaction().save(*this);
+  save_for_rollback();
   state_ = {};
   const std::optional<Vec3> at = position_of(object);
   if (!at) return;

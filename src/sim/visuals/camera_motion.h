@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/id.h"
+#include "base/memory/archive.h"
 #include "base/vec.h"
 
 namespace limber {
@@ -27,23 +28,24 @@ class CameraMoves {
   void stop() { state_ = {}; }
   /// Updates the camera; call after each tick.
   void step();
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
 
  private:
-  friend class WorldTransaction;
-  friend class WorldCheckpoint;
-
   using View = std::array<double, 7>;  // the camera's pose: position, rotation, distance
   struct Glide {
     Vec3 from_eye, from_target, eye, target;
     double start_time = 0, seconds = 0;
     View last_view{};  // the pose as set in the last step
   };
+  // what persists from tick to tick, besides the camera's properties
   struct State {
     std::optional<Glide> glide;
     NodeId followed;
     Vec3 last_position{};  // last position of the followed object
   };
 
+  void save_for_rollback();
   View view() const;
   std::optional<Vec3> position_of(NodeId object) const;
   void step_glide();

@@ -121,12 +121,27 @@ Result<Pose> Body::link_pose(std::string_view name) const {
 
 // Saves the body's state before a guarded call changes it.
 void Body::save_for_rollback() {
-  if (world_.transaction().active()) world_.transaction().save(*this);
+  if (!world_.transaction().first_in_call(saved_in_call_)) return;
+  world_.transaction().save_fields(state_.initial_pose, state_.good_pose_count, state_.joints_dirty,
+                                   state_.restored_once);
+}
+
+// Counts an addition to the end of a list, and records it, so that a guarded call that fails removes the element.
+template <auto kList>
+void Body::record_added() {
+  structure_version_++;
+  world_.transaction().record(
+      [](void* owner, std::size_t) {
+        auto& body = *static_cast<Body*>(owner);
+        (body.*kList).pop_back();
+        body.structure_version_++;
+      },
+      this);
 }
 
 void Body::mark_joints_dirty() {
   save_for_rollback();
-  joints_dirty_ = true;
+  state_.joints_dirty = true;
 }
 
 Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const Pose& pose) {
@@ -155,8 +170,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
     store().mutable_values(part->id(), Part::table().at("restitution"))[0] = 1;
   }
   parts_.push_back(std::move(part));
-  structure_version_++;
-  world_.transaction().part_added(*this);
+  record_added<&Body::parts_>();
   return parts_.back().get();
 }
 
@@ -185,9 +199,8 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, Join
   parent.flush();
   child.flush();
   joints_.push_back(std::make_unique<Joint>(*this, joint_group_, std::move(name), parent, child, spec));
-  world_.transaction().joint_added(*this);
+  record_added<&Body::joints_>();
   joints_.back()->update_from_parts();
-  structure_version_++;
   return joints_.back().get();
 }
 
@@ -199,17 +212,16 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   if (joint.motor() != nullptr) return fault("has a motor already");
   if (joint.type() == JointType::fixed) return fault("is fixed and can't have a motor");
   motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
-  structure_version_++;
-  world_.transaction().motor_added(*this);
+  record_added<&Body::motors_>();
   return motors_.back().get();
 }
 
-Pose Body::pose() const { return parts_.empty() ? initial_pose_ : root()->pose(); }
+Pose Body::pose() const { return parts_.empty() ? state_.initial_pose : root()->pose(); }
 
 void Body::set_pose(const Pose& pose) {
   if (parts_.empty()) {
     save_for_rollback();
-    initial_pose_ = pose;
+    state_.initial_pose = pose;
     return;
   }
   const Pose displacement = pose * this->pose().inverse();
@@ -227,23 +239,23 @@ void Body::set_enabled(bool on) {
 }
 
 void Body::apply_enabled() {
-  if (enabled() == in_world_) return;
-  in_world_ = enabled();
-  if (in_world_) {
-    joints_dirty_ = true;  // World::flush() then adds it to Bullet's world and updates its joints
+  if (enabled() == state_.in_world) return;
+  state_.in_world = enabled();
+  if (state_.in_world) {
+    state_.joints_dirty = true;  // World::flush() then adds it to Bullet's world and updates its joints
   } else {
     for (const auto& joint : joints_) joint->remove_from_world();
     for (const auto& part : parts_) part->remove_from_world();
-    added_parts_ = added_joints_ = 0;
+    state_.added_parts = state_.added_joints = 0;
   }
 }
 
 // Parts are added to Bullet's world in their poses before the next step, not in those of their creation: copies of an
 // arm are created in one place and would collide with each other there.
 void Body::add_to_world() {
-  if (!in_world_) return;
-  for (; added_parts_ < parts_.size(); added_parts_++) parts_[added_parts_]->add_to_world();
-  for (; added_joints_ < joints_.size(); added_joints_++) joints_[added_joints_]->add_to_world();
+  if (!state_.in_world) return;
+  for (; state_.added_parts < parts_.size(); state_.added_parts++) parts_[state_.added_parts]->add_to_world();
+  for (; state_.added_joints < joints_.size(); state_.added_joints++) joints_[state_.added_joints]->add_to_world();
   for (Joint* follower : followers_) follower->add_mimic_gear();
 }
 
@@ -268,7 +280,7 @@ bool Body::asleep() const {
     if (!part->asleep()) return false;
     has_movable_part = true;
   }
-  return has_movable_part && in_world_;
+  return has_movable_part && state_.in_world;
 }
 
 void Body::apply_can_sleep() {
@@ -284,23 +296,18 @@ void Body::reset() {
   }
   for (const auto& joint : joints_) joint->restore_start();
   world_.behaviors().on_body_reset(*this);
-  restored_once_ = false;
-  good_pose_count_ = 0;
+  state_.restored_once = false;
+  state_.good_pose_count = 0;
   set_enabled(true);
 }
 
-void Body::save_start_pose() {
-  for (const auto& part : parts_) part->set_start_pose(part->pose());
-  for (const auto& joint : joints_) joint->save_start();
-}
-
-void Body::save_good_pose() {
-  good_poses_.resize(parts_.size());
-  for (std::size_t i = 0; i < parts_.size(); i++) good_poses_[i] = parts_[i]->pose();
-  good_pose_count_ = parts_.size();
+void Body::prepare_step() {
+  if (std::exchange(state_.is_new, false)) save_start_pose();
+  if (has_unchecked_parts()) find_overlaps();
 }
 
 void Body::publish() {
+  separated_joint_ = nullptr;
   for (const auto& part : parts_) {
     part->publish();
     clamped_ = clamped_ || clamped_by(part->rigid()) > 0;
@@ -311,11 +318,40 @@ void Body::publish() {
     const JointConstraint& constraint = joint->constraint();
     has_joint_warnings_ = has_joint_warnings_ || constraint.spring_limited() || constraint.target_outside();
   }
+  if (!state_.restored_this_tick && separated_joint_ == nullptr) save_good_pose();
+}
+
+const Joint* Body::consume_separated_joint() {
+  const Joint* const separated = std::exchange(separated_joint_, nullptr);
+  return state_.restored_this_tick ? nullptr : separated;
+}
+
+void Body::insert_behavior(std::size_t index, Behavior& behavior) {
+  behaviors_.insert(behaviors_.begin() + static_cast<std::ptrdiff_t>(index), &behavior);
+}
+
+void Body::replace_behavior(const Behavior& previous, Behavior& behavior) {
+  *std::ranges::find(behaviors_, &previous) = &behavior;
+}
+
+std::size_t Body::remove_behavior(const Behavior& behavior) {
+  const auto at = std::ranges::find(behaviors_, &behavior);
+  return static_cast<std::size_t>(behaviors_.erase(at) - behaviors_.begin());
+}
+
+void Body::serialize(Archive& archive) {
+  auto& [in_world, joints_dirty, restored_this_tick, restored_once, is_new, warned_static_velocity, warned_clamped,
+         added_parts, added_joints, good_pose_count, good_poses, pairs, initial_pose] = state_;
+  archive.serialize_all(in_world, joints_dirty, restored_this_tick, restored_once, is_new, warned_static_velocity,
+                        warned_clamped, added_parts, added_joints, good_pose_count, good_poses, pairs, initial_pose);
+  for (const auto& part : parts_) part->serialize(archive);
+  for (const auto& joint : joints_) joint->serialize(archive);
+  for (const auto& motor : motors_) motor->serialize(archive);
 }
 
 void Body::warn_clamped() {
-  if (!std::exchange(clamped_, false) || warned_clamped_) return;
-  warned_clamped_ = true;
+  if (!std::exchange(clamped_, false) || state_.warned_clamped) return;
+  state_.warned_clamped = true;
   const auto clamped_of = [](const std::unique_ptr<Part>& part) { return clamped_by(part->rigid()); };
   const Part& part = **std::ranges::max_element(parts_, {}, clamped_of);
   const double allowed = kMaxRotationPerStep * world_.substeps() / world_.timestep();
@@ -344,8 +380,8 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   add_node(id_);
   if (parts_.empty()) {
     std::array<double, 7> pose{};
-    put(pose.data(), initial_pose_.position);
-    put(pose.data() + 3, initial_pose_.rotation);
+    put(pose.data(), state_.initial_pose.position);
+    put(pose.data() + 3, state_.initial_pose.rotation);
     numbers.add(pose);
   }
   for (const auto& part : parts_) {
@@ -354,7 +390,7 @@ std::uint64_t Body::state_hash(std::uint64_t hash) const {
   }
   for (const auto& joint : joints_) add_node(joint->id());
   for (const auto& motor : motors_) add_node(motor->id());
-  for (const PartPair& pair : pairs_.list) {
+  for (const PartPair& pair : state_.pairs.list) {
     numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
   }
   hash = numbers.value();
@@ -368,7 +404,7 @@ bool Body::is_static() const {
 }
 
 void Body::warn_static_velocity(std::string_view subject) {
-  if (std::exchange(warned_static_velocity_, true)) return;
+  if (std::exchange(state_.warned_static_velocity, true)) return;
   log_warning(
       "body '{}': {} static (mass 0), so a velocity has no effect; ignored (reported once). Give a mass, or set the "
       "position.",

@@ -68,7 +68,7 @@ class Body {
 
   /// Pairs of its parts that overlap or were edited. Two parts don't collide by default if they overlap with all
   /// joints at 0 (bodies from models), or in the first tick (other parts).
-  const PartPairs& pairs() const { return pairs_; }
+  const PartPairs& pairs() const { return state_.pairs; }
   bool excludes(const Part& a, const Part& b) const;
   /// Excludes a pair of its parts from collision, includes it, or restores its default, from the next step on.
   /// Errors: a part of another body, the same part twice.
@@ -89,7 +89,7 @@ class Body {
   /// True if it has parts that can move and all of these sleep.
   bool asleep() const;
   /// True if it takes part in the simulation: the value of `enabled` when changes were last applied.
-  bool in_world() const { return in_world_; }
+  bool in_world() const { return state_.in_world; }
   /// Removes the body from the simulation or adds it again, before the next step. The stability check disables a
   /// body, and reset() enables it.
   void set_enabled(bool on);
@@ -108,42 +108,65 @@ class Body {
   /// Requests that joints read their positions from the parts again before the next step, because a part's pose was
   /// set.
   void mark_joints_dirty();
+  bool joints_dirty() const { return state_.joints_dirty; }
+  /// Makes joints read their positions again if this was requested; returns whether it was.
+  bool update_moved_joints();
 
   /// Joints that are coupled to a leader (URDF mimic), in order of creation.
   std::span<Joint* const> followers() const { return followers_; }
-  /// Publishes the readouts of its parts and joints. [any, one thread per body]
+  /// Counts additions of parts, joints and motors: behaviors then resolve their targets again.
+  std::uint32_t structure_version() const { return structure_version_; }
+
+  // Construction of an empty body; called by World.
+  void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
+  void build_copy(const Body& source);
+
+  // Steps of a tick, called by World in this order.
+  /// Adds new parts and joints to Bullet's world.
+  void add_to_world();
+  /// Saves the start pose of a new body, and excludes pairs of its new parts that overlap.
+  void prepare_step();
+  /// Restores the last good pose, at rest, because a part is unstable; the second time since the last reset it also
+  /// disables the body. Logs this, once per tick; returns true if it did.
+  bool restore_good_pose(const Part& part, const std::string& instability);
+  /// Publishes the readouts of its parts and joints, and saves the pose as good unless the body was restored or came
+  /// apart. [any, one thread per body]
   void publish();
   /// After publish(): logs, once each, springs with a capped stiffness, targets outside limits, and clamped
   /// rotations.
   void log_warnings();
   /// Warns, once each, about mimic joints that something keeps from the positions that their leaders demand.
   void warn_slipping_joints() const;
-  /// Saves the present pose as the one that the stability check restores.
-  void save_good_pose();
+  /// Returns a joint that came apart in this tick, once, or null. Null also if the body was restored in this tick.
+  const Joint* consume_separated_joint();
+  /// After the last internal step: discards forces that a restored body got for further steps.
+  void finish_restore();
+
+  // The list of its behaviors, which BehaviorList keeps up to date.
+  NodeId behavior_group() const { return behavior_group_; }
+  void insert_behavior(std::size_t index, Behavior& behavior);
+  void replace_behavior(const Behavior& previous, Behavior& behavior);
+  /// Returns the index that it had.
+  std::size_t remove_behavior(const Behavior& behavior);
+
   std::uint64_t state_hash(std::uint64_t start) const;
+  /// For checkpoints: its state beyond properties, and that of its parts, joints and motors.
+  void serialize(Archive& archive);
 
  private:
-  friend class World;
-  friend class Behavior;
-  friend class BehaviorList;
-  friend class BehaviorTransaction;
-  friend class WorldTransaction;
-  friend class WorldCheckpoint;
   void save_for_rollback();
   void warn_clamped();
-  void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
   void build_motor(Joint& joint, const JointModel& m, bool servo);
-  void build_copy(const Body& source);
-  void add_to_world();
-  /// Makes joints read their positions again if parts were moved; returns whether they were.
-  bool update_moved_joints();
+  template <auto kList>
+  void record_added();
+  void save_good_pose();
   void couple_followers();
   void apply_enabled();
   void apply_self_collision();
   void set_pair(std::size_t a, std::size_t b, PairEdit edit);
   void apply_pair(std::size_t a, std::size_t b);
   void apply_pairs();
-  bool has_unchecked_parts() const { return pairs_.checked_count < parts_.size(); }
+  bool has_unchecked_parts() const { return state_.pairs.checked_count < parts_.size(); }
   void find_overlaps();
   void apply_can_sleep();
   void read_asleep(double* out) const { out[0] = asleep() ? 1 : 0; }
@@ -167,25 +190,26 @@ class Body {
   std::vector<std::unique_ptr<Motor>> motors_;
   std::vector<Joint*> followers_;
   std::vector<Behavior*> behaviors_;
-  std::uint32_t structure_version_ = 0;  // counts additions: behaviors then resolve their targets again
-  PartPairs pairs_;
-  Pose initial_pose_;  // pose for the first part, used while there are no parts
-  bool in_world_ = true;
-  std::size_t added_parts_ = 0;  // number of parts that have been added to Bullet's world, in order; joints alike
-  std::size_t added_joints_ = 0;
-  bool joints_dirty_ = false;
-  bool warned_static_velocity_ = false;
-  bool is_new_ = true;  // created since the last step: the next step stores its start pose
-
-  // Stability check: the pose after the last good tick, and whether it was restored before.
-  std::vector<Pose> good_poses_;
-  std::size_t good_pose_count_ = 0;  // number of valid elements of good_poses_
-  std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved this body
-  bool restored_once_ = false;
-  bool restored_this_tick_ = false;
-  bool has_joint_warnings_ = false;  // a joint may have to report a capped spring or a target outside its limits
-  bool clamped_ = false;             // the rotation of a part was clamped in this tick
-  bool warned_clamped_ = false;
+  std::uint32_t structure_version_ = 0;
+  // what persists from tick to tick, besides its properties
+  struct State {
+    bool in_world = true;
+    bool joints_dirty = false;
+    bool restored_this_tick = false;
+    bool restored_once = false;
+    bool is_new = true;  // created since the last step: the next step stores its start pose
+    bool warned_static_velocity = false;
+    bool warned_clamped = false;
+    std::size_t added_parts = 0;  // number of parts that have been added to Bullet's world, in order; joints alike
+    std::size_t added_joints = 0;
+    std::size_t good_pose_count = 0;  // number of valid elements of good_poses
+    std::vector<Pose> good_poses;     // of the parts after the last good tick, for the stability check
+    PartPairs pairs;
+    Pose initial_pose;  // pose for the first part, used while there are no parts
+  } state_;
+  std::uint64_t saved_in_call_ = 0;   // the last guarded call that saved this body
+  bool has_joint_warnings_ = false;   // a joint may have to report a capped spring or a target outside its limits
+  bool clamped_ = false;              // the rotation of a part was clamped in this tick
   Joint* separated_joint_ = nullptr;  // a joint that came apart in this tick
 };
 

@@ -24,9 +24,9 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     parts_.back()->flush();
   }
   for (const Overlap& overlap : model->overlaps) {
-    (void)pairs_.set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
+    (void)state_.pairs.set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
   }
-  pairs_.checked_count = parts_.size();
+  state_.pairs.checked_count = parts_.size();
   apply_pairs();
   for (const JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
@@ -76,14 +76,14 @@ void Body::build_copy(const Body& source) {
     copy_values(from->id(), part.id(), Part::table());
   }
   copy_values(source.id_, id_, table());
-  initial_pose_ = source.initial_pose_;
-  pairs_ = source.pairs_;
+  state_.initial_pose = source.state_.initial_pose;
+  state_.pairs = source.state_.pairs;
   apply_pairs();
   // copy Bullet's state bit for bit: poses in the store have been converted to quaternions and back
   for (std::size_t i = 0; i < parts_.size(); i++) {
     parts_[i]->flush();
     source.parts_[i]->flush();
-    parts_[i]->set_state(source.parts_[i]->capture_state());
+    parts_[i]->set_motion(source.parts_[i]->capture_motion());
   }
   for (const auto& from : source.joints_) {
     Part& parent = *find_part(from->parent().name());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/memory/archive.h"
 #include "sim/bullet/bullet.h"
 #include "sim/collision/contact_manifold.h"
 #include "sim/world/part.h"
@@ -21,16 +22,16 @@ constexpr btScalar kClosedDistance = 1e-4F;
 Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
   // Bullet may swap the objects of a pair that touches again. Pairs are few, so a linear search is fast enough.
   if (b->id() < a->id()) std::swap(a, b);
-  for (Pair& pair : pairs_) {
+  for (Pair& pair : state_.pairs) {
     if (pair.a == a && pair.b == b) return pair;
   }
-  pairs_.push_back({a, b, 0, kNoDistance, Vec3(0), false, false, false, false});
-  return pairs_.back();
+  state_.pairs.push_back({a, b, 0, kNoDistance, Vec3(0), false, false, false, false});
+  return state_.pairs.back();
 }
 
 void Contacts::begin_tick() {
-  events_.clear();
-  for (Pair& pair : pairs_) {
+  state_.events.clear();
+  for (Pair& pair : state_.pairs) {
     pair.touched_before = pair.touching && !pair.event_pending;
     pair.touching = false;
     if (pair.event_pending) continue;
@@ -40,8 +41,8 @@ void Contacts::begin_tick() {
 }
 
 void Contacts::collect(btDispatcher& dispatcher) {
-  if (reporting_ <= 0) return;
-  for (Pair& pair : pairs_) pair.closing = false;
+  if (state_.reporting <= 0) return;
+  for (Pair& pair : state_.pairs) pair.closing = false;
   for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
     btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
     Part* a = part_of(manifold.getBody0());
@@ -70,18 +71,24 @@ void Contacts::collect(btDispatcher& dispatcher) {
 }
 
 void Contacts::end_tick() {
-  for (Pair& pair : pairs_) {
+  for (Pair& pair : state_.pairs) {
     if (pair.touched_before || (!pair.touching && !pair.event_pending)) continue;
     pair.event_pending = pair.closing && !pair.event_pending;
     if (pair.event_pending) continue;
-    if (pair.a->reports_contacts()) events_.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
-    if (pair.b->reports_contacts()) events_.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
+    if (pair.a->reports_contacts()) state_.events.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
+    if (pair.b->reports_contacts()) state_.events.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
   }
-  std::erase_if(pairs_, [](const Pair& pair) { return !pair.touching && !pair.touched_before && !pair.event_pending; });
+  std::erase_if(state_.pairs,
+                [](const Pair& pair) { return !pair.touching && !pair.touched_before && !pair.event_pending; });
 }
 
 void Contacts::remove_part(const Part& part) {
-  std::erase_if(pairs_, [&](const Pair& pair) { return pair.a == &part || pair.b == &part; });
+  std::erase_if(state_.pairs, [&](const Pair& pair) { return pair.a == &part || pair.b == &part; });
+}
+
+void Contacts::serialize(Archive& archive) {
+  auto& [reporting, pairs, events] = state_;
+  archive.serialize_all(reporting, pairs, events);
 }
 
 }  // namespace limber

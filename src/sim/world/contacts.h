@@ -12,6 +12,7 @@ class btDispatcher;
 
 namespace limber {
 
+class Archive;
 class Part;
 
 /// Two parts began to touch; `part` reports contacts.
@@ -26,7 +27,7 @@ struct ContactEvent {
 
 class Contacts {
  public:
-  void set_reporting(bool on) { reporting_ += on ? 1 : -1; }
+  void set_reporting(bool on) { state_.reporting += on ? 1 : -1; }
   /// To be called before a part is removed: removes its pairs.
   void remove_part(const Part& part);
   /// To be called before the tick's first internal step.
@@ -36,10 +37,11 @@ class Contacts {
   void collect(btDispatcher& dispatcher);
   /// To be called after the last internal step: collects the events of the tick.
   void end_tick();
-  std::span<const ContactEvent> events() const { return events_; }
+  std::span<const ContactEvent> events() const { return state_.events; }
+  /// For checkpoints.
+  void serialize(Archive& archive);
 
  private:
-  friend class WorldCheckpoint;
   struct Pair {
     Part* a;
     Part* b;
@@ -53,9 +55,12 @@ class Contacts {
   };
   Pair& pair_of(Part* a, Part* b);
 
-  int reporting_ = 0;
-  std::vector<Pair> pairs_;  // in the order in which they first touched
-  std::vector<ContactEvent> events_;
+  // what persists from tick to tick
+  struct State {
+    int reporting = 0;
+    std::vector<Pair> pairs;  // in the order in which they first touched
+    std::vector<ContactEvent> events;
+  } state_;
 };
 
 }  // namespace limber

@@ -1,6 +1,7 @@
 // ForceAccumulators: allocation, and applying the accumulated forces.
 #include "sim/world/force_accumulators.h"
 
+#include "base/memory/archive.h"
 #include "base/memory/prefetch.h"
 #include "sim/world/part.h"
 
@@ -64,6 +65,12 @@ void ForceAccumulators::apply() {
     clear(index);
   }
   pending_.clear();
+}
+
+void ForceAccumulators::serialize(Archive& archive) {
+  if (archive.loading()) discard();
+  archive.serialize(pending_);
+  for (const std::uint32_t index : pending_) archive.serialize_all(wrenches_[index], impulses_[index]);
 }
 
 }  // namespace limber

@@ -9,6 +9,7 @@
 
 namespace limber {
 
+class Archive;
 class Part;
 
 class ForceAccumulators {
@@ -59,9 +60,10 @@ class ForceAccumulators {
   }
   /// Before Bullet's step: applies and clears all pending forces and impulses.
   void apply();
+  /// For checkpoints: the pending forces and impulses.
+  void serialize(Archive& archive);
 
  private:
-  friend class WorldCheckpoint;
   void prefetch_ahead(std::size_t index) const;
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
   void mark_pending(std::uint32_t index) {

@@ -140,18 +140,18 @@ void Gear::apply_settings() {
 }
 
 void Gear::update_constraint() {
-  const bool active = enabled() && !redundant_ && joint_a_->in_world() && joint_b_->in_world();
+  const bool active = enabled() && !state_.redundant && joint_a_->in_world() && joint_b_->in_world();
   if (!active) return remove_constraint();
-  if (!std::exchange(in_world_, true)) world_.bullet().addConstraint(constraint_.get(), false);
+  if (!std::exchange(state_.in_world, true)) world_.bullet().addConstraint(constraint_.get(), false);
 }
 
 void Gear::remove_constraint() {
-  if (std::exchange(in_world_, false)) world_.bullet().removeConstraint(constraint_.get());
+  if (std::exchange(state_.in_world, false)) world_.bullet().removeConstraint(constraint_.get());
 }
 
 void Gear::read_error(double* out) const { out[0] = constraint_->error(); }
 
-void Gear::read_force(double* out) const { out[0] = in_world_ ? constraint_->applied() : 0; }
+void Gear::read_force(double* out) const { out[0] = state_.in_world ? constraint_->applied() : 0; }
 
 Result<void> Gear::validate_ratio(const double* in) const {
   if (in[0] != 0) return {};
@@ -196,8 +196,8 @@ void Body::warn_slipping_joints() const {
 // relations, which a model guarantees to be consistent.
 void World::update_gears() {
   if (gears_.empty()) return;
-  if (gears_dirty_) {
-    gears_dirty_ = false;
+  if (state_.gears_dirty) {
+    state_.gears_dirty = false;
     GearUnionFind groups;
     double contradiction = 0;
     for (const auto& body : bodies_) {
@@ -247,7 +247,7 @@ Result<Gear*> World::add_gear(std::string name, Joint& joint_a, Joint& joint_b, 
   for (Joint* joint : {&joint_a, &joint_b}) {
     joint->parent().flush();
     joint->child().flush();
-    if (joint->body().joints_dirty_) joint->update_from_parts();
+    if (joint->body().joints_dirty()) joint->update_from_parts();
   }
   const double initial_offset = offset ? *offset : joint_b.value() - ratio * joint_a.value();
   const Property& offset_range = Gear::table().at("offset");
@@ -260,7 +260,7 @@ Result<Gear*> World::add_gear(std::string name, Joint& joint_a, Joint& joint_b, 
   store_.mutable_values(gear.id(), *gear_properties().ratio)[0] = ratio;
   store_.mutable_values(gear.id(), *gear_properties().offset)[0] = initial_offset;
   gear.apply_settings();
-  transaction_.gear_added();
+  transaction_.record([](void* world, std::size_t) { static_cast<World*>(world)->gears_.pop_back(); }, this);
   return &gear;
 }
 
@@ -268,7 +268,7 @@ void World::remove_gear(Gear& gear) {
   const auto at = std::ranges::find_if(gears_, [&](const std::unique_ptr<Gear>& g) { return g.get() == &gear; });
   if (at == gears_.end()) return;
   mark_gears_dirty();
-  if (transaction_.active()) transaction_.hide(std::move(*at), static_cast<std::size_t>(at - gears_.begin()));
+  if (transaction_.active()) return transaction_.hide(gears_, static_cast<std::size_t>(at - gears_.begin()));
   gears_.erase(at);
 }
 

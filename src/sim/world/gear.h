@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "base/memory/archive.h"
 #include "properties/store.h"
 
 namespace limber {
@@ -42,8 +43,11 @@ class Gear {
   void update_constraint();
   void remove_constraint();
   /// Redundant: other gears determine the position already (or contradict this gear), so its constraint is not used.
-  void set_redundant(bool redundant) { redundant_ = redundant; }
-  bool redundant() const { return redundant_; }
+  void set_redundant(bool redundant) { state_.redundant = redundant; }
+  bool redundant() const { return state_.redundant; }
+
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
 
   // Callbacks of the properties.
   void apply_settings();
@@ -53,7 +57,6 @@ class Gear {
   Result<void> act_remove(std::span<const double> args);
 
  private:
-  friend class WorldCheckpoint;
   void make_constraint();
 
   World& world_;
@@ -61,8 +64,11 @@ class Gear {
   Joint* joint_a_;
   Joint* joint_b_;
   std::unique_ptr<GearConstraint> constraint_;
-  bool in_world_ = false;
-  bool redundant_ = false;
+  // what persists from tick to tick, besides its properties
+  struct State {
+    bool in_world = false;
+    bool redundant = false;
+  } state_;
 };
 
 /// Checks that a gear can couple the joint: it must have one axis, revolute or prismatic. The error gives the reason.

@@ -153,7 +153,7 @@ Joint::~Joint() {
 }
 
 void Joint::add_to_world() {
-  if (std::exchange(in_world_, true)) return;
+  if (std::exchange(state_.in_world, true)) return;
   constraint_->restart_goals();
   body_.world().bullet().addConstraint(constraint_.get());
 }
@@ -165,17 +165,17 @@ void Joint::couple_to(Joint& leader) {
 }
 
 void Joint::add_mimic_gear() {
-  if (mimic_gear_ == nullptr || std::exchange(gear_in_world_, true)) return;
+  if (mimic_gear_ == nullptr || std::exchange(state_.gear_in_world, true)) return;
   body_.world().bullet().addConstraint(mimic_gear_.get(), false);
 }
 
 void Joint::remove_from_world() {
-  if (std::exchange(gear_in_world_, false)) body_.world().bullet().removeConstraint(mimic_gear_.get());
-  if (std::exchange(in_world_, false)) body_.world().bullet().removeConstraint(constraint_.get());
+  if (std::exchange(state_.gear_in_world, false)) body_.world().bullet().removeConstraint(mimic_gear_.get());
+  if (std::exchange(state_.in_world, false)) body_.world().bullet().removeConstraint(constraint_.get());
 }
 
 void Joint::wake() {
-  if (!in_world_) return;
+  if (!state_.in_world) return;
   SleepTracker& sleep = body_.world().bullet().sleep();
   if (!parent_.is_static()) sleep.wake(parent_.rigid());
   if (!child_.is_static()) sleep.wake(child_.rigid());
@@ -192,7 +192,7 @@ double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own
 
 void Joint::apply_limits() {
   const Store& store = body_.store();
-  const unsigned before = open_axes_;
+  const unsigned before = state_.open_axes;
   unsigned open = 0;
   for (int axis = 0; axis < 6; axis++) {
     const auto half = static_cast<std::size_t>(axis / 3);
@@ -209,7 +209,7 @@ void Joint::apply_limits() {
     constraint_->set_axis(axis, settings);
     if (!settings.locked()) open |= 1u << axis;
   }
-  open_axes_ = static_cast<std::uint8_t>(open);
+  state_.open_axes = static_cast<std::uint8_t>(open);
   if ((open & ~before) != 0 && motor_ != nullptr) motor_->apply_axes();
 }
 
@@ -218,17 +218,17 @@ void Joint::update_from_parts() {
   const double* published = body_.store().transient_block(id_) + joint_readouts().angles->offset;
   constraint_->reset({published[0], published[1], published[2]});
   if (mimic_gear_ != nullptr) mimic_gear_->reset();
-  separated_ticks_ = 0;
+  state_.separated_ticks = 0;
   publish();
 }
 
-void Joint::save_start() { start_angles_ = constraint_->angles(); }
-void Joint::save_start(const Joint& other) { start_angles_ = other.constraint_->angles(); }
+void Joint::save_start() { state_.start_angles = constraint_->angles(); }
+void Joint::save_start(const Joint& other) { state_.start_angles = other.constraint_->angles(); }
 
 void Joint::restore_start() {
   Store& store = body_.store();
   store.save_before_write(id_, *joint_readouts().angles);
-  put(store.transient_block(id_) + joint_readouts().angles->offset, start_angles_);
+  put(store.transient_block(id_) + joint_readouts().angles->offset, state_.start_angles);
 }
 
 void Joint::publish() {
@@ -265,7 +265,7 @@ double Joint::gap() const {
 bool Joint::check_separation() {
   const double distance = gap();
   if (!(distance > kMinGap)) {
-    separated_ticks_ = 0;
+    state_.separated_ticks = 0;
     return false;
   }
   double size = 0;
@@ -276,8 +276,8 @@ bool Joint::check_separation() {
     const btVector3 sides = high - low;
     size += static_cast<double>(sides[sides.maxAxis()]);
   }
-  separated_ticks_ = distance > size ? separated_ticks_ + 1 : 0;
-  return separated_ticks_ >= kSeparatedTicks;
+  state_.separated_ticks = distance > size ? state_.separated_ticks + 1 : 0;
+  return state_.separated_ticks >= kSeparatedTicks;
 }
 
 void Joint::read_axis(double* out) const {

@@ -59,7 +59,7 @@ class Joint {
   /// for a fixed one, else 5 (angular z). Axes 0..2 are linear x y z, 3..5 angular x y z.
   int own_axis() const;
   /// True if the present limits of an axis don't lock it.
-  bool is_open(int axis) const { return (open_axes_ >> axis & 1) != 0; }
+  bool is_open(int axis) const { return (state_.open_axes >> axis & 1) != 0; }
   /// Position of the own axis, rad or m.
   double value() const;
 
@@ -82,7 +82,7 @@ class Joint {
   void remove_from_world();
   /// Wakes its parts in the next step. [any]
   void wake();
-  bool in_world() const { return in_world_; }
+  bool in_world() const { return state_.in_world; }
   /// Couples this joint to its leader with the ratio and offset of its `mimic` spec.
   void couple_to(Joint& leader);
   /// Adds the gear to Bullet's world, after both joints were added.
@@ -91,27 +91,31 @@ class Joint {
   GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
   /// Writes limits, ERP and CFM of all axes to the constraint; the on-change callback of these properties.
   void apply_limits();
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
   /// Getter of the property `axis`: direction of the own axis, world.
   void read_axis(double* out) const;
 
  private:
-  friend class WorldCheckpoint;
   static std::unique_ptr<JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
 
   // fields that every tick reads come first
   Body& body_;
   NodeId id_;
-  std::uint8_t open_axes_ = 0;  // bit set of the axes that are not locked
-  bool in_world_ = false;
   Motor* motor_ = nullptr;
   Part& parent_;
   Part& child_;
   std::unique_ptr<JointConstraint> constraint_;
   std::unique_ptr<GearConstraint> mimic_gear_;
-  bool gear_in_world_ = false;
+  // what persists from tick to tick, besides its properties
+  struct State {
+    std::uint8_t open_axes = 0;  // bit set of the axes that are not locked
+    bool in_world = false;
+    bool gear_in_world = false;
+    int separated_ticks = 0;  // consecutive ticks with a gap larger than its parts
+    Vec3 start_angles{0};
+  } state_;
   JointSpec spec_;
-  Vec3 start_angles_{0};
-  int separated_ticks_ = 0;  // consecutive ticks with a gap larger than its parts
 };
 
 }  // namespace limber

@@ -206,7 +206,7 @@ void Motor::step_towards(const Vec3& target, double max_step) {
 }
 
 void Motor::save_held_position() {
-  for (int axis = 0; axis < 6; axis++) held_position_[at(axis)] = constraint_.value(axis);
+  for (int axis = 0; axis < 6; axis++) state_.held_position[at(axis)] = constraint_.value(axis);
   constraint_.restart_goals();
 }
 
@@ -266,23 +266,23 @@ bool Motor::update_targets() {
     if (!joint_.is_open(axis)) continue;
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const values = persistent + axis % 3;
-    changed |=
-        constraint_.set_goal(axis, holding ? held_position_[at(axis)] : values[properties.servo_position[half]->offset],
-                             values[properties.rest[half]->offset],
-                             holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset]);
+    changed |= constraint_.set_goal(
+        axis, holding ? state_.held_position[at(axis)] : values[properties.servo_position[half]->offset],
+        values[properties.rest[half]->offset],
+        holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset]);
   }
   return changed;
 }
 
 void Motor::warn_contradiction(int axis) {
-  if (std::exchange(warned_contradiction_, true)) return;
+  if (std::exchange(state_.warned_contradiction, true)) return;
   const char* const names[] = {"linear x", "linear y", "linear z", "angular x", "angular y", "angular z"};
   log_warning("motor '{}/{}': spring_active and active are both on for {}; the spring has priority, active is ignored",
               joint_.body().name(), name(), names[axis]);
 }
 
 void Motor::warn_capped() {
-  if (std::exchange(warned_capped_, true)) return;
+  if (std::exchange(state_.warned_capped, true)) return;
   const Store& store = joint_.body().store();
   for (int axis = 0; axis < 6; axis++) {
     const double requested =
@@ -300,7 +300,7 @@ void Motor::warn_capped() {
 
 void Motor::warn_target_outside() {
   // a mimic joint's target is determined by its leader, independently of the limits of the joint itself
-  if (joint_.spec().mimic || std::exchange(warned_target_outside_, true)) return;
+  if (joint_.spec().mimic || std::exchange(state_.warned_target_outside, true)) return;
   for (int axis = 0; axis < 6; axis++) {
     if (!constraint_.target_outside(axis)) continue;
     const AxisSettings& s = constraint_.axis(axis);

@@ -43,6 +43,9 @@ class Motor {
   /// Warns once that the target of a servo is outside the joint's limits.
   void warn_target_outside();
 
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
+
   // On-change callbacks, getters and setters of the properties; public for helper functions that build the table.
   void apply_axes();
   void apply_targets();
@@ -61,7 +64,6 @@ class Motor {
   Result<void> validate_own_axis(const double* in) const;
 
  private:
-  friend class WorldCheckpoint;
   bool update_targets();
   void set_own_axis(const Property& linear_property, const Property& angular_property, double value);
   void warn_contradiction(int axis);
@@ -71,10 +73,13 @@ class Motor {
   Joint& joint_;
   JointConstraint& constraint_;  // of the joint
   NodeId id_;
-  std::array<double, 6> held_position_{};
-  bool warned_contradiction_ = false;
-  bool warned_capped_ = false;
-  bool warned_target_outside_ = false;
+  // what persists from tick to tick, besides its properties
+  struct State {
+    std::array<double, 6> held_position{};
+    bool warned_contradiction = false;
+    bool warned_capped = false;
+    bool warned_target_outside = false;
+  } state_;
 };
 
 }  // namespace limber

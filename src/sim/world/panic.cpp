@@ -15,10 +15,8 @@ void Panic::end() { set_on(false); }
 
 void Panic::set_on(bool on) {
   static const Property& panicked = World::table().at("panicked");
-  if (on_ == on) return;
-  on_ = on;
-  first_second_over_ = false;
-  start_tick_ = world_.tick();
+  if (state_.on == on) return;
+  state_ = {.on = on, .first_second_over = false, .start_tick = world_.tick()};
   world_.store().mutable_values(world_.id(), panicked)[0] = on ? 1 : 0;
   world_.bullet().wake_all();
   world_.apply_gravity();
@@ -36,7 +34,7 @@ void Panic::update_motors() {
 
 Vec3 Panic::limited_gravity(const Vec3& gravity) const {
   const double size = glm::length(gravity);
-  return on_ && size > kDamping * kTerminalSpeed ? gravity * (kDamping * kTerminalSpeed / size) : gravity;
+  return state_.on && size > kDamping * kTerminalSpeed ? gravity * (kDamping * kTerminalSpeed / size) : gravity;
 }
 
 bool Panic::holds_motors() const {
@@ -45,7 +43,7 @@ bool Panic::holds_motors() const {
 }
 
 AxisDrive Panic::drive(MotorMode mode) const {
-  if (!on_) return static_cast<AxisDrive>(mode);
+  if (!state_.on) return static_cast<AxisDrive>(mode);
   return mode != MotorMode::off && holds_motors() ? AxisDrive::servo : AxisDrive::off;
 }
 

@@ -28,12 +28,12 @@ class Panic {
 
   explicit Panic(World& world) : world_(world) {}
 
-  bool on() const { return on_; }
+  bool on() const { return state_.on; }
   /// The world's tick when the panic began, while it is on.
-  std::uint64_t start_tick() const { return start_tick_; }
+  std::uint64_t start_tick() const { return state_.start_tick; }
   /// True once its first second is over; before, further requests are ignored.
-  bool first_second_over() const { return first_second_over_; }
-  void end_first_second() { first_second_over_ = true; }
+  bool first_second_over() const { return state_.first_second_over; }
+  void end_first_second() { state_.first_second_over = true; }
   /// Starts a panic: until end(), behaviors are paused, forces are discarded, and motors act as set by
   /// `panic_motors`.
   void begin();
@@ -51,15 +51,19 @@ class Panic {
   AxisDrive drive(MotorMode mode) const;
   /// Damps all velocities; call after each internal step of h seconds.
   void damp(double h);
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
 
  private:
-  friend class WorldCheckpoint;
   void set_on(bool on);
 
   World& world_;
-  bool on_ = false;
-  bool first_second_over_ = false;
-  std::uint64_t start_tick_ = 0;
+  // what persists from tick to tick
+  struct State {
+    bool on = false;
+    bool first_second_over = false;
+    std::uint64_t start_tick = 0;
+  } state_;
 };
 
 }  // namespace limber

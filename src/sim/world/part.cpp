@@ -114,7 +114,7 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
       accumulator_(body.world().force_accumulators().add(*this)),
       geometry_(std::move(geometry)),
       is_static_(mass <= 0),
-      start_(pose) {
+      state_{.start = pose} {
   body_.store().mutable_values(id_, table().at("mass"))[0] = is_static_ ? 0 : mass;
   const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : to_bt(geometry_->unit_inertia * mass);
   btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
@@ -195,7 +195,7 @@ void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
 
 bool Part::asleep() const { return !is_static_ && !rigid_->isActive(); }
 
-Part::State Part::capture_state() const {
+Part::Motion Part::capture_motion() const {
   const btMatrix3x3& r = rigid_->getWorldTransform().getBasis();
   const btVector3& p = rigid_->getWorldTransform().getOrigin();
   const btVector3& v = rigid_->getLinearVelocity();
@@ -209,28 +209,28 @@ Part::State Part::capture_state() const {
           .bullet_angular_velocity = {w[0], w[1], w[2]}};
 }
 
-void Part::set_state(const State& state) {
+void Part::set_motion(const Motion& motion) {
   // writes Bullet's pose directly instead of marking the property dirty, which would round it: the store's pose is
   // converted to a quaternion
   double* const transient = body_.store().transient_block(id_);
-  put(transient + motion_properties().position->offset, state.pose.position);
-  put(transient + motion_properties().rotation->offset, state.pose.rotation);
-  put(transient + motion_properties().linear_velocity->offset, state.linear_velocity);
-  put(transient + motion_properties().angular_velocity->offset, state.angular_velocity);
-  const auto& m = state.bullet_pose;
+  put(transient + motion_properties().position->offset, motion.pose.position);
+  put(transient + motion_properties().rotation->offset, motion.pose.rotation);
+  put(transient + motion_properties().linear_velocity->offset, motion.linear_velocity);
+  put(transient + motion_properties().angular_velocity->offset, motion.angular_velocity);
+  const auto& m = motion.bullet_pose;
   const btTransform transform(btMatrix3x3(m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8]),
                               btVector3(m[9], m[10], m[11]));
   const auto vector = [](const std::array<float, 3>& v) { return btVector3(v[0], v[1], v[2]); };
   rigid_->setWorldTransform(transform);
   rigid_->setInterpolationWorldTransform(transform);
-  rigid_->setLinearVelocity(vector(state.bullet_linear_velocity));
-  rigid_->setAngularVelocity(vector(state.bullet_angular_velocity));
+  rigid_->setLinearVelocity(vector(motion.bullet_linear_velocity));
+  rigid_->setAngularVelocity(vector(motion.bullet_angular_velocity));
   rigid_->updateInertiaTensor();
 }
 
 void Part::save_for_rollback() {
   WorldTransaction& transaction = body_.world().transaction();
-  if (transaction.active()) transaction.save(*this);
+  if (transaction.first_in_call(saved_in_call_)) transaction.save_forces(*this);
 }
 
 void Part::flush() {
@@ -295,7 +295,7 @@ void Part::publish() {
   put(transient + properties.angular_velocity->offset, from_bt(rigid_->getAngularVelocity()));
 }
 
-bool Part::reports_contacts() const { return report_contacts_; }
+bool Part::reports_contacts() const { return state_.report_contacts; }
 
 // Prefetches all of the rigid body, since on-change callbacks access fields all over it.
 void Part::prefetch_rigid_body(const void* object) {
@@ -402,8 +402,8 @@ void Part::apply_collision() {
 
 void Part::apply_report_contacts() {
   const bool wanted = body_.store().values(id_, table().at("report_contacts"))[0] != 0;
-  if (wanted != report_contacts_) body_.world().contact_log().set_reporting(wanted);
-  report_contacts_ = wanted;
+  if (wanted != state_.report_contacts) body_.world().contact_log().set_reporting(wanted);
+  state_.report_contacts = wanted;
 }
 
 void Part::read_center(double* out) const { put(out, center()); }

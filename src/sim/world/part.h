@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "base/memory/archive.h"
 #include "properties/store.h"
 #include "sim/world/force_accumulators.h"
 #include "sim/world/geometry.h"
@@ -54,17 +55,17 @@ class Part {
   void set_pose(const Pose& pose);
   void set_velocity(const Vec3& linear, const Vec3& angular);
   /// Pose and motion, in the store's and in Bullet's representation, for an exact transfer to another part.
-  struct State {
+  struct Motion {
     Pose pose;
     Vec3 linear_velocity, angular_velocity;
     std::array<float, 12> bullet_pose;  ///< Rotation matrix by rows, then the origin.
     std::array<float, 3> bullet_linear_velocity, bullet_angular_velocity;
   };
-  State capture_state() const;
-  void set_state(const State& state);
+  Motion capture_motion() const;
+  void set_motion(const Motion& motion);
   /// The pose that reset() restores.
-  const Pose& start_pose() const { return start_; }
-  void set_start_pose(const Pose& pose) { start_ = pose; }
+  const Pose& start_pose() const { return state_.start; }
+  void set_start_pose(const Pose& pose) { state_.start = pose; }
 
   /// Forces (N) and torques (N·m) act in each internal step of the next tick, impulses (N·s) once at its start; then
   /// they are cleared. All in world axes. `at`: point in world coordinates; without it, the center of mass.
@@ -89,6 +90,8 @@ class Part {
 
   /// Applies pending forces and impulses to Bullet; called by ForceAccumulators::apply().
   void apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse);
+  /// For checkpoints.
+  void serialize(Archive& archive) { archive.serialize(state_); }
   /// Its index in World::force_accumulators().
   std::uint32_t accumulator_index() const { return accumulator_; }
   /// Publishes pose and velocity to the store's transient values. Call after Bullet's step.
@@ -118,8 +121,6 @@ class Part {
   Result<void> act_impulse(std::span<const double> args);
   Result<void> act_torque(std::span<const double> args);
 
-  friend class WorldTransaction;
-  friend class WorldCheckpoint;
   Body& body_;
   NodeId id_;
   NodeId shape_;
@@ -127,8 +128,11 @@ class Part {
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<btRigidBody> rigid_;
   bool is_static_ = false;
-  bool report_contacts_ = false;
-  Pose start_;
+  // what persists from tick to tick, besides its properties
+  struct State {
+    bool report_contacts = false;
+    Pose start;
+  } state_;
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its forces
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/memory/archive.h"
 #include "model/overlap.h"
 #include "sim/bullet/island_world.h"
 #include "sim/world/body.h"
@@ -59,8 +60,13 @@ bool PartPairs::set_overlaps(std::size_t a, std::size_t b) {
   return pair.excluded() != before;
 }
 
+void PartPairs::serialize(Archive& archive) {
+  auto& [pairs, checked] = *this;
+  archive.serialize_all(pairs, checked);
+}
+
 bool Body::excludes(const Part& a, const Part& b) const {
-  const PartPair* const pair = pairs_.find(index_of(*this, a), index_of(*this, b));
+  const PartPair* const pair = state_.pairs.find(index_of(*this, a), index_of(*this, b));
   return pair != nullptr && pair->excluded();
 }
 
@@ -76,7 +82,7 @@ Result<void> Body::edit_pair(const Part& a, const Part& b, PairEdit edit) {
 }
 
 void Body::set_pair(std::size_t a, std::size_t b, PairEdit edit) {
-  const PartPair* const pair = pairs_.find(a, b);
+  const PartPair* const pair = state_.pairs.find(a, b);
   const auto before = static_cast<std::size_t>(pair == nullptr ? PairEdit::none : pair->edit);
   world_.transaction().record(
       [](void* owner, std::size_t value) {
@@ -85,12 +91,12 @@ void Body::set_pair(std::size_t a, std::size_t b, PairEdit edit) {
                                             static_cast<PairEdit>(value >> (2 * kPairBits)));
       },
       this, a | b << kPairBits | before << (2 * kPairBits));
-  if (pairs_.set_edit(a, b, edit)) apply_pair(a, b);
+  if (state_.pairs.set_edit(a, b, edit)) apply_pair(a, b);
 }
 
 // Applies a change of a pair's exclusion.
 void Body::apply_pair(std::size_t a, std::size_t b) {
-  const PartPair* const pair = pairs_.find(a, b);
+  const PartPair* const pair = state_.pairs.find(a, b);
   IslandWorld& bullet = world_.bullet();
   if (pair != nullptr && pair->excluded()) {
     bullet.exclude_pair(parts_[a]->rigid(), parts_[b]->rigid());
@@ -101,13 +107,13 @@ void Body::apply_pair(std::size_t a, std::size_t b) {
 
 // Applies the exclusions of new parts, which Bullet has no pairs of yet.
 void Body::apply_pairs() {
-  for (const PartPair& pair : pairs_.list) {
+  for (const PartPair& pair : state_.pairs.list) {
     if (pair.excluded()) apply_pair(pair.a, pair.b);
   }
 }
 
 void Body::find_overlaps() {
-  const std::size_t first_new = std::exchange(pairs_.checked_count, parts_.size());
+  const std::size_t first_new = std::exchange(state_.pairs.checked_count, parts_.size());
   if (parts_.size() < 2) return;
   std::vector<OverlapPart> shapes;
   std::vector<std::pair<std::size_t, std::size_t>> joined;
@@ -123,7 +129,7 @@ void Body::find_overlaps() {
   for (const Overlap& overlap : result.found) {
     const auto a = static_cast<std::size_t>(overlap.a);
     const auto b = static_cast<std::size_t>(overlap.b);
-    if (!pairs_.set_overlaps(a, b)) continue;
+    if (!state_.pairs.set_overlaps(a, b)) continue;
     apply_pair(a, b);
     world_.report_overlap(*this, *parts_[a], *parts_[b], overlap.depth);
   }

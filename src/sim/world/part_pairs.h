@@ -7,6 +7,8 @@
 
 namespace limber {
 
+class Archive;
+
 /// Setting of a pair by a script.
 enum class PairEdit : std::uint16_t { none, excluded, included };
 
@@ -31,6 +33,8 @@ struct PartPairs {
   /// Returns true if the pair's exclusion changed.
   bool set_edit(std::size_t a, std::size_t b, PairEdit edit);
   bool set_overlaps(std::size_t a, std::size_t b);
+  /// For checkpoints.
+  void serialize(Archive& archive);
 
  private:
   PartPair& entry(std::size_t a, std::size_t b);

@@ -58,10 +58,8 @@ Body& World::rebuild_body(Body& body, const Body& blueprint, const std::vector<b
   const Result<Body*> copied = copy_body(blueprint, blueprint.name());
   LIMBER_CHECK(copied.ok());
   Body& replacement = **copied;
+  replacement.prepare_step();  // finds overlaps in the poses of the blueprint, not in those restored below
   replacement.save_start_pose(blueprint);
-  replacement.is_new_ = false;
-  if (replacement.has_unchecked_parts())
-    replacement.find_overlaps();  // in the poses of the blueprint, not in those restored below
   state.apply_to(replacement, joints_to_reset);
   for (auto entry = attached.rbegin(); entry != attached.rend(); ++entry) {
     Gear& gear = *entry->gear;

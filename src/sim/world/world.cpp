@@ -125,8 +125,8 @@ void World::clear() {
 }
 
 void World::restart_time(std::uint64_t tick, double time) {
-  tick_ = tick;
-  last_timestep_ = 0;
+  state_.tick = tick;
+  state_.last_timestep = 0;
   store_.mutable_values(id_, *world_properties().time)[0] = time;
   store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(tick);
   for (const Property* property :
@@ -145,7 +145,7 @@ Result<Body*> World::add_body(std::string name) {
   if (const Result<void> available = check_new_name(body_group_, "body", name); !available)
     return Error{available.error()};
   bodies_.push_back(std::make_unique<Body>(*this, body_group_, std::move(name)));
-  transaction_.body_added();
+  transaction_.record([](void* world, std::size_t) { static_cast<World*>(world)->bodies_.pop_back(); }, this);
   return bodies_.back().get();
 }
 
@@ -173,7 +173,7 @@ void World::remove_body(Body& body) {
     if (gears_[i]->couples(body)) remove_gear(*gears_[i]);
   }
   mark_gears_dirty();  // its mimic relations are removed with it
-  if (transaction_.active()) transaction_.hide(std::move(*at), static_cast<std::size_t>(at - bodies_.begin()));
+  if (transaction_.active()) return transaction_.hide(bodies_, static_cast<std::size_t>(at - bodies_.begin()));
   bodies_.erase(at);
 }
 
@@ -195,7 +195,7 @@ Result<Shape*> World::add_shape(std::string name, ShapeModel model) {
     return Error{fmt::format("shape '{}': {}", name, valid.error())};
   }
   shapes_.push_back(std::make_unique<Shape>(store_, shape_group_, std::move(name), std::move(model)));
-  transaction_.shape_added();
+  transaction_.record([](void* world, std::size_t) { static_cast<World*>(world)->shapes_.pop_back(); }, this);
   return shapes_.back().get();
 }
 
@@ -233,12 +233,12 @@ void World::apply_solver_settings() {
 }
 
 Result<void> World::act_reset(std::span<const double>) {
-  reset_requested_ = true;
+  request_reset();
   return {};
 }
 
 Result<void> World::act_panic(std::span<const double>) {
-  panic_requested_ = true;
+  request_panic();
   return {};
 }
 
@@ -260,10 +260,7 @@ void World::step() {
   if (!panic_.on()) behaviors_->step(timestep());
   const double flush_time = system::clock_seconds();
   flush();
-  for (const auto& body : bodies_) {
-    if (std::exchange(body->is_new_, false)) body->save_start_pose();
-    if (body->has_unchecked_parts()) body->find_overlaps();
-  }
+  for (const auto& body : bodies_) body->prepare_step();
   log_overlaps();
   if (panic_.on()) force_accumulators_.discard();
   overlay_.capture_forces(force_accumulators_);
@@ -274,13 +271,13 @@ void World::step() {
   bullet_->step(timestep() / substeps(), substeps());
   const double readout_time = system::clock_seconds();
   contacts_.end_tick();
-  tick_++;
+  state_.tick++;
   publish_time();
-  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(tick_);
+  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
   publish_solver_counts(previous_counts);
   store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
   publish_bodies();
-  if (std::exchange(body_restored_, false)) flush_restored_bodies();
+  if (std::exchange(state_.body_restored, false)) flush_restored_bodies();
   camera_moves_.step();
   times_ = {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
             system::clock_seconds() - readout_time};
@@ -288,13 +285,14 @@ void World::step() {
 
 // Computes the time as a product, since a sum of timesteps would drift from it.
 void World::publish_time() {
-  if (timestep() != last_timestep_) {
-    last_timestep_ = timestep();
-    time_at_timestep_change_ = time();
-    tick_at_timestep_change_ = tick_ - 1;
+  if (timestep() != state_.last_timestep) {
+    state_.last_timestep = timestep();
+    state_.time_at_timestep_change = time();
+    state_.tick_at_timestep_change = state_.tick - 1;
   }
   store_.mutable_values(id_, *world_properties().time)[0] =
-      time_at_timestep_change_ + static_cast<double>(tick_ - tick_at_timestep_change_) * last_timestep_;
+      state_.time_at_timestep_change +
+      static_cast<double>(state_.tick - state_.tick_at_timestep_change) * state_.last_timestep;
 }
 
 bool World::awake_bodies_valid() const {
@@ -323,18 +321,15 @@ void World::publish_bodies() {
   const auto publish = [&](int, int first, int end) {
     for (int i = first; i < end; i++) {
       Body& body = *awake_bodies_[static_cast<std::size_t>(i)];
-      if (!body.in_world()) continue;
-      body.separated_joint_ = nullptr;
-      body.publish();
-      if (!body.restored_this_tick_ && body.separated_joint_ == nullptr) body.save_good_pose();
+      if (body.in_world()) body.publish();
     }
   };
   parallel_for_ranges(thread_pool_.get(), static_cast<int>(awake_bodies_.size()), publish, kBodiesPerTask);
   for (Body* const body : awake_bodies_) {
     body->log_warnings();
     body->warn_slipping_joints();
-    Joint* const separated = std::exchange(body->separated_joint_, nullptr);
-    if (separated == nullptr || body->restored_this_tick_) continue;
+    const Joint* const separated = body->consume_separated_joint();
+    if (separated == nullptr) continue;
     restore_body(*body, separated->child(),
                  fmt::format("joint '{}' has come apart by {:.3g} m", separated->name(), separated->gap()));
   }
@@ -379,43 +374,21 @@ void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
 }
 
 void World::restore_body(Body& body, const Part& part, const std::string& instability) {
-  const bool reported = body.restored_this_tick_;
-  const std::string cause = reported ? "" : likely_cause(body, part, *bullet_->getDispatcher(), substeps());
-  for (std::size_t i = 0; i < body.parts_.size(); i++) {
-    Part& member = *body.parts_[i];
-    member.set_pose(i < body.good_pose_count_ ? body.good_poses_[i] : member.start_pose());
-    member.set_velocity(Vec3(0), Vec3(0));
-    member.apply_pose();
-    member.apply_velocity();
-    member.wake();  // together with the parts that touch it, since its contacts are removed below
-    // the force that caused the instability would do so again in this tick's next internal step
-    member.rigid().clearForces();
-    member.rigid().applyGravity();
-    // without this, the contacts would warm-start from their previous impulses
-    if (member.rigid().isInWorld()) {
-      bullet_->getPairCache()->cleanProxyFromPairs(member.rigid().getBroadphaseHandle(), bullet_->getDispatcher());
-    }
-  }
-  for (const auto& joint : body.joints_) joint->update_from_parts();
-  body_restored_ = true;
-  if (std::exchange(body.restored_this_tick_, true)) return;  // reported in this tick already
-  health_events_++;
-  if (std::exchange(body.restored_once_, true)) {
-    body.set_enabled(false);
-    log_warning("body '{}': {} again; the body is disabled (reset or enabled = true enables it); {}", body.name(),
-                instability, cause);
-  } else {
-    log_warning("body '{}': {}; the body is restored to its last good pose, at rest; {}", body.name(), instability,
-                cause);
-  }
+  state_.body_restored = true;
+  if (body.restore_good_pose(part, instability)) state_.health_events++;
 }
 
 void World::flush_restored_bodies() {
   flush();
-  for (const auto& body : bodies_) {
-    if (!std::exchange(body->restored_this_tick_, false)) continue;
-    for (const auto& part : body->parts()) part->rigid().clearForces();  // forces meant for a further internal step
-  }
+  for (const auto& body : bodies_) body->finish_restore();
+}
+
+void World::serialize(Archive& archive) {
+  archive.serialize_all(state_, panic_, store_, contacts_, camera_moves_, force_accumulators_);
+  for (const auto& body : bodies_) body->serialize(archive);
+  for (const auto& gear : gears_) gear->serialize(archive);
+  behaviors_->serialize(archive);
+  if (archive.loading()) awake_version_ = 0;
 }
 
 std::uint64_t World::state_hash() const {
@@ -425,7 +398,7 @@ std::uint64_t World::state_hash() const {
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
   for (const auto& shape : shapes_) numbers.add_word(persistent_hash(store_, shape->id()));
   for (const auto& gear : gears_) numbers.add_word(persistent_hash(store_, gear->id()));
-  numbers.add(time(), static_cast<double>(tick_), static_cast<double>(seed()));
+  numbers.add(time(), static_cast<double>(state_.tick), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies_) hash = body->state_hash(hash);
   return behaviors_->state_hash(hash);

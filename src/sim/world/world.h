@@ -82,7 +82,7 @@ class World {
   std::span<const std::unique_ptr<Gear>> gears() const { return gears_; }
   void move_gears_to_front(const std::vector<Gear*>& first);
   /// Requests that redundant gears are determined again before the next step.
-  void mark_gears_dirty() { gears_dirty_ = true; }
+  void mark_gears_dirty() { state_.gears_dirty = true; }
 
   Result<Shape*> add_shape(std::string name, ShapeModel model);
   Shape* find_shape(std::string_view name) const;
@@ -104,7 +104,7 @@ class World {
   const BehaviorList& behaviors() const { return *behaviors_; }
 
   double time() const;
-  std::uint64_t tick() const { return tick_; }
+  std::uint64_t tick() const { return state_.tick; }
   double timestep() const;
   int substeps() const;
   std::uint64_t seed() const;
@@ -115,19 +115,20 @@ class World {
   /// Applies pending property changes without advancing time: while paused, and before the first tick.
   void flush();
   /// Requests a reset, which the owner of the scene performs between two ticks.
-  void request_reset() { reset_requested_ = true; }
+  void request_reset() { state_.requests.reset = true; }
   /// Returns whether sim:reset or /transport/reset requested a reset since the last call.
-  bool consume_reset_request() { return std::exchange(reset_requested_, false); }
+  bool consume_reset_request() { return std::exchange(state_.requests.reset, false); }
   /// Requests a panic, which the owner of the scene starts before the next step.
-  void request_panic() { panic_requested_ = true; }
+  void request_panic() { state_.requests.panic = true; }
   /// Returns whether sim:panic or /transport/panic requested a panic since the last call, however often.
-  bool consume_panic_request() { return std::exchange(panic_requested_, false); }
+  bool consume_panic_request() { return std::exchange(state_.requests.panic, false); }
   /// /transport/panic_end: ends a panic and cancels an earlier request for one in the same tick.
   void request_panic_end() {
-    panic_requested_ = false;
-    panic_end_requested_ = true;
+    state_.requests.panic = false;
+    state_.requests.panic_end = true;
   }
-  bool consume_panic_end_request() { return std::exchange(panic_end_requested_, false); }
+  bool consume_panic_end_request() { return std::exchange(state_.requests.panic_end, false); }
+  WorldRequests& requests() { return state_.requests; }
   Panic& panic() { return panic_; }
   const Panic& panic() const { return panic_; }
   /// Removes all behaviors, bodies and shapes, and resets the world's own properties to their defaults.
@@ -141,13 +142,22 @@ class World {
   /// Contacts that began in the last tick between parts with `report_contacts`, in a deterministic order.
   std::span<const ContactEvent> contacts() const { return contacts_.events(); }
   /// Number of times that the stability check restored or disabled a body since the start; `--strict` checks it.
-  std::uint64_t health_events() const { return health_events_; }
+  std::uint64_t health_events() const { return state_.health_events; }
   /// Returns a hash of all poses, velocities and persistent values, bit for bit. Generators are added by their
   /// owners.
   std::uint64_t state_hash() const;
   /// Hash of the motion, for comparing two runs tick by tick.
   MotionHash& motion_hash() { return motion_hash_; }
   const TickTimes& times() const { return times_; }
+  /// Serializes all that persists from tick to tick, except Bullet's memory and the values of properties.
+  void serialize(Archive& archive);
+
+  /// Returns an error unless an object with this name can be added to the group. `kind`: such as "body".
+  Result<void> check_new_name(NodeId group, std::string_view kind, std::string_view name) const;
+  /// Notes that two parts of a body overlap in its first tick; log_overlaps() reports it. [sim]
+  void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
+  /// On-change callback of `gravity`; also called when a panic begins or ends.
+  void apply_gravity();
 
   /// One geometry per link, built once per model and shared by all its bodies.
   const std::vector<std::shared_ptr<const Geometry>>& geometries_for(const std::shared_ptr<const BodyModel>& model);
@@ -165,11 +175,6 @@ class World {
   WorldTransaction& transaction() { return transaction_; }
 
  private:
-  friend class Body;
-  friend class Panic;
-  friend class WorldTransaction;
-  friend class WorldCheckpoint;
-  void apply_gravity();
   void apply_solver_settings();
   void apply_panic_motors() { panic_.update_motors(); }
   void flush_restored_bodies();
@@ -178,12 +183,10 @@ class World {
   void warn_slipping_gears();
   void publish_time();
   void publish_bodies();
-  void report_overlap(const Body& body, const Part& a, const Part& b, double depth);
   void log_overlaps();
   bool awake_bodies_valid() const;
   void restore_body(Body& body, const Part& part, const std::string& instability);
   static void after_internal_step(btDynamicsWorld* bullet, float h);
-  Result<void> check_new_name(NodeId group, std::string_view kind, std::string_view name) const;
   Result<void> act_reset(std::span<const double> args);
   Result<void> act_panic(std::span<const double> args);
 
@@ -211,17 +214,18 @@ class World {
   Overlay overlay_{*this};
   MotionHash motion_hash_{*this};
   TickTimes times_;
-  std::uint64_t tick_ = 0;
-  double last_timestep_ = 0, time_at_timestep_change_ = 0;  // the present timestep, and the time at which it was set
-  std::uint64_t tick_at_timestep_change_ = 0;
-  std::uint64_t health_events_ = 0;
-  bool reset_requested_ = false;
-  bool panic_requested_ = false;
-  bool panic_end_requested_ = false;
-  bool body_restored_ = false;     // a body was restored in this tick
+  // what persists from tick to tick, besides its properties
+  struct State {
+    std::uint64_t tick = 0;
+    double last_timestep = 0, time_at_timestep_change = 0;  // the present timestep, and the time at which it was set
+    std::uint64_t tick_at_timestep_change = 0;
+    std::uint64_t health_events = 0;
+    WorldRequests requests;
+    bool body_restored = false;  // a body was restored in this tick
+    bool gears_dirty = false;
+  } state_;
   std::size_t overlap_count_ = 0;  // since log_overlaps()
   std::string first_overlap_;      // report of the first of them
-  bool gears_dirty_ = false;
   // Bodies that are not asleep, valid for these versions of the sleep tracker and the store; 0: not valid.
   std::vector<Body*> awake_bodies_;
   std::uint64_t awake_version_ = 0;
