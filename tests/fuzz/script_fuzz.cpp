@@ -245,7 +245,7 @@ void play(std::span<const std::uint8_t> bytes) {
   const bool all_fail = writer.byte() % 4 != 1;
   SilentHost host;
   ScriptContext context(world, host, options);
-  context.random_name = "fuzz";
+  context.random.set_name("fuzz");
   Vm vm(context, writer.byte() % 8 == 1 ? VmMode::interpreted : VmMode::live);
   const std::string before =
       "local ball = sim:add_sphere_shape('ball', 0.1) "

@@ -168,9 +168,8 @@ TEST(Match, ReportsPatternFaultsLikeLua) {
            {"%bx", "unbalanced pattern"},
            {"%fa", "missing '[' after '%f' in pattern"},
            {std::string(33, '(') + "a" + std::string(33, ')'), "too many captures"}}) {
-    Match match;
     MatchSearch search([] { return false; });
-    EXPECT_EQ(search.find("aaaa", pattern, 0, true, match), SearchResult::bad_pattern) << pattern;
+    EXPECT_EQ(search.find("aaaa", pattern, 0, true), SearchResult::bad_pattern) << pattern;
     EXPECT_STREQ(search.fault(), fault.c_str()) << pattern;
   }
   EXPECT_EQ(error_of("('aaa'):find('[a')"), "scripts/scene.lua:1: string.find: malformed pattern (missing ']')");
@@ -179,15 +178,14 @@ TEST(Match, ReportsPatternFaultsLikeLua) {
 
 TEST(Match, EndsExponentialPatterns) {
   MatchSearch search([] { return false; });
-  Match match;
   const std::string text(1000, 'a');
   std::string stars;
   for (int i = 0; i < 20; i++) stars += "a*";
-  EXPECT_EQ(search.find(text, stars + "b", 0, true, match), SearchResult::too_long);
-  EXPECT_EQ(search.find(text, ".-.-.-.-.-.-b", 0, true, match), SearchResult::too_long);
+  EXPECT_EQ(search.find(text, stars + "b", 0, true), SearchResult::too_long);
+  EXPECT_EQ(search.find(text, ".-.-.-.-.-.-b", 0, true), SearchResult::too_long);
   // a long text is searched to its end
   const std::string long_text(6'000'000, 'x');
-  EXPECT_EQ(search.find(long_text, "%d", 0, true, match), SearchResult::not_found);
+  EXPECT_EQ(search.find(long_text, "%d", 0, true), SearchResult::not_found);
   EXPECT_EQ(error_of("(('a'):rep(1000)):find(('a*'):rep(20) .. 'b')"),
             "scripts/scene.lua:1: string.find: this pattern takes too many steps on this text; make it simpler (fewer "
             "* + - next to each other), or the text shorter");
@@ -196,8 +194,7 @@ TEST(Match, EndsExponentialPatterns) {
 TEST(Match, PollsForAStop) {
   int polls = 0;
   MatchSearch search([&] { return ++polls == 3; });
-  Match match;
-  EXPECT_EQ(search.find(std::string(1 << 20, 'x'), "%d", 0, true, match), SearchResult::too_long);
+  EXPECT_EQ(search.find(std::string(1 << 20, 'x'), "%d", 0, true), SearchResult::too_long);
   EXPECT_EQ(polls, 3);
 }
 

@@ -22,14 +22,14 @@ std::int32_t behavior_type(void* c, const char* type, std::int32_t length, std::
   return kOk;
 }
 
-void select_clear(void* c) { context_of(c).selections = {}; }
+void select_clear(void* c) { context_of(c).arguments.selections = {}; }
 
 void select_none(void* c, std::int32_t of) {
-  context_of(c).selections[static_cast<std::size_t>(of)] = Selection(std::vector<std::string>{});
+  context_of(c).arguments.selections[static_cast<std::size_t>(of)] = Selection(std::vector<std::string>{});
 }
 
 void select_word(void* c, std::int32_t of, const char* text, std::int32_t length) {
-  Selection& selection = context_of(c).selections[static_cast<std::size_t>(of)];
+  Selection& selection = context_of(c).arguments.selections[static_cast<std::size_t>(of)];
   std::vector<std::string> words = selection.words();
   words.emplace_back(text_of(text, length));
   selection = Selection(std::move(words));
@@ -40,7 +40,7 @@ std::int32_t add_behavior(void* c, std::int32_t slot, std::int32_t generation, c
   ScriptContext& context = context_of(c);
   Body* body = object_of<Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
-  const auto& selections = context.selections;
+  const auto& selections = context.arguments.selections;
   const Result<Behavior*> behavior =
       context.world->behaviors().add(*body, text_of(type, type_length), std::string(text_of(name, length)),
                                      {selections[0], selections[1], selections[2]});
@@ -49,7 +49,7 @@ std::int32_t add_behavior(void* c, std::int32_t slot, std::int32_t generation, c
 
 std::int32_t add_group(void* c, const char* type, std::int32_t type_length, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const auto& selections = context.selections;
+  const auto& selections = context.arguments.selections;
   const Result<BehaviorGroup*> group = context.world->behaviors().add_group(
       text_of(type, type_length), std::string(text_of(name, length)), {selections[3], selections[0], selections[4]});
   return group ? context.set_id((*group)->id()) : context.reject(group.error());

@@ -26,7 +26,7 @@ struct LimberApi {
 #undef LIMBER_STRUCT
 };
 
-/// The functions; defined in calls_*.cpp.
+/// The functions; defined in the other files of this folder.
 namespace calls {
 #define LIMBER_STRUCT(...)
 #define LIMBER_CALL(result, name, arguments) result name arguments;

@@ -92,25 +92,25 @@ Result<std::shared_ptr<const MeshModel>> read_mesh(const ScriptContext& c, std::
 Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
                                                       int max_vertices) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}|{}", file, scale.x, scale.y, scale.z, max_vertices);
-  const auto known = c.loaded_meshes.find(key);
-  if (known != c.loaded_meshes.end()) return known->second;
+  const auto known = c.loaded.meshes.find(key);
+  if (known != c.loaded.meshes.end()) return known->second;
   if (c.answer.top_level == 0) return not_loaded(file);
   Result<std::shared_ptr<const MeshModel>> mesh = read_mesh(c, file, scale, max_vertices);
-  if (mesh) c.loaded_meshes[key] = *mesh;
+  if (mesh) c.loaded.meshes[key] = *mesh;
   return mesh;
 }
 
 Result<std::shared_ptr<const BodyModel>> model_of_file(ScriptContext& c, std::string_view file) {
-  const std::string key = fmt::format("{}|{}", file, options_key(c.import));
-  const auto known = c.loaded_models.find(key);
-  if (known != c.loaded_models.end()) return known->second;
+  const std::string key = fmt::format("{}|{}", file, options_key(c.arguments.import));
+  const auto known = c.loaded.models.find(key);
+  if (known != c.loaded.models.end()) return known->second;
   if (c.answer.top_level == 0) return not_loaded(file);
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const BodyModel>> model = c.sources->model(*path, c.import);
+  Result<std::shared_ptr<const BodyModel>> model = c.sources->model(*path, c.arguments.import);
   if (!model) return model;
   log_problems(**model);
-  c.loaded_models[key] = *model;
+  c.loaded.models[key] = *model;
   return model;
 }
 
@@ -275,9 +275,9 @@ std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std:
   return done ? kOk : context.reject(done.error());
 }
 
-void mesh_clear(void* c) { context_of(c).mesh_points.clear(); }
+void mesh_clear(void* c) { context_of(c).arguments.mesh_points.clear(); }
 
-void mesh_point(void* c, double x, double y, double z) { context_of(c).mesh_points.emplace_back(x, y, z); }
+void mesh_point(void* c, double x, double y, double z) { context_of(c).arguments.mesh_points.emplace_back(x, y, z); }
 
 std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, const char* file, std::int32_t file_length,
                             double sx, double sy, double sz, std::int32_t max_vertices) {
@@ -291,7 +291,7 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
     if (!mesh) return context.reject(mesh.error());
     model.mesh = *mesh;
   } else {
-    std::vector<Vec3> points = context.mesh_points;
+    std::vector<Vec3> points = context.arguments.mesh_points;
     if (context.answer.top_level == 0 && points.size() > kMaxPoints) {
       return context.reject(fmt::format(
           "a convex mesh of {} points takes too long in a callback; the maximum there is {}, more at the top level",
@@ -305,24 +305,24 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
 
 void urdf_clear(void* c) {
   ScriptContext& context = context_of(c);
-  context.import = {};
-  context.import.package_paths = context.options.package_paths;
-  context.build = {};
+  context.arguments.import = {};
+  context.arguments.import.package_paths = context.options.package_paths;
+  context.arguments.build = {};
 }
 
 void urdf_flag(void* c, std::int32_t which, std::int32_t on) {
   ScriptContext& context = context_of(c);
-  if (which == 0) context.import.fixed_base = on != 0;
-  if (which == 1) context.import.keep_fixed = on != 0;
-  if (which == 2) context.build.servo_motors = on != 0;
+  if (which == 0) context.arguments.import.fixed_base = on != 0;
+  if (which == 1) context.arguments.import.keep_fixed = on != 0;
+  if (which == 2) context.arguments.build.servo_motors = on != 0;
 }
 
 void urdf_pose(void* c, const char* joint, std::int32_t length, double value) {
-  context_of(c).import.pose[std::string(text_of(joint, length))] = value;
+  context_of(c).arguments.import.pose[std::string(text_of(joint, length))] = value;
 }
 
 void urdf_package_path(void* c, const char* path, std::int32_t length) {
-  context_of(c).import.package_paths.emplace_back(text_of(path, length));
+  context_of(c).arguments.import.package_paths.emplace_back(text_of(path, length));
 }
 
 std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,
@@ -331,10 +331,10 @@ std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, cons
   if (is_full(context)) return kRejected;
   const auto model = model_of_file(context, text_of(path, path_length));
   if (!model) return context.reject(model.error());
-  set_placement(context.build, pose);
+  set_placement(context.arguments.build, pose);
   const std::string body_name = length > 0 ? std::string(text_of(name, length)) : (*model)->name;
-  const Result<Body*> body = context.world->add_body(*model, body_name, context.build);
-  if (body) mark_pose_explicit(context, (*body)->id(), context.build);
+  const Result<Body*> body = context.world->add_body(*model, body_name, context.arguments.build);
+  if (body) mark_pose_explicit(context, (*body)->id(), context.arguments.build);
   return creation_result(context, body);
 }
 

@@ -47,11 +47,11 @@ void behavior_forget(void* c, std::int32_t file) { context_of(c).behaviors->remo
 std::int32_t behavior_declare(void* c, std::int32_t file, const char* doc, std::int32_t length, std::int32_t is_group) {
   ScriptContext& context = context_of(c);
   constexpr std::size_t kMaxParameters = 64 - kCommonBehaviorProperties;
-  if (context.param_properties.size() > kMaxParameters) {
+  if (context.arguments.parameters.size() > kMaxParameters) {
     return context.reject(fmt::format("params: a behavior can have at most {} parameters", kMaxParameters));
   }
   const auto type = context.behaviors->declare(file, printable(text_of(doc, length)), is_group != 0,
-                                               std::exchange(context.param_properties, {}));
+                                               std::exchange(context.arguments.parameters, {}));
   if (!type) return context.reject(type.error());
   context.answer.count = static_cast<std::int32_t>(context.world->store().table_number(*(*type)->table));
   return kOk;
@@ -84,7 +84,7 @@ std::int32_t behavior_due(void* c, std::int32_t slot, std::int32_t generation, s
 
 std::int32_t behavior_next(void* c) { return context_of(c).behaviors->next_step(); }
 
-LimberIteration* iterations(void* c) { return context_of(c).iterations.data(); }
+LimberIteration* iterations(void* c) { return context_of(c).neighbors.iterations.data(); }
 
 std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
                        std::int32_t part_generation, double radius, std::int32_t number) {
@@ -93,9 +93,9 @@ std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std:
   const Part* part = object_of<Part>(context, id_of(part_slot, part_generation));
   if (behavior == nullptr || part == nullptr) return kRemoved;
   const auto at = static_cast<std::size_t>(number);
-  std::vector<Neighbor>& found = context.neighbor_lists[at];
+  std::vector<Neighbor>& found = context.neighbors.lists[at];
   behavior->group()->neighbors().find_near(*part, radius, found);
-  LimberIteration& iteration = context.iterations[at];
+  LimberIteration& iteration = context.neighbors.iterations[at];
   iteration = {reinterpret_cast<const LimberNeighbor*>(found.data()), 0, static_cast<std::int32_t>(found.size()),
                iteration.serial + 1};
   context.answer.slot = static_cast<std::int32_t>(behavior->group()->id().slot);
@@ -103,7 +103,7 @@ std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std:
   return kOk;
 }
 
-const LimberGroupMeans* group_means(void* c) { return &context_of(c).group_means; }
+const LimberGroupMeans* group_means(void* c) { return &context_of(c).neighbors.group_means; }
 
 const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
                                   std::int32_t part_generation, double min_distance, double max_distance,
@@ -117,13 +117,13 @@ const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t gener
   const std::span<const std::int32_t> numbers = set.index_of_slot();
   if (part->id().slot < numbers.size() && numbers[part->id().slot] >= 0) {
     const NeighborMeans* const first = &means - numbers[part->id().slot];
-    context.group_means = {reinterpret_cast<const LimberMeans*>(first),
-                           numbers.data(),
-                           static_cast<std::int32_t>(numbers.size()),
-                           static_cast<std::int32_t>(behavior->group()->id().slot),
-                           want,
-                           min_distance,
-                           max_distance};
+    context.neighbors.group_means = {reinterpret_cast<const LimberMeans*>(first),
+                                     numbers.data(),
+                                     static_cast<std::int32_t>(numbers.size()),
+                                     static_cast<std::int32_t>(behavior->group()->id().slot),
+                                     want,
+                                     min_distance,
+                                     max_distance};
   }
   return reinterpret_cast<const LimberMeans*>(&means);
 }

@@ -10,9 +10,6 @@ namespace limber::calls {
 
 namespace {
 
-constexpr std::size_t kMaxPendingMessages = 10000;  // messages per call
-constexpr std::size_t kMaxPendingText = std::size_t{1} << 20u;
-
 // "127.0.0.1:9000" as IPv4 address in host byte order and port
 struct HostPort {
   std::string host;
@@ -59,36 +56,28 @@ std::int32_t osc_matches(void*, const char* pattern, std::int32_t pattern_length
 }
 
 void message_begin(void* c, const char* address, std::int32_t length) {
-  context_of(c).message = {std::string(text_of(address, length)), {}};
+  context_of(c).arguments.message = {std::string(text_of(address, length)), {}};
 }
 
-void message_number(void* c, double x) { context_of(c).message.args.push_back(Arg::of(x)); }
+void message_number(void* c, double x) { context_of(c).arguments.message.args.push_back(Arg::of(x)); }
 
-void message_flag(void* c, std::int32_t on) { context_of(c).message.args.push_back(Arg::of(on != 0)); }
+void message_flag(void* c, std::int32_t on) { context_of(c).arguments.message.args.push_back(Arg::of(on != 0)); }
 
 void message_text(void* c, const char* text, std::int32_t length) {
-  context_of(c).message.args.push_back(Arg::of(text_of(text, length)));
+  context_of(c).arguments.message.args.push_back(Arg::of(text_of(text, length)));
 }
 
 std::int32_t message_send(void* c, std::int32_t route, double ip, std::int32_t port) {
   ScriptContext& context = context_of(c);
-  if (route == 1 && !context.handling_message) {
+  if (route == 1 && !context.osc.handling_message) {
     return context.reject("osc:reply answers the message that is being handled: call it inside an osc:on function");
   }
-  std::size_t text = 0;
-  for (const Arg& arg : context.message.args) text += arg.text.size();
-  if (context.pending_messages.empty()) context.pending_text_bytes = 0;
-  context.pending_text_bytes += text;
-  if (context.pending_messages.size() >= kMaxPendingMessages || context.pending_text_bytes > kMaxPendingText) {
-    return context.reject(fmt::format("one call may send up to {} messages and 1 MB of text", kMaxPendingMessages));
-  }
-  using Route = ScriptContext::Route;
+  using Route = CallEffects::Route;
   const CommandOrigin direct{CommandSource::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
-  context.pending_messages.push_back({route == 0   ? Route::all
-                                      : route == 1 ? Route::sender
-                                                   : Route::direct,
-                                      route == 1 ? context.sender : direct, std::move(context.message)});
-  return kOk;
+  const Route to = route == 0 ? Route::all : route == 1 ? Route::sender : Route::direct;
+  if (context.effects.send(to, route == 1 ? context.osc.sender : direct, std::move(context.arguments.message)))
+    return kOk;
+  return context.reject(fmt::format("one call may send up to {} messages and 1 MB of text", CallEffects::kMaxMessages));
 }
 
 std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
@@ -104,17 +93,17 @@ std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
   return kOk;
 }
 
-void osc_handlers(void* c, std::int32_t count) { context_of(c).handlers = count; }
+void osc_handlers(void* c, std::int32_t count) { context_of(c).osc.handlers = count; }
 
 std::int32_t disable_handler(void* c) {
   ScriptContext& context = context_of(c);
   if (!context.guard->limits().disable_failed_handlers) return 0;
-  context.disabled_handlers++;
+  context.osc.disabled_handlers++;
   return 1;
 }
 
 void osc_listen(void* c, std::int32_t port) {
-  context_of(c).osc_config.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
+  context_of(c).osc.config.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
 }
 
 std::int32_t osc_target(void* c, const char* address, std::int32_t length, double rate, std::int32_t streams,
@@ -133,7 +122,7 @@ std::int32_t osc_target(void* c, const char* address, std::int32_t length, doubl
   target.bodies = std::string(text_of(bodies, bodies_length));
   target.bundle = bundle;
   target.errors = errors != 0;
-  context.osc_config.targets.push_back(std::move(target));
+  context.osc.config.targets.push_back(std::move(target));
   return kOk;
 }
 

@@ -1,6 +1,8 @@
 // ParamsNode: a scene's own parameters (`params { … }`) as the node /scene of the store. [sim]
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -29,6 +31,15 @@ class ParamsNode {
  private:
   Store& store_;
   NodeId id_;
+};
+
+/// The parameters of a run.
+struct SceneParams {
+  std::unique_ptr<ParamsNode> node;
+  std::span<const LiveParam> previous;  ///< During a detached run: the parameters of the live scene.
+  NodeId live;                          ///< Of an earlier run, which has no parameters: the live run's node, or null.
+  std::uint64_t rerun_properties = 0;   ///< Bit mask of the parameters with `rerun`, by property index.
+  NodeId id() const { return node == nullptr ? NodeId{} : node->id(); }
 };
 
 }  // namespace limber

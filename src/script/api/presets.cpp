@@ -5,9 +5,9 @@ namespace limber::calls {
 
 std::int32_t request_preset(void* c) {
   ScriptContext& context = context_of(c);
-  const Result<void> allowed = context.host.check_preset(context.message, context.preset_requests);
+  const Result<void> allowed = context.host.check_preset(context.arguments.message, context.effects.presets());
   if (!allowed) return context.reject(allowed.error());
-  context.preset_requests.push_back(std::move(context.message));
+  context.effects.request_preset(std::move(context.arguments.message));
   return kOk;
 }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "base/hash.h"
 #include "properties/values_hash.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/guard.h"
@@ -26,97 +25,72 @@ ScriptContext::~ScriptContext() {
 
 void ScriptContext::set_world(World* new_world) {
   if (world != nullptr) {
-    world->store().unregister_view(view);
-    world->mass_table().unregister_view(mass_table);
+    world->store().unregister_view(views.store);
+    world->mass_table().unregister_view(views.masses);
   }
   world = new_world;
   if (world == nullptr) return;
-  world->store().register_view(view);
-  world->mass_table().register_view(mass_table);
+  world->store().register_view(views.store);
+  world->mass_table().register_view(views.masses);
 }
 
-std::int32_t ScriptContext::set_text(std::string new_text) {
-  text = std::move(new_text);
-  answer.text = text.data();
-  answer.length = static_cast<std::int32_t>(text.size());
+std::int32_t Answer::set_text(std::string new_text) {
+  text_storage_ = std::move(new_text);
+  text = text_storage_.data();
+  length = static_cast<std::int32_t>(text_storage_.size());
   return kOk;
 }
 
-std::int32_t ScriptContext::set_id(NodeId id) {
-  answer.slot = static_cast<std::int32_t>(id.slot);
-  answer.generation = static_cast<std::int32_t>(id.generation);
-  answer.count = id.null() ? 0 : 1;
+std::int32_t Answer::set_id(NodeId id) {
+  slot = static_cast<std::int32_t>(id.slot);
+  generation = static_cast<std::int32_t>(id.generation);
+  count = id.null() ? 0 : 1;
   return kOk;
-}
-
-Random& ScriptContext::generator() {
-  // a change of the seed in a callback takes effect at the next start
-  const bool reseed = !seeded_with || (answer.top_level != 0 && *seeded_with != world->seed());
-  if (reseed) {
-    seeded_with = world->seed();
-    random = Random(world->seed(), random_name);
-  }
-  return random;
 }
 
 std::uint64_t ScriptContext::hash(std::uint64_t start) const {
-  NumberHash numbers(behaviors->hash(start) + (params != nullptr ? persistent_hash(world->store(), params->id()) : 0));
-  if (random.used()) numbers.add(random.state());
+  NumberHash numbers(behaviors->hash(start) +
+                     (params.node != nullptr ? persistent_hash(world->store(), params.id()) : 0));
+  random.add_to(numbers);
   return numbers.value();
 }
 
 void ScriptContext::count_call() {
   answer.call = static_cast<std::int32_t>(static_cast<std::uint32_t>(answer.call) + 1);  // wraps around after a day
-  random_before_ = random;
-  seeded_before_ = seeded_with;
+  random.begin_call();
 }
 
 void ScriptContext::begin_call() {
   count_call();
-  reset_requested = panic_requested = false;
-  cancellations_before_call = cancellations.size();
-  group_means = {};
+  effects.begin_call();
+  timers.begin_call();
+  neighbors.group_means = {};
   world->transaction().begin();
 }
 
 bool ScriptContext::next_call() {
-  if (!world->transaction().is_empty() || !pending_messages.empty() || reset_requested || panic_requested ||
-      cancellations.size() > cancellations_before_call) {
+  if (!world->transaction().is_empty() || !effects.can_wait() || timers.cancelled()) {
     end_call(true);
     begin_call();
     return true;
   }
   count_call();
-  forces.commit(world->force_accumulators());
+  effects.forces.commit(world->force_accumulators());
   return false;
 }
 
 void ScriptContext::end_call(bool success) {
-  forces.apply_committed(world->force_accumulators());
+  effects.forces.apply_committed(world->force_accumulators());
   if (success) {
     world->transaction().commit();
-    forces.apply(world->force_accumulators());
-    for (PendingMessage& pending : pending_messages) {
-      if (pending.route == Route::all) {
-        host.send(std::move(pending.message));
-      } else if (pending.route == Route::sender) {
-        host.reply(pending.to, std::move(pending.message));
-      } else {
-        host.send_direct(pending.to, std::move(pending.message));
-      }
-    }
-    for (Message& request : preset_requests) host.request_preset(std::move(request));
-    if (reset_requested) host.request_reset();
-    if (panic_requested) host.request_panic();
+    effects.apply(*world, host);
   } else {
-    forces.discard_uncommitted();
+    effects.forces.discard_uncommitted();
     world->transaction().rollback();
-    cancellations.resize(cancellations_before_call);
-    random = random_before_;
-    seeded_with = seeded_before_;
+    timers.rollback();
+    random.rollback();
   }
-  pending_messages.clear();
-  preset_requests.clear();
+  effects.clear();
 }
 
 Behavior* behavior_of(const ScriptContext& c, NodeId id) {

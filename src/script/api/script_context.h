@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,12 +11,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/random.h"
 #include "model/urdf/import.h"
 #include "script/api/c_api.h"
-#include "script/api/force_queue.h"
+#include "script/api/call_effects.h"
 #include "script/api/params_node.h"
-#include "script/scene/run_inputs.h"
+#include "script/api/scene_random.h"
 #include "script/scene/scene_options.h"
 #include "script/scene/script_files.h"
 #include "script/scene/script_host.h"
@@ -27,8 +27,75 @@
 namespace limber {
 
 class BehaviorScripts;
-class CallLog;
 class Guard;
+
+/// The answer of an API call, which the prelude reads, and its text.
+class Answer : public LimberAnswer {
+ public:
+  Answer() : LimberAnswer{} {}
+  std::int32_t set_text(std::string new_text);
+  std::int32_t set_id(NodeId id);
+  LimberProperty property{};  ///< The property that was last asked for.
+
+ private:
+  std::string text_storage_;
+};
+
+/// Memory of a world that compiled Lua reads. The addresses of the views are constant.
+struct WorldViews {
+  StoreView store;
+  MassTable::View masses;
+};
+
+/// Arguments that several API calls collect before the call that uses them.
+struct CollectedArguments {
+  std::vector<Vec3> mesh_points;
+  ImportOptions import;
+  BuildOptions build;
+  Message message;
+  std::vector<Property> parameters;
+  std::array<Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
+};
+
+/// Results of neighbor searches.
+struct NeighborResults {
+  static constexpr std::size_t kMaxIterations = 16;
+  /// Iterations and the lists that they iterate over; nested loops use several at a time.
+  std::array<LimberIteration, kMaxIterations> iterations{};
+  std::array<std::vector<Neighbor>, kMaxIterations> lists;
+  LimberGroupMeans group_means{};  ///< Means of a whole group, as last requested; valid until the call ends.
+};
+
+/// Models and meshes that the run has loaded, by request: callbacks can reuse them, but must not read from disk.
+struct LoadedModels {
+  std::map<std::string, std::shared_ptr<const BodyModel>> models;
+  std::map<std::string, std::shared_ptr<const MeshModel>> meshes;
+};
+
+/// OSC ports and handlers of the scene.
+struct SceneOsc {
+  OscConfig config;
+  CommandOrigin sender;  ///< Of the message being handled.
+  bool handling_message = false;
+  std::int32_t handlers = 0;           ///< Number registered by osc:on.
+  std::int32_t disabled_handlers = 0;  ///< Number of these that are disabled because they failed or were stopped.
+};
+
+/// Time of the last check of timers, and requests to cancel timers of earlier runs.
+struct SceneTimers {
+  struct Cancellation {
+    std::int32_t run;
+    std::int32_t number;
+  };
+  std::optional<double> checked_at;         ///< Time at which timers were last checked.
+  std::vector<Cancellation> cancellations;  ///< By successful calls and the current one.
+  std::size_t of_earlier_calls = 0;         ///< Number of those by successful calls.
+
+  void begin_call() { of_earlier_calls = cancellations.size(); }
+  /// True if the current call has cancelled a timer.
+  bool cancelled() const { return cancellations.size() > of_earlier_calls; }
+  void rollback() { cancellations.resize(of_earlier_calls); }
+};
 
 struct ScriptContext {
   ScriptContext(World& w, ScriptHost& h, SceneOptions o);
@@ -36,83 +103,29 @@ struct ScriptContext {
   ScriptContext(const ScriptContext&) = delete;
   ScriptContext& operator=(const ScriptContext&) = delete;
 
-  World* world;                ///< Replaced when a detached run goes live; null after the run was replaced.
-  StoreView view;              ///< View of that world's store; its address is constant for the life of the context.
-  MassTable::View mass_table;  ///< View of that world's mass table.
+  World* world;  ///< Replaced when a detached run goes live; null after the run was replaced.
+  WorldViews views;
   /// Attaches the views to that world, or detaches them (null).
   void set_world(World* new_world);
   ScriptHost& host;
   SceneOptions options;
   ScriptFiles files;
   std::shared_ptr<Sources> sources = std::make_shared<Sources>();
-  const RunInputs* detached_inputs = nullptr;  ///< During a detached run: the data of the live scene that it may read.
 
-  LimberAnswer answer{};
-  std::string text;  ///< Storage of `answer.text`.
-  LimberProperty property_info{};
+  Answer answer;
+  CollectedArguments arguments;
   MatchSearch search;  ///< Ends early when the running call is to be stopped.
-  Match match;
-
-  // Generator of the scene's file, seeded with the world's seed and the file name; seeded again when the top level
-  // changes the seed.
-  std::string random_name;
-  std::optional<std::uint64_t> seeded_with;
-  Random random;
-  Random& generator();
-  /// Returns the hash continued with the states of used generators and the values of the scene's parameters.
-  std::uint64_t hash(std::uint64_t start) const;
-
-  // collected by several API calls before the one that uses them
-  std::vector<Vec3> mesh_points;
-  ImportOptions import;
-  BuildOptions build;
-  Message message;
-  std::vector<Property> param_properties;
-  std::array<Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
-
-  // iterations over neighbors; nested loops use several at a time
-  static constexpr std::size_t kMaxIterations = 16;
-  std::array<LimberIteration, kMaxIterations> iterations{};
-  std::array<std::vector<Neighbor>, kMaxIterations> neighbor_lists;
-  LimberGroupMeans group_means{};  ///< Neighbor means of a whole group, as last requested; valid until the call ends.
-
-  // Models and meshes that the run has loaded, by request: callbacks can reuse them, but must not read from disk.
-  std::map<std::string, std::shared_ptr<const BodyModel>> loaded_models;
-  std::map<std::string, std::shared_ptr<const MeshModel>> loaded_meshes;
-  OscConfig osc_config;
-  CommandOrigin sender;  ///< Of the message being handled.
-  bool handling_message = false;
-  std::int32_t handlers = 0;           ///< Number registered by osc:on.
-  std::int32_t disabled_handlers = 0;  ///< Number of these that are disabled because they failed or were stopped.
-  std::unique_ptr<ParamsNode> params;
-  NodeId live_params;                  ///< Of an earlier run, which has no parameters: the live run's node, or null.
-  std::uint64_t rerun_properties = 0;  ///< Bit mask of the parameters with `rerun`, by property index.
-  std::optional<double> timers_at;     ///< Time at which timers were last checked.
+  NeighborResults neighbors;
+  LoadedModels loaded;
+  SceneOsc osc;
+  SceneParams params;
+  SceneTimers timers;
+  SceneRandom random;
   std::span<std::int32_t* const> handle_ids;   ///< Slot and generation of every handle, while the handles are remapped.
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviors in the world.
 
-  // Requests of a guarded call that are carried out only when it succeeds: messages, presets, reset, panic, forces.
-  Guard* guard = nullptr;       ///< Of the scene's Vm.
-  CallLog* call_log = nullptr;  ///< Counts the calls; may be null.
-  enum class Route : std::uint8_t { all, sender, direct };
-  struct PendingMessage {
-    Route route;
-    CommandOrigin to;
-    Message message;
-  };
-  std::vector<PendingMessage> pending_messages;
-  std::size_t pending_text_bytes = 0;  ///< Bytes of text in them.
-  std::vector<Message> preset_requests;
-  struct TimerCancellation {
-    std::int32_t run;
-    std::int32_t number;
-  };
-  std::vector<TimerCancellation>
-      cancellations;  ///< Timers of earlier runs to cancel, by successful calls and the current one.
-  std::size_t cancellations_before_call = 0;  ///< Number of those by successful calls.
-  bool reset_requested = false;
-  bool panic_requested = false;
-  ForceQueue forces;
+  Guard* guard = nullptr;  ///< Of the scene's Vm.
+  CallEffects effects;
   /// Starts recording changes for a rollback.
   void begin_call();
   /// Success: sends the messages. Failure: rolls back all changes, including random draws.
@@ -121,19 +134,22 @@ struct ScriptContext {
   /// the switch costs almost nothing.
   bool next_call();
 
+  /// The generator of the scene's file.
+  Random& generator() { return random.generator(world->seed(), answer.top_level != 0); }
+  /// Returns the hash continued with the states of used generators and the values of the scene's parameters.
+  std::uint64_t hash(std::uint64_t start) const;
+  bool alive(NodeId id) const { return world->store().alive(id); }
+
   // results for Lua
-  std::int32_t set_text(std::string new_text);
+  std::int32_t set_text(std::string text) { return answer.set_text(std::move(text)); }
+  std::int32_t set_id(NodeId id) { return answer.set_id(id); }
   std::int32_t reject(std::string reason) {
     set_text(std::move(reason));
     return kRejected;
   }
-  std::int32_t set_id(NodeId id);
-  bool alive(NodeId id) const { return world->store().alive(id); }
 
  private:
   void count_call();
-  Random random_before_;
-  std::optional<std::uint64_t> seeded_before_;
 };
 
 inline ScriptContext& context_of(void* c) { return *static_cast<ScriptContext*>(c); }

@@ -59,12 +59,12 @@ int own_index(const ScriptContext& c, NodeId id, const Property& property) {
 
 }  // namespace
 
-const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(&context_of(c).view); }
+const LimberView* view(void* c) { return reinterpret_cast<const LimberView*>(&context_of(c).views.store); }
 
 const LimberAnswer* answer(void* c) { return &context_of(c).answer; }
 
 const LimberMassTable* mass_table(void* c) {
-  return reinterpret_cast<const LimberMassTable*>(&context_of(c).mass_table);
+  return reinterpret_cast<const LimberMassTable*>(&context_of(c).views.masses);
 }
 
 std::int32_t class_table(void* c, std::int32_t which) {
@@ -82,11 +82,11 @@ const LimberProperty* property(void* c, std::int32_t table, std::int32_t index) 
   ScriptContext& context = context_of(c);
   const Property& r = table_at(context, table).property(static_cast<std::uint32_t>(index));
   const auto number = [](auto v) { return static_cast<std::int32_t>(v); };
-  context.property_info = {
+  context.answer.property = {
       r.name.data(),      number(r.name.size()), number(r.type),          number(r.kind), r.transient,
       r.computed(),       number(r.offset),      number(r.width),         r.own_axis,     r.writable(),
       number(r.min_args), number(r.max_args),    number(r.choices.size())};
-  return &context.property_info;
+  return &context.answer.property;
 }
 
 std::int32_t property_choice(void* c, std::int32_t table, std::int32_t index, std::int32_t choice) {
@@ -161,11 +161,11 @@ std::int32_t set_choice(void* c, std::int32_t slot, std::int32_t generation, std
                                     name_hint(wanted, r.choices)));
 }
 
-LimberForces* forces(void* c) { return context_of(c).forces.view(); }
+LimberForces* forces(void* c) { return context_of(c).effects.forces.view(); }
 
 void forces_full(void* c) {
   ScriptContext& context = context_of(c);
-  if (!context.forces.grow()) context.forces.apply_with_rollback(*context.world);
+  if (!context.effects.forces.grow()) context.effects.forces.apply_with_rollback(*context.world);
 }
 
 std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32_t property, const double* numbers,
@@ -185,7 +185,7 @@ std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32
     return context.reject(
         fmt::format("{}: '{}' takes finite numbers, not {}", label_of(context, id), r.name, values_text(args)));
   }
-  context.forces.apply_with_rollback(*context.world);  // apply earlier forces first to keep the order
+  context.effects.forces.apply_with_rollback(*context.world);  // apply earlier forces first to keep the order
   const Result<void> done = r.invoke(context.world->store().object(id), args);
   if (!done) return context.reject(fmt::format("{}: '{}' {}", label_of(context, id), r.name, done.error()));
   return kOk;

@@ -43,13 +43,13 @@ std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, co
   return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
 }
 
-const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).match); }
+const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).search.last_match()); }
 
 std::int32_t find_match(void* c, const char* text, std::int32_t length, const char* pattern,
                         std::int32_t pattern_length, std::int32_t from, std::int32_t anchors) {
   ScriptContext& context = context_of(c);
   switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
-                              anchors != 0, context.match)) {
+                              anchors != 0)) {
     case SearchResult::found:
       return 1;
     case SearchResult::not_found:
@@ -167,18 +167,18 @@ void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {
   context_of(c).world->camera_moves().follow(slot < 0 ? NodeId{} : id_of(slot, generation));
 }
 
-void request_reset(void* c) { context_of(c).reset_requested = true; }
+void request_reset(void* c) { context_of(c).effects.request_reset(); }
 
-void request_panic(void* c) { context_of(c).panic_requested = true; }
+void request_panic(void* c) { context_of(c).effects.request_panic(); }
 
-void param_begin(void* c) { context_of(c).param_properties.clear(); }
+void param_begin(void* c) { context_of(c).arguments.parameters.clear(); }
 
 std::int32_t param_property(void* c, const char* name, std::int32_t length, std::int32_t type, const double* initial,
                             const double* low, const double* high) {
   ScriptContext& context = context_of(c);
   const std::string_view wanted = text_of(name, length);
-  if (context.param_properties.size() >= 64) return context.reject("params: more than 64 parameters");
-  for (const Property& other : context.param_properties) {
+  if (context.arguments.parameters.size() >= 64) return context.reject("params: more than 64 parameters");
+  for (const Property& other : context.arguments.parameters) {
     if (same_name(other.name, wanted)) {
       return context.reject(fmt::format("params: '{}' and '{}' are the same name (case and underscores don't count)",
                                         other.name, printable(wanted)));
@@ -199,12 +199,12 @@ std::int32_t param_property(void* c, const char* name, std::int32_t length, std:
     property.axis_min.assign(low, low + width);
     property.axis_max.assign(high, high + width);
   }
-  context.param_properties.push_back(std::move(property));
+  context.arguments.parameters.push_back(std::move(property));
   return kOk;
 }
 
 void param_doc(void* c, const char* text, std::int32_t length) {
-  context_of(c).param_properties.back().doc = printable(text_of(text, length));
+  context_of(c).arguments.parameters.back().doc = printable(text_of(text, length));
 }
 
 std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
@@ -213,37 +213,37 @@ std::int32_t param_unit(void* c, const char* text, std::int32_t length) {
   if (!known_unit(unit)) {
     std::vector<std::string_view> known;
     for (const Unit& each : units()) known.push_back(each.symbol);
-    return context.reject(fmt::format("params: '{}': unknown unit '{}'{}", context.param_properties.back().name,
+    return context.reject(fmt::format("params: '{}': unknown unit '{}'{}", context.arguments.parameters.back().name,
                                       printable(unit), name_hint(unit, known)));
   }
-  context.param_properties.back().unit = std::string(unit);
+  context.arguments.parameters.back().unit = std::string(unit);
   return kOk;
 }
 
 void param_rerun(void* c) {
   ScriptContext& context = context_of(c);
-  context.rerun_properties |= std::uint64_t{1} << (context.param_properties.size() - 1);
+  context.params.rerun_properties |= std::uint64_t{1} << (context.arguments.parameters.size() - 1);
 }
 
-void param_step(void* c, double step) { context_of(c).param_properties.back().step = step; }
+void param_step(void* c, double step) { context_of(c).arguments.parameters.back().step = step; }
 
 void param_choice(void* c, const char* text, std::int32_t length) {
-  Property& property = context_of(c).param_properties.back();
+  Property& property = context_of(c).arguments.parameters.back();
   property.choices.emplace_back(text_of(text, length));
   property.max = static_cast<double>(property.choices.size()) - 1;
 }
 
 std::int32_t param_done(void* c) {
   ScriptContext& context = context_of(c);
-  context.params = std::make_unique<ParamsNode>(context.world->store(), std::move(context.param_properties));
-  context.param_properties.clear();
-  if (context.detached_inputs != nullptr) context.params->carry_over(context.detached_inputs->params);
+  context.params.node = std::make_unique<ParamsNode>(context.world->store(), std::move(context.arguments.parameters));
+  context.arguments.parameters.clear();
+  context.params.node->carry_over(context.params.previous);
   return params_node(c);
 }
 
 std::int32_t params_node(void* c) {
   ScriptContext& context = context_of(c);
-  const NodeId id = context.params != nullptr ? context.params->id() : context.live_params;
+  const NodeId id = context.params.node != nullptr ? context.params.id() : context.params.live;
   if (!context.alive(id)) return kRemoved;
   context.set_id(id);
   Store& store = context.world->store();
@@ -252,7 +252,7 @@ std::int32_t params_node(void* c) {
 }
 
 void cancel_timer(void* c, std::int32_t run, std::int32_t number) {
-  context_of(c).cancellations.push_back({run, number});
+  context_of(c).timers.cancellations.push_back({run, number});
 }
 
 void handles(void* c, std::int32_t** ids, std::int32_t count) {

@@ -113,7 +113,7 @@ std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
 template <class Call>
 BehaviorFault BehaviorScripts::call_vm(Call call) {
   if (vm_ == nullptr) return {"the scene no longer uses this type; use it once at the top level", "", 0};
-  for (const std::int32_t number : released_) vm_->drop_behavior(number);
+  for (const std::int32_t number : released_) vm_->behaviors().drop(number);
   released_.clear();
   const std::int32_t outer = std::exchange(context_->answer.in_behavior, 1);
   BehaviorFault fault = call();
@@ -122,20 +122,20 @@ BehaviorFault BehaviorScripts::call_vm(Call call) {
 }
 
 std::int32_t BehaviorScripts::create(const Behavior& behavior, std::int32_t file) {
-  return vm_ == nullptr ? 0 : vm_->make_behavior(file, behavior.id());
+  return vm_ == nullptr ? 0 : vm_->behaviors().make(file, behavior.id());
 }
 
 BehaviorFault BehaviorScripts::start(std::int32_t number) {
-  return call_vm([&] { return vm_->start_behavior(number); });
+  return call_vm([&] { return vm_->behaviors().start(number); });
 }
 
 BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
-  return call_vm([&] { return vm_->step_behavior(number, dt); });
+  return call_vm([&] { return vm_->behaviors().step(number, dt); });
 }
 
 void BehaviorScripts::step_all(StepBatch& batch, double dt) {
   StepBatch* const outer = std::exchange(batch_, &batch);
-  BehaviorFault fault = call_vm([&] { return vm_->step_behaviors(dt, batch.current); });
+  BehaviorFault fault = call_vm([&] { return vm_->behaviors().step_all(dt, batch.current); });
   batch_ = outer;
   if (fault.text.empty()) return;
   // Nothing was stepped: there is no Vm any more, or a replay skips this call. The fault belongs to the first running
@@ -161,12 +161,12 @@ std::int32_t BehaviorScripts::next_step() {
 }
 
 BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
-  return call_vm([&] { return vm_->restore_behavior(number, state, migrate); });
+  return call_vm([&] { return vm_->behaviors().restore(number, state, migrate); });
 }
 
 Result<std::string> BehaviorScripts::state(std::int32_t number) {
   if (vm_ == nullptr) return Error{"the script of this behavior no longer exists"};
-  return vm_->behavior_state(number);
+  return vm_->behaviors().state(number);
 }
 
 void BehaviorScripts::release(std::int32_t number) {

@@ -81,7 +81,7 @@ void EarlierRuns::capture_handles() {
 void EarlierRuns::resolve_handles(NodeId params) {
   for (Run& run : runs_) {
     run.handle_names.resolve(*run.context);
-    run.context->live_params = params;
+    run.context->params.live = params;
     run.vm->handles_moved();
     run.context->handle_ids = {};
   }
@@ -108,7 +108,7 @@ std::uint64_t EarlierRuns::add(Run run) {
 }
 
 void EarlierRuns::apply_cancellations(ScriptContext& by, std::uint64_t tick) {
-  for (const ScriptContext::TimerCancellation& request : by.cancellations) {
+  for (const SceneTimers::Cancellation& request : by.timers.cancellations) {
     const auto run = std::ranges::find_if(runs_, [&](const Run& each) {
       return each.number == static_cast<std::uint64_t>(request.run) && each.timers > 0;
     });
@@ -117,7 +117,7 @@ void EarlierRuns::apply_cancellations(ScriptContext& by, std::uint64_t tick) {
     run->timers = run->vm->callback_timers().timers;
     if (run->timers == 0) run->ended_at = tick;
   }
-  by.cancellations.clear();
+  by.timers.cancellations.clear();
 }
 
 void EarlierRuns::tick(Vm& live, std::uint64_t tick) {

@@ -24,14 +24,14 @@ Result<void> Scene::run(const std::string& file, const RunInputs* detached) {
   fault_ = {c.files.display_path(file), 0};
   const Result<std::string> text = c.sources->text(file);
   if (!text) return Error{text.error()};
-  c.random_name = std::filesystem::path(file).filename().string();
+  c.random.set_name(std::filesystem::path(file).filename().string());
   if (c.options.seed) {
     const auto seed = static_cast<double>(*c.options.seed);
     const Result<SetOutcome> set = c.world->store().set(c.world->id(), "seed", {&seed, 1});
     if (!set) return Error{set.error()};
   }
   if (detached != nullptr) {
-    c.detached_inputs = detached;
+    c.params.previous = detached->params;
     c.world->restart_time(detached->tick, detached->time);
     vm_->begin_detached(detached->state);
   }
@@ -40,15 +40,15 @@ Result<void> Scene::run(const std::string& file, const RunInputs* detached) {
   Result<void> result = vm_->run(*text, c.files.display_path(file), fault_);
   c.generator();  // seed the generator with the seed set by the top level
   c.answer.top_level = 0;
-  c.detached_inputs = nullptr;
+  c.params.previous = {};
   c.sources->close();
-  if (result && detached == nullptr) c.host.configure_osc(c.osc_config);
+  if (result && detached == nullptr) c.host.configure_osc(c.osc.config);
   return result;
 }
 
 std::shared_ptr<const Sources> Scene::sources() const { return context_->sources; }
 
-void Scene::set_call_log(CallLog& calls) { context_->call_log = &calls; }
+void Scene::set_call_log(CallLog& calls) { vm_->guard().set_call_log(calls); }
 
 void Scene::set_limits(const ScriptLimits& limits) {
   vm_->guard().set_limits(limits);
@@ -60,23 +60,23 @@ void Scene::set_limits(const ScriptLimits& limits) {
 void Scene::start() { vm_->start(); }
 
 void Scene::tick(double dt) {
-  context_->timers_at = context_->world->time();
+  context_->timers.checked_at = context_->world->time();
   earlier_->apply_cancellations(*context_, context_->world->tick());
   earlier_->tick(*vm_, context_->world->tick());
   vm_->tick(dt);
 }
 
-bool Scene::has_handlers() const { return context_->handlers > 0; }
+bool Scene::has_handlers() const { return context_->osc.handlers > 0; }
 
-std::size_t Scene::disabled_handlers() const { return static_cast<std::size_t>(context_->disabled_handlers); }
+std::size_t Scene::disabled_handlers() const { return static_cast<std::size_t>(context_->osc.disabled_handlers); }
 
 bool Scene::handle_message(const Message& message, const CommandOrigin& origin) {
   if (!has_handlers()) return false;
   ScriptContext& c = *context_;
-  c.sender = origin;
-  c.handling_message = true;
+  c.osc.sender = origin;
+  c.osc.handling_message = true;
   const bool handled = vm_->handle_message(message, origin);
-  c.handling_message = false;
+  c.osc.handling_message = false;
   return handled;
 }
 

@@ -14,8 +14,9 @@ namespace limber {
 namespace {
 
 void serialize_context(Archive& archive, ScriptContext& context) {
-  archive.serialize_all(context.random, context.seeded_with, context.timers_at, context.handlers,
-                        context.disabled_handlers, context.cancellations);
+  context.random.serialize(archive);
+  archive.serialize_all(context.timers.checked_at, context.osc.handlers, context.osc.disabled_handlers,
+                        context.timers.cancellations);
   context.behaviors->serialize(archive);
 }
 

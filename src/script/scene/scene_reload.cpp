@@ -15,7 +15,7 @@ RunInputs Scene::inputs() {
   inputs.tick = c.world->tick();
   inputs.time = c.world->time();
   inputs.state = vm_->state_text();
-  if (c.params != nullptr) inputs.params = c.params->values();
+  if (c.params.node != nullptr) inputs.params = c.params.node->values();
   return inputs;
 }
 
@@ -73,50 +73,50 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   ScriptContext& c = *context_;
   map_handles(c, live_id);
   std::vector<Property> properties;
-  if (c.params != nullptr)
-    properties.assign(c.params->table().properties().begin(), c.params->table().properties().end());
-  const bool has_params = c.params != nullptr;
-  const PropertyTable* const table = has_params ? &c.params->table() : nullptr;
-  c.params = nullptr;
+  if (c.params.node != nullptr)
+    properties.assign(c.params.node->table().properties().begin(), c.params.node->table().properties().end());
+  const bool has_params = c.params.node != nullptr;
+  const PropertyTable* const table = has_params ? &c.params.node->table() : nullptr;
+  c.params.node = nullptr;
   c.set_world(&world);
 
   ScriptContext* const old = previous == nullptr ? nullptr : previous->context_.get();
   std::vector<LiveParam> live;
-  if (old != nullptr && old->params != nullptr) live = old->params->values();
+  if (old != nullptr && old->params.node != nullptr) live = old->params.node->values();
   std::uint64_t defaults = 0;
-  if (has_params && old != nullptr && old->params != nullptr && &old->params->table() == table) {
-    c.params = std::move(old->params);  // same node, with all its values
+  if (has_params && old != nullptr && old->params.node != nullptr && &old->params.node->table() == table) {
+    c.params.node = std::move(old->params.node);  // same node, with all its values
   } else {
-    if (old != nullptr) old->params = nullptr;
+    if (old != nullptr) old->params.node = nullptr;
     if (has_params) {
-      c.params = std::make_unique<ParamsNode>(world.store(), std::move(properties));
-      defaults = c.params->carry_over(live);
+      c.params.node = std::make_unique<ParamsNode>(world.store(), std::move(properties));
+      defaults = c.params.node->carry_over(live);
     }
   }
   if (old != nullptr) {
     vm_->adopt_state(previous->vm_->state_text());
     if (c.options.keep_timers) vm_->adopt_afters(previous->vm_->afters_text());
-    c.timers_at = old->timers_at;
+    c.timers.checked_at = old->timers.checked_at;
     previous->disarm();
     adopt_run(*previous);
   }
   vm_->set_run_number(run_number_);
-  vm_->become_live(c.timers_at);
+  vm_->become_live(c.timers.checked_at);
   arm();
-  c.host.configure_osc(c.osc_config);
+  c.host.configure_osc(c.osc.config);
   return defaults;
 }
 
-NodeId Scene::params() const { return context_->params == nullptr ? NodeId{} : context_->params->id(); }
+NodeId Scene::params() const { return context_->params.id(); }
 
 void Scene::rerun_values(std::vector<double>& out) const {
   const ScriptContext& c = *context_;
   out.clear();
-  if (c.rerun_properties == 0 || c.params == nullptr) return;
+  if (c.params.rerun_properties == 0 || c.params.node == nullptr) return;
   const Store& store = c.world->store();
-  for (const Property& property : c.params->table().properties()) {
-    if ((c.rerun_properties >> property.index & 1u) == 0) continue;
-    const double* const values = store.values(c.params->id(), property);
+  for (const Property& property : c.params.node->table().properties()) {
+    if ((c.params.rerun_properties >> property.index & 1u) == 0) continue;
+    const double* const values = store.values(c.params.id(), property);
     out.insert(out.end(), values, values + property.width);
   }
 }

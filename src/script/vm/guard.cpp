@@ -91,13 +91,12 @@ void Guard::set_limits(const ScriptLimits& limits) {
   watchdog_->add(watch_, poll_interval(limits));
 }
 
-void Guard::set_functions(int handler, int stopped_fault, int failed) {
+void Guard::set_functions(const Functions& functions) {
+  functions_ = functions;
   lua_pushlightuserdata(state_, this);
-  lua_rawgeti(state_, LUA_REGISTRYINDEX, handler);
+  lua_rawgeti(state_, LUA_REGISTRYINDEX, functions.handler);
   lua_pushcclosure(state_, &Guard::on_error, 2);
-  handler_ = luaL_ref(state_, LUA_REGISTRYINDEX);
-  make_stop_fault_ = stopped_fault;
-  failure_callback_ = failed;
+  functions_.handler = luaL_ref(state_, LUA_REGISTRYINDEX);
 }
 
 bool Guard::arm() {
@@ -132,29 +131,28 @@ bool Guard::call(int arguments, int results, Kind kind) {
     fault_ = {"", 0, "a guarded call inside another", false};
     return false;
   }
-  if (kind == Kind::call && context_.call_log != nullptr && context_.call_log->skips_next())
-    return skip_call(arguments);
+  if (kind == Kind::call && call_log_ != nullptr && call_log_->skips_next()) return skip_call(arguments);
   // push the function again, for faults without a place, and the message handler
   const int function = lua_gettop(L) - arguments;
   lua_pushvalue(L, function);
   lua_insert(L, function);
-  lua_rawgeti(L, LUA_REGISTRYINDEX, handler_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, functions_.handler);
   lua_insert(L, function + 1);
   begin(kind);
   const int status = lua_pcall(L, arguments, results, function + 1);
   end();
-  const bool success = status == 0 && !error_raised_;
+  const bool success = status == 0 && !stop_.error_raised;
   if (success) {
     lua_remove(L, function + 1);
     lua_remove(L, function);
   } else {
     capture_fault(status, function);
     lua_settop(L, function - 1);
-    lua_rawgeti(L, LUA_REGISTRYINDEX, failure_callback_);
+    lua_rawgeti(L, LUA_REGISTRYINDEX, functions_.failed);
     lua_pcall(L, 0, 0, 0);
     lua_settop(L, function - 1);
-    if (fault_.stopped && kind == Kind::call && context_.call_log != nullptr)
-      context_.call_log->record_stop(fault_.file, fault_.line, fault_.text);
+    if (fault_.stopped && kind == Kind::call && call_log_ != nullptr)
+      call_log_->record_stop(fault_.file, fault_.line, fault_.text);
   }
   if (kind == Kind::call) context_.end_call(success);
   return success;
@@ -163,24 +161,27 @@ bool Guard::call(int arguments, int results, Kind kind) {
 // repeats the failure of a call that was stopped when the take was recorded
 bool Guard::skip_call(int arguments) {
   context_.begin_call();
-  const StoppedCall& stop = context_.call_log->skip();
+  const StoppedCall& stop = call_log_->skip();
   fault_ = {stop.file, stop.line, stop.text, true};
   lua_settop(state_, lua_gettop(state_) - arguments - 1);
-  lua_rawgeti(state_, LUA_REGISTRYINDEX, failure_callback_);
+  lua_rawgeti(state_, LUA_REGISTRYINDEX, functions_.failed);
   lua_pcall(state_, 0, 0, 0);
   context_.end_call(false);
   return false;
 }
 
+void Guard::Stop::begin_call() {
+  error_raised = overflowed = false;
+  hook_set = false;
+  reason = Reason::none;
+}
+
 void Guard::begin(Kind kind) {
   kind_ = kind;
   running_ = true;
-  error_raised_ = false;
-  overflowed_ = false;
-  hook_set_ = false;
-  reason_ = Reason::none;
+  stop_.begin_call();
   if (kind == Kind::call) {
-    if (context_.call_log != nullptr) context_.call_log->count_call();
+    if (call_log_ != nullptr) call_log_->count_call();
     context_.begin_call();
   }
   memory_.begin_call(replaying_);
@@ -195,11 +196,11 @@ void Guard::serialize(Archive& archive) {
 }
 
 bool Guard::next_call(bool& changed) {
-  if (context_.call_log != nullptr && context_.call_log->skips_next()) return false;
+  if (call_log_ != nullptr && call_log_->skips_next()) return false;
   // later stop requests for the previous call have no effect; earlier ones are seen below
   watch_.next_call();
-  if (reason_ != Reason::none || (memory_.used() > memory_.cap() / 2 && !replaying_)) return false;
-  if (context_.call_log != nullptr) context_.call_log->count_call();
+  if (stop_.reason != Reason::none || (memory_.used() > memory_.cap() / 2 && !replaying_)) return false;
+  if (call_log_ != nullptr) call_log_->count_call();
   if (context_.next_call()) changed = true;
   memory_.begin_call(replaying_);
   return true;
@@ -221,7 +222,7 @@ void Guard::end() {
   memory_.end_call();
   current_guard = nullptr;
   running_ = false;
-  if (!hook_set_) return;
+  if (!stop_.hook_set) return;
   lua_sethook(state_, nullptr, 0, 0);
   clear_hook_flag();
 }
@@ -232,8 +233,8 @@ void Guard::end() {
 __attribute__((no_sanitize("thread")))
 #endif
 void Guard::stop(Reason reason) {
-  if (reason_ == Reason::none) reason_ = reason;
-  hook_set_ = true;
+  if (stop_.reason == Reason::none) stop_.reason = reason;
+  stop_.hook_set = true;
   lua_sethook(state_, nullptr, 0, 0);
   lua_sethook(state_, &Guard::on_hook, LUA_MASKCOUNT, 1);
   if (live_) leave_compiled_code(SIGPROF);
@@ -242,29 +243,29 @@ void Guard::stop(Reason reason) {
 // an error caught by the script is raised again at its next instruction
 void Guard::on_hook(lua_State* state, lua_Debug*) {
   Guard* const guard = current_guard;
-  if (guard == nullptr || guard->reason_ == Reason::none) {
+  if (guard == nullptr || guard->stop_.reason == Reason::none) {
     lua_sethook(state, nullptr, 0, 0);
     return;
   }
-  if (!std::exchange(guard->error_raised_, true)) guard->record_place(state);
+  if (!std::exchange(guard->stop_.error_raised, true)) guard->record_place(state);
   lua_pushliteral(state, "stopped");
   lua_error(state);
 }
 
 void Guard::record_place(lua_State* state, int level) {
-  stop_file_[0] = 0;
-  stop_line_ = 0;
-  if (!find_place(state, level) && state != state_) find_place(state_, 0);
+  stop_.file[0] = 0;
+  stop_.line = 0;
+  if (!stop_.find_place(state, level) && state != state_) stop_.find_place(state_, 0);
 }
 
 // finds the innermost script function: sources of scripts begin with @, those of the prelude do not
-bool Guard::find_place(lua_State* state, int level) {
+bool Guard::Stop::find_place(lua_State* state, int level) {
   lua_Debug at{};
   for (; level < 250 && lua_getstack(state, level, &at) != 0; level++) {
     lua_getinfo(state, "Sl", &at);
     if (at.source[0] != '@' || at.currentline <= 0) continue;
-    std::strncpy(stop_file_, at.source + 1, sizeof stop_file_ - 1);
-    stop_line_ = at.currentline;
+    std::strncpy(file, at.source + 1, sizeof file - 1);
+    line = at.currentline;
     return true;
   }
   return false;
@@ -277,7 +278,7 @@ std::string Guard::memory_text() const {
 }
 
 std::string Guard::stop_text() const {
-  if (reason_ == Reason::memory) return "stopped: " + memory_text();
+  if (stop_.reason == Reason::memory) return "stopped: " + memory_text();
   if (kind_ == Kind::run) {
     return fmt::format("stopped after {:g} s of computing; check for an infinite loop", limits_.run_ms / 1000);
   }
@@ -298,11 +299,11 @@ void Guard::clear_hook_flag() {
 
 void Guard::capture_fault(int status, int function) {
   lua_State* const L = state_;
-  if (reason_ == Reason::memory) memory_stop_ = true;
+  if (stop_.reason == Reason::memory) memory_stop_ = true;
   fault_ = {};
-  fault_.stopped = error_raised_;
-  if (error_raised_ && (status == 0 || !lua_istable(L, -1))) {
-    lua_rawgeti(L, LUA_REGISTRYINDEX, make_stop_fault_);
+  fault_.stopped = stop_.error_raised;
+  if (stop_.error_raised && (status == 0 || !lua_istable(L, -1))) {
+    lua_rawgeti(L, LUA_REGISTRYINDEX, functions_.stopped_fault);
     lua_pcall(L, 0, 1, 0);
   }
   const auto text_at_top = [&] {
@@ -319,9 +320,9 @@ void Guard::capture_fault(int status, int function) {
     lua_getfield(L, table, "text");
   }
   fault_.text = text_at_top();
-  if (overflowed_ && stop_line_ != 0) {
-    fault_.file = stop_file_;
-    fault_.line = stop_line_;
+  if (stop_.overflowed && stop_.line != 0) {
+    fault_.file = stop_.file;
+    fault_.line = stop_.line;
     fault_.text = fmt::format("{}:{}: stack overflow", fault_.file, fault_.line);
   }
   if (fault_.text.empty()) fault_.text = "an error without a message";
@@ -336,7 +337,7 @@ void Guard::capture_fault(int status, int function) {
 int Guard::on_error(lua_State* state) {
   auto& guard = *static_cast<Guard*>(lua_touserdata(state, lua_upvalueindex(1)));
   if (lua_type(state, 1) == LUA_TSTRING && std::string_view(lua_tostring(state, 1)).ends_with("stack overflow")) {
-    guard.overflowed_ = true;
+    guard.stop_.overflowed = true;
     guard.record_place(state, 2);  // 0 is this function, 1 the one that overflowed the stack
     return 1;
   }

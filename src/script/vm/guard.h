@@ -18,6 +18,7 @@ struct lua_State;
 namespace limber {
 
 class Archive;
+class CallLog;
 struct ScriptContext;
 
 /// The reason for a failed call, for display.
@@ -58,9 +59,15 @@ class Guard {
   void set_limits(const ScriptLimits& limits);
   const ScriptLimits& limits() const { return limits_; }
 
-  /// Registry references of prelude functions: the message handler; one that creates the fault of a call that was
-  /// stopped without an error being raised; one to call after a failure.
-  void set_functions(int handler, int stopped_fault, int failed);
+  /// Registry references of prelude functions.
+  struct Functions {
+    int handler = -1;        ///< The message handler.
+    int stopped_fault = -1;  ///< Creates the fault of a call that was stopped without an error being raised.
+    int failed = -1;         ///< To call after a failure.
+  };
+  void set_functions(const Functions& functions);
+  /// Counts the calls in `calls` from now on; it outlives the guard.
+  void set_call_log(CallLog& calls) { call_log_ = &calls; }
 
   VmMode mode() const { return live_ ? VmMode::live : VmMode::interpreted; }
   /// Switches to live mode; false while another state of the process is live.
@@ -69,11 +76,11 @@ class Guard {
   void disarm();
 
   // queries of the prelude during a call
-  bool stopped() const { return error_raised_; }
+  bool stopped() const { return stop_.error_raised; }
   /// True if the running call is going to be stopped; native code that takes long must end then.
-  bool stop_requested() { return running_ && (reason_ != Reason::none || watch_.stop_requested()); }
-  std::string_view stop_file() const { return stop_file_; }
-  int stop_line() const { return stop_line_; }
+  bool stop_requested() { return running_ && (stop_.reason != Reason::none || watch_.stop_requested()); }
+  std::string_view stop_file() const { return stop_.file; }
+  int stop_line() const { return stop_.line; }
   std::string stop_text() const;
   /// Returns whether a call was stopped for memory since the last query.
   bool consume_memory_stop() { return std::exchange(memory_stop_, false); }
@@ -86,6 +93,18 @@ class Guard {
 
  private:
   enum class Reason : std::uint8_t { none, time, memory };
+  /// How the running call was stopped, or its stack overflow.
+  struct Stop {
+    // also written by the signal handler
+    volatile bool hook_set = false;
+    volatile Reason reason = Reason::none;
+    bool error_raised = false;
+    bool overflowed = false;
+    int line = 0;  // place in the script
+    char file[256] = {};
+    void begin_call();
+    bool find_place(lua_State* state, int level);
+  };
   void begin(Kind kind);
   void end();
   void stop(Reason reason);
@@ -96,7 +115,6 @@ class Guard {
   void set_place_to_function(int function);
   void record_place(lua_State* state, int level = 0);
   static int on_error(lua_State* state);
-  bool find_place(lua_State* state, int level);
   static void on_hook(lua_State* state, lua_Debug* at);
 
   lua_State* state_;
@@ -106,22 +124,14 @@ class Guard {
   Watch watch_;
   std::shared_ptr<Watchdog> watchdog_;
   ScriptFault fault_;
-  int handler_ = -1;
-  int make_stop_fault_ = -1;
-  int failure_callback_ = -1;
+  Functions functions_;  // with on_error as handler, which calls the prelude's
+  CallLog* call_log_ = nullptr;
   Kind kind_ = Kind::call;
   bool live_ = false;
   bool running_ = false;
   bool memory_stop_ = false;
   bool replaying_ = false;
-  // also written by the signal handler
-  volatile bool hook_set_ = false;
-  volatile Reason reason_ = Reason::none;
-  bool overflowed_ = false;
-  // place in the script at the stop or stack overflow
-  bool error_raised_ = false;
-  int stop_line_ = 0;
-  char stop_file_[256] = {};
+  Stop stop_;
 };
 
 }  // namespace limber

@@ -87,8 +87,7 @@ bool MatchSearch::count_steps(std::ptrdiff_t steps) {
   return !exhausted_;
 }
 
-SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors,
-                               Match& out) {
+SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors) {
   begin_ = text.data();
   end_ = begin_ + text.size();
   // as in Lua, a zero byte ends a pattern
@@ -98,19 +97,18 @@ SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, 
   exhausted_ = false;
   steps_left_ = kSteps + kStepsPerByte * static_cast<std::int64_t>(text.size());
   next_poll_ = steps_left_ - kPollInterval;
-  out_ = &out;
   const bool anchored = anchors && p != pattern_end_ && *p == '^';
   if (anchored) p++;
   for (const char* s = begin_ + from; s <= end_; s++) {
-    out.count = 0;
+    match_.count = 0;
     depth_ = 0;
     if (!count_steps(1)) return SearchResult::too_long;
     const char* const e = match(s, p);
     if (fault_ != nullptr) return SearchResult::bad_pattern;
     if (exhausted_) return SearchResult::too_long;
     if (e != nullptr) {
-      out.start = static_cast<std::int32_t>(s - begin_);
-      out.end = static_cast<std::int32_t>(e - begin_);
+      match_.start = static_cast<std::int32_t>(s - begin_);
+      match_.end = static_cast<std::int32_t>(e - begin_);
       return SearchResult::found;
     }
     if (anchored) break;
@@ -235,37 +233,37 @@ const char* MatchSearch::min_expand(const char* s, const char* p, const char* ep
 }
 
 const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_t length) {
-  if (out_->count >= Match::kMaxCaptures) return set_fault("too many captures");
-  const auto at = static_cast<std::size_t>(out_->count++);
-  out_->from[at] = static_cast<std::int32_t>(s - begin_);
-  out_->length[at] = length;
+  if (match_.count >= Match::kMaxCaptures) return set_fault("too many captures");
+  const auto at = static_cast<std::size_t>(match_.count++);
+  match_.from[at] = static_cast<std::int32_t>(s - begin_);
+  match_.length[at] = length;
   const char* const e = match(s, p);
-  if (e == nullptr) out_->count--;
+  if (e == nullptr) match_.count--;
   return e;
 }
 
 const char* MatchSearch::end_capture(const char* s, const char* p) {
-  std::int32_t open = out_->count - 1;
-  while (open >= 0 && out_->length[static_cast<std::size_t>(open)] != Match::kUnfinished) open--;
+  std::int32_t open = match_.count - 1;
+  while (open >= 0 && match_.length[static_cast<std::size_t>(open)] != Match::kUnfinished) open--;
   if (open < 0) return set_fault("invalid pattern capture");
   const auto at = static_cast<std::size_t>(open);
-  out_->length[at] = static_cast<std::int32_t>(s - begin_) - out_->from[at];
+  match_.length[at] = static_cast<std::int32_t>(s - begin_) - match_.from[at];
   const char* const e = match(s, p);
-  if (e == nullptr) out_->length[at] = Match::kUnfinished;
+  if (e == nullptr) match_.length[at] = Match::kUnfinished;
   return e;
 }
 
 const char* MatchSearch::back_reference(const char* s, char digit) {
   const int wanted = digit - '1';
   const auto at = static_cast<std::size_t>(wanted);
-  if (wanted < 0 || wanted >= out_->count || out_->length[at] == Match::kUnfinished) {
+  if (wanted < 0 || wanted >= match_.count || match_.length[at] == Match::kUnfinished) {
     return set_fault("invalid capture index");
   }
   // a position capture has no text; its marker is not a length
-  const auto length = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(out_->length[at]));
+  const auto length = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(match_.length[at]));
   if (static_cast<std::size_t>(end_ - s) < length) return nullptr;
   if (!count_steps(1 + static_cast<std::ptrdiff_t>(length) / 16)) return nullptr;
-  return std::memcmp(begin_ + out_->from[at], s, length) == 0 ? s + length : nullptr;
+  return std::memcmp(begin_ + match_.from[at], s, length) == 0 ? s + length : nullptr;
 }
 
 const char* MatchSearch::balance(const char* s, const char* p) {

@@ -36,7 +36,9 @@ class MatchSearch {
 
   /// Finds the first match at or after `from`. `anchors`: a ^ at the start of the pattern anchors it at `from`, as in
   /// find, match and gsub, but not in gmatch.
-  SearchResult find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors, Match& out);
+  SearchResult find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors);
+  /// The last match that was found, at a constant address.
+  const Match& last_match() const { return match_; }
   /// Returns the first offset of `wanted` as plain text, or npos. Linear in the length of the text.
   std::size_t find_plain(std::string_view text, std::string_view wanted, std::size_t from);
   /// The fault of the pattern, with Lua's wording.
@@ -70,7 +72,7 @@ class MatchSearch {
   std::int64_t next_poll_ = 0;  // value of `steps_left_` at which `stop` is polled next
   int depth_ = 0;
   bool exhausted_ = false;
-  Match* out_ = nullptr;
+  Match match_;
 };
 
 }  // namespace limber

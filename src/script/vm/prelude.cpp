@@ -1,7 +1,12 @@
-// The order in which the files of the prelude run.
+// The order in which the files of the prelude run, and calls of its functions.
 #include "script/vm/prelude.h"
 
 #include <array>
+
+#include <lua.hpp>
+
+#include "base/check.h"
+#include "base/log/log.h"
 
 namespace limber {
 
@@ -39,6 +44,21 @@ std::span<const std::string_view> prelude_order() {
                                                            "console.lua",
                                                            "warm.lua"};
   return kOrder;
+}
+
+std::string_view text_at(lua_State* state, int index) {
+  std::size_t length = 0;
+  const char* const text = lua_tolstring(state, index, &length);
+  return text == nullptr ? std::string_view("an error without a message") : std::string_view(text, length);
+}
+
+bool call_entry(lua_State* state, int arguments, int results) {
+  const bool entry_caught_all = lua_pcall(state, arguments, results, 0) == 0;
+  if (entry_caught_all) return true;
+  log_error("script: {}", text_at(state, -1));
+  LIMBER_CHECK(entry_caught_all);
+  lua_settop(state, 0);
+  return false;
 }
 
 }  // namespace limber

@@ -13,7 +13,6 @@
 #include "script/api/script_context.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/scene/scene.h"
-#include "script/vm/prelude.h"
 #include "script/vm/text_check.h"
 
 namespace limber {
@@ -23,12 +22,6 @@ namespace {
 constexpr std::size_t kMaxArguments = 4000;  // max. arguments of a message for a handler; Lua's stack is limited
 
 void push(lua_State* L, std::string_view text) { lua_pushlstring(L, text.data(), text.size()); }
-
-std::string_view text_at(lua_State* L, int index) {
-  std::size_t length = 0;
-  const char* text = lua_tolstring(L, index, &length);
-  return text == nullptr ? std::string_view("an error without a message") : std::string_view(text, length);
-}
 
 // function, arguments … -> true if the guarded call succeeded
 template <Guard::Kind kind>
@@ -160,36 +153,17 @@ void Vm::store_entries() {
     tick_ = reference("tick");
     message_ = reference("message");
     names_ = reference("names");
-    const int handler = reference("handler");
-    const int stopped_fault = reference("stopped_fault");
-    guard_.set_functions(handler, stopped_fault, reference("failed"));
+    Guard::Functions functions;
+    functions.handler = reference("handler");
+    functions.stopped_fault = reference("stopped_fault");
+    functions.failed = reference("failed");
+    guard_.set_functions(functions);
     lua_pushvalue(L, -1);
     entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
     warm_ = reference("warm");
-    make_behavior_ = reference("make_behavior");
-    clear_behavior_lists_ = reference("clear_behavior_lists");
-    restore_behavior_ = reference("restore_behavior");
-    accept_migrated_state_ = reference("accept_migrated_state");
-    step_behaviors_ = reference("step_behaviors");
-    behavior_state_ = reference("behavior_state");
-    drop_behavior_ = reference("drop_behavior");
-    behavior_self_ = reference("behavior_self");
-    behavior_start_ = reference("behavior_start");
-    behavior_step_ = reference("behavior_step");
-    behavior_migrate_ = reference("behavior_migrate");
+    behaviors_.store_entries();
   }
   lua_settop(L, 0);
-}
-
-// an entry catches all errors of scripts; other errors are faults of the prelude
-bool Vm::call(int arguments, int results) {
-  lua_State* const L = state_.get();
-  const bool entry_caught_all = lua_pcall(L, arguments, results, 0) == 0;
-  if (entry_caught_all) return true;
-  log_error("script: {}", text_at(L, -1));
-  LIMBER_CHECK(entry_caught_all);
-  lua_settop(L, 0);
-  return false;
 }
 
 // compiles the most frequently used prelude functions before scripts call them

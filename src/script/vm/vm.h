@@ -8,13 +8,13 @@
 #include <string_view>
 
 #include "base/evaluation.h"
-#include "base/id.h"
 #include "base/memory/arena.h"
 #include "base/message.h"
 #include "base/result.h"
+#include "script/vm/behavior_calls.h"
 #include "script/vm/garbage_collector.h"
 #include "script/vm/guard.h"
-#include "sim/behavior/behavior.h"
+#include "script/vm/prelude.h"
 
 struct lua_State;
 
@@ -44,20 +44,8 @@ class Vm {
   bool handle_message(const Message& message, const CommandOrigin& origin);
   /// Calls the prelude function `entry` of console.lua ("evaluate" or "complete") with a text. [sim]
   Evaluation query(const char* entry, std::string_view text);
-  // Behaviors of behaviors_lua/ (behavior_scripts.h). A fault without text means success.
-  /// Creates the `self` of an instance and returns its number, from 1. [sim]
-  std::int32_t make_behavior(std::int32_t file, NodeId id);
-  BehaviorFault start_behavior(std::int32_t number);
-  BehaviorFault step_behavior(std::int32_t number, double dt);
-  /// Steps the instances that BehaviorScripts::next_step() returns, until it returns 0 or one fails. `stepping`: number
-  /// of the current one, updated by next_step().
-  BehaviorFault step_behaviors(double dt, const std::int32_t& stepping);
-  /// Sets the instance's `state` from text; `migrate`: through its `migrate` function, if it has one.
-  BehaviorFault restore_behavior(std::int32_t number, std::string_view state, bool migrate);
-  /// Returns the instance's `state` serialized as text. The error names the key of a value that can't be serialized.
-  Result<std::string> behavior_state(std::int32_t number);
-  /// Releases the instance's data. Its number is not used again.
-  void drop_behavior(std::int32_t number);
+  /// Calls into behaviors of behaviors_lua/.
+  BehaviorCalls& behaviors() { return behaviors_; }
   /// All names that a scene sees, one per line: globals, library.member, thing.member, thing:method. [sim]
   std::string names();
   /// Guards all calls of script code, including those from C++. Runs on the main thread of `state()`.
@@ -114,19 +102,18 @@ class Vm {
   /// Serializes the counters outside the heap.
   void serialize_counts(Archive& archive);
 
+  GarbageCollector& collector() { return *collector_; }
   /// Collects garbage for about 100 µs if there is enough. The collector is paused at all other times. [sim]
   void collect_garbage();
 
  private:
   void load_prelude(ScriptContext& context);
   void store_entries();
-  bool call(int arguments, int results);
+  bool call(int arguments, int results) { return call_entry(state_.get(), arguments, results); }
   void push_entry(const char* name);
   std::string text_from(const char* entry);
   std::uint64_t count_from(const char* entry);
   void call_with(const char* entry, double number);
-  bool push_behavior(int functions, std::int32_t number);
-  BehaviorFault guarded_behavior(int arguments, int results);
 
   struct Closer {
     void operator()(lua_State* state) const;
@@ -142,17 +129,7 @@ class Vm {
   int message_ = -1;
   int names_ = -1;
   int warm_ = -1;
-  int make_behavior_ = -1;
-  int clear_behavior_lists_ = -1;
-  int restore_behavior_ = -1;
-  int accept_migrated_state_ = -1;
-  int step_behaviors_ = -1;
-  int behavior_state_ = -1;
-  int drop_behavior_ = -1;
-  int behavior_self_ = -1;  // tables indexed by the instance's number
-  int behavior_start_ = -1;
-  int behavior_step_ = -1;
-  int behavior_migrate_ = -1;
+  BehaviorCalls behaviors_{*this};
 };
 
 }  // namespace limber
