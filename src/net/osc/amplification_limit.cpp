@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/log/log.h"
 #include "base/system/net/interfaces.h"
 
 namespace limber {
@@ -92,6 +93,17 @@ bool AmplificationLimit::try_consume(std::uint32_t ip, std::size_t bytes, std::i
   }
   to.withheld = true;
   withheld_++;
+  return false;
+}
+
+bool AmplificationLimit::try_send(const Endpoint& to, std::size_t bytes, std::int64_t now) {
+  if (try_consume(to.ip, bytes, now)) return true;
+  if (const auto more = withheld_log_.admit(now)) {
+    log_warning(
+        "OSC out: {} is in another network and limited to three bytes for each byte received until it returns /token. "
+        "--osc-allow {}/32 removes the limit{}",
+        endpoint_text(to), system::endpoint_text({to.ip, 0}), *more);
+  }
   return false;
 }
 

@@ -13,7 +13,9 @@
 #include <string_view>
 #include <vector>
 
+#include "net/osc/endpoint.h"
 #include "net/osc/options.h"
+#include "net/osc/warning_throttle.h"
 
 namespace limber {
 
@@ -40,6 +42,8 @@ class AmplificationLimit {
   void add_credit(std::uint32_t ip, std::size_t bytes, std::int64_t now);
   /// Charges `bytes` to the address. Returns false if they must not be sent.
   bool try_consume(std::uint32_t ip, std::size_t bytes, std::int64_t now);
+  /// As try_consume(); warns about withheld datagrams.
+  bool try_send(const Endpoint& to, std::size_t bytes, std::int64_t now);
 
   /// Returns a token to send to the address now, if a datagram was withheld or the address needs more than answers
   /// (`wants_more`).
@@ -74,6 +78,7 @@ class AmplificationLimit {
   std::vector<Source> sources_;     // unverified; a forged sender may evict another, which loses its credit
   std::vector<Verified> verified_;  // only addresses that returned their token, so forged senders can't evict them
   std::uint64_t withheld_ = 0;
+  WarningThrottle withheld_log_;
 };
 
 /// SipHash-2-4 (Aumasson, Bernstein 2012) of two words. [any]

@@ -1,18 +1,23 @@
 // The look-up threads and HostResolver share ownership of the results, so either may end first.
 #include "net/osc/host_resolver.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "base/system/thread.h"
+#include "base/text.h"
 
 namespace limber {
 
 namespace {
 
 constexpr std::uint32_t kThisMachine = 0x7f000001;
+constexpr std::int64_t kLookUpRetryInterval = 5'000'000'000;  // ns between two look-ups of an unknown name
 
 std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t port) {
   if (const std::optional<std::uint32_t> ip = parse_ipv4(host)) return Endpoint{*ip, port};
@@ -86,6 +91,47 @@ void HostResolver::invalidate() {
 void HostResolver::invalidate_failed() {
   const std::scoped_lock lock(shared_->mutex);
   std::erase_if(shared_->results, [](const auto& entry) { return entry.second && !entry.second->ok(); });
+}
+
+void TargetResolver::begin_plan() {
+  reported_faults_.clear();
+  host_names_.invalidate();
+}
+
+std::vector<std::string> TargetResolver::resolve(const std::vector<StreamTarget>& configured, Sender& sender,
+                                                 std::int64_t now, std::chrono::milliseconds wait) {
+  std::vector<std::string> faults;
+  targets_.clear();
+  retry_at_.reset();
+  for (const StreamTarget& config : configured) {
+    const std::optional<Result<Endpoint>> endpoint = wait.count() > 0
+                                                         ? host_names_.wait_for(config.host, config.port, wait)
+                                                         : host_names_.find(config.host, config.port);
+    if (!endpoint) continue;
+    if (*endpoint && sender.is_own_input(**endpoint)) {
+      sender.report_own_input(**endpoint);
+      continue;
+    }
+    if (*endpoint) {
+      targets_.push_back({config, **endpoint});
+      continue;
+    }
+    retry_at_ = now + kLookUpRetryInterval;
+    std::string fault =
+        fmt::format("OSC out {}:{}: {}; retried every 5 s. Correct the name in the scene or with --osc-out HOST:PORT",
+                    printable(config.host), config.port, endpoint->error());
+    if (std::ranges::find(reported_faults_, fault) != reported_faults_.end()) continue;
+    reported_faults_.push_back(fault);
+    faults.push_back(std::move(fault));
+  }
+  sender.set_targets(targets_);
+  return faults;
+}
+
+bool TargetResolver::consume_retry(std::int64_t now) {
+  if (!retry_at_ || now < *retry_at_) return false;
+  host_names_.invalidate_failed();
+  return true;
 }
 
 }  // namespace limber

@@ -1,15 +1,20 @@
 // HostResolver: resolves host names off the network thread, because a name server may block for seconds.
+// TargetResolver: the stream targets with resolved addresses.
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/result.h"
 #include "net/osc/endpoint.h"
+#include "net/osc/sender.h"
 
 namespace limber {
 
@@ -39,6 +44,35 @@ class HostResolver {
   struct Shared;
   ResolveFunction look_up_;
   std::shared_ptr<Shared> shared_;
+};
+
+/// The stream targets of a plan with their addresses. Look-ups of unknown names are repeated every 5 s. [net]
+class TargetResolver {
+ public:
+  /// As HostResolver.
+  TargetResolver(ResolveFunction look_up, std::function<void()> notify)
+      : host_names_(std::move(look_up), std::move(notify)) {}
+
+  /// Before the first resolve() of a plan: resolves all names again.
+  void begin_plan();
+  /// Sets the targets that have a resolved address and are not an own input of the sender. Waits for each look-up up to
+  /// `wait`. Returns the errors, each once per plan. `now` in ns.
+  std::vector<std::string> resolve(const std::vector<StreamTarget>& configured, Sender& sender, std::int64_t now,
+                                   std::chrono::milliseconds wait = {});
+  const std::vector<ResolvedTarget>& targets() const { return targets_; }
+
+  /// True if a look-up has ended since the last call.
+  bool consume_changed() { return host_names_.consume_changed(); }
+  /// True if it is time to repeat failed look-ups: call resolve(). Their errors were already returned.
+  bool consume_retry(std::int64_t now);
+  /// Time of the next consume_retry() in ns; empty if none is expected.
+  std::optional<std::int64_t> retry_at() const { return retry_at_; }
+
+ private:
+  HostResolver host_names_;
+  std::vector<ResolvedTarget> targets_;
+  std::vector<std::string> reported_faults_;  // errors of this plan
+  std::optional<std::int64_t> retry_at_;
 };
 
 }  // namespace limber

@@ -19,10 +19,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kListenRetryInterval = 1'000'000'000;  // ns between two attempts to open a port
-constexpr std::int64_t kLookUpRetryInterval = 5'000'000'000;  // ns between two look-ups of an unknown name
-constexpr std::chrono::seconds kStartLookUpTimeout{2};        // maximum time that start() waits for look-ups
-constexpr std::size_t kMessagesPerPass = 256;                 // messages sent per pass, so that input is not delayed
+constexpr std::chrono::seconds kStartLookUpTimeout{2};  // maximum time that start() waits for look-ups
+constexpr std::size_t kMessagesPerPass = 256;           // messages sent per pass, so that input is not delayed
 constexpr std::size_t kUnlimited = ~std::size_t{0};
 
 // From the system's entropy source, so that tokens can't be predicted.
@@ -33,6 +31,45 @@ std::array<std::uint64_t, 2> secret() {
 }
 
 }  // namespace
+
+void NetworkStatus::set(std::vector<Endpoint> bound, const std::vector<ResolvedTarget>& targets) {
+  const std::scoped_lock lock(mutex_);
+  bound_ = std::move(bound);
+  lines_.clear();
+  for (const Endpoint& end : bound_) lines_.push_back("OSC in " + endpoint_text(end));
+  if (bound_.empty()) lines_.emplace_back("OSC in off");
+  for (const ResolvedTarget& target : targets) lines_.push_back("OSC out " + target_text(target.config));
+  if (targets.empty()) lines_.emplace_back("OSC out off");
+}
+
+void NetworkStatus::clear() {
+  const std::scoped_lock lock(mutex_);
+  lines_.clear();
+  bound_.clear();
+}
+
+std::vector<std::string> NetworkStatus::lines() const {
+  const std::scoped_lock lock(mutex_);
+  return lines_;
+}
+
+std::vector<Endpoint> NetworkStatus::bound() const {
+  const std::scoped_lock lock(mutex_);
+  return bound_;
+}
+
+void Outbox::send(Sender& sender, std::size_t max_messages) {
+  while (max_messages > 0) {
+    if (!has_unsent()) {
+      next_ = 0;
+      link_.output_queue.drain(messages_);
+      if (messages_.empty()) return;
+    }
+    const std::size_t end = std::min(messages_.size(), next_ + std::min(max_messages, messages_.size()));
+    max_messages -= end - next_;
+    for (; next_ < end; next_++) sender.send(messages_[next_]);
+  }
+}
 
 Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& offsets, NetClock clock,
                  ResolveFunction look_up)
@@ -56,7 +93,7 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
       sender_(
           link.counters, link.message_log, [this](const Endpoint& sender) { return receiver_.socket_of(sender); },
           clock_),
-      host_names_(std::move(look_up), [wake = wake_] { wake->notify(); }),
+      targets_(std::move(look_up), [wake = wake_] { wake->notify(); }),
       streams_(link, offsets, clock_, subscription_gate()),
       subscribers_(link, clock_,
                    [this](const Outgoing& out) {
@@ -64,8 +101,10 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
                      sender_.send(out);
                      return true;
                    }),
+      outbox_(link),
       amplification_(options_.allow, options_.connected ? options_.connected : connected_subnets, secret()) {
-  sender_.set_gates([this](const Endpoint& to, std::size_t bytes, std::size_t) { return may_send(to, bytes); },
+  sender_.set_gates([this](const Endpoint& to, std::size_t bytes,
+                           std::size_t) { return amplification_.try_send(to, bytes, clock_.steady()); },
                     subscription_gate());
   link_.wake_network = [wake = wake_] { wake->notify(); };
 }
@@ -97,24 +136,12 @@ void Network::stop() {
     thread_.join();
   }
   // send the engine's last messages
-  if (sender_.socket().is_open()) send_outbox(kUnlimited);
+  if (sender_.socket().is_open()) outbox_.send(sender_, kUnlimited);
   receiver_.close();
   sender_.close();
   config_ = {};
   streams_.set_targets({});
-  const std::scoped_lock lock(status_mutex_);
-  status_lines_.clear();
-  bound_.clear();
-}
-
-std::vector<std::string> Network::status_lines() const {
-  const std::scoped_lock lock(status_mutex_);
-  return status_lines_;
-}
-
-std::vector<Endpoint> Network::bound() const {
-  const std::scoped_lock lock(status_mutex_);
-  return bound_;
+  status_.clear();
 }
 
 void Network::run() {
@@ -122,7 +149,7 @@ void Network::run() {
   while (!stop_.load()) {
     wait_for_events();
     wake_->clear();
-    for (const int fd : descriptors_) receiver_.receive(fd);
+    for (const int fd : receiver_.descriptors()) receiver_.receive(fd);
     process_packets();
     receiver_.process_pending();
     apply_new_config();
@@ -131,7 +158,7 @@ void Network::run() {
     subscribers_.work();
     update_subscribers();
     publish_health();
-    send_outbox(kMessagesPerPass);
+    outbox_.send(sender_, kMessagesPerPass);
     streams_.send_due(sender_.socket());
     unreachable_.poll(sender_.socket(), link_.counters, clock_.steady());
     publish_health();
@@ -141,16 +168,13 @@ void Network::run() {
 void Network::wait_for_events() {
   std::vector<system::PollEntry> descriptors;
   descriptors.push_back({.fd = wake_->fd()});
-  for (const int fd : descriptors_) descriptors.push_back({.fd = fd});
+  for (const int fd : receiver_.descriptors()) descriptors.push_back({.fd = fd});
   std::optional<std::int64_t> timeout = streams_.timeout();
-  const auto remaining = [this](std::optional<std::int64_t> at) {
-    if (at) *at = std::max<std::int64_t>(0, *at - clock_.steady());
-    return at;
-  };
+  std::optional<std::int64_t> look_up = targets_.retry_at();
+  if (look_up) *look_up = std::max<std::int64_t>(0, *look_up - clock_.steady());
   std::optional<std::int64_t> unsent;
-  if (next_outgoing_ < outgoing_.size()) unsent = 0;
-  for (const auto other : {receiver_.timeout(), subscribers_.timeout(), remaining(retry_listen_at_),
-                           remaining(retry_look_ups_at_), unsent}) {
+  if (outbox_.has_unsent()) unsent = 0;
+  for (const auto other : {receiver_.timeout(), subscribers_.timeout(), look_up, unsent}) {
     if (other && (!timeout || *other < *timeout)) timeout = other;
   }
   std::optional<std::chrono::nanoseconds> limit;
@@ -162,60 +186,24 @@ void Network::wait_for_events() {
 // Opens and closes the ports that differ from the previous plan. Returns the errors. Call resolve_targets() next.
 std::vector<std::string> Network::apply(const OscConfig& plan) {
   std::vector<std::string> faults = receiver_.listen(plan.listen);
-  descriptors_ = receiver_.descriptors();
-  retry_listen_at_.reset();
-  if (receiver_.has_unopened(plan.listen)) retry_listen_at_ = clock_.steady() + kListenRetryInterval;
   config_ = plan;
-  reported_faults_.clear();
   update_own_endpoints();
-  host_names_.invalidate();
+  targets_.begin_plan();
   return faults;
 }
 
-// Sets the targets that have a resolved address. Returns the errors, each once per plan.
+// Returns the errors, each once per plan.
 std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait) {
-  std::vector<std::string> faults;
-  targets_.clear();
-  retry_look_ups_at_.reset();
-  for (const StreamTarget& config : config_.targets) {
-    const std::optional<Result<Endpoint>> endpoint = wait.count() > 0
-                                                         ? host_names_.wait_for(config.host, config.port, wait)
-                                                         : host_names_.find(config.host, config.port);
-    if (!endpoint) continue;
-    if (*endpoint && sender_.is_own_input(**endpoint)) {
-      sender_.report_own_input(**endpoint);
-      continue;
-    }
-    if (*endpoint) {
-      targets_.push_back({config, **endpoint});
-      continue;
-    }
-    retry_look_ups_at_ = clock_.steady() + kLookUpRetryInterval;
-    std::string fault =
-        fmt::format("OSC out {}:{}: {}; retried every 5 s. Correct the name in the scene or with --osc-out HOST:PORT",
-                    printable(config.host), config.port, endpoint->error());
-    if (std::ranges::find(reported_faults_, fault) != reported_faults_.end()) continue;
-    reported_faults_.push_back(fault);
-    faults.push_back(std::move(fault));
-  }
-  sender_.set_targets(targets_);
+  std::vector<std::string> faults = targets_.resolve(config_.targets, sender_, clock_.steady(), wait);
   update_streams();
   update_status_lines();
   return faults;
 }
 
-void Network::update_status_lines() {
-  const std::scoped_lock lock(status_mutex_);
-  bound_ = receiver_.bound();
-  status_lines_.clear();
-  for (const Endpoint& end : bound_) status_lines_.push_back("OSC in " + endpoint_text(end));
-  if (bound_.empty()) status_lines_.emplace_back("OSC in off");
-  for (const ResolvedTarget& target : targets_) status_lines_.push_back("OSC out " + target_text(target.config));
-  if (targets_.empty()) status_lines_.emplace_back("OSC out off");
-}
+void Network::update_status_lines() { status_.set(receiver_.bound(), targets_.targets()); }
 
 void Network::apply_new_config() {
-  const bool resolved = host_names_.consume_changed();
+  const bool resolved = targets_.consume_changed();
   std::shared_ptr<const OscConfig> scene_config = link_.osc_config.read();
   const bool received = scene_config != last_config_;
   last_config_ = std::move(scene_config);
@@ -233,26 +221,18 @@ void Network::apply_new_config() {
 
 // Repeats failed look-ups. Their errors were already logged.
 void Network::retry_look_ups() {
-  if (!retry_look_ups_at_ || clock_.steady() < *retry_look_ups_at_) return;
-  host_names_.invalidate_failed();
-  (void)resolve_targets();
+  if (targets_.consume_retry(clock_.steady())) (void)resolve_targets();
 }
 
-// Retries ports that are in use or have an address that does not exist yet. Their errors were already logged.
 void Network::retry_listen() {
-  if (!retry_listen_at_ || clock_.steady() < *retry_listen_at_) return;
-  (void)receiver_.listen(config_.listen);
-  retry_listen_at_.reset();
-  if (receiver_.has_unopened(config_.listen)) retry_listen_at_ = clock_.steady() + kListenRetryInterval;
-  if (receiver_.descriptors() == descriptors_) return;
-  descriptors_ = receiver_.descriptors();
+  if (!receiver_.retry_listen(config_.listen)) return;
   update_own_endpoints();
   update_status_lines();
   for (const std::string& line : status_lines()) log_info("{}", line);
 }
 
 void Network::update_streams() {
-  std::vector<ResolvedTarget> all = targets_;
+  std::vector<ResolvedTarget> all = targets_.targets();
   std::ranges::move(subscribers_.targets(), std::back_inserter(all));
   streams_.set_targets(all);
 }
@@ -275,8 +255,8 @@ bool Network::enqueue(const CommandOrigin& origin, std::string packet) {
 }
 
 void Network::process_packets() {
-  packets_.drain(packet_batch_);
-  for (const Packet& p : packet_batch_) receiver_.process(p.bytes.data(), p.bytes.size(), p.origin, p.scanned);
+  for (const PacketQueue::Packet& p : packets_.drain())
+    receiver_.process(p.bytes.data(), p.bytes.size(), p.origin, p.scanned);
 }
 
 void Network::pong(const CommandOrigin& to) {
@@ -287,19 +267,6 @@ void Network::pong(const CommandOrigin& to) {
   link_.push_out({Outgoing::Destination::sender, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
 }
 
-void Network::send_outbox(std::size_t max_messages) {
-  while (max_messages > 0) {
-    if (next_outgoing_ == outgoing_.size()) {
-      next_outgoing_ = 0;
-      link_.output_queue.drain(outgoing_);
-      if (outgoing_.empty()) return;
-    }
-    const std::size_t end = std::min(outgoing_.size(), next_outgoing_ + std::min(max_messages, outgoing_.size()));
-    max_messages -= end - next_outgoing_;
-    for (; next_outgoing_ < end; next_outgoing_++) sender_.send(outgoing_[next_outgoing_]);
-  }
-}
-
 void Network::update_own_endpoints() {
   std::vector<std::uint32_t> addresses;
   for (const system::Subnet& subnet : system::connected_subnets()) addresses.push_back(subnet.ip);
@@ -308,19 +275,8 @@ void Network::update_own_endpoints() {
 
 SendGate Network::subscription_gate() {
   return [this](const Endpoint& to, std::size_t bytes, std::size_t datagrams) {
-    return subscribers_.try_consume(to, bytes, datagrams) && may_send(to, bytes);
+    return subscribers_.try_consume(to, bytes, datagrams) && amplification_.try_send(to, bytes, clock_.steady());
   };
-}
-
-bool Network::may_send(const Endpoint& to, std::size_t bytes) {
-  if (amplification_.try_consume(to.ip, bytes, clock_.steady())) return true;
-  if (const auto more = limited_log_.admit(clock_.steady())) {
-    log_warning(
-        "OSC out: {} is in another network and limited to three bytes for each byte received until it returns /token. "
-        "--osc-allow {}/32 removes the limit{}",
-        endpoint_text(to), system::endpoint_text({to.ip, 0}), *more);
-  }
-  return false;
 }
 
 // Called before the datagram's messages are answered.

@@ -6,8 +6,10 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -24,6 +26,56 @@
 #include "net/osc/unreachable_targets.h"
 
 namespace limber {
+
+/// The open ports, for display. [any]
+class NetworkStatus {
+ public:
+  void set(std::vector<Endpoint> bound, const std::vector<ResolvedTarget>& targets);
+  void clear();
+  std::vector<std::string> lines() const;
+  std::vector<Endpoint> bound() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> lines_;
+  std::vector<Endpoint> bound_;
+};
+
+/// Packets of other transports. [net], unless noted otherwise.
+class PacketQueue {
+ public:
+  struct Packet {
+    CommandOrigin origin;
+    std::string bytes;
+    Receiver::ScanResult scanned;
+    friend std::size_t weight_of(const Packet& p) { return sizeof p + p.bytes.capacity(); }
+  };
+  /// Returns false if the queue is full. [any]
+  bool push(Packet packet) { return queue_.push(std::move(packet)); }
+  /// Returns the queued packets; valid until the next call.
+  std::span<const Packet> drain() {
+    queue_.drain(batch_);
+    return batch_;
+  }
+
+ private:
+  BoundedQueue<Packet> queue_{8192, std::size_t{16} << 20};
+  std::vector<Packet> batch_;
+};
+
+/// The engine's messages, which are sent in parts so that input is not delayed. [net]
+class Outbox {
+ public:
+  explicit Outbox(EngineLink& link) : link_(link) {}
+  void send(Sender& sender, std::size_t max_messages);
+  /// True if a part of the messages is unsent.
+  bool has_unsent() const { return next_ < messages_.size(); }
+
+ private:
+  EngineLink& link_;
+  std::vector<Outgoing> messages_;
+  std::size_t next_ = 0;  // index of the first unsent message
+};
 
 /// OSC input and output of one engine. Create it before the engine starts: the constructor sets `link.wake_network`,
 /// which stays callable after the Network is destroyed. Call start() after the scene has run once, so that the scene's
@@ -48,9 +100,9 @@ class Network {
   bool enqueue(const CommandOrigin& origin, std::string packet);
 
   /// Describes the open ports: "OSC in 127.0.0.1:9003", "OSC out 127.0.0.1:9005 (pos+rot+relrot at 60 Hz)". [any]
-  std::vector<std::string> status_lines() const;
+  std::vector<std::string> status_lines() const { return status_.lines(); }
   /// The bound listening endpoints, with the port that the system chose for port 0. [any]
-  std::vector<Endpoint> bound() const;
+  std::vector<Endpoint> bound() const { return status_.bound(); }
 
  private:
   void run();
@@ -65,22 +117,13 @@ class Network {
   void update_streams();
   void pong(const CommandOrigin& to);
   void process_packets();
-  void send_outbox(std::size_t max_messages);
   void update_own_endpoints();
   void record_received(const Endpoint& from, std::size_t bytes);
   void handle_token(const Message& message, const CommandOrigin& origin);
   Result<void> subscribe(const Message& message, const CommandOrigin& origin);
   SendGate subscription_gate();
-  bool may_send(const Endpoint& to, std::size_t bytes);
   void challenge(const Endpoint& end, bool wants_more);
   void publish_health();
-
-  struct Packet {
-    CommandOrigin origin;
-    std::string bytes;
-    Receiver::ScanResult scanned;
-    friend std::size_t weight_of(const Packet& p) { return sizeof p + p.bytes.capacity(); }
-  };
 
   EngineLink& link_;
   const OscOptions options_;
@@ -88,29 +131,18 @@ class Network {
   std::shared_ptr<system::Wake> wake_;
   Receiver receiver_;
   Sender sender_;
-  HostResolver host_names_;
+  TargetResolver targets_;
   UnreachableTargets unreachable_;
   Streams streams_;
   Subscribers subscribers_;
-  BoundedQueue<Packet> packets_{8192, std::size_t{16} << 20};
-  std::vector<Packet> packet_batch_;
+  PacketQueue packets_;
+  Outbox outbox_;
   std::shared_ptr<const OscConfig> last_config_;
   OscConfig config_;
-  std::vector<ResolvedTarget> targets_;
-  std::vector<std::string> reported_faults_;  // errors already logged for this plan's targets
-  std::vector<Outgoing> outgoing_;
-  std::size_t next_outgoing_ = 0;  // index of the first unsent message
   AmplificationLimit amplification_;
-  WarningThrottle limited_log_;
-  std::vector<int> descriptors_;
-  std::optional<std::int64_t> retry_listen_at_;    // ns; next attempt to open the ports that could not be opened
-  std::optional<std::int64_t> retry_look_ups_at_;  // ns; next look-up of the host names that were not found
+  NetworkStatus status_;
   std::thread thread_;
   std::atomic<bool> stop_{false};
-
-  mutable std::mutex status_mutex_;  // guards the members below, which other threads read
-  std::vector<std::string> status_lines_;
-  std::vector<Endpoint> bound_;
 };
 
 }  // namespace limber

@@ -19,7 +19,8 @@ namespace {
 
 constexpr int kMaxBatches = 64;
 constexpr int kReceiveBuffer = 4 << 20;
-constexpr std::size_t kDatagramOverhead = 256;  // budget per datagram in addition to its bytes
+constexpr std::int64_t kListenRetryInterval = 1'000'000'000;  // ns between two attempts to open a port
+constexpr std::size_t kDatagramOverhead = 256;                // budget per datagram in addition to its bytes
 constexpr const char* kInboxFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
 constexpr const char* kListenHint =
     "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
@@ -55,10 +56,32 @@ std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addr
     if (open_already) continue;
     if (std::optional<std::string> fault = open(address)) faults.push_back(*fault);
   }
+  retry_at_.reset();
+  if (can_retry(addresses)) retry_at_ = clock_.steady() + kListenRetryInterval;
   return faults;
 }
 
-bool Receiver::has_unopened(const std::vector<ListenAddress>& addresses) const {
+// Ports may be in use, or have an address that does not exist yet. Their errors were already reported.
+bool Receiver::retry_listen(const std::vector<ListenAddress>& addresses) {
+  if (!retry_at_ || clock_.steady() < *retry_at_) return false;
+  const std::size_t before = sockets_.size();
+  (void)listen(addresses);
+  return sockets_.size() != before;
+}
+
+std::optional<std::int64_t> Receiver::timeout() const {
+  if (!queue_.empty()) return 0;
+  std::optional<std::int64_t> timeout = scheduled_.timeout();
+  if (retry_at_) {
+    const std::int64_t retry = std::max<std::int64_t>(0, *retry_at_ - clock_.steady());
+    timeout = std::min(timeout.value_or(retry), retry);
+  }
+  return timeout;
+}
+
+// True if an address is not open and opening it can be retried. Not if an address is a host name, because a look-up may
+// block for seconds.
+bool Receiver::can_retry(const std::vector<ListenAddress>& addresses) const {
   const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
   return numbers && std::ranges::any_of(addresses, [this](const ListenAddress& address) {
            return std::ranges::none_of(sockets_, [&](const auto& s) { return s->address == address; });

@@ -53,9 +53,8 @@ class Receiver {
   /// Closes sockets that are not in the list, opens the missing ones and leaves the others alone. Returns an error text
   /// for each address that could not be opened.
   std::vector<std::string> listen(const std::vector<ListenAddress>& addresses);
-  /// True if an address is not open and opening it can be retried. Always false if an address is a host name, because a
-  /// look-up may block for seconds.
-  bool has_unopened(const std::vector<ListenAddress>& addresses) const;
+  /// Every second, tries to open the missing ones of the same list again. Returns true if one was opened.
+  bool retry_listen(const std::vector<ListenAddress>& addresses);
   void close();
 
   /// The sockets to poll, and their bound endpoints in the same order.
@@ -88,8 +87,8 @@ class Receiver {
   /// Decodes a slice of the queued datagrams, pushes the scheduled bundles that are due, and wakes the engine if
   /// anything was pushed since the last call.
   void process_pending();
-  /// Nanoseconds until process_pending() has work; empty if none is expected.
-  std::optional<std::int64_t> timeout() const { return queue_.empty() ? scheduled_.timeout() : 0; }
+  /// Nanoseconds until process_pending() or retry_listen() has work; empty if none is expected.
+  std::optional<std::int64_t> timeout() const;
 
   /// Returns the listening socket that received this sender's last message, so that the answer has the source address
   /// that the sender expects; -1 if it is no longer known.
@@ -104,6 +103,7 @@ class Receiver {
   static constexpr std::size_t kKnownSlots = 256;  // a power of two
 
   std::optional<std::string> open(const ListenAddress& address);
+  bool can_retry(const std::vector<ListenAddress>& addresses) const;
   void enqueue(ListenSocket& socket, const char* data, std::size_t size, const Endpoint& from);
   void decode_slice();
   void log_messages(const CommandOrigin& origin, const Decoded& packet);
@@ -121,6 +121,7 @@ class Receiver {
   const NetClock& clock_;
   ScheduledCommands scheduled_;
   std::vector<std::unique_ptr<ListenSocket>> sockets_;
+  std::optional<std::int64_t> retry_at_;  // ns; next attempt to open the missing sockets
   system::DatagramReader reader_;
   struct QueuedDatagram {
     std::string bytes;
