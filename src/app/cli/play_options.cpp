@@ -40,7 +40,7 @@ CLI::Validator plain_count() {
 }
 
 // options of OSC and OSCQuery
-void add_network(CLI::App& play, PlayOptions& o) {
+void add_network(CLI::App& play, NetworkOptions& o) {
   play.add_option("--osc-in", o.osc_in, "Address of OSC input; default 127.0.0.1:9003.")->type_name("[ADDR:]PORT|off");
   play.add_option("--osc-allow", o.osc_allow, "Accept only these senders, such as 192.168.1.0/24; may be repeated.")
       ->type_name("ADDRESS[/BITS],...")
@@ -108,18 +108,18 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   CLI::Option* preset =
       play->add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
           ->type_name("NAME");
-  add_network(*play, o);
+  add_network(*play, o.network);
   play->add_option("--package-path", o.package_paths, "Folder for package:// paths in URDF files; may be repeated.")
       ->type_name("DIR")
       ->allow_extra_args(false);
   play->add_flag("--watch", o.watch,
                  "With --fast: reload the scene when one of its files is saved, as is done in real time.");
   CLI::Option* record =
-      play->add_option("--record", o.record,
+      play->add_option("--record", o.take.record,
                        "Record the scene and all input to this file, so that it can be replayed bit for bit.")
           ->type_name("TAKE");
   CLI::Option* replay =
-      play->add_option("--replay", o.replay, "Replay this take with the scene and files recorded in it.")
+      play->add_option("--replay", o.take.replay, "Replay this take with the scene and files recorded in it.")
           ->type_name("TAKE")
           ->excludes(record)
           ->excludes(scene)
@@ -131,7 +131,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
                  "there are any.")
       ->excludes(replay)
       ->excludes(fast);
-  play->add_flag("--with-current-scripts", o.current_scripts,
+  play->add_flag("--with-current-scripts", o.take.current_scripts,
                  "With --replay: use the current scene files; reports where the runs diverge.")
       ->needs(replay);
   play->add_flag("--strict", o.strict, "Exit with code 1 after any script error, rejected value or health event.");

@@ -80,7 +80,7 @@ std::string conflicting_option(const PlayOptions& play) {
 // a service keeps playing while a port is in use, and retries it
 std::vector<std::string> words_of_service(const ServiceCommand& command) {
   std::vector<std::string> words = command.words;
-  if (!command.play.osc_optional) words.emplace_back("--osc-optional");
+  if (!command.play.network.osc_optional) words.emplace_back("--osc-optional");
   return words;
 }
 
@@ -88,8 +88,8 @@ int install(const ServiceCommand& command) {
   if (const std::string why = conflicting_option(command.play); !why.empty()) return fail(kUsageError, why);
   if (service_folder().empty()) return fail(kMachineError, "HOME is not set: there is no folder for units");
   std::vector<std::string> searched;
-  const bool replays = !command.play.replay.empty();
-  const std::string& scene = replays ? command.play.replay : command.play.scene;
+  const bool replays = !command.play.take.replay.empty();
+  const std::string& scene = replays ? command.play.take.replay : command.play.scene;
   if (!replays && find_scene(scene, searched).empty()) return fail(kInputError, scene_not_found(scene, searched));
   const std::string name = command.name.empty() ? service_name(scene) : command.name;
   if (!is_valid_name(name))

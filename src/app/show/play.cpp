@@ -62,14 +62,14 @@ Result<Message> parse_set(const std::string& text) {
   return message;
 }
 
-Result<OscOptions> parse_osc(const PlayOptions& options) {
+Result<OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
   OscOptions osc;
   osc.optional = options.osc_optional;
   if (!options.osc_in.empty()) {
     auto in = parse_osc_in(options.osc_in);
     if (!in) return Error{in.error()};
     osc.in = std::move(*in);
-  } else if (options.fast) {
+  } else if (fast) {
     osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
   }
   for (const std::string& text : options.osc_out) {
@@ -78,7 +78,7 @@ Result<OscOptions> parse_osc(const PlayOptions& options) {
     if (!osc.out) osc.out.emplace();
     osc.out->insert(osc.out->end(), out->begin(), out->end());
   }
-  if (options.fast && !osc.out) osc.out.emplace();
+  if (fast && !osc.out) osc.out.emplace();
   if (!options.osc_allow.empty()) {
     auto allow = parse_osc_allow(options.osc_allow);
     if (!allow) return Error{allow.error()};
@@ -99,13 +99,13 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   engine.ticks = options.ticks;
   engine.duration = options.duration;
   engine.preset = options.preset;
-  engine.record = options.record;
-  engine.replay = options.replay;
-  engine.current_scripts = options.current_scripts;
+  engine.record = options.take.record;
+  engine.replay = options.take.replay;
+  engine.current_scripts = options.take.current_scripts;
   // batch runs, replays and films save no recovery file
   const std::string state = state_dir();
   if (!state.empty()) engine.lock_folder = state + "/locks";
-  if (!options.fast && options.replay.empty() && !options.display.offline() && !state.empty())
+  if (!options.fast && options.take.replay.empty() && !options.display.offline() && !state.empty())
     engine.recovery_folder = state + "/recovery";
   engine.recover = options.recover;
   for (const std::string& text : options.sets) {
@@ -119,10 +119,10 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
 int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
   if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
   if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
-  if (!options.replay.empty()) {
+  if (!options.take.replay.empty()) {
     const ReplayResult result = engine.replay_result();
     print_notice("{}", text_of(result));
-    if ((result.diverged_at && !options.current_scripts) || !result.damage.empty()) return kInputError;
+    if ((result.diverged_at && !options.take.current_scripts) || !result.damage.empty()) return kInputError;
   }
   if (options.strict && engine.faults() > 0)
     return fail(kInputError, "--strict: there was a script error, a rejected value or a health event, see above");
@@ -188,8 +188,9 @@ class Playing {
         engine_(link_, with_notifier(std::move(engine_options))),
         network_(link_, osc, transient_offsets()),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
-        query_(link_, query_host(network_, osc.allow, options.query_names)) {
-    if ((!options.fast || options.watch) && options.replay.empty()) scene_watch_.emplace(link_, engine_, scene_file_);
+        query_(link_, query_host(network_, osc.allow, options.network.query_names)) {
+    if ((!options.fast || options.watch) && options.take.replay.empty())
+      scene_watch_.emplace(link_, engine_, scene_file_);
   }
 
   /// Returns the exit code.
@@ -282,9 +283,9 @@ std::string ignored_options(const PlayOptions& options) {
   const auto add = [&](bool given, const char* name) {
     if (given) names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
   };
-  add(!options.osc_in.empty() && options.osc_in != "off", "--osc-in");
-  add(!options.osc_out.empty() && options.osc_out.front() != "off", "--osc-out");
-  add(!options.query.empty() && options.query != "off", "--query");
+  add(!options.network.osc_in.empty() && options.network.osc_in != "off", "--osc-in");
+  add(!options.network.osc_out.empty() && options.network.osc_out.front() != "off", "--osc-out");
+  add(!options.network.query.empty() && options.network.query != "off", "--query");
   add(options.watch, "--watch");
   return names;
 }
@@ -333,14 +334,15 @@ int play_command(const PlayOptions& options) {
   if (!resources) return fail(kMachineError, resources.error());
   system::block_signals();
   if (const Result<void> open = open_output(options); !open) return fail(kMachineError, open.error());
-  const bool replays = !options.replay.empty();
+  const bool replays = !options.take.replay.empty();
   write_message(
       MessageLevel::info,
-      fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.replay : options.scene)), "");
+      fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.take.replay : options.scene)),
+      "");
   if (const Result<void> fits = check_options(options); !fits) return fail(kUsageError, fits.error());
-  Result<OscOptions> osc = parse_osc(options);
+  Result<OscOptions> osc = parse_osc(options.network, options.fast);
   if (!osc) return fail(kUsageError, osc.error());
-  Result<QueryAddresses> query = parse_query(options.query);
+  Result<QueryAddresses> query = parse_query(options.network.query);
   if (!query) return fail(kUsageError, query.error());
   if (options.fast && !*query) query->emplace();  // no port either
   std::vector<std::string> searched;

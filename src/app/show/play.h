@@ -18,6 +18,23 @@ struct LogOptions {
   bool quiet = false;
 };
 
+/// Options of OSC and OSCQuery.
+struct NetworkOptions {
+  std::string osc_in;  ///< Empty: not given.
+  std::string osc_allow;
+  std::vector<std::string> osc_out;
+  bool osc_optional = false;
+  std::string query;  ///< Empty: not given.
+  std::vector<std::string> query_names;
+};
+
+/// Options of takes.
+struct TakeOptions {
+  std::string record;            ///< File of the take to record.
+  std::string replay;            ///< File of the take to replay.
+  bool current_scripts = false;  ///< Replay with the current scripts instead of the recorded ones.
+};
+
 /// Options of `play`, as typed.
 struct PlayOptions {
   std::string scene = "scripts/arms.lua";
@@ -32,16 +49,9 @@ struct PlayOptions {
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string preset;             ///< Recalled after the scene has run, before `sets`.
   std::vector<std::string> package_paths;
-  std::string osc_in;  ///< Empty: not given.
-  std::string osc_allow;
-  std::vector<std::string> osc_out;
-  bool osc_optional = false;
-  std::string query;  ///< Empty: not given.
-  std::vector<std::string> query_names;
-  bool recover = false;          ///< Start with the values that a crashed run has left.
-  std::string record;            ///< File of the take to record.
-  std::string replay;            ///< File of the take to replay.
-  bool current_scripts = false;  ///< Replay with the current scripts instead of the recorded ones.
+  bool recover = false;  ///< Start with the values that a crashed run has left.
+  NetworkOptions network;
+  TakeOptions take;
   LogOptions log;
   DisplayOptions display;
 };

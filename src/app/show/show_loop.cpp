@@ -51,7 +51,7 @@ void ShowLoop::wait_for_scene() {
 }
 
 bool ShowLoop::may_wait_for_fix() const {
-  return options_.replay.empty() && !options_.fast && !options_.display.headless && Window::has_display();
+  return options_.take.replay.empty() && !options_.fast && !options_.display.headless && Window::has_display();
 }
 
 bool ShowLoop::should_await_display() const {
