@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 namespace limber {
 
@@ -31,6 +32,24 @@ class FramePace {
  private:
   double last_activity_ = 0;
   double last_frame_ = 0;
+};
+
+/// Measures the rate of drawn frames once a second. [main]
+class FrameCounter {
+ public:
+  /// Counts a frame. Returns the frames per second if a second has passed since the last result.
+  std::optional<double> count(double now) {
+    frames_++;
+    if (now - since_ < 1) return std::nullopt;
+    const double rate = frames_ / (now - since_);
+    frames_ = 0;
+    since_ = now;
+    return rate;
+  }
+
+ private:
+  double since_ = 0;
+  int frames_ = 0;
 };
 
 }  // namespace limber

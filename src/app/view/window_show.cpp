@@ -2,8 +2,7 @@
 #include "app/view/window_show.h"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,38 +18,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kLongestInterval = 0.1;  // s; longer gaps between snapshots are not interpolated
-// time in s after the last camera movement in which the local camera overrides the snapshot's
-constexpr double kLocalCameraTime = 0.3;
 constexpr double kShaderCheckInterval = 0.25;  // s
-constexpr double kOrbitSpeed = 2.5;            // rad per height of the window
-constexpr double kZoomStep = 0.88;             // factor of the distance per step
-
-Orbit orbit_of(const CameraView& camera) {
-  const ViewCamera view_camera = make_view_camera(camera, 1, 1);
-  return {view_camera.eye, view_camera.target};
-}
-
-// true if both have the same poses, shapes and values
-bool looks_alike(const Snapshot& a, const Snapshot& b) {
-  if (a.tick != b.tick || a.render_scene != b.render_scene || a.visuals_version != b.visuals_version ||
-      a.transient.size() != b.transient.size() || a.overlay.size() != b.overlay.size())
-    return false;
-  const TransientOffsets& at = transient_offsets();
-  for (const BodyEntry& body : b.body_list->bodies) {
-    if (a.transient[body.enabled_offset] != b.transient[body.enabled_offset]) return false;
-    for (const std::uint32_t part : body.part_offsets) {
-      const auto same = [&](std::uint32_t offset, std::size_t width) {
-        const auto* const first = a.transient.data() + part + offset;
-        return std::equal(first, first + width, b.transient.data() + part + offset);
-      };
-      if (!same(at.part_position, 3) || !same(at.part_rotation, 4)) return false;
-    }
-  }
-  return true;
-}
-
-std::vector<Arg> numbers(const Vec3& v) { return {Arg::of(v.x), Arg::of(v.y), Arg::of(v.z)}; }
 
 }  // namespace
 
@@ -120,26 +88,11 @@ void WindowShow::send(std::vector<Message> messages) {
   link_.wake_engine();
 }
 
-// drawing lags one tick behind, so that there are two snapshots to interpolate; if ticks are more frequent than frames,
-// the latest snapshot is drawn
 void WindowShow::update_snapshots(double now) {
-  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
-  if (newest == nullptr || newest == now_) return;
-  if (now_ == nullptr) initial_view_ = orbit_of(camera_of(*newest));
-  const bool moves = now_ != nullptr && newest->tick == now_->tick + 1 && newest->render_scene == now_->render_scene;
-  before_ = moves ? now_ : newest;
-  if (moves || now_ == nullptr) {
-    interval_ = std::min(now - snapshot_time_, kLongestInterval);
-    snapshot_time_ = now;
-  }
-  now_ = newest;
-}
-
-// sends the eye twice, because a new eye is ignored if it equals the old target
-void WindowShow::set_camera(const Orbit& orbit) {
-  send({{"/visuals/camera/eye", numbers(orbit.eye)},
-        {"/visuals/camera/target", numbers(orbit.target)},
-        {"/visuals/camera/eye", numbers(orbit.eye)}});
+  std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  if (newest == nullptr) return;
+  if (snapshots_.empty()) camera_.set_default_view(*newest);
+  snapshots_.add(std::move(newest), now);
 }
 
 // the panel has priority; the view receives the remaining events
@@ -154,9 +107,9 @@ void WindowShow::handle_input(int width, int height, double now) {
   for (const HotkeyAction action : gui_->consume_actions()) act(action);
   PanelContext& context = gui_->context();
   if (context.value_snapshot != nullptr) {
-    const ViewState view{*now_,
+    const ViewState view{snapshots_.now(),
                          *context.value_snapshot,
-                         make_view_camera(camera_of(*now_), width, height, free_part(*gui_, width, height)),
+                         make_view_camera(camera_of(snapshots_.now()), width, height, free_part(*gui_, width, height)),
                          width,
                          height,
                          now};
@@ -183,7 +136,7 @@ void WindowShow::act(HotkeyAction action) {
     output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
   if (action != HotkeyAction::default_view && action != HotkeyAction::restore_view) return;
   viewport_mouse_.stop_following();
-  if (action == HotkeyAction::default_view) set_camera(initial_view_);
+  if (action == HotkeyAction::default_view) send(camera_.default_view());
 }
 
 void WindowShow::toggle_output() {
@@ -197,7 +150,8 @@ void WindowShow::toggle_output() {
 }
 
 Result<void> WindowShow::draw_window(double mix, int width, int height) {
-  if (Result<void> drawn = renderer_->draw(*before_, *now_, mix, width, height, free_part(*gui_, width, height));
+  if (Result<void> drawn =
+          renderer_->draw(snapshots_.before(), snapshots_.now(), mix, width, height, free_part(*gui_, width, height));
       !drawn)
     return drawn;
   renderer_->present(width, height);
@@ -209,64 +163,39 @@ Result<void> WindowShow::draw_window(double mix, int width, int height) {
 // after the first window's frame was submitted
 Result<void> WindowShow::draw_output(double mix) {
   if (output_ != nullptr && output_->closed()) output_.reset();
-  return output_ == nullptr ? Result<void>() : output_->draw(*renderer_, *before_, *now_, mix);
+  return output_ == nullptr ? Result<void>() : output_->draw(*renderer_, snapshots_.before(), snapshots_.now(), mix);
 }
 
 void WindowShow::follow_part() {
-  if (!viewport_mouse_.followed() || *viewport_mouse_.followed() >= now_->transient.size()) {
+  const std::optional<std::uint32_t> part = viewport_mouse_.followed();
+  if (!part || *part >= snapshots_.now().transient.size()) {
     viewport_mouse_.stop_following();
-    follow_part_.reset();
-    return;
+    return camera_.stop_following();
   }
-  const Vec3 at = part_pose(*now_, *viewport_mouse_.followed()).position;
-  if (follow_part_ != viewport_mouse_.followed()) {
-    follow_part_ = viewport_mouse_.followed();
-    const Orbit orbit = orbit_of(camera_of(*now_));
-    follow_offset_ = orbit.eye - orbit.target;
-  }
-  set_camera({at + follow_offset_, at});
+  send(camera_.follow(snapshots_.now(), *part));
 }
 
 void WindowShow::handle_mouse() {
   const MouseMovement mouse = window_->consume_mouse();
   if (!mouse.any() || gui_->wants_mouse() || viewport_mouse_.has_grab()) return;
-  const CameraView camera = camera_of(*now_);
-  const double now = system::clock_seconds();
-  if (now - camera_move_time_ > kLocalCameraTime) orbit_ = orbit_of(camera);
-  camera_move_time_ = now;
   // relative to the part of the window that the panel leaves free
   const double height = std::max(window_->height(), 1) *
                         free_part(*gui_, std::max(window_->width(), 1), std::max(window_->height(), 1)).height;
-  orbit_.orbit(kOrbitSpeed * mouse.orbit_x / height, kOrbitSpeed * mouse.orbit_y / height);
-  orbit_.pan(mouse.pan_x / height, -mouse.pan_y / height, camera.fovy);
-  orbit_.zoom(std::pow(kZoomStep, mouse.wheel));
   if (mouse.pan_x != 0 || mouse.pan_y != 0) viewport_mouse_.stop_following();
-  follow_offset_ = orbit_.eye - orbit_.target;
-  set_camera(orbit_);
+  send(camera_.move(mouse, camera_of(snapshots_.now()), height, system::clock_seconds()));
 }
 
 void WindowShow::update_title(double now) {
-  frames_++;
-  if (now - title_time_ < 1) return;
-  window_->title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_,
-                             frames_ / (now - title_time_), now_->speed, now_->paused ? "  paused" : ""));
-  frames_ = 0;
-  title_time_ = now;
+  const std::optional<double> rate = frames_.count(now);
+  if (!rate) return;
+  const Snapshot& snapshot = snapshots_.now();
+  window_->title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_, *rate,
+                             snapshot.speed, snapshot.paused ? "  paused" : ""));
 }
 
-// an idle, paused show needs few frames
 void WindowShow::check_for_changes(double now) {
-  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
-  const int width = window_->width();
-  const int height = window_->height();
-  const bool moved =
-      newest != nullptr && (last_seen_ == nullptr || !newest->paused || !looks_alike(*last_seen_, *newest));
   const bool input = window_->has_events() || (output_ != nullptr && output_->has_events()) || gui_->has_events();
-  if (!moved && !input && width == seen_width_ && height == seen_height_) return;
-  last_seen_ = newest;
-  seen_width_ = width;
-  seen_height_ = height;
-  pace_.note_activity(now);
+  if (changes_.changed(link_.snapshots.read(), window_->width(), window_->height(), input)) pace_.note_activity(now);
 }
 
 WindowShow::End WindowShow::frame() {
@@ -285,7 +214,7 @@ WindowShow::End WindowShow::frame() {
   if (!pace_.frame_due(now, rate)) return End::none;  // woken by an event before the next frame
   pace_.begin_frame(now);
   update_snapshots(now);
-  if (now_ == nullptr) return End::none;
+  if (snapshots_.empty()) return End::none;
   if (now - shader_check_time_ > kShaderCheckInterval) {
     shader_check_time_ = now;
     renderer_->reload_shaders();
@@ -297,7 +226,7 @@ WindowShow::End WindowShow::frame() {
     window_->poll(0.05);
     return End::none;
   }
-  const double mix = interval_ <= 0 ? 1 : std::clamp((now - snapshot_time_) / interval_, 0.0, 1.0);
+  const double mix = snapshots_.mix(now);
   if (visible) {
     handle_input(width, height, now);
     if (const Result<void> drawn = draw_window(mix, width, height); !drawn) {

@@ -1,0 +1,39 @@
+// CameraControl: moves the scene's camera with the mouse, follows a part, and returns to the default view. Its
+// functions return the messages that set the camera.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "app/view/window.h"
+#include "base/message.h"
+#include "engine/output/render_scene.h"
+#include "engine/output/snapshot.h"
+#include "ui/render/camera.h"
+
+namespace limber {
+
+/// [main]
+class CameraControl {
+ public:
+  /// Uses the view of the first snapshot as the default one.
+  void set_default_view(const Snapshot& first);
+  std::vector<Message> default_view() const;
+
+  /// Follows the part at this offset of Snapshot::transient. The camera keeps its direction and distance.
+  std::vector<Message> follow(const Snapshot& snapshot, std::uint32_t part);
+  void stop_following() { followed_.reset(); }
+
+  /// `height`: of the part of the window that shows the view, pixels. `now` in s.
+  std::vector<Message> move(const MouseMovement& mouse, const CameraView& camera, double height, double now);
+
+ private:
+  Orbit default_view_;
+  Orbit orbit_;                            // used while the mouse moves the camera
+  double moved_at_ = -1;                   // time of the last movement, s
+  Vec3 follow_offset_{0};                  // position of the eye relative to the followed part
+  std::optional<std::uint32_t> followed_;  // the part that follow_offset_ belongs to
+};
+
+}  // namespace limber

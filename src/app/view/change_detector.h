@@ -1,0 +1,23 @@
+// ChangeDetector: detects changes of what a window shows, so that an idle, paused show needs few frames.
+#pragma once
+
+#include <memory>
+
+#include "engine/output/snapshot.h"
+
+namespace limber {
+
+/// [main]
+class ChangeDetector {
+ public:
+  /// Returns true if the snapshot (may be null) or the window's size differ visibly from those of the last change, or
+  /// `input` is set.
+  bool changed(const std::shared_ptr<const Snapshot>& newest, int width, int height, bool input);
+
+ private:
+  std::shared_ptr<const Snapshot> last_;  // at the last change
+  int width_ = 0;
+  int height_ = 0;
+};
+
+}  // namespace limber
