@@ -129,7 +129,8 @@ TEST(Gui, StoresAndRestoresViews) {
   move_camera(11);
   fixture.key(GuiKey::digit_5, kCtrl);
   EXPECT_NEAR(fixture.read("/visuals/camera/eye"), 11, 1e-6) << "there is none";
-  EXPECT_NE(fixture.gui->context().notice.find("View 5 is empty"), std::string::npos) << fixture.gui->context().notice;
+  EXPECT_NE(fixture.gui->context().notice.text.find("View 5 is empty"), std::string::npos)
+      << fixture.gui->context().notice.text;
   for (const auto& [key, x] : {std::pair(GuiKey::digit_1, 3.0), {GuiKey::digit_9, 7.0}}) {
     fixture.key(key, kCtrl);
     EXPECT_NEAR(fixture.read("/visuals/camera/eye", 0), x, 1e-6);

@@ -40,7 +40,7 @@ TEST_F(HistoryBar, LimitsRewindToHistory) {
   fixture.button(false);
   fixture.sync();
   EXPECT_LE(fixture.read("/physics/sim/tick"), 1);
-  EXPECT_EQ(fixture.gui->context().rejection, "");
+  EXPECT_EQ(fixture.gui->context().rejection.text, "");
 }
 
 TEST_F(HistoryBar, CancelsAtThePresent) {

@@ -59,7 +59,7 @@ TEST(PanelPresets, KeyOfEmptySlotDoesNothing) {
   PanelFixture fixture;
   fixture.key(GuiKey::digit_5);
   EXPECT_EQ(fixture.read("/preset/count"), 0);
-  EXPECT_NE(fixture.gui->context().notice.find("Preset 5 not found"), std::string::npos);
+  EXPECT_NE(fixture.gui->context().notice.text.find("Preset 5 not found"), std::string::npos);
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ TEST(PanelTime, RecordsTake) {
   fixture.click("transport.record");
   fixture.sync();
   EXPECT_FALSE(fixture.is_visible("take.text"));
-  EXPECT_NE(fixture.gui->context().notice.find("recorded: 00:00.75"), std::string::npos)
-      << fixture.gui->context().notice;
+  EXPECT_NE(fixture.gui->context().notice.text.find("recorded: 00:00.75"), std::string::npos)
+      << fixture.gui->context().notice.text;
   fixture.show.engine.finish_saving();
   const std::vector<std::string> files = saved_takes(fixture.folder());
   ASSERT_EQ(files.size(), 1u);
@@ -54,10 +54,10 @@ TEST(PanelTime, ShowsRejectedMessage) {
   EXPECT_FALSE(fixture.is_visible("rejection"));
   fixture.click("transport.step_back");
   ASSERT_TRUE(fixture.is_visible("rejection"));
-  EXPECT_EQ(fixture.gui->context().rejection.find("/transport/step: can't rewind"), 0u)
-      << fixture.gui->context().rejection;
+  EXPECT_EQ(fixture.gui->context().rejection.text.find("/transport/step: can't rewind"), 0u)
+      << fixture.gui->context().rejection.text;
   fixture.click("rejection");
-  EXPECT_EQ(fixture.clipboard, fixture.gui->context().rejection);
+  EXPECT_EQ(fixture.clipboard, fixture.gui->context().rejection.text);
   fixture.frames(9 * 60);
   EXPECT_FALSE(fixture.is_visible("rejection"));
 }
@@ -92,8 +92,8 @@ TEST(PanelTime, ShowsReplayPosition) {
   EXPECT_NEAR(take.seconds, fixture.gui->context().value_snapshot->snapshot->time, 1e-9);
   EXPECT_TRUE(fixture.is_visible("take.line"));
   EXPECT_FALSE(fixture.is_visible("transport.history")) << "there is no way back in a replay";
-  EXPECT_NE(fixture.gui->context().rejection.find("a take is being replayed"), std::string::npos)
-      << fixture.gui->context().rejection;
+  EXPECT_NE(fixture.gui->context().rejection.text.find("a take is being replayed"), std::string::npos)
+      << fixture.gui->context().rejection.text;
   EXPECT_TRUE(fixture.is_visible("rejection"));
 }
 
@@ -121,8 +121,8 @@ TEST(PanelTime, PlaysLatestTake) {
   fixture.sync();
   EXPECT_FALSE(fixture.gui->context().take_state().playing);
   EXPECT_TRUE(fixture.is_visible("take.play"));
-  EXPECT_NE(fixture.gui->context().notice.find("has ended; live control resumes"), std::string::npos)
-      << fixture.gui->context().notice;
+  EXPECT_NE(fixture.gui->context().notice.text.find("has ended; live control resumes"), std::string::npos)
+      << fixture.gui->context().notice.text;
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ TEST(PanelTransport, PanicStopsAndResumes) {
   fixture.sync();
   EXPECT_EQ(fixture.read("/physics/sim/panicked"), 1);
   EXPECT_TRUE(fixture.is_visible("panic.banner"));
-  EXPECT_EQ(fixture.gui->context().notice, "Panic: all motion is stopped");
+  EXPECT_EQ(fixture.gui->context().notice.text, "Panic: all motion is stopped");
   EXPECT_EQ(fixture.rect_of("transport.time").x, before.x) << "nothing moves";
   fixture.click("transport.panic");
   fixture.sync();
@@ -52,7 +52,7 @@ TEST(PanelTransport, PanicStopsAndResumes) {
   fixture.sync();
   EXPECT_EQ(fixture.read("/physics/sim/panicked"), 0);
   EXPECT_FALSE(fixture.is_visible("panic.banner"));
-  EXPECT_EQ(fixture.gui->context().notice, "Panic ended");
+  EXPECT_EQ(fixture.gui->context().notice.text, "Panic ended");
 }
 
 TEST(PanelTransport, PanicKeyActsInTextField) {
@@ -92,11 +92,11 @@ TEST(PanelTransport, RewindsByKeysAndButtons) {
   EXPECT_EQ(fixture.read("/physics/sim/tick"), 195);
   fixture.key(GuiKey::comma, kShift);
   EXPECT_EQ(fixture.read("/physics/sim/tick"), 75) << "two seconds";
-  EXPECT_EQ(fixture.gui->context().rejection, "");
+  EXPECT_EQ(fixture.gui->context().rejection.text, "");
   fixture.click("transport.rewind");
   EXPECT_EQ(fixture.read("/physics/sim/tick"), 0);
-  EXPECT_NE(fixture.gui->context().notice.find("Rewound only 1.25 s"), std::string::npos)
-      << fixture.gui->context().notice;
+  EXPECT_NE(fixture.gui->context().notice.text.find("Rewound only 1.25 s"), std::string::npos)
+      << fixture.gui->context().notice.text;
 }
 
 }  // namespace

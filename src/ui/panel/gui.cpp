@@ -159,7 +159,7 @@ void Gui::frame(const GuiFrame& frame) {
   if (context_.spring_marker) draw_spring(*context_.spring_marker);
   if (!context_.settings.hidden && context_.panicked()) draw_panic();
   if (context_.show_help) draw_help();
-  if (context_.clock < context_.notice_until) draw_notice();
+  if (context_.notice.visible(context_.clock)) draw_notice();
   if (!ImGui::IsAnyItemActive()) context_.end_drag();
   ImGui::Render();
 }
@@ -224,7 +224,7 @@ void Gui::perform(HotkeyAction action, const KeyPress& press) {
       context_.show_help = !context_.show_help;
       break;
     case HotkeyAction::search:
-      context_.focus_search = true;
+      context_.requests.focus_search = true;
       break;
     case HotkeyAction::larger:
       text_size(1);
@@ -236,15 +236,15 @@ void Gui::perform(HotkeyAction action, const KeyPress& press) {
       context_.recall(static_cast<double>(digit));
       break;
     case HotkeyAction::store_view:
-      context_.store_view(digit);
+      views_.store(context_, digit);
       break;
     case HotkeyAction::restore_view:
-      context_.restore_view(digit);
+      views_.restore(context_, digit);
       actions_.push_back(action);  // ends following an object
       break;
     case HotkeyAction::earlier:
     case HotkeyAction::later:
-      context_.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
+      context_.requests.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
       break;
     case HotkeyAction::output:
     case HotkeyAction::full_screen:
@@ -398,7 +398,7 @@ void Gui::draw_notice() const {
   if (ImGui::Begin("##notice", nullptr,
                    kOverlay | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
                        ImGuiWindowFlags_NoFocusOnAppearing))
-    ImGui::TextUnformatted(context_.notice.c_str());
+    ImGui::TextUnformatted(context_.notice.text.c_str());
   ImGui::End();
 }
 

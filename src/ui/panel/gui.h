@@ -14,6 +14,7 @@
 #include "ui/panel/layout.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/panel_context.h"
+#include "ui/panel/stored_views.h"
 
 struct ImGuiContext;
 
@@ -92,6 +93,7 @@ class Gui {
   GuiOptions options_;
   ImGuiContext* imgui_context_;
   PanelContext context_;
+  StoredViews views_;
   InputQueue input_;
   Layout layout_;
   FontFiles files_;

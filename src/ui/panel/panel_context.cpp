@@ -13,12 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kSnapshotInterval = 1.0 / 20;  // s; the simulation spends at most 1 % of its time on value snapshots
-constexpr double kNoticeDuration = 2.5;         // s
-constexpr double kRejectionDuration = 8;        // s; long enough to read the reason
+constexpr double kNoticeDuration = 2.5;   // s
+constexpr double kRejectionDuration = 8;  // s; long enough to read the reason
 constexpr const char* kStyle = "/visuals/look/style";
-constexpr const char* kEye = "/visuals/camera/eye";
-constexpr const char* kTarget = "/visuals/camera/target";
 
 }  // namespace
 
@@ -39,28 +36,20 @@ Message set_message(const std::string& path, const Property& property, const Pen
   return message;
 }
 
-std::uint64_t PanelContext::send(Message message) {
-  Command command;
-  command.messages.push_back(std::move(message));
-  command.origin = CommandOrigin{CommandSource::panel, 0, edit_number_, false};
-  link.command_queue.push(std::move(command));
-  last_request_ = link.request_value_snapshot();
-  last_request_time_ = clock;
-  return last_request_;
-}
+std::uint64_t PanelContext::send(Message message) { return panel_link_.send(std::move(message), clock); }
 
 std::uint64_t PanelContext::send(std::string address, std::vector<Arg> args) {
   return send(Message{std::move(address), std::move(args)});
 }
 
 void PanelContext::set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging) {
-  if (!std::exchange(dragging_, dragging)) edit_number_++;
+  panel_link_.begin_edit(dragging);
   if (handle.path == kStyle) settings.style = handle.ref.property->choices[static_cast<std::size_t>(values[0])];
   pending_.set(handle.path, values, send(set_message(handle.path, *handle.ref.property, values)));
 }
 
 void PanelContext::set_all(const std::string& pattern, double value) {
-  edit_number_++;
+  panel_link_.begin_edit();
   pending_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
 }
 
@@ -70,7 +59,7 @@ std::optional<double> PanelContext::pending_value(const std::string& pattern) co
 }
 
 void PanelContext::undo_or_redo(const char* action, const char* description_path, const char* nothing_text) {
-  dragging_ = false;
+  panel_link_.end_drag();
   const std::optional<PropertyHandle> handle = find(description_path);
   const std::string_view description = handle ? text(handle->ref) : std::string_view();
   show_notice(description.empty() ? std::string(nothing_text) : std::string(description));
@@ -128,25 +117,7 @@ TakeState PanelContext::take_state() const {
 
 void PanelContext::select(std::string path) {
   selected = std::move(path);
-  reveal_path = selected;
-}
-
-void PanelContext::store_view(std::size_t number) {
-  const auto eye = find(kEye);
-  const auto target = find(kTarget);
-  View view;
-  if (!eye || !target || !values(*eye, view.eye) || !values(*target, view.target)) return;
-  views_.at(number - 1) = view;
-  show_notice(fmt::format("View {} stored", number));
-}
-
-void PanelContext::restore_view(std::size_t number) {
-  const std::optional<View>& view = views_.at(number - 1);
-  if (!view) return show_notice(fmt::format("View {0} is empty; Ctrl+Shift+{0} stores one", number));
-  const auto point = [](const PendingValues::Values& v) {
-    return std::vector{Arg::of(v[0]), Arg::of(v[1]), Arg::of(v[2])};
-  };
-  for (const char* address : {kEye, kTarget, kEye}) send(address, point(address == kEye ? view->eye : view->target));
+  requests.reveal_path = selected;
 }
 
 void PanelContext::recall(double number) {
@@ -156,10 +127,7 @@ void PanelContext::recall(double number) {
   send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
 }
 
-void PanelContext::show_notice(std::string text) {
-  notice = std::move(text);
-  notice_until = clock + kNoticeDuration;
-}
+void PanelContext::show_notice(std::string text) { notice = {std::move(text), clock + kNoticeDuration}; }
 
 void PanelContext::copy_with_notice(const std::string& text) {
   copy(text);
@@ -168,12 +136,10 @@ void PanelContext::copy_with_notice(const std::string& text) {
 
 // Handles replies: rejected messages, and rewinds that went back less than requested.
 void PanelContext::handle_replies() {
-  link.panel_output_queue.drain(replies_);
-  for (const Outgoing& reply : replies_) {
+  for (const Outgoing& reply : panel_link_.replies()) {
     const std::vector<Arg>& args = reply.message.args;
     if (reply.destination == Outgoing::Destination::error && args.size() == 2) {
-      rejection = fmt::format("{}: {}", args[0].text, args[1].text);
-      rejection_until = clock + kRejectionDuration;
+      rejection = {fmt::format("{}: {}", args[0].text, args[1].text), clock + kRejectionDuration};
     } else if (reply.message.address == "/transport/rewound" && args.size() > 2) {
       show_notice(fmt::format("Rewound only {:.2f} s: {}", args[0].number, args[2].text));
     }
@@ -202,11 +168,7 @@ void PanelContext::begin_frame(double clock_now) {
     pending_.remove_confirmed(value_snapshot->request);
     if (first) restore_style();
   }
-  const bool waiting = value_snapshot == nullptr || value_snapshot->request < last_request_;
-  if (last_request_ == 0 || (!waiting && clock - last_request_time_ >= kSnapshotInterval)) {
-    last_request_ = link.request_value_snapshot();
-    last_request_time_ = clock;
-  }
+  panel_link_.update_request(value_snapshot.get(), clock);
 }
 
 }  // namespace limber

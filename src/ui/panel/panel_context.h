@@ -2,7 +2,6 @@
 // messages, and the state of the user interface. It holds no simulation state.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -14,6 +13,7 @@
 
 #include "engine/output/engine_link.h"
 #include "ui/panel/fonts.h"
+#include "ui/panel/panel_link.h"
 #include "ui/panel/pending_values.h"
 #include "ui/panel/settings.h"
 #include "ui/panel/widgets/widget_names.h"
@@ -38,13 +38,27 @@ struct TakeState {
   bool recording() const { return !name.empty() && !replaying; }
 };
 
+/// A text that is shown for some seconds.
+struct TimedText {
+  std::string text;
+  double until = 0;  ///< s
+  bool visible(double now) const { return now < until; }
+};
+
+/// Requests to panels. The panel that carries one out resets it.
+struct PanelRequests {
+  std::string reveal_path;    ///< Address of an object that the tree scrolls to in the next frame; empty: none.
+  bool focus_search = false;  ///< Moves the keyboard focus to the search field in the next frame.
+  int move_behavior = 0;      ///< Moves the selected behavior: -1 earlier, 1 later.
+};
+
 /// Duration of one rewind, s.
 inline constexpr double kRewindSeconds = 2;
 
 /// [main]
 class PanelContext {
  public:
-  explicit PanelContext(EngineLink& engine_link) : link(engine_link) {}
+  explicit PanelContext(EngineLink& engine_link) : link(engine_link), panel_link_(engine_link) {}
 
   EngineLink& link;
   std::shared_ptr<const ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
@@ -57,16 +71,12 @@ class PanelContext {
   const GuiOptions* options = nullptr;  ///< The application's options.
 
   // State shared by panels
-  std::string selected;            ///< Address of the selected object; empty: none.
-  std::string reveal_path;         ///< Address of an object that the tree scrolls to in the next frame; empty: none.
+  std::string selected;  ///< Address of the selected object; empty: none.
+  PanelRequests requests;
   std::vector<std::string> plots;  ///< Addresses of plotted properties.
-  bool focus_search = false;       ///< Moves the keyboard focus to the search field in the next frame.
   bool show_help = false;          ///< Shows the help (F2).
-  int move_behavior = 0;           ///< Requested move of the selected behavior: -1 earlier, 1 later.
-  std::string notice;              ///< A temporary notice, for example about copied text.
-  double notice_until = 0;         ///< s
-  std::string rejection;           ///< The panel's last rejected message, with the reason.
-  double rejection_until = 0;      ///< s
+  TimedText notice;                ///< For example about copied text.
+  TimedText rejection;             ///< The panel's last rejected message, with the reason.
   /// The mouse spring in the view: the dragged point and its target, in pixels.
   struct SpringMarker {
     double x = 0, y = 0, to_x = 0, to_y = 0;
@@ -98,15 +108,12 @@ class PanelContext {
   void set_all(const std::string& pattern, double value);
   std::optional<double> pending_value(const std::string& pattern) const;
   /// Ends the current drag: the next set value is a separate undo step.
-  void end_drag() { dragging_ = false; }
+  void end_drag() { panel_link_.end_drag(); }
 
   /// Selects the object with this address and reveals it in the tree.
   void select(std::string path);
   /// Toggles the debug overlay.
   void toggle_overlay();
-  /// Stores the camera's view under a number from 1 to 9 until the window is closed, and restores it.
-  void store_view(std::size_t number);
-  void restore_view(std::size_t number);
   /// Recalls a preset by its number from 1, with the configured morph time.
   void recall(double number);
 
@@ -135,17 +142,8 @@ class PanelContext {
   void restore_style();
   void undo_or_redo(const char* action, const char* description_path, const char* nothing_text);
 
-  // a stored view: the camera's properties eye and target
-  struct View {
-    PendingValues::Values eye{}, target{};
-  };
-  std::array<std::optional<View>, 9> views_;
+  PanelLink panel_link_;
   PendingValues pending_;
-  bool dragging_ = false;
-  std::uint16_t edit_number_ = 0;
-  std::uint64_t last_request_ = 0;
-  double last_request_time_ = 0;
-  std::vector<Outgoing> replies_;  // scratch memory
 };
 
 /// Names of the easing functions for morphs.

@@ -26,7 +26,7 @@ class BehaviorsPanel : public Panel {
       if (response.result.kind == Evaluation::Kind::error)
         context.show_notice(response.result.text.substr(0, response.result.text.find('\n')));
     }
-    queued_moves_ += std::exchange(context.move_behavior, 0);
+    queued_moves_ += std::exchange(context.requests.move_behavior, 0);
     if (context.value_snapshot == nullptr || (context.settings.hidden && queued_moves_ == 0)) return;
     update_entries(context);
     // one move at a time, because each depends on the result of the previous one

@@ -40,7 +40,7 @@ class ParametersPanel : public Panel {
 
   void draw(PanelContext& context) override {
     const float side = ImGui::GetFrameHeight() * 1.15F;
-    if (std::exchange(context.focus_search, false)) {
+    if (std::exchange(context.requests.focus_search, false)) {
       ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 focuses items of the focused window only
       ImGui::SetKeyboardFocusHere();
     }

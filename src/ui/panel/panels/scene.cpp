@@ -32,7 +32,7 @@ class ScenePanel : public Panel {
       selection_path_ = context.selected;
     }
     list_.lines(tree, words_);
-    if (!context.reveal_path.empty()) reveal(context);
+    if (!context.requests.reveal_path.empty()) reveal(context);
     const std::vector<TreeList::Line>& lines = list_.lines(tree, words_);
     std::uint32_t toggled = 0;
     const float height = ImGui::GetTextLineHeightWithSpacing();
@@ -93,8 +93,8 @@ class ScenePanel : public Panel {
   }
 
   void reveal(PanelContext& context) {
-    const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(context.reveal_path);
-    context.reveal_path.clear();
+    const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(context.requests.reveal_path);
+    context.requests.reveal_path.clear();
     if (!ref) return;
     words_.clear();
     list_.reveal(ref->node);

@@ -139,18 +139,18 @@ class TimePanel : public Panel {
 
   // Extends to the end of the row; the tooltip shows the full text.
   static void draw_rejection(PanelContext& context) {
-    if (context.clock >= context.rejection_until) return;
+    if (!context.rejection.visible(context.clock)) return;
     const float high = ImGui::GetFrameHeight();
     const float width = ImGui::GetContentRegionAvail().x;
     if (width < high) return;
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    if (ImGui::InvisibleButton("##rejection", {width, high})) context.copy_with_notice(context.rejection);
+    if (ImGui::InvisibleButton("##rejection", {width, high})) context.copy_with_notice(context.rejection.text);
     context.names.add("rejection");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Rejected: %s", context.rejection.c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Rejected: %s", context.rejection.text.c_str());
     draw_icon(Icon::warning, low.x + high * 0.45F, low.y + high / 2, high * 0.3F, packed_color(Tone::red));
     const float top = low.y + ImGui::GetStyle().FramePadding.y;
     ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::red));
-    imgui::text_ellipsis({low.x + high, top}, {low.x + width, low.y + high}, context.rejection);
+    imgui::text_ellipsis({low.x + high, top}, {low.x + width, low.y + high}, context.rejection.text);
     ImGui::PopStyleColor();
   }
 
