@@ -68,7 +68,7 @@ Result<SetOutcome> accept_values(const Property& property, std::span<const doubl
 
 Store::Store() {
   slots_.push_back({1, table_number(group_table()), 0, 0});
-  nodes_.push_back({&group_table(), nullptr, "", {}, {}, 0, 0, 0, 0});
+  nodes_.push_back({&group_table(), nullptr, "", {}, {}, 0, 0, 0});
   root_ = {0, 1};
   refresh_view();
 }
@@ -102,7 +102,7 @@ void Store::order_children(NodeId parent, std::span<const NodeId> first) {
                [&](NodeId child) { return !named[child.slot]; });
   LIMBER_CHECK(ordered.size() == children.size());
   children = std::move(ordered);
-  record_structure_change(parent);
+  bump_structure_version();
 }
 
 std::uint32_t Store::allocate_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& free_list,
@@ -137,7 +137,7 @@ NodeId Store::add(const PropertyTable& table, NodeId parent, std::string name, v
   s.persistent = allocate_block(persistent_, free_persistent_, table.persistent_width());
   s.transient = allocate_block(transient_, free_transient_, table.transient_width());
   const NodeId id{slot, s.generation};
-  nodes_[slot] = {&table, object, std::move(name), parent, {}, 0, 0, structure_version_ + 1, 0};
+  nodes_[slot] = {&table, object, std::move(name), parent, {}, 0, 0, structure_version_ + 1};
   nodes_[parent.slot].children.push_back(id);
   child_of_.insert(slot);
   for (const Property& property : table.properties()) {
@@ -145,7 +145,7 @@ NodeId Store::add(const PropertyTable& table, NodeId parent, std::string name, v
   }
   mark_all_dirty(id);
   persistent_version_++;
-  record_structure_change(id);
+  bump_structure_version();
   refresh_view();
   return id;
 }
@@ -157,7 +157,7 @@ NodeId Store::add_group(NodeId parent, std::string name) {
 bool Store::is_group(NodeId id) const { return alive(id) && nodes_[id.slot].table == &group_table(); }
 
 const Store::Node& Store::null_node() {
-  static const Node none{&group_table(), nullptr, "", {}, {}, 0, 0, 0, 0};
+  static const Node none{&group_table(), nullptr, "", {}, {}, 0, 0, 0};
   return none;
 }
 
@@ -204,7 +204,7 @@ NodeId Store::change_table(NodeId id, const PropertyTable& table, void* object) 
   }
   mark_all_dirty(changed_id);
   persistent_version_++;
-  record_structure_change(changed_id);
+  bump_structure_version();
   refresh_view();
   return changed_id;
 }
@@ -239,12 +239,6 @@ void Store::free_slot(std::uint32_t slot) {
   nodes_[slot] = {};
 }
 
-// Updates the structure version, also of the node and its ancestors.
-void Store::record_structure_change(NodeId at) {
-  structure_version_++;
-  for (; !at.null(); at = nodes_[at.slot].parent) nodes_[at.slot].changed_version = structure_version_;
-}
-
 // Returns the position that the node had among its siblings. Searches from the end, since mostly recent nodes are
 // removed.
 std::size_t Store::unlink_from_parent(NodeId id) {
@@ -257,7 +251,7 @@ std::size_t Store::unlink_from_parent(NodeId id) {
 
 void Store::remove(NodeId id) {
   if (!alive(id) || id == root_) return;
-  record_structure_change(id);
+  bump_structure_version();
   unlink_from_parent(id);
   remove_subtree(id);
   persistent_version_++;

@@ -240,8 +240,6 @@ class Store {
   void bump_structure_version() { structure_version_++; }
   /// The structure version when the node was added or got another table.
   std::uint64_t added_version(NodeId id) const { return node(id).added_version; }
-  /// The structure version of the last change at the node or below it: added, removed, moved, or another table.
-  std::uint64_t changed_version(NodeId id) const { return node(id).changed_version; }
   const StoreView* view() const { return &view_; }
   /// Keeps `copy` equal to view() until unregister_view(), for readers that may switch to another store.
   void register_view(StoreView& copy);
@@ -269,7 +267,6 @@ class Store {
     std::uint64_t dirty = 0;
     std::uint64_t explicitly_set = 0;
     std::uint64_t added_version = 0;
-    std::uint64_t changed_version = 0;
   };
   // Index of children by parent and name. The set holds slots; the names are in the nodes.
   struct ChildKey {
@@ -306,7 +303,6 @@ class Store {
   }
   std::uint32_t allocate_block(std::vector<double>& block, std::vector<std::vector<std::uint32_t>>& free_list,
                                std::uint32_t width);
-  void record_structure_change(NodeId at);
   std::size_t unlink_from_parent(NodeId id);
   void remove_subtree(NodeId id);
   void free_blocks(std::uint32_t slot);

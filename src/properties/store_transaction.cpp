@@ -89,7 +89,6 @@ void Store::set_hidden(NodeId id, bool hidden) {
   } else {
     slot.generation--;
     child_of_.insert(id.slot);
-    nodes_[id.slot].changed_version = structure_version_;  // it was hidden meanwhile
   }
   for (const NodeId child : nodes_[id.slot].children) set_hidden(child, hidden);
 }
@@ -99,12 +98,12 @@ std::size_t Store::hide(NodeId id) {
   const std::size_t position = unlink_from_parent(id);
   set_hidden(id, true);
   persistent_version_++;
-  record_structure_change(id);
+  bump_structure_version();
   return position;
 }
 
 void Store::show(NodeId id, std::size_t position) {
-  record_structure_change(id);
+  bump_structure_version();
   set_hidden(id, false);
   std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
   siblings.insert(siblings.begin() + static_cast<std::ptrdiff_t>(std::min(position, siblings.size())), id);

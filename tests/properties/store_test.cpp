@@ -243,38 +243,6 @@ TEST_F(StoreTest, ValidateDoesNotWrite) {
   EXPECT_EQ(read(store, id, "mass"), Numbers{1});
 }
 
-TEST_F(StoreTest, RecordsStructureChangesUpToTheRoot) {
-  const NodeId other = store.add_group(store.root(), "other");
-  const NodeId below = store.add_group(other, "below");
-  std::uint64_t seen_version = 0;
-  // Returns the paths of the nodes (of these four) that have changed since the last call.
-  const auto changed = [&] {
-    std::string names;
-    for (const NodeId node : {store.root(), toys, id, other})
-      names += store.changed_version(node) > seen_version ? store.path(node) + " " : "";
-    seen_version = store.structure_version();
-    return names;
-  };
-  (void)changed();
-  EXPECT_EQ(changed(), "");
-  const NodeId added = add("added");
-  EXPECT_EQ(changed(), "/ /toys ");
-  const std::size_t position = store.hide(added);
-  EXPECT_EQ(changed(), "/ /toys ");
-  store.show(added, position);
-  EXPECT_EQ(store.changed_version(added), store.structure_version()) << "it was hidden meanwhile";
-  EXPECT_EQ(changed(), "/ /toys ");
-  const NodeId children[] = {added, id};
-  store.order_children(toys, children);
-  EXPECT_EQ(changed(), "/ /toys ");
-  store.remove(added);
-  EXPECT_EQ(changed(), "/ /toys ");
-  store.change_table(below, Toy::table(), &toy);
-  EXPECT_EQ(changed(), "/ /other ");
-  ASSERT_TRUE(set(store, id, "mass", {2}));
-  EXPECT_EQ(changed(), "") << "values are not structure";
-}
-
 TEST_F(StoreTest, CallbackThatSetsItselfIsLimited) {
   store.flush();
   const int rounds = toy.rounds;
