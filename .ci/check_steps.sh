@@ -265,6 +265,7 @@ lint_groups() {
 step_style() {
   local log=build/check/format.log files
   if .ci/words.py >build/check/words.log 2>&1; then pass; else fail "wording" build/check/words.log; fi
+  if .ci/measures.py --check >build/check/measures.log 2>&1; then pass; else fail "measures" build/check/measures.log; fi
   if python3 tests/mutations/plant.py >build/check/plant.log 2>&1; then pass; else fail "mutations" build/check/plant.log; fi
   git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint skipped"; return; }
   # other versions format differently and have other warnings

@@ -74,6 +74,17 @@ def classes_of(tokens):
 LIMITS = {"files in a folder": 30, "functions of a class": 45, "fields of a class": 20, "cyclomatic complexity": 15,
           "friend declarations": 8}
 
+# Classes and functions above a limit, with their present values: each change may lower them only.
+EXCEPTIONS = {
+    "functions of a class": {"Body": 85, "World": 83, "Store": 81, "JointConstraint": 79, "Behavior": 63, "Part": 57,
+        "BehaviorList": 52, "IslandWorld": 46},
+    "fields of a class": {"IslandWorld": 27, "World": 26, "NeighborSet": 24, "JointConstraint": 24, "Property": 21},
+    "cyclomatic complexity": {"SceneDiff::empty": 21, "NeighborSet::means": 20, "BoxAlgorithm::find_axis": 19,
+        "Behavior::resolve": 19, "property_of": 18, "find_spin": 18, "SleepTracker::execute_wakes": 17,
+        "SleepTracker::end_tick": 17, "JointConstraint::servo_velocity": 17, "Contacts::collect": 17,
+        "make_geometry": 16, "Presets::check": 16, "JointConstraint::plan_rows": 16},
+}
+
 
 def measure():
     """Returns the lines of src, and for each of LIMITS the values with their places, largest first."""
@@ -106,7 +117,8 @@ def report():
 
 def check():
     too_many = [f"{place}: {value} {name}, at most {LIMITS[name]} are allowed"
-                for name, found in measure()[1].items() for value, place in found if value > LIMITS[name]]
+                for name, found in measure()[1].items() for value, place in found
+                if value > max(LIMITS[name], EXCEPTIONS.get(name, {}).get(place.split(" ")[0], 0))]
     print("\n".join(too_many) or "all measures are within their limits")
     return 1 if too_many else 0
 
