@@ -1,4 +1,4 @@
-// Sanitizes a URDF's bytes: encoding, control characters, and (in urdf_markup.cpp) the markup.
+// Sanitizes a URDF's bytes: encoding, control characters, and (in xml_markup.cpp) the markup.
 #include "model/xml_text.h"
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// Arctangents, computed with 400 bits and rounded. Included by fixed_math_atan.cpp only.
+// Arctangents, computed with 400 bits and rounded. Included by atan.cpp only.
 #pragma once
 
 #include "base/math/double_double.h"

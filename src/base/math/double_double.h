@@ -1,4 +1,4 @@
-// Double-double arithmetic and access to the bits of doubles. Included by fixed_math*.cpp only.
+// Double-double arithmetic and access to the bits of doubles. Included in this folder only.
 //
 // The polynomials in these files are minimax approximations from the Remez algorithm in 400-bit arithmetic. Their
 // coefficients were rounded to doubles one by one, the lowest first, and the remaining ones fitted again each time.

@@ -1,5 +1,5 @@
-// The exponential function in double-double, for exp(), pow() and the hyperbolic functions. Included by fixed_math*.cpp
-// only.
+// The exponential function in double-double, for exp(), pow() and the hyperbolic functions. Included in this
+// folder only.
 #pragma once
 
 #include "base/math/double_double.h"

@@ -1,4 +1,4 @@
-// Powers of two and logarithms, computed with 400 bits and rounded. Included by fixed_math*.cpp only.
+// Powers of two and logarithms, computed with 400 bits and rounded. Included in this folder only.
 #pragma once
 
 #include "base/math/double_double.h"

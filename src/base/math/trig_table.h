@@ -1,5 +1,5 @@
 // Constants of the trigonometric functions, computed with 400 bits or more and rounded. Included by
-// fixed_math_trig.cpp only.
+// trig.cpp only.
 #pragma once
 
 #include <cstdint>

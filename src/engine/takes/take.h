@@ -1,6 +1,6 @@
 // Take: a recording of all inputs of a simulation, each with the tick in which it took effect, for a bit-exact replay.
 // A take file is a sequence of frames with checksums and is only appended to: a truncated file can be replayed up to
-// its last complete frame. This file declares the parts of the format; take_text.h encodes them. [any]
+// its last complete frame. This file declares the parts of the format; encoding.h encodes them. [any]
 #pragma once
 
 #include <cstdint>

@@ -31,13 +31,13 @@ struct UrdfBuildContext {
 
 /// Creates links, merged links, and joints with frames and limits. The shapes' meshes must be loaded already. [any]
 void build_structure(UrdfBuildContext& build);
-/// Sets masses and inertia tensors, and decides if the root is static (urdf_mass.cpp). [any]
+/// Sets masses and inertia tensors, and decides if the root is static (mass.cpp). [any]
 void build_masses(UrdfBuildContext& build);
 /// Resolves mimic joints, sets start values, home and start poses, and fills `file_links` and `file_joints`
-/// (urdf_pose.cpp). The error names an unknown joint or an invalid value in `options.pose`. [any]
+/// (pose.cpp). The error names an unknown joint or an invalid value in `options.pose`. [any]
 Result<void> build_poses(UrdfBuildContext& build);
 /// Finds pairs of links that overlap at the home pose, and reports links without collision shapes and hulls that fill
-/// hollows of their mesh (urdf_collisions.cpp). [any]
+/// hollows of their mesh (collisions.cpp). [any]
 void build_collisions(UrdfBuildContext& build);
 
 }  // namespace limber

@@ -1,4 +1,4 @@
-// Panel: the interface of panels. Each panel is one file, panel_*.cpp, which registers it. A panel reads its data from
+// Panel: the interface of panels. Each panel is one file in panels/, which registers it. A panel reads its data from
 // the context and sends user input to it.
 #pragma once
 
@@ -33,7 +33,7 @@ class Panel {
 
 /// A registered kind of panel, with its slot in wide and compact windows.
 struct PanelType {
-  std::string_view name;   ///< From its file name: panel_<name>.cpp.
+  std::string_view name;   ///< Its file name.
   std::string_view title;  ///< Empty: no title.
   PanelSlot wide_slot = PanelSlot::top;
   PanelSlot compact_slot = PanelSlot::top;
