@@ -40,9 +40,25 @@ std::string_view kind_name(PropertyKind kind);
 
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// Describes one property, state, readout or action. The `object` that its callbacks receive is the simulation object
-/// of the node, of the class that the table describes.
-struct Property {
+struct Property;
+
+/// The functions through which a property acts on the simulation object of its node, which is of the class that the
+/// table describes. Null: none.
+struct PropertyCallbacks {
+  void (*on_change)(void* object) = nullptr;  ///< On-change callback: applies new values. Called by Store::flush().
+  bool independent =
+      false;  ///< The on-change callback uses this object's data only, so several objects may run in parallel.
+  void (*read)(const void* object, double* out) = nullptr;      ///< Getter of a computed property; it is not stored.
+  void (*write)(void* object, const double* in) = nullptr;      ///< Setter of a computed property.
+  std::string_view (*read_text)(const void* object) = nullptr;  ///< Text of a readout; valid until the object changes.
+  Result<void> (*validate)(const void* object, const double* in) = nullptr;  ///< Error if the object rejects the value.
+  Result<void> (*invoke)(void* object, std::span<const double> args) = nullptr;  ///< Runs an action.
+  void (*on_write)(void* object,
+                   const Property& property) = nullptr;  ///< Called after every write, even of an equal value.
+};
+
+/// Describes one property, state, readout or action.
+struct Property : PropertyCallbacks {
   std::string name;  ///< snake_case; the same in OSC, Lua, the panel and files.
   PropertyType type = PropertyType::number;
   PropertyKind kind = PropertyKind::setting;
@@ -60,18 +76,7 @@ struct Property {
   bool euler = false;      ///< vec3: Euler angles of the rotation Rx·Ry·Rz, in degrees; interpolated as a rotation.
   bool transient = false;  ///< Stored in the transient block: changed by the simulation, part of every snapshot.
   bool hashed = false;  ///< Part of the state hash: all stored settings and states, and readouts that are declared so.
-
-  void (*on_change)(void* object) = nullptr;  ///< On-change callback: applies new values. Called by Store::flush().
-  bool independent =
-      false;  ///< The on-change callback uses this object's data only, so several objects may run in parallel.
-  void (*read)(const void* object, double* out) = nullptr;      ///< Getter of a computed property; it is not stored.
-  void (*write)(void* object, const double* in) = nullptr;      ///< Setter of a computed property.
-  std::string_view (*read_text)(const void* object) = nullptr;  ///< Text of a readout; valid until the object changes.
-  Result<void> (*validate)(const void* object, const double* in) = nullptr;  ///< Error if the object rejects the value.
-  Result<void> (*invoke)(void* object, std::span<const double> args) = nullptr;  ///< Runs an action.
-  void (*on_write)(void* object,
-                   const Property& property) = nullptr;  ///< Called after every write, even of an equal value.
-  std::uint32_t min_args = 0;                            ///< Number of arguments of an action.
+  std::uint32_t min_args = 0;  ///< Number of arguments of an action.
   std::uint32_t max_args = 0;
 
   std::uint32_t index = 0;   ///< Position in the table.

@@ -1,4 +1,4 @@
-// Transactions of the store: the rollback log, deferred notifications, and nodes that are hidden until the commit.
+// Transactions of the store: the rollback log and deferred notifications.
 #include "properties/store_transaction.h"
 
 #include <algorithm>
@@ -52,7 +52,7 @@ void Store::save_value(NodeId id, const Property& property) {
   if ((saved.values & bit) != 0) return;
   saved.values |= bit;
   StoreTransaction::Value value{id, &property, {}, (nodes_[id.slot].dirty & bit) != 0};
-  std::copy_n(slot_values(id, property), property.width, value.previous.begin());
+  std::copy_n(mutable_values(id, property), property.width, value.previous.begin());
   transaction_.values.push_back(value);
 }
 
@@ -61,8 +61,7 @@ void Store::rollback() {
   for (auto value = transaction_.values.rbegin(); value != transaction_.values.rend(); ++value) {
     if (!alive(value->id)) continue;  // added and removed within the transaction
     const Property& property = *value->property;
-    std::copy_n(value->previous.begin(), property.width, slot_values(value->id, property));
-    if (!property.transient) persistent_version_++;
+    write_values(value->id, property, value->previous.data());
     const std::uint64_t bit = std::uint64_t{1} << property.index;
     std::uint64_t& dirty = nodes_[value->id.slot].dirty;
     // A callback that ran meanwhile runs again with the old value; the owner restores transient ones (poses, speeds).
@@ -79,40 +78,6 @@ void Store::rollback() {
   state_.dirty_nodes.erase(std::remove_if(first, state_.dirty_nodes.end(),
                                           [&](NodeId id) { return !alive(id) || nodes_[id.slot].dirty == 0; }),
                            state_.dirty_nodes.end());
-}
-
-void Store::set_hidden(NodeId id, bool hidden) {
-  NodeSlot& slot = slots_[id.slot];
-  if (hidden) {
-    child_of_.erase(child_of_.find(id.slot));
-    slot.generation++;  // odd to even: its ids are stale
-  } else {
-    slot.generation--;
-    child_of_.insert(id.slot);
-  }
-  for (const NodeId child : nodes_[id.slot].children) set_hidden(child, hidden);
-}
-
-std::size_t Store::hide(NodeId id) {
-  LIMBER_CHECK(alive(id) && id != root_);
-  const std::size_t position = unlink_from_parent(id);
-  set_hidden(id, true);
-  persistent_version_++;
-  bump_structure_version();
-  return position;
-}
-
-void Store::show(NodeId id, std::size_t position) {
-  bump_structure_version();
-  set_hidden(id, false);
-  std::vector<NodeId>& siblings = nodes_[nodes_[id.slot].parent.slot].children;
-  siblings.insert(siblings.begin() + static_cast<std::ptrdiff_t>(std::min(position, siblings.size())), id);
-  persistent_version_++;
-}
-
-void Store::remove_hidden(NodeId id) {
-  for (const NodeId child : nodes_[id.slot].children) remove_hidden(child);
-  free_slot(id.slot);
 }
 
 }  // namespace limber

@@ -101,7 +101,7 @@ TEST(NeverNan, HoldsAtTheEndsOfAllRanges) {
       s.expect_numbers(label);
     }
     if (single != nullptr) s.world.behaviors().remove(*single);
-    if (group != nullptr) s.world.behaviors().remove_group(*group);
+    if (group != nullptr) s.world.behaviors().remove(*group);
   }
 }
 

@@ -148,7 +148,7 @@ TEST(Health, CountsSuspendedBehaviorsIncludingGroups) {
   const Result<BehaviorGroup*> group = world.behaviors().add_group("all_fail", "all", all);
   ASSERT_TRUE(group.ok()) << group.error();
   EXPECT_EQ(losses(show)["behaviors"], 3);
-  world.behaviors().remove_group(*world.behaviors().find_group("all"));
+  world.behaviors().remove(*world.behaviors().find_group("all"));
   EXPECT_EQ(losses(show)["behaviors"], 1);
 }
 

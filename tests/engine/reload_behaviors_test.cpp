@@ -139,13 +139,16 @@ sim:add_group_behavior("separation", "apart")
 
 TEST(ReloadBehaviors, RunInTheOrderOfTheScene) {
   EditedShow edited(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}});
-  EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
+  EXPECT_EQ(edited.world().behaviors().order().keys(),
+            (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
   EXPECT_EQ(edited.edit("b1:add_behavior(\"force\", \"push\", { amp = 1, dir = vec3(1, 0, 0) })\n", ""),
             SceneReloader::ApplyResult::applied);
   EXPECT_EQ(edited.edit("--MORE", "b1:add_behavior(\"force\", \"push\")"), SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/counter", "/together", "b1/push"}));
+  EXPECT_EQ(edited.world().behaviors().order().keys(),
+            (std::vector<std::string>{"b1/counter", "/together", "b1/push"}));
   EXPECT_EQ(edited.save(std::string("local b\n") + kBehaviorShow), SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.world().behaviors().order(), (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
+  EXPECT_EQ(edited.world().behaviors().order().keys(),
+            (std::vector<std::string>{"b1/push", "b1/counter", "/together"}));
 }
 
 TEST(ReloadBehaviors, KeepTheirValuesWhenTheirBodyIsRebuilt) {

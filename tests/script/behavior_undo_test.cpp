@@ -72,7 +72,7 @@ RunResult play(const std::string& more, const std::string& guest, std::size_t fa
   EXPECT_EQ(fixture.play(kUndoScene + std::string("a:add_behavior('guest', 'guest')\n") + more, 40), "");
   EXPECT_EQ(fixture.host.faults.size() + fault_count, faults) << more << guest;
   RunResult result{fixture.scene.state_hash(fixture.world.state_hash()), fixture.host.printed,
-                   fixture.world.behaviors().order()};
+                   fixture.world.behaviors().order().keys()};
   fixture.world.behaviors().on_fault({});
   return result;
 }

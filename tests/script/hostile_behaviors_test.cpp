@@ -147,7 +147,7 @@ void fix_file(BehaviorFixture& fixture, ScriptHost& host, std::unique_ptr<Scene>
   detached_scene = std::make_unique<Scene>(fixture.world, host, SceneOptions{});
   const Result<void> result = detached_scene->run((fixture.folder / "scripts" / "next.lua").string());
   ASSERT_TRUE(result.ok()) << result.error();
-  fixture.world.behaviors().remove_group(*fixture.world.behaviors().find_group("next"));
+  fixture.world.behaviors().remove(*fixture.world.behaviors().find_group("next"));
   fixture.world.behaviors().replace_instances("test");
 }
 

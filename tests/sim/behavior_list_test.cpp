@@ -105,7 +105,7 @@ TEST(BehaviorList, AllowsRemovalWhileStepping) {
   EXPECT_EQ(tick_with([&] { s.list().remove(before); }),
             (Words{"step a/before", "step a/flock", "step b/flock", "step b/last"}));
   EXPECT_EQ(tick_with([&] { s.world.remove_body(b); }), (Words{"step a/flock"}));
-  EXPECT_EQ(tick_with([&] { s.list().remove_group(group); }), Words{});
+  EXPECT_EQ(tick_with([&] { s.list().remove(group); }), Words{});
   EXPECT_EQ(tick_with([&] { s.list().remove(remover); }), Words{});
   EXPECT_EQ(a.behaviors().size(), 0U);
   s.ticks(1);

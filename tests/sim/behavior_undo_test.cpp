@@ -44,7 +44,7 @@ RunResult run_with_call(const std::function<void(UndoScene&)>& call, bool commit
     s.world.transaction().rollback();
   }
   s.ticks(10);
-  return {s.world.state_hash(), BehaviorRig::consume_calls(), s.list().order()};
+  return {s.world.state_hash(), BehaviorRig::consume_calls(), s.list().order().keys()};
 }
 
 struct ListChange {
@@ -59,15 +59,14 @@ const std::vector<ListChange>& list_changes() {
       {"remove two behaviors of a body", [](UndoScene& c) { c.s.list().remove(c.two), c.s.list().remove(c.one); }},
       {"remove all behaviors that are not group members",
        [](UndoScene& c) { c.s.list().remove(c.one), c.s.list().remove(c.three), c.s.list().remove(c.two); }},
-      {"remove a group", [](UndoScene& c) { c.s.list().remove_group(c.flock); }},
+      {"remove a group", [](UndoScene& c) { c.s.list().remove(c.flock); }},
       {"remove a member", [](UndoScene& c) { c.s.list().remove(*c.flock.members()[0]); }},
       {"remove a member, then its group",
-       [](UndoScene& c) { c.s.list().remove(*c.flock.members()[1]), c.s.list().remove_group(c.flock); }},
+       [](UndoScene& c) { c.s.list().remove(*c.flock.members()[1]), c.s.list().remove(c.flock); }},
       {"remove a behavior, then its body", [](UndoScene& c) { c.s.list().remove(c.one), c.s.world.remove_body(c.a); }},
-      {"remove a body, then its group",
-       [](UndoScene& c) { c.s.world.remove_body(c.a), c.s.list().remove_group(c.flock); }},
+      {"remove a body, then its group", [](UndoScene& c) { c.s.world.remove_body(c.a), c.s.list().remove(c.flock); }},
       {"remove a group, then the body of a member",
-       [](UndoScene& c) { c.s.list().remove_group(c.flock), c.s.world.remove_body(c.b); }},
+       [](UndoScene& c) { c.s.list().remove(c.flock), c.s.world.remove_body(c.b); }},
       {"replace a behavior by one with the same name",
        [](UndoScene& c) { c.s.list().remove(c.one), c.s.probe(c.a, "one"); }},
       {"remove a behavior that the call added",
@@ -119,18 +118,18 @@ TEST(BehaviorTransaction, RemovedBehaviorsAreHiddenDuringTheCall) {
   const NodeId member = flock.members()[0]->id();
   s.world.transaction().begin();
   s.list().remove(one);
-  s.list().remove_group(flock);
+  s.list().remove(flock);
   for (const NodeId node : {id, group, member}) EXPECT_FALSE(s.store.alive(node));
   EXPECT_EQ(a.find_behavior("one"), nullptr);
   EXPECT_EQ(s.list().find_group("flock"), nullptr);
   EXPECT_TRUE(a.behaviors().empty());
-  EXPECT_TRUE(s.list().order().empty());
+  EXPECT_TRUE(s.list().order().keys().empty());
   s.world.transaction().rollback();
   for (const NodeId node : {id, group, member}) EXPECT_TRUE(s.store.alive(node));
   EXPECT_EQ(a.find_behavior("one"), &one);
   EXPECT_EQ(s.list().find_group("flock"), &flock);
   EXPECT_EQ(names_in(a.behaviors()), (Words{"one", "flock"}));
-  EXPECT_EQ(s.list().order(), (Words{"a/one", "/flock"}));
+  EXPECT_EQ(s.list().order().keys(), (Words{"a/one", "/flock"}));
 }
 
 TEST(BehaviorTransaction, CommittedRemovalIsFinal) {
@@ -150,7 +149,7 @@ TEST(BehaviorTransaction, CommittedRemovalIsFinal) {
   EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/flock", "step a/flock"}))
       << "the removed member is not added again";
   s.world.transaction().begin();
-  s.list().remove_group(flock);
+  s.list().remove(flock);
   s.world.transaction().commit();
   s.ticks(1);
   EXPECT_EQ(BehaviorRig::consume_calls(), Words{});
@@ -190,14 +189,14 @@ TEST(BehaviorTransaction, RollsBackChangesDuringStep) {
   GuardedBehavior::action = [](GuardedBehavior& self) {
     BehaviorList& list = self.world().behaviors();
     for (const char* name : {"after", "before"}) list.remove(*self.body().find_behavior(name));
-    list.remove_group(*list.find_group("flock"));
+    list.remove(*list.find_group("flock"));
     list.remove(self);
   };
   EXPECT_EQ(tick_with(false), (Words{"step a/before", "step a/flock", "step a/after"}));
-  EXPECT_EQ(s.list().order(), (Words{"a/before", "a/g", "/flock", "a/after"}));
+  EXPECT_EQ(s.list().order().keys(), (Words{"a/before", "a/g", "/flock", "a/after"}));
   EXPECT_EQ(tick_with(false), (Words{"step a/before", "step a/flock", "step a/after"}));
   EXPECT_EQ(tick_with(true), (Words{"step a/before"}));
-  EXPECT_TRUE(s.list().order().empty());
+  EXPECT_TRUE(s.list().order().keys().empty());
   s.ticks(1);
 }
 

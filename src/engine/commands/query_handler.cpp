@@ -54,7 +54,7 @@ Outcome QueryHandler::list_of_body(std::string_view kind, std::span<const Arg> a
   if (kind == "behaviors") {
     const BehaviorList& list = world_.behaviors();
     std::vector<const Behavior*> behaviors(body->behaviors().begin(), body->behaviors().end());
-    std::ranges::sort(behaviors, {}, [&](const Behavior* behavior) { return list.place(*behavior); });
+    std::ranges::sort(behaviors, {}, [&](const Behavior* behavior) { return list.order().place(*behavior); });
     for (const Behavior* behavior : behaviors) answer.args.push_back(Arg::of(behavior->name()));
     return answered(std::move(answer), 1);
   }

@@ -152,6 +152,26 @@ Result<MorphCommand> parse_morph(const Message& message) {
   return MorphCommand{args[0], args[1], std::clamp(*amount, 0.0, 1.0)};
 }
 
+// Returns the presets that must exist for a command to succeed.
+Result<std::vector<Arg>> referenced_presets(const Message& message) {
+  if (message.address == "/preset/store") {
+    const Result<StoreCommand> command = parse_store(message);
+    if (!command) return Error{command.error()};
+    return std::vector<Arg>{};
+  }
+  if (message.address == "/preset/recall") {
+    const Result<RecallCommand> command = parse_recall(message);
+    if (!command) return Error{command.error()};
+    return std::vector<Arg>{command->preset};
+  }
+  if (message.address == "/preset/morph") {
+    const Result<MorphCommand> command = parse_morph(message);
+    if (!command) return Error{command.error()};
+    return std::vector<Arg>{command->a, command->b};
+  }
+  return message.args;
+}
+
 }  // namespace
 
 Presets::Bank Presets::read(BackgroundWriter& writer, const std::string& scene, PresetFile::WriteAccess access,
@@ -398,34 +418,20 @@ void Presets::reapply(World& world, const Blend& blend) {
 }
 
 Result<void> Presets::check(const Message& message, std::span<const Message> before) const {
-  const auto will_exist = [&](const Arg& arg) {
-    if (!arg.is_text()) return true;  // numbers are resolved on execution
-    bool exists = find(arg.text) != nullptr || arg.text == kScript;
+  const auto will_exist = [&](std::string_view name) {
+    bool exists = find(name) != nullptr || name == kScript;
     for (const Message& m : before) {
-      if (m.args.empty() || m.args[0].text != arg.text) continue;
+      if (m.args.empty() || m.args[0].text != name) continue;
       if (m.address == "/preset/store") exists = true;
       if (m.address == "/preset/delete") exists = false;
     }
     return exists;
   };
-  std::vector<Arg> names;
-  if (message.address == "/preset/store") {
-    const Result<StoreCommand> command = parse_store(message);
-    return command ? Result<void>() : Result<void>(Error{command.error()});
-  }
-  if (message.address == "/preset/recall") {
-    const Result<RecallCommand> command = parse_recall(message);
-    if (!command) return Error{command.error()};
-    names = {command->preset};
-  } else if (message.address == "/preset/morph") {
-    const Result<MorphCommand> command = parse_morph(message);
-    if (!command) return Error{command.error()};
-    names = {command->a, command->b};
-  } else {
-    names = message.args;
-  }
-  for (const Arg& name : names) {
-    if (!will_exist(name)) return not_found(name.text);
+  const Result<std::vector<Arg>> presets = referenced_presets(message);
+  if (!presets) return Error{presets.error()};
+  for (const Arg& preset : *presets) {
+    // numbers are resolved on execution
+    if (preset.is_text() && !will_exist(preset.text)) return not_found(preset.text);
   }
   return {};
 }

@@ -78,24 +78,28 @@ void add_preset(std::string& out, const Preset& preset) {
   out += "\n      }\n    }";
 }
 
+double number_of(const Json& value) { return value.is_boolean() ? (value.get<bool>() ? 1 : 0) : value.get<double>(); }
+
 // Returns the property for a value, and appends its numbers; nothing if no property type has such a value.
 std::optional<PresetProperty> property_of(const std::string& name, const Json& value, std::vector<double>& numbers) {
   if (value.is_string()) {
     numbers.push_back(0);
     return PresetProperty{name, PropertyType::choice, 1, {value.get<std::string>()}};
   }
-  const std::span<const Json> list = value.is_array() ? std::span<const Json>(value.get_ref<const Json::array_t&>())
-                                                      : std::span<const Json>(&value, 1);
-  const bool flags = std::ranges::all_of(list, [](const Json& v) { return v.is_boolean(); });
+  if (value.is_boolean() || value.is_number()) {
+    numbers.push_back(number_of(value));
+    return PresetProperty{name, value.is_boolean() ? PropertyType::boolean : PropertyType::number, 1, {}};
+  }
+  if (!value.is_array()) return {};
+  const auto& list = value.get_ref<const Json::array_t&>();
   const std::size_t count = list.size();
-  if (count == 0 || count >= kMaxNumbers || (flags && value.is_array() && count != 3)) return {};
-  if (!flags && !std::ranges::all_of(list, [](const Json& v) { return v.is_number(); })) return {};
-  for (const Json& v : list) numbers.push_back(flags ? (v.get<bool>() ? 1 : 0) : v.get<double>());
-  const PropertyType type = !value.is_array() ? (flags ? PropertyType::boolean : PropertyType::number)
-                            : flags           ? PropertyType::flags3
-                            : count == 3      ? PropertyType::vec3
-                            : count == 4      ? PropertyType::quat
-                                              : PropertyType::none;
+  const bool flags = count == 3 && std::ranges::all_of(list, &Json::is_boolean);
+  if (count == 0 || count >= kMaxNumbers || (!flags && !std::ranges::all_of(list, &Json::is_number))) return {};
+  for (const Json& v : list) numbers.push_back(number_of(v));
+  const PropertyType type = flags        ? PropertyType::flags3
+                            : count == 3 ? PropertyType::vec3
+                            : count == 4 ? PropertyType::quat
+                                         : PropertyType::none;
   return PresetProperty{name, type, static_cast<std::uint32_t>(count), {}};
 }
 

@@ -28,7 +28,7 @@ class BehaviorPatcher {
       if (Behavior* const removed = bodies_[body]->find_behavior(name)) list_.remove(*removed);
     }
     for (const std::string& name : patch_.diff.removed_groups) {
-      if (BehaviorGroup* const removed = list_.find_group(name)) list_.remove_group(*removed);
+      if (BehaviorGroup* const removed = list_.find_group(name)) list_.remove(*removed);
     }
     for (std::size_t i = 0; i < bodies_.size(); i++) {
       for (std::size_t k = 0; k < patch_.now.bodies[i].behaviors.size(); k++) apply_behavior(i, k);
@@ -36,7 +36,7 @@ class BehaviorPatcher {
     restore_unmanaged();
     for (std::size_t i = 0; i < patch_.now.groups.size(); i++) apply_group(i);
     for (std::size_t i = 0; i < bodies_.size(); i++) apply_members(i);
-    if (patch_.diff.order_changed || added_) list_.set_order(patch_.now.behavior_order);
+    if (patch_.diff.order_changed || added_) list_.order().sort(patch_.now.behavior_order);
   }
 
  private:
@@ -146,7 +146,7 @@ class BehaviorPatcher {
     const bool must_replace = live != nullptr && (live->type().name != now.type || !(live->setup() == now.setup));
     std::uint64_t mask = diff.changed;
     if (must_replace) {
-      list_.remove_group(*live);
+      list_.remove(*live);
       live = nullptr;
     }
     if (live == nullptr) {

@@ -43,39 +43,12 @@ class ReloadCandidate {
 
   /// The scene, to be swapped with the live one, which is then destroyed with the candidate.
   std::unique_ptr<Scene>& scene() { return scene_; }
-  /// Returns the live id of an object of the candidate; null if there is none. `shapes`, `bodies`: the live ones, in
-  /// the order of the spec. [sim]
-  NodeId live_id(NodeId id, const World& live, const std::vector<NodeId>& shapes,
-                 const std::vector<NodeId>& bodies) const;
 
  private:
-  enum class Kind : std::uint8_t {
-    none,
-    world,
-    visuals,
-    camera,
-    appearance,
-    shape,
-    body,
-    part,
-    joint,
-    motor,
-    gear,
-    behavior,
-    group
-  };
-  struct SlotObject {  // the object in a slot of the store
-    Kind kind = Kind::none;
-    std::uint32_t owner = 0;  // index of the body or shape
-    std::uint32_t index = 0;  // index in its list
-  };
-  void index_slots();
-
   ReloadRequest request_;
   Store store_;
   World world_{store_};
-  std::vector<SlotObject> slots_;  // by slot
-  std::unique_ptr<Scene> scene_;   // after world_: must be destroyed first
+  std::unique_ptr<Scene> scene_;  // after world_: must be destroyed first
   Result<void> result_;
   std::shared_ptr<const SceneSpec> spec_;
   SceneDiff diff_;

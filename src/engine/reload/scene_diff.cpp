@@ -93,7 +93,7 @@ bool rotation_differs(const StartPose& before, const StartPose& now) {
 
 // Returns the old element that corresponds to element `i`: at the same index if the body is not rebuilt, else by name.
 template <class T>
-const T* counterpart(const std::vector<T>& before, const std::vector<T>& now, std::size_t i, bool rebuild) {
+const T* old_counterpart(const std::vector<T>& before, const std::vector<T>& now, std::size_t i, bool rebuild) {
   return rebuild ? find_named(before, now[i].name) : &before[i];
 }
 
@@ -103,7 +103,7 @@ void compare_trees(const BodyDescription& before, const BodyDescription& now, co
   for (std::size_t i = 0; i < now.parts.size(); i++) {
     const PartDescription& part = now.parts[i];
     if (part.tree != i || now.parts.front().tree == i) continue;
-    const PartDescription* const old_part = counterpart(before.parts, now.parts, i, out.rebuild);
+    const PartDescription* const old_part = old_counterpart(before.parts, now.parts, i, out.rebuild);
     if (old_part == nullptr) continue;
     const bool newly_set = (part.start.position_set && !old_part->start.position_set) ||
                            (part.start.rotation_set && !old_part->start.rotation_set);
@@ -127,7 +127,7 @@ void compare_start_poses(const BodyDescription& before, const BodyDescription& n
   out.start_changed =
       !std::equal(before.parts.begin(), before.parts.end(), now.parts.begin(), now.parts.end(), same_start);
   for (std::size_t i = 0; i < now.joints.size(); i++) {
-    const JointDescription* const old_joint = counterpart(before.joints, now.joints, i, out.rebuild);
+    const JointDescription* const old_joint = old_counterpart(before.joints, now.joints, i, out.rebuild);
     out.joints_to_reset.push_back(old_joint == nullptr || !nearly_same(old_joint->start, now.joints[i].start));
   }
 }
@@ -164,18 +164,17 @@ std::uint64_t mask_to_set(const SpecValues* before, const SpecValues& now) {
 BodyDiff compare_bodies(const BodyDescription& before, const BodyDescription& now) {
   BodyDiff out;
   out.rebuild = !same_construction(before, now);
-  out.changed = changed_mask(before.values, now.values);
-  const auto add_mask = [&](std::vector<std::uint64_t>& masks, const auto* old_element, const SpecValues& new_values) {
-    masks.push_back(mask_to_set(old_element == nullptr ? nullptr : &old_element->values, new_values));
+  const auto add_mask = [&](const auto* old_element, const SpecValues& new_values) {
+    out.changed.push_back(mask_to_set(old_element == nullptr ? nullptr : &old_element->values, new_values));
   };
+  add_mask(&before, now.values);
   for (std::size_t i = 0; i < now.parts.size(); i++)
-    add_mask(out.parts, counterpart(before.parts, now.parts, i, out.rebuild), now.parts[i].values);
+    add_mask(old_counterpart(before.parts, now.parts, i, out.rebuild), now.parts[i].values);
   for (std::size_t i = 0; i < now.joints.size(); i++)
-    add_mask(out.joints, counterpart(before.joints, now.joints, i, out.rebuild), now.joints[i].values);
+    add_mask(old_counterpart(before.joints, now.joints, i, out.rebuild), now.joints[i].values);
   for (std::size_t i = 0; i < now.motors.size(); i++) {
     const MotorDescription& motor = now.motors[i];
-    add_mask(out.motors, out.rebuild ? motor_of(before, now.joints[motor.joint].name) : &before.motors[i],
-             motor.values);
+    add_mask(out.rebuild ? motor_of(before, now.joints[motor.joint].name) : &before.motors[i], motor.values);
   }
   compare_pairs(before, now, out);
   compare_start_poses(before, now, out);
@@ -244,29 +243,28 @@ std::vector<std::optional<std::size_t>> match(const std::vector<T>& before, cons
   return old_indices;
 }
 
-bool all_zero(const std::vector<std::uint64_t>& masks) {
-  return std::all_of(masks.begin(), masks.end(), [](std::uint64_t r) { return r == 0; });
-}
-
 }  // namespace
 
 bool BodyDiff::empty() const {
-  return old_index && !rebuild && changed == 0 && all_zero(parts) && all_zero(joints) && all_zero(motors) &&
-         pairs.empty() && !position_changed && !rotation_changed && trees_with_root.empty() && trees_placed.empty() &&
-         !start_changed;
+  const bool same_values = std::ranges::all_of(changed, [](std::uint64_t properties) { return properties == 0; });
+  return old_index && !rebuild && same_values && pairs.empty() && !position_changed && !rotation_changed &&
+         trees_with_root.empty() && trees_placed.empty() && !start_changed;
 }
 
 bool SceneDiff::empty() const {
-  const auto existed = [](const std::optional<std::size_t>& before) { return before.has_value(); };
-  const auto same = [](const BehaviorDiff& diff) { return diff.in_old_spec && !diff.rebuild && diff.changed == 0; };
-  const auto all_same = [&](const auto& list) { return std::all_of(list.begin(), list.end(), same); };
-  const auto same_gear = [](const GearDiff& diff) { return diff.in_old_spec && diff.same_joints && diff.changed == 0; };
-  return !order_changed && removed_gears.empty() && std::all_of(gears.begin(), gears.end(), same_gear) &&
-         removed_behaviors.empty() && removed_groups.empty() && all_same(groups) &&
-         std::all_of(behaviors.begin(), behaviors.end(), all_same) && world == 0 && visuals == 0 && camera == 0 &&
-         appearance == 0 && shapes.empty() && bodies.empty() && removed_shapes.empty() && removed_bodies.empty() &&
-         std::all_of(old_shape_indices.begin(), old_shape_indices.end(), existed) &&
-         std::all_of(old_body_indices.begin(), old_body_indices.end(), existed);
+  const auto all_empty = [](const auto& list) {
+    return std::ranges::all_of(list, [](const auto& diff) { return diff.empty(); });
+  };
+  const auto all_existed = [](const std::vector<std::optional<std::size_t>>& indices) {
+    return std::ranges::all_of(indices, [](const auto& index) { return index.has_value(); });
+  };
+  const bool same_values = (world | visuals | camera | appearance) == 0;
+  const bool same_objects =
+      shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
+  const bool none_removed = removed_shapes.empty() && removed_bodies.empty() && removed_behaviors.empty() &&
+                            removed_groups.empty() && removed_gears.empty();
+  return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
+         std::ranges::all_of(behaviors, all_empty);
 }
 
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
@@ -291,10 +289,10 @@ std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
 BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescription& now) {
   BodyDiff out;
   out.rebuild = !same_construction(existing, now);
-  out.changed = explicit_mask(now.values);
-  for (const PartDescription& part : now.parts) out.parts.push_back(explicit_mask(part.values));
-  for (const JointDescription& joint : now.joints) out.joints.push_back(explicit_mask(joint.values));
-  for (const MotorDescription& motor : now.motors) out.motors.push_back(explicit_mask(motor.values));
+  out.changed.push_back(explicit_mask(now.values));
+  for (const PartDescription& part : now.parts) out.changed.push_back(explicit_mask(part.values));
+  for (const JointDescription& joint : now.joints) out.changed.push_back(explicit_mask(joint.values));
+  for (const MotorDescription& motor : now.motors) out.changed.push_back(explicit_mask(motor.values));
   out.pairs = now.pairs;
   out.position_changed = now.start.position_set;
   out.rotation_changed = now.start.rotation_set;

@@ -18,13 +18,10 @@ struct BodyDiff {
   std::size_t new_index = 0;             ///< Index in the new spec.
   std::optional<std::size_t> old_index;  ///< Index in the old spec.
   bool rebuild = false;                  ///< Its construction differs, so it must be rebuilt.
-  std::uint64_t changed = 0;             ///< Properties of the body to set.
-  std::vector<std::uint64_t> parts;      ///< Properties to set of each of its parts, joints and motors in the new spec.
-  std::vector<std::uint64_t> joints;
-  std::vector<std::uint64_t> motors;
-  std::vector<PairDescription> pairs;        ///< Pairs to set; PairEdit::none restores the default.
-  bool position_changed = false;             ///< The root must move to its new start position.
-  bool rotation_changed = false;             ///< The root must turn to its new start rotation.
+  std::vector<std::uint64_t> changed;    ///< Properties to set of each of its objects in the new spec (objects_of()).
+  std::vector<PairDescription> pairs;    ///< Pairs to set; PairEdit::none restores the default.
+  bool position_changed = false;         ///< The root must move to its new start position.
+  bool rotation_changed = false;         ///< The root must turn to its new start rotation.
   std::vector<std::size_t> trees_with_root;  ///< First parts of other trees that move along with the root.
   std::vector<std::size_t> trees_placed;     ///< First parts of other trees that move to their own new start pose.
   bool start_changed = false;                ///< Start poses differ.
@@ -44,6 +41,8 @@ struct BehaviorDiff {
   bool in_old_spec = false;   ///< It is in the old spec.
   bool rebuild = false;       ///< Its type or targets differ, so it must be rebuilt.
   std::uint64_t changed = 0;  ///< Properties to set, as bits of the new table.
+
+  bool empty() const { return in_old_spec && !rebuild && changed == 0; }
 };
 
 /// Changes of a gear. A gear between other joints is rebuilt.
@@ -51,6 +50,8 @@ struct GearDiff {
   bool in_old_spec = false;   ///< It is in the old spec.
   bool same_joints = true;    ///< It connects the same joints.
   std::uint64_t changed = 0;  ///< Properties to set.
+
+  bool empty() const { return in_old_spec && same_joints && changed == 0; }
 };
 
 struct SceneDiff {

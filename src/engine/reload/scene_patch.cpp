@@ -27,10 +27,7 @@ std::uint64_t part_property_bit(std::string_view property) {
 class SavedValues {
  public:
   explicit SavedValues(const Body& body) {
-    save(body, body.id(), "");
-    for (const auto& part : body.parts()) save(body, part->id(), part->name());
-    for (const auto& joint : body.joints()) save(body, joint->id(), joint->name());
-    for (const auto& motor : body.motors()) save(body, motor->id(), motor->name());
+    for (const NodeId id : objects_of(body)) save(body.store(), id);
     for (const PartPair& pair : body.pairs().list) {
       pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
     }
@@ -46,10 +43,11 @@ class SavedValues {
   }
 
   // Restores the saved values, except the properties of `except`, and velocities, which belong to the body state.
-  void restore_to(Store& store, NodeId id, std::string_view name, std::uint64_t except) const {
+  void restore_to(Store& store, NodeId id, std::uint64_t except) const {
     const PropertyTable& table = store.table(id);
-    const auto found = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const Entry& entry) { return entry.table == &table && entry.name == name; });
+    const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) {
+      return entry.table == &table && entry.name == store.name(id);
+    });
     if (found == entries_.end()) return;
     if (&table == &Part::table())
       except |= part_property_bit("linear_velocity") | part_property_bit("angular_velocity");
@@ -72,13 +70,12 @@ class SavedValues {
     std::string name;
     std::vector<double> persistent, transient;
   };
-  void save(const Body& body, NodeId id, const std::string& name) {
-    const Store& store = body.store();
+  void save(const Store& store, NodeId id) {
     const PropertyTable& table = store.table(id);
     const double* const persistent = store.persistent_block(id);
     const double* const transient = store.transient_block(id);
     entries_.push_back({&table,
-                        name,
+                        store.name(id),
                         {persistent, persistent + table.persistent_width()},
                         {transient, transient + table.transient_width()}});
   }
@@ -224,13 +221,9 @@ class PatchApplier {
     const Body& source = *patch_.candidate.bodies()[diff.new_index];
     Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
     if (!diff.rebuild && diff.start_changed) live.save_start_pose(source);
-    set_properties(source.id(), live.id(), diff.changed);
-    for (std::size_t i = 0; i < diff.parts.size(); i++)
-      set_properties(source.parts()[i]->id(), live.parts()[i]->id(), diff.parts[i]);
-    for (std::size_t i = 0; i < diff.joints.size(); i++)
-      set_properties(source.joints()[i]->id(), live.joints()[i]->id(), diff.joints[i]);
-    for (std::size_t i = 0; i < diff.motors.size(); i++)
-      set_properties(source.motors()[i]->id(), live.motors()[i]->id(), diff.motors[i]);
+    const std::vector<NodeId> from = objects_of(source);
+    const std::vector<NodeId> to = objects_of(live);
+    for (std::size_t i = 0; i < diff.changed.size(); i++) set_properties(from[i], to[i], diff.changed[i]);
     for (const PairDescription& pair : diff.pairs) {
       (void)live.edit_pair(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
     }
@@ -243,13 +236,8 @@ class PatchApplier {
     save_behaviors(body, saved_behaviors_);
     Body& live = patch_.world.rebuild_body(body, source, diff.joints_to_reset);
     saved.restore_pairs_to(live);
-    saved.restore_to(store_, live.id(), "", diff.changed);
-    for (std::size_t i = 0; i < diff.parts.size(); i++)
-      saved.restore_to(store_, live.parts()[i]->id(), live.parts()[i]->name(), diff.parts[i]);
-    for (std::size_t i = 0; i < diff.joints.size(); i++)
-      saved.restore_to(store_, live.joints()[i]->id(), live.joints()[i]->name(), diff.joints[i]);
-    for (std::size_t i = 0; i < diff.motors.size(); i++)
-      saved.restore_to(store_, live.motors()[i]->id(), live.motors()[i]->name(), diff.motors[i]);
+    const std::vector<NodeId> objects = objects_of(live);
+    for (std::size_t i = 0; i < objects.size(); i++) saved.restore_to(store_, objects[i], diff.changed[i]);
     return live;
   }
 

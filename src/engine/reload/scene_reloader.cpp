@@ -69,9 +69,7 @@ SceneReloader::ApplyResult SceneReloader::apply_candidate(ReloadCandidate& candi
   };
   if (session.scene != nullptr) session.scene->capture_handles();
   apply({session.world, candidate.world(), *spec_, *candidate.spec(), candidate.diff(), set_by_scene}, objects_);
-  const auto live_id = [&](NodeId id) {
-    return candidate.live_id(id, session.world, objects_.shapes, objects_.bodies);
-  };
+  const auto live_id = [&](NodeId id) { return counterpart(candidate.world().store(), id, store); };
   std::unique_ptr<Scene>& scene = candidate.scene();
   scene->rerun_values(rerun_values_);
   std::uint64_t default_mask = scene->become_live(session.world, live_id, session.scene.get());

@@ -83,6 +83,17 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
 
 }  // namespace
 
+std::vector<NodeId> objects_of(const Body& body) {
+  std::vector<NodeId> ids{body.id()};
+  const auto add = [&](const auto& list) {
+    for (const auto& object : list) ids.push_back(object->id());
+  };
+  add(body.parts());
+  add(body.joints());
+  add(body.motors());
+  return ids;
+}
+
 std::uint64_t described_mask(const PropertyTable& table) {
   std::uint64_t mask = 0;
   for (const Property& property : table.properties()) {
@@ -132,7 +143,7 @@ SceneSpec describe(const World& world) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           spec_values_of(world.store(), group->id())});
   }
-  out.behavior_order = world.behaviors().order();
+  out.behavior_order = world.behaviors().order().keys();
   return out;
 }
 

@@ -103,12 +103,15 @@ struct SceneSpec {
   std::vector<BodyDescription> bodies;
   std::vector<GearDescription> gears;
   std::vector<GroupDescription> groups;
-  std::vector<std::string> behavior_order;  ///< BehaviorList::order()
+  std::vector<std::string> behavior_order;  ///< BehaviorOrder::keys()
 };
 
 /// Captures the objects of a world in their order. Call it right after a run, before anything else changes the world.
 SceneSpec describe(const World& world);
 BodyDescription describe_body(const Body& body);
+
+/// Returns the ids of a body and its parts, joints and motors, in this order.
+std::vector<NodeId> objects_of(const Body& body);
 
 /// Returns a bit mask of the properties that a description contains: stored and writable ones, except poses of parts.
 std::uint64_t described_mask(const PropertyTable& table);

@@ -6,36 +6,17 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "base/random.h"
 #include "base/result.h"
 #include "properties/store.h"
-#include "sim/behavior/behavior_type.h"
-#include "sim/behavior/selection.h"
+#include "sim/behavior/behavior_attachment.h"
+#include "sim/behavior/behavior_properties.h"
 
 namespace limber {
 
-class BehaviorGroup;
 class Archive;
-class Body;
-class Joint;
-class Motor;
-class Part;
-class World;
-
-/// Number of properties that every instance and group has before its parameters: `active`, `time`, `remove`, `place`.
-inline constexpr std::uint32_t kCommonBehaviorProperties = 4;
-
-/// The targets of a behavior, as selected by the scene. Copies of a body and members of a group share one object.
-struct BehaviorSetup {
-  Selection parts;
-  Selection joints;
-  Selection motors;
-  bool operator==(const BehaviorSetup&) const = default;
-};
 
 /// Reason why a behavior is suspended; with `file` and `line` if it is a script's error.
 struct BehaviorFault {
@@ -44,10 +25,8 @@ struct BehaviorFault {
   int line = 0;
 };
 
-class Behavior {
+class Behavior : public BehaviorAttachment {
  public:
-  static std::vector<Property> common_properties();
-
   Behavior();
   virtual ~Behavior();
   Behavior(const Behavior&) = delete;
@@ -67,26 +46,6 @@ class Behavior {
 
   /// Serializes its whole state, for checkpoints.
   void serialize_all(Archive& archive);
-
-  // Identity, valid from start() on. A behavior that is removed while it steps has no body and an empty name.
-  NodeId id() const { return id_; }
-  const std::string& name() const;
-  Body& body() const { return *body_; }
-  World& world() const { return *world_; }
-  Store& store() const;
-  bool removed() const { return body_ == nullptr; }
-  const BehaviorType& type() const { return *type_; }
-  /// The group that it is a member of, or null.
-  BehaviorGroup* group() const { return group_; }
-  const BehaviorSetup& setup() const { return *setup_; }
-  const std::shared_ptr<const BehaviorType>& shared_type() const { return type_; }
-  const std::shared_ptr<const BehaviorSetup>& shared_setup() const { return setup_; }
-
-  /// Its targets in stream order (root to tip), without duplicates; a type that acts on pairs has its parts in the
-  /// order in which the scene names them. "all" leaves out parts without mass.
-  std::span<Part* const> parts() const { return targets_.parts; }
-  std::span<Joint* const> joints() const { return targets_.joints; }
-  std::span<Motor* const> motors() const { return targets_.motors; }
 
   bool active() const;
   /// The reason why it is suspended although it is active, or empty. Setting `active` to any value clears it.
@@ -124,21 +83,12 @@ class Behavior {
     std::uint32_t resolved_structure = 0;  ///< The body's structure version when its targets were resolved.
     bool needs_start = true;               ///< start() has to be called before the next step.
   };
-  struct Targets {
-    std::vector<Part*> parts;
-    std::vector<Joint*> joints;
-    std::vector<Motor*> motors;
-    bool operator==(const Targets&) const = default;
-  };
-
   // Called by BehaviorList, BehaviorGroup and BehaviorTransaction. [sim]
   /// First call: sets its body, type, targets and group (or null). Error: a target doesn't exist.
   Result<void> attach(Body& body, std::shared_ptr<const BehaviorType> type, std::shared_ptr<const BehaviorSetup> setup,
                       BehaviorGroup* group);
   /// Adds its node and adds it to the list of its body.
   void add_node(const std::string& name);
-  /// Marks it as removed.
-  void detach() { body_ = nullptr; }
   /// Returns an instance of a reloaded type that takes its place, with its targets, generator and intervals.
   std::unique_ptr<Behavior> make_replacement(const std::shared_ptr<const BehaviorType>& type);
   /// Resolves its targets again if the structure of its body has changed.
@@ -151,16 +101,12 @@ class Behavior {
   bool needs_preparation() const {
     return state_.needs_start || state_.seeded_with == kNoSeed || !state_.fault.text.empty();
   }
+  void clear_fault();
   void set_step_seconds(double seconds) { step_seconds_ = seconds; }
-  /// Its place as computed by the last BehaviorList::compute_places().
-  std::uint32_t place() const { return place_; }
-  void set_place(std::uint32_t place) { place_ = place; }
   /// Saves its state, once in each guarded call. To be called before it changes.
   void save_for_rollback();
   const State& state() const { return state_; }
-  const Targets& targets() const { return targets_; }
   void restore(const State& state);
-  void restore(Targets targets) { targets_ = std::move(targets); }
 
  protected:
   /// Suspends it with this error, which is reported once.
@@ -177,30 +123,16 @@ class Behavior {
   double random_between(double a, double b) { return state_.random.uniform(a, b); }
   Vec3 random_between(const Vec3& a, const Vec3& b);
   bool interval_elapsed(std::uint32_t parameter) {
-    return interval_elapsed(type_->table->property(kCommonBehaviorProperties + parameter));
+    return interval_elapsed(type().table->property(kCommonBehaviorProperties + parameter));
   }
   const double* values(std::uint32_t parameter) const;
 
  private:
   Result<void> resolve();
   void request_preparation();
-  void read_time(double* out) const;
-  void read_place(double* out) const;
-  void write_place(const double* in);
-  Result<void> validate_place(const double* in) const;
-  Result<void> act_remove(std::span<const double> args);
-  static void on_active_written(void* object, const Property& property);
 
-  World* world_ = nullptr;
-  Body* body_ = nullptr;  // null: removed
-  BehaviorGroup* group_ = nullptr;
-  NodeId id_;
-  std::shared_ptr<const BehaviorType> type_;
-  std::shared_ptr<const BehaviorSetup> setup_;
-  Targets targets_;
   State state_;
-  double step_seconds_ = 0;  // duration of the last tick
-  std::uint32_t place_ = 0;
+  double step_seconds_ = 0;          // duration of the last tick
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 

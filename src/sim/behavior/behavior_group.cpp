@@ -20,8 +20,6 @@ namespace limber {
 
 namespace {
 
-using namespace properties;
-
 bool has_selected_part(const Body& body, const Selection& selection) {
   const auto parts = body.parts();
   return std::any_of(parts.begin(), parts.end(),
@@ -35,18 +33,6 @@ Error part_not_found(const Body& body, std::string_view word) {
 }
 
 }  // namespace
-
-std::vector<Property> BehaviorGroup::common_properties() {
-  Property active = boolean("active", true, "Whether its members act; setting it sets theirs.");
-  active.on_write = &BehaviorGroup::set_on_members;
-  return {std::move(active),
-          computed<&BehaviorGroup::read_time>(
-              readout(number("time", "µs", 0, 0, kUnbounded, "Time that all its members took in the last tick."))),
-          invokes<&BehaviorGroup::act_remove>(action("remove", 0, 0, "Removes the group and all its members.")),
-          validated_by<&BehaviorGroup::validate_place>(
-              state(computed<&BehaviorGroup::read_place, &BehaviorGroup::write_place>(
-                  integer("place", 1, 1, 1e6, "Position in the step order of all names of behaviors, from 1."))))};
-}
 
 void BehaviorGroup::set_on_members(void* object, const Property& property) {
   const BehaviorGroup& group = *static_cast<BehaviorGroup*>(object);
@@ -77,21 +63,6 @@ const std::string& BehaviorGroup::name() const { return world_.store().name(id_)
 
 double BehaviorGroup::seconds_per_member() const {
   return members_.empty() ? 0 : step_seconds_ / static_cast<double>(members_.size());
-}
-
-void BehaviorGroup::read_time(double* out) const { out[0] = 1e6 * step_seconds_; }
-
-void BehaviorGroup::read_place(double* out) const { out[0] = static_cast<double>(world_.behaviors().place(*this)); }
-
-void BehaviorGroup::write_place(const double* in) {
-  world_.behaviors().move_to(*this, static_cast<std::size_t>(in[0]));
-}
-
-Result<void> BehaviorGroup::validate_place(const double*) const { return world_.behaviors().check_can_move(); }
-
-Result<void> BehaviorGroup::act_remove(std::span<const double>) {
-  world_.behaviors().remove_group(*this);
-  return {};
 }
 
 Behavior* BehaviorGroup::member_of(const Body& body) const {

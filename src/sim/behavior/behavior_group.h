@@ -26,7 +26,6 @@ struct RemovedBehavior;
 
 class BehaviorGroup {
  public:
-  static std::vector<Property> common_properties();
   /// Callback after a property of a group was set: sets it on all members.
   static void set_on_members(void* object, const Property& property);
 
@@ -64,6 +63,8 @@ class BehaviorGroup {
   std::span<const std::uint32_t> running_indices() const { return running_indices_; }
   /// A version that changes whenever the members may have changed or been started.
   std::uint64_t members_version() const { return members_version_; }
+  /// Duration of its step in the last tick, in microseconds.
+  double step_microseconds() const { return 1e6 * step_seconds_; }
   /// Duration of the last tick in seconds, divided by the number of members.
   double seconds_per_member() const;
 
@@ -92,9 +93,6 @@ class BehaviorGroup {
   void invalidate_layout() { layout_valid_ = false; }
   /// A member has to be started or has an error.
   void request_preparation() { needs_preparation_ = true; }
-  /// Its place as computed by the last BehaviorList::compute_places().
-  std::uint32_t place() const { return place_; }
-  void set_place(std::uint32_t place) { place_ = place; }
   /// Serializes the state of its members, for checkpoints.
   void serialize(Archive& archive);
 
@@ -105,11 +103,6 @@ class BehaviorGroup {
   Result<void> add_member(Body& body);
   void build_layout();
   void prepare_members();
-  void read_time(double* out) const;
-  void read_place(double* out) const;
-  void write_place(const double* in);
-  Result<void> validate_place(const double* in) const;
-  Result<void> act_remove(std::span<const double> args);
 
   World& world_;
   NodeId id_;
@@ -127,7 +120,6 @@ class BehaviorGroup {
   std::vector<NodeId> removed_bodies_;           // bodies that a member was removed from explicitly
   std::shared_ptr<NeighborSet> neighbors_;
   double step_seconds_ = 0;  // duration of the last tick
-  std::uint32_t place_ = 0;
 };
 
 struct RemovedBehavior {

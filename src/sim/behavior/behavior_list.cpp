@@ -2,7 +2,6 @@
 #include "sim/behavior/behavior_list.h"
 
 #include <algorithm>
-#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -106,12 +105,12 @@ void BehaviorList::remove(Behavior& behavior) {
   world_.transaction().active() ? transaction_.hide(behavior) : destroy(behavior);
 }
 
-void BehaviorList::remove_group(BehaviorGroup& group) {
+void BehaviorList::remove(BehaviorGroup& group) {
   world_.transaction().active() ? transaction_.hide(group) : destroy_group(group);
 }
 
 void BehaviorList::destroy_last() {
-  const Entry& last = entries_.back();
+  const BehaviorEntry& last = entries_.back();
   if (last.group != nullptr) {
     destroy_group(*last.group);
   } else {
@@ -134,13 +133,13 @@ RemovedBehavior BehaviorList::extract(Behavior& behavior) {
   BehaviorGroup* const group = behavior.group();
   RemovedBehavior removed = group != nullptr
                                 ? group->remove_member(behavior)
-                                : extract_last([&](const Entry& e) { return e.single.get() == &behavior; });
+                                : extract_last([&](const BehaviorEntry& e) { return e.single.get() == &behavior; });
   removed.index_on_body = behavior.body().remove_behavior(behavior);
   return removed;
 }
 
 RemovedBehavior BehaviorList::extract(BehaviorGroup& group) {
-  return extract_last([&](const Entry& e) { return e.group.get() == &group; });
+  return extract_last([&](const BehaviorEntry& e) { return e.group.get() == &group; });
 }
 
 void BehaviorList::insert(RemovedBehavior removed) {
@@ -149,7 +148,7 @@ void BehaviorList::insert(RemovedBehavior removed) {
     behavior.body().insert_behavior(removed.index_on_body, behavior);
     if (BehaviorGroup* const group = behavior.group()) return group->insert_member(std::move(removed));
   }
-  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), Entry{});
+  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), BehaviorEntry{});
   entries_[removed.index] = {std::move(removed.behavior), std::move(removed.group)};
 }
 
@@ -176,7 +175,7 @@ BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
 
 std::vector<BehaviorGroup*> BehaviorList::groups() const {
   std::vector<BehaviorGroup*> list;
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) list.push_back(entry.group.get());
   }
   return list;
@@ -187,7 +186,7 @@ std::size_t BehaviorList::suspended_count() const {
   const auto count_suspended = [&](const std::unique_ptr<Behavior>& behavior) {
     if (behavior != nullptr && !behavior->error().empty()) count++;
   };
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     count_suspended(entry.single);
     if (entry.group != nullptr) std::ranges::for_each(entry.group->members(), count_suspended);
   }
@@ -219,7 +218,7 @@ void BehaviorList::copy(const Body& source, Body& copy) {
 
 void BehaviorList::on_body_destroyed(Body& body) {
   while (!body.behaviors().empty()) destroy(*body.behaviors().back());
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->remove_body(body);
   }
 }
@@ -242,7 +241,7 @@ void BehaviorList::update_members() {
   if (stepping_) return;
   const std::uint64_t structure = world_.store().structure_version();
   if (std::exchange(structure_version_, structure) == structure) return;
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.group == nullptr) continue;
     if (const Result<void> updated = entry.group->update_members(); !updated) {
       log_warning("group behavior '{}': {}", entry.group->name(), updated.error());
@@ -251,36 +250,15 @@ void BehaviorList::update_members() {
   for (const auto& body : world_.bodies()) {
     for (Behavior* behavior : body->behaviors()) behavior->update_targets();
   }
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->invalidate_layout();
   }
   structure_version_ = world_.store().structure_version();  // includes members that were just added
 }
 
-std::string BehaviorList::key_of(const Entry& entry) {
-  if (entry.group != nullptr) return "/" + entry.group->name();
-  return entry.single->body().name() + "/" + entry.single->name();
-}
-
-std::vector<std::string> BehaviorList::order() const {
-  std::vector<std::string> keys;
-  keys.reserve(entries_.size());
-  for (const Entry& entry : entries_) keys.push_back(key_of(entry));
-  return keys;
-}
-
-void BehaviorList::set_order(const std::vector<std::string>& order) {
-  std::unordered_map<std::string_view, std::size_t> ranks;
-  for (std::size_t i = 0; i < order.size(); i++) ranks[order[i]] = i;
-  std::vector<std::pair<std::size_t, Entry>> ranked;
-  for (Entry& entry : entries_) {
-    const auto found = ranks.find(key_of(entry));
-    ranked.emplace_back(found == ranks.end() ? order.size() : found->second, std::move(entry));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  entries_.clear();
-  for (auto& [place, entry] : ranked) entries_.push_back(std::move(entry));
-  world_.store().bump_structure_version();
+Result<void> BehaviorList::check_can_move() const {
+  if (!stepping_) return {};
+  return Error{"behaviors can't be moved while they are stepped; move them from a scene's callback"};
 }
 
 void BehaviorList::step(double dt) {
@@ -304,7 +282,7 @@ void BehaviorList::step(double dt) {
   stepping_ = false;
   if (retired_.empty()) return;
   retired_.clear();
-  std::erase_if(entries_, [](const Entry& e) { return e.single == nullptr && e.group == nullptr; });
+  std::erase_if(entries_, [](const BehaviorEntry& e) { return e.single == nullptr && e.group == nullptr; });
 }
 
 void BehaviorList::report_fault(const Behavior& behavior) const {
@@ -315,7 +293,7 @@ void BehaviorList::report_fault(const Behavior& behavior) const {
 void BehaviorList::replace_instances(std::string_view type_name) {
   const std::shared_ptr<const BehaviorType> type = types_.find(type_name);
   if (type == nullptr) return;
-  for (Entry& entry : entries_) {
+  for (BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) {
       entry.group->replace_type(type);
     } else if (entry.single != nullptr && type->replaces(entry.single->type())) {
@@ -325,14 +303,14 @@ void BehaviorList::replace_instances(std::string_view type_name) {
 }
 
 void BehaviorList::serialize(Archive& archive) {
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.single != nullptr) entry.single->serialize_all(archive);
     if (entry.group != nullptr) entry.group->serialize(archive);
   }
 }
 
 std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
-  for (const Entry& entry : entries_) {
+  for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) hash = entry.group->state_hash(hash);
   }
   return hash;

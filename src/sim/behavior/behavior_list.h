@@ -11,6 +11,7 @@
 
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/behavior_group.h"
+#include "sim/behavior/behavior_order.h"
 #include "sim/behavior/behavior_transaction.h"
 #include "sim/behavior/behavior_type.h"
 #include "sim/neighbors/neighbor_set.h"
@@ -34,7 +35,7 @@ class BehaviorList {
   /// Detaches a behavior; allowed while behaviors are stepped: it isn't stepped again. Rolled back if the guarded
   /// call fails.
   void remove(Behavior& behavior);
-  void remove_group(BehaviorGroup& group);
+  void remove(BehaviorGroup& group);
   void clear();
 
   BehaviorGroup* find_group(std::string_view name) const;
@@ -54,21 +55,11 @@ class BehaviorList {
 
   /// Updates group members and targets to the present bodies. Cheap if none was added, removed or changed.
   void update_members();
-  /// Returns its position, from 1, among the behaviors that act on its body, including groups that the body is in.
-  std::size_t place(const Behavior& behavior) const;
-  /// Returns its position, from 1, among all names of behaviors and groups, ordered by their first entry.
-  std::size_t place(const BehaviorGroup& group) const;
-  /// Moves a behavior to position `place`, clamped to the last, from the next step on. The others keep their order.
-  /// Rolled back if the guarded call fails. Not allowed while behaviors are stepped, or for a group's member.
-  void move_to(Behavior& behavior, std::size_t place);
-  /// The same for a group, among all names: behaviors of the same name become adjacent in the order.
-  void move_to(BehaviorGroup& group, std::size_t place);
+  /// The order in which they are stepped.
+  BehaviorOrder& order() { return order_; }
+  const BehaviorOrder& order() const { return order_; }
   /// Returns an error while behaviors are being stepped.
   Result<void> check_can_move() const;
-  /// Keys of all entries in step order: "body/behavior", or "/group".
-  std::vector<std::string> order() const;
-  /// Sorts the entries into such an order; those that it doesn't contain follow in their previous order.
-  void set_order(const std::vector<std::string>& order);
   /// Steps every behavior that runs, in order.
   void step(double dt);
   /// Number of steps so far.
@@ -105,17 +96,6 @@ class BehaviorList {
   void serialize(Archive& archive);
 
  private:
-  /// A single behavior or a group.
-  struct Entry {
-    std::unique_ptr<Behavior> single;
-    std::unique_ptr<BehaviorGroup> group;
-  };
-
-  static std::string key_of(const Entry& entry);
-  static std::string_view name_of(const Entry& entry);
-  static bool acts_on(const Entry& entry, const Body& body);
-  std::vector<std::string_view> names() const;
-  void compute_places() const;
   void copy_values(const Behavior& from, Behavior& to);
   void record_entry_count();
   void destroy(Behavior& behavior);
@@ -127,11 +107,11 @@ class BehaviorList {
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
-  std::vector<Entry> entries_;
+  std::vector<BehaviorEntry> entries_;
+  BehaviorOrder order_{world_, entries_};
   std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;
   std::uint64_t structure_version_ = 0;
-  mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
   std::uint64_t step_count_ = 0;
   bool stepping_ = false;
   BehaviorTransaction transaction_{*this};

@@ -43,7 +43,7 @@ void BehaviorTransaction::save_targets(Behavior& behavior) {
       [](void* owner, std::size_t at) {
         auto& self = *static_cast<BehaviorTransaction*>(owner);
         SavedTargets& saved = self.saved_targets_[at];
-        saved.behavior->restore(std::move(saved.targets));
+        saved.behavior->set_targets(std::move(saved.targets));
         self.list_.request_update();  // an earlier call may have changed the structure
       },
       this, saved_targets_.size() - 1);
@@ -52,11 +52,11 @@ void BehaviorTransaction::save_targets(Behavior& behavior) {
 void BehaviorTransaction::save_order() {
   WorldTransaction& transaction = list_.world().transaction();
   if (!transaction.active()) return;
-  saved_orders_.push_back(list_.order());
+  saved_orders_.push_back(list_.order().keys());
   transaction.record(
       [](void* owner, std::size_t at) {
         auto& self = *static_cast<BehaviorTransaction*>(owner);
-        self.list_.set_order(self.saved_orders_[at]);
+        self.list_.order().sort(self.saved_orders_[at]);
       },
       this, saved_orders_.size() - 1);
 }

@@ -54,7 +54,7 @@ std::string normalized_type_name(std::string_view name) {
 BehaviorType BehaviorType::create(std::string name, std::string doc, BehaviorTargets targets, bool is_group,
                                   std::vector<Property> parameters, std::function<std::unique_ptr<Behavior>()> make) {
   BehaviorType type;
-  std::vector<Property> properties = with_common(Behavior::common_properties(), parameters);
+  std::vector<Property> properties = with_common(common_behavior_properties(), parameters);
   properties.push_back(error_property());  // must be last: it has no numeric value, and so no bit in the set of
                                            // explicitly set properties
   type.table =
@@ -62,7 +62,7 @@ BehaviorType BehaviorType::create(std::string name, std::string doc, BehaviorTar
   if (is_group) {
     for (Property& property : parameters) property.on_write = &BehaviorGroup::set_on_members;
     type.group_table = &shared_table("group", fmt::format("/physics/group/<{}>", name),
-                                     with_common(BehaviorGroup::common_properties(), parameters));
+                                     with_common(common_group_properties(), parameters));
   }
   type.name = std::move(name);
   type.doc = std::move(doc);
