@@ -161,7 +161,7 @@ TEST(IslandWorld, AppliedForceIsTheMeanOfTheTick) {
   joint.set_axis(0, spin_axis(free_axis(), 0, 1));
   part.setLinearVelocity(btVector3(to_scalar(kRigStep), 0, 0));
   rig.steps(4);
-  EXPECT_NEAR(joint.applied_force().x, -0.25, 1e-5);
+  EXPECT_NEAR(joint.drives().applied_force().x, -0.25, 1e-5);
   EXPECT_NEAR(joint.rate(0), 0, 1e-6);
 }
 

@@ -1,5 +1,5 @@
 // Geometry of joints compared with explicit rotations: orders, signs, turns, rates, inertia.
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(JointConstraint, MiddleAxisIsALockedOne) {
     if (c.x) rig.hinge.set_axis(3, free_axis());
     if (c.y) rig.hinge.set_axis(4, free_axis());
     if (c.z) rig.hinge.set_axis(5, free_axis());
-    EXPECT_EQ(rig.hinge.order(), c.order) << c.x << c.y << c.z;
+    EXPECT_EQ(rig.hinge.pose().order(), c.order) << c.x << c.y << c.z;
   }
 }
 
@@ -49,7 +49,7 @@ TEST(JointConstraint, MiddleAxisHasTheSmallestRange) {
   rig.hinge.set_axis(3, limited_axis(-0.5, 0.4));
   rig.hinge.set_axis(4, limited_axis(-3, 3));
   rig.hinge.set_axis(5, free_axis());
-  EXPECT_EQ(rig.hinge.order(), (std::array<int, 3>{2, 0, 1}));
+  EXPECT_EQ(rig.hinge.pose().order(), (std::array<int, 3>{2, 0, 1}));
 }
 
 TEST(JointConstraint, ReadsTheAngleOfOneFreeAxis) {
@@ -68,7 +68,7 @@ TEST(JointConstraint, OffsetsAreAlongTheParentsAxes) {
   Pair rig;
   place(rig.parent, rig.child, {{0.4, -0.5, 0.6}, rotation_about(2, 1.0)});
   rig.hinge.refresh();
-  const Vec3 d = rig.hinge.offsets();
+  const Vec3 d = rig.hinge.pose().offsets();
   EXPECT_NEAR(d.x, 0.4, 2e-6);
   EXPECT_NEAR(d.y, -0.5, 2e-6);
   EXPECT_NEAR(d.z, 0.6, 2e-6);
@@ -81,7 +81,7 @@ TEST(JointConstraint, AnglesRebuildTheRotation) {
     for (int i = 0; i < 3; ++i) {
       if (f[static_cast<std::size_t>(i)]) rig.hinge.set_axis(3 + i, free_axis());
     }
-    const auto [outer, middle, inner] = rig.hinge.order();
+    const auto [outer, middle, inner] = rig.hinge.pose().order();
     place(rig.parent, rig.child,
           {Vec3(0), rotation_about(outer, 2.2) * rotation_about(middle, -0.8) * rotation_about(inner, -1.9)});
     rig.hinge.reset();
@@ -97,10 +97,10 @@ TEST(JointConstraint, RelrotIsRollPitchYawForAnyOrder) {
   rig.hinge.set_axis(5, free_axis());
   place(rig.parent, rig.child, {Vec3(0), quat_euler(0.3, -1.2, 2.5)});
   rig.hinge.refresh();
-  EXPECT_NE(rig.hinge.order(), (std::array<int, 3>{2, 1, 0}));
-  EXPECT_NEAR(rig.hinge.relrot().x, 0.3, 2e-6);
-  EXPECT_NEAR(rig.hinge.relrot().y, -1.2, 2e-6);
-  EXPECT_NEAR(rig.hinge.relrot().z, 2.5, 2e-6);
+  EXPECT_NE(rig.hinge.pose().order(), (std::array<int, 3>{2, 1, 0}));
+  EXPECT_NEAR(rig.hinge.pose().relrot().x, 0.3, 2e-6);
+  EXPECT_NEAR(rig.hinge.pose().relrot().y, -1.2, 2e-6);
+  EXPECT_NEAR(rig.hinge.pose().relrot().z, 2.5, 2e-6);
 }
 
 TEST(JointConstraint, CountsFullTurns) {
@@ -110,12 +110,12 @@ TEST(JointConstraint, CountsFullTurns) {
     place(rig.parent, rig.child, {Vec3(0), rotation_about(2, -0.2 * i)});
     rig.hinge.refresh();
   }
-  EXPECT_NEAR(rig.hinge.angles().z, -20, 1e-5);
-  EXPECT_NEAR(rig.hinge.relrot().z, -20, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().z, -20, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().relrot().z, -20, 1e-5);
   rig.hinge.reset();
-  EXPECT_NEAR(rig.hinge.angles().z, -20 + 6 * kPi, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().z, -20 + 6 * kPi, 1e-5);
   rig.hinge.reset({0, 0, 31});
-  EXPECT_NEAR(rig.hinge.angles().z, -20 + 16 * kPi, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().z, -20 + 16 * kPi, 1e-5);
 }
 
 TEST(JointConstraint, ReadsAnglesContinuouslyBeyondThePole) {
@@ -128,9 +128,9 @@ TEST(JointConstraint, ReadsAnglesContinuouslyBeyondThePole) {
           {Vec3(0), rotation_about(2, 0.3) * rotation_about(1, 0.1 * i + 0.013) * rotation_about(0, -0.2)});
     rig.hinge.refresh();
   }
-  EXPECT_NEAR(rig.hinge.angles().x, -0.2, 1e-5);
-  EXPECT_NEAR(rig.hinge.angles().y, 4.013, 1e-5);
-  EXPECT_NEAR(rig.hinge.angles().z, 0.3, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().x, -0.2, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().y, 4.013, 1e-5);
+  EXPECT_NEAR(rig.hinge.pose().angles().z, 0.3, 1e-5);
 }
 
 TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
@@ -140,7 +140,7 @@ TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
     for (int i = 3; i < 6; ++i) {
       if (i != locked) rig.hinge.set_axis(i, free_axis());
     }
-    const auto [outer, middle, inner] = rig.hinge.order();
+    const auto [outer, middle, inner] = rig.hinge.pose().order();
     const double bend = locked < 0 ? 0.9 : 0.0;
     place(rig.parent, rig.child,
           {{0.2, 0.1, -0.3}, rotation_about(outer, 1.3) * rotation_about(middle, bend) * rotation_about(inner, -0.6)});
@@ -173,7 +173,7 @@ TEST(JointConstraint, ComputesTheEffectiveInertiaOfAHinge) {
   btRigidBody& child = rig.part(2, {0.1, 0.2, 0.3}, {{0.5, 0, 0.7}, quat_identity()});
   JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.5, 0, -0.7}, quat_identity()});
   hinge.set_axis(5, free_axis());
-  EXPECT_NEAR(hinge.effective_inertia(5), 0.3 + 2 * 0.25, 1e-5);
+  EXPECT_NEAR(hinge.pose().effective_inertia(5), 0.3 + 2 * 0.25, 1e-5);
 }
 
 TEST(JointConstraint, ComputesTheEffectiveInertiaOfASliderAndOfFreeParts) {
@@ -181,13 +181,13 @@ TEST(JointConstraint, ComputesTheEffectiveInertiaOfASliderAndOfFreeParts) {
   btRigidBody& child = rig.part(2, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
   JointConstraint& slider = rig.joint(rig.ground(), child, {{0.5, 0, 0}, quat_identity()});
   slider.set_axis(2, free_axis());
-  EXPECT_NEAR(slider.effective_inertia(2), 2, 1e-5);
+  EXPECT_NEAR(slider.pose().effective_inertia(2), 2, 1e-5);
 
   btRigidBody& other = rig.part(3, Vec3(0.1));
   JointConstraint& loose = rig.joint(other, child, {{0.5, 0, 0}, quat_identity()});
   for (int i = 0; i < 6; ++i) loose.set_axis(i, free_axis());
-  EXPECT_NEAR(loose.effective_inertia(0), 2.0 * 3.0 / 5.0, 1e-5);
-  EXPECT_NEAR(loose.effective_inertia(3), 0.05, 1e-6);
+  EXPECT_NEAR(loose.pose().effective_inertia(0), 2.0 * 3.0 / 5.0, 1e-5);
+  EXPECT_NEAR(loose.pose().effective_inertia(3), 0.05, 1e-6);
 }
 
 TEST(JointConstraint, LimitingAnAxisDoesNotUnwindIt) {
@@ -198,7 +198,7 @@ TEST(JointConstraint, LimitingAnAxisDoesNotUnwindIt) {
     rig.hinge.refresh();
   }
   rig.hinge.set_axis(5, limited_axis(0.5, 1.5));
-  EXPECT_NEAR(rig.hinge.angles().z, 20 - 6 * kPi, 1e-5);  // 1.15
+  EXPECT_NEAR(rig.hinge.pose().angles().z, 20 - 6 * kPi, 1e-5);  // 1.15
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ TEST(JointGoals, SmoothingLimitsTheRippleOfAStream) {
       for (const std::uint32_t seed : {1u, 2u, 3u}) {
         SCOPED_TRACE(testing::Message() << frequency << ' ' << limit << ' ' << seed);
         Follower f(5, servo_axis(free_axis(), 0, limit, 10000));
-        f.hinge.set_smoothing(2 / frequency);
+        f.hinge.goals().set_smoothing(2 / frequency);
         const std::vector<double> targets = streamed_targets(frequency, 0.5, 360, seed);
         double farthest = 0;
         for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -248,7 +248,7 @@ TEST(JointGoals, SmoothingLimitsTheRippleOfAStream) {
 TEST(JointGoals, SmoothingDelaysARampAsDocumented) {
   for (const double time : {0.02, 0.1, 1.0}) {
     Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
-    f.hinge.set_smoothing(time);
+    f.hinge.goals().set_smoothing(time);
     double target = 0;
     for (int i = 0; i < 1200; ++i) f.tick(target = 0.5 * i * kGoalTick);
     f.expect_speed(0.5, 0.001);
@@ -258,7 +258,7 @@ TEST(JointGoals, SmoothingDelaysARampAsDocumented) {
 
 TEST(JointGoals, SmoothingDoesNotOvershoot) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
-  f.hinge.set_smoothing(0.1);
+  f.hinge.goals().set_smoothing(0.1);
   f.tick(0);
   double farthest = 0;
   for (int i = 0; i < 120; ++i) {
@@ -283,7 +283,7 @@ TEST(JointGoals, MotorPressesAgainstItsLimitWithItsForce) {
               f.tick(s.target);
               farthest = std::max(farthest, sign * f.x());
             }
-            const Vec3 applied = axis < 3 ? f.hinge.applied_force() : f.hinge.applied_torque();
+            const Vec3 applied = axis < 3 ? f.hinge.drives().applied_force() : f.hinge.drives().applied_torque();
             EXPECT_NEAR(applied[axis % 3], sign * force, 1e-4 * force);
             EXPECT_NEAR(sign * f.x(), 0.3, 1e-4);
             EXPECT_LT(farthest, 0.3 + 1e-4);
@@ -298,8 +298,8 @@ TEST(JointGoals, MotorPressesAgainstItsLimitWithItsForce) {
 TEST(JointGoals, ServoWithTargetAtItsLimitAppliesItsLoadOnly) {
   Follower f(5, servo_axis(limited_axis(-0.3, 0.3), 0.3, 2, 1000));
   for (int i = 0; i < 120; ++i) f.tick(static_cast<double>(f.settings.upper));
-  EXPECT_NEAR(f.hinge.applied_torque().z, 0, 0.05);
-  EXPECT_FALSE(f.hinge.target_outside());
+  EXPECT_NEAR(f.hinge.drives().applied_torque().z, 0, 0.05);
+  EXPECT_FALSE(f.hinge.drives().target_outside());
 }
 
 TEST(JointGoals, MotorDeflectsACompliantLimit) {
@@ -310,7 +310,7 @@ TEST(JointGoals, MotorDeflectsACompliantLimit) {
       Follower f(5, s, direct);
       for (int i = 0; i < 240; ++i) f.tick(s.target);
       EXPECT_NEAR(f.x(), 0.4, 2e-3);
-      EXPECT_NEAR(f.hinge.applied_torque().z, 10, 0.05);
+      EXPECT_NEAR(f.hinge.drives().applied_torque().z, 10, 0.05);
     }
   }
 }

@@ -20,7 +20,7 @@ struct Drive : Rig {
   double x() const { return hinge.value(axis); }
   double v() const { return hinge.rate(axis); }
   double applied() const {
-    const Vec3 all = axis < 3 ? hinge.applied_force() : hinge.applied_torque();
+    const Vec3 all = axis < 3 ? hinge.drives().applied_force() : hinge.drives().applied_torque();
     return all[axis % 3];
   }
   void push(double load) {
@@ -209,7 +209,7 @@ TEST(JointMotorRows, SpringOscillatesWithItsPeriod) {
       before = d.x();
     }
     EXPECT_NEAR((last - first) / 10 / 0.5, 1, 0.005) << axis;
-    EXPECT_NEAR(d.hinge.stiffness_applied(axis) / k, 1, 1e-6) << axis;
+    EXPECT_NEAR(d.hinge.drives().stiffness_applied(axis) / k, 1, 1e-6) << axis;
   }
 }
 
@@ -236,7 +236,7 @@ TEST(JointMotorRows, SpringDeflectsByLoadOverStiffness) {
     }
     EXPECT_NEAR(d.x() - 0.2, 3.0 / 50, 0.01 * 3 / 50) << axis;
     EXPECT_NEAR(d.applied(), -3, 1e-2) << axis;
-    EXPECT_EQ(d.hinge.damping_applied(axis), 8) << axis;
+    EXPECT_EQ(d.hinge.axis(axis).damping_applied(), 8) << axis;
   }
 }
 
@@ -254,7 +254,7 @@ TEST(JointMotorRows, LimitsAndReportsTooStiffASpring) {
     Drive d(axis, spring_axis(free_axis(), 0.1, 1e9));
     d.steps(1);
     const double cap = inertia_of(axis) / (16 * kRigStep * kRigStep);
-    EXPECT_NEAR(d.hinge.stiffness_applied(axis) / cap, 1, 1e-4) << axis;
+    EXPECT_NEAR(d.hinge.drives().stiffness_applied(axis) / cap, 1, 1e-4) << axis;
     double farthest = 0;
     for (int i = 0; i < 2400; ++i) {
       d.steps(1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/bullet/island_world.h"
+#include "sim/bullet/joints/joint_constraint.h"
 
 namespace limber {
 

@@ -53,7 +53,7 @@ struct Siblings : WorldFixture {
     double sum = 0;
     for (std::size_t i = 0; i < robot.joints().size(); i++) {
       const JointConstraint& c = robot.joints()[i]->constraint();
-      sum += c.applied_torque().z * h() * (rates_before[i] + c.rate(5)) / 2;
+      sum += c.drives().applied_torque().z * h() * (rates_before[i] + c.rate(5)) / 2;
     }
     return sum;
   }

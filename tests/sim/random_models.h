@@ -12,7 +12,7 @@
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
 #include "sim/bullet/bullet.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/stage.h"
 
 namespace limber::test {
@@ -81,7 +81,7 @@ class EnergyAccount {
         const JointConstraint& c = joint.constraint();
         for (int axis = 0; axis < 6; axis++) {
           if (motor->mode(axis) == MotorMode::off) continue;
-          const JointConstraint::Jacobian j = c.jacobian(axis);
+          const AxisJacobian j = c.pose().jacobian(axis);
           axes_.push_back({&c, axis, &joint.parent().rigid(), &joint.child().rigid(), j, 0, false, false});
           set_stops(axes_.back());
           axes_.back().rate = rate(axes_.back());
@@ -105,7 +105,8 @@ class EnergyAccount {
       change -= glm::dot(gravity, v) * h / static_cast<double>(m.part->getInvMass());
     }
     for (const Axis& a : axes_) {
-      const double load = a.axis < 3 ? a.joint->applied_force()[a.axis] : a.joint->applied_torque()[a.axis - 3];
+      const double load =
+          a.axis < 3 ? a.joint->drives().applied_force()[a.axis] : a.joint->drives().applied_torque()[a.axis - 3];
       if (load < 0 ? a.at_lower : a.at_upper) continue;  // the motor presses against its limit: neither does work
       const double work = load * h * (before_share_ * a.rate + (1 - before_share_) * rate(a));
       change -= work;
@@ -147,7 +148,7 @@ class EnergyAccount {
     int axis;
     const btRigidBody* parent;
     const btRigidBody* child;
-    JointConstraint::Jacobian j;
+    AxisJacobian j;
     double rate;
     bool at_lower, at_upper;
   };

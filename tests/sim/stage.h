@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "base/log/log.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/world.h"
 
 namespace limber::test {

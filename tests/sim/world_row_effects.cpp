@@ -84,7 +84,7 @@ double gap_of_chain(int iterations, double solver) {
   }
   for (int i = 0; i < 60; i++) {
     s.ticks(1);
-    for (const Joint* joint : joints) gap = std::max(gap, glm::length(joint->constraint().offsets()));
+    for (const Joint* joint : joints) gap = std::max(gap, glm::length(joint->constraint().pose().offsets()));
   }
   return gap;
 }

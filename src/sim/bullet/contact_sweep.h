@@ -2,7 +2,7 @@
 #pragma once
 
 #include "sim/bullet/bullet.h"
-#include "sim/bullet/joint_block.h"
+#include "sim/bullet/joints/joint_block.h"
 
 namespace limber {
 

@@ -1,6 +1,6 @@
 // IslandSolver: converts planned joint rows to Bullet's solver rows, sweeps them, and stores the impulses in the
 // joints.
-#include "sim/bullet/island_world.h"
+#include "sim/bullet/island_solver.h"
 
 #include <algorithm>
 #include <cstring>
@@ -23,12 +23,12 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
 // Joints hold pointers to their rows, which therefore must not move until the step is solved.
 void IslandSolver::reserve_rows(int joints) {
   planned_count_ = 0;
-  const int max_rows = joints * JointConstraint::kMaxRows;
+  const int max_rows = joints * JointRows::kMax;
   if (planned_.size() < max_rows) planned_.resize(max_rows);
 }
 
 void IslandSolver::plan(JointConstraint& joint, const btContactSolverInfo& info) {
-  joint.set_step(info.m_timeStep, steps_left_, step_count_);
+  joint.set_step({info.m_timeStep, steps_left_, step_count_});
   planned_count_ += joint.plan(&planned_[planned_count_]).size();
 }
 
@@ -121,7 +121,7 @@ void IslandSolver::convert_constraints(btTypedConstraint** constraints, int coun
     size = {0, 0};
     if (!constraints[i]->isEnabled()) continue;
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
-      size.m_numConstraintRows = static_cast<JointConstraint*>(constraints[i])->planned().size();
+      size.m_numConstraintRows = static_cast<JointConstraint*>(constraints[i])->rows().size();
     } else {
       constraints[i]->getInfo1(&size);
     }
@@ -200,7 +200,7 @@ void IslandSolver::apply_gear_impulse(const GearRow& row, btScalar impulse) {
 
 // Registers `count` rows for the sweeps; the last ones, one bounded row (if any) and `locked` ones, form the block.
 JointBlock& IslandSolver::add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked) {
-  JointRows& entry = joints_.expandNonInitializing();
+  SweptJoint& entry = joints_.expandNonInitializing();
   entry.first = static_cast<int>(rows - &m_tmpSolverNonContactConstraintPool[0]);
   entry.scalar = count - locked - (bounded ? 1 : 0);
   entry.body_a = rows->m_solverBodyIdA;
@@ -259,9 +259,9 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
     row.m_jacDiagABInv = step;
     row.m_cfm *= step;
   }
-  JointBlock& block = add_rows(rows, count, joint.has_bounded_row(), joint.locked_rows());
+  JointBlock& block = add_rows(rows, count, joint.rows().has_bounded(), joint.rows().locked());
   PairVelocity v(solver_a, solver_b);
-  block.warm_start(joint.warm_impulses(), v);
+  block.warm_start(joint.warm_start().block_impulses(), v);
   v.store(solver_a, solver_b);
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
 }
@@ -272,7 +272,7 @@ btScalar IslandSolver::sweep_joints() {
   btScalar largest = 0;
   for (int i = 0; i < gears_.size(); ++i) largest = std::max(largest, sweep_gear(i));
   for (int i = 0; i < joints_.size(); ++i) {
-    JointRows& joint = joints_[i];
+    SweptJoint& joint = joints_[i];
     btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];
     btSolverBody& b = m_tmpSolverBodyPool[joint.body_b];
     PairVelocity v(a, b);

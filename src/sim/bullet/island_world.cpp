@@ -1,10 +1,13 @@
-// IslandWorld: finds islands, sorts their bodies, joints and contacts by counting, and solves them in batches.
+// IslandWorld: replaces stages of Bullet's step, and solves islands in batches.
 #include "sim/bullet/island_world.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "base/memory/prefetch.h"
+#include "sim/bullet/island_solver.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/bullet/spin.h"
 #include "sim/collision/dispatcher.h"
 #include "sim/world/stability.h"
@@ -12,26 +15,14 @@
 namespace limber {
 namespace {
 
-/// A batch is complete with this many joints and contact pairs, or this many bodies; results don't depend on it.
+/// A batch is complete with this many joints and contact pairs; results don't depend on it.
 constexpr int kBatchConstraints = 16;
-constexpr int kBatchBodies = 64;
 /// Least number of joints, contact pairs and bodies in a step for which threads are woken; results don't depend on it.
 constexpr int kMinParallelWork = 128;
 /// Number of objects to prefetch ahead.
 constexpr int kObjectsAhead = 8;
 /// Contact pairs per block of Bullet's pool.
 constexpr int kManifoldPoolSize = 64;
-
-// Turns counts per island in start[1..] into start indices and copies them to cursor.
-void to_start_indices(btAlignedObjectArray<int>& start, btAlignedObjectArray<int>& cursor) {
-  for (int i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  cursor.copyFromArray(start);
-}
-
-void fill_with_zeros(btAlignedObjectArray<int>& a, int size) {
-  a.resizeNoInitialize(size);
-  for (int i = 0; i < size; ++i) a[i] = 0;
-}
 
 void disable_bullet_gyroscopic_torque(btRigidBody& body) {
   body.setFlags(body.getFlags() & ~(BT_ENABLE_GYROSCOPIC_FORCE_EXPLICIT | BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD |
@@ -66,6 +57,8 @@ WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()
     solvers.push_back(std::make_unique<IslandSolver>());
   }
 }
+
+WorldParts::~WorldParts() = default;
 
 IslandWorld::IslandWorld(const WorldSetup& setup)
     : WorldParts(setup),
@@ -103,14 +96,14 @@ void IslandWorld::step(double h, int substeps) {
     first_substep_ = i == 0;
     last_substep_ = i + 1 == substeps;
     for (const auto& solver : solvers) solver->set_substep(substeps - i, substeps);
-    if (structure_cached_ && awake_.size() == 0 && awake_joints_.size() == 0 && !sleep_.any_wake_requested()) {
+    if (awake_.valid(getNumCollisionObjects()) && awake_.empty() && !sleep_.any_wake_requested()) {
       sleeping_step();
     } else {
       internalSingleStepSimulation(step_length);
     }
   }
   first_substep_ = last_substep_ = false;
-  if (structure_cached_ && sleep_.end_tick({awake_index_, awake_, awake_joints_})) structure_cached_ = false;
+  if (awake_.valid(getNumCollisionObjects()) && sleep_.end_tick(awake_)) awake_.invalidate();
 }
 
 // Internal step in which everything sleeps.
@@ -127,7 +120,7 @@ void IslandWorld::refresh_joints() {
 
 void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_collisions) {
   const BulletMemory::Scope scope(memory);
-  structure_cached_ = false;
+  awake_.invalidate();
   sleep_.wake(constraint->getRigidBodyA());
   sleep_.wake(constraint->getRigidBodyB());
   btDiscreteDynamicsWorld::addConstraint(constraint, disable_collisions);
@@ -136,14 +129,14 @@ void IslandWorld::addConstraint(btTypedConstraint* constraint, bool disable_coll
 
 void IslandWorld::addRigidBody(btRigidBody* body) {
   const BulletMemory::Scope scope(memory);
-  structure_cached_ = false;
+  awake_.invalidate();
   disable_bullet_gyroscopic_torque(*body);
   btDiscreteDynamicsWorld::addRigidBody(body);
 }
 
 void IslandWorld::addRigidBody(btRigidBody* body, int group, int mask) {
   const BulletMemory::Scope scope(memory);
-  structure_cached_ = false;
+  awake_.invalidate();
   disable_bullet_gyroscopic_torque(*body);
   btDiscreteDynamicsWorld::addRigidBody(body, group, mask);
 }
@@ -154,13 +147,13 @@ void IslandWorld::addCollisionObject(btCollisionObject* object, int group, int m
 }
 
 void IslandWorld::removeRigidBody(btRigidBody* body) {
-  structure_cached_ = false;
+  awake_.invalidate();
   sleep_.remove(*body);
   btDiscreteDynamicsWorld::removeRigidBody(body);
 }
 
 void IslandWorld::wake_all() {
-  if (sleep_.sleeping() > 0) structure_cached_ = false;
+  if (sleep_.sleeping() > 0) awake_.invalidate();
   sleep_.wake_all();
 }
 
@@ -194,7 +187,7 @@ void IslandWorld::removeConstraint(btTypedConstraint* constraint) {
   const int count = m_constraints.size();
   const int index = m_constraints.findLinearSearch(constraint);
   if (index == count) return;
-  structure_cached_ = false;
+  awake_.invalidate();
   for (int i = index; i + 1 < count; ++i) m_constraints[i] = m_constraints[i + 1];
   m_constraints.pop_back();
   const BulletMemory::Scope scope(memory);
@@ -221,8 +214,8 @@ void IslandWorld::update_pairs(btCollisionObject& object) {
 // Prepares the step: wakes objects and updates the cached structure. Bodies are updated in solve_batch().
 void IslandWorld::predictUnconstraintMotion(btScalar) {
   unstable_.store(false, std::memory_order_relaxed);
-  if (sleep_.execute_wakes(!first_substep_)) structure_cached_ = false;
-  if (!structure_cached_) cache_structure();
+  if (sleep_.execute_wakes(!first_substep_)) awake_.invalidate();
+  collect_awake();
   static_cast<Dispatcher&>(*dispatcher).set_sleeping(sleep_.sleeping() > 0);
 }
 void IslandWorld::integrateTransforms(btScalar) {}
@@ -231,202 +224,69 @@ void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collis
 
 void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
-  if (!structure_cached_ || awake_index_.size() != getNumCollisionObjects()) cache_structure();
-  const int count = with_aabb_.size();
+  collect_awake();
+  const btAlignedObjectArray<btCollisionObject*>& objects = awake_.with_aabb();
+  const int count = objects.size();
   left_aabb_.resizeNoInitialize(count);
-  for_each(with_aabb_, [&](int i, btCollisionObject& object) {
-    if (i + kObjectsAhead / 2 < count) Broadphase::prefetch_proxy(*with_aabb_[i + kObjectsAhead / 2]);
+  for_each(objects, [&](int i, btCollisionObject& object) {
+    if (i + kObjectsAhead / 2 < count) Broadphase::prefetch_proxy(*objects[i + kObjectsAhead / 2]);
     left_aabb_[i] =
         Broadphase::left_aabb(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
   });
   int left_count = 0;
   for (int i = 0; i < count; ++i) {
     if (left_aabb_[i] == nullptr) continue;
-    if (with_aabb_[i]->isStaticObject()) sleep_.wake(*with_aabb_[i]);
+    if (objects[i]->isStaticObject()) sleep_.wake(*objects[i]);
     left_aabb_[left_count++] = left_aabb_[i];
   }
-  if (sleep_.execute_wakes(!first_substep_)) structure_cached_ = false;
+  if (sleep_.execute_wakes(!first_substep_)) awake_.invalidate();
   if (left_count > 0) broadphase->update_aabbs({&left_aabb_[0], static_cast<std::size_t>(left_count)});
 }
 
 void IslandWorld::updateActivationState(btScalar) { sleep_.end_step(); }
 
+void IslandWorld::collect_awake() {
+  if (awake_.valid(getNumCollisionObjects())) return;
+  awake_.collect(m_nonStaticRigidBodies, m_collisionObjects, m_constraints);
+}
+
+void IslandWorld::calculateSimulationIslands() {
+  BT_PROFILE("calculateSimulationIslands");
+  if (sleep_.wake_touched(!first_substep_)) awake_.invalidate();
+  collect_awake();
+  islands_.find(awake_, getPairCache()->getOverlappingPairArray());
+  if (!last_substep_) return;
+  for (int i = 0; i < islands_.static_joints().size(); ++i) end_tick(*islands_.static_joints()[i]);
+}
+
 void IslandWorld::solveConstraints(btContactSolverInfo& info) {
-  sort_contacts();
-  gather_batches(info.m_minimumSolverBatchSize);
+  islands_.find_contacts(awake_, *getDispatcher());
+  // the direct solver counts and falls back per island
+  islands_.make_batches(info.m_minimumSolverBatchSize, solvers.front()->direct_enabled());
   solve_islands(info);
 }
 
-int IslandWorld::root_of(btAlignedObjectArray<int>& parent, int index) {
-  while (parent[index] != index) index = parent[index] = parent[parent[index]];
-  return index;
-}
-
-void IslandWorld::unite(btAlignedObjectArray<int>& parent, int a, int b) {
-  if (a >= 0 && b >= 0) parent[root_of(parent, a)] = root_of(parent, b);
-}
-
-// Caches the structure of the world, so that steps don't iterate over all objects.
-void IslandWorld::cache_structure() {
-  awake_index_.resizeNoInitialize(getNumCollisionObjects());
-  for (int i = 0; i < awake_index_.size(); ++i) awake_index_[i] = -1;
-  awake_.resizeNoInitialize(0);
-  for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-    btRigidBody& body = *m_nonStaticRigidBodies[i];
-    if (!body.isActive()) continue;
-    awake_index_[body.getWorldArrayIndex()] = awake_.size();
-    awake_.push_back(&body);
-  }
-  const auto is_asleep = [](const btCollisionObject& object) { return !object.isStaticObject() && !object.isActive(); };
-  with_aabb_.resizeNoInitialize(0);
-  for (int i = 0; i < m_collisionObjects.size(); ++i) {
-    if (!is_asleep(*m_collisionObjects[i])) with_aabb_.push_back(m_collisionObjects[i]);
-  }
-  joint_parent_.resizeNoInitialize(awake_.size());
-  for (int i = 0; i < joint_parent_.size(); ++i) joint_parent_[i] = i;
-  joint_bodies_.resizeNoInitialize(0);
-  awake_joints_.resizeNoInitialize(0);
-  for (int i = 0; i < m_constraints.size(); ++i) {
-    const btRigidBody& a = m_constraints[i]->getRigidBodyA();
-    const btRigidBody& b = m_constraints[i]->getRigidBodyB();
-    if (is_asleep(a) || is_asleep(b)) continue;
-    joint_bodies_.push_back({awake_index(a), awake_index(b)});
-    awake_joints_.push_back(m_constraints[i]);
-    unite(joint_parent_, awake_index(a), awake_index(b));
-  }
-  structure_cached_ = true;
-}
-
-// Unites bodies that are joined or whose boxes overlap.
-void IslandWorld::calculateSimulationIslands() {
-  BT_PROFILE("calculateSimulationIslands");
-  if (sleep_.wake_touched(!first_substep_)) structure_cached_ = false;
-  if (!structure_cached_ || awake_index_.size() != getNumCollisionObjects()) cache_structure();
-  parent_.copyFromArray(joint_parent_);
-  const btBroadphasePairArray& pairs = getPairCache()->getOverlappingPairArray();
-  for (int i = 0; i < pairs.size(); ++i) {
-    const auto index_of = [&](const btBroadphaseProxy* proxy) {
-      return awake_index(*static_cast<const btCollisionObject*>(proxy->m_clientObject));
-    };
-    unite(parent_, index_of(pairs[i].m_pProxy0), index_of(pairs[i].m_pProxy1));
-  }
-  sort_bodies();
-  sort_joints();
-}
-
-void IslandWorld::sort_bodies() {
-  // islands are numbered in the order of their first body
-  const int count = awake_.size();
-  island_of_root_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) island_of_root_[i] = -1;
-  island_.resizeNoInitialize(count);
-  island_count_ = 0;
-  fill_with_zeros(body_start_, count + 1);
-  for (int i = 0; i < count; ++i) {
-    int& island = island_of_root_[root_of(parent_, i)];
-    if (island < 0) island = island_count_++;
-    island_[i] = island;
-    ++body_start_[island + 1];
-  }
-  body_start_.resizeNoInitialize(island_count_ + 1);
-  to_start_indices(body_start_, cursor_);
-  bodies_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) bodies_[cursor_[island_[i]]++] = awake_[i];
-}
-
-void IslandWorld::sort_joints() {
-  const int count = awake_joints_.size();
-  const auto island = [&](int joint) {
-    const JointBodies& bodies = joint_bodies_[joint];
-    return bodies.a < 0 && bodies.b < 0 ? -1 : island_[bodies.a >= 0 ? bodies.a : bodies.b];
-  };
-  fill_with_zeros(joint_start_, island_count_ + 1);
-  for (int i = 0; i < count; ++i) {
-    if (island(i) >= 0) ++joint_start_[island(i) + 1];
-  }
-  to_start_indices(joint_start_, cursor_);
-  joints_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) {
-    if (island(i) >= 0) {
-      joints_[cursor_[island(i)]++] = awake_joints_[i];
-    } else if (last_substep_) {
-      end_tick(*awake_joints_[i]);
-    }
-  }
-}
-
-void IslandWorld::sort_contacts() {
-  btDispatcher* dispatch = getDispatcher();
-  ordered_manifolds_.resizeNoInitialize(0);
-  const int manifolds = dispatch->getNumManifolds();
-  for (int i = 0; i < manifolds; ++i) {
-    if (i + kObjectsAhead < manifolds) prefetch_end(*dispatch->getManifoldByIndexInternal(i + kObjectsAhead));
-    btPersistentManifold* manifold = dispatch->getManifoldByIndexInternal(i);
-    if (manifold->getNumContacts() == 0) continue;
-    const btCollisionObject* a = manifold->getBody0();
-    const btCollisionObject* b = manifold->getBody1();
-    const int index = std::max(awake_index(*a), awake_index(*b));
-    if (index < 0 || !dispatch->needsResponse(a, b)) continue;
-    ordered_manifolds_.push_back(
-        {island_[index], a->getBroadphaseHandle()->m_uniqueId, b->getBroadphaseHandle()->m_uniqueId, manifold});
-  }
-  // Bullet's order of manifolds depends on the history of all islands; the age of the parts doesn't
-  const int count = ordered_manifolds_.size();
-  if (count > 1) {
-    std::sort(&ordered_manifolds_[0], &ordered_manifolds_[0] + count,
-              [](const OrderedManifold& x, const OrderedManifold& y) {
-                if (x.island != y.island) return x.island < y.island;
-                return x.first != y.first ? x.first < y.first : x.second < y.second;
-              });
-  }
-  fill_with_zeros(contact_start_, island_count_ + 1);
-  contacts_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) {
-    contacts_[i] = ordered_manifolds_[i].manifold;
-    ++contact_start_[ordered_manifolds_[i].island + 1];
-  }
-  to_start_indices(contact_start_, cursor_);
-}
-
-void IslandWorld::gather_batches(int min_work) {
-  batches_.resizeNoInitialize(0);
-  batches_.push_back(0);
-  for (int last = 1; last <= island_count_; ++last) {
-    const int first = batches_[batches_.size() - 1];
-    const int joints = joint_start_[last] - joint_start_[first];
-    const int contacts = contact_start_[last] - contact_start_[first];
-    // the direct solver counts and falls back per island
-    const bool one_island =
-        solvers.front()->direct_enabled() && (joints + contacts > 0 || (last < island_count_ && has_work(last)));
-    const int bodies = body_start_[last] - body_start_[first];
-    if (one_island || joints + contacts >= min_work || bodies >= kBatchBodies || last == island_count_)
-      batches_.push_back(last);
-  }
-}
-
 // Does all the work of a step on the bodies and joints of one batch while they are in the cache.
-void IslandWorld::solve_batch(int batch, IslandSolver& solver, const btContactSolverInfo& info) {
-  const auto range = [](auto& items, int first) { return first < items.size() ? &items[first] : nullptr; };
-  const int first = batches_[batch];
-  const int last = batches_[batch + 1];
-  const auto count = [&](const btAlignedObjectArray<int>& start) { return start[last] - start[first]; };
-  load_bodies(first, last, info.m_timeStep);
-  for (int island = first; island < last; ++island) {
-    if (has_work(island)) solver.direct().count_islands(1);
-  }
-  solver.set_contacts_direct(last - first == 1 && count(joint_start_) == 0 && count(contact_start_) > 0);
-  solver.solveGroup(range(bodies_, body_start_[first]), count(body_start_), range(contacts_, contact_start_[first]),
-                    count(contact_start_), range(joints_, joint_start_[first]), count(joint_start_), info, nullptr,
-                    getDispatcher());
-  move_bodies(first, last, info.m_timeStep);
+void IslandWorld::solve_batch(const Islands::Batch& batch, IslandSolver& solver, const btContactSolverInfo& info) {
+  const auto first = [](auto& items, Islands::Range range) {
+    return range.first < items.size() ? &items[range.first] : nullptr;
+  };
+  load_bodies(batch.bodies, info.m_timeStep);
+  solver.direct().count_islands(batch.constrained_islands);
+  solver.set_contacts_direct(batch.islands == 1 && batch.joints.count == 0 && batch.contacts.count > 0);
+  solver.solveGroup(first(islands_.bodies(), batch.bodies), batch.bodies.count,
+                    first(islands_.contacts(), batch.contacts), batch.contacts.count,
+                    first(islands_.joints(), batch.joints), batch.joints.count, info, nullptr, getDispatcher());
+  const bool any_fast = move_bodies(batch.bodies, info.m_timeStep);
+  end_joints(batch.joints, info.m_timeStep, any_fast);
 }
 
-void IslandWorld::load_bodies(int first, int last, btScalar h) {
-  const int batch_size = body_start_[last] - body_start_[first];
-  for (int i = body_start_[first]; i < body_start_[last]; ++i) {
+void IslandWorld::load_bodies(Islands::Range range, btScalar h) {
+  const btAlignedObjectArray<btCollisionObject*>& bodies = islands_.bodies();
+  for (int i = range.first; i < range.end(); ++i) {
     // prefetch for the next batch, which takes about as long as this one
-    if (i + batch_size < body_start_[island_count_]) prefetch(bodies_[i + batch_size], sizeof(btRigidBody));
-    btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
+    if (i + range.count < bodies.size()) prefetch(bodies[i + range.count], sizeof(btRigidBody));
+    btRigidBody& body = static_cast<btRigidBody&>(*bodies[i]);
     if (first_substep_) {
       body.applyGravity();
       reset_clamp(body);
@@ -435,10 +295,11 @@ void IslandWorld::load_bodies(int first, int last, btScalar h) {
   }
 }
 
-void IslandWorld::move_bodies(int first, int last, btScalar h) {
+// Returns true if one of the bodies rotates too fast for its joints to count turns without prediction.
+bool IslandWorld::move_bodies(Islands::Range range, btScalar h) {
   bool any_fast = false;
-  for (int i = body_start_[first]; i < body_start_[last]; ++i) {
-    btRigidBody& body = static_cast<btRigidBody&>(*bodies_[i]);
+  for (int i = range.first; i < range.end(); ++i) {
+    btRigidBody& body = static_cast<btRigidBody&>(*islands_.bodies()[i]);
     if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
     const double clamped = move_body(body, static_cast<double>(h));
     if (clamped > 0) record_clamp(body, clamped / static_cast<double>(h));
@@ -450,22 +311,29 @@ void IslandWorld::move_bodies(int first, int last, btScalar h) {
         any_fast || static_cast<double>(body.getAngularVelocity().length2() * h * h) > kSlowRotation * kSlowRotation;
     if (find_instability(body, static_cast<double>(h)) != nullptr) unstable_.store(true, std::memory_order_relaxed);
   }
-  const int batch_size = joint_start_[last] - joint_start_[first];
-  for (int i = joint_start_[first]; i < joint_start_[last]; ++i) {
-    if (i + batch_size < joint_start_[island_count_]) prefetch(joints_[i + batch_size], sizeof(JointConstraint));
-    if (any_fast) predict_angles(*joints_[i], h, !last_substep_);
-    if (last_substep_) end_tick(*joints_[i]);
+  return any_fast;
+}
+
+void IslandWorld::end_joints(Islands::Range range, btScalar h, bool any_fast) {
+  const btAlignedObjectArray<btTypedConstraint*>& joints = islands_.joints();
+  for (int i = range.first; i < range.end(); ++i) {
+    if (i + range.count < joints.size()) prefetch(joints[i + range.count], sizeof(JointConstraint));
+    if (any_fast) predict_angles(*joints[i], h, !last_substep_);
+    if (last_substep_) end_tick(*joints[i]);
   }
 }
 
 // Islands share only static bodies, which solvers never write to (none is kinematic).
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
   const BulletMemory::Scope heap(nullptr);  // for the solvers' rows; threads of the pool have no other memory
-  ThreadPool* const pool =
-      joints_.size() + contacts_.size() + bodies_.size() >= kMinParallelWork ? thread_pool.get() : nullptr;
-  parallel_for(pool, batches_.size() - 1,
-               [&](int batch, int thread) { solve_batch(batch, *solvers[static_cast<std::size_t>(thread)], info); });
+  const int work = islands_.joints().size() + islands_.contacts().size() + islands_.bodies().size();
+  parallel_for(work >= kMinParallelWork ? thread_pool.get() : nullptr, islands_.batch_count(),
+               [&](int batch, int thread) {
+                 solve_batch(islands_.batch(batch), *solvers[static_cast<std::size_t>(thread)], info);
+               });
 }
+
+DirectSolver& IslandWorld::direct() { return solvers.front()->direct(); }
 
 void IslandWorld::set_direct(bool on) {
   for (const auto& solver : solvers) solver->set_direct(on);

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/memory/prefetch.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/collision/dispatcher.h"
 
 namespace limber {
@@ -138,8 +138,16 @@ bool SleepTracker::wake_groups(bool mid_tick) {
 bool SleepTracker::execute_wakes(bool mid_tick) {
   if (!any_wake_requested_.load(std::memory_order_relaxed)) return false;
   any_wake_requested_.store(false, std::memory_order_relaxed);
-  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   groups_.resizeNoInitialize(0);
+  const bool moved = handle_requests();
+  if (moved && sleeping_ > 0) queue_touched_by_moved();
+  std::fill_n(&wake_requested_[0], wake_requested_.size(), std::uint8_t{0});
+  return wake_groups(mid_tick);
+}
+
+// Activates static objects and queues the groups of sleeping ones. Returns true if there is a static object.
+bool SleepTracker::handle_requests() {
+  const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   bool moved = false;
   for (int i = 0; i < wake_requested_.size(); ++i) {
     if (wake_requested_[i] == 0) continue;
@@ -155,22 +163,22 @@ bool SleepTracker::execute_wakes(bool mid_tick) {
     }
     restart(tracks_[i]);
   }
-  if (moved && sleeping_ > 0) {
-    const auto queue_if_touched = [&](const btCollisionObject& a, const btCollisionObject& b) {
-      if (a.isStaticObject() && a.isActive() && sleeps(b)) queue_group(b);
-      if (b.isStaticObject() && b.isActive() && sleeps(a)) queue_group(a);
-    };
-    const btBroadphasePairArray& pairs = world_.getPairCache()->getOverlappingPairArray();
-    for (int i = 0; i < pairs.size(); ++i) {
-      queue_if_touched(*static_cast<const btCollisionObject*>(pairs[i].m_pProxy0->m_clientObject),
-                       *static_cast<const btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject));
-    }
-    for (int i = 0; i < world_.getNumConstraints(); ++i) {
-      queue_if_touched(world_.getConstraint(i)->getRigidBodyA(), world_.getConstraint(i)->getRigidBodyB());
-    }
+  return moved;
+}
+
+void SleepTracker::queue_touched_by_moved() {
+  const auto queue_if_touched = [&](const btCollisionObject& a, const btCollisionObject& b) {
+    if (a.isStaticObject() && a.isActive() && sleeps(b)) queue_group(b);
+    if (b.isStaticObject() && b.isActive() && sleeps(a)) queue_group(a);
+  };
+  const btBroadphasePairArray& pairs = world_.getPairCache()->getOverlappingPairArray();
+  for (int i = 0; i < pairs.size(); ++i) {
+    queue_if_touched(*static_cast<const btCollisionObject*>(pairs[i].m_pProxy0->m_clientObject),
+                     *static_cast<const btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject));
   }
-  std::fill_n(&wake_requested_[0], wake_requested_.size(), std::uint8_t{0});
-  return wake_groups(mid_tick);
+  for (int i = 0; i < world_.getNumConstraints(); ++i) {
+    queue_if_touched(world_.getConstraint(i)->getRigidBodyA(), world_.getConstraint(i)->getRigidBodyB());
+  }
 }
 
 bool SleepTracker::wake_touched(bool mid_tick) {
@@ -214,89 +222,86 @@ void SleepTracker::observe(const btRigidBody& body, btScalar seconds) {
     any_rested_.store(true, std::memory_order_relaxed);
 }
 
-int SleepTracker::root_of(int index) {
-  while (parent_[index] != index) index = parent_[index] = parent_[parent_[index]];
-  return index;
-}
-
-void SleepTracker::unite(int a, int b) {
-  if (a >= 0 && b >= 0) parent_[root_of(a)] = root_of(b);
-}
-
-bool SleepTracker::end_tick(const Awake& awake) {
+bool SleepTracker::end_tick(const AwakeObjects& awake) {
   if (!any_rested_.load(std::memory_order_relaxed)) return false;
   any_rested_.store(false, std::memory_order_relaxed);
-  const int count = awake.parts.size();
   find_islands(awake);
-  for (int i = 0; i < count; ++i) {
-    const Track& track = tracks_[awake.parts[i]->getWorldArrayIndex()];
-    const int root = root_of(i);
-    const bool at_rest =
-        jointed_[root] != 0 ? track.with_joints.seconds >= kJointedRest : track.without_joints.seconds >= kOtherRest;
-    const bool rests = track.may_sleep && at_rest;
-    if (!rests || (supported_[root] == 0 && !is_motionless(*awake.parts[i]))) forced_awake_[root] = 1;
-  }
+  find_restless(awake);
   const int before = sleeping_;
+  const int count = awake.bodies().size();
   group_of_.resizeNoInitialize(count);
   for (int i = 0; i < count; ++i) group_of_[i] = 0;
   for (int i = 0; i < count; ++i) {
-    const int root = root_of(i);
+    const int root = connected_.root(i);
     if (forced_awake_[root] != 0) continue;
     if (group_of_[root] == 0) group_of_[root] = ++last_group_;
-    btRigidBody& body = *awake.parts[i];
-    tracks_[body.getWorldArrayIndex()].group = group_of_[root];
-    body.forceActivationState(ISLAND_SLEEPING);
-    body.setLinearVelocity(btVector3(0, 0, 0));
-    body.setAngularVelocity(btVector3(0, 0, 0));
-    body.setInterpolationLinearVelocity(btVector3(0, 0, 0));
-    body.setInterpolationAngularVelocity(btVector3(0, 0, 0));
-    body.clearForces();
-    ++sleeping_;
+    put_to_sleep(*awake.bodies()[i], group_of_[root]);
   }
   if (sleeping_ == before) return false;
   ++version_;
-  for (int i = 0; i < awake.joints.size(); ++i) {
-    const btTypedConstraint& joint = *awake.joints[i];
+  for (int i = 0; i < awake.joints().size(); ++i) {
+    btTypedConstraint& joint = *awake.joints()[i];
     if (!sleeps(joint.getRigidBodyA()) && !sleeps(joint.getRigidBodyB())) continue;
-    if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(*awake.joints[i]).refresh();
+    if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).refresh();
   }
   return true;
 }
 
+// Forces the islands of parts that are not at rest to stay awake.
+void SleepTracker::find_restless(const AwakeObjects& awake) {
+  for (int i = 0; i < awake.bodies().size(); ++i) {
+    const btRigidBody& body = *awake.bodies()[i];
+    const Track& track = tracks_[body.getWorldArrayIndex()];
+    const int root = connected_.root(i);
+    const bool at_rest =
+        jointed_[root] != 0 ? track.with_joints.seconds >= kJointedRest : track.without_joints.seconds >= kOtherRest;
+    const bool rests = track.may_sleep && at_rest;
+    if (!rests || (supported_[root] == 0 && !is_motionless(body))) forced_awake_[root] = 1;
+  }
+}
+
+void SleepTracker::put_to_sleep(btRigidBody& body, std::uint32_t group) {
+  tracks_[body.getWorldArrayIndex()].group = group;
+  body.forceActivationState(ISLAND_SLEEPING);
+  body.setLinearVelocity(btVector3(0, 0, 0));
+  body.setAngularVelocity(btVector3(0, 0, 0));
+  body.setInterpolationLinearVelocity(btVector3(0, 0, 0));
+  body.setInterpolationAngularVelocity(btVector3(0, 0, 0));
+  body.clearForces();
+  ++sleeping_;
+}
+
 // Unites objects that touch or are joined, and determines which islands are supported and which have a motor that
 // commands a motion.
-void SleepTracker::find_islands(const Awake& awake) {
-  const int count = awake.parts.size();
-  parent_.resizeNoInitialize(count);
+void SleepTracker::find_islands(const AwakeObjects& awake) {
+  const int count = awake.bodies().size();
+  connected_.reset(count);
   supported_.resizeNoInitialize(count);
   jointed_.resizeNoInitialize(count);
   forced_awake_.resizeNoInitialize(count);
-  for (int i = 0; i < count; ++i) {
-    parent_[i] = i;
-    supported_[i] = jointed_[i] = forced_awake_[i] = 0;
-  }
-  const auto index_of = [&](const btCollisionObject& object) { return awake.part_index[object.getWorldArrayIndex()]; };
+  for (int i = 0; i < count; ++i) supported_[i] = jointed_[i] = forced_awake_[i] = 0;
   const auto for_each_link = [&](auto&& link) {
     btDispatcher& dispatcher = *world_.getDispatcher();
     for (int i = 0; i < dispatcher.getNumManifolds(); ++i) {
       const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-      if (manifold.getNumContacts() > 0) link(index_of(*manifold.getBody0()), index_of(*manifold.getBody1()));
+      if (manifold.getNumContacts() > 0)
+        link(awake.index_of(*manifold.getBody0()), awake.index_of(*manifold.getBody1()));
     }
-    for (int i = 0; i < awake.joints.size(); ++i) {
-      link(index_of(awake.joints[i]->getRigidBodyA()), index_of(awake.joints[i]->getRigidBodyB()));
+    for (int i = 0; i < awake.joints().size(); ++i) {
+      link(awake.index_of(awake.joints()[i]->getRigidBodyA()), awake.index_of(awake.joints()[i]->getRigidBodyB()));
     }
   };
-  for_each_link([this](int a, int b) { unite(a, b); });
+  for_each_link([this](int a, int b) { connected_.unite(a, b); });
   for_each_link([this](int a, int b) {
-    if ((a < 0) != (b < 0)) supported_[root_of(std::max(a, b))] = 1;
+    if ((a < 0) != (b < 0)) supported_[connected_.root(std::max(a, b))] = 1;
   });
-  for (int i = 0; i < awake.joints.size(); ++i) {
-    const btTypedConstraint& joint = *awake.joints[i];
-    const int index = std::max(index_of(joint.getRigidBodyA()), index_of(joint.getRigidBodyB()));
+  for (int i = 0; i < awake.joints().size(); ++i) {
+    const btTypedConstraint& joint = *awake.joints()[i];
+    const int index = std::max(awake.index_of(joint.getRigidBodyA()), awake.index_of(joint.getRigidBodyB()));
     if (index < 0) continue;
-    jointed_[root_of(index)] = 1;
+    jointed_[connected_.root(index)] = 1;
     if (joint.getConstraintType() != JointConstraint::kType) continue;
-    if (static_cast<const JointConstraint&>(joint).commands_motion()) forced_awake_[root_of(index)] = 1;
+    if (static_cast<const JointConstraint&>(joint).commands_motion()) forced_awake_[connected_.root(index)] = 1;
   }
 }
 

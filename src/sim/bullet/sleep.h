@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "sim/bullet/awake_objects.h"
 #include "sim/bullet/bullet.h"
+#include "sim/bullet/union_find.h"
 
 namespace limber {
 
@@ -56,14 +58,8 @@ class SleepTracker {
   /// Compares the part's pose with its rest pose. Call in a tick's last internal step, after the part has moved.
   /// `seconds`: length of the tick. [any thread, a different part each]
   void observe(const btRigidBody& body, btScalar seconds);
-  /// Awake objects: by object its index in `parts`, negative for all others; the parts; joints between them.
-  struct Awake {
-    const btAlignedObjectArray<int>& part_index;
-    const btAlignedObjectArray<btRigidBody*>& parts;
-    const btAlignedObjectArray<btTypedConstraint*>& joints;
-  };
   /// Ends a tick: puts islands at rest to sleep. Returns true if one fell asleep.
-  bool end_tick(const Awake& awake);
+  bool end_tick(const AwakeObjects& awake);
 
   int sleeping() const { return sleeping_; }
   /// Changes whenever a part falls asleep, wakes or is added.
@@ -83,11 +79,13 @@ class SleepTracker {
   static void restart(Track& track) { track.with_joints.seconds = track.without_joints.seconds = 0; }
   bool sleeps(const btCollisionObject& object) const { return !object.isActive() && !object.isStaticObject(); }
   void queue_group(const btCollisionObject& object) { groups_.push_back(tracks_[object.getWorldArrayIndex()].group); }
+  bool handle_requests();
+  void queue_touched_by_moved();
   bool wake_groups(bool mid_tick);
   void wake_body(int index, bool mid_tick);
-  int root_of(int index);
-  void unite(int a, int b);
-  void find_islands(const Awake& awake);
+  void find_islands(const AwakeObjects& awake);
+  void find_restless(const AwakeObjects& awake);
+  void put_to_sleep(btRigidBody& body, std::uint32_t group);
 
   btDiscreteDynamicsWorld& world_;
   btAlignedObjectArray<Track> tracks_;                 // by object
@@ -100,7 +98,7 @@ class SleepTracker {
   // scratch
   btAlignedObjectArray<std::uint32_t> groups_;  // to be woken
   btAlignedObjectArray<int> moved_;             // static objects that are active in this step
-  btAlignedObjectArray<int> parent_;            // union-find over the awake parts
+  UnionFind connected_;                         // awake parts that touch or are joined
   btAlignedObjectArray<std::uint8_t> supported_;
   btAlignedObjectArray<std::uint8_t> jointed_;
   btAlignedObjectArray<std::uint8_t> forced_awake_;  // by root: something keeps it awake

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/solver/gyroscope.h"
 
 namespace limber {
@@ -54,7 +54,7 @@ struct JointSide {
     }
     return found;
   }
-  bool is_outermost(int hinge) const { return joint.order()[0] == hinge - 3; }
+  bool is_outermost(int hinge) const { return joint.pose().order()[0] == hinge - 3; }
   // Returns the part that the axis is fixed to.
   const btRigidBody& owner(int hinge) const {
     return is_outermost(hinge) ? joint.getRigidBodyA() : joint.getRigidBodyB();
@@ -64,7 +64,7 @@ struct JointSide {
   // Axis of the relative rotation of the two parts, as of the last read of the joint.
   Vec3 axis(int hinge, const Mat3& to_world) const {
     if (!is_outermost(hinge) && child) return own_axis(hinge);
-    return from_bt(joint.linear_axis(hinge - 3)) * to_world;
+    return from_bt(joint.pose().linear_axis(hinge - 3)) * to_world;
   }
   bool is_spin_motor(int hinge) const {
     const AxisSettings& s = joint.axis(hinge);
@@ -84,7 +84,7 @@ void for_each_joint(const btRigidBody& body, Visit&& visit) {
     if (constraint->getConstraintType() != JointConstraint::kType || !constraint->isEnabled()) continue;
     const auto& joint = static_cast<const JointConstraint&>(*constraint);
     const bool child = &joint.getRigidBodyB() == &body;
-    visit(JointSide{joint, child ? joint.frame_in_child() : joint.frame_in_parent(),
+    visit(JointSide{joint, child ? joint.pose().frame_in_child() : joint.pose().frame_in_parent(),
                     child ? joint.getRigidBodyA() : joint.getRigidBodyB(), child});
   }
 }
@@ -126,6 +126,15 @@ bool is_symmetric(const Vec3& moments, const Vec3& axis) {
 
 Vec3 off_axis(const Vec3& point, const Vec3& axis) { return point - glm::dot(point, axis) * axis; }
 
+// True if all joints of the body are on this axis through its center of mass.
+bool is_balanced(const btRigidBody& body, const Vec3& axis, double tolerance) {
+  bool all = true;
+  for_each_joint(body, [&](const JointSide& side) {
+    all = all && squared(off_axis(side.pivot(), axis)) <= tolerance * tolerance;
+  });
+  return all;
+}
+
 // A spin in the body's frame.
 struct SpinAxis {
   double spin = 0;  // 0: none
@@ -133,51 +142,56 @@ struct SpinAxis {
   Vec3 body_axis{0};
   Vec3 lever{0};
   const btRigidBody* owner = nullptr;  // the part that the axis is fixed to
+
+  void replace_if_slower(const SpinAxis& other) {
+    if (std::fabs(other.spin) > std::fabs(spin)) *this = other;
+  }
 };
 
-SpinAxis find_spin(const btRigidBody& body, const Vec3& moments, const Mat3& to_world, const Vec3& w) {
-  const double tolerance =
-      kBalanced * std::sqrt(std::max({moments.x, moments.y, moments.z}) * static_cast<double>(body.getInvMass()));
-  const auto balanced = [&](const Vec3& about) {
-    bool all = true;
-    for_each_joint(body, [&](const JointSide& side) {
-      all = all && squared(off_axis(side.pivot(), about)) <= tolerance * tolerance;
-    });
-    return all;
-  };
+// The fastest spin about the axis of a hinge.
+SpinAxis find_hinge_spin(const btRigidBody& body, const Vec3& moments, const Mat3& to_world, const Vec3& w,
+                         double tolerance) {
   SpinAxis found;
-  const auto consider = [&](const Vec3& about, const Vec3& own, const Vec3& off, const btRigidBody& owner) {
-    const double spin = glm::dot(w, about);
-    if (std::fabs(spin) > std::fabs(found.spin)) found = {spin, about, own, off, &owner};
-  };
   const bool leaf = joint_count(body) == 1;
   for_each_joint(body, [&](const JointSide& side) {
     const int hinge = side.hinge_axis();
     if (hinge < 0) return;
     const Vec3 about = side.axis(hinge, to_world);
     const Vec3 own = side.own_axis(hinge);
-    const bool by_motor = side.is_driven(hinge);
-    if (!by_motor && !is_principal(moments, own)) return;
-    if (balanced(own)) {
-      consider(about, own, Vec3(0), side.owner(hinge));
+    if (!side.is_driven(hinge) && !is_principal(moments, own)) return;
+    if (is_balanced(body, own, tolerance)) {
+      found.replace_if_slower({glm::dot(w, about), about, own, Vec3(0), &side.owner(hinge)});
     } else if (side.is_spin_motor(hinge) && leaf && squared(from_bt(side.other.getAngularVelocity())) < squared(w)) {
-      consider(about, own, -off_axis(side.pivot(), own), side.owner(hinge));
+      const Vec3 lever = -off_axis(side.pivot(), own);
+      found.replace_if_slower({glm::dot(w, about), about, own, lever, &side.owner(hinge)});
     }
   });
-  if (found.spin != 0) return found;
-  Vec3 about(0);
+  return found;
+}
+
+// The principal axis of inertia nearest to the rotation. If all axes are principal: the one through a pivot, or, if the
+// pivots are at the center of mass, that of the rotation.
+Vec3 principal_axis(const btRigidBody& body, const Vec3& moments, const Vec3& w, double tolerance) {
+  Vec3 axis(0);
   if (nearly_equal(moments.x, moments.y) && nearly_equal(moments.y, moments.z)) {
-    // any axis is a principal one: use that through a pivot, or of the rotation
     for_each_joint(body, [&](const JointSide& side) {
-      if (squared(side.pivot()) > tolerance * tolerance) about = normalized(side.pivot());
+      if (squared(side.pivot()) > tolerance * tolerance) axis = normalized(side.pivot());
     });
-    if (about == Vec3(0)) about = normalized(w);
-  } else {
-    int k = std::fabs(w.y) > std::fabs(w.x) ? 1 : 0;
-    if (std::fabs(w.z) > std::fabs(w[k])) k = 2;
-    about[k] = 1;
+    return axis == Vec3(0) ? normalized(w) : axis;
   }
-  if (balanced(about)) consider(about, about, Vec3(0), body);
+  int k = std::fabs(w.y) > std::fabs(w.x) ? 1 : 0;
+  if (std::fabs(w.z) > std::fabs(w[k])) k = 2;
+  axis[k] = 1;
+  return axis;
+}
+
+SpinAxis find_spin(const btRigidBody& body, const Vec3& moments, const Mat3& to_world, const Vec3& w) {
+  const double tolerance =
+      kBalanced * std::sqrt(std::max({moments.x, moments.y, moments.z}) * static_cast<double>(body.getInvMass()));
+  SpinAxis found = find_hinge_spin(body, moments, to_world, w, tolerance);
+  if (found.spin != 0) return found;
+  const Vec3 axis = principal_axis(body, moments, w, tolerance);
+  if (is_balanced(body, axis, tolerance)) found.replace_if_slower({glm::dot(w, axis), axis, axis, Vec3(0), &body});
   return found;
 }
 

@@ -11,6 +11,7 @@
 #include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
 #include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
 
+#include "sim/collision/box_axes.h"
 #include "sim/collision/contact_features.h"
 #include "sim/collision/contact_manifold.h"
 
@@ -21,10 +22,6 @@ namespace {
 constexpr btScalar kMinAlignment = 0.9998F;
 /// Tolerance outside of the reference face's sides, m.
 constexpr btScalar kClipSlack = 1e-5F;
-/// An axis of an edge pair or of the second box is preferred only if its separation is larger by this (relative, and in
-/// m), which keeps the choice stable from step to step.
-constexpr btScalar kMinRelativeGain = 0.02F;
-constexpr btScalar kMinGain = 1e-4F;
 
 /// Base class: owns the manifold of a pair.
 class PairAlgorithm : public btCollisionAlgorithm {
@@ -133,19 +130,6 @@ void add_points(const ContactFeature& reference, ContactFeature& incident, bool 
   }
 }
 
-struct Box {
-  const btVector3& center;
-  const btMatrix3x3& axes;  // columns
-  btVector3 half;
-
-  Box(const btBoxShape& shape, const btTransform& pose)
-      : center(pose.getOrigin()), axes(pose.getBasis()), half(shape.getHalfExtentsWithoutMargin()) {
-    const btScalar margin = shape.getMarginNV();
-    half += btVector3(margin, margin, margin);
-  }
-  btVector3 axis(int i) const { return axes.getColumn(i); }
-};
-
 class BoxAlgorithm : public PairAlgorithm {
  public:
   using PairAlgorithm::PairAlgorithm;
@@ -162,11 +146,11 @@ class BoxAlgorithm : public PairAlgorithm {
       points.write();
       return;
     }
-    const Axis axis = find_axis(box_a, box_b, points, separating_axis_);
-    if (axis.kind == Axis::edges) {
+    const BoxAxis axis = separating_axis_.find(box_a, box_b, points);
+    if (axis.kind == BoxAxis::edges) {
       add_edges(box_a, box_b, axis, points);
-    } else if (axis.kind != Axis::none) {
-      const bool first = axis.kind == Axis::face_a;
+    } else if (axis.kind != BoxAxis::none) {
+      const bool first = axis.kind == BoxAxis::face_a;
       ContactFeature reference;
       ContactFeature incident;
       const btTransform& reference_pose = (first ? a : b)->getWorldTransform();
@@ -182,106 +166,7 @@ class BoxAlgorithm : public PairAlgorithm {
   }
 
  private:
-  struct Axis {
-    enum Kind : unsigned char { none, face_a, face_b, edges } kind = none;
-    btVector3 normal{0, 0, 0};  // from b to a
-    btScalar separation = -BT_LARGE_FLOAT;
-    int edge_a = 0;
-    int edge_b = 0;
-  };
-
-  // The axis that separated the boxes in the last step; most likely it does so in the next one, too.
-  struct SeparatingAxis {
-    int a = kNone;  // axis of the first box
-    int b = kNone;  // of the second one; both: the cross product
-
-    // True if it separates the boxes until the end of the step by more than rounding errors, so that find_axis() would
-    // return none.
-    bool separates(const Box& first, const Box& second, const ContactManifold& points) const {
-      if (a == kNone && b == kNone) return false;
-      const btVector3 direction = b == kNone   ? first.axis(a)
-                                  : a == kNone ? second.axis(b)
-                                               : first.axis(a).cross(second.axis(b));
-      const btScalar radius =
-          (direction * first.axes).absolute().dot(first.half) + (direction * second.axes).absolute().dot(second.half);
-      const btScalar center_distance = direction.dot(second.center - first.center);
-      const btScalar length = a == kNone || b == kNone ? btScalar(1) : direction.length();
-      return std::fabs(center_distance) - radius -
-                 closing_distance(center_distance, direction.dot(points.relative_motion())) >
-             (points.max_rotation_distance() + kMinGain) * length;
-    }
-    static constexpr int kNone = -1;
-  };
-
-  // Decrease of the signed `distance` along an axis if the second box moves by `motion` along it.
-  static btScalar closing_distance(btScalar distance, btScalar motion) {
-    return std::max(distance > 0 ? -motion : motion, btScalar(0));
-  }
-
-  // Returns none if an axis separates the boxes until the end of the step; `apart_along` is that axis then.
-  static Axis find_axis(const Box& a, const Box& b, const ContactManifold& points, SeparatingAxis& separating_axis) {
-    const btScalar max_distance = points.max_rotation_distance();
-    const btVector3 motion_a = points.relative_motion() * a.axes;
-    const btVector3 motion_b = points.relative_motion() * b.axes;
-    const btMatrix3x3 rotation = a.axes.transposeTimes(b.axes);  // axes of b in the frame of a
-    const btVector3 from_a = (b.center - a.center) * a.axes;
-    const btVector3 from_b = (b.center - a.center) * b.axes;
-    btMatrix3x3 abs_rotation;
-    for (int i = 0; i < 3; ++i) abs_rotation[i] = rotation[i].absolute();
-    Axis best;
-    for (int i = 0; i < 3; ++i) {
-      const btScalar separation = std::fabs(from_a[i]) - a.half[i] - abs_rotation[i].dot(b.half);
-      if (separation - closing_distance(from_a[i], motion_a[i]) > max_distance)
-        return separated_along(i, SeparatingAxis::kNone, separating_axis);
-      if (separation > best.separation + (best.kind == Axis::none ? 0 : kMinGain)) {
-        best = {Axis::face_a, a.axis(i) * (from_a[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
-      }
-    }
-    for (int i = 0; i < 3; ++i) {
-      const btScalar separation = std::fabs(from_b[i]) - b.half[i] - abs_rotation.getColumn(i).dot(a.half);
-      if (separation - closing_distance(from_b[i], motion_b[i]) > max_distance)
-        return separated_along(SeparatingAxis::kNone, i, separating_axis);
-      if (separation > best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation)) {
-        best = {Axis::face_b, b.axis(i) * (from_b[i] > 0 ? btScalar(-1) : btScalar(1)), separation, 0, 0};
-      }
-    }
-    const btScalar min_separation = best.separation + kMinGain + kMinRelativeGain * std::fabs(best.separation);
-    for (int i = 0; i < 3; ++i) {
-      const int i1 = (i + 1) % 3;
-      const int i2 = (i + 2) % 3;
-      for (int k = 0; k < 3; ++k) {
-        const int k1 = (k + 1) % 3;
-        const int k2 = (k + 2) % 3;
-        // axis: cross product of a's axis i and b's axis k, in the frame of a; its length is the sine of their angle
-        const btScalar sine2 = 1 - rotation[i][k] * rotation[i][k];
-        if (sine2 < 1e-4F) continue;
-        const btScalar along = from_a[i2] * rotation[i1][k] - from_a[i1] * rotation[i2][k];
-        const btScalar radius_a = a.half[i1] * abs_rotation[i2][k] + a.half[i2] * abs_rotation[i1][k];
-        const btScalar radius_b = b.half[k1] * abs_rotation[i][k2] + b.half[k2] * abs_rotation[i][k1];
-        const btScalar scaled = std::fabs(along) - radius_a - radius_b;  // times the sine
-        const btScalar threshold =
-            best.kind == Axis::edges ? std::max(min_separation, best.separation + kMinGain) : min_separation;
-        if (scaled <= std::min(threshold, btScalar(0))) continue;
-        const btScalar inverse = 1 / std::sqrt(sine2);
-        const btScalar separation = scaled * inverse;
-        const btScalar motion = (motion_a[i2] * rotation[i1][k] - motion_a[i1] * rotation[i2][k]) * inverse;
-        if (separation - closing_distance(along, motion) > max_distance) return separated_along(i, k, separating_axis);
-        if (separation > threshold) {
-          btVector3 normal = a.axis(i).cross(b.axis(k)) * inverse;
-          if (normal.dot(b.center - a.center) > 0) normal = -normal;
-          best = {Axis::edges, normal, separation, i, k};
-        }
-      }
-    }
-    return best;
-  }
-
-  static Axis separated_along(int a, int b, SeparatingAxis& separating_axis) {
-    separating_axis = {a, b};
-    return {};
-  }
-
-  static void add_edges(const Box& a, const Box& b, const Axis& axis, ContactManifold& points) {
+  static void add_edges(const Box& a, const Box& b, const BoxAxis& axis, ContactManifold& points) {
     btVector3 on_a = a.center;
     btVector3 on_b = b.center;
     for (int i = 0; i < 3; ++i) {
@@ -302,7 +187,7 @@ class BoxAlgorithm : public PairAlgorithm {
     points.add(on_b + v * along_b, axis.normal, axis.separation);
   }
 
-  SeparatingAxis separating_axis_;
+  SeparatingAxis separating_axis_;  // of the last step
 };
 
 // Closest points of two convex shapes.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/vec.h"
 #include "sim/neighbors/point_finder.h"
 
 namespace limber {
@@ -17,6 +18,11 @@ struct alignas(64) NeighborMotion {
 struct alignas(64) NeighborSum {
   float offset[4], velocity[4], spin[4], unused[4];
 };
+
+/// Copies a vector in single precision.
+inline void put(float* to, const Vec3& v) {
+  for (int i = 0; i < 3; i++) to[i] = static_cast<float>(v[i]);
+}
 
 /// Adds each of the points `found` to the sum of the point `index`, and that point to their sums. `found` must not
 /// contain `index`.

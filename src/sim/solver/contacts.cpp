@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/memory/prefetch.h"
-#include "sim/bullet/island_world.h"
+#include "sim/bullet/island_solver.h"
 #include "sim/collision/contact_friction.h"
 #include "sim/collision/dispatcher.h"
 

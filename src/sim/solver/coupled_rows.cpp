@@ -78,8 +78,8 @@ void CoupledRows::collect_loops() {
     const Island::Link& link = island_.links[i];
     if (trees_.node_of_link(i) >= 0) continue;
     loop_rows_[i] = rows_.size();
-    for (const JointConstraint::Row& row : link.joint->planned()) {
-      const JointConstraint::Jacobian j = link.joint->jacobian(row.axis);
+    for (const JointRow& row : link.joint->rows()) {
+      const AxisJacobian j = link.joint->pose().jacobian(row.axis);
       CoupledRow out;
       out.loop = true;
       out.a = {trees_.node_of(link.body_a), make_spatial(-j.linear, j.angular_a)};

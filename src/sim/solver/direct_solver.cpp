@@ -175,9 +175,9 @@ void DirectSolver::Step::write() {
     impulses_.clear();
     if (node >= 0) {
       for (const AxisRow& row : trees_.axes.rows(node)) impulses_.push_back(row.impulse);
-      joint.active_set_memory() = trees_.axes.active_set(node);
+      joint.warm_start().active_set() = trees_.axes.active_set(node);
     } else {
-      for (int r = 0; r < joint.planned().size(); ++r) impulses_.push_back(rows[rows.first_row_of_loop(i) + r].impulse);
+      for (int r = 0; r < joint.rows().size(); ++r) impulses_.push_back(rows[rows.first_row_of_loop(i) + r].impulse);
     }
     joint.set_impulses(impulses_);
   }
@@ -207,15 +207,15 @@ void DirectSolver::Step::fall_back() {
     }
   }
   for (const Island::Link& link : island.links) {
-    link.joint->reset_warm_start();
-    link.joint->active_set_memory().fill(0);
+    link.joint->warm_start().clear_block_impulses();
+    link.joint->warm_start().active_set().fill(0);
   }
   for (const Island::GearLink& link : island.gears) link.gear->forget_impulses();
 }
 
 // Residual of a row of a joint, calculated from the bodies' velocities, independently of the solver's rates.
 double DirectSolver::Step::axis_residual(const Island::Link& link, const AxisRow& row) const {
-  const JointConstraint::Jacobian j = link.joint->jacobian(row.axis);
+  const AxisJacobian j = link.joint->pose().jacobian(row.axis);
   const double rate = dot(make_spatial(-j.linear, j.angular_a), trees_.velocity(link.body_a)) +
                       dot(make_spatial(j.linear, j.angular_b), trees_.velocity(link.body_b));
   const TreeNode& n = trees_.axes.forest.node(row.node);

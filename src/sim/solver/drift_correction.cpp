@@ -12,7 +12,7 @@ constexpr double kMaxDriftSpeed = 20;
 /// The correction diverges if an update changes it by more than this, m, and by more than twice an earlier change.
 constexpr double kDivergingDrift = 1e-3;
 
-bool is_hard_linear_lock(const JointConstraint::Row& row) { return row.axis < 3 && is_hard_lock(row); }
+bool is_hard_linear_lock(const JointRow& row) { return row.axis < 3 && is_hard_lock(row); }
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void DriftCorrection::update(double min_drift) {
   predicted_.resize(island_.links.size());
   for (int i = 0; i < island_.links.size(); ++i) {
     predicted_[i] = predict_drift(i);
-    for (const JointConstraint::Row& row : island_.links[i].joint->planned()) {
+    for (const JointRow& row : island_.links[i].joint->rows()) {
       if (is_hard_linear_lock(row))
         largest = std::max(largest, std::fabs(predicted_[i][row.axis] - applied_[i][row.axis]));
     }
@@ -51,7 +51,7 @@ bool DriftCorrection::scale(int link, double fraction) {
 // Applies the correction to the joint's rows in a tree, or to its coupled rows if it closes a loop.
 void DriftCorrection::apply(int link, const Vec3& drift) {
   const int node = trees_.node_of_link(link);
-  const IndexedSpan<const JointConstraint::Row> rows = island_.links[link].joint->planned();
+  const JointRows& rows = island_.links[link].joint->rows();
   for (int r = 0; r < rows.size(); ++r) {
     if (!is_hard_linear_lock(rows[r])) continue;
     const double change = (drift[rows[r].axis] - applied_[link][rows[r].axis]) / island_.h;
@@ -91,17 +91,17 @@ Vec3 DriftCorrection::predict_drift(int link) {
     skipped_clamped_ = true;
     return applied_[link];
   }
-  const Vec3 arm_a = from_bt(joint.arm_a());
-  const Vec3 arm_b = from_bt(joint.arm_b());
+  const Vec3 arm_a = from_bt(joint.pose().arm_a());
+  const Vec3 arm_b = from_bt(joint.pose().arm_b());
   Vec3 gap(0);
-  for (int k = 0; k < 3; ++k) gap += from_bt(joint.linear_axis(k)) * joint.value(k);
+  for (int k = 0; k < 3; ++k) gap += from_bt(joint.pose().linear_axis(k)) * joint.value(k);
   const Vec3 pivot_arm = arm_a - gap;
   const Vec3 end_gap =
       gap + b.translation - a.translation + (b.rotation * arm_b - arm_b) - (a.rotation * pivot_arm - pivot_arm);
   const Vec3 pivot_velocity = translated(b.velocity, arm_b).linear - translated(a.velocity, arm_a).linear;
   Vec3 drift(0);
   for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = from_bt(joint.linear_axis(k));
+    const Vec3 axis = from_bt(joint.pose().linear_axis(k));
     drift[k] = std::clamp(glm::dot(a.rotation * axis, end_gap) - glm::dot(axis, gap + pivot_velocity * h),
                           -kMaxDriftSpeed * h, kMaxDriftSpeed * h);
   }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "sim/bullet/bullet.h"
-#include "sim/bullet/gear_constraint.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/bullet/spin.h"
 #include "sim/solver/direct_solver.h"
 #include "sim/solver/forest/axis_active_set.h"
@@ -55,7 +55,7 @@ struct Island {
 };
 
 /// True for a lock without bounds or softness.
-inline bool is_hard_lock(const JointConstraint::Row& row) {
+inline bool is_hard_lock(const JointRow& row) {
   return row.softness == 0 && static_cast<double>(row.lower) <= -AxisRow::kInfinity &&
          static_cast<double>(row.upper) >= AxisRow::kInfinity;
 }

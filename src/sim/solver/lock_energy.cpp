@@ -28,12 +28,13 @@ double LockEnergy::work_of_locks(const Tree& tree) const {
     const JointConstraint& joint = *link.joint;
     const Spatial a = island_.start_velocity(link.body_a);
     const Spatial b = island_.start_velocity(link.body_b);
-    const Vec3 drift = translated(b, from_bt(joint.arm_b())).linear - translated(a, from_bt(joint.arm_a())).linear;
+    const Vec3 drift =
+        translated(b, from_bt(joint.pose().arm_b())).linear - translated(a, from_bt(joint.pose().arm_a())).linear;
     const Vec3 spin = b.angular - a.angular;
     for (const AxisRow& row : trees_.axes.rows(i)) {
       if (row.bounded() || !row.hard()) continue;
-      const double rate = row.axis < 3 ? glm::dot(from_bt(joint.linear_axis(row.axis)), drift)
-                                       : glm::dot(from_bt(joint.dual_axis(row.axis - 3)), spin);
+      const double rate = row.axis < 3 ? glm::dot(from_bt(joint.pose().linear_axis(row.axis)), drift)
+                                       : glm::dot(from_bt(joint.pose().dual_axis(row.axis - 3)), spin);
       work += row.impulse * (rate + trees_.axes.rate(i, row.axis)) / 2;
     }
   }
@@ -43,7 +44,7 @@ double LockEnergy::work_of_locks(const Tree& tree) const {
 // Energy that the locks of a tree may return; stored in its first joint.
 double& LockEnergy::stored_energy(const Tree& tree) const {
   const int first = trees_.link_of(tree.first) < 0 ? tree.first + 1 : tree.first;
-  return island_.links[trees_.link_of(first)].joint->lock_energy();
+  return island_.links[trees_.link_of(first)].joint->warm_start().lock_energy();
 }
 
 // True if the tree has joints, and no motor drives any of them.

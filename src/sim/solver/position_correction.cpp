@@ -84,7 +84,7 @@ void PositionCorrection::set_goals() {
   goals_.assign(island_.links.size(), {});
   for (int i = 0; i < goals_.size(); ++i) {
     const JointConstraint& joint = *island_.links[i].joint;
-    for (const JointConstraint::Row& row : joint.planned()) {
+    for (const JointRow& row : joint.rows()) {
       if (!is_hard_lock(row)) continue;
       goals_[i][row.axis] = joint.value(row.axis) + static_cast<double>(row.velocity * island_.info->m_timeStep);
     }
@@ -105,7 +105,7 @@ double PositionCorrection::position_error() const {
   double largest = 0;
   for (int i = 0; i < island_.links.size(); ++i) {
     const JointConstraint& joint = *island_.links[i].joint;
-    for (const JointConstraint::Row& row : joint.planned()) {
+    for (const JointRow& row : joint.rows()) {
       if (row.axis < 3 && is_hard_lock(row))
         largest = std::max(largest, std::fabs(error_of(joint, row.axis, goals_[i][row.axis])));
     }
@@ -141,8 +141,8 @@ bool PositionCorrection::add_node(int node) {
 
 void PositionCorrection::add_rows(int link) {
   const JointConstraint& joint = *island_.links[link].joint;
-  for (const JointConstraint::Row& row : joint.planned()) {
-    if (row.kind != JointConstraint::RowKind::lock) continue;
+  for (const JointRow& row : joint.rows()) {
+    if (row.kind != JointRow::Kind::lock) continue;
     const double distance = is_hard_lock(row) ? error_of(joint, row.axis, goals_[link][row.axis]) : 0;
     axes_.add(row.axis, distance, 0, -2 * AxisRow::kInfinity, 2 * AxisRow::kInfinity, AxisRow::other);
   }

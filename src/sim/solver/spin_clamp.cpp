@@ -122,7 +122,7 @@ void SpinClamp::undo() const {
 bool SpinClamp::drives_spin(int link, int axis) const {
   if (link < 0 || axis < 3) return false;
   const Island::Link& l = island_.links[link];
-  const Vec3 axis_direction = from_bt(l.joint->linear_axis(axis - 3));
+  const Vec3 axis_direction = from_bt(l.joint->pose().linear_axis(axis - 3));
   return std::ranges::any_of(std::array{l.body_a, l.body_b}, [&](int body) {
     const RotationStep turn = island_.rotation_step(body, trees_.velocity(body).angular);
     return turn.spin != 0 && std::fabs(glm::dot(turn.axis, axis_direction)) > 0.99;

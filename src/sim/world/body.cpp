@@ -13,9 +13,9 @@
 #include "base/text.h"
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_list.h"
-#include "sim/bullet/gear_constraint.h"
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/bullet/spin.h"
 #include "sim/world/world.h"
 
@@ -316,7 +316,8 @@ void Body::publish() {
     joint->publish();
     if (joint->check_separation()) separated_joint_ = joint.get();
     const JointConstraint& constraint = joint->constraint();
-    has_joint_warnings_ = has_joint_warnings_ || constraint.spring_limited() || constraint.target_outside();
+    has_joint_warnings_ =
+        has_joint_warnings_ || constraint.drives().spring_limited() || constraint.drives().target_outside();
   }
   if (!state_.restored_this_tick && separated_joint_ == nullptr) save_good_pose();
 }
@@ -368,8 +369,8 @@ void Body::log_warnings() {
   if (!std::exchange(has_joint_warnings_, false)) return;
   for (const auto& joint : joints_) {
     if (joint->motor() == nullptr) continue;
-    if (joint->constraint().spring_limited()) joint->motor()->warn_capped();
-    if (joint->constraint().target_outside()) joint->motor()->warn_target_outside();
+    if (joint->constraint().drives().spring_limited()) joint->motor()->warn_capped();
+    if (joint->constraint().drives().target_outside()) joint->motor()->warn_target_outside();
   }
 }
 

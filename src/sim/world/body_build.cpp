@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
@@ -92,7 +92,7 @@ void Body::build_copy(const Body& source) {
     Joint& joint = *joints_.back();
     copy_values(from->id(), joint.id(), Joint::table());
     joint.apply_limits();
-    joint.constraint().reset(from->constraint().angles());
+    joint.constraint().reset(from->constraint().pose().angles());
     if (from->motor() == nullptr) continue;
     motors_.push_back(std::make_unique<Motor>(joint, motor_group_));
     copy_values(from->motor()->id(), motors_.back()->id(), Motor::table());

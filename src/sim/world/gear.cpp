@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
-#include "sim/bullet/gear_constraint.h"
 #include "sim/bullet/island_world.h"
+#include "sim/bullet/joints/gear_constraint.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/bullet/gear_constraint.h"
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/motor.h"
 #include "sim/world/world.h"
@@ -51,10 +51,10 @@ const LimitProperties& limit_properties() {
 // Returns relrot(), or the constraint's angles where both are the same (equal axis order, unambiguous, no full turns),
 // since relrot() is costly.
 Vec3 stream_angles(const JointConstraint& constraint) {
-  const Vec3 angles = constraint.angles();
-  const bool same = constraint.order() == std::array<int, 3>{2, 1, 0} && constraint.axis(4).locked() &&
+  const Vec3 angles = constraint.pose().angles();
+  const bool same = constraint.pose().order() == std::array<int, 3>{2, 1, 0} && constraint.axis(4).locked() &&
                     std::abs(angles.x) <= kPi && std::abs(angles.y) <= kPi / 2 && std::abs(angles.z) <= kPi;
-  return same ? angles : constraint.relrot();
+  return same ? angles : constraint.pose().relrot();
 }
 
 // True if a joint type leaves an axis free, apart from limits; axes 0..2 are linear, 3..5 angular.
@@ -154,7 +154,7 @@ Joint::~Joint() {
 
 void Joint::add_to_world() {
   if (std::exchange(state_.in_world, true)) return;
-  constraint_->restart_goals();
+  constraint_->goals().restart();
   body_.world().bullet().addConstraint(constraint_.get());
 }
 
@@ -222,8 +222,8 @@ void Joint::update_from_parts() {
   publish();
 }
 
-void Joint::save_start() { state_.start_angles = constraint_->angles(); }
-void Joint::save_start(const Joint& other) { state_.start_angles = other.constraint_->angles(); }
+void Joint::save_start() { state_.start_angles = constraint_->pose().angles(); }
+void Joint::save_start(const Joint& other) { state_.start_angles = other.constraint_->pose().angles(); }
 
 void Joint::restore_start() {
   Store& store = body_.store();
@@ -235,12 +235,12 @@ void Joint::publish() {
   double* transient = body_.store().transient_block(id_);
   const JointReadouts& properties = joint_readouts();
   const btTransform& parent = parent_.rigid().getCenterOfMassTransform();
-  const btTransform& frame = constraint_->frame_in_parent();
+  const btTransform& frame = constraint_->pose().frame_in_parent();
   const int axis = own_axis();
   transient[properties.value->offset] = axis < 0 ? 0 : constraint_->value(axis);
   transient[properties.speed->offset] = axis < 0 ? 0 : constraint_->rate(axis);
-  put(transient + properties.angles->offset, constraint_->angles());
-  put(transient + properties.offsets->offset, constraint_->offsets());
+  put(transient + properties.angles->offset, constraint_->pose().angles());
+  put(transient + properties.offsets->offset, constraint_->pose().offsets());
   put(transient + properties.relrot->offset, stream_angles(*constraint_));
   put(transient + properties.position->offset, from_bt(parent * frame.getOrigin()));
   const Quat q = child_.pose().rotation * spec_.frame_in_child.rotation;
@@ -252,7 +252,7 @@ void Joint::publish() {
 }
 
 double Joint::gap() const {
-  const Vec3 offsets = constraint_->offsets();
+  const Vec3 offsets = constraint_->pose().offsets();
   double sum = 0;
   for (int axis = 0; axis < 3; axis++) {
     if (is_open(axis) || constraint_->axis(axis).stop_cfm > 0) continue;
@@ -281,7 +281,7 @@ bool Joint::check_separation() {
 }
 
 void Joint::read_axis(double* out) const {
-  const btMatrix3x3& frame = constraint_->frame_in_parent().getBasis();
+  const btMatrix3x3& frame = constraint_->pose().frame_in_parent().getBasis();
   put(out, from_bt(parent_.rigid().getCenterOfMassTransform().getBasis() * frame.getColumn(2)));
 }
 

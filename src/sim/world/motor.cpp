@@ -8,7 +8,7 @@
 
 #include "base/log/log.h"
 #include "sim/bullet/bullet.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
@@ -185,7 +185,7 @@ void Motor::set_target(double target) {
 void Motor::step_towards(const Vec3& target, double max_step) {
   Store& store = joint_.body().store();
   const AxisProperties& properties = axis_properties();
-  const Vec3 angles = constraint_.angles();
+  const Vec3 angles = constraint_.pose().angles();
   for (const MotorMode wanted_mode : {MotorMode::servo, MotorMode::spring}) {
     const Property& property = wanted_mode == MotorMode::servo ? *properties.servo_position[1] : *properties.rest[1];
     std::array<double, 3> values{};
@@ -207,7 +207,7 @@ void Motor::step_towards(const Vec3& target, double max_step) {
 
 void Motor::save_held_position() {
   for (int axis = 0; axis < 6; axis++) state_.held_position[at(axis)] = constraint_.value(axis);
-  constraint_.restart_goals();
+  constraint_.goals().restart();
 }
 
 void Motor::apply_axes() {
@@ -236,10 +236,10 @@ void Motor::apply_axes() {
   constraint_.set_damping(store.values(id_, *properties.passive_damping)[0]);
   if (constraint_.bounce() != bounce || constraint_.damping() != damping) joint_.wake();
   const double smoothing = store.values(id_, *properties.smoothing)[0];
-  if (constraint_.smoothing() != smoothing) {
+  if (constraint_.goals().smoothing() != smoothing) {
     joint_.wake();
     const BulletMemory::Scope scope(&joint_.body().world().bullet_memory());
-    constraint_.set_smoothing(smoothing);
+    constraint_.goals().set_smoothing(smoothing);
   }
   apply_targets();
 }
@@ -288,12 +288,12 @@ void Motor::warn_capped() {
     const double requested =
         store.values(id_, *axis_properties().stiffness[static_cast<std::size_t>(axis / 3)])[axis % 3];
     if (mode(axis) != MotorMode::spring || !joint_.is_open(axis)) continue;
-    if (constraint_.stiffness_applied(axis) >= 0.999 * requested) continue;
-    const double h = std::sqrt(constraint_.effective_inertia(axis) / (16 * requested));
+    if (constraint_.drives().stiffness_applied(axis) >= 0.999 * requested) continue;
+    const double h = std::sqrt(constraint_.pose().effective_inertia(axis) / (16 * requested));
     const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
     log_warning(
         "motor '{}/{}': spring stiffness {} is capped at {:.4g} for stability; about {} substeps would allow it",
-        joint_.body().name(), name(), requested, constraint_.stiffness_applied(axis), substeps);
+        joint_.body().name(), name(), requested, constraint_.drives().stiffness_applied(axis), substeps);
     return;
   }
 }
@@ -302,7 +302,7 @@ void Motor::warn_target_outside() {
   // a mimic joint's target is determined by its leader, independently of the limits of the joint itself
   if (joint_.spec().mimic || std::exchange(state_.warned_target_outside, true)) return;
   for (int axis = 0; axis < 6; axis++) {
-    if (!constraint_.target_outside(axis)) continue;
+    if (!constraint_.drives().target_outside(axis)) continue;
     const AxisSettings& s = constraint_.axis(axis);
     const char* const names[] = {"x", "y", "z"};
     const bool angular = axis >= 3;
@@ -315,24 +315,24 @@ void Motor::warn_target_outside() {
   }
 }
 
-void Motor::read_force(double* out) const { put(out, constraint_.applied_force()); }
+void Motor::read_force(double* out) const { put(out, constraint_.drives().applied_force()); }
 
-void Motor::read_torque(double* out) const { put(out, constraint_.applied_torque()); }
+void Motor::read_torque(double* out) const { put(out, constraint_.drives().applied_torque()); }
 
 void Motor::read_linear_stiffness(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.stiffness_applied(axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.drives().stiffness_applied(axis);
 }
 
 void Motor::read_angular_stiffness(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.stiffness_applied(3 + axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.drives().stiffness_applied(3 + axis);
 }
 
 void Motor::read_linear_damping(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.damping_applied(axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.axis(axis).damping_applied();
 }
 
 void Motor::read_angular_damping(double* out) const {
-  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.damping_applied(3 + axis);
+  for (int axis = 0; axis < 3; axis++) out[axis] = constraint_.axis(3 + axis).damping_applied();
 }
 
 void Motor::read_mode(double* out) const {

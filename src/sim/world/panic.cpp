@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 

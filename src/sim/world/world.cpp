@@ -10,9 +10,9 @@
 #include "base/system/clock.h"
 #include "base/text.h"
 #include "properties/values_hash.h"
-#include "sim/bullet/gear_constraint.h"
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/stability.h"
 
 namespace limber {

@@ -12,7 +12,7 @@
 #include "base/system/process.h"
 #include "bench/measure/times.h"
 #include "sim/bullet/bullet_phases.h"
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 
 namespace limber {
 
@@ -193,7 +193,7 @@ void BenchArms::drive(double time) {
 
 double BenchArms::joint_gap() const {
   double gap = 0;
-  for (const Joint* joint : joints_) gap = std::max(gap, glm::length(joint->constraint().offsets()));
+  for (const Joint* joint : joints_) gap = std::max(gap, glm::length(joint->constraint().pose().offsets()));
   return gap;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/memory/prefetch.h"
 #include "sim/bullet/island_world.h"
+#include "sim/bullet/joints/joint_constraint.h"
 
 namespace limber {
 namespace {
@@ -223,7 +224,7 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorl
     RawMeasurements m;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       const JointConstraint& j = *joints_[i];
-      measure_joint(m, scene.joints[i], to_bt(j.parent_frame()), to_bt(j.child_frame()), j.value(5));
+      measure_joint(m, scene.joints[i], to_bt(j.pose().parent_frame()), to_bt(j.pose().child_frame()), j.value(5));
     }
     measure_parts(m);
     return m;

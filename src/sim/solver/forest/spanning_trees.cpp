@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/solver/geometric_stiffness.h"
-
 namespace limber {
 namespace {
+
+/// Ratios of geometric stiffness, times the square of the step, to the moment of inertia. Above the first one, at which
+/// an explicit step becomes unstable, the inertia is increased until the ratio is the second one.
+constexpr double kMaxStiffnessRatio = 4;
+constexpr double kTargetStiffnessRatio = 2;
 
 // Inertia tensor from the principal moments: R·diag(1/inverse)·R'.
 Sym3 world_inertia(const btRigidBody& body) {
@@ -39,12 +42,12 @@ Vec3 any_perpendicular(const Vec3& v) {
 // to complete the basis. Returns false near a singular pose.
 bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, FixedArray<Spatial, 6>& out) {
   unsigned used = 0;
-  for (const JointConstraint::Row& row : joint.planned()) used |= 1u << row.axis;
+  for (const JointRow& row : joint.rows()) used |= 1u << row.axis;
   FixedArray<Vec3, 3> dual{Vec3(0), Vec3(0), Vec3(0)};
   int known_count = 0;
   for (int i = 0; i < 3; ++i) {
     if ((used >> (3 + i) & 1) == 0) continue;
-    dual[i] = from_bt(joint.dual_axis(i));
+    dual[i] = from_bt(joint.pose().dual_axis(i));
     known_count++;
   }
   for (int i = 0; i < 3; ++i) {
@@ -67,18 +70,42 @@ bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, Fix
   if (!(std::fabs(volume) > 1e-3 * length_product)) return false;
   for (int i = 0; i < 3; ++i) {
     const Vec3 e = glm::cross(dual[(i + 1) % 3], dual[(i + 2) % 3]) * (sign / volume);
-    out[i] = {from_bt(joint.linear_axis(i)) * sign, Vec3(0)};
+    out[i] = {from_bt(joint.pose().linear_axis(i)) * sign, Vec3(0)};
     out[3 + i] = {glm::cross(arm, e), e};
   }
   return true;
 }
 
-AxisRow::Kind row_kind_of(const JointConstraint::Row& row) {
-  if (row.kind == JointConstraint::RowKind::motor) return AxisRow::motor;
+AxisRow::Kind row_kind_of(const JointRow& row) {
+  if (row.kind == JointRow::Kind::motor) return AxisRow::motor;
   const bool below = static_cast<double>(row.lower) > -AxisRow::kInfinity;
   const bool above = static_cast<double>(row.upper) < AxisRow::kInfinity;
   if (below && above) return AxisRow::friction;
   return below ? AxisRow::lower_limit : (above ? AxisRow::upper_limit : AxisRow::other);
+}
+
+// Geometric stiffness (Andrews, Teichmann and Kry, Geometric stiffness for real-time constrained multibody dynamics,
+// 2017). A body that a joint pulls at with force f at arm r behaves like a pendulum with stiffness f·r against
+// rotation. The explicit step is unstable if it is large, as for the light links of a rope with a heavy end. Increases
+// the node's rotational inertia until it is stable. `links`: the body's joints. Not for bodies on which motors, gears
+// or contacts act: these would do work as the inertia changes.
+void add_geometric_inertia(TreeNode& node, const Island& island, int body, IndexedSpan<const int> links) {
+  Sym3& moment = node.inertia.moment;
+  const double mean_moment = (moment.xx + moment.yy + moment.zz) / 3;
+  for (const int i : links) {
+    const Island::Link& link = island.links[i];
+    const bool child = link.body_b == body;
+    const Vec3 arm = from_bt(child ? link.joint->pose().arm_b() : link.joint->pose().arm_a());
+    // lock_impulse() is an impulse: times h it is the stiffness times the square of the step
+    const double stiffness = (child ? island.h : -island.h) * glm::dot(from_bt(link.joint->lock_impulse()), arm);
+    const double length = glm::length(arm);
+    if (!(stiffness > kMaxStiffnessRatio * mean_moment && length > 0)) continue;
+    const double added = stiffness / kTargetStiffnessRatio - mean_moment;
+    moment.xx += added;
+    moment.yy += added;
+    moment.zz += added;
+    moment.subtract_outer_product(arm / length, added);
+  }
 }
 
 }  // namespace
@@ -95,8 +122,8 @@ void make_floating(TreeNode& node) {
 }
 
 bool attach(TreeNode& node, const JointConstraint& joint, bool forward) {
-  const Vec3 arm_a = from_bt(joint.arm_a());
-  const Vec3 arm_b = from_bt(joint.arm_b());
+  const Vec3 arm_a = from_bt(joint.pose().arm_a());
+  const Vec3 arm_b = from_bt(joint.pose().arm_b());
   node.offset = forward ? arm_a - arm_b : arm_b - arm_a;
   return motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, node.axis);
 }
@@ -229,18 +256,19 @@ void SpanningTrees::add_rows(const Island::Link& link) {
   };
   const Spatial a = current_velocity(link.body_a);
   const Spatial b = current_velocity(link.body_b);
-  const Vec3 drift = translated(b, from_bt(joint.arm_b())).linear - translated(a, from_bt(joint.arm_a())).linear;
+  const Vec3 drift =
+      translated(b, from_bt(joint.pose().arm_b())).linear - translated(a, from_bt(joint.pose().arm_a())).linear;
   const Vec3 spin = b.angular - a.angular;
   FixedArray<double, 6> rates{};
   for (int k = 0; k < 3; ++k) {
-    rates[k] = glm::dot(from_bt(joint.linear_axis(k)), drift);
-    rates[3 + k] = glm::dot(from_bt(joint.dual_axis(k)), spin);
+    rates[k] = glm::dot(from_bt(joint.pose().linear_axis(k)), drift);
+    rates[3 + k] = glm::dot(from_bt(joint.pose().dual_axis(k)), spin);
   }
-  for (const JointConstraint::Row& row : joint.planned()) {
+  for (const JointRow& row : joint.rows()) {
     axes.add(row.axis, static_cast<double>(row.velocity), static_cast<double>(row.softness),
              static_cast<double>(row.lower), static_cast<double>(row.upper), row_kind_of(row));
   }
-  axes.end_node(rates, joint.active_set_memory());
+  axes.end_node(rates, joint.warm_start().active_set());
 }
 
 }  // namespace limber

@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "sim/bullet/joint_constraint.h"
+#include "sim/bullet/joints/joint_constraint.h"
 
 namespace limber {
 

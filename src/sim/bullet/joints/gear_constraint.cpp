@@ -1,5 +1,5 @@
 // GearConstraint: computes its row from the Jacobians of two joints.
-#include "sim/bullet/gear_constraint.h"
+#include "sim/bullet/joints/gear_constraint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ void GearConstraint::add_jacobian(btRigidBody& body, const btVector3& linear, co
 }
 
 void GearConstraint::add_jacobians(JointConstraint& joint, int axis, double factor) {
-  const JointConstraint::Jacobian j = joint.jacobian(axis);
+  const AxisJacobian j = joint.pose().jacobian(axis);
   const btScalar f = to_scalar(factor);
   const btVector3 linear = axis < 3 ? j.linear * f : btVector3(0, 0, 0);
   add_jacobian(joint.getRigidBodyA(), -linear, j.angular_a * f);

@@ -1,5 +1,5 @@
 // Linear interpolation of targets within a tick, and the filter that smooths them from tick to tick.
-#include "sim/bullet/axis_goals.h"
+#include "sim/bullet/joints/axis_goals.h"
 
 #include <algorithm>
 #include <cmath>

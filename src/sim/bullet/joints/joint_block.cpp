@@ -1,6 +1,6 @@
 // JointBlock: the inverse is computed once per step in single precision; later sweeps correct its errors, since each
 // starts from the exact residual.
-#include "sim/bullet/joint_block.h"
+#include "sim/bullet/joints/joint_block.h"
 
 #include <algorithm>
 #include <cmath>

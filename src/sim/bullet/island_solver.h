@@ -1,0 +1,105 @@
+// IslandSolver: sets up the constraint rows of the joints and contacts of an island, solves them, and stores the
+// joints' impulses.
+#pragma once
+
+#include "sim/bullet/bullet.h"
+#include "sim/bullet/contact_sweep.h"
+#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/joint_block.h"
+#include "sim/bullet/joints/joint_constraint.h"
+#include "sim/solver/direct_solver.h"
+
+namespace limber {
+
+/// Sequential impulses with our own joint rows, whose softness has physical units (rate + softness·impulse = velocity)
+/// and which are stable for any softness. Also applies gyroscopic torques, which Bullet omits for light bodies (its 3x3
+/// solver treats determinants below 1.2e-7 as zero). [sim]
+class IslandSolver : public btSequentialImpulseConstraintSolver {
+ public:
+  BT_DECLARE_ALIGNED_ALLOCATOR();
+
+  void set_direct(bool on) { direct_enabled_ = on; }
+  bool direct_enabled() const { return direct_enabled_; }
+  /// Sets the number of internal steps per tick, and of those that are left, the current one included.
+  void set_substep(int steps_left, int count) {
+    steps_left_ = steps_left;
+    step_count_ = count;
+  }
+  /// True: the next islands use the direct solver even if they have no joints.
+  void set_contacts_direct(bool on) { contacts_direct_ = on; }
+  DirectSolver& direct() { return direct_; }
+  const DirectSolver& direct() const { return direct_; }
+
+ protected:
+  void convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) override;
+  void convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) override;
+  void convertJoints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) override;
+  btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int body_count,
+                                             btPersistentManifold** manifolds, int manifold_count,
+                                             btTypedConstraint** constraints, int constraint_count,
+                                             const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  void solveGroupCacheFriendlySplitImpulseIterations(btCollisionObject** bodies, int body_count,
+                                                     btPersistentManifold** manifolds, int manifold_count,
+                                                     btTypedConstraint** constraints, int constraint_count,
+                                                     const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  btScalar solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                btPersistentManifold** manifolds, int manifold_count, btTypedConstraint** constraints,
+                                int constraint_count, const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
+                                         const btContactSolverInfo& info) override;
+
+ private:
+  void reserve_rows(int joints);
+  void plan(JointConstraint& joint, const btContactSolverInfo& info);
+  bool plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_constraints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
+  JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
+  void plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_gears(const btContactSolverInfo& info);
+  btScalar sweep_joints();
+  void convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info);
+  void convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b, btScalar last_normal_impulse);
+  btScalar sweep_gear(int gear);
+  btScalar sweep_rolling();
+  void save_rolling_friction();
+
+  struct SweptJoint {  // of one joint: `scalar` single rows from `first` on, then the rows of the block
+    int first;
+    int scalar;
+    int body_a;
+    int body_b;
+    JointBlock block;
+  };
+  struct GearSide {  // Jacobian with respect to a body, and the body's velocity change per impulse
+    btVector3 linear, angular;
+    btVector3 linear_per_impulse, angular_per_impulse;
+  };
+  struct GearRow {
+    GearConstraint* gear;
+    FixedArray<int, 4> bodies;
+    FixedArray<GearSide, 4> sides;
+    int count;
+    btScalar target_rate;  // rate that is missing without the impulses of this step
+    btScalar softness;
+    btScalar step;  // impulse per missing rate
+    btScalar bound;
+    btScalar impulse;
+  };
+  void apply_gear_impulse(const GearRow& row, btScalar impulse);
+
+  IndexedArray<GearRow> gears_;  // of the present island
+  bool gears_swept_ = false;
+  IndexedArray<JointRow> planned_;  // of all joints of the island, in their order
+  int planned_count_ = 0;
+  btAlignedObjectArray<SweptJoint> joints_;
+  ContactSweep contacts_;
+  DirectSolver direct_;
+  int steps_left_ = 1;
+  int step_count_ = 1;
+  bool direct_enabled_ = false;
+  bool contacts_direct_ = false;
+  bool use_direct_ = false;  // in the present island
+};
+
+}  // namespace limber
