@@ -107,7 +107,7 @@ void Engine::end_inputs(bool running) {
   if (recording_.requested()) {
     begin_recording();
   } else {
-    if (world().consume_reset_request()) scenes_.reset();
+    if (std::exchange(world().requests().reset, false)) scenes_.reset();
     show_.input->end_pass();
     recording_.end_pass(running);
   }
@@ -117,7 +117,7 @@ void Engine::end_inputs(bool running) {
 
 // Resets the scene and records from there: a take begins with a run of the scene from its start.
 void Engine::begin_recording() {
-  (void)world().consume_reset_request();
+  world().requests().reset = false;
   show_.undo_stack.clear();  // undo steps from before the take can't be replayed
   show_.call_log.begin_tick();
   const std::string file = recording_.begin_requested();

@@ -88,7 +88,7 @@ class Engine {
   /// Hash of the world, the scene and the random number generators. [sim]
   std::uint64_t state_hash() const { return show_.state_hash(); }
   /// Number of script errors, rejected values and health events so far, for `--strict`. [sim]
-  std::uint64_t faults() const { return show_.outputs.live().faults() + show_.session->world.health_events(); }
+  std::uint64_t faults() const { return show_.outputs.live().faults() + show_.session->world.stability().events(); }
 
  private:
   /// One iteration: commands, handlers, requests, publishing and, if `may_step` and not paused, a time step.

@@ -9,7 +9,7 @@ namespace limber {
 
 void PanicControl::begin_if_requested() {
   World& world = show_.session->world;
-  if (world.panic().on() || !world.consume_panic_request()) return;
+  if (world.panic().on() || !std::exchange(world.requests().panic, false)) return;
   show_.presets.stop();
   show_.session->dispatcher.release_mouse_springs();
   world.panic().begin();
@@ -24,10 +24,10 @@ void PanicControl::begin_if_requested() {
 
 // A second request for a panic ends it, too, but not in its first second.
 bool PanicControl::end_requested(World& world) {
-  const bool end = world.consume_panic_end_request();
+  const bool end = std::exchange(world.requests().panic_end, false);
   if (!world.panic().on()) return false;
   if (end) return true;
-  if (!world.consume_panic_request()) return false;
+  if (!std::exchange(world.requests().panic, false)) return false;
   if (world.panic().first_second_over()) return true;
   if (!std::exchange(ignored_request_reported_, true))
     log_info("panic: another request in the first second is ignored; /transport/panic_end ends the panic");
@@ -39,9 +39,10 @@ void PanicControl::end_if_requested() {
   if (!end_requested(world)) return;
   const std::uint64_t start_tick = world.panic().start_tick();
   world.panic().end();
-  const bool panic_requested = world.consume_panic_request();  // a panic after /transport/panic_end begins another one
+  const bool panic_requested =
+      std::exchange(world.requests().panic, false);  // a panic after /transport/panic_end begins another one
   const bool restored = show_.restore_before(start_tick);
-  if (panic_requested) world.request_panic();
+  if (panic_requested) world.requests().panic = true;
   log_info("panic ended{}", restored ? "; the show continues from the last checkpoint before it" : "");
 }
 

@@ -13,6 +13,7 @@
 #include "engine/takes/node.h"
 #include "engine/transport.h"
 #include "script/scene/scene.h"
+#include "sim/behavior/behavior_list.h"
 
 namespace limber {
 

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "sim/world/body.h"
+#include "sim/world/part.h"
+
 namespace limber {
 
 void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
@@ -19,8 +22,7 @@ void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
   times.scripts = watch.lap();
   if (!running) return session.world.flush();
   session.dispatcher.apply_mouse_springs();
-  session.world.step();
-  const TickTimes& physics = session.world.times();
+  const TickTimes physics = session.world.step();
   times.behaviors = physics.behaviors;
   times.callbacks = physics.flush;
   times.physics = physics.physics;
@@ -64,7 +66,7 @@ void Simulator::execute_preset_requests() {
 
 void Simulator::send_contacts() {
   const Store& store = show_.session->store;
-  for (const ContactEvent& contact : show_.session->world.contacts()) {
+  for (const ContactEvent& contact : show_.session->world.contacts().events()) {
     if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
     const auto* part = static_cast<const Part*>(store.object(contact.part));
     const auto* other = static_cast<const Part*>(store.object(contact.other));

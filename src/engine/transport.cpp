@@ -108,17 +108,17 @@ Result<void> Transport::act_step(std::span<const double> args) {
 }
 
 Result<void> Transport::act_reset(std::span<const double>) {
-  world_.request_reset();
+  world_.requests().reset = true;
   return {};
 }
 
 Result<void> Transport::act_panic(std::span<const double>) {
-  world_.request_panic();
+  world_.requests().panic = true;
   return {};
 }
 
 Result<void> Transport::act_panic_end(std::span<const double>) {
-  world_.request_panic_end();
+  world_.requests().end_panic();
   return {};
 }
 

@@ -172,8 +172,9 @@ Property hashed(Property property);
 Property euler_angles(Property property);
 Property independent(Property property);
 
-/// Wraps a member function of the object's class as a callback of a property.
-template <auto Member>
+/// Wraps a member function of the object's class, or a free function that gets the object first, as a callback of a
+/// property.
+template <auto Function>
 struct Bind;
 template <class T, void (T::*Member)()>
 struct Bind<Member> {
@@ -203,11 +204,35 @@ struct Bind<Member> {
     return (static_cast<T*>(object)->*Member)(args);
   }
 };
+template <class T, void (*Function)(T&)>
+struct Bind<Function> {
+  static void on_change(void* object) { Function(*static_cast<T*>(object)); }
+};
+template <class T, void (*Function)(const T&, double*)>
+struct Bind<Function> {
+  static void read(const void* object, double* out) { Function(*static_cast<const T*>(object), out); }
+};
+template <class T, void (*Function)(T&, const double*)>
+struct Bind<Function> {
+  static void write(void* object, const double* in) { Function(*static_cast<T*>(object), in); }
+};
+template <class T, Result<void> (*Function)(const T&, const double*)>
+struct Bind<Function> {
+  static Result<void> validate(const void* object, const double* in) {
+    return Function(*static_cast<const T*>(object), in);
+  }
+};
+template <class T, Result<void> (*Function)(T&, std::span<const double>)>
+struct Bind<Function> {
+  static Result<void> invoke(void* object, std::span<const double> args) {
+    return Function(*static_cast<T*>(object), args);
+  }
+};
 
-// Functions that set a callback of a property to a member function and return the property.
-template <auto Member>
+// Functions that set a callback of a property to a member or free function (Bind) and return the property.
+template <auto Function>
 Property on_change(Property property) {
-  property.on_change = &Bind<Member>::on_change;
+  property.on_change = &Bind<Function>::on_change;
   return property;
 }
 template <auto Read, auto Write>
@@ -221,19 +246,19 @@ Property computed(Property property) {
   property.read = &Bind<Read>::read;
   return property;
 }
-template <auto Member>
+template <auto Function>
 Property text_from(Property property) {
-  property.read_text = &Bind<Member>::read_text;
+  property.read_text = &Bind<Function>::read_text;
   return property;
 }
-template <auto Member>
+template <auto Function>
 Property validated_by(Property property) {
-  property.validate = &Bind<Member>::validate;
+  property.validate = &Bind<Function>::validate;
   return property;
 }
-template <auto Member>
+template <auto Function>
 Property invokes(Property property) {
-  property.invoke = &Bind<Member>::invoke;
+  property.invoke = &Bind<Function>::invoke;
   return property;
 }
 

@@ -13,6 +13,13 @@
 #include "base/embedded.h"
 #include "base/text.h"
 #include "properties/property_text.h"
+#include "sim/gears/gear.h"
+#include "sim/shapes/shape.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -9,6 +9,7 @@
 #include "app/program.h"
 #include "engine/engine.h"
 #include "export/loaded.h"
+#include "support/world_objects.h"
 
 namespace limber::app_test {
 namespace {

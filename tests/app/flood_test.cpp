@@ -199,7 +199,7 @@ TEST(Flood, CountsEveryDatagram) {
   // no tick is lost, and time advances with the ticks
   EXPECT_EQ(fixture.engine.world().tick(), static_cast<std::uint64_t>(fixture.ticks));
   EXPECT_NEAR(fixture.engine.world().time(), fixture.ticks / 60.0, 1e-9);
-  EXPECT_EQ(fixture.engine.world().health_events(), 0u);
+  EXPECT_EQ(fixture.engine.world().stability().events(), 0u);
   // the WebSocket client receives the latest value
   const std::string newest = one_float("/scene/wind", kWarmUp + kTicks);
   std::string heard;

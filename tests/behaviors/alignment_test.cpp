@@ -85,7 +85,7 @@ TEST(Alignment, HugeAmountsKeepLightPartsStable) {
       EXPECT_LT(length_of(part->angular_velocity()), 5.3);
     }
   }
-  EXPECT_EQ(s.world.health_events(), 0U);
+  EXPECT_EQ(s.world.stability().events(), 0U);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/commands/message_dispatcher.h"
+#include "support/world_objects.h"
 
 namespace limber {
 namespace {
@@ -18,7 +19,7 @@ struct Arms {
     ShapeModel ball;
     ball.kind = ShapeKind::sphere;
     ball.radius = 0.05;
-    Shape& shape = **world.add_shape("ball", ball);
+    Shape& shape = **world.shapes().add("ball", ball);
     for (int b = 1; b <= 16; b++) {
       Body& body = **world.add_body("arm" + std::to_string(b));
       (void)body.add_part("base", shape, 0, {{1.0 * b, 0, 0}, quat_identity()});

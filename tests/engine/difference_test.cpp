@@ -44,7 +44,7 @@ struct TestWorld {
     ASSERT_TRUE(store.set(id, property, values).ok());
   }
   SceneSpec spec() {
-    world.flush_detached();
+    flush_detached(world);
     return describe(world);
   }
 };
@@ -86,7 +86,7 @@ TEST(SceneDiff, FindsAddedAndRemovedObjects) {
   TestWorld b;
   b.world.remove_body(b.body("1"));
   ASSERT_TRUE(b.world.add_body("new").ok());
-  ASSERT_TRUE(b.world.add_shape("extra", ball()).ok());
+  ASSERT_TRUE(b.world.shapes().add("extra", ball()).ok());
   const SceneDiff d = compare(a.spec(), b.spec());
   EXPECT_EQ(d.removed_bodies, std::vector<std::size_t>{1});
   EXPECT_EQ(d.old_body_indices, (std::vector<std::optional<std::size_t>>{0, 2, std::nullopt}));
@@ -130,7 +130,7 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
   candidate.set_explicitly(candidate.body("arm").find_part("tip")->id(), "friction", {0.25});
   candidate.world.remove_body(candidate.body("1"));
   Body& extra = **candidate.world.add_body("extra");
-  ASSERT_TRUE(extra.add_part("p", *candidate.world.find_shape("ball"), 2, {{9, 0, 0}, quat_identity()}).ok());
+  ASSERT_TRUE(extra.add_part("p", *candidate.world.shapes().find("ball"), 2, {{9, 0, 0}, quat_identity()}).ok());
   const SceneSpec now = candidate.spec();
   const SceneDiff diff = compare(last, now);
   std::vector<std::string> set;
@@ -144,7 +144,7 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
   EXPECT_EQ(live.body("arm").find_part("tip")->id(), tip);
   EXPECT_EQ(live.body("arm").find_part("tip")->capture_motion().bullet_pose, state.bullet_pose);
   EXPECT_EQ(live.body("extra").root()->pose().position, Vec3(9, 0, 0));
-  EXPECT_EQ(live.body("extra").root()->shape(), live.world.find_shape("ball")->id());
+  EXPECT_EQ(live.body("extra").root()->shape(), live.world.shapes().find("ball")->id());
   EXPECT_EQ(objects.bodies.size(), 3u);
   EXPECT_EQ(objects.bodies[2], live.body("extra").id());
   // applied once more it changes nothing

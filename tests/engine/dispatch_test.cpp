@@ -132,7 +132,7 @@ TEST(MessageDispatcher, AcceptsPathsWithPatterns) {
 TEST(MessageDispatcher, UnescapesNamesInPaths) {
   Rig rig;
   Body& body = **rig.world.add_body("left arm #1/2");
-  ASSERT_TRUE(body.add_part("50%", *rig.world.find_shape("ball"), 1, {}).ok());
+  ASSERT_TRUE(body.add_part("50%", *rig.world.shapes().find("ball"), 1, {}).ok());
   EXPECT_EQ(rig.send("/physics/body/left%20arm%20%231%2f2/part/50%25/friction", 0.25).kind, Kind::applied);
   EXPECT_EQ(rig.send("/physics/part/restitution", "left arm #1/2", "50%", 0.75).kind, Kind::applied);
   const std::string path = "/physics/body/left%20arm%20%231%2F2/part/50%25";
@@ -149,7 +149,7 @@ TEST(MessageDispatcher, FindsAPathAgainAfterItsObjectWasAddedAgain) {
   EXPECT_EQ(rig.world.find_body("arm"), nullptr);
   EXPECT_EQ(rig.send(path, 0.5).kind, Kind::unknown);
   Body& again = **rig.world.add_body("arm");
-  ASSERT_TRUE(again.add_part("tip", *rig.world.find_shape("ball"), 1, {}).ok());
+  ASSERT_TRUE(again.add_part("tip", *rig.world.shapes().find("ball"), 1, {}).ok());
   EXPECT_EQ(rig.send(path, 0.75).kind, Kind::applied);
   EXPECT_EQ(rig.read(path), (Values{0.75}));
 }
@@ -240,13 +240,13 @@ TEST(MessageDispatcher, TriggersActOnPressOnly) {
   const Arg bang;
   for (const Arg& press : {bang, arg(1), arg(true), arg(127)}) {
     EXPECT_EQ(rig.send("/physics/sim/reset", press).kind, Kind::applied);
-    EXPECT_TRUE(rig.world.consume_reset_request());
+    EXPECT_TRUE(std::exchange(rig.world.requests().reset, false));
   }
   EXPECT_EQ(rig.send("/physics/sim/reset").kind, Kind::applied);
-  EXPECT_TRUE(rig.world.consume_reset_request());
+  EXPECT_TRUE(std::exchange(rig.world.requests().reset, false));
   for (const Arg& release : {arg(0), arg(false)}) {
     EXPECT_EQ(rig.send("/physics/sim/reset", release).kind, Kind::applied);
-    EXPECT_FALSE(rig.world.consume_reset_request());
+    EXPECT_FALSE(std::exchange(rig.world.requests().reset, false));
   }
 }
 

@@ -87,9 +87,9 @@ TEST(RenderScene, DrawsCompoundsChildByChildInTheirMaterial) {
   Rig rig;
   ShapeModel model;
   model.kind = ShapeKind::compound;
-  Shape& whole = **rig.world.add_shape("whole", model);
-  ASSERT_TRUE(whole.add_child(*rig.world.find_shape("ball"), {{0, 0, 1}, quat_identity()}).ok());
-  ASSERT_TRUE(whole.add_child(*rig.world.find_shape("ball"), {{0, 0, 2}, quat_identity()}).ok());
+  Shape& whole = **rig.world.shapes().add("whole", model);
+  ASSERT_TRUE(whole.add_child(*rig.world.shapes().find("ball"), {{0, 0, 1}, quat_identity()}).ok());
+  ASSERT_TRUE(whole.add_child(*rig.world.shapes().find("ball"), {{0, 0, 2}, quat_identity()}).ok());
   Body& body = **rig.world.add_body("compound");
   ASSERT_TRUE(body.add_part("a", whole, 0, {}).ok());
   ASSERT_TRUE(body.add_part("b", whole, 0, {}).ok());
@@ -118,7 +118,7 @@ TEST(RenderScene, DrawsVisualsOfAFileInTheirOwnColors) {
   ASSERT_EQ(now->render_scene->instances.size(), 7 + 2 * visuals);
   const RenderShape& render_shape = now->render_scene->shapes[now->render_scene->instances[7].shape];
   EXPECT_EQ(render_shape.geometry.mesh, model->links[0].visuals[0].shape.mesh) << "the mesh itself, not a copy";
-  const Shape& shape = *rig.world.find_shape(visual_shape_name(*model, model->links[0], 0));
+  const Shape& shape = *rig.world.shapes().find(visual_shape_name(*model, model->links[0], 0));
   EXPECT_EQ(material_of(*now, render_shape.material).diffuse_color,
             vec3_at(rig.store.values(shape.id(), Shape::table().at("diffuse_color"))));
 }

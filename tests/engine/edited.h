@@ -7,6 +7,7 @@
 
 #include "base/log/log.h"
 #include "engine/show.h"
+#include "support/world_objects.h"
 
 namespace limber::engine_test {
 

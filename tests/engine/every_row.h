@@ -11,6 +11,7 @@
 #include "engine/everything.h"
 #include "properties/catalog.h"
 #include "sim/world/world.h"
+#include "support/world_objects.h"
 
 namespace limber::engine_test {
 

@@ -9,7 +9,7 @@ using Kind = Outcome::Kind;
 // six hundred bodies with names that make patterns backtrack
 struct ManyBodies : Rig {
   ManyBodies() {
-    const Shape& shape = *world.find_shape("ball");
+    const Shape& shape = *world.shapes().find("ball");
     for (int i = 0; i < 600; i++) {
       Body& body = **world.add_body(fmt::format("{}{}", std::string(60, 'a'), i));
       EXPECT_TRUE(body.add_part("tip", const_cast<Shape&>(shape), 1, Pose{{1.0 * i, 5, 5}, quat_identity()}).ok());

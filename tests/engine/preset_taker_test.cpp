@@ -35,7 +35,7 @@ void expect_same(const Preset& a, const Preset& b) {
 struct PresetCapturerTest : testing::Test {
   Rig rig;
   void add_bodies(int count) {
-    Shape& shape = **rig.world.add_shape(fmt::format("shape{}", bodies_added), ball());
+    Shape& shape = **rig.world.shapes().add(fmt::format("shape{}", bodies_added), ball());
     for (int i = 0; i < count; i++) {
       Body& body = **rig.world.add_body(fmt::format("more{}", bodies_added++));
       ASSERT_TRUE(body.add_part("tip", shape, i % 2, Pose{}).ok());

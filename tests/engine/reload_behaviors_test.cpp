@@ -28,14 +28,14 @@ constexpr const char* kCount = R"(return behavior {
 EditedShow make_show() { return EditedShow(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}}); }
 
 double value(EditedShow& edited, const std::string& body, const std::string& behavior, const std::string& property) {
-  const Behavior& b = *edited.body(body).find_behavior(behavior);
+  const Behavior& b = *edited.body(body).behaviors().find(behavior);
   double out[4] = {};
   b.store().get(b.id(), b.store().table(b.id()).at(property), out);
   return out[0];
 }
 void override_value(EditedShow& edited, const std::string& body, const std::string& behavior,
                     const std::string& property, double value) {
-  const Behavior& b = *edited.body(body).find_behavior(behavior);
+  const Behavior& b = *edited.body(body).behaviors().find(behavior);
   ASSERT_TRUE(b.store().set(b.id(), property, {&value, 1}).ok());
 }
 double step_count(EditedShow& edited) {
@@ -122,19 +122,19 @@ sim:add_group_behavior("separation", "apart")
 --MORE)"),
             SceneReloader::ApplyResult::applied);
   EXPECT_EQ(value(edited, "b1", "pace", "speed"), 2);
-  EXPECT_NE(edited.body("b3").find_behavior("apart"), nullptr);
+  EXPECT_NE(edited.body("b3").behaviors().find("apart"), nullptr);
   EXPECT_EQ(edited.edit("\"speed\", \"pace\", { speed = 2 }", "\"torque\", \"pace\", { scale = 3 }"),
             SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.body("b1").find_behavior("pace")->type().name, "torque");
+  EXPECT_EQ(edited.body("b1").behaviors().find("pace")->type().name, "torque");
   EXPECT_EQ(edited.edit("b1:add_behavior(\"torque\", \"pace\", { scale = 3 })", ""),
             SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.body("b1").find_behavior("pace"), nullptr);
+  EXPECT_EQ(edited.body("b1").behaviors().find("pace"), nullptr);
   EXPECT_EQ(edited.edit("sim:add_group_behavior(\"separation\", \"apart\")", ""), SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.body("b3").find_behavior("apart"), nullptr);
+  EXPECT_EQ(edited.body("b3").behaviors().find("apart"), nullptr);
   EXPECT_EQ(edited.edit("\"together\", { amount = 2 }", "\"together\", { bodies = \"b[12]\", amount = 2 }"),
             SceneReloader::ApplyResult::applied);
-  EXPECT_EQ(edited.body("b3").find_behavior("together"), nullptr);
-  EXPECT_NE(edited.body("b2").find_behavior("together"), nullptr);
+  EXPECT_EQ(edited.body("b3").behaviors().find("together"), nullptr);
+  EXPECT_NE(edited.body("b2").behaviors().find("together"), nullptr);
 }
 
 TEST(ReloadBehaviors, RunInTheOrderOfTheScene) {
@@ -158,10 +158,10 @@ TEST(ReloadBehaviors, KeepTheirValuesWhenTheirBodyIsRebuilt) {
   EXPECT_EQ(edited.edit("sphere_shape(\"ball\", 0.05)", "sphere_shape(\"ball\", 0.1)"),
             SceneReloader::ApplyResult::applied);
   EXPECT_EQ(value(edited, "b1", "push", "amp"), 5);
-  EXPECT_NE(edited.body("b1").find_behavior("counter"), nullptr);
+  EXPECT_NE(edited.body("b1").behaviors().find("counter"), nullptr);
   edited.show().ticks(3);
-  EXPECT_NE(edited.body("b1").find_behavior("together"), nullptr);
-  EXPECT_EQ(edited.body("b1").find_behavior("counter")->error(), "");
+  EXPECT_NE(edited.body("b1").behaviors().find("together"), nullptr);
+  EXPECT_EQ(edited.body("b1").behaviors().find("counter")->error(), "");
 }
 
 TEST(ReloadBehaviors, HandlesOfTheNewRunReferToLiveObjects) {
@@ -188,12 +188,12 @@ TEST(ReloadBehaviors, ABrokenFileChangesNothingAndAFixedOneIsApplied) {
   edited.folder.write("behaviors_lua/count.lua", erring);
   EXPECT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
   edited.show().ticks(2);
-  EXPECT_NE(edited.body("b1").find_behavior("counter")->error().find("count.lua:4: there is no global 'nothing'"),
+  EXPECT_NE(edited.body("b1").behaviors().find("counter")->error().find("count.lua:4: there is no global 'nothing'"),
             std::string::npos);
   edited.folder.write("behaviors_lua/count.lua", kCount);
   EXPECT_EQ(edited.show().engine.reload_now(), SceneReloader::ApplyResult::applied);
   edited.show().ticks(2);
-  EXPECT_EQ(edited.body("b1").find_behavior("counter")->error(), "");
+  EXPECT_EQ(edited.body("b1").behaviors().find("counter")->error(), "");
   EXPECT_NEAR(step_count(edited), 12, 1e-9) << "it continues counting";
 }
 

@@ -20,7 +20,7 @@ local gear = sim:add_gear(body:joint("j1"), body:joint("j2"), 2, { name = "gear"
 --MORE
 )";
 
-Gear* gear_of(EditedShow& edited, const char* name = "gear") { return edited.world().find_gear(name); }
+Gear* gear_of(EditedShow& edited, const char* name = "gear") { return edited.world().gears().find(name); }
 double angle(EditedShow& edited, const char* joint) { return edited.body("train").find_joint(joint)->value(); }
 
 TEST(ReloadGears, AnEditThatChangesNothingChangesNoBit) {
@@ -80,7 +80,7 @@ body:add_joint("weld", "arm3", "hat", { type = "fixed" }))"),
 TEST(ReloadGears, ARemovedOneIsAddedAgain) {
   EditedShow edited(kGearShow);
   edited.show().ticks(5);
-  edited.world().remove_gear(*gear_of(edited));
+  edited.world().gears().remove(*gear_of(edited));
   edited.show().ticks(5);
   EXPECT_EQ(edited.edit("--MORE", "--MORE\n"), SceneReloader::ApplyResult::applied);
   EXPECT_NE(gear_of(edited), nullptr);

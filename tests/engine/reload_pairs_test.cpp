@@ -20,7 +20,7 @@ osc:on("/exclude", function() three:exclude_pair("a", "c") end)
 
 std::string pairs_of(const Body& body) {
   std::string text;
-  for (const PartPair& pair : body.pairs().list) {
+  for (const PartPair& pair : body.pairs().list()) {
     if (pair.excluded()) text += body.parts()[pair.a]->name() + body.parts()[pair.b]->name() + " ";
   }
   return text;

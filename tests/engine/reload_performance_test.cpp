@@ -31,11 +31,11 @@ TEST(ReloadUnmanaged, ObjectsOfCallbacksSurviveReloadsButNotAReset) {
   edited.edit("friction = 0.3", "friction = 0.4");
   EXPECT_EQ(motion_of(edited.part("mine", "p")), there);
   EXPECT_EQ(edited.show().read("/physics/body/mine/part/p/friction"), 0.9);
-  EXPECT_NE(edited.world().find_shape("own"), nullptr);
+  EXPECT_NE(edited.world().shapes().find("own"), nullptr);
   edited.show().send("/transport/reset");
   edited.show().ticks(2);
   EXPECT_EQ(edited.world().find_body("mine"), nullptr);
-  EXPECT_EQ(edited.world().find_shape("own"), nullptr);
+  EXPECT_EQ(edited.world().shapes().find("own"), nullptr);
 }
 
 TEST(ReloadUnmanaged, ObjectsAreAdoptedWhenTheSceneDeclaresThem) {
@@ -63,7 +63,7 @@ TEST(ReloadUnmanaged, AnAdoptedObjectOfOtherConstructionIsRebuiltInPlace) {
   edited.show().ticks(30);
   const Pose there = edited.part("mine", "p").pose();
   edited.edit("--MORE", "sim:add_body('mine'):add_part('p', sim:add_box_shape('box', vec3(1, 1, 1)))");
-  EXPECT_EQ(edited.world().find_shape("box")->id(), edited.part("mine", "p").shape());
+  EXPECT_EQ(edited.world().shapes().find("box")->id(), edited.part("mine", "p").shape());
   EXPECT_EQ(edited.part("mine", "p").pose().position, there.position);
   EXPECT_EQ(edited.part("mine", "p").linear_velocity(), Vec3(0, 1, 0));
   EXPECT_EQ(edited.show().read("/physics/body/mine/part/p/friction"), 0.9);
@@ -94,7 +94,8 @@ end))");
   edited.show().send("/swap");
   edited.show().ticks(2);
   edited.edit("--MORE", "-- nothing");
-  EXPECT_EQ(edited.world().find_shape("s")->id(), edited.part("stone", "p").shape()) << "constructed as in the scene";
+  EXPECT_EQ(edited.world().shapes().find("s")->id(), edited.part("stone", "p").shape())
+      << "constructed as in the scene";
   EXPECT_EQ(edited.part("stone", "p").pose().position, Vec3(0, 0, 1)) << "and at its start pose";
 }
 

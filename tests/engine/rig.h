@@ -13,7 +13,7 @@
 #include "base/message.h"
 #include "engine/commands/message_dispatcher.h"
 #include "properties/catalog.h"
-#include "sim/world/world.h"
+#include "support/world_objects.h"
 
 namespace limber::engine_test {
 
@@ -41,8 +41,8 @@ inline ShapeModel ball() {
 inline void build_bodies(World& world) {
   ShapeModel ground;
   ground.kind = ShapeKind::plane;
-  Shape& sphere = **world.add_shape("ball", ball());
-  Shape& plane = **world.add_shape("ground", ground);
+  Shape& sphere = **world.shapes().add("ball", ball());
+  Shape& plane = **world.shapes().add("ground", ground);
   const auto pose = [](double x, double z) { return Pose{{x, 0, z}, quat_identity()}; };
   const auto add_joint = [](Body& body, const char* name, const char* from, const char* to, JointType type) {
     Part& child = *body.find_part(to);

@@ -151,7 +151,7 @@ TEST(LegacyMessages, ForceActsForOneTick) {
   ASSERT_EQ(rig.send("/physics/motor/mode", "off").kind, Kind::applied);
   ShapeModel shape = ball();
   Body& free = **rig.world.add_body("free");
-  ASSERT_TRUE(free.add_part("free", **rig.world.add_shape("ball 2", shape), 1, {{10, 0, 5}, quat_identity()}).ok());
+  ASSERT_TRUE(free.add_part("free", **rig.world.shapes().add("ball 2", shape), 1, {{10, 0, 5}, quat_identity()}).ok());
   EXPECT_EQ(rig.send("/physics/part/force", "free", 0, 6, 0).kind, Kind::applied);
   rig.world.step();
   Values v = rig.read("/physics/body/free/part/free/linear_velocity");
@@ -233,7 +233,7 @@ TEST(LegacyMessages, SetsBehaviorParametersInBothForms) {
       ASSERT_TRUE(list.add(*rig.world.find_body("1"), p.type, "it").ok());
     }
     const auto value = [&](const char* body) {
-      const Behavior& behavior = *rig.world.find_body(body)->find_behavior("it");
+      const Behavior& behavior = *rig.world.find_body(body)->behaviors().find("it");
       std::vector<double> out(3);
       rig.store.get(behavior.id(), *behavior.type().table->find(p.name), out.data());
       return out[p.numbers - 1];

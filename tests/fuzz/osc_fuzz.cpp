@@ -21,6 +21,7 @@
 #include "net/osc/receiver.h"
 #include "net/osc/subscribers.h"
 #include "osc/same_decoded.h"
+#include "support/world_objects.h"
 
 namespace {
 

@@ -15,6 +15,7 @@
 #include "script/api/script_context.h"
 #include "script/scene/scene.h"
 #include "script/vm/vm.h"
+#include "support/world_objects.h"
 
 namespace limber {
 namespace {
@@ -259,11 +260,11 @@ void play(std::span<const std::uint8_t> bytes) {
   world.step();
   for (int tick = 0; tick < 4; tick++) {
     const std::uint64_t hash = context.hash(world.state_hash());
-    const std::size_t shapes = world.shapes().size();
+    const std::size_t shapes = world.shapes().list().size();
     if (tick == 0) vm.start();
     vm.handle_message({"/go", {Arg::of(1.0)}}, {});
     vm.tick(1.0 / 60);
-    if (all_fail) must(context.hash(world.state_hash()) == hash && world.shapes().size() == shapes);
+    if (all_fail) must(context.hash(world.state_hash()) == hash && world.shapes().list().size() == shapes);
     world.step();
     vm.collect_garbage();
   }

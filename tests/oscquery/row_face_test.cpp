@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/engine.h"
+#include "support/world_objects.h"
 
 namespace limber {
 namespace {

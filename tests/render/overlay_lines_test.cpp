@@ -72,7 +72,7 @@ bool is_red_line(const Vec3& c) { return c.x > 120 && c.x > 2.5 * c.y && c.x > 2
 
 TEST(OverlayLines, AreVisibleWhileEnabled) {
   TestScene scene;
-  Shape& ball = **scene.world.add_shape("ball", round(ShapeKind::sphere, 0.3));
+  Shape& ball = **scene.world.shapes().add("ball", round(ShapeKind::sphere, 0.3));
   scene.set("/visuals/shape/ball/diffuse_color", {0, 0, 0.1});
   Body& body = **scene.world.add_body("ball");
   Part& part = **body.add_part("part", ball, 1, {{0, 0, 1}, quat_identity()});

@@ -372,7 +372,7 @@ TEST(Renderer, DrawsManyPartsOfEveryKind) {
                                round(ShapeKind::cylinder, 0.05, 0.1), round(ShapeKind::cone, 0.05, 0.1)};
   std::vector<Shape*> shapes;
   for (const ShapeModel& model : models)
-    shapes.push_back(*scene.world.add_shape(fmt::format("s{}", shapes.size()), model));
+    shapes.push_back(*scene.world.shapes().add(fmt::format("s{}", shapes.size()), model));
   Body& body = **scene.world.add_body("many");
   for (int i = 0; i < 3000; i++) {
     const int property = i / 60;

@@ -13,6 +13,7 @@
 
 #include "engine/output/publisher.h"
 #include "properties/catalog.h"
+#include "support/world_objects.h"
 #include "ui/render/offscreen.h"
 #include "ui/render/renderer.h"
 
@@ -45,7 +46,7 @@ class TestScene {
   /// Adds a body with one static part.
   Part& add(const std::string& name, const ShapeModel& model, const Vec3& at = {0, 0, 0},
             const Quat& rotation = quat_identity()) {
-    Shape& shape = **world.add_shape(name, model);
+    Shape& shape = **world.shapes().add(name, model);
     Body& body = **world.add_body(name);
     return **body.add_part("part", shape, 0, {at, rotation});
   }

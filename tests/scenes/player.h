@@ -14,6 +14,7 @@
 #include "base/log/log.h"
 #include "engine/engine.h"
 #include "properties/catalog.h"
+#include "support/world_objects.h"
 
 namespace limber {
 

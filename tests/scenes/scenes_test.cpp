@@ -122,7 +122,7 @@ TEST(Scenes, EachArmHasTwentyOneInactiveBehaviors) {
   ASSERT_EQ(kArmBehaviors.size(), 21u);
   for (const auto& body : player.world().bodies()) {
     for (const auto& [name, type] : kArmBehaviors) {
-      const Behavior* behavior = body->find_behavior(name);
+      const Behavior* behavior = body->behaviors().find(name);
       ASSERT_NE(behavior, nullptr) << body->name() << " " << name;
       EXPECT_EQ(behavior->type().name, type) << name;
       EXPECT_FALSE(behavior->active()) << name;
@@ -133,11 +133,11 @@ TEST(Scenes, EachArmHasTwentyOneInactiveBehaviors) {
         EXPECT_EQ(behavior->parts()[0]->name(), "tip") << name;
       }
     }
-    EXPECT_EQ(body->behaviors().size(), 23u) << "and the two that breathe";
-    EXPECT_EQ(body->find_behavior("rotation_3")->motors().size(), 1u);
-    EXPECT_EQ(body->find_behavior("rotation_3")->motors()[0]->name(), "joint_4");
-    EXPECT_EQ(body->find_behavior("thrusting")->motors().size(), 2u);
-    EXPECT_EQ(body->find_behavior("staccato")->motors().size(), 6u);
+    EXPECT_EQ(body->behaviors().list().size(), 23u) << "and the two that breathe";
+    EXPECT_EQ(body->behaviors().find("rotation_3")->motors().size(), 1u);
+    EXPECT_EQ(body->behaviors().find("rotation_3")->motors()[0]->name(), "joint_4");
+    EXPECT_EQ(body->behaviors().find("thrusting")->motors().size(), 2u);
+    EXPECT_EQ(body->behaviors().find("staccato")->motors().size(), 6u);
   }
   EXPECT_LT(player.value("/physics/body/arm7/behavior/evasion/amount"), 0) << "or it would not evade";
 }

@@ -23,7 +23,7 @@ std::vector<std::string> output_of_step(const std::string& step, const std::stri
   fixture.write("behaviors_lua/test.lua", group(step));
   EXPECT_EQ(fixture.play(row_of_balls(4, opts), 1), "");
   for (const auto& body : fixture.world.bodies()) {
-    for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
+    for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
   }
   return fixture.host.printed;
 }
@@ -122,7 +122,7 @@ sim:add_group_behavior('test', 'swarm', )" +
                              opts + ")",
                          2),
             "");
-  for (const auto& body : fixture.world.bodies()) EXPECT_EQ(body->behaviors()[0]->error(), "");
+  for (const auto& body : fixture.world.bodies()) EXPECT_EQ(body->behaviors().list()[0]->error(), "");
   return fixture.host.printed;
 }
 
@@ -161,7 +161,7 @@ sim:add_group_behavior('test', 'eyes', { parts = 'ball', neighbor_parts = 'eye' 
                          2),
             "");
   for (const auto& body : fixture.world.bodies()) {
-    for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
+    for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
   }
   return fixture.host.printed;
 }
@@ -193,9 +193,9 @@ if self.body.name == 'b2' then sim:body('b1'):remove() end
 if self.body.name == 'b3' then self:neighbor_means(first, 0, 2) end
 )"));
   EXPECT_EQ(fixture.play(row_of_balls(3), 1), "");
-  EXPECT_EQ(first_line(fixture.world.find_body("b3")->find_behavior("swarm")->error()),
+  EXPECT_EQ(first_line(fixture.world.find_body("b3")->behaviors().find("swarm")->error()),
             "behaviors_lua/test.lua:7: part 'b1/ball' no longer exists (check its .alive)");
-  EXPECT_EQ(fixture.world.find_body("b2")->find_behavior("swarm")->error(), "");
+  EXPECT_EQ(fixture.world.find_body("b2")->behaviors().find("swarm")->error(), "");
 }
 
 TEST(BehaviorNeighbors, MistakesAreExplained) {
@@ -203,7 +203,7 @@ TEST(BehaviorNeighbors, MistakesAreExplained) {
     BehaviorFixture fixture;
     fixture.write("behaviors_lua/test.lua", group(step));
     EXPECT_EQ(fixture.play(row_of_balls(1), 1), "");
-    return first_line(fixture.world.find_body("b1")->find_behavior("swarm")->error());
+    return first_line(fixture.world.find_body("b1")->behaviors().find("swarm")->error());
   };
   const std::string at = "behaviors_lua/test.lua:2: ";
   EXPECT_EQ(error("self:neighbors(3, 1)"), at + "behavior 'b1/swarm': neighbors are those of a part, not of 3");

@@ -43,7 +43,7 @@ ball:add_behavior("softhum", "b")
                          1),
             "");
   EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"hum", "hum"}));
-  EXPECT_EQ(fixture.world.find_body("ball")->find_behavior("a")->type().name, "soft_hum");
+  EXPECT_EQ(fixture.world.find_body("ball")->behaviors().find("a")->type().name, "soft_hum");
 }
 
 TEST(BehaviorTypes, AMissingTypeListsTheSearchedFolders) {

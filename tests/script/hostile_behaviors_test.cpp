@@ -87,7 +87,7 @@ std::string file(const HostileCase& hostile) {
 }
 
 std::uint64_t hash_of(const ScriptFixture& fixture, const char* body) {
-  return fixture.world.find_body(body)->state_hash(hash_bytes("test"));
+  return body_hash(*fixture.world.find_body(body), hash_bytes("test"));
 }
 
 class HostileBehaviors : public ::testing::TestWithParam<HostileCase> {};
@@ -102,7 +102,7 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
     BehaviorFixture fixture(options, true);
     fixture.write("behaviors_lua/test.lua", file(hostile));
     ASSERT_EQ(fixture.play(scene(), 30), "");
-    Behavior& bad = *fixture.world.find_body("bad")->find_behavior("bad");
+    Behavior& bad = *fixture.world.find_body("bad")->behaviors().find("bad");
     EXPECT_EQ(bad.error(), "");
     if (!acts) {
       const double off = 0;
@@ -120,7 +120,7 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
       EXPECT_EQ(fixture.host.resets, 0);
     }
     for (const char* other : {"before", "behind"}) {
-      EXPECT_EQ(fixture.world.find_body(other)->find_behavior("bad")->error(), "");
+      EXPECT_EQ(fixture.world.find_body(other)->behaviors().find("bad")->error(), "");
     }
     hashes.push_back(hash_of(fixture, "healthy"));
     hashes.push_back(hash_bytes("before", hash_of(fixture, "before") ^ hash_of(fixture, "behind")));
@@ -159,7 +159,7 @@ TEST_P(HostileBehaviors, ContinueAfterTheFileIsFixed) {
   BehaviorFixture fixture(options, true);
   fixture.write("behaviors_lua/test.lua", file(hostile));
   ASSERT_EQ(fixture.play(scene(), 32), "");
-  const auto bad = [&]() -> const Behavior& { return *fixture.world.find_body("bad")->find_behavior("bad"); };
+  const auto bad = [&]() -> const Behavior& { return *fixture.world.find_body("bad")->behaviors().find("bad"); };
   ASSERT_NE(bad().error(), "");
   RecordingHost host;
   std::unique_ptr<Scene> detached_scene;
@@ -189,10 +189,10 @@ TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndRetainTheirState) {
     fix_file(fixture, host, detached_scene,
              good + "migrate = function(self, old)\n  if self.hostile then " + migrate + " end\nreturn old end }");
     fixture.tick(2);
-    const Behavior* bad = fixture.world.find_body("bad")->find_behavior("bad");
+    const Behavior* bad = fixture.world.find_body("bad")->behaviors().find("bad");
     EXPECT_EQ(bad->fault().line, 5) << bad->error();
     EXPECT_EQ(bad->fault().file, "behaviors_lua/test.lua");
-    EXPECT_EQ(fixture.world.find_body("behind")->find_behavior("bad")->error(), "");
+    EXPECT_EQ(fixture.world.find_body("behind")->behaviors().find("bad")->error(), "");
     EXPECT_EQ(host.printed, std::vector<std::string>{});
     fix_file(fixture, later_host, later_scene, good + "}");
     fixture.tick();

@@ -110,7 +110,7 @@ MotionTrack play(const std::string& guest, const FileHeader& header) {
     const Body* const healthy = fixture.world.find_body("healthy");
     EXPECT_NE(healthy, nullptr) << "tick " << tick;
     if (healthy == nullptr) break;
-    trajectory.hashes.push_back(healthy->state_hash(0));
+    trajectory.hashes.push_back(body_hash(*healthy, 0));
   }
   trajectory.faults = fixture.host.faults;
   trajectory.sent = fixture.host.sent.size() + fixture.host.replies.size();

@@ -25,7 +25,7 @@ return behavior {
   EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"start", "1\t0\ttrue", "2\t0.016666666666667\ttrue",
                                                             "3\t0.083333333333333\ttrue"}));
   // a reset of the body calls start again
-  fixture.world.find_body("ball")->reset();
+  fixture.world.find_body("ball")->recovery().reset();
   fixture.tick();
   EXPECT_EQ(fixture.host.printed.back(), "1\t0.1\ttrue");
 }
@@ -256,7 +256,7 @@ sim:add_group_behavior("test", "all")
   EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"a", "c", "e", "g"}));
   fixture.host.printed.clear();
   const double on = 1;
-  const Behavior& b = *fixture.world.find_body("b")->find_behavior("all");
+  const Behavior& b = *fixture.world.find_body("b")->behaviors().find("all");
   ASSERT_TRUE(fixture.store.set(b.id(), "active", {&on, 1}).ok());
   fixture.world.find_body("d")->set_enabled(true);
   fixture.tick();

@@ -230,13 +230,13 @@ end
 print(body:part("hull").center, body:part("both").shape)
 )"),
             "");
-  EXPECT_EQ(fixture.world.shapes().size(), 9u);
-  EXPECT_EQ(fixture.world.find_shape("wall")->model().normal, Vec3(1, 0, 0));
-  EXPECT_EQ(fixture.world.find_shape("box")->model().size, Vec3(1, 2, 3));
-  EXPECT_EQ(fixture.world.find_shape("capsule")->model().height, 1.5);
-  EXPECT_EQ(fixture.world.find_shape("hull")->model().mesh->hull.size(), 8u);
-  EXPECT_NEAR(fixture.world.find_shape("hull")->model().mesh->unit_inertial.mass, 8, 1e-9);  // a cube of 2 m
-  EXPECT_EQ(fixture.world.find_shape("both")->placed().size(), 2u);
+  EXPECT_EQ(fixture.world.shapes().list().size(), 9u);
+  EXPECT_EQ(fixture.world.shapes().find("wall")->model().normal, Vec3(1, 0, 0));
+  EXPECT_EQ(fixture.world.shapes().find("box")->model().size, Vec3(1, 2, 3));
+  EXPECT_EQ(fixture.world.shapes().find("capsule")->model().height, 1.5);
+  EXPECT_EQ(fixture.world.shapes().find("hull")->model().mesh->hull.size(), 8u);
+  EXPECT_NEAR(fixture.world.shapes().find("hull")->model().mesh->unit_inertial.mass, 8, 1e-9);  // a cube of 2 m
+  EXPECT_EQ(fixture.world.shapes().find("both")->placed().size(), 2u);
   // the cube's corner is its origin, at x = 24: its center is one meter away on each axis
   EXPECT_EQ(fixture.host.printed, Lines{"vec3(25, 1, 1)\tshape 'both'"});
 }

@@ -13,7 +13,7 @@
 
 #include "base/log/log.h"
 #include "script/scene/scene.h"
-#include "sim/world/world.h"
+#include "support/world_objects.h"
 
 namespace limber {
 

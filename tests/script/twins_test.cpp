@@ -120,7 +120,7 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
   for (int i = 0; fault.empty() && i < 60; i++) {
     fixture.tick(10);
     for (const auto& body : fixture.world.bodies()) {
-      for (const Behavior* behavior : body->behaviors()) EXPECT_EQ(behavior->error(), "");
+      for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
       for (const auto& part : body->parts()) {
         places.push_back(part->center());
         places.push_back(part->center() + part->pose().rotation * Vec3(0.3, 0.2, 0.1));

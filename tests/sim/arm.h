@@ -20,8 +20,8 @@ struct ArmSpec {
 inline Body& make_arm(WorldFixture& s, const std::string& name, const ArmSpec& spec = {}) {
   Body& arm = s.body(name);
   const auto shape = [&](const std::string& key, const Vec3& size) -> Shape& {
-    Shape* existing = s.world.find_shape(key);
-    return existing != nullptr ? *existing : *s.world.add_shape(key, box_model(size)).value();
+    Shape* existing = s.world.shapes().find(key);
+    return existing != nullptr ? *existing : *s.world.shapes().add(key, box_model(size)).value();
   };
   Shape& box = shape("arm link", {0.1, 0.08, 0.2});
   Part* below =

@@ -28,8 +28,8 @@ TEST(BehaviorGroup, MembersAreTheSelectedBodies) {
   EXPECT_EQ(member_bodies(s.group("b", group_of({"arm*"}, {"tip"}))), (Words{"arm1", "arm2"}));
   EXPECT_EQ(member_bodies(s.group("c", group_of({"leg", "arm2"}, {"tip"}))), (Words{"arm2", "leg"}));
   EXPECT_EQ(member_bodies(s.group("d", group_of({"none*"}, {"tip"}))), Words{});
-  EXPECT_EQ(names_in(s.world.find_body("arm2")->behaviors()), (Words{"a", "b", "c"}));
-  EXPECT_EQ(s.store.path(s.world.find_body("leg")->find_behavior("a")->id()), "/physics/body/leg/behavior/a");
+  EXPECT_EQ(names_in(s.world.find_body("arm2")->behaviors().list()), (Words{"a", "b", "c"}));
+  EXPECT_EQ(s.store.path(s.world.find_body("leg")->behaviors().find("a")->id()), "/physics/body/leg/behavior/a");
 }
 
 TEST(BehaviorGroup, TracksAddedAndRemovedBodies) {
@@ -45,7 +45,7 @@ TEST(BehaviorGroup, TracksAddedAndRemovedBodies) {
   s.ticks(1);
   EXPECT_EQ(member_bodies(group), (Words{"arm1", "arm2"}));
   EXPECT_EQ(neighbors(group), (Words{"arm1/tip", "arm2/tip"}));
-  EXPECT_EQ(s.number(late.find_behavior("flock")->id(), "amount"), 6);  // new members get the group's values
+  EXPECT_EQ(s.number(late.behaviors().find("flock")->id(), "amount"), 6);  // new members get the group's values
   s.world.remove_body(*s.world.find_body("arm1"));
   s.ticks(1);
   EXPECT_EQ(member_bodies(group), (Words{"arm2"}));
@@ -57,8 +57,8 @@ TEST(BehaviorGroup, SettingAValueSetsItOnEveryMemberAtOnce) {
   Body& a = s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
   BehaviorGroup& group = s.group("flock");
-  const NodeId id_a = a.find_behavior("flock")->id();
-  const NodeId id_b = b.find_behavior("flock")->id();
+  const NodeId id_a = a.behaviors().find("flock")->id();
+  const NodeId id_b = b.behaviors().find("flock")->id();
   s.set(id_a, "amount", {9});
   EXPECT_EQ(s.number(id_b, "amount"), 2);
   EXPECT_EQ(s.number(group.id(), "amount"), 2);
@@ -109,7 +109,7 @@ TEST(BehaviorGroup, ErrorsSuggestExistingNames) {
   s.probe(*s.world.find_body("leg"), "taken");
   EXPECT_EQ(s.add_group_error("probe_group", "taken"), "body 'leg' has a behavior 'taken' already; names are unique");
   // a rejected group leaves nothing behind
-  EXPECT_EQ(s.world.find_body("arm")->find_behavior("taken"), nullptr);
+  EXPECT_EQ(s.world.find_body("arm")->behaviors().find("taken"), nullptr);
   EXPECT_EQ(s.list().find_group("taken"), nullptr);
   EXPECT_EQ(s.list().groups().size(), 1U);
 }
@@ -119,7 +119,7 @@ TEST(BehaviorGroup, RemovedMemberIsNotAddedAgain) {
   s.chain("a", {"base"});
   Body& b = s.chain("b", {"base"});
   BehaviorGroup& group = s.group("flock");
-  s.list().remove(*b.find_behavior("flock"));
+  s.list().remove(*b.behaviors().find("flock"));
   s.chain("c", {"base"});
   s.ticks(1);
   EXPECT_EQ(member_bodies(group), (Words{"a", "c"}));
@@ -132,12 +132,12 @@ TEST(BehaviorGroup, ErrorSuspendsOnlyOneMember) {
   s.group("flock");
   s.ticks(1);
   s.list().on_fault([](const Behavior&) {});
-  s.set(a.find_behavior("flock")->id(), "broken", {1});
+  s.set(a.behaviors().find("flock")->id(), "broken", {1});
   BehaviorRig::consume_calls();
   s.ticks(2);
   EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/flock", "step b/flock", "step b/flock"}));
-  s.set(a.find_behavior("flock")->id(), "broken", {0});
-  s.set(a.find_behavior("flock")->id(), "active", {1});
+  s.set(a.behaviors().find("flock")->id(), "broken", {0});
+  s.set(a.behaviors().find("flock")->id(), "active", {1});
   s.ticks(1);
   EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step a/flock", "step b/flock"}));
 }
@@ -148,7 +148,7 @@ TEST(BehaviorGroup, HashCoversItsValues) {
     Body& a = s.chain("a", {"base"});
     BehaviorGroup& group = s.group("flock");
     s.set(group.id(), "amount", {amount});
-    s.set(a.find_behavior("flock")->id(), "amount", {member_amount});
+    s.set(a.behaviors().find("flock")->id(), "amount", {member_amount});
     s.ticks(1);
     return s.world.state_hash();
   };

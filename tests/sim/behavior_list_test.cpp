@@ -38,7 +38,7 @@ TEST(BehaviorList, ErrorsSuggestExistingNames) {
   EXPECT_EQ(s.add_error(body, "probe", "q", setup), "body 'arm' has no motor 'base'; there are: to_tip");
   EXPECT_NE(s.add_error(body, "probe", ""), "");
   // a rejected behavior leaves nothing behind
-  EXPECT_EQ(names_in(body.behaviors()), (Words{"p"}));
+  EXPECT_EQ(names_in(body.behaviors().list()), (Words{"p"}));
   EXPECT_EQ(s.store.children(s.store.child(body.id(), "behavior")).size(), 1U);
   EXPECT_EQ(s.add_group_error("probe", "g"), "'probe' acts on one body: attach it with body:add_behavior");
 }
@@ -65,7 +65,7 @@ TEST(BehaviorList, RemovedBehaviorStopsAndFreesItsName) {
   BehaviorRig::consume_calls();
   ASSERT_TRUE(s.store.table(id).at("remove").invoke(&one, {}).ok());
   EXPECT_FALSE(s.store.alive(id));
-  EXPECT_EQ(body.find_behavior("one"), nullptr);
+  EXPECT_EQ(body.behaviors().find("one"), nullptr);
   s.ticks(1);
   EXPECT_EQ(BehaviorRig::consume_calls(), (Words{"step b/two"}));
   // its name is free again
@@ -107,7 +107,7 @@ TEST(BehaviorList, AllowsRemovalWhileStepping) {
   EXPECT_EQ(tick_with([&] { s.world.remove_body(b); }), (Words{"step a/flock"}));
   EXPECT_EQ(tick_with([&] { s.list().remove(group); }), Words{});
   EXPECT_EQ(tick_with([&] { s.list().remove(remover); }), Words{});
-  EXPECT_EQ(a.behaviors().size(), 0U);
+  EXPECT_EQ(a.behaviors().list().size(), 0U);
   s.ticks(1);
 }
 
@@ -120,19 +120,19 @@ TEST(BehaviorList, CopyHasTheBehaviorsWithTheirValues) {
   s.set(p.id(), "amount", {7});
   s.set(p.id(), "way", {3, 2, 1});
   s.set(p.id(), "active", {0});
-  s.set(arm.find_behavior("named")->id(), "amount", {-4});
+  s.set(arm.behaviors().find("named")->id(), "amount", {-4});
   Body& twin = **s.world.copy_body(arm, "twin");
-  EXPECT_EQ(names_in(twin.behaviors()), (Words{"p", "named", "pattern"}));
-  const Behavior& copy = *twin.find_behavior("p");
+  EXPECT_EQ(names_in(twin.behaviors().list()), (Words{"p", "named", "pattern"}));
+  const Behavior& copy = *twin.behaviors().find("p");
   EXPECT_EQ(s.number(copy.id(), "amount"), 7);
   EXPECT_EQ(s.get(copy.id(), "way"), (std::vector<double>{3, 2, 1}));
   EXPECT_EQ(s.number(copy.id(), "active"), 0);
   EXPECT_EQ(names_in(copy.parts()), (Words{"tip"}));
   EXPECT_EQ(&copy.parts()[0]->body(), &twin);
   // group membership is copied too, although the group names only the original
-  EXPECT_EQ(s.number(twin.find_behavior("named")->id(), "amount"), -4);
-  EXPECT_EQ(twin.find_behavior("named")->group(), &named);
-  EXPECT_EQ(twin.find_behavior("pattern")->group(), &pattern);
+  EXPECT_EQ(s.number(twin.behaviors().find("named")->id(), "amount"), -4);
+  EXPECT_EQ(twin.behaviors().find("named")->group(), &named);
+  EXPECT_EQ(twin.behaviors().find("pattern")->group(), &pattern);
   s.ticks(2);
   EXPECT_EQ(named.members().size(), 2U);
   EXPECT_EQ(pattern.members().size(), 2U);

@@ -70,14 +70,14 @@ TEST(BehaviorTypes, ReplacedInstancesKeepCommonProperties) {
                                             properties::number("fresh", "", 3, 0, 9, "A new one.")}))
                   .ok());
   s.list().replace_instances("probe");
-  Behavior& after = *body.find_behavior("p");
+  Behavior& after = *body.behaviors().find("p");
   EXPECT_EQ(s.number(after.id(), "amount"), 5);
   EXPECT_EQ(s.number(after.id(), "way"), 8);
   EXPECT_EQ(s.number(after.id(), "fresh"), 3);
   EXPECT_FALSE(s.store.alive(id_before));
   EXPECT_EQ(after.random().state(), generator);
   EXPECT_EQ(names_in(after.parts()), (Words{"tip"}));
-  EXPECT_EQ(names_in(body.behaviors()), (Words{"p", "other"}));
+  EXPECT_EQ(names_in(body.behaviors().list()), (Words{"p", "other"}));
   EXPECT_EQ(static_cast<Probe&>(after).elapsed_count, 101);
   BehaviorRig::consume_calls();
   s.ticks(1);
@@ -92,7 +92,7 @@ TEST(BehaviorTypes, ReplacingWithTheSamePropertiesKeepsTheNode) {
   const NodeId id = before.id();
   ASSERT_TRUE(s.types().add(probe_type("probe")).ok());
   s.list().replace_instances("probe");
-  EXPECT_EQ(body.find_behavior("p")->id(), id);
+  EXPECT_EQ(body.behaviors().find("p")->id(), id);
   EXPECT_EQ(s.number(id, "amount"), 9);
 }
 
@@ -102,7 +102,7 @@ TEST(BehaviorTypes, GroupsAreReplacedWithTheirMembers) {
   s.chain("b", {"base"});
   BehaviorGroup& group = s.group("g");
   s.set(group.id(), "amount", {7});
-  s.set(s.world.find_body("a")->find_behavior("g")->id(), "amount", {8});
+  s.set(s.world.find_body("a")->behaviors().find("g")->id(), "amount", {8});
   std::vector<Property> properties = probe_properties();
   properties.push_back(properties::number("fresh", "", 3, 0, 9, "A new one."));
   ASSERT_TRUE(s.types().add(BehaviorType::create_group<Probe>("probe_group", "Probes.", properties)).ok());
@@ -110,7 +110,7 @@ TEST(BehaviorTypes, GroupsAreReplacedWithTheirMembers) {
   EXPECT_EQ(s.number(group.id(), "amount"), 7);
   s.set(group.id(), "fresh", {5});
   for (const char* name : {"a", "b"}) {
-    const NodeId id = s.world.find_body(name)->find_behavior("g")->id();
+    const NodeId id = s.world.find_body(name)->behaviors().find("g")->id();
     EXPECT_EQ(s.number(id, "fresh"), 5);
     EXPECT_EQ(s.number(id, "amount"), name[0] == 'a' ? 8 : 7);
   }

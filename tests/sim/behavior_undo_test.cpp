@@ -74,9 +74,9 @@ const std::vector<ListChange>& list_changes() {
       {"remove behaviors of a copied body",
        [](UndoScene& c) {
          Body& copy = **c.s.world.copy_body(c.a, "copy");
-         c.s.list().remove(*copy.behaviors()[0]);
+         c.s.list().remove(*copy.behaviors().list()[0]);
          c.s.list().remove(c.one);
-         c.s.list().remove(*copy.behaviors()[0]);
+         c.s.list().remove(*copy.behaviors().list()[0]);
        }},
       {"add a part that behaviors act on",
        [](UndoScene& c) {
@@ -91,7 +91,7 @@ const std::vector<ListChange>& list_changes() {
          ASSERT_EQ(c.flock.members().size(), 3u);
          c.s.list().remove(*c.flock.members()[0]);
        }},
-      {"reset a body", [](UndoScene& c) { c.a.reset(); }},
+      {"reset a body", [](UndoScene& c) { c.a.recovery().reset(); }},
       {"set a parameter, then remove the behavior",
        [](UndoScene& c) { c.s.set(c.one.id(), "amount", {7}), c.s.list().remove(c.one); }},
   };
@@ -120,15 +120,15 @@ TEST(BehaviorTransaction, RemovedBehaviorsAreHiddenDuringTheCall) {
   s.list().remove(one);
   s.list().remove(flock);
   for (const NodeId node : {id, group, member}) EXPECT_FALSE(s.store.alive(node));
-  EXPECT_EQ(a.find_behavior("one"), nullptr);
+  EXPECT_EQ(a.behaviors().find("one"), nullptr);
   EXPECT_EQ(s.list().find_group("flock"), nullptr);
-  EXPECT_TRUE(a.behaviors().empty());
+  EXPECT_TRUE(a.behaviors().list().empty());
   EXPECT_TRUE(s.list().order().keys().empty());
   s.world.transaction().rollback();
   for (const NodeId node : {id, group, member}) EXPECT_TRUE(s.store.alive(node));
-  EXPECT_EQ(a.find_behavior("one"), &one);
+  EXPECT_EQ(a.behaviors().find("one"), &one);
   EXPECT_EQ(s.list().find_group("flock"), &flock);
-  EXPECT_EQ(names_in(a.behaviors()), (Words{"one", "flock"}));
+  EXPECT_EQ(names_in(a.behaviors().list()), (Words{"one", "flock"}));
   EXPECT_EQ(s.list().order().keys(), (Words{"a/one", "/flock"}));
 }
 
@@ -141,8 +141,8 @@ TEST(BehaviorTransaction, CommittedRemovalIsFinal) {
   s.ticks(1);
   const std::size_t slots = s.store.view()->slot_count;
   s.world.transaction().begin();
-  s.list().remove(*a.find_behavior("one"));
-  s.list().remove(*b.find_behavior("flock"));
+  s.list().remove(*a.behaviors().find("one"));
+  s.list().remove(*b.behaviors().find("flock"));
   s.world.transaction().commit();
   BehaviorRig::consume_calls();
   s.ticks(2);
@@ -188,7 +188,7 @@ TEST(BehaviorTransaction, RollsBackChangesDuringStep) {
   };
   GuardedBehavior::action = [](GuardedBehavior& self) {
     BehaviorList& list = self.world().behaviors();
-    for (const char* name : {"after", "before"}) list.remove(*self.body().find_behavior(name));
+    for (const char* name : {"after", "before"}) list.remove(*self.body().behaviors().find(name));
     list.remove(*list.find_group("flock"));
     list.remove(self);
   };
@@ -248,9 +248,9 @@ TEST(BehaviorTransaction, RejectedGroupLeavesNothingBehind) {
   s.probe(b, "taken");
   s.world.transaction().begin();
   EXPECT_EQ(s.add_group_error("probe_group", "taken"), "body 'b' has a behavior 'taken' already; names are unique");
-  EXPECT_TRUE(a.behaviors().empty());
+  EXPECT_TRUE(a.behaviors().list().empty());
   s.world.transaction().rollback();
-  EXPECT_TRUE(a.behaviors().empty());
+  EXPECT_TRUE(a.behaviors().list().empty());
   s.ticks(1);
 }
 

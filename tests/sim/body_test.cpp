@@ -113,10 +113,10 @@ TEST(BodyTest, CopyOfAnImportedBodyKeepsItsModelAndMimicJoints) {
   EXPECT_NEAR(twin.find_joint("lead")->value(), 0.4, 1e-3);
   EXPECT_NEAR(twin.find_joint("follow")->value(), 0.1 - 2 * 0.4, 5e-3);
   EXPECT_NEAR(body.find_joint("follow")->value(), 0.1, 5e-3);
-  const Result<Pose> tool = twin.link_pose("tool");
+  const Result<Pose> tool = link_pose(twin, "tool");
   ASSERT_TRUE(tool);
   EXPECT_LT(glm::length(tool->position - Vec3(1, 5, 0.5)), 1e-3);
-  EXPECT_EQ(twin.link_pose("tol").error(), "body 'twin' has no link 'tol'; did you mean 'tool'?");
+  EXPECT_EQ(link_pose(twin, "tol").error(), "body 'twin' has no link 'tol'; did you mean 'tool'?");
 }
 
 TEST(BodyTest, CopyOfADisabledBodyIsDisabled) {
@@ -188,7 +188,7 @@ TEST(BodyTest, MovedCopyNeverCollidesWithItsOriginal) {
   }
   for (int i = 0; i < 10; i++) {
     s.ticks(1);
-    EXPECT_TRUE(s.world.contacts().empty());
+    EXPECT_TRUE(s.world.contacts().events().empty());
   }
   EXPECT_LT(glm::length(arm.root()->linear_velocity()), 1e-6);
 }
@@ -233,7 +233,7 @@ TEST(BodyTest, ResetRestoresTheStartPoseWithFullTurns) {
   s.set(motor.id(), "mode", {2});
   s.set(motor.id(), "speed", {0});
   arm.parts()[1]->apply_force({1000, 0, 0});
-  arm.reset();
+  arm.recovery().reset();
   s.world.flush();
   for (const auto& joint : arm.joints()) EXPECT_NEAR(joint->value(), 0, 1e-6);
   for (const auto& part : arm.parts()) {
@@ -250,7 +250,7 @@ TEST(BodyTest, StartPoseIsThePoseBeforeTheFirstStep) {
   ball.body().set_pose({{1, 2, 3}, quat_identity()});
   s.set(ball.id(), "linear_velocity", {1, 0, 0});
   s.ticks(30);
-  ball.body().reset();
+  ball.body().recovery().reset();
   s.world.flush();
   EXPECT_LT(glm::length(ball.pose().position - Vec3(1, 2, 3)), 1e-12);
 }
@@ -269,7 +269,7 @@ TEST(BodyTest, NamesAreUniqueAndPrintable) {
   Part& b = *arm.parts()[3];
   EXPECT_EQ(text(arm.add_joint("joint1", a, b, JointType::revolute, Vec3(0), {0, 0, 1})),
             "there is a joint 'joint1' already; names are unique");
-  EXPECT_EQ(text(s.world.add_shape("arm link", sphere_model(1))),
+  EXPECT_EQ(text(s.world.shapes().add("arm link", sphere_model(1))),
             "there is a shape 'arm link' already; names are unique");
   // the same names in another body, and names that differ in case, are free
   EXPECT_TRUE(s.world.add_body("Arm"));
@@ -299,7 +299,7 @@ TEST(BodyTest, RejectsInvalidPartsAndJoints) {
             "part 'other/floor' is a plane: its mass must be 0, not 1 kg");
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
-  Shape& empty = *s.world.add_shape("empty", compound).value();
+  Shape& empty = *s.world.shapes().add("empty", compound).value();
   EXPECT_EQ(other.add_part("x", empty, 1, {}).error(),
             "compound 'empty' is empty; add its children before a part is made of it");
   const double nan = std::nan("");
@@ -338,7 +338,7 @@ TEST(BodyTest, CanBeRemovedInAnyOrderWhileTouching) {
       EXPECT_EQ(s.world.find_body(names[at]), nullptr);
       names.erase(names.begin() + static_cast<std::ptrdiff_t>(at));
       s.ticks(order == 3 ? 0 : 2);
-      for (const ContactEvent& e : s.world.contacts()) events += s.store.alive(e.part) ? 1 : 0;
+      for (const ContactEvent& e : s.world.contacts().events()) events += s.store.alive(e.part) ? 1 : 0;
     }
     s.ticks(5);
     EXPECT_EQ(s.world.bodies().size(), 1u);
@@ -367,7 +367,7 @@ TEST(BodyTest, SupportsHundredsOfBodies) {
   s.ticks(5);
   EXPECT_EQ(s.world.bodies().size(), 150u);
   EXPECT_EQ(s.world.bodies()[149]->name(), "arm298");
-  EXPECT_EQ(s.world.health_events(), 0u);
+  EXPECT_EQ(s.world.stability().events(), 0u);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ using namespace test;
 
 struct CameraFixture : WorldFixture {
   Camera& camera = world.visuals().camera();
-  CameraMoves& moves = world.camera_moves();
+  CameraMoves& moves = world.visuals().camera_moves();
 
   void expect_view(const Vec3& eye, const Vec3& target) const {
     EXPECT_LT(glm::distance(camera.eye(), eye), 1e-9);

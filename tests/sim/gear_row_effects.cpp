@@ -13,7 +13,7 @@ constexpr Vec3 kGearSize{0.4, 0.6, 0.5};
 struct GearedBoxes : WorldFixture {
   GearedBoxes() : robot(body("robot")), base(part(robot, sphere_model(0.05), 0)), a(hinge("a", -1)), b(hinge("b", 1)) {
     set(b.motor()->id(), "mode", {0});
-    gear = world.add_gear("gear", a, b, 1).value();
+    gear = world.gears().add("gear", a, b, 1).value();
   }
   Joint& hinge(const std::string& name, double x) {
     const Vec3 at(x, 0, 0);

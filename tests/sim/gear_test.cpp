@@ -1,5 +1,5 @@
 // Gears: two joints coupled both ways, with either solver; torque balance, reflected inertia, redundancy, undo.
-#include "sim/world/gear.h"
+#include "sim/gears/gear.h"
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ struct GearedPair : WorldFixture {
     return joint;
   }
   Gear& gear(double ratio, std::optional<double> offset = {}) {
-    return *world.add_gear("gear" + std::to_string(world.gears().size()), *a, *b, ratio, offset).value();
+    return *world.gears().add("gear" + std::to_string(world.gears().list().size()), *a, *b, ratio, offset).value();
   }
   void servo(Joint& joint, double target, double torque) {
     const NodeId motor = joint.motor()->id();
@@ -195,7 +195,7 @@ TEST_P(GearSolvers, ConservesMomentumOfAFloatingBody) {
     joints[i] = robot.add_joint(i == 0 ? "a" : "b", base, wheel, JointType::revolute, at, {0, 0, 1}).value();
     s.set(robot.add_motor(*joints[i]).value()->id(), "mode", {0});
   }
-  (void)s.world.add_gear("g", *joints[0], *joints[1], 2.0).value();
+  (void)s.world.gears().add("g", *joints[0], *joints[1], 2.0).value();
   s.set(joints[0]->motor()->id(), "mode", {1});
   s.set(joints[0]->motor()->id(), "speed", {3});
   s.set_one(joints[0]->motor()->id(), "max_angular_force", 2, 0.5);
@@ -225,7 +225,7 @@ TEST(Gear, CouplesJointsOfOneChainExactly) {
     for (const auto& motor : arm.motors()) s.set(motor->id(), "mode", {0});
     const Joint& a = *arm.joints()[0];
     const Joint& b = *arm.joints()[static_cast<std::size_t>(other - 1)];
-    (void)s.world.add_gear("g", *arm.joints()[0], *arm.joints()[static_cast<std::size_t>(other - 1)], -0.7).value();
+    (void)s.world.gears().add("g", *arm.joints()[0], *arm.joints()[static_cast<std::size_t>(other - 1)], -0.7).value();
     arm.parts().back()->set_velocity({0.5, 0.2, 0}, {0, 0, 0});
     double worst = 0;
     for (int i = 0; i < 60; i++) {
@@ -243,7 +243,7 @@ TEST(Gear, UnitesTheIslandsOfTwoBodies) {
   Body& left = make_arm(s, "left", {2});
   Body& right = make_arm(s, "right", {2, {5, 0, 0}});
   for (const auto& motor : right.motors()) s.set(motor->id(), "mode", {0});
-  (void)s.world.add_gear("g", *left.joints()[1], *right.joints()[1], 2.0).value();
+  (void)s.world.gears().add("g", *left.joints()[1], *right.joints()[1], 2.0).value();
   s.set(left.motors()[1]->id(), "target", {0.3});
   s.ticks(90);
   EXPECT_NEAR(left.joints()[1]->value(), 0.3, 1e-3);
@@ -261,7 +261,7 @@ TEST(Gear, ReportsAndIgnoresARedundantGear) {
             std::string::npos);
   EXPECT_TRUE(again.redundant());
   EXPECT_NEAR(s.b->value(), 0.8, 2e-3);
-  s.world.remove_gear(*s.world.find_gear("gear0"));
+  s.world.gears().remove(*s.world.gears().find("gear0"));
   s.ticks(1);
   EXPECT_FALSE(again.redundant());
 }
@@ -310,7 +310,7 @@ TEST(Gear, IsRemovedWithTheBodyOfAJoint) {
   WorldFixture s;
   Body& left = make_arm(s, "left", {1});
   Body& right = make_arm(s, "right", {1, {5, 0, 0}});
-  const NodeId id = s.world.add_gear("g", *left.joints()[0], *right.joints()[0], 1).value()->id();
+  const NodeId id = s.world.gears().add("g", *left.joints()[0], *right.joints()[0], 1).value()->id();
   s.ticks(2);
   EXPECT_EQ(s.world.bullet().getNumConstraints(), 3);
   s.world.remove_body(right);
@@ -329,7 +329,7 @@ TEST(Gear, IsInactiveWhileItOrItsBodyIsDisabled) {
   s.set(gear.id(), "enabled", {1});
   s.ticks(2);
   EXPECT_EQ(s.world.bullet().getNumConstraints(), 0);
-  s.robot.reset();
+  s.robot.recovery().reset();
   s.ticks(2);
   EXPECT_EQ(s.world.bullet().getNumConstraints(), 3);
 }
@@ -338,11 +338,11 @@ TEST(Gear, RejectsUnsuitableJoints) {
   GearedPair s;
   Part& ball = s.part(s.robot, sphere_model(0.1), 1, {{0, 0, 3}, quat_identity()});
   Joint& spherical = *s.robot.add_joint("ball", s.base, ball, JointType::spherical, {0, 0, 3}, {0, 0, 1}).value();
-  EXPECT_EQ(s.world.add_gear("g", *s.a, spherical, 1).error(),
+  EXPECT_EQ(s.world.gears().add("g", *s.a, spherical, 1).error(),
             "gear 'g': joint 'robot/ball' is spherical; a gear needs a revolute, continuous or prismatic joint");
-  EXPECT_EQ(s.world.add_gear("g", *s.a, *s.a, 1).error(), "gear 'g': needs two different joints");
-  EXPECT_FALSE(s.world.add_gear("g", *s.a, *s.b, 0));
-  EXPECT_FALSE(s.world.add_gear("g", *s.a, *s.b, std::nan("")));
+  EXPECT_EQ(s.world.gears().add("g", *s.a, *s.a, 1).error(), "gear 'g': needs two different joints");
+  EXPECT_FALSE(s.world.gears().add("g", *s.a, *s.b, 0));
+  EXPECT_FALSE(s.world.gears().add("g", *s.a, *s.b, std::nan("")));
   Gear& gear = s.gear(2);
   const double zero = 0;
   EXPECT_FALSE(s.store.set(gear.id(), Gear::table().at("ratio"), {&zero, 1}));
@@ -379,13 +379,13 @@ TEST(Gear, IsRolledBackByAFailedCall) {
     Gear& gear = s.gear(2);
     s.loaded_ticks(10, 1, 0);
     s.world.transaction().begin();
-    if (change == 1) (void)s.world.add_gear("new", *s.b, *s.a, -1, 0.5);
-    if (change == 2) s.world.remove_gear(gear);
+    if (change == 1) (void)s.world.gears().add("new", *s.b, *s.a, -1, 0.5);
+    if (change == 2) s.world.gears().remove(gear);
     if (change == 3) s.world.remove_body(s.robot);
     if (change == 4) s.set(gear.id(), "ratio", {3});
     s.world.transaction().rollback();
     s.loaded_ticks(10, 1, 0);
-    EXPECT_EQ(s.world.gears().size(), 1u);
+    EXPECT_EQ(s.world.gears().list().size(), 1u);
     return s.world.state_hash();
   };
   for (int change = 1; change <= 4; change++) EXPECT_EQ(hash(change), hash(0)) << change;

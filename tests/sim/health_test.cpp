@@ -38,7 +38,7 @@ TEST(Health, RestoresThenDisablesThenResetEnables) {
             "body '" + ball.body().name() + "': part '" + ball.name() +
                 "' is faster than 500 m/s; the body is restored to its last good pose, at rest; likely "
                 "cause: a velocity, position, force or impulse that is too large; try a smaller one");
-  EXPECT_EQ(s.world.health_events(), 1u);
+  EXPECT_EQ(s.world.stability().events(), 1u);
   EXPECT_EQ(ball.pose().position, Vec3(1, 2, 3));
   EXPECT_EQ(ball.linear_velocity(), Vec3(0));
   EXPECT_TRUE(ball.body().enabled());
@@ -49,19 +49,19 @@ TEST(Health, RestoresThenDisablesThenResetEnables) {
             "body '" + ball.body().name() + "': part '" + ball.name() +
                 "' tumbles faster than 1000 rad/s again; the body is disabled (reset or enabled = true enables it); "
                 "likely cause: a velocity, position, force or impulse that is too large; try a smaller one");
-  EXPECT_EQ(s.world.health_events(), 2u);
+  EXPECT_EQ(s.world.stability().events(), 2u);
   EXPECT_FALSE(ball.body().enabled());
   s.ticks(3);
   EXPECT_EQ(s.world.bullet().getNumCollisionObjects(), 1);
   // the others continue
   EXPECT_NEAR(other.pose().position.y, 10.0 / 60, 1e-5);
 
-  ball.body().reset();
+  ball.body().recovery().reset();
   s.set(ball.id(), "linear_velocity", {1, 0, 0});
   s.ticks(6);
   EXPECT_TRUE(ball.body().enabled());
   EXPECT_NEAR(ball.pose().position.x, 1.1, 1e-5);
-  EXPECT_EQ(s.world.health_events(), 2u);
+  EXPECT_EQ(s.world.stability().events(), 2u);
 }
 
 // A body restored in the first internal step of a tick falls in the remaining ones; in the only step, from the next
@@ -74,7 +74,7 @@ TEST(Health, RestoredBodyFallsLikeAnyOther) {
     Part& ball = s.add_single_part(sphere_model(0.1), 1);
     s.set(ball.id(), "linear_velocity", {600, 0, 0});
     s.ticks(1);
-    ASSERT_EQ(s.world.health_events(), 1u);
+    ASSERT_EQ(s.world.stability().events(), 1u);
     const double left = (substeps - 1.0) / substeps;
     EXPECT_NEAR(ball.linear_velocity().z, -9.81 / 60 * left, 1e-5) << substeps;
     s.ticks(1);
@@ -104,7 +104,7 @@ TEST(Health, EachLimitIsAsDocumented) {
         s.set(box.id(), c.property, {value.x, value.y, value.z});
       }
       s.ticks(1);
-      EXPECT_EQ(s.world.health_events(), v == c.bad ? 1u : 0u) << c.property << " " << v;
+      EXPECT_EQ(s.world.stability().events(), v == c.bad ? 1u : 0u) << c.property << " " << v;
     }
   }
 }
@@ -124,8 +124,8 @@ TEST(Health, ReportsASeparatedJointWithItsCause) {
   };
   for (int i = 0; i < 8; i++) add_link(("link" + std::to_string(i)).c_str(), -0.1 * (i + 1), 0.01);
   add_link("load", -0.9, 100);
-  for (int tick = 0; tick < 120 && s.world.health_events() == 0; tick++) s.ticks(1);
-  ASSERT_EQ(s.world.health_events(), 1u);
+  for (int tick = 0; tick < 120 && s.world.stability().events() == 0; tick++) s.ticks(1);
+  ASSERT_EQ(s.world.stability().events(), 1u);
   const std::string line = last_log_line();
   EXPECT_NE(line.find("body 'chain': joint 'l"), std::string::npos) << line;
   EXPECT_NE(line.find("' has come apart by 0."), std::string::npos) << line;
@@ -142,7 +142,7 @@ TEST(Health, PartsThatAreMovedApartRecoverWithoutAnEvent) {
   s.ticks(1);
   s.set(b.id(), "position", {1.1, 0, 0});
   s.ticks(60);
-  EXPECT_EQ(s.world.health_events(), 0u);
+  EXPECT_EQ(s.world.stability().events(), 0u);
   EXPECT_LT(joint.gap(), 0.01);
 }
 
@@ -176,7 +176,7 @@ TEST(Health, SurvivesHugeForcesAndTorques) {
         const double before = far.joints()[2]->value();
         torque ? arm.parts()[2]->apply_torque({amount, -amount, 1}) : arm.parts()[2]->apply_force({amount, -amount, 1});
         s.ticks(1);
-        EXPECT_GE(s.world.health_events(), 1u);
+        EXPECT_GE(s.world.stability().events(), 1u);
         EXPECT_TRUE(all_finite(s)) << amount;
         s.ticks(30);
         EXPECT_TRUE(all_finite(s)) << amount;
@@ -198,9 +198,9 @@ TEST(Health, PersistentForceDisablesTheBody) {
     s.ticks(1);
   }
   EXPECT_FALSE(arm.enabled());
-  EXPECT_EQ(s.world.health_events(), 2u);
+  EXPECT_EQ(s.world.stability().events(), 2u);
   EXPECT_TRUE(all_finite(s));
-  arm.reset();
+  arm.recovery().reset();
   s.ticks(60);
   EXPECT_TRUE(arm.enabled());
   for (const auto& joint : arm.joints()) EXPECT_NEAR(joint->value(), 0, 1e-3);
@@ -230,7 +230,7 @@ std::pair<double, double> separate_overlapping(double solver, double height) {
   Body& twin = **s.world.copy_body(arm, "twin");
   s.ticks(240);
   EXPECT_TRUE(all_finite(s));
-  EXPECT_LT(s.world.health_events(), 2u);
+  EXPECT_LT(s.world.stability().events(), 2u);
   EXPECT_GT(glm::length(arm.pose().position - twin.pose().position), 0.01);
   double farthest = 0;
   double highest = 0;

@@ -61,7 +61,7 @@ TEST_P(JammedLimbs, KeepTheirJointsClosed) {
     EXPECT_LT(legs.widest_hip(), 0.8) << "the limbs did not block each other";
     EXPECT_EQ(legs.number(legs.world.id(), "islands_iterative"), 0);
     EXPECT_EQ(legs.number(legs.world.id(), "solver_fallbacks"), 0);
-    EXPECT_EQ(legs.world.health_events(), 0u);
+    EXPECT_EQ(legs.world.stability().events(), 0u);
   }
 }
 

@@ -33,7 +33,7 @@ struct Siblings : WorldFixture {
       Motor& motor = *robot.add_motor(joint).value();
       set(motor.id(), "max_angular_force", {torque, torque, torque});
     }
-    EXPECT_TRUE(robot.edit_pair(*robot.parts()[1], *robot.parts()[2], PairEdit::included));
+    EXPECT_TRUE(robot.pairs().edit(*robot.parts()[1], *robot.parts()[2], PairEdit::included));
     if (!fixed) {
       const Vec3 spin(uniform(-3, 3), uniform(-3, 3), uniform(-3, 3));
       for (const auto& p : robot.parts()) {
@@ -80,7 +80,7 @@ TEST(OverlapEnergy, OverlappingSiblingsGainNoEnergy) {
               << "depth " << depth << ", torque " << torque << (fixed ? ", fixed" : ", floating") << ", step " << tick;
           if (s.energy() > 1.2 * allowed + 1e-3) break;
         }
-        EXPECT_EQ(s.world.health_events(), 0u);
+        EXPECT_EQ(s.world.stability().events(), 0u);
       }
     }
   }

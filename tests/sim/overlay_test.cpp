@@ -13,7 +13,7 @@ struct OverlayFixture : WorldFixture {
   std::vector<OverlayMark> marks(Kind kind) {
     std::vector<OverlayMark> all;
     std::vector<OverlayMark> found;
-    world.overlay().collect(all);
+    world.visuals().overlay().collect(all);
     for (const OverlayMark& mark : all) {
       if (mark.kind == kind) found.push_back(mark);
     }

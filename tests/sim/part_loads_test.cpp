@@ -43,7 +43,7 @@ TEST(ForceAccumulators, ResetClearsThem) {
   s.ticks(1);
   part.apply_force({6, 0, 0});
   part.apply_impulse({0, 6, 0});
-  part.body().reset();
+  part.body().recovery().reset();
   s.ticks(1);
   EXPECT_EQ(part.linear_velocity(), Vec3(0));
 }

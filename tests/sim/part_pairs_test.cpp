@@ -52,9 +52,9 @@ TEST(PartPairs, OverlapAtTheFirstTickExcludes) {
   const std::pair<double, bool> cases[] = {{0.01, false}, {0, false}, {-0.00005, false}, {-0.0002, true}, {-0.1, true}};
   for (const auto& [gap, excluded] : cases) {
     TwoBoxes s(gap);
-    EXPECT_TRUE(s.pair.pairs().list.empty()) << gap;  // not before the first tick
+    EXPECT_TRUE(s.pair.pairs().list().empty()) << gap;  // not before the first tick
     s.ticks(1);
-    EXPECT_EQ(s.pair.excludes(s.a, s.b), excluded) << gap;
+    EXPECT_EQ(s.pair.pairs().excludes(s.a, s.b), excluded) << gap;
     EXPECT_EQ(s.throw_at_each_other(), excluded) << gap;
   }
 }
@@ -67,7 +67,7 @@ TEST(PartPairs, TouchingRotatedBoxesCollide) {
     Part& a = s.part(body, box_model(Vec3(0.2)), 1, frame);
     Part& b = s.part(body, box_model(Vec3(0.2)), 1, frame * Pose{{0.2, 0, 0}, quat_identity()});
     s.ticks(1);
-    EXPECT_FALSE(body.excludes(a, b)) << i;
+    EXPECT_FALSE(body.pairs().excludes(a, b)) << i;
   }
 }
 
@@ -84,31 +84,31 @@ TEST(PartPairs, LaterOverlapsDoNotExclude) {
   separate.ticks(1);
   separate.b.set_pose({{0.1, 0, 0}, quat_identity()});
   separate.ticks(5);
-  EXPECT_FALSE(separate.pair.excludes(separate.a, separate.b));
+  EXPECT_FALSE(separate.pair.pairs().excludes(separate.a, separate.b));
   EXPECT_GT(glm::length(separate.b.pose().position - separate.a.pose().position), 0.1);  // pushed apart
   TwoBoxes together(-0.1);
   together.ticks(1);
   together.b.set_pose({{5, 0, 0}, quat_identity()});
   together.ticks(5);
-  EXPECT_TRUE(together.pair.excludes(together.a, together.b));
+  EXPECT_TRUE(together.pair.pairs().excludes(together.a, together.b));
 }
 
 TEST(PartPairs, EditsActAtTheNextStep) {
   TwoBoxes s(0.01);
   s.ticks(1);
-  ASSERT_TRUE(s.pair.edit_pair(s.b, s.a, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.b, s.a, PairEdit::excluded).ok());
   EXPECT_TRUE(s.throw_at_each_other());
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::included).ok());
   EXPECT_FALSE(s.throw_at_each_other());
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::none).ok());
-  EXPECT_TRUE(s.pair.pairs().list.empty());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::none).ok());
+  EXPECT_TRUE(s.pair.pairs().list().empty());
   // also before the first tick: an overlap doesn't override an edit
   TwoBoxes early(-0.0005);
-  ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::included).ok());
+  ASSERT_TRUE(early.pair.pairs().edit(early.a, early.b, PairEdit::included).ok());
   early.ticks(1);
-  EXPECT_FALSE(early.pair.excludes(early.a, early.b));
-  ASSERT_TRUE(early.pair.edit_pair(early.a, early.b, PairEdit::none).ok());
-  EXPECT_TRUE(early.pair.excludes(early.a, early.b));
+  EXPECT_FALSE(early.pair.pairs().excludes(early.a, early.b));
+  ASSERT_TRUE(early.pair.pairs().edit(early.a, early.b, PairEdit::none).ok());
+  EXPECT_TRUE(early.pair.pairs().excludes(early.a, early.b));
   EXPECT_TRUE(early.throw_at_each_other());
 }
 
@@ -122,7 +122,7 @@ TEST(PartPairs, ExcludingDropsTheContact) {
   s.ticks(30);
   EXPECT_NEAR(box.pose().position.z, 0.2, 0.002);
   const double rest = box.pose().position.z;
-  ASSERT_TRUE(body.edit_pair(table, box, PairEdit::excluded).ok());
+  ASSERT_TRUE(body.pairs().edit(table, box, PairEdit::excluded).ok());
   s.ticks(6);
   EXPECT_NEAR(box.pose().position.z, rest - 10.0 / 240 / 240 * 24 * 25 / 2, 1e-5);
 }
@@ -130,8 +130,8 @@ TEST(PartPairs, ExcludingDropsTheContact) {
 TEST(PartPairs, RejectsForeignParts) {
   TwoBoxes s(0.01);
   Part& other = s.add_single_part(sphere_model(0.1), 1);
-  EXPECT_NE(s.pair.edit_pair(s.a, other, PairEdit::excluded).error().find("of this body"), std::string::npos);
-  EXPECT_NE(s.pair.edit_pair(s.a, s.a, PairEdit::excluded).error().find("different"), std::string::npos);
+  EXPECT_NE(s.pair.pairs().edit(s.a, other, PairEdit::excluded).error().find("of this body"), std::string::npos);
+  EXPECT_NE(s.pair.pairs().edit(s.a, s.a, PairEdit::excluded).error().find("different"), std::string::npos);
 }
 
 // a joint and an exclusion are independent: neither cancels the other
@@ -139,14 +139,14 @@ TEST(PartPairs, JointsAndExclusionsAreIndependent) {
   TwoBoxes s(0.05);
   (void)s.pair.add_joint("j", s.a, s.b, JointType::floating, {0.1, 0, 0}, {0, 0, 1}).value();
   s.ticks(1);
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::excluded).ok());
   EXPECT_TRUE(s.throw_at_each_other());
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::included).ok());
   EXPECT_TRUE(s.throw_at_each_other()) << "the joint still keeps them apart";
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::excluded).ok());
   s.pair.joints().front()->remove_from_world();  // as when a body is removed from the world
   EXPECT_TRUE(s.throw_at_each_other()) << "the exclusion still does";
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::included).ok());
   EXPECT_FALSE(s.throw_at_each_other());
 }
 
@@ -154,20 +154,20 @@ TEST(PartPairs, JointedPartsAreNotListed) {
   TwoBoxes s(-0.1);
   (void)s.pair.add_joint("j", s.a, s.b, JointType::revolute, {0.1, 0, 0}, {0, 0, 1}).value();
   s.ticks(1);
-  EXPECT_TRUE(s.pair.pairs().list.empty());
+  EXPECT_TRUE(s.pair.pairs().list().empty());
 }
 
 TEST(PartPairs, CopiesKeepTheList) {
   TwoBoxes s(-0.0005);
   Part& c = s.part(s.pair, box_model(Vec3(0.2)), 1, {{0, 0.5, 0}, quat_identity()});
   s.ticks(1);
-  ASSERT_TRUE(s.pair.edit_pair(s.a, c, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, c, PairEdit::excluded).ok());
   Body& copy = **s.world.copy_body(s.pair, "copy");
   copy.set_pose({{0, 0, 3}, quat_identity()});
   s.ticks(1);
-  EXPECT_TRUE(copy.excludes(*copy.parts()[0], *copy.parts()[1]));
-  EXPECT_TRUE(copy.excludes(*copy.parts()[0], *copy.parts()[2]));
-  EXPECT_FALSE(copy.excludes(*copy.parts()[1], *copy.parts()[2]));
+  EXPECT_TRUE(copy.pairs().excludes(*copy.parts()[0], *copy.parts()[1]));
+  EXPECT_TRUE(copy.pairs().excludes(*copy.parts()[0], *copy.parts()[2]));
+  EXPECT_FALSE(copy.pairs().excludes(*copy.parts()[1], *copy.parts()[2]));
   const Vec3 before = copy.parts()[1]->pose().position;
   s.ticks(30);
   EXPECT_EQ(copy.parts()[1]->pose().position, before);
@@ -178,28 +178,28 @@ TEST(PartPairs, ChecksPartsThatAreAddedLater) {
   s.ticks(1);
   Part& c = s.part(s.pair, sphere_model(0.05), 1);
   s.ticks(1);
-  EXPECT_TRUE(s.pair.excludes(s.a, c));
-  EXPECT_FALSE(s.pair.excludes(s.b, c));
-  EXPECT_FALSE(s.pair.excludes(s.a, s.b));
+  EXPECT_TRUE(s.pair.pairs().excludes(s.a, c));
+  EXPECT_FALSE(s.pair.pairs().excludes(s.b, c));
+  EXPECT_FALSE(s.pair.pairs().excludes(s.a, s.b));
 }
 
 TEST(PartPairs, UndoRestoresThem) {
   TwoBoxes s(-0.0005);
   Part& far = s.part(s.pair, sphere_model(0.05), 1, {{0, 0, 9}, quat_identity()});
-  ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, far, PairEdit::excluded).ok());
   s.ticks(1);
   const std::uint64_t hash = s.world.state_hash();
   s.world.transaction().begin();
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::included).ok());
   Part& c = s.part(s.pair, sphere_model(0.05), 1);
-  ASSERT_TRUE(s.pair.edit_pair(s.a, c, PairEdit::excluded).ok());
-  ASSERT_TRUE(s.pair.edit_pair(s.a, far, PairEdit::included).ok());
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, c, PairEdit::excluded).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, far, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::excluded).ok());
   s.world.transaction().rollback();
   EXPECT_EQ(s.world.state_hash(), hash);
-  ASSERT_EQ(s.pair.pairs().list.size(), 2u);
-  EXPECT_EQ(s.pair.pairs().list[0].edit, PairEdit::none);
-  EXPECT_TRUE(s.pair.excludes(s.a, far));
+  ASSERT_EQ(s.pair.pairs().list().size(), 2u);
+  EXPECT_EQ(s.pair.pairs().list()[0].edit, PairEdit::none);
+  EXPECT_TRUE(s.pair.pairs().excludes(s.a, far));
   EXPECT_TRUE(s.throw_at_each_other());
 }
 
@@ -210,12 +210,12 @@ TEST(PartPairs, CheckpointsRestoreThem) {
   Archive scratch;
   WorldCheckpoint excluded, included;
   excluded.capture(s.world, pages, nullptr, scratch);
-  ASSERT_TRUE(s.pair.edit_pair(s.a, s.b, PairEdit::included).ok());
+  ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::included).ok());
   included.capture(s.world, pages, nullptr, scratch);
   EXPECT_FALSE(s.throw_at_each_other());
   const std::uint64_t hash = s.world.state_hash();
   excluded.restore(s.world, pages, scratch);
-  EXPECT_TRUE(s.pair.excludes(s.a, s.b));
+  EXPECT_TRUE(s.pair.pairs().excludes(s.a, s.b));
   EXPECT_TRUE(s.throw_at_each_other());
   included.restore(s.world, pages, scratch);
   EXPECT_FALSE(s.throw_at_each_other());

@@ -456,7 +456,7 @@ inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill,
     energy.after();
     out.finite = scene.finite();
     out.gap = std::max(out.gap, scene.joint_gap());
-    out.health_events = scene.world.health_events();
+    out.health_events = scene.world.stability().events();
     for (const auto& body : scene.world.bodies()) {
       for (const auto& part : body->parts()) out.speed = std::max(out.speed, glm::length(part->linear_velocity()));
     }

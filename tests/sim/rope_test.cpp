@@ -69,7 +69,7 @@ TEST(Rope, SwingsAHeavyWeight) {
   EXPECT_LE(gap, 1e-4);
   EXPECT_NEAR(highest, height, 0.015 * height);
   EXPECT_NEAR(crossed, period, 0.01 * period);
-  EXPECT_EQ(rope.world.health_events(), 0u);
+  EXPECT_EQ(rope.world.stability().events(), 0u);
   EXPECT_EQ(rope.number(rope.world.id(), "solver_fallbacks"), 0);
 }
 

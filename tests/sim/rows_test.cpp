@@ -76,7 +76,7 @@ struct AllClasses : WorldFixture {
              robot.add_motor(hinge).value()->id(),
              string.id(),
              robot.add_motor(string).value()->id(),
-             world.add_gear("gear", hinge, side, 2).value()->id()};
+             world.gears().add("gear", hinge, side, 2).value()->id()};
     world.flush();
   }
   std::vector<NodeId> nodes;

@@ -1,13 +1,13 @@
 // Shapes: validation, and the mass distribution of each of the eight kinds.
-#include "sim/world/shape.h"
+#include "sim/shapes/shape.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "sim/shapes/geometry.h"
 #include "sim/stage.h"
-#include "sim/world/geometry.h"
 
 namespace limber {
 namespace {
@@ -98,7 +98,7 @@ TEST(ShapeTest, CompoundIsTheSumOfItsChildren) {
   WorldFixture s;
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
-  Shape& dumbbell = *s.world.add_shape("dumbbell", compound).value();
+  Shape& dumbbell = *s.world.shapes().add("dumbbell", compound).value();
   Shape& cube = s.shape(box_model(Vec3(0.2)));
   for (const double x : {-0.3, 0.3}) ASSERT_TRUE(dumbbell.add_child(cube, {{x, 0, 0.1}, quat_identity()}));
   Body& body = s.body("body");
@@ -151,24 +151,24 @@ TEST(ShapeTest, RejectsInvalidShapes) {
   EXPECT_EQ(text(mesh), "a convex mesh needs at least 4 points");
   for (const Solid& solid : solids()) EXPECT_EQ(text(solid.model), "none") << solid.name;
   WorldFixture s;
-  EXPECT_EQ(s.world.add_shape("ball", sphere_model(0)).error(),
+  EXPECT_EQ(s.world.shapes().add("ball", sphere_model(0)).error(),
             "shape 'ball': a sphere needs a radius of 0.0001 .. 10000 m, not 0");
-  EXPECT_TRUE(s.world.shapes().empty());
+  EXPECT_TRUE(s.world.shapes().list().empty());
 }
 
 TEST(ShapeTest, OnlyCompoundsHaveChildren) {
   WorldFixture s;
   ShapeModel compound;
   compound.kind = ShapeKind::compound;
-  Shape& both = *s.world.add_shape("both", compound).value();
-  Shape& ball = *s.world.add_shape("ball", sphere_model(0.1)).value();
-  Shape& plane = *s.world.add_shape("plane", plane_model()).value();
+  Shape& both = *s.world.shapes().add("both", compound).value();
+  Shape& ball = *s.world.shapes().add("ball", sphere_model(0.1)).value();
+  Shape& plane = *s.world.shapes().add("plane", plane_model()).value();
   EXPECT_EQ(ball.add_child(both, {}).error(), "shape 'ball' is not a compound; create one with sim:add_compound_shape");
   EXPECT_EQ(both.add_child(both, {}).error(), "compound 'both' can't contain itself");
   EXPECT_EQ(both.add_child(plane, {}).error(), "compound 'both' can't contain a plane");
   EXPECT_TRUE(both.placed().empty());
   ASSERT_TRUE(both.add_child(ball, {{1, 0, 0}, quat_identity()}));
-  Shape& nested = *s.world.add_shape("nested", compound).value();
+  Shape& nested = *s.world.shapes().add("nested", compound).value();
   ASSERT_TRUE(nested.add_child(both, {{0, 1, 0}, quat_axis({0, 0, 1}, kPi / 2)}));
   ASSERT_EQ(nested.placed().size(), 1u);
   EXPECT_LT(glm::length(nested.placed()[0].origin.position - Vec3(0, 2, 0)), 1e-12);

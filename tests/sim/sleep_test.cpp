@@ -162,7 +162,7 @@ const std::vector<Influence>& influences() {
        [](Resting& s) {
          s.high.set_velocity({0, 0, 0.1}, Vec3(0));
        }},
-      {"reset", [](Resting& s) { s.low.body().reset(); }},
+      {"reset", [](Resting& s) { s.low.body().recovery().reset(); }},
       {"gravity",
        [](Resting& s) {
          s.gravity({0, 0, -9});
@@ -421,8 +421,8 @@ std::uint64_t hash_of_heap(int threads, std::vector<int>* sleeping = nullptr) {
   if (threads > 1) setup.thread_pool = std::make_shared<ThreadPool>(threads);
   World world(store, setup);
   log_to_stderr(false);
-  Shape& plane = *world.add_shape("plane", plane_model()).value();
-  Shape& box = *world.add_shape("box", box_model(Vec3(0.2))).value();
+  Shape& plane = *world.shapes().add("plane", plane_model()).value();
+  Shape& box = *world.shapes().add("box", box_model(Vec3(0.2))).value();
   (void)(*world.add_body("floor").value()).add_part("p", plane, 0, {});
   std::vector<Part*> parts;
   for (int i = 0; i < 90; i++) {

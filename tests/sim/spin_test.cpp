@@ -53,7 +53,7 @@ TEST(Spin, DrivenRotorReachesItsSpeed) {
         EXPECT_NEAR(s.vec(s.rotor.id(), "angular_velocity").z, speed, 1e-3 * std::fabs(speed));
         EXPECT_LT(std::fabs(s.vec(s.motor.id(), "applied_torque").z), 1e-3);
         EXPECT_EQ(s.number(s.rotor.id(), "rotation_clamped"), 0);
-        EXPECT_EQ(s.world.health_events(), 0u);
+        EXPECT_EQ(s.world.stability().events(), 0u);
         EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 0);
       }
     }
@@ -195,7 +195,7 @@ TEST(Spin, FreeBodySpinsAboutAPrincipalAxis) {
       const double off = 2 * std::acos(std::min(1.0, std::fabs(glm::dot(expected, s.part.pose().rotation))));
       EXPECT_LT(off, 2e-3 + 1e-6 * std::fabs(w)) << w << " " << axis.x << axis.y << axis.z;
       EXPECT_NEAR(glm::dot(s.part.angular_velocity(), axis), w, 1e-4 * std::fabs(w));
-      EXPECT_EQ(s.world.health_events(), 0u);
+      EXPECT_EQ(s.world.stability().events(), 0u);
     }
   }
 }
@@ -286,7 +286,7 @@ TEST(Spin, UnbalancedBladeReachesItsSpeed) {
       }
       EXPECT_NEAR(s.value() - begin, speed, 1e-3 * speed) << solver;
       EXPECT_LT(gap, solver == 0 && speed < 200 ? 0.05 : 1e-4);
-      EXPECT_EQ(s.world.health_events(), 0u);
+      EXPECT_EQ(s.world.stability().events(), 0u);
     }
   }
 }
@@ -356,7 +356,7 @@ TEST(Spin, RotorOnALightBaseKeepsItsJointClosed) {
     EXPECT_LT(glm::length(s.vec(joint.id(), "offsets")), 1e-4) << speed;
     EXPECT_NEAR(s.number(joint.id(), "speed"), speed, 1e-3 * speed);
     EXPECT_LT(std::hypot(base.angular_velocity().y, base.angular_velocity().z), 5) << speed;
-    EXPECT_EQ(s.world.health_events(), 0u);
+    EXPECT_EQ(s.world.stability().events(), 0u);
     EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 0);
   }
 }
@@ -369,8 +369,8 @@ TEST(Spin, DoesNotDependOnThreads) {
     WorldSetup setup;
     if (threads > 1) setup.thread_pool = std::make_shared<ThreadPool>(threads);
     World world(store, setup);
-    Shape& disc = *world.add_shape("disc", round_model(ShapeKind::cylinder, 0.05, 0.02)).value();
-    Shape& box = *world.add_shape("box", box_model({0.1, 0.2, 0.05})).value();
+    Shape& disc = *world.shapes().add("disc", round_model(ShapeKind::cylinder, 0.05, 0.02)).value();
+    Shape& box = *world.shapes().add("box", box_model({0.1, 0.2, 0.05})).value();
     for (int i = 0; i < 40; i++) {
       const Vec3 at(i, 0, 0);
       Body& body = *world.add_body("body" + std::to_string(i)).value();
@@ -389,7 +389,7 @@ TEST(Spin, DoesNotDependOnThreads) {
       free.set_velocity(Vec3(0), Vec3(3 * i, 10 * i, i));
     }
     for (int tick = 0; tick < 30; tick++) world.step();
-    EXPECT_EQ(world.health_events(), 0u) << log_since(0).back().text;
+    EXPECT_EQ(world.stability().events(), 0u) << log_since(0).back().text;
     log_to_stderr(true);
     return world.state_hash();
   };

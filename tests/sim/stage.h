@@ -11,7 +11,7 @@
 
 #include "base/log/log.h"
 #include "sim/bullet/joints/joint_constraint.h"
-#include "sim/world/world.h"
+#include "support/world_objects.h"
 
 namespace limber::test {
 
@@ -94,7 +94,9 @@ struct WorldFixture {
   /// Length of a substep, s.
   double h() const { return number(world.id(), "timestep") / number(world.id(), "substeps"); }
 
-  Shape& shape(const ShapeModel& model) { return *world.add_shape("shape" + std::to_string(count_++), model).value(); }
+  Shape& shape(const ShapeModel& model) {
+    return *world.shapes().add("shape" + std::to_string(count_++), model).value();
+  }
   Body& body(const std::string& name) { return *world.add_body(name).value(); }
   Part& part(Body& body, const ShapeModel& model, double mass, const Pose& pose = {}) {
     return *body.add_part("part" + std::to_string(count_++), shape(model), mass, pose).value();

@@ -8,6 +8,7 @@
 #include "base/color.h"
 #include "model/urdf/import.h"
 #include "sim/world/world.h"
+#include "support/world_objects.h"
 
 namespace limber {
 namespace {
@@ -94,9 +95,9 @@ TEST_F(VisualsTest, ShapesOfARobotHaveTheColorsOfItsFile) {
   ASSERT_NE(model, nullptr);
   ASSERT_TRUE(world.add_body(model, "one", {}).ok());
   ASSERT_TRUE(world.add_body(model, "two", {}).ok());
-  ASSERT_EQ(world.shapes().size(), 2u) << "both bodies share them";
-  const Shape* const green = world.find_shape("rob.a");
-  const Shape* const plain = world.find_shape("rob.a.2");
+  ASSERT_EQ(world.shapes().list().size(), 2u) << "both bodies share them";
+  const Shape* const green = world.shapes().find("rob.a");
+  const Shape* const plain = world.shapes().find("rob.a.2");
   ASSERT_TRUE(green != nullptr && plain != nullptr);
   EXPECT_EQ(green->model().kind, ShapeKind::sphere);
   EXPECT_EQ(get(green->id(), "diffuse_color"), (std::vector<double>{2.0 / 6, 1, 1}));

@@ -128,7 +128,7 @@ TEST(WorldCheckpoint, RestoresEnabledAndDisabledBodies) {
   s.inputs.emplace_back([&](std::uint64_t tick) {
     const auto [body, chance] = switches[tick];
     if (chance < 0.3) s.set(s.world.bodies()[body]->id(), "enabled", {chance < 0.15 ? 0. : 1.});
-    if (chance > 0.95) s.world.bodies()[body]->reset();
+    if (chance > 0.95) s.world.bodies()[body]->recovery().reset();
     if (chance > 0.9) s.set(s.world.id(), "gravity", {chance, 0, -9});
     if (chance > 0.8 && chance < 0.9) s.world.bodies()[body]->set_pose({{0, 0, 10 * chance - 7}, quat_identity()});
   });

@@ -135,7 +135,7 @@ TEST(WorldTest, ClearLeavesAnEmptyUsableWorld) {
     s.world.clear();
     s.world.restart_time();
     EXPECT_TRUE(s.world.bodies().empty());
-    EXPECT_TRUE(s.world.shapes().empty());
+    EXPECT_TRUE(s.world.shapes().list().empty());
     EXPECT_EQ(s.world.bullet().getNumCollisionObjects(), 0);
     EXPECT_EQ(s.world.state_hash(), empty);
     EXPECT_EQ(s.vec(s.world.id(), "gravity"), Vec3(0, 0, -9.81));
@@ -158,10 +158,10 @@ TEST(WorldTest, TimeIsTicksTimesTimestep) {
 
 TEST(WorldTest, ResetRequestIsConsumedOnce) {
   WorldFixture s;
-  EXPECT_FALSE(s.world.consume_reset_request());
+  EXPECT_FALSE(std::exchange(s.world.requests().reset, false));
   ASSERT_TRUE(World::table().at("reset").invoke(&s.world, {}));
-  EXPECT_TRUE(s.world.consume_reset_request());
-  EXPECT_FALSE(s.world.consume_reset_request());
+  EXPECT_TRUE(std::exchange(s.world.requests().reset, false));
+  EXPECT_FALSE(std::exchange(s.world.requests().reset, false));
 }
 
 TEST(WorldTest, FlushAppliesValuesWithoutAdvancingTime) {

@@ -64,7 +64,7 @@ const std::vector<WorldChange>& world_changes() {
          s.set(arm.motors()[0]->id(), "target", {0.5});
          s.set(s.world.id(), "gravity", {0, 0, 1});
        }},
-      {"reset", [](WorldFixture&, Body& arm, Part& ball) { arm.reset(), ball.body().reset(); }},
+      {"reset", [](WorldFixture&, Body& arm, Part& ball) { arm.recovery().reset(), ball.body().recovery().reset(); }},
       {"disable", [](WorldFixture&, Body& arm, Part&) { arm.set_enabled(false); }},
       {"remove", [](WorldFixture& s, Body& arm, Part&) { s.world.remove_body(arm); }},
       {"remove both",
@@ -77,7 +77,7 @@ const std::vector<WorldChange>& world_changes() {
        }},
       {"a joint between parts that were moved",
        [](WorldFixture& s, Body&, Part& ball) {
-         Shape& shape = **s.world.add_shape("more", sphere_model(0.1));
+         Shape& shape = **s.world.shapes().add("more", sphere_model(0.1));
          Part& part = **ball.body().add_part("more", shape, 1, {{0, 0, 4}, quat_identity()});
          ball.set_pose({{0, 0, 5}, quat_identity()});
          ball.set_velocity({1, 1, 1}, {1, 1, 1});
@@ -114,10 +114,10 @@ TEST(WorldTransaction, RollsBackAllChangesTogether) {
 TEST(WorldTransaction, RollsBackRequests) {
   WorldFixture s;
   s.world.transaction().begin();
-  s.world.request_panic_end();
+  s.world.requests().end_panic();
   EXPECT_FALSE(s.world.transaction().is_empty());
   s.world.transaction().rollback();
-  EXPECT_FALSE(s.world.consume_panic_end_request());
+  EXPECT_FALSE(std::exchange(s.world.requests().panic_end, false));
 }
 
 TEST(WorldTransaction, RestoresARemovedBodyAtItsIndex) {
@@ -157,7 +157,7 @@ TEST(WorldTransaction, CommittedRemovalIsFinal) {
 TEST(WorldTransaction, RemovesAddedObjectsNewestFirst) {
   WorldFixture s;
   s.world.transaction().begin();
-  Shape& shape = **s.world.add_shape("ball", sphere_model(0.1));
+  Shape& shape = **s.world.shapes().add("ball", sphere_model(0.1));
   Body& body = **s.world.add_body("body");
   Part& a = **body.add_part("a", shape, 1, {{0, 0, 0}, quat_identity()});
   Part& b = **body.add_part("b", shape, 1, {{0, 0, 1}, quat_identity()});
@@ -165,7 +165,7 @@ TEST(WorldTransaction, RemovesAddedObjectsNewestFirst) {
   b.apply_force({1, 0, 0});
   s.world.transaction().rollback();
   EXPECT_TRUE(s.world.bodies().empty());
-  EXPECT_TRUE(s.world.shapes().empty());
+  EXPECT_TRUE(s.world.shapes().list().empty());
   s.world.step();
 }
 
@@ -173,8 +173,8 @@ TEST(WorldTransaction, RemovesAddedChildrenOfACompound) {
   WorldFixture s;
   ShapeModel model;
   model.kind = ShapeKind::compound;
-  Shape& both = **s.world.add_shape("both", model);
-  Shape& ball = **s.world.add_shape("ball", sphere_model(0.1));
+  Shape& both = **s.world.shapes().add("both", model);
+  Shape& ball = **s.world.shapes().add("ball", sphere_model(0.1));
   ASSERT_TRUE(both.add_child(ball, {}));
   s.world.transaction().begin();
   s.world.transaction().save(both);

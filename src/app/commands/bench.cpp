@@ -22,6 +22,10 @@
 #include "base/text.h"
 #include "engine/engine.h"
 #include "model/model_library.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/world/body.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber {
 
@@ -53,7 +57,7 @@ class PlayedArms {
     LIMBER_CHECK(world.store().set(world.id(), "solver", {&direct, 1}).ok());
     ShapeModel plane;
     plane.kind = ShapeKind::plane;
-    Shape& ground = **world.add_shape("ground", plane);
+    Shape& ground = **world.shapes().add("ground", plane);
     LIMBER_CHECK((*world.add_body("floor"))->add_part("ground", ground, 0, Pose{}).ok());
     Body& first = **world.add_body(model, "arm1", BuildOptions{});
     const int side = static_cast<int>(std::ceil(std::sqrt(count)));

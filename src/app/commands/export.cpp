@@ -21,6 +21,7 @@
 #include "export/bvh.h"
 #include "export/csv.h"
 #include "export/gltf.h"
+#include "sim/world/body.h"
 
 namespace limber {
 

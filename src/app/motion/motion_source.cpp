@@ -7,6 +7,9 @@
 #include <utility>
 
 #include "base/text.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
 
 namespace limber {
 

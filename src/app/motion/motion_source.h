@@ -12,6 +12,7 @@
 #include "app/motion/motion_surfaces.h"
 #include "engine/output/snapshot.h"
 #include "export/motion.h"
+#include "sim/world/body.h"
 #include "sim/world/world.h"
 
 namespace limber {

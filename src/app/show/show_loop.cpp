@@ -14,6 +14,7 @@
 #include "base/system/service_manager.h"
 #include "base/system/signals.h"
 #include "base/text.h"
+#include "sim/world/body.h"
 
 namespace limber {
 

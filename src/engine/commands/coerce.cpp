@@ -8,6 +8,8 @@
 #include <fmt/ranges.h>
 
 #include "base/text.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -8,6 +8,12 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "sim/shapes/shape.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber {
 

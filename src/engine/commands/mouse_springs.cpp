@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "sim/world/body.h"
+#include "sim/world/part.h"
+
 namespace limber {
 
 bool MouseSprings::attach(World& world, NodeId part, const Vec3& point, const Vec3& target) {

@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "sim/behavior/behavior_list.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/world/body.h"
 
 namespace limber {
 
@@ -35,8 +39,8 @@ Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) con
     for (const auto& object : objects) answer.args.push_back(Arg::of(object->name()));
   };
   if (kind == "bodies") add_names(world_.bodies());
-  if (kind == "shapes") add_names(world_.shapes());
-  if (kind == "gears") add_names(world_.gears());
+  if (kind == "shapes") add_names(world_.shapes().list());
+  if (kind == "gears") add_names(world_.gears().list());
   if (kind == "groups") add_names(world_.behaviors().groups());
   return answered(std::move(answer), 0);
 }
@@ -53,7 +57,7 @@ Outcome QueryHandler::list_of_body(std::string_view kind, std::span<const Arg> a
   const Store& store = world_.store();
   if (kind == "behaviors") {
     const BehaviorList& list = world_.behaviors();
-    std::vector<const Behavior*> behaviors(body->behaviors().begin(), body->behaviors().end());
+    std::vector<const Behavior*> behaviors(body->behaviors().list().begin(), body->behaviors().list().end());
     std::ranges::sort(behaviors, {}, [&](const Behavior* behavior) { return list.order().place(*behavior); });
     for (const Behavior* behavior : behaviors) answer.args.push_back(Arg::of(behavior->name()));
     return answered(std::move(answer), 1);

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "sim/behavior/behavior.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/world/body.h"
 
 namespace limber {
 
@@ -97,10 +100,10 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
   };
   visit_bodies(body_name, names.size() < 2, [&](const Body& body) {
     if (!is_pattern(name)) {
-      if (const Behavior* behavior = body.find_behavior(name)) add(*behavior);
+      if (const Behavior* behavior = body.behaviors().find(name)) add(*behavior);
       return;
     }
-    for (const Behavior* behavior : body.behaviors()) {
+    for (const Behavior* behavior : body.behaviors().list()) {
       if (budget_.match(name, behavior->name())) add(*behavior);
     }
   });
@@ -115,9 +118,9 @@ Result<void> Selector::select_shapes(const Property& property, std::span<const A
   std::string buffer;
   const std::string_view name = names.empty() ? "*" : view_of(names[0], buffer);
   if (!is_pattern(name)) {
-    if (const Shape* shape = world_.find_shape(name)) out.push_back({shape->id(), &property});
+    if (const Shape* shape = world_.shapes().find(name)) out.push_back({shape->id(), &property});
   } else {
-    for (const auto& shape : world_.shapes()) {
+    for (const auto& shape : world_.shapes().list()) {
       if (budget_.exceeded()) return budget_exceeded();
       if (names.empty() || budget_.match(name, shape->name())) out.push_back({shape->id(), &property});
     }
@@ -125,7 +128,7 @@ Result<void> Selector::select_shapes(const Property& property, std::span<const A
   if (!out.empty() || names.empty()) return {};
   if (is_pattern(name)) return Error{fmt::format("no shape matches '{}'", printable(name))};
   std::vector<std::string_view> candidates;
-  for (const auto& shape : world_.shapes()) candidates.push_back(shape->name());
+  for (const auto& shape : world_.shapes().list()) candidates.push_back(shape->name());
   return Error{fmt::format("there is no shape '{}'{}", printable(name), hint(name, candidates))};
 }
 
@@ -145,7 +148,7 @@ Error Selector::no_parameter(const Behavior& behavior, std::string_view paramete
 Error Selector::no_such_behavior(std::string_view name) const {
   std::vector<std::string_view> candidates;
   for (const auto& body : world_.bodies()) {
-    for (const Behavior* behavior : body->behaviors()) {
+    for (const Behavior* behavior : body->behaviors().list()) {
       if (std::find(candidates.begin(), candidates.end(), behavior->name()) == candidates.end())
         candidates.push_back(behavior->name());
     }

@@ -12,6 +12,8 @@
 
 namespace limber {
 
+class Behavior;
+
 /// Limits the number of "did you mean" hints per tick: searching similar names among a thousand bodies costs far more
 /// than the message itself, and a flood of wrong names must not delay the tick.
 struct HintBudget {

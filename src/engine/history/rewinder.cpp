@@ -157,7 +157,7 @@ void Rewinder::resimulate(RecordedPass& pass) {
   input.execute_messages(pass.running);
   PhaseTimes unused_times;
   simulator_.simulate(input.advances_time(pass.running), input, unused_times);
-  (void)session.world.consume_reset_request();  // the reset failed in the original run
+  session.world.requests().reset = false;  // the reset failed in the original run
   session.preset_node.publish();
   if (session.scene != nullptr) session.scene->collect_garbage();
 }

@@ -1,5 +1,6 @@
 // HealthMonitor: the sources of the items of Health.
 #include "engine/output/health_monitor.h"
+#include "sim/behavior/behavior_list.h"
 
 namespace limber {
 
@@ -23,7 +24,7 @@ void HealthMonitor::update(bool not_owned) {
   health.set(HealthItem::late, show_.pacer.stalls());
   health.add(HealthItem::stopped, show_.call_log.stopped().size());
   // a new session or a rewind may have a smaller number
-  const std::uint64_t events = session.world.health_events();
+  const std::uint64_t events = session.world.stability().events();
   if (events > health_events_) health.add(HealthItem::bodies, events - health_events_);
   health_events_ = events;
   if (passes_++ % kReadInterval != 0) return;

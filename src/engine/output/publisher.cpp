@@ -3,6 +3,11 @@
 
 #include <algorithm>
 
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
+
 namespace limber {
 
 namespace {
@@ -64,7 +69,7 @@ void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& time
     snapshot->visuals_version = version;
   }
   snapshot->overlay.clear();
-  if (world_.overlay().on()) world_.overlay().collect(snapshot->overlay);
+  if (world_.visuals().overlay().on()) world_.visuals().overlay().collect(snapshot->overlay);
   out_.publish(snapshot);
 }
 

@@ -8,6 +8,10 @@
 #include <fmt/format.h>
 
 #include "engine/output/snapshot.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -23,8 +27,8 @@ struct PlacedRenderShape {
 class RenderShapeCollector {
  public:
   RenderShapeCollector(const World& world, std::vector<RenderShape>& shapes) : world_(world), shapes_(shapes) {
-    for (std::size_t i = 0; i < world.shapes().size(); i++)
-      material_of_[world.shapes()[i]->id().slot] = static_cast<std::uint32_t>(i + 1);
+    for (std::size_t i = 0; i < world.shapes().list().size(); i++)
+      material_of_[world.shapes().list()[i]->id().slot] = static_cast<std::uint32_t>(i + 1);
   }
 
   const std::vector<PlacedRenderShape>& shapes_of(const Part& part, std::size_t link_index) {
@@ -54,7 +58,7 @@ class RenderShapeCollector {
       const LinkModel& link = model.links[i];
       const std::vector<PlacedShape>& placed_shapes = has_visuals ? link.visuals : link.collisions;
       for (std::size_t k = 0; k < placed_shapes.size(); k++) {
-        const Shape* const shape = has_visuals ? world_.find_shape(visual_shape_name(model, link, k)) : nullptr;
+        const Shape* const shape = has_visuals ? world_.shapes().find(visual_shape_name(model, link, k)) : nullptr;
         add(links[i], placed_shapes[k], shape == nullptr ? 0 : material_of_[shape->id().slot]);
       }
     }
@@ -86,7 +90,7 @@ RenderScene::RenderScene(const World& world) {
   };
   blocks_ = {block(world.visuals().id()), block(world.visuals().camera().id()),
              block(world.visuals().appearance().id())};
-  for (const auto& shape : world.shapes()) blocks_.push_back(block(shape->id()));
+  for (const auto& shape : world.shapes().list()) blocks_.push_back(block(shape->id()));
 
   RenderShapeCollector collector(world, shapes);
   const std::uint32_t enabled = Body::table().at("enabled").offset;

@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "base/log/log.h"
+#include "sim/world/body.h"
 
 namespace limber {
 
@@ -25,7 +26,7 @@ class BehaviorPatcher {
   void run() {
     replace_types();
     for (const auto& [body, name] : patch_.diff.removed_behaviors) {
-      if (Behavior* const removed = bodies_[body]->find_behavior(name)) list_.remove(*removed);
+      if (Behavior* const removed = bodies_[body]->behaviors().find(name)) list_.remove(*removed);
     }
     for (const std::string& name : patch_.diff.removed_groups) {
       if (BehaviorGroup* const removed = list_.find_group(name)) list_.remove(*removed);
@@ -89,8 +90,8 @@ class BehaviorPatcher {
     const BehaviorDescription& now = patch_.now.bodies[body].behaviors[index];
     if (now.of_group) return;
     const BehaviorDiff& diff = patch_.diff.behaviors[body][index];
-    const Behavior& source = *patch_.candidate.bodies()[body]->behaviors()[index];
-    Behavior* live = bodies_[body]->find_behavior(now.name);
+    const Behavior& source = *patch_.candidate.bodies()[body]->behaviors().list()[index];
+    Behavior* live = bodies_[body]->behaviors().find(now.name);
     const SavedBehavior* before = find_saved(bodies_[body]->name(), now.name);
     SavedBehavior replaced;
     const bool must_replace =
@@ -125,7 +126,7 @@ class BehaviorPatcher {
   void restore_unmanaged() {
     for (const SavedBehavior& saved : saved_) {
       Body* const body = patch_.world.find_body(saved.body);
-      if (body == nullptr || body->find_behavior(saved.name) != nullptr || in_old_spec(saved)) continue;
+      if (body == nullptr || body->behaviors().find(saved.name) != nullptr || in_old_spec(saved)) continue;
       if (const Behavior* const behavior = add(*body, saved.type, saved.name, saved.setup))
         copy_values(saved, *behavior, 0);
     }
@@ -165,9 +166,9 @@ class BehaviorPatcher {
     for (std::size_t k = 0; k < now.size(); k++) {
       const std::uint64_t mask = patch_.diff.behaviors[body][k].changed;
       if (!now[k].of_group || mask == 0) continue;
-      const Behavior* const live = bodies_[body]->find_behavior(now[k].name);
+      const Behavior* const live = bodies_[body]->behaviors().find(now[k].name);
       if (live == nullptr || live->group() == nullptr) continue;
-      set_properties(patch_.candidate.bodies()[body]->behaviors()[k]->id(), live->id(), *now[k].table, mask);
+      set_properties(patch_.candidate.bodies()[body]->behaviors().list()[k]->id(), live->id(), *now[k].table, mask);
     }
   }
 
@@ -181,7 +182,7 @@ class BehaviorPatcher {
 }  // namespace
 
 void save_behaviors(const Body& body, std::vector<SavedBehavior>& saved) {
-  for (const Behavior* behavior : body.behaviors()) {
+  for (const Behavior* behavior : body.behaviors().list()) {
     if (behavior->group() == nullptr) saved.push_back(saved_behavior(*behavior));
   }
 }

@@ -4,6 +4,14 @@
 #include <utility>
 
 #include "engine/presets/capturer.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/state/rebuild.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber {
 
@@ -11,7 +19,7 @@ ReloadCandidate::ReloadCandidate(ReloadRequest request, ScriptHost& host)
     : request_(std::move(request)), scene_(std::make_unique<Scene>(world_, host, request_.options)) {
   result_ = scene_->run(request_.file, &request_.inputs);
   if (!result_) return;
-  world_.flush_detached();
+  flush_detached(world_);
   spec_ = std::make_shared<const SceneSpec>(describe(world_));
   diff_ = compare(*request_.base_spec, *spec_);
   script_preset_ = PresetCapturer::capture_script(store_);

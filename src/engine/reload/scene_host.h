@@ -18,8 +18,8 @@ class SceneHost final : public ScriptHost {
   void reply(const CommandOrigin& to, Message message) override;
   void send_direct(const CommandOrigin& to, Message message) override;
   void configure_osc(const OscConfig& config) override { show_.output().configure_osc(config); }
-  void request_reset() override { show_.session->world.request_reset(); }
-  void request_panic() override { show_.session->world.request_panic(); }
+  void request_reset() override { show_.session->world.requests().reset = true; }
+  void request_panic() override { show_.session->world.requests().panic = true; }
   Result<void> check_preset(const Message& request, std::span<const Message> earlier) override;
   void request_preset(Message&& request) override { show_.preset_requests.push_back(std::move(request)); }
   std::vector<std::string> preset_names() override;

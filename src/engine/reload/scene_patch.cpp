@@ -7,6 +7,15 @@
 
 #include "base/check.h"
 #include "engine/reload/behavior_patch.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/state/body_trees.h"
+#include "sim/state/rebuild.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber {
 
@@ -28,7 +37,7 @@ class SavedValues {
  public:
   explicit SavedValues(const Body& body) {
     for (const NodeId id : objects_of(body)) save(body.store(), id);
-    for (const PartPair& pair : body.pairs().list) {
+    for (const PartPair& pair : body.pairs().list()) {
       pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
     }
   }
@@ -38,7 +47,7 @@ class SavedValues {
     for (const SavedPair& pair : pairs_) {
       const Part* const a = body.find_part(pair.a);
       const Part* const b = body.find_part(pair.b);
-      if (a != nullptr && b != nullptr) (void)body.edit_pair(*a, *b, pair.edit);
+      if (a != nullptr && b != nullptr) (void)body.pairs().edit(*a, *b, pair.edit);
     }
   }
 
@@ -101,9 +110,9 @@ class PatchApplier {
     apply_behaviors(patch_, bodies_, saved_behaviors_);
     for (const std::size_t removed : patch_.diff.removed_shapes) {
       if (Shape* const shape = find_alive<Shape>(patch_.world, objects.shapes[removed]))
-        patch_.world.remove_shape(*shape);
+        patch_.world.shapes().remove(*shape);
     }
-    patch_.world.move_shapes_to_front(shapes_);
+    patch_.world.shapes().move_to_front(shapes_);
     patch_.world.move_bodies_to_front(bodies_);
     objects = {};
     for (const Shape* shape : shapes_) objects.shapes.push_back(shape->id());
@@ -133,13 +142,13 @@ class PatchApplier {
     auto next = patch_.diff.shapes.begin();
     for (std::size_t i = 0; i < patch_.now.shapes.size(); i++) {
       const std::optional<std::size_t> before = patch_.diff.old_shape_indices[i];
-      const Shape& source = *patch_.candidate.shapes()[i];
+      const Shape& source = *patch_.candidate.shapes().list()[i];
       Shape* shape = before ? find_alive<Shape>(patch_.world, objects.shapes[*before]) : nullptr;
       const bool differs = next != patch_.diff.shapes.end() && next->new_index == i;
       if (shape == nullptr) {
-        shape = patch_.world.find_shape(source.name());
+        shape = patch_.world.shapes().find(source.name());
         const bool is_new = shape == nullptr;
-        if (is_new) shape = *patch_.world.add_shape(source.name(), source.model());
+        if (is_new) shape = *patch_.world.shapes().add(source.name(), source.model());
         shape->assign_geometry(source);
         // a new shape gets all values, because colors of a URDF file are not explicitly set
         set_properties(source.id(), shape->id(),
@@ -172,22 +181,22 @@ class PatchApplier {
   // A gear that was removed, or lost a body, is added again with the values of the scene; others keep their values.
   void apply_gears() {
     for (const std::string& name : patch_.diff.removed_gears) {
-      if (Gear* const removed = patch_.world.find_gear(name)) patch_.world.remove_gear(*removed);
+      if (Gear* const removed = patch_.world.gears().find(name)) patch_.world.gears().remove(*removed);
     }
     std::vector<Gear*> order;
     for (std::size_t i = 0; i < patch_.now.gears.size(); i++) {
       const GearDescription& now = patch_.now.gears[i];
-      const Gear& source = *patch_.candidate.gears()[i];
+      const Gear& source = *patch_.candidate.gears().list()[i];
       Joint* const a = joint_of(now.body_a, now.joint_a);
       Joint* const b = joint_of(now.body_b, now.joint_b);
       LIMBER_CHECK(a != nullptr && b != nullptr);
-      Gear* live = patch_.world.find_gear(now.name);
+      Gear* live = patch_.world.gears().find(now.name);
       if (live != nullptr && (&live->joint_a() != a || &live->joint_b() != b)) {
-        patch_.world.remove_gear(*live);
+        patch_.world.gears().remove(*live);
         live = nullptr;
       }
       if (live == nullptr) {
-        const Result<Gear*> added = patch_.world.add_gear(now.name, *a, *b, source.ratio(), source.offset());
+        const Result<Gear*> added = patch_.world.gears().add(now.name, *a, *b, source.ratio(), source.offset());
         LIMBER_CHECK(added.ok());
         live = *added;
         set_properties(source.id(), live->id(), described_mask(Gear::table()));
@@ -197,7 +206,7 @@ class PatchApplier {
       }
       order.push_back(live);
     }
-    patch_.world.move_gears_to_front(order);
+    patch_.world.gears().move_to_front(order);
   }
 
   Joint* joint_of(const std::string& body, const std::string& joint) const {
@@ -220,12 +229,12 @@ class PatchApplier {
   Body& patch_body(Body& body, const BodyDiff& diff) {
     const Body& source = *patch_.candidate.bodies()[diff.new_index];
     Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
-    if (!diff.rebuild && diff.start_changed) live.save_start_pose(source);
+    if (!diff.rebuild && diff.start_changed) live.recovery().save_start_pose(source);
     const std::vector<NodeId> from = objects_of(source);
     const std::vector<NodeId> to = objects_of(live);
     for (std::size_t i = 0; i < diff.changed.size(); i++) set_properties(from[i], to[i], diff.changed[i]);
     for (const PairDescription& pair : diff.pairs) {
-      (void)live.edit_pair(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
+      (void)live.pairs().edit(*live.parts()[pair.a], *live.parts()[pair.b], pair.edit);
     }
     move_body(live, source, diff);
     return live;
@@ -234,7 +243,7 @@ class PatchApplier {
   Body& rebuild(Body& body, const Body& source, const BodyDiff& diff) {
     const SavedValues saved(body);
     save_behaviors(body, saved_behaviors_);
-    Body& live = patch_.world.rebuild_body(body, source, diff.joints_to_reset);
+    Body& live = rebuild_body(patch_.world, body, source, diff.joints_to_reset);
     saved.restore_pairs_to(live);
     const std::vector<NodeId> objects = objects_of(live);
     for (std::size_t i = 0; i < objects.size(); i++) saved.restore_to(store_, objects[i], diff.changed[i]);
@@ -249,16 +258,16 @@ class PatchApplier {
     if (live.parts().empty()) return live.set_pose(to);
     if (diff.position_changed || diff.rotation_changed) {
       const Pose moved = to * before.inverse();
-      const std::size_t root_tree = live.trees().front();
-      const auto move_along = [&](std::size_t first) { live.move_tree(first, moved * live.parts()[first]->pose()); };
+      const std::size_t root_tree = tree_roots(live).front();
+      const auto move_along = [&](std::size_t first) { move_tree(live, first, moved * live.parts()[first]->pose()); };
       if (root_tree == 0) {
-        live.move_tree(0, to);
+        move_tree(live, 0, to);
       } else {
         move_along(root_tree);
       }
       for (const std::size_t first : diff.trees_with_root) move_along(first);
     }
-    for (const std::size_t first : diff.trees_placed) live.move_tree(first, source.parts()[first]->pose());
+    for (const std::size_t first : diff.trees_placed) move_tree(live, first, source.parts()[first]->pose());
   }
 
   const ScenePatch& patch_;
@@ -272,7 +281,7 @@ class PatchApplier {
 
 LiveObjects live_objects_of(const World& world) {
   LiveObjects objects;
-  for (const auto& shape : world.shapes()) objects.shapes.push_back(shape->id());
+  for (const auto& shape : world.shapes().list()) objects.shapes.push_back(shape->id());
   for (const auto& body : world.bodies()) objects.bodies.push_back(body->id());
   return objects;
 }

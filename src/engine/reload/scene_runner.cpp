@@ -9,6 +9,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 #include "engine/reload/reload_candidate.h"
+#include "sim/visuals/visuals.h"
 
 namespace limber {
 
@@ -108,7 +109,7 @@ std::unique_ptr<Session> SceneRunner::swap_session(std::unique_ptr<Session> fres
   (void)fresh->store.set(fresh->world.visuals().appearance().id(), overlay,
                          {session->store.values(session->world.visuals().appearance().id(), overlay), 1});
   LiveOutput& output = show_.outputs.live();
-  output.add_faults(session->world.health_events());
+  output.add_faults(session->world.stability().events());
   show_.handler_queue.clear();
   std::swap(session, fresh);
   show_.history.clear("the scene starts there");

@@ -4,6 +4,15 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/state/body_trees.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
+
 namespace limber {
 
 namespace {
@@ -46,7 +55,7 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
   out.values = spec_values_of(store, body.id());
   out.start = start_pose_of(store, body.id(), body.pose());
   out.model = body.model();
-  const std::vector<std::size_t> trees = body.trees();
+  const std::vector<std::size_t> trees = tree_roots(body);
   std::unordered_map<const Part*, std::size_t> part_index;
   for (const auto& part : body.parts()) {
     part_index[part.get()] = out.parts.size();
@@ -71,10 +80,10 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
   for (const auto& motor : body.motors()) {
     out.motors.push_back({joint_index[&motor->joint()], spec_values_of(store, motor->id())});
   }
-  for (const PartPair& pair : body.pairs().list) {
+  for (const PartPair& pair : body.pairs().list()) {
     if (pair.edit != PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
   }
-  for (const Behavior* behavior : body.behaviors()) {
+  for (const Behavior* behavior : body.behaviors().list()) {
     out.behaviors.push_back({behavior->name(), behavior->type().name, behavior->type().table, behavior->setup(),
                              behavior->group() != nullptr, spec_values_of(store, behavior->id())});
   }
@@ -127,13 +136,13 @@ SceneSpec describe(const World& world) {
   out.camera = spec_values_of(world.store(), world.visuals().camera().id());
   out.appearance = spec_values_of(world.store(), world.visuals().appearance().id());
   Shapes shapes;
-  for (const auto& shape : world.shapes()) {
+  for (const auto& shape : world.shapes().list()) {
     out.shapes.push_back(describe_shape(world.store(), *shape));
     shapes[shape->id().slot] = out.shapes.back();
   }
   out.bodies.reserve(world.bodies().size());
   for (const auto& body : world.bodies()) out.bodies.push_back(body_of(*body, shapes));
-  for (const auto& gear : world.gears()) {
+  for (const auto& gear : world.gears().list()) {
     const Joint& a = gear->joint_a();
     const Joint& b = gear->joint_b();
     out.gears.push_back({gear->name(), a.body().name(), a.name(), b.body().name(), b.name(),

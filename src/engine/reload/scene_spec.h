@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/joint.h"
 #include "sim/world/world.h"
 
 namespace limber {

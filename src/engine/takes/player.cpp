@@ -8,6 +8,7 @@
 
 #include "base/build_info.h"
 #include "base/text.h"
+#include "sim/world/body.h"
 
 namespace limber {
 

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "script/api/script_context.h"
+#include "sim/behavior/behavior_list.h"
 
 namespace limber::calls {
 

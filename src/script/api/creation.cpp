@@ -10,6 +10,12 @@
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
 #include "script/api/script_context.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber::calls {
 
@@ -145,7 +151,7 @@ std::int32_t edit_pair(void* c, std::int32_t slot, std::int32_t generation, std:
   const Part* const a = object_of<Part>(context, id_of(a_slot, a_generation));
   const Part* const b = object_of<Part>(context, id_of(b_slot, b_generation));
   if (body == nullptr || a == nullptr || b == nullptr) return kRemoved;
-  const Result<void> done = body->edit_pair(*a, *b, static_cast<PairEdit>(edit));
+  const Result<void> done = body->pairs().edit(*a, *b, static_cast<PairEdit>(edit));
   if (!done) return context.reject(done.error());
   if (static_cast<PairEdit>(edit) != PairEdit::included) return kOk;
   for (const auto& joint : body->joints()) {
@@ -164,7 +170,7 @@ std::int32_t excluded_pair(void* c, std::int32_t slot, std::int32_t generation, 
   const Body* const body = object_of<Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
   std::int32_t count = 0;
-  for (const PartPair& pair : body->pairs().list) {
+  for (const PartPair& pair : body->pairs().list()) {
     if (!pair.excluded() || count++ != index) continue;
     context.answer.number[0] = pair.a;
     context.answer.number[1] = pair.b;
@@ -234,8 +240,8 @@ std::int32_t add_gear(void* c, const char* name, std::int32_t length, std::int32
   Joint* b = object_of<Joint>(context, id_of(slot_b, generation_b));
   if (a == nullptr || b == nullptr) return kRemoved;
   const bool given = !std::isnan(offset);
-  const Result<Gear*> gear = context.world->add_gear(std::string(text_of(name, length)), *a, *b, ratio,
-                                                     given ? std::optional(offset) : std::nullopt);
+  const Result<Gear*> gear = context.world->gears().add(std::string(text_of(name, length)), *a, *b, ratio,
+                                                        given ? std::optional(offset) : std::nullopt);
   if (gear && given) mark_explicit(context, (*gear)->id(), "offset");
   return creation_result(context, gear);
 }
@@ -261,7 +267,7 @@ std::int32_t add_shape(void* c, const char* name, std::int32_t length, const cha
     model.radius = n[0];
     model.height = n[1];
   }
-  return creation_result(context, context.world->add_shape(std::string(text_of(name, length)), std::move(model)));
+  return creation_result(context, context.world->shapes().add(std::string(text_of(name, length)), std::move(model)));
 }
 
 std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std::int32_t child_slot,
@@ -300,7 +306,7 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
     for (Vec3& point : points) point *= scale;
     model.mesh = mesh_of_points(std::move(points), std::string(text_of(name, length)), max_vertices, 0);
   }
-  return creation_result(context, context.world->add_shape(std::string(text_of(name, length)), std::move(model)));
+  return creation_result(context, context.world->shapes().add(std::string(text_of(name, length)), std::move(model)));
 }
 
 void urdf_clear(void* c) {

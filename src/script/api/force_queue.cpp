@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

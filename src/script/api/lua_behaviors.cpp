@@ -8,6 +8,10 @@
 #include "script/behaviors/behavior_scripts.h"
 #include "sim/behavior/behavior_group.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber::calls {
 

@@ -6,6 +6,15 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "script/api/script_context.h"
+#include "sim/behavior/behavior_list.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/state/body_trees.h"
+#include "sim/state/state_hash.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber::calls {
 
@@ -30,8 +39,8 @@ std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
 
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
   if (kind == bodies) return item(c, c.world->bodies(), i);
-  if (kind == shapes) return item(c, c.world->shapes(), i);
-  if (kind == gears) return item(c, c.world->gears(), i);
+  if (kind == shapes) return item(c, c.world->shapes().list(), i);
+  if (kind == gears) return item(c, c.world->gears().list(), i);
   if (kind == groups) {
     const std::vector<BehaviorGroup*> all = c.world->behaviors().groups();
     return item<BehaviorGroup>(c, all, i);
@@ -44,7 +53,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   }
   const Body* body = object_of<Body>(c, id);
   if (body == nullptr) return kRemoved;
-  if (kind == behaviors) return item(c, body->behaviors(), i);
+  if (kind == behaviors) return item(c, body->behaviors().list(), i);
   if (kind == parts) return item(c, body->parts(), i);
   if (kind == joints) return item(c, body->joints(), i);
   return item(c, body->motors(), i);
@@ -131,8 +140,9 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   const std::string_view wanted = text_of(name, length);
   if (kind == bodies) return id_or_error(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
   if (kind == shapes)
-    return id_or_error(context, world.find_shape(wanted), world.shapes(), "shape", "there is", wanted);
-  if (kind == gears) return id_or_error(context, world.find_gear(wanted), world.gears(), "gear", "there is", wanted);
+    return id_or_error(context, world.shapes().find(wanted), world.shapes().list(), "shape", "there is", wanted);
+  if (kind == gears)
+    return id_or_error(context, world.gears().find(wanted), world.gears().list(), "gear", "there is", wanted);
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<BehaviorGroup*> all = world.behaviors().groups();
@@ -145,7 +155,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   }
   const Body* body = object_of<Body>(context, id);
   if (body == nullptr) return kRemoved;
-  if (kind == behaviors) return find_among(context, body->behaviors(), "behavior", id, wanted);
+  if (kind == behaviors) return find_among(context, body->behaviors().list(), "behavior", id, wanted);
   // create texts only for errors: a look-up in every tick must not allocate
   const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
     if (thing != nullptr) return context.set_id(thing->id());
@@ -180,7 +190,7 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     return within(body, 3, index_in(body.motors(), motor));
   }
   if (const Behavior* behavior = behavior_of(context, id)) {
-    const std::span<Behavior* const> all = behavior->body().behaviors();
+    const std::span<Behavior* const> all = behavior->body().behaviors().list();
     return within(behavior->body(), 4,
                   static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
   }
@@ -189,10 +199,10 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
   }
   if (const Gear* gear = object_of<Gear>(context, id)) {
-    return kShapes * 1.125 + static_cast<double>(index_in(world.gears(), gear));
+    return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));
   }
   if (const Shape* shape = object_of<Shape>(context, id)) {
-    return kShapes + static_cast<double>(index_in(world.shapes(), shape));
+    return kShapes + static_cast<double>(index_in(world.shapes().list(), shape));
   }
   return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
 }
@@ -208,7 +218,7 @@ std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, cons
   ScriptContext& context = context_of(c);
   const Body* body = object_of<Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
-  const Result<Pose> pose = body->link_pose(text_of(name, length));
+  const Result<Pose> pose = limber::link_pose(*body, text_of(name, length));
   if (!pose) return context.reject(pose.error());
   const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
                            pose->rotation.y, pose->rotation.z, pose->rotation.w};
@@ -221,7 +231,7 @@ std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
   const NodeId id = id_of(slot, generation);
   if (!context.alive(id)) return kRemoved;
   if (const Body* body = object_of<Body>(context, id)) {
-    return context.set_text(fmt::format("{:016x}", body->state_hash(hash_bytes("limber"))));
+    return context.set_text(fmt::format("{:016x}", body_hash(*body, hash_bytes("limber"))));
   }
   return context.set_text(fmt::format("{:016x}", context.hash(context.world->state_hash())));
 }

@@ -6,6 +6,13 @@
 #include "properties/values_hash.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/guard.h"
+#include "sim/gears/gear.h"
+#include "sim/shapes/shape.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber {
 

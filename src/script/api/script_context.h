@@ -21,11 +21,15 @@
 #include "script/scene/script_host.h"
 #include "script/scene/sources.h"
 #include "script/vm/pattern_match.h"
+#include "sim/behavior/selection.h"
 #include "sim/neighbors/neighbor_set.h"
+#include "sim/world/body.h"
 #include "sim/world/world.h"
 
 namespace limber {
 
+class Behavior;
+class BehaviorGroup;
 class BehaviorScripts;
 class Guard;
 

@@ -7,6 +7,13 @@
 
 #include "base/text.h"
 #include "script/api/script_context.h"
+#include "sim/gears/gear.h"
+#include "sim/shapes/shape.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 
 namespace limber::calls {
 

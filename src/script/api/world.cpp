@@ -12,6 +12,8 @@
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/guard.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/part.h"
 
 namespace limber::calls {
 
@@ -139,7 +141,7 @@ double clamp(double x, double lo, double hi) {
 
 std::int32_t contact(void* c, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const std::span<const ContactEvent> list = context.world->contacts();
+  const std::span<const ContactEvent> list = context.world->contacts().events();
   if (index >= static_cast<std::int32_t>(list.size())) return kRejected;
   const ContactEvent& event = list[static_cast<std::size_t>(index)];
   // an earlier callback may have removed one of them
@@ -159,12 +161,12 @@ std::int32_t camera_glide(void* c, double eye_x, double eye_y, double eye_z, dou
   const Vec3 eye(eye_x, eye_y, eye_z);
   const Vec3 target(target_x, target_y, target_z);
   if (!is_finite(eye) || !is_finite(target)) return kRejected;
-  context.world->camera_moves().glide(eye, target, seconds);
+  context.world->visuals().camera_moves().glide(eye, target, seconds);
   return kOk;
 }
 
 void camera_follow(void* c, std::int32_t slot, std::int32_t generation) {
-  context_of(c).world->camera_moves().follow(slot < 0 ? NodeId{} : id_of(slot, generation));
+  context_of(c).world->visuals().camera_moves().follow(slot < 0 ? NodeId{} : id_of(slot, generation));
 }
 
 void request_reset(void* c) { context_of(c).effects.request_reset(); }

@@ -6,6 +6,7 @@
 #include "script/scene/earlier_runs.h"
 #include "script/scene/scene.h"
 #include "script/vm/vm.h"
+#include "sim/world/body.h"
 
 namespace limber {
 

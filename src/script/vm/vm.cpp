@@ -14,6 +14,7 @@
 #include "script/behaviors/behavior_scripts.h"
 #include "script/scene/scene.h"
 #include "script/vm/text_check.h"
+#include "sim/visuals/visuals.h"
 
 namespace limber {
 

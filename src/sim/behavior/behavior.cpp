@@ -10,6 +10,10 @@
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_group.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -108,8 +112,8 @@ Result<void> Behavior::attach(Body& body, std::shared_ptr<const BehaviorType> ty
 }
 
 void Behavior::add_node(const std::string& name) {
-  set_id(store().add(*type().table, body().behavior_group(), name, this));
-  body().insert_behavior(body().behaviors().size(), *this);
+  set_id(store().add(*type().table, body().behaviors().group(), name, this));
+  body().behaviors().insert(body().behaviors().list().size(), *this);
 }
 
 std::unique_ptr<Behavior> Behavior::make_replacement(const std::shared_ptr<const BehaviorType>& type) {
@@ -126,7 +130,7 @@ std::unique_ptr<Behavior> Behavior::make_replacement(const std::shared_ptr<const
     if (property != nullptr) state.timers.push_back({property, timer.anchor, timer.interval, timer.count});
   }
   behavior->set_id(store().change_table(id(), *type->table, behavior.get()));
-  body().replace_behavior(*this, *behavior);
+  body().behaviors().replace(*this, *behavior);
   behavior->adopt_state(*this);
   return behavior;
 }

@@ -14,6 +14,8 @@
 #include "base/text.h"
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -66,7 +68,7 @@ double BehaviorGroup::seconds_per_member() const {
 }
 
 Behavior* BehaviorGroup::member_of(const Body& body) const {
-  const auto all = body.behaviors();
+  const auto all = body.behaviors().list();
   const auto at = std::find_if(all.begin(), all.end(), [&](const Behavior* b) { return b->group() == this; });
   return at == all.end() ? nullptr : *at;
 }

@@ -9,6 +9,7 @@
 #include "base/log/log.h"
 #include "base/system/clock.h"
 #include "base/text.h"
+#include "sim/world/body.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -42,7 +43,7 @@ Result<std::unique_ptr<Behavior>> BehaviorList::make(Body& body, const std::shar
                                                      const std::shared_ptr<const BehaviorSetup>& setup,
                                                      BehaviorGroup* group) {
   if (const auto fault = name_error(name)) return Error{fmt::format("behavior: {}", *fault)};
-  if (!world_.store().child(body.behavior_group(), name).null()) {
+  if (!world_.store().child(body.behaviors().group(), name).null()) {
     return Error{fmt::format("body '{}' has a behavior '{}' already; names are unique", body.name(), name)};
   }
   std::unique_ptr<Behavior> behavior = type->make();
@@ -134,7 +135,7 @@ RemovedBehavior BehaviorList::extract(Behavior& behavior) {
   RemovedBehavior removed = group != nullptr
                                 ? group->remove_member(behavior)
                                 : extract_last([&](const BehaviorEntry& e) { return e.single.get() == &behavior; });
-  removed.index_on_body = behavior.body().remove_behavior(behavior);
+  removed.index_on_body = behavior.body().behaviors().remove(behavior);
   return removed;
 }
 
@@ -145,7 +146,7 @@ RemovedBehavior BehaviorList::extract(BehaviorGroup& group) {
 void BehaviorList::insert(RemovedBehavior removed) {
   if (removed.behavior != nullptr) {
     Behavior& behavior = *removed.behavior;
-    behavior.body().insert_behavior(removed.index_on_body, behavior);
+    behavior.body().behaviors().insert(removed.index_on_body, behavior);
     if (BehaviorGroup* const group = behavior.group()) return group->insert_member(std::move(removed));
   }
   if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), BehaviorEntry{});
@@ -202,8 +203,8 @@ void BehaviorList::copy_values(const Behavior& from, Behavior& to) {
 
 void BehaviorList::copy(const Body& source, Body& copy) {
   if (&source.world() != &world_) return;  // types and groups belong to one world
-  for (std::size_t i = 0; i < source.behaviors().size(); i++) {
-    const Behavior& from = *source.behaviors()[i];
+  for (std::size_t i = 0; i < source.behaviors().list().size(); i++) {
+    const Behavior& from = *source.behaviors().list()[i];
     Result<std::unique_ptr<Behavior>> copied =
         make(copy, from.shared_type(), from.name(), from.shared_setup(), from.group());
     if (!copied) continue;  // can't happen: the copy has the same parts under the same names
@@ -217,14 +218,14 @@ void BehaviorList::copy(const Body& source, Body& copy) {
 }
 
 void BehaviorList::on_body_destroyed(Body& body) {
-  while (!body.behaviors().empty()) destroy(*body.behaviors().back());
+  while (!body.behaviors().list().empty()) destroy(*body.behaviors().list().back());
   for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->remove_body(body);
   }
 }
 
 void BehaviorList::on_body_reset(Body& body) {
-  for (Behavior* behavior : body.behaviors()) behavior->restart();
+  for (Behavior* behavior : body.behaviors().list()) behavior->restart();
 }
 
 std::shared_ptr<NeighborSet> BehaviorList::neighbor_set(std::vector<Part*> parts) {
@@ -248,7 +249,7 @@ void BehaviorList::update_members() {
     }
   }
   for (const auto& body : world_.bodies()) {
-    for (Behavior* behavior : body->behaviors()) behavior->update_targets();
+    for (Behavior* behavior : body->behaviors().list()) behavior->update_targets();
   }
   for (const BehaviorEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->invalidate_layout();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/body.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

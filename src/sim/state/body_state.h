@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
 
 namespace limber {
 

@@ -4,6 +4,8 @@
 #include <array>
 
 #include "base/hash.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

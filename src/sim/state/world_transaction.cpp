@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

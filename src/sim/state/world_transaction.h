@@ -24,6 +24,11 @@ struct WorldRequests {
   bool reset = false;
   bool panic = false;
   bool panic_end = false;
+  /// Requests the end of a panic, and cancels an earlier request for one in the same tick.
+  void end_panic() {
+    panic = false;
+    panic_end = true;
+  }
   bool operator==(const WorldRequests&) const = default;
 };
 
@@ -64,6 +69,12 @@ class WorldTransaction {
   void hide(std::vector<std::unique_ptr<Body>>& list, std::size_t index);
   void hide(std::vector<std::unique_ptr<Gear>>& list, std::size_t index);
 
+  /// Logs that an object was added to the end of its list.
+  template <class T>
+  void record_added(std::vector<std::unique_ptr<T>>& list) {
+    record([](void* objects, std::size_t) { static_cast<std::vector<std::unique_ptr<T>>*>(objects)->pop_back(); },
+           &list);
+  }
   /// Logs any other change. rollback() calls the logged functions from newest to oldest.
   using UndoFunction = void (*)(void* owner, std::size_t value);
   void record(UndoFunction undo, void* owner, std::size_t value = 0);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

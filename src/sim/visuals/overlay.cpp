@@ -6,8 +6,11 @@
 
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
 #include "sim/world/force_accumulators.h"
 #include "sim/world/joint.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -143,7 +146,7 @@ void Overlay::collect(std::vector<OverlayMark>& out) const {
       OverlayMark& mark = out.emplace_back(make_mark(Kind::center, part->id(), size_of_part(*part), part->center()));
       mark.rotation = part->principal_axes();
     }
-    for (const Behavior* behavior : body->behaviors()) add_targets(*behavior, out);
+    for (const Behavior* behavior : body->behaviors().list()) add_targets(*behavior, out);
   }
   for (const OverlayMark& force : forces_) out.push_back(force);
   add_contacts(out);

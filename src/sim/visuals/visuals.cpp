@@ -107,11 +107,13 @@ const PropertyTable& Visuals::table() {
   return table;
 }
 
-Visuals::Visuals(Store& store)
-    : store_(store),
-      id_(store.add(table(), store.root(), "visuals", this)),
-      camera_(store, id_),
-      appearance_(store, id_) {}
+Visuals::Visuals(World& world)
+    : store_(world.store()),
+      id_(store_.add(table(), store_.root(), "visuals", this)),
+      camera_(store_, id_),
+      appearance_(store_, id_),
+      camera_moves_(world),
+      overlay_(world) {}
 
 void Visuals::clear() {
   for (const auto& [id, properties] : {std::pair{id_, table().properties()},
@@ -121,6 +123,7 @@ void Visuals::clear() {
       if (property.stored()) (void)store_.set(id, property, {property.initial.data(), property.width});
     }
   }
+  camera_moves_.stop();
 }
 
 }  // namespace limber

@@ -1,10 +1,12 @@
-// Visuals: properties of the view besides the shapes' materials: background, camera, look; rendering is elsewhere.
-// [sim]
+// Visuals: the view besides the shapes' materials: background, camera and its animations, look, debug overlay;
+// rendering is elsewhere. [sim]
 #pragma once
 
 #include "base/vec.h"
 #include "properties/store.h"
 #include "sim/visuals/appearance.h"
+#include "sim/visuals/camera_motion.h"
+#include "sim/visuals/overlay.h"
 
 namespace limber {
 
@@ -39,12 +41,14 @@ class Visuals {
  public:
   static const PropertyTable& table();
 
-  explicit Visuals(Store& store);
+  explicit Visuals(World& world);
   NodeId id() const { return id_; }
   Camera& camera() { return camera_; }
   const Camera& camera() const { return camera_; }
   const Appearance& appearance() const { return appearance_; }
-  /// Resets all properties to their defaults.
+  CameraMoves& camera_moves() { return camera_moves_; }
+  Overlay& overlay() { return overlay_; }
+  /// Resets all properties to their defaults, and ends the animations.
   void clear();
 
  private:
@@ -52,6 +56,8 @@ class Visuals {
   NodeId id_;
   Camera camera_;
   Appearance appearance_;
+  CameraMoves camera_moves_;
+  Overlay overlay_;
 };
 
 }  // namespace limber

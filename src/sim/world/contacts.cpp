@@ -40,34 +40,39 @@ void Contacts::begin_tick() {
   }
 }
 
+// Adds a touching point as of the last internal step.
+void Contacts::Pair::add(btManifoldPoint& point) {
+  touching = true;
+  if ((point.m_contactPointFlags & kContactClosed) == 0) {
+    impulse += point.getAppliedImpulse();
+    if (point.getAppliedImpulse() > 0 && point.getDistance() <= kClosedDistance) {
+      point.m_contactPointFlags |= kContactClosed;
+    } else if (point.getAppliedImpulse() > 0) {
+      closing = true;
+    }
+  }
+  if (point.getDistance() < distance) {
+    distance = point.getDistance();
+    position = from_bt(point.getPositionWorldOnB());
+  }
+}
+
+void Contacts::collect_points(btPersistentManifold& manifold) {
+  Part* a = part_of(manifold.getBody0());
+  Part* b = part_of(manifold.getBody1());
+  if (manifold.getNumContacts() == 0 || a == nullptr || b == nullptr) return;
+  if (!a->reports_contacts() && !b->reports_contacts()) return;
+  for (int k = 0; k < manifold.getNumContacts(); k++) {
+    btManifoldPoint& point = manifold.getContactPoint(k);
+    if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
+    pair_of(a, b).add(point);
+  }
+}
+
 void Contacts::collect(btDispatcher& dispatcher) {
   if (state_.reporting <= 0) return;
   for (Pair& pair : state_.pairs) pair.closing = false;
-  for (int i = 0; i < dispatcher.getNumManifolds(); i++) {
-    btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
-    Part* a = part_of(manifold.getBody0());
-    Part* b = part_of(manifold.getBody1());
-    if (manifold.getNumContacts() == 0 || a == nullptr || b == nullptr) continue;
-    if (!a->reports_contacts() && !b->reports_contacts()) continue;
-    for (int k = 0; k < manifold.getNumContacts(); k++) {
-      btManifoldPoint& point = manifold.getContactPoint(k);
-      if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
-      Pair& pair = pair_of(a, b);
-      pair.touching = true;
-      if ((point.m_contactPointFlags & kContactClosed) == 0) {
-        pair.impulse += point.getAppliedImpulse();
-        if (point.getAppliedImpulse() > 0 && point.getDistance() <= kClosedDistance) {
-          point.m_contactPointFlags |= kContactClosed;
-        } else if (point.getAppliedImpulse() > 0) {
-          pair.closing = true;
-        }
-      }
-      if (point.getDistance() < pair.distance) {
-        pair.distance = point.getDistance();
-        pair.position = from_bt(point.getPositionWorldOnB());
-      }
-    }
-  }
+  for (int i = 0; i < dispatcher.getNumManifolds(); i++) collect_points(*dispatcher.getManifoldByIndexInternal(i));
 }
 
 void Contacts::end_tick() {

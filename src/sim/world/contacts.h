@@ -9,6 +9,8 @@
 #include "base/vec.h"
 
 class btDispatcher;
+class btManifoldPoint;
+class btPersistentManifold;
 
 namespace limber {
 
@@ -52,7 +54,9 @@ class Contacts {
     bool touching;
     bool closing;        // as of the last internal step: a point presses but has not closed
     bool event_pending;  // it was closing when the previous tick ended: its event is reported in this tick
+    void add(btManifoldPoint& point);
   };
+  void collect_points(btPersistentManifold& manifold);
   Pair& pair_of(Part* a, Part* b);
 
   // what persists from tick to tick

@@ -3,9 +3,31 @@
 
 #include "base/memory/archive.h"
 #include "base/memory/prefetch.h"
+#include "sim/bullet/bullet.h"
 #include "sim/world/part.h"
 
 namespace limber {
+
+namespace {
+
+// Applies pending forces and impulses to Bullet.
+void apply_to_bullet(Part& part, const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse) {
+  btRigidBody& rigid = part.rigid();
+  if (part.is_static() || !rigid.isInWorld()) return;
+  const Vec3 none(0);
+  if (wrench.force == none && wrench.torque == none && impulse.linear == none && impulse.angular == none) return;
+  part.wake();
+  // clamped to more than any part withstands, but finite: NaN and infinities would spread to all parts that it
+  // touches
+  const Vec3 limit(1e15);
+  const auto clamped = [&](const Vec3& v) { return to_bt(glm::clamp(v, -limit, limit)); };
+  rigid.applyCentralForce(clamped(wrench.force));
+  rigid.applyTorque(clamped(wrench.torque));
+  rigid.applyCentralImpulse(clamped(impulse.linear));
+  rigid.applyTorqueImpulse(clamped(impulse.angular));
+}
+
+}  // namespace
 
 std::uint32_t ForceAccumulators::add(Part& part) {
   if (free_.empty()) {
@@ -61,7 +83,7 @@ void ForceAccumulators::apply() {
     const std::uint32_t index = pending_[i];
     Wrench& wrench = wrenches_[index];
     wrench.pending = false;
-    if (wrench.part != nullptr) wrench.part->apply_accumulated(wrench, impulses_[index]);
+    if (wrench.part != nullptr) apply_to_bullet(*wrench.part, wrench, impulses_[index]);
     clear(index);
   }
   pending_.clear();

@@ -11,6 +11,7 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
 #include "sim/world/motor.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {

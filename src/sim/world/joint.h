@@ -6,14 +6,17 @@
 #include <optional>
 #include <string>
 
+#include "base/memory/archive.h"
+#include "model/body_model.h"
 #include "properties/store.h"
-#include "sim/world/part.h"
 
 namespace limber {
 
+class Body;
 class GearConstraint;
 class JointConstraint;
 class Motor;
+class Part;
 
 /// Couples a follower to its leader, with reaction: value = multiplier · (leader's value) + offset.
 struct Mimic {

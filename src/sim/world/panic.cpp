@@ -6,6 +6,9 @@
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -19,7 +22,7 @@ void Panic::set_on(bool on) {
   state_ = {.on = on, .first_second_over = false, .start_tick = world_.tick()};
   world_.store().mutable_values(world_.id(), panicked)[0] = on ? 1 : 0;
   world_.bullet().wake_all();
-  world_.apply_gravity();
+  apply_gravity();
   update_motors();
 }
 
@@ -32,9 +35,12 @@ void Panic::update_motors() {
   }
 }
 
-Vec3 Panic::limited_gravity(const Vec3& gravity) const {
+void Panic::apply_gravity() {
+  static const Property& property = World::table().at("gravity");
+  const Vec3 gravity = vec3_at(world_.store().values(world_.id(), property));
   const double size = glm::length(gravity);
-  return state_.on && size > kDamping * kTerminalSpeed ? gravity * (kDamping * kTerminalSpeed / size) : gravity;
+  const bool limited = state_.on && size > kDamping * kTerminalSpeed;
+  world_.bullet().setGravity(to_bt(limited ? gravity * (kDamping * kTerminalSpeed / size) : gravity));
 }
 
 bool Panic::holds_motors() const {

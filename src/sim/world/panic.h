@@ -4,13 +4,13 @@
 
 #include <cstdint>
 
-#include "base/vec.h"
-#include "sim/world/motor.h"
+#include "base/memory/archive.h"
 
 namespace limber {
 
 class World;
 enum class AxisDrive : std::uint8_t;
+enum class MotorMode : std::uint8_t;
 
 class Panic {
  public:
@@ -42,8 +42,8 @@ class Panic {
   /// Stores the present joint positions as the held ones, and applies `panic_motors`. Call when that has changed.
   void update_motors();
 
-  /// Returns the gravity in force for a value of the property `gravity`.
-  Vec3 limited_gravity(const Vec3& gravity) const;
+  /// Passes the property `gravity` to Bullet, limited while the panic is on.
+  void apply_gravity();
   /// True if `panic_motors` is set to hold the motors.
   bool holds_motors() const;
   /// Returns the drive of an axis with motor mode `mode`: during a panic, it holds its position with its own

@@ -32,6 +32,111 @@ const MotionProperties& motion_properties() {
   return found;
 }
 
+double number_of(const Part& part, const Property& property) {
+  return part.body().store().values(part.id(), property)[0];
+}
+
+// Callbacks of the properties.
+
+void apply_mass(Part& part) {
+  static const Property& property = Part::table().at("mass");
+  if (part.is_static()) return;
+  btRigidBody& rigid = part.rigid();
+  const double mass = number_of(part, property);
+  const btScalar before = rigid.getInvMass();
+  rigid.setMassProps(static_cast<btScalar>(mass), to_bt(part.geometry()->unit_inertia * mass));
+  rigid.updateInertiaTensor();
+  // Bullet stores gravity as a force, which was computed with the old mass
+  rigid.setGravity(part.body().world().bullet().getGravity());
+  if (rigid.getInvMass() != before) part.wake();
+}
+
+void apply_damping(Part& part) {
+  static const Property& linear = Part::table().at("linear_damping");
+  static const Property& angular = Part::table().at("angular_damping");
+  btRigidBody& rigid = part.rigid();
+  const std::array<btScalar, 2> before{rigid.getLinearDamping(), rigid.getAngularDamping()};
+  rigid.setDamping(static_cast<btScalar>(number_of(part, linear)), static_cast<btScalar>(number_of(part, angular)));
+  if (before != std::array<btScalar, 2>{rigid.getLinearDamping(), rigid.getAngularDamping()}) part.wake();
+}
+
+std::array<btScalar, 8> surface_of(const btRigidBody& rigid) {
+  const btVector3& anisotropic = rigid.getAnisotropicFriction();
+  return {rigid.getFriction(),
+          rigid.getRollingFriction(),
+          rigid.getSpinningFriction(),
+          rigid.getRestitution(),
+          anisotropic.x(),
+          anisotropic.y(),
+          anisotropic.z(),
+          anisotropic.w()};
+}
+
+void apply_surface(Part& part) {
+  static const Property& friction = Part::table().at("friction");
+  static const Property& rolling = Part::table().at("rolling_friction");
+  static const Property& spinning = Part::table().at("spinning_friction");
+  static const Property& direction = Part::table().at("friction_direction");
+  static const Property& factor = Part::table().at("friction_factor");
+  static const Property& bounce = Part::table().at("restitution");
+  btRigidBody& rigid = part.rigid();
+  const std::array<btScalar, 8> before = surface_of(rigid);
+  rigid.setFriction(static_cast<btScalar>(number_of(part, friction)));
+  rigid.setRollingFriction(static_cast<btScalar>(number_of(part, rolling)));
+  rigid.setSpinningFriction(static_cast<btScalar>(number_of(part, spinning)));
+  const Vec3 in_link = vec3_at(part.body().store().values(part.id(), direction));
+  set_friction_direction(rigid, to_bt(glm::inverse(part.geometry()->frame.rotation) * in_link),
+                         static_cast<btScalar>(number_of(part, factor)));
+  const auto restitution = static_cast<btScalar>(number_of(part, bounce));
+  rigid.setRestitution(restitution);
+  if (surface_of(rigid) != before) part.wake();
+  // A part that bounces must not be slowed down before it touches: contacts that Bullet predicts would absorb a share
+  // of the bounce.
+  const btScalar threshold = restitution > 0 && !part.is_static() ? btScalar(0) : btScalar(BT_LARGE_FLOAT);
+  if (rigid.getContactProcessingThreshold() == threshold) return;
+  rigid.setContactProcessingThreshold(threshold);
+  // existing contacts keep the threshold that they were created with
+  IslandWorld& bullet = part.body().world().bullet();
+  if (!rigid.isInWorld()) return;
+  bullet.getPairCache()->cleanProxyFromPairs(rigid.getBroadphaseHandle(), bullet.getDispatcher());
+}
+
+void read_center(const Part& part, double* out) { put(out, part.center()); }
+void read_inertia(const Part& part, double* out) { put(out, part.geometry()->unit_inertia * part.mass()); }
+void read_principal_axes(const Part& part, double* out) { put(out, part.principal_axes()); }
+void read_rotation_clamped(const Part& part, double* out) { out[0] = clamped_by(part.rigid()); }
+
+Result<void> validate_mass(const Part& part, const double*) {
+  if (!part.is_static()) return {};
+  return Error{"the part was created static (mass 0); create it with a mass instead"};
+}
+
+// Calls one of two member functions of the part: with 3 numbers, or with 6, of which the last 3 are a point.
+Result<void> act_at(Part& part, std::span<const double> a, void (Part::*act)(const Vec3&),
+                    void (Part::*act_at_point)(const Vec3&, const Vec3&)) {
+  if (a.size() == 3) {
+    (part.*act)(vec3_at(a.data()));
+  } else if (a.size() == 6) {
+    (part.*act_at_point)(vec3_at(a.data()), vec3_at(a.data() + 3));
+  } else {
+    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
+  }
+  return {};
+}
+
+Result<void> act_force(Part& part, std::span<const double> a) {
+  return act_at(part, a, &Part::apply_force, &Part::apply_force_at);
+}
+
+Result<void> act_impulse(Part& part, std::span<const double> a) {
+  return act_at(part, a, &Part::apply_impulse, &Part::apply_impulse_at);
+}
+
+Result<void> act_torque(Part& part, std::span<const double> a) {
+  part.apply_torque(vec3_at(a.data()));
+  return {};
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): a list of entries
@@ -39,26 +144,25 @@ const PropertyTable& Part::table() {
   static const PropertyTable table(
       "part", "/physics/body/<body>/part/<part>", "/physics/part",
       {
-          validated_by<&Part::validate_mass>(on_change<&Part::apply_mass>(number(
+          validated_by<&validate_mass>(on_change<&apply_mass>(number(
               "mass", "kg", 1, 0.001, 1e6, "Mass; the inertia scales with it. A part created with mass 0 is static."))),
-          on_change<&Part::apply_damping>(
+          on_change<&apply_damping>(
               number("linear_damping", "1/s", 0, 0, 1, "Fraction of the velocity lost per second.")),
-          on_change<&Part::apply_damping>(
+          on_change<&apply_damping>(
               number("angular_damping", "1/s", 0, 0, 1, "Fraction of the angular velocity lost per second.")),
-          on_change<&Part::apply_surface>(
+          on_change<&apply_surface>(
               number("friction", "", 0.5, 0, 100, "Coulomb friction; the values of two touching parts multiply.")),
-          on_change<&Part::apply_surface>(number("rolling_friction", "m", 0, 0, 100,
-                                                 "Resistance to rolling; the values of two touching parts are mixed.")),
-          on_change<&Part::apply_surface>(
-              number("spinning_friction", "m", 0, 0, 100,
-                     "Resistance to spinning about the contact's normal; mixed like rolling "
-                     "friction.")),
-          on_change<&Part::apply_surface>(
+          on_change<&apply_surface>(number("rolling_friction", "m", 0, 0, 100,
+                                           "Resistance to rolling; the values of two touching parts are mixed.")),
+          on_change<&apply_surface>(number("spinning_friction", "m", 0, 0, 100,
+                                           "Resistance to spinning about the contact's normal; mixed like rolling "
+                                           "friction.")),
+          on_change<&apply_surface>(
               vec3("friction_direction", "", {0, 0, 0}, -1, 1,
                    "Direction in the link frame in which friction is scaled by friction_factor; zeros: none.")),
-          on_change<&Part::apply_surface>(number("friction_factor", "", 1, 0, 100,
-                                                 "Ratio of the friction along friction_direction to that across it.")),
-          on_change<&Part::apply_surface>(number(
+          on_change<&apply_surface>(number("friction_factor", "", 1, 0, 100,
+                                           "Ratio of the friction along friction_direction to that across it.")),
+          on_change<&apply_surface>(number(
               "restitution", "", 0, 0, 1,
               "Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.")),
           on_change<&Part::apply_collision>(
@@ -81,27 +185,24 @@ const PropertyTable& Part::table() {
               "angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
               "Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, not counting "
               "rotation about a driven joint's axis or a principal axis, and from 20000 rad/s on in any case.")))),
-          computed<&Part::read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Center of mass, world."))),
-          computed<&Part::read_inertia>(readout(vec3("inertia", "kg·m²", {0, 0, 0}, 0, kUnbounded,
-                                                     "Moments of inertia about the principal axes; static: 0."))),
-          computed<&Part::read_principal_axes>(
+          computed<&read_center>(readout(vec3("center", "m", {0, 0, 0}, -1e6, 1e6, "Center of mass, world."))),
+          computed<&read_inertia>(readout(vec3("inertia", "kg·m²", {0, 0, 0}, 0, kUnbounded,
+                                               "Moments of inertia about the principal axes; static: 0."))),
+          computed<&read_principal_axes>(
               readout(properties::quat("principal_axes", "Principal axes of inertia, world: x y z w."))),
-          computed<&Part::read_rotation_clamped>(readout(number(
+          computed<&read_rotation_clamped>(readout(number(
               "rotation_clamped", "rad/s", 0, 0, kUnbounded,
               "Angular speed clamped off in the last tick; 0: not clamped. Rotation is limited to π/4 per substep, "
               "except about a driven joint's axis or a principal axis. More substeps raise the limit."))),
-          invokes<&Part::act_force>(
-              action("apply_force", 3, 6,
-                     "Force in N for one tick, world; at a world point, else the center. From 500 "
-                     "m/s on, the stability check restores the body.")),
-          invokes<&Part::act_impulse>(
-              action("apply_impulse", 3, 6,
-                     "Impulse in N·s, world; at a world point, else the center. From 500 m/s on, "
-                     "the stability check restores the body.")),
-          invokes<&Part::act_torque>(
-              action("apply_torque", 3, 3,
-                     "Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the "
-                     "stability check restores the body.")),
+          invokes<&act_force>(action("apply_force", 3, 6,
+                                     "Force in N for one tick, world; at a world point, else the center. From 500 "
+                                     "m/s on, the stability check restores the body.")),
+          invokes<&act_impulse>(action("apply_impulse", 3, 6,
+                                       "Impulse in N·s, world; at a world point, else the center. From 500 m/s on, "
+                                       "the stability check restores the body.")),
+          invokes<&act_torque>(action("apply_torque", 3, 3,
+                                      "Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the "
+                                      "stability check restores the body.")),
       },
       &Part::prefetch_rigid_body);
   return table;
@@ -132,8 +233,8 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
 
 Part::~Part() {
   World& world = body_.world();
-  if (reports_contacts()) world.contact_log().set_reporting(false);
-  world.contact_log().remove_part(*this);
+  if (reports_contacts()) world.contacts().set_reporting(false);
+  world.contacts().remove_part(*this);
   remove_from_world();
   world.force_accumulators().remove(accumulator_);
   body_.store().remove(id_);
@@ -270,21 +371,6 @@ void Part::clear_forces() {
   body_.world().force_accumulators().clear(accumulator_);
 }
 
-void Part::apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse) {
-  if (is_static_ || !rigid_->isInWorld()) return;
-  const Vec3 none(0);
-  if (wrench.force == none && wrench.torque == none && impulse.linear == none && impulse.angular == none) return;
-  wake();
-  // clamped to more than any part withstands, but finite: NaN and infinities would spread to all parts that it
-  // touches
-  const Vec3 limit(1e15);
-  const auto clamped = [&](const Vec3& v) { return to_bt(glm::clamp(v, -limit, limit)); };
-  rigid_->applyCentralForce(clamped(wrench.force));
-  rigid_->applyTorque(clamped(wrench.torque));
-  rigid_->applyCentralImpulse(clamped(impulse.linear));
-  rigid_->applyTorqueImpulse(clamped(impulse.angular));
-}
-
 void Part::publish() {
   double* const transient = body_.store().transient_block(id_);
   const MotionProperties& properties = motion_properties();
@@ -302,68 +388,6 @@ void Part::prefetch_rigid_body(const void* object) {
   prefetch(static_cast<const Part*>(object)->rigid_.get(), sizeof(btRigidBody));
 }
 
-void Part::apply_mass() {
-  static const Property& property = table().at("mass");
-  if (is_static_) return;
-  const double mass = body_.store().values(id_, property)[0];
-  const btScalar before = rigid_->getInvMass();
-  rigid_->setMassProps(static_cast<btScalar>(mass), to_bt(geometry_->unit_inertia * mass));
-  rigid_->updateInertiaTensor();
-  // Bullet stores gravity as a force, which was computed with the old mass
-  rigid_->setGravity(body_.world().bullet().getGravity());
-  if (rigid_->getInvMass() != before) wake();
-}
-
-void Part::apply_damping() {
-  static const Property& linear = table().at("linear_damping");
-  static const Property& angular = table().at("angular_damping");
-  const Store& store = body_.store();
-  const std::array<btScalar, 2> before{rigid_->getLinearDamping(), rigid_->getAngularDamping()};
-  rigid_->setDamping(static_cast<btScalar>(store.values(id_, linear)[0]),
-                     static_cast<btScalar>(store.values(id_, angular)[0]));
-  if (before != std::array<btScalar, 2>{rigid_->getLinearDamping(), rigid_->getAngularDamping()}) wake();
-}
-
-void Part::apply_surface() {
-  static const Property& friction = table().at("friction");
-  static const Property& rolling = table().at("rolling_friction");
-  static const Property& spinning = table().at("spinning_friction");
-  static const Property& direction = table().at("friction_direction");
-  static const Property& factor = table().at("friction_factor");
-  static const Property& bounce = table().at("restitution");
-  const Store& store = body_.store();
-  const auto surface = [this] {
-    const btVector3& anisotropic = rigid_->getAnisotropicFriction();
-    return std::array<btScalar, 8>{rigid_->getFriction(),
-                                   rigid_->getRollingFriction(),
-                                   rigid_->getSpinningFriction(),
-                                   rigid_->getRestitution(),
-                                   anisotropic.x(),
-                                   anisotropic.y(),
-                                   anisotropic.z(),
-                                   anisotropic.w()};
-  };
-  const std::array<btScalar, 8> before = surface();
-  rigid_->setFriction(static_cast<btScalar>(store.values(id_, friction)[0]));
-  rigid_->setRollingFriction(static_cast<btScalar>(store.values(id_, rolling)[0]));
-  rigid_->setSpinningFriction(static_cast<btScalar>(store.values(id_, spinning)[0]));
-  const Vec3 in_link = vec3_at(store.values(id_, direction));
-  set_friction_direction(*rigid_, to_bt(glm::inverse(geometry_->frame.rotation) * in_link),
-                         static_cast<btScalar>(store.values(id_, factor)[0]));
-  const auto restitution = static_cast<btScalar>(store.values(id_, bounce)[0]);
-  rigid_->setRestitution(restitution);
-  if (surface() != before) wake();
-  // A part that bounces must not be slowed down before it touches: contacts that Bullet predicts would absorb a share
-  // of the bounce.
-  const btScalar threshold = restitution > 0 && !is_static_ ? btScalar(0) : btScalar(BT_LARGE_FLOAT);
-  if (rigid_->getContactProcessingThreshold() == threshold) return;
-  rigid_->setContactProcessingThreshold(threshold);
-  // existing contacts keep the threshold that they were created with
-  IslandWorld& bullet = body_.world().bullet();
-  if (!rigid_->isInWorld()) return;
-  bullet.getPairCache()->cleanProxyFromPairs(rigid_->getBroadphaseHandle(), bullet.getDispatcher());
-}
-
 void Part::apply_pose() {
   const btTransform t = to_bt(pose() * geometry_->frame);
   if (!is_static_ || !(t == rigid_->getWorldTransform())) wake();
@@ -376,7 +400,7 @@ void Part::apply_pose() {
 void Part::apply_velocity() {
   if (is_static_) {
     if (linear_velocity() != Vec3(0) || angular_velocity() != Vec3(0)) {
-      body_.warn_static_velocity(fmt::format("part '{}' is", name()));
+      body_.warnings().warn_static_velocity(fmt::format("part '{}' is", name()));
     }
     return;
   }
@@ -402,47 +426,8 @@ void Part::apply_collision() {
 
 void Part::apply_report_contacts() {
   const bool wanted = body_.store().values(id_, table().at("report_contacts"))[0] != 0;
-  if (wanted != state_.report_contacts) body_.world().contact_log().set_reporting(wanted);
+  if (wanted != state_.report_contacts) body_.world().contacts().set_reporting(wanted);
   state_.report_contacts = wanted;
-}
-
-void Part::read_center(double* out) const { put(out, center()); }
-void Part::read_inertia(double* out) const {
-  put(out, geometry_->unit_inertia * body_.store().values(id_, table().at("mass"))[0]);
-}
-void Part::read_principal_axes(double* out) const { put(out, principal_axes()); }
-void Part::read_rotation_clamped(double* out) const { out[0] = clamped_by(*rigid_); }
-
-Result<void> Part::validate_mass(const double*) const {
-  if (!is_static_) return {};
-  return Error{"the part was created static (mass 0); create it with a mass instead"};
-}
-
-Result<void> Part::act_force(std::span<const double> a) {
-  if (a.size() == 3) {
-    apply_force(vec3_at(a.data()));
-  } else if (a.size() == 6) {
-    apply_force_at(vec3_at(a.data()), vec3_at(a.data() + 3));
-  } else {
-    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
-  }
-  return {};
-}
-
-Result<void> Part::act_impulse(std::span<const double> a) {
-  if (a.size() == 3) {
-    apply_impulse(vec3_at(a.data()));
-  } else if (a.size() == 6) {
-    apply_impulse_at(vec3_at(a.data()), vec3_at(a.data() + 3));
-  } else {
-    return Error{fmt::format("takes 3 numbers, or 6 with a point, not {}", a.size())};
-  }
-  return {};
-}
-
-Result<void> Part::act_torque(std::span<const double> a) {
-  apply_torque(vec3_at(a.data()));
-  return {};
 }
 
 }  // namespace limber

@@ -9,8 +9,8 @@
 
 #include "base/memory/archive.h"
 #include "properties/store.h"
+#include "sim/shapes/geometry.h"
 #include "sim/world/force_accumulators.h"
-#include "sim/world/geometry.h"
 
 class btRigidBody;
 
@@ -88,8 +88,6 @@ class Part {
   /// True if it is at rest and skipped by steps until something wakes it.
   bool asleep() const;
 
-  /// Applies pending forces and impulses to Bullet; called by ForceAccumulators::apply().
-  void apply_accumulated(const ForceAccumulators::Wrench& wrench, const ForceAccumulators::Impulse& impulse);
   /// For checkpoints.
   void serialize(Archive& archive) { archive.serialize(state_); }
   /// Its index in World::force_accumulators().
@@ -108,18 +106,7 @@ class Part {
   void apply_collision();
 
  private:
-  void apply_mass();
-  void apply_damping();
-  void apply_surface();
   void apply_report_contacts();
-  void read_center(double* out) const;
-  void read_inertia(double* out) const;
-  void read_principal_axes(double* out) const;
-  void read_rotation_clamped(double* out) const;
-  Result<void> validate_mass(const double* in) const;
-  Result<void> act_force(std::span<const double> args);
-  Result<void> act_impulse(std::span<const double> args);
-  Result<void> act_torque(std::span<const double> args);
 
   Body& body_;
   NodeId id_;

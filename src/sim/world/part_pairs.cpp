@@ -1,4 +1,4 @@
-// PartPairs: the list of pairs, and its use by Body and World.
+// PartPairs: the list of pairs, and its application to Bullet.
 #include "sim/world/part_pairs.h"
 
 #include <algorithm>
@@ -10,7 +10,10 @@
 #include "base/memory/archive.h"
 #include "model/overlap.h"
 #include "sim/bullet/island_world.h"
+#include "sim/shapes/geometry.h"
 #include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber {
@@ -31,28 +34,68 @@ std::size_t index_of(const Body& body, const Part& part) {
 
 }  // namespace
 
+void OverlapReport::add(const Body& body, const Part& a, const Part& b, double depth) {
+  if (count_++ > 0) return;
+  first_ = fmt::format("body '{}': '{}' and '{}' overlap at the first tick ({:.3g} mm); excluded from collision",
+                       body.name(), a.name(), b.name(), depth * 1000);
+}
+
+void OverlapReport::log() {
+  if (count_ == 0) return;
+  const std::size_t more = std::exchange(count_, 0) - 1;
+  log_warning("{}{}. Move the parts apart, or let them collide with body:include_pair(a, b).", first_,
+              more > 0 ? fmt::format(" … and {} more of this kind", more) : "");
+}
+
 const PartPair* PartPairs::find(std::size_t a, std::size_t b) const {
   const std::pair<std::size_t, std::size_t> key = std::minmax(a, b);
-  const auto at = std::lower_bound(list.begin(), list.end(), key, pair_before);
-  return at != list.end() && at->a == key.first && at->b == key.second ? &*at : nullptr;
+  const auto at = std::lower_bound(state_.list.begin(), state_.list.end(), key, pair_before);
+  return at != state_.list.end() && at->a == key.first && at->b == key.second ? &*at : nullptr;
 }
 
 PartPair& PartPairs::entry(std::size_t a, std::size_t b) {
   const std::pair<std::size_t, std::size_t> key = std::minmax(a, b);
-  const auto at = std::lower_bound(list.begin(), list.end(), key, pair_before);
-  if (at != list.end() && at->a == key.first && at->b == key.second) return *at;
-  return *list.insert(at, {static_cast<std::uint32_t>(key.first), static_cast<std::uint32_t>(key.second), 0, {}});
+  const auto at = std::lower_bound(state_.list.begin(), state_.list.end(), key, pair_before);
+  if (at != state_.list.end() && at->a == key.first && at->b == key.second) return *at;
+  return *state_.list.insert(at,
+                             {static_cast<std::uint32_t>(key.first), static_cast<std::uint32_t>(key.second), 0, {}});
 }
 
-bool PartPairs::set_edit(std::size_t a, std::size_t b, PairEdit edit) {
+bool PartPairs::excludes(const Part& a, const Part& b) const {
+  const PartPair* const pair = find(index_of(body_, a), index_of(body_, b));
+  return pair != nullptr && pair->excluded();
+}
+
+Result<void> PartPairs::edit(const Part& a, const Part& b, PairEdit edit) {
+  if (&a.body() != &body_ || &b.body() != &body_) {
+    return Error{fmt::format("body '{}': both parts must be of this body; use collision groups for parts of two bodies",
+                             body_.name())};
+  }
+  if (&a == &b)
+    return Error{fmt::format("body '{}': a pair needs two different parts, not '{}' twice", body_.name(), a.name())};
+  set_edit(index_of(body_, a), index_of(body_, b), edit);
+  return {};
+}
+
+void PartPairs::set_edit(std::size_t a, std::size_t b, PairEdit edit) {
   PartPair& pair = entry(a, b);
-  const bool before = pair.excluded();
+  const auto before = static_cast<std::size_t>(pair.edit);
+  body_.world().transaction().record(
+      [](void* owner, std::size_t value) {
+        constexpr std::size_t kIndexMask = (std::size_t{1} << kPairBits) - 1;
+        static_cast<PartPairs*>(owner)->set_edit(value & kIndexMask, value >> kPairBits & kIndexMask,
+                                                 static_cast<PairEdit>(value >> (2 * kPairBits)));
+      },
+      this, a | b << kPairBits | before << (2 * kPairBits));
+  const bool was_excluded = pair.excluded();
   pair.edit = edit;
-  const bool changed = pair.excluded() != before;
-  if (pair.edit == PairEdit::none && pair.overlaps == 0) list.erase(list.begin() + (&pair - list.data()));
-  return changed;
+  const bool changed = pair.excluded() != was_excluded;
+  if (pair.edit == PairEdit::none && pair.overlaps == 0)
+    state_.list.erase(state_.list.begin() + (&pair - state_.list.data()));
+  if (changed) apply(a, b);
 }
 
+// Returns true if the pair's exclusion changed.
 bool PartPairs::set_overlaps(std::size_t a, std::size_t b) {
   PartPair& pair = entry(a, b);
   const bool before = pair.excluded();
@@ -60,93 +103,67 @@ bool PartPairs::set_overlaps(std::size_t a, std::size_t b) {
   return pair.excluded() != before;
 }
 
-void PartPairs::serialize(Archive& archive) {
-  auto& [pairs, checked] = *this;
-  archive.serialize_all(pairs, checked);
-}
-
-bool Body::excludes(const Part& a, const Part& b) const {
-  const PartPair* const pair = state_.pairs.find(index_of(*this, a), index_of(*this, b));
-  return pair != nullptr && pair->excluded();
-}
-
-Result<void> Body::edit_pair(const Part& a, const Part& b, PairEdit edit) {
-  if (&a.body() != this || &b.body() != this) {
-    return Error{fmt::format("body '{}': both parts must be of this body; use collision groups for parts of two bodies",
-                             name())};
-  }
-  if (&a == &b)
-    return Error{fmt::format("body '{}': a pair needs two different parts, not '{}' twice", name(), a.name())};
-  set_pair(index_of(*this, a), index_of(*this, b), edit);
-  return {};
-}
-
-void Body::set_pair(std::size_t a, std::size_t b, PairEdit edit) {
-  const PartPair* const pair = state_.pairs.find(a, b);
-  const auto before = static_cast<std::size_t>(pair == nullptr ? PairEdit::none : pair->edit);
-  world_.transaction().record(
-      [](void* owner, std::size_t value) {
-        constexpr std::size_t kIndexMask = (std::size_t{1} << kPairBits) - 1;
-        static_cast<Body*>(owner)->set_pair(value & kIndexMask, value >> kPairBits & kIndexMask,
-                                            static_cast<PairEdit>(value >> (2 * kPairBits)));
-      },
-      this, a | b << kPairBits | before << (2 * kPairBits));
-  if (state_.pairs.set_edit(a, b, edit)) apply_pair(a, b);
-}
-
 // Applies a change of a pair's exclusion.
-void Body::apply_pair(std::size_t a, std::size_t b) {
-  const PartPair* const pair = state_.pairs.find(a, b);
-  IslandWorld& bullet = world_.bullet();
+void PartPairs::apply(std::size_t a, std::size_t b) {
+  const PartPair* const pair = find(a, b);
+  IslandWorld& bullet = body_.world().bullet();
+  btRigidBody& rigid_a = body_.parts()[a]->rigid();
+  btRigidBody& rigid_b = body_.parts()[b]->rigid();
   if (pair != nullptr && pair->excluded()) {
-    bullet.exclude_pair(parts_[a]->rigid(), parts_[b]->rigid());
+    bullet.exclude_pair(rigid_a, rigid_b);
   } else {
-    bullet.include_pair(parts_[a]->rigid(), parts_[b]->rigid());
+    bullet.include_pair(rigid_a, rigid_b);
   }
 }
 
 // Applies the exclusions of new parts, which Bullet has no pairs of yet.
-void Body::apply_pairs() {
-  for (const PartPair& pair : state_.pairs.list) {
-    if (pair.excluded()) apply_pair(pair.a, pair.b);
+void PartPairs::apply_all() {
+  for (const PartPair& pair : state_.list) {
+    if (pair.excluded()) apply(pair.a, pair.b);
   }
 }
 
-void Body::find_overlaps() {
-  const std::size_t first_new = std::exchange(state_.pairs.checked_count, parts_.size());
-  if (parts_.size() < 2) return;
+void PartPairs::build(const BodyModel& model) {
+  for (const Overlap& overlap : model.overlaps) {
+    (void)set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
+  }
+  state_.checked_count = body_.parts().size();
+  apply_all();
+}
+
+void PartPairs::build_copy(const PartPairs& source) {
+  state_ = source.state_;
+  apply_all();
+}
+
+void PartPairs::find_new_overlaps(OverlapReport& report) {
+  const auto parts = body_.parts();
+  if (state_.checked_count >= parts.size()) return;
+  const std::size_t first_new = std::exchange(state_.checked_count, parts.size());
+  if (parts.size() < 2) return;
   std::vector<OverlapPart> shapes;
   std::vector<std::pair<std::size_t, std::size_t>> joined;
-  for (const auto& part : parts_) shapes.push_back({part->geometry()->placed, part->pose()});
-  for (const auto& joint : joints_) {
-    joined.push_back(std::minmax(index_of(*this, joint->parent()), index_of(*this, joint->child())));
+  for (const auto& part : parts) shapes.push_back({part->geometry()->placed, part->pose()});
+  for (const auto& joint : body_.joints()) {
+    joined.push_back(std::minmax(index_of(body_, joint->parent()), index_of(body_, joint->child())));
   }
   std::sort(joined.begin(), joined.end());
-  const OverlapResult result = limber::find_overlaps(shapes, [&](std::size_t a, std::size_t b) {
-    return b >= first_new && !(parts_[a]->is_static() && parts_[b]->is_static()) &&
+  const OverlapResult result = find_overlaps(shapes, [&](std::size_t a, std::size_t b) {
+    return b >= first_new && !(parts[a]->is_static() && parts[b]->is_static()) &&
            !std::binary_search(joined.begin(), joined.end(), std::pair(a, b));
   });
   for (const Overlap& overlap : result.found) {
     const auto a = static_cast<std::size_t>(overlap.a);
     const auto b = static_cast<std::size_t>(overlap.b);
-    if (!state_.pairs.set_overlaps(a, b)) continue;
-    apply_pair(a, b);
-    world_.report_overlap(*this, *parts_[a], *parts_[b], overlap.depth);
+    if (!set_overlaps(a, b)) continue;
+    apply(a, b);
+    report.add(body_, *parts[a], *parts[b], overlap.depth);
   }
 }
 
-void World::report_overlap(const Body& body, const Part& a, const Part& b, double depth) {
-  if (overlap_count_++ > 0) return;
-  first_overlap_ =
-      fmt::format("body '{}': '{}' and '{}' overlap at the first tick ({:.3g} mm); excluded from collision",
-                  body.name(), a.name(), b.name(), depth * 1000);
-}
-
-void World::log_overlaps() {
-  if (overlap_count_ == 0) return;
-  const std::size_t more = std::exchange(overlap_count_, 0) - 1;
-  log_warning("{}{}. Move the parts apart, or let them collide with body:include_pair(a, b).", first_overlap_,
-              more > 0 ? fmt::format(" … and {} more of this kind", more) : "");
+void PartPairs::serialize(Archive& archive) {
+  auto& [list, checked_count] = state_;
+  archive.serialize_all(list, checked_count);
 }
 
 }  // namespace limber

@@ -1,13 +1,20 @@
-// PartPairs: pairs of parts of one body that are excluded from collision.
+// PartPairs: the pairs of parts of one body that are excluded from collision. [sim]
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
+
+#include "base/result.h"
 
 namespace limber {
 
 class Archive;
+class Body;
+class Part;
+struct BodyModel;
 
 /// Setting of a pair by a script.
 enum class PairEdit : std::uint16_t { none, excluded, included };
@@ -22,22 +29,56 @@ struct PartPair {
   bool excluded() const { return edit == PairEdit::none ? overlaps != 0 : edit == PairEdit::excluded; }
 };
 
-/// Pairs of a body that differ from the default (included). Joints, groups, masks and `self_collision` act
-/// independently.
-struct PartPairs {
-  std::vector<PartPair> list;     ///< Sorted by a, then b; contains only pairs that overlap or were edited.
-  std::size_t checked_count = 0;  ///< Number of leading parts that were checked for overlaps.
+/// A message about the parts of all bodies that overlap in their first tick.
+class OverlapReport {
+ public:
+  void add(const Body& body, const Part& a, const Part& b, double depth);
+  /// Logs the first overlap that was added since the last call, and the number of others.
+  void log();
 
-  /// Returns null if the pair is not in the list.
-  const PartPair* find(std::size_t a, std::size_t b) const;
-  /// Returns true if the pair's exclusion changed.
-  bool set_edit(std::size_t a, std::size_t b, PairEdit edit);
-  bool set_overlaps(std::size_t a, std::size_t b);
+ private:
+  std::size_t count_ = 0;
+  std::string first_;
+};
+
+/// Pairs of a body that differ from the default (included). Two parts don't collide by default if they overlap with all
+/// joints at 0 (bodies from models), or in the first tick (other parts). Joints, groups, masks and `self_collision` act
+/// independently.
+class PartPairs {
+ public:
+  explicit PartPairs(Body& body) : body_(body) {}
+
+  /// The pairs that overlap or were edited, sorted by a, then b.
+  std::span<const PartPair> list() const { return state_.list; }
+  bool excludes(const Part& a, const Part& b) const;
+  /// Excludes a pair from collision, includes it, or restores its default, from the next step on. Errors: a part of
+  /// another body, the same part twice.
+  Result<void> edit(const Part& a, const Part& b, PairEdit edit);
+  /// Excludes new parts that overlap.
+  void find_new_overlaps(OverlapReport& report);
+
+  // While the body is built, after its parts were added.
+  /// Sets the pairs to those that overlap in the model.
+  void build(const BodyModel& model);
+  void build_copy(const PartPairs& source);
+
   /// For checkpoints.
   void serialize(Archive& archive);
 
  private:
+  const PartPair* find(std::size_t a, std::size_t b) const;
   PartPair& entry(std::size_t a, std::size_t b);
+  bool set_overlaps(std::size_t a, std::size_t b);
+  void set_edit(std::size_t a, std::size_t b, PairEdit edit);
+  void apply(std::size_t a, std::size_t b);
+  void apply_all();
+
+  Body& body_;
+  // what persists from tick to tick
+  struct State {
+    std::vector<PartPair> list;
+    std::size_t checked_count = 0;  // number of leading parts that were checked for overlaps
+  } state_;
 };
 
 }  // namespace limber

@@ -1,14 +1,19 @@
-// Stability check: limits of speed, rotation and distance, and the diagnosis of their violation.
+// StabilityCheck: limits of speed, rotation and distance, and the diagnosis of their violation.
 #include "sim/world/stability.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "sim/bullet/bullet.h"
+#include "base/memory/archive.h"
+#include "sim/bullet/island_world.h"
 #include "sim/bullet/spin.h"
 #include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/part.h"
+#include "sim/world/world.h"
 
 namespace limber {
 
@@ -60,10 +65,10 @@ struct DeepContact {
   const Part* b = nullptr;
 };
 
-DeepContact deepest_overlap(const Body& body, const btDispatcher& contacts) {
+DeepContact deepest_overlap(const Body& body, btDispatcher& contacts) {
   DeepContact deepest;
   for (int i = 0; i < contacts.getNumManifolds(); ++i) {
-    const btPersistentManifold& manifold = *const_cast<btDispatcher&>(contacts).getManifoldByIndexInternal(i);
+    const btPersistentManifold& manifold = *contacts.getManifoldByIndexInternal(i);
     const auto* a = static_cast<const Part*>(manifold.getBody0()->getUserPointer());
     const auto* b = static_cast<const Part*>(manifold.getBody1()->getUserPointer());
     if (a == nullptr || b == nullptr || (&a->body() != &body && &b->body() != &body)) continue;
@@ -77,9 +82,9 @@ DeepContact deepest_overlap(const Body& body, const btDispatcher& contacts) {
 
 }  // namespace
 
-std::string likely_cause(const Body& body, const Part& part, const btDispatcher& contacts, int substeps) {
-  const int suggested_substeps = std::min(2 * substeps, kMaxSubsteps);
-  const DeepContact overlap = deepest_overlap(body, contacts);
+std::string likely_cause(const Body& body, const Part& part) {
+  const int suggested_substeps = std::min(2 * body.world().substeps(), kMaxSubsteps);
+  const DeepContact overlap = deepest_overlap(body, *body.world().bullet().getDispatcher());
   if (overlap.depth > kOverlap) {
     return fmt::format(
         "likely cause: '{}/{}' and '{}/{}' overlap by {:.3g} m; move them apart, exclude the pair from "
@@ -109,5 +114,38 @@ std::string likely_cause(const Body& body, const Part& part, const btDispatcher&
       "or smaller forces",
       part.name(), suggested_substeps);
 }
+
+void StabilityCheck::check_parts(double h) {
+  if (!world_.bullet().is_unstable()) return;
+  for (const auto& body : world_.bodies()) {
+    if (!body->in_world()) continue;
+    for (const auto& part : body->parts()) {
+      const char* const instability = part->is_static() ? nullptr : find_instability(part->rigid(), h);
+      if (instability == nullptr) continue;
+      restore(*body, *part, fmt::format("part '{}' {}", part->name(), instability));
+      break;
+    }
+  }
+}
+
+void StabilityCheck::check_joints(Body& body) {
+  const Joint* const separated = body.recovery().consume_separated_joint();
+  if (separated == nullptr) return;
+  restore(body, separated->child(),
+          fmt::format("joint '{}' has come apart by {:.3g} m", separated->name(), separated->gap()));
+}
+
+void StabilityCheck::restore(Body& body, const Part& part, const std::string& instability) {
+  state_.body_restored = true;
+  if (body.recovery().restore_good_pose(part, instability)) state_.events++;
+}
+
+void StabilityCheck::end_tick() {
+  if (!std::exchange(state_.body_restored, false)) return;
+  world_.flush();
+  for (const auto& body : world_.bodies()) body->recovery().finish_restore();
+}
+
+void StabilityCheck::serialize(Archive& archive) { archive.serialize(state_); }
 
 }  // namespace limber

@@ -13,6 +13,7 @@
 #include "bench/measure/times.h"
 #include "sim/bullet/bullet_phases.h"
 #include "sim/bullet/joints/joint_constraint.h"
+#include "support/world_objects.h"
 
 namespace limber {
 
@@ -155,8 +156,8 @@ BenchArms::BenchArms(const ArmScene& scene, int threads) : scene_(scene), engine
   box.size = scene.size;
   ShapeModel plane;
   plane.kind = ShapeKind::plane;
-  add_floor(**world.add_shape("plane", plane));
-  Shape& shape = **world.add_shape("box", box);
+  add_floor(**world.shapes().add("plane", plane));
+  Shape& shape = **world.shapes().add("box", box);
   for (int arm = 0; arm < scene.arms; arm++) add_arm(arm, shape);
 }
 

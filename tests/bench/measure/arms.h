@@ -11,6 +11,8 @@
 
 namespace limber {
 
+class Shape;
+
 /// The same arms as RawLoop's, built with the world's functions. [sim]
 class BenchArms {
  public:

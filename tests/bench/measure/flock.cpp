@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "bench/measure/times.h"
 #include "engine/engine.h"
+#include "support/world_objects.h"
 
 namespace limber {
 
@@ -29,7 +30,7 @@ void add_balls(World& world, int bodies) {
   ShapeModel ball;
   ball.kind = ShapeKind::sphere;
   ball.radius = 0.02;
-  Shape& shape = **world.add_shape("ball", ball);
+  Shape& shape = **world.shapes().add("ball", ball);
   const double side =
       std::cbrt(bodies * 4.0 / 3 * kPi * kNeighborDistance * kNeighborDistance * kNeighborDistance / kNeighbors);
   Random random(1, "flock");

@@ -17,6 +17,7 @@
 #include "bench/measure/times.h"
 #include "engine/engine.h"
 #include "sim/behavior/behavior_list.h"
+#include "support/world_objects.h"
 
 namespace limber {
 
@@ -132,7 +133,7 @@ std::string twin_scene(const Twin& twin, int parts) {
 double time_of(const World& world, const Twin& twin, const std::string& body) {
   const Store& store = world.store();
   const NodeId id =
-      twin.group ? world.behaviors().find_group(body)->id() : world.find_body(body)->find_behavior("it")->id();
+      twin.group ? world.behaviors().find_group(body)->id() : world.find_body(body)->behaviors().find("it")->id();
   double time = 0;
   store.get(id, store.table(id).at("time"), &time);
   return time;

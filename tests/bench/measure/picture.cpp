@@ -12,6 +12,7 @@
 #include "base/check.h"
 #include "bench/measure/arms.h"
 #include "bench/measure/times.h"
+#include "support/world_objects.h"
 #include "ui/render/gl.h"
 #include "ui/render/offscreen.h"
 #include "ui/render/renderer.h"

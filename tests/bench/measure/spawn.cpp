@@ -8,6 +8,7 @@
 #include "bench/measure/times.h"
 #include "engine/engine.h"
 #include "model/model_library.h"
+#include "support/world_objects.h"
 
 namespace limber {
 

@@ -1,12 +1,12 @@
 // Shape: validation, compounds, geometry.
-#include "sim/world/shape.h"
+#include "sim/shapes/shape.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "base/color.h"
-#include "sim/world/geometry.h"
+#include "sim/shapes/geometry.h"
 
 namespace limber {
 

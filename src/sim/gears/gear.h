@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/memory/archive.h"
 #include "properties/store.h"
@@ -73,5 +74,8 @@ class Gear {
 
 /// Checks that a gear can couple the joint: it must have one axis, revolute or prismatic. The error gives the reason.
 Result<void> check_gear_joint(const Joint& joint);
+/// Couples the joints of a body to their leaders (URDF mimic); returns the coupled joints. To be called once all joints
+/// exist, because a leader may be listed after its follower in the file.
+std::vector<Joint*> couple_mimic_joints(const Body& body);
 
 }  // namespace limber

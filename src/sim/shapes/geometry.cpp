@@ -1,5 +1,5 @@
 // Geometry: converts placed shapes and an inertial to a Bullet shape in the center-of-mass frame.
-#include "sim/world/geometry.h"
+#include "sim/shapes/geometry.h"
 
 #include <algorithm>
 
@@ -69,37 +69,47 @@ void set_mass_properties(Geometry& geometry, const Inertial& inertial) {
   geometry.unit_inertia = glm::max(geometry.unit_inertia, Vec3(1e-3 * largest));
 }
 
-}  // namespace
-
-std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial) {
-  auto geometry = std::make_shared<Geometry>();
-  geometry->placed = shapes;
+// Returns the mass distribution of the shapes' volume, with a density of 1.
+Inertial solid_inertial(const std::vector<PlacedShape>& shapes) {
   std::vector<Inertial> solids;
   for (const PlacedShape& placed : shapes) {
     if (placed.shape.kind != ShapeKind::plane)
       solids.push_back(transformed(unit_inertial_of(placed.shape), placed.origin));
   }
-  const Inertial solid = combined(solids);
-  geometry->volume = solid.mass;
-  const bool given = inertial.mass > 0 && inertial.tensor[0][0] > 0;
-  if (given || solid.mass > 0) set_mass_properties(*geometry, given ? inertial : solid);
+  return combined(solids);
+}
 
-  const Pose to_center = geometry->frame.inverse();
+// Sets the collision shape: a single shape if possible, else a compound.
+void set_collision_shape(Geometry& geometry) {
+  const std::vector<PlacedShape>& shapes = geometry.placed;
+  const Pose to_center = geometry.frame.inverse();
   auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
   for (const PlacedShape& placed : shapes) {
     const Pose at = to_center * placed.origin;
     const bool mesh = placed.shape.kind == ShapeKind::mesh && placed.shape.mesh != nullptr;
     std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at) : primitive_shape(placed.shape);
     if (shape == nullptr) continue;
-    if (placed.shape.mesh != nullptr) geometry->meshes.push_back(placed.shape.mesh);
+    if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
     if (shapes.size() == 1 && (mesh || is_identity(at))) {
-      geometry->shape = shape;
-      return geometry;
+      geometry.shape = shape;
+      return;
     }
     compound->addChildShape(mesh ? btTransform::getIdentity() : to_bt(at), shape.get());
-    geometry->children.push_back(std::move(shape));
+    geometry.children.push_back(std::move(shape));
   }
-  geometry->shape = compound;
+  geometry.shape = compound;
+}
+
+}  // namespace
+
+std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial) {
+  auto geometry = std::make_shared<Geometry>();
+  geometry->placed = shapes;
+  const Inertial solid = solid_inertial(shapes);
+  geometry->volume = solid.mass;
+  const bool given = inertial.mass > 0 && inertial.tensor[0][0] > 0;
+  if (given || solid.mass > 0) set_mass_properties(*geometry, given ? inertial : solid);
+  set_collision_shape(*geometry);
   return geometry;
 }
 

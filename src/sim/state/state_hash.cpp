@@ -1,0 +1,73 @@
+// The hash of a world and of its bodies.
+#include "sim/state/state_hash.h"
+
+#include <array>
+
+#include "base/hash.h"
+#include "properties/values_hash.h"
+#include "sim/behavior/behavior_list.h"
+#include "sim/bullet/bullet.h"
+#include "sim/gears/gear_list.h"
+#include "sim/shapes/shape_list.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
+#include "sim/world/world.h"
+
+namespace limber {
+
+namespace {
+
+void add_vector(NumberHash& numbers, const btVector3& v) { numbers.add(v.x(), v.y(), v.z()); }
+
+void add_motion(NumberHash& numbers, const btRigidBody& rigid) {
+  const btTransform& frame = rigid.getWorldTransform();
+  for (int i = 0; i < 3; i++) add_vector(numbers, frame.getBasis()[i]);
+  add_vector(numbers, frame.getOrigin());
+  add_vector(numbers, rigid.getLinearVelocity());
+  add_vector(numbers, rigid.getAngularVelocity());
+}
+
+}  // namespace
+
+std::uint64_t body_hash(const Body& body, std::uint64_t start) {
+  const Store& values = body.store();
+  NumberHash numbers(hash_bytes(body.name(), start));
+  const auto add_node = [&](NodeId id) { numbers.add_word(node_hash(values, id)); };
+  add_node(body.id());
+  if (body.parts().empty()) {
+    std::array<double, 7> pose{};
+    put(pose.data(), body.pose().position);
+    put(pose.data() + 3, body.pose().rotation);
+    numbers.add(pose);
+  }
+  for (const auto& part : body.parts()) {
+    add_motion(numbers, part->rigid());
+    add_node(part->id());
+  }
+  for (const auto& joint : body.joints()) add_node(joint->id());
+  for (const auto& motor : body.motors()) add_node(motor->id());
+  for (const PartPair& pair : body.pairs().list()) {
+    numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
+  }
+  std::uint64_t hash = numbers.value();
+  for (const Behavior* behavior : body.behaviors().list()) hash = behavior->state_hash(hash);
+  return hash;
+}
+
+std::uint64_t World::state_hash() const {
+  std::uint64_t fixed = 0;
+  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->appearance().id()})
+    fixed += fixed_node_hash(store_, id);
+  NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
+  for (const auto& shape : shapes_->list()) numbers.add_word(persistent_hash(store_, shape->id()));
+  for (const auto& gear : gears_->list()) numbers.add_word(persistent_hash(store_, gear->id()));
+  numbers.add(time(), static_cast<double>(state_.tick), static_cast<double>(seed()));
+  std::uint64_t hash = numbers.value();
+  for (const auto& body : bodies()) hash = body_hash(*body, hash);
+  return behaviors_->state_hash(hash);
+}
+
+}  // namespace limber
