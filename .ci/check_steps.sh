@@ -3,13 +3,16 @@
 
 passed=0
 failed=0
-# Modules per sanitizer: the address sanitizer runs all except those that only read files, and the long tests; the thread
-# sanitizer runs those that use several threads. Tests that are too slow there leave themselves out
-# (tests/support/left_out.h).
+# Lists of modules, that is folders of tests/; check_module_lists finds names that do not exist. The address sanitizer runs
+# all except those that only read files, and the long tests; the thread sanitizer runs those that use several threads.
+# Tests that are too slow there leave themselves out (tests/support/left_out.h).
 asan_leaves_out="architecture first_minutes long"
-tsan_takes="base engine osc console query"
-# A test that uses all of these in a window.
-tsan_takes_of_app=Window.HandlesFloodReloadsAndInputTogether
+tsan_takes="base engine osc console oscquery stress"
+# The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
+slow_modules="app engine scenes script sim"
+# Modules that .ci/arm64 runs with qemu. The others do not depend on the architecture, take too long (engine, panel: minutes
+# per test), or need a display or other programs (render, app).
+emulated_modules="osc base properties model script export console"
 
 pass() { passed=$((passed + ${1:-1})); }
 # fail TEXT LOG: counts a failed check and prints the end of its log.
@@ -43,9 +46,6 @@ build() {
   fi
 }
 
-# The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
-slow_modules="app engine scenes script sim"
-
 # begin_tests FOLDER MODULE...: runs test_MODULE of that build, one per core. Each part writes a log, and its exit code and
 # duration in seconds.
 begin_tests() {
@@ -77,13 +77,27 @@ gather_parts() {
   cat "${good[@]}" "${bad[@]}" >"$1"
 }
 
+# check_filter PROGRAM: fails for each pattern in test_only that selects no test of the program.
+check_filter() {
+  local pattern
+  while read -r pattern; do
+    [ -z "$pattern" ] || ${test_emulator-} "$1" --gtest_list_tests --gtest_filter="$pattern" 2>/dev/null | grep -q . ||
+      fail "$1 has no tests '$pattern'"
+  done < <(tr ':' '\n' <<<"${test_only-}")
+}
+
 # run_tests FOLDER MODULE...: runs and counts tests. Those that leave themselves out in this build are not counted; any
 # other skipped test counts as failed.
 run_tests() {
   local folder=$1 module log ok bad out rc seconds built=()
   shift
   for module in "$@"; do
-    if [ -x "$folder/test_$module" ]; then built+=("$module"); else fail "$folder/test_$module was not built"; fi
+    if [ -x "$folder/test_$module" ]; then
+      built+=("$module")
+      check_filter "$folder/test_$module"
+    else
+      fail "$folder/test_$module was not built"
+    fi
   done
   [ ${#built[@]} != 0 ] || return
   begin_tests "$folder" "${built[@]}"
@@ -115,6 +129,17 @@ test_modules() {
     module=$(basename "$folder")
     case " fuzz $* " in *" $module "*) continue ;; esac
     [ -z "$(find "$folder" -name '*_test.cpp' -print -quit)" ] || printf '%s ' "$module"
+  done
+}
+
+# Fails for each name in the lists of modules that is no module, such as the old name of a renamed one.
+check_module_lists() {
+  local list name known
+  known=" $(test_modules)"
+  for list in asan_leaves_out tsan_takes slow_modules emulated_modules; do
+    for name in ${!list}; do
+      case $known in *" $name "*) pass ;; *) fail "$list names the module $name, but tests/$name has no tests" ;; esac
+    done
   done
 }
 
@@ -171,13 +196,8 @@ step_asan() {
 step_tsan() {
   sanitizer_options
   configure tsan build/tsan
-  local modules=() module
-  for module in $tsan_takes; do
-    case " $(test_modules)" in *" $module "*) modules+=("$module") ;; esac
-  done
-  build build/tsan "${modules[@]/#/test_}" test_app || return
-  run_tests build/tsan "${modules[@]}"
-  test_only=$tsan_takes_of_app run_tests build/tsan app
+  local modules=($tsan_takes)
+  build build/tsan "${modules[@]/#/test_}" && run_tests build/tsan "${modules[@]}"
 }
 
 # run_fuzz NAME ARGUMENTS...: replays the corpus, then generates inputs; interesting ones stay in build/check/fuzz. Writes a
@@ -264,6 +284,7 @@ lint_groups() {
 
 step_style() {
   local log=build/check/format.log files
+  check_module_lists
   if .ci/words.py >build/check/words.log 2>&1; then pass; else fail "wording" build/check/words.log; fi
   if .ci/measures.py --check >build/check/measures.log 2>&1; then pass; else fail "measures" build/check/measures.log; fi
   if python3 tests/mutations/plant.py >build/check/plant.log 2>&1; then pass; else fail "mutations" build/check/plant.log; fi

@@ -1,5 +1,5 @@
 // A joint of the file is a link of the body. BVH has no rest rotations, so rotations are relative to the rest pose.
-#include "export/bvh.h"
+#include "export/writers.h"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // Lines are written with the columns known so far; finish() appends empty cells for columns that were added later.
-#include "export/csv.h"
+#include "export/writers.h"
 
 #include <cerrno>
 #include <optional>

@@ -1,5 +1,5 @@
 // Collects keyframes and writes the files at the end. A .glb file is a header, the JSON text and the binary buffer.
-#include "export/gltf.h"
+#include "export/writers.h"
 
 #include <bit>
 #include <filesystem>

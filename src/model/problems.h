@@ -1,4 +1,5 @@
-// Problems: collects the problems found in one file. The list is bounded, so that a hostile file can't exhaust memory.
+// Problems: collects the problems found in one file, and their log messages. The list is bounded, so that a hostile
+// file can't exhaust memory.
 #pragma once
 
 #include <string>
@@ -53,5 +54,10 @@ class Problems {
   std::size_t dropped_ = 0;
   int last_line_ = 0;
 };
+
+/// Returns log messages about the problems of a loaded model: one line for each kind of warning and error, "file:line:
+/// text. fix", with the number of further problems of that kind, which differ only in names and numbers. Notes are
+/// omitted; `limber inspect` prints them. [any]
+std::vector<std::string> load_messages(const BodyModel& model);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // `limber annotate`: output to stdout and to a file, and errors.
-#include "app/commands/annotate.h"
+#include "app/commands/commands.h"
 
 #include "app/program.h"
 

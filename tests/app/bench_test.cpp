@@ -1,5 +1,5 @@
 // `limber bench`: results as JSON and as text.
-#include "app/commands/bench.h"
+#include "app/commands/commands.h"
 
 #include <string>
 #include <thread>

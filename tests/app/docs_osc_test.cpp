@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/describe.h"
-#include "app/commands/send.h"
+#include "app/commands/send_arguments.h"
 #include "app/program.h"
 #include "engine/engine.h"
 

@@ -1,5 +1,5 @@
 // `limber export`: the poses in exported files are those of the engine that replays the take.
-#include "app/commands/export.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // `limber inspect`: the JSON, the table, the exit codes.
-#include "app/commands/inspect.h"
+#include "app/commands/commands.h"
 
 #include <filesystem>
 #include <fstream>

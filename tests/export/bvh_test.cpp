@@ -1,5 +1,5 @@
 // BVH writer: angles compared with matrices; files checked by independent forward kinematics and by assimp.
-#include "export/bvh.h"
+#include "export/writers.h"
 
 #include <map>
 #include <sstream>

@@ -1,5 +1,5 @@
 // CSV writer: exact text, and cells read by a standard CSV parser.
-#include "export/csv.h"
+#include "export/writers.h"
 
 #include "export/rig.h"
 

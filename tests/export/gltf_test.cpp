@@ -1,5 +1,5 @@
 // glTF writer: counts checked in the JSON, poses with assimp.
-#include "export/gltf.h"
+#include "export/writers.h"
 
 #include <cstring>
 #include <set>

@@ -6,7 +6,7 @@
 
 #include "files.h"
 #include "import_text.h"
-#include "model/load_messages.h"
+#include "model/problems.h"
 #include "solids.h"
 
 namespace limber {

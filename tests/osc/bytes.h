@@ -3,11 +3,14 @@
 
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace limber::osc_test {
+
+inline std::string text_of(std::span<const char> packet) { return {packet.begin(), packet.end()}; }
 
 class Bytes {
  public:

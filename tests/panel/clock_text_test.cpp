@@ -1,5 +1,5 @@
 // Formatting of seconds as a clock.
-#include "ui/panel/widgets/clock_text.h"
+#include "ui/panel/widgets/time_widgets.h"
 
 #include <gtest/gtest.h>
 

@@ -17,18 +17,8 @@
 
 #include "app/cli/command_info.h"
 #include "app/cli/play_options.h"
-#include "app/commands/annotate.h"
-#include "app/commands/bench.h"
+#include "app/commands/commands.h"
 #include "app/commands/describe.h"
-#include "app/commands/doctor.h"
-#include "app/commands/export.h"
-#include "app/commands/inspect.h"
-#include "app/commands/monitor.h"
-#include "app/commands/new.h"
-#include "app/commands/preset.h"
-#include "app/commands/send.h"
-#include "app/commands/take.h"
-#include "app/console/console.h"
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/service/service.h"
@@ -97,7 +87,7 @@ struct CommandLine {
   SendCommand send;
   NewCommand create;
   PresetCommand preset;
-  TakeCommand take;
+  std::string take;
   ExportCommand exported;
   DoctorCommand doctor;
   ServiceCommand service;
@@ -219,11 +209,11 @@ void add_preset(CLI::App& app, PresetCommand& command) {
   import->add_option("scene", command.scene, "The scene; default scripts/arms.lua.")->type_name("SCENE.lua");
 }
 
-void add_take(CLI::App& app, TakeCommand& command) {
+void add_take(CLI::App& app, std::string& file) {
   CLI::App* take = app.add_subcommand("take", "Inspect recorded takes.");
   take->require_subcommand(1);
   CLI::App* info = take->add_subcommand("info", "Print the contents of a take, and whether it is complete.");
-  info->add_option("file", command.file, "The take.")->type_name("TAKE")->required();
+  info->add_option("file", file, "The take.")->type_name("TAKE")->required();
   take->footer(
       "  limber my.lua --record evening.take\n"
       "  limber --replay evening.take --fast\n"

@@ -1,5 +1,5 @@
 // Collects the Lua names from a scene that never runs and the properties from the tables.
-#include "app/commands/annotate.h"
+#include "app/commands/commands.h"
 
 #include <filesystem>
 #include <fstream>

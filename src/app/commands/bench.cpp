@@ -1,5 +1,5 @@
 // Builds arms from urdf/arm17.urdf, doubles their number until a tick takes too long, and interpolates.
-#include "app/commands/bench.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/commands.h"
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/log/output.h"

@@ -1,4 +1,4 @@
-// `limber describe`: lists every OSC address with type, unit, range, default and meaning, from the property tables.
+// The OSC reference as text: every address with type, unit, range, default and meaning, from the property tables.
 #pragma once
 
 #include <string>
@@ -8,15 +8,11 @@
 
 namespace limber {
 
-/// Prints the addresses of all classes (with <name> as a placeholder), or, if a scene is given, of all its objects.
-/// Returns the exit code. [main]
-int describe_command(const std::string& scene, bool json);
-
 /// The classes that have properties, and the messages that belong to no property. [any]
 std::vector<const PropertyTable*> described_classes();
 std::vector<SpecialAddress> described_messages();
 
-/// Returns the text that is printed without a scene; a golden file holds it. [any]
+/// Returns the text that `limber describe` prints without a scene; a golden file holds it. [any]
 std::string describe_classes();
 
 /// Returns the reference in the form of docs/osc.md (`--markdown`): tables of every class's properties and of the

@@ -1,5 +1,5 @@
 // Runs the checks and prints their results.
-#include "app/commands/doctor.h"
+#include "app/commands/commands.h"
 
 #include <cstdlib>
 #include <fstream>

@@ -1,5 +1,5 @@
 // Replays a take and samples it at the export's frame rate.
-#include "app/commands/export.h"
+#include "app/commands/commands.h"
 
 #include <array>
 #include <cmath>
@@ -18,9 +18,7 @@
 #include "base/system/signals.h"
 #include "base/text.h"
 #include "engine/takes/reader.h"
-#include "export/bvh.h"
-#include "export/csv.h"
-#include "export/gltf.h"
+#include "export/writers.h"
 #include "sim/world/body.h"
 
 namespace limber {

@@ -1,5 +1,5 @@
 // Prints the contents of a URDF file in file order, and every problem with its line and fix.
-#include "app/commands/inspect.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Formats the messages of the console's socket for people.
-#include "app/commands/monitor.h"
+#include "app/commands/commands.h"
 
 #include <csignal>
 

@@ -1,5 +1,5 @@
 // Instantiates the templates of src/app/templates, which are embedded in the program.
-#include "app/commands/new.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <cerrno>

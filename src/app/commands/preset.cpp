@@ -1,5 +1,5 @@
 // Reads both files, appends the presets and writes the result.
-#include "app/commands/preset.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,6 @@
 // Sends two queries after the message, one after the other. The second is answered in a later tick, when the scene's
 // own handlers have processed the message too; then all replies have arrived.
-#include "app/commands/send.h"
+#include "app/commands/commands.h"
 
 #include <algorithm>
 #include <functional>
@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/tagged_message.h"
+#include "app/commands/send_arguments.h"
 #include "app/exit_code.h"
 #include "base/log/output.h"
 #include "base/system/clock.h"
@@ -21,7 +21,6 @@
 #include "net/osc/endpoint.h"
 #include "net/osc/packets/decode.h"
 #include "net/osc/packets/encode.h"
-#include "net/osc/packets/validate.h"
 
 namespace limber {
 
@@ -49,7 +48,7 @@ std::vector<Message> receive(int fd, double seconds) {
   if (!system::wait_ready({&waiting, 1}, limit)) return {};
   std::vector<char> bytes(65536);
   const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
-  if (got <= 0 || packet_fault(bytes.data(), static_cast<std::size_t>(got)) != nullptr) return {};
+  if (got <= 0) return {};
   Result<Decoded> decoded = decode_packet(bytes.data(), static_cast<std::size_t>(got));
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
 }
@@ -96,14 +95,6 @@ bool send_message(int fd, const Endpoint& to, const Message& message, std::strin
 }
 
 }  // namespace
-
-Arg parse_arg(const std::string& word) {
-  const bool quoted = word.size() >= 2 && (word.front() == '\'' || word.front() == '"') && word.back() == word.front();
-  if (quoted) return Arg::of(std::string_view(word).substr(1, word.size() - 2));
-  if (word == "true" || word == "false") return Arg::of(word == "true");
-  const std::optional<double> number = parse_number(word);
-  return number ? Arg::of(*number) : Arg::of(word);
-}
 
 int send_command(const SendCommand& command) {
   Message message{command.address, {}};

@@ -1,5 +1,5 @@
 // Reads a whole take and prints a summary.
-#include "app/commands/take.h"
+#include "app/commands/commands.h"
 
 #include <cstdint>
 #include <map>
@@ -53,8 +53,8 @@ void print_files(const TakeReader& reader) {
 
 }  // namespace
 
-int take_command(const TakeCommand& command) {
-  auto opened = TakeReader::open(command.file);
+int take_command(const std::string& file) {
+  auto opened = TakeReader::open(file);
   if (!opened) return fail(kInputError, opened.error());
   TakeReader& reader = **opened;
   const Count count = count_all(reader);
@@ -79,8 +79,7 @@ int take_command(const TakeCommand& command) {
   }
   print_result("files\n");
   print_files(reader);
-  if (!reader.damage().empty())
-    return fail(kInputError, fmt::format("{}: {}", printable(command.file), reader.damage()));
+  if (!reader.damage().empty()) return fail(kInputError, fmt::format("{}: {}", printable(file), reader.damage()));
   return kSuccess;
 }
 

@@ -1,5 +1,5 @@
 // Selects the interactive terminal, one expression (-e), or lines from a pipe, and implements the last two.
-#include "app/console/console.h"
+#include "app/commands/commands.h"
 
 #include <cstdio>
 

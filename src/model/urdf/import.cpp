@@ -1,4 +1,4 @@
-// Import pipeline: clean text, checked file, tree, cross-check with urdfdom, meshes, body.
+// Import pipeline: clean text, checked file, tree, meshes, body.
 #include "model/urdf/import.h"
 
 #include <exception>
@@ -14,7 +14,6 @@
 #include "model/problems.h"
 #include "model/urdf/build.h"
 #include "model/urdf/check.h"
-#include "model/urdf/confirm.h"
 #include "model/urdf/tree.h"
 #include "model/xml_text.h"
 
@@ -106,7 +105,6 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   if (!file) return Error{fmt::format("{}:{}", shown_path, file.error())};
   const Result<std::vector<UrdfNode>> tree = find_tree(*file, problems);
   if (!tree) return Error{fmt::format("{}:{}", shown_path, tree.error())};
-  cross_check_with_urdfdom(*file, *tree, problems);
 
   auto model = std::make_shared<BodyModel>();
   model->name = file->name;

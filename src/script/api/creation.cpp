@@ -6,9 +6,9 @@
 
 #include "base/log/log.h"
 #include "base/text.h"
-#include "model/load_messages.h"
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
+#include "model/problems.h"
 #include "script/api/script_context.h"
 #include "sim/gears/gear_list.h"
 #include "sim/shapes/shape_list.h"

@@ -1,4 +1,4 @@
-// Decodes a validated datagram to messages. All numeric tags become numbers, because clients send different types for
+// Decodes a datagram to messages. All numeric tags become numbers, because clients send different types for
 // the same slider.
 #pragma once
 
@@ -25,9 +25,9 @@ struct Decoded {
   std::uint64_t time_tag = 1;  ///< Of the outermost bundle; NTP (seconds since 1900 in the upper half); 1: now.
 };
 
-/// Decodes a packet that packet_fault() has accepted. i h f d become numbers, T F I booleans, s S c text, N nil; array
-/// elements become ordinary arguments; messages with t m r b or nested arrays are rejected. NaN and infinity pass.
-/// [any]
+/// Decodes a packet; returns the error of packet_fault() if it is malformed. i h f d become numbers, T F I booleans,
+/// s S c text, N nil; array elements become ordinary arguments; messages with t m r b or nested arrays are rejected.
+/// NaN and infinity pass. [any]
 Result<Decoded> decode_packet(const char* data, std::size_t size);
 
 }  // namespace limber

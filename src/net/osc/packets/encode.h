@@ -12,9 +12,9 @@
 
 namespace limber {
 
-/// Buffer for one datagram, slightly larger because oscpack requires more space than it writes.
+/// Buffer for one datagram.
 struct PacketBuffer {
-  alignas(8) std::array<char, kMaxPacketSize + 64> bytes;
+  alignas(8) std::array<char, kMaxPacketSize> bytes;
 };
 
 /// Encodes a message: numbers as f (clamped to float's range), booleans as i 0 or 1, nil as i 0, text as s up to its

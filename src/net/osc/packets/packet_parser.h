@@ -1,5 +1,5 @@
-// PacketParser: parses OSC packets within our limits and calls a visitor. The validator and our own decoder are
-// visitors. Each length is checked against the remaining bytes before anything after it is read.
+// PacketParser: parses OSC packets within our limits and calls a visitor. The validator and the decoder are visitors.
+// Each length is checked against the remaining bytes before anything after it is read.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class PacketParser {
 
  private:
   /// Returns the padded size of the string at `p`, or 0 if it does not end within `left` bytes. The last padding byte
-  /// must be 0: oscpack looks for the end only there, so that both parsers agree on where a string ends.
+  /// must be 0, as OSC requires: parsers that look for the end only there agree on where a string ends.
   static std::size_t string_size(const char* p, std::size_t left) {
     const void* end = std::memchr(p, 0, left);
     if (end == nullptr) return 0;

@@ -1,5 +1,5 @@
-// The validator: checks that a datagram is a complete OSC packet within our limits, never reading past its end. oscpack
-// crashes on some invalid packets and hangs on others, so it only gets packets that passed this check.
+// The validator: checks that a datagram is a complete OSC packet within our limits, never reading past its end.
+// Malformed packets are dropped before anything is allocated for them.
 #pragma once
 
 #include <cstddef>

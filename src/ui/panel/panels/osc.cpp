@@ -9,7 +9,7 @@
 
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
-#include "ui/panel/widgets/search_field.h"
+#include "ui/panel/widgets/icons.h"
 
 namespace limber {
 
@@ -30,7 +30,7 @@ class OscPanel : public Panel {
       watch_ = std::make_unique<MessageLog::Watch>(context.link.message_log);
     }
     draw_counters(context);
-    search_field(context, "osc.filter", "Filter addresses", filter_, -1);
+    search_field(context.names, "osc.filter", "Filter addresses", filter_, -1);
     for (const LoggedMessage& line : context.link.message_log.since(last_line_)) add_line(line);
     if (!ImGui::BeginChild("##lines", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     ImGui::PushFont(context.fonts.code);

@@ -11,7 +11,6 @@
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/property_search.h"
 #include "ui/panel/widgets/property_widget.h"
-#include "ui/panel/widgets/search_field.h"
 
 namespace limber {
 
@@ -44,7 +43,7 @@ class ParametersPanel : public Panel {
       ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 focuses items of the focused window only
       ImGui::SetKeyboardFocusHere();
     }
-    search_field(context, "parameters.search", "Search (Ctrl+F)", words_,
+    search_field(context.names, "parameters.search", "Search (Ctrl+F)", words_,
                  ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x);
     ImGui::SameLine();
     if (icon_button(context.names, "parameters.favorites", Icon::star, "Favorites only", favorites_only_, side))

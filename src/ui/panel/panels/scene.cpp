@@ -5,7 +5,6 @@
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
-#include "ui/panel/widgets/search_field.h"
 #include "ui/panel/widgets/tree_list.h"
 
 namespace limber {
@@ -21,7 +20,7 @@ class ScenePanel : public Panel {
   }
 
   void draw(PanelContext& context) override {
-    search_field(context, "scene.search", "Filter bodies, parts, joints", words_, -1);
+    search_field(context.names, "scene.search", "Filter bodies, parts, joints", words_, -1);
     if (!ImGui::BeginChild("##tree", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     const std::shared_ptr<const TreeSnapshot>& tree = context.value_snapshot->tree;
     // look up the selection only if it or the tree has changed

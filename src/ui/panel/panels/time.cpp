@@ -8,10 +8,9 @@
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
-#include "ui/panel/widgets/clock_text.h"
-#include "ui/panel/widgets/history_bar.h"
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/property_widget.h"
+#include "ui/panel/widgets/time_widgets.h"
 
 namespace limber {
 

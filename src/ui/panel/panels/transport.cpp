@@ -3,8 +3,8 @@
 
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
-#include "ui/panel/widgets/clock_text.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/time_widgets.h"
 
 namespace limber {
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/widget_names.h"
@@ -146,6 +147,22 @@ bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* to
             packed_color(on && !ImGui::IsItemHovered() ? Tone::on_active : Tone::text));
   if (ImGui::IsItemHovered() && tooltip != nullptr) ImGui::SetTooltip("%s", tooltip);
   return pressed;
+}
+
+bool search_field(WidgetNames& names, const char* name, const char* hint, std::string& text, float width) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float icon_width = ImGui::GetFontSize() * 1.25F;
+  ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {style.FramePadding.x + icon_width, style.FramePadding.y});
+  ImGui::SetNextItemWidth(width);
+  ImGui::PushID(name);
+  const bool changed = ImGui::InputTextWithHint("##search", hint, &text, ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::PopID();
+  ImGui::PopStyleVar();
+  names.add(name);
+  const ImVec2 low = ImGui::GetItemRectMin();
+  draw_icon(Icon::search, low.x + style.FramePadding.x + icon_width * 0.35F, low.y + ImGui::GetFrameHeight() / 2,
+            ImGui::GetFontSize() * 0.36F, packed_color(Tone::secondary));
+  return changed;
 }
 
 }  // namespace limber

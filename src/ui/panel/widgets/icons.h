@@ -1,7 +1,8 @@
-// The panel's icons, drawn as lines and triangles, so that no icon font is needed.
+// The panel's icons, drawn as lines and triangles, so that no icon font is needed, and the widgets that contain one.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace limber {
 
@@ -35,5 +36,9 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color);
 /// pressed.
 bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tooltip, bool on = false,
                  float width = 0);
+
+/// A text field with a magnifier icon and a hint. `name`: its id and its name in `names`. Returns true if the text has
+/// changed.
+bool search_field(WidgetNames& names, const char* name, const char* hint, std::string& text, float width);
 
 }  // namespace limber

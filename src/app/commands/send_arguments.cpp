@@ -1,5 +1,5 @@
-// Parses tag by tag and consumes the words in order.
-#include "app/commands/tagged_message.h"
+// With tags, parses tag by tag and consumes the words in order.
+#include "app/commands/send_arguments.h"
 
 #include <algorithm>
 #include <optional>
@@ -64,6 +64,14 @@ const char* fault_of_tags(std::string_view tags) {
 }
 
 }  // namespace
+
+Arg parse_arg(const std::string& word) {
+  const bool quoted = word.size() >= 2 && (word.front() == '\'' || word.front() == '"') && word.back() == word.front();
+  if (quoted) return Arg::of(std::string_view(word).substr(1, word.size() - 2));
+  if (word == "true" || word == "false") return Arg::of(word == "true");
+  const std::optional<double> number = parse_number(word);
+  return number ? Arg::of(*number) : Arg::of(word);
+}
 
 Result<Message> tagged_message(const std::string& address, std::string_view tags,
                                const std::vector<std::string>& words) {

@@ -1,7 +1,8 @@
-// An invisible button with custom drawing.
-#include "ui/panel/widgets/history_bar.h"
+// The bar is an invisible button with custom drawing.
+#include "ui/panel/widgets/time_widgets.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -41,6 +42,13 @@ void draw_history(const HistoryRange& range, double dragged_back, bool highlight
 }
 
 }  // namespace
+
+std::string clock_text(double seconds) {
+  seconds += 1e-6;  // tolerance, because sums of time steps are slightly too small
+  const auto minutes = static_cast<long>(seconds / 60);
+  return fmt::format("{:02}:{:05.2f}", minutes,
+                     std::floor((seconds - 60.0 * static_cast<double>(minutes)) * 100) / 100);
+}
 
 double history_bar(const char* id, const HistoryRange& range, float width, double& dragged_back) {
   ImGui::InvisibleButton(id, {width, ImGui::GetFrameHeight()});

@@ -1,5 +1,5 @@
-// Groups a model's problems by their wording.
-#include "model/load_messages.h"
+// The log messages group problems by their wording.
+#include "model/problems.h"
 
 #include <cctype>
 #include <map>

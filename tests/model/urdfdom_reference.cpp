@@ -1,20 +1,15 @@
-// Writes the checked URDF with generated names (because urdfdom formats names into its messages and looks shapes up by
-// them), parses it with urdfdom, and compares counts and numbers.
-#include "model/urdf/confirm.h"
+// The text has generated names, because urdfdom formats names into its messages and looks shapes up by them.
+#include "urdfdom_reference.h"
 
 #include <cmath>
 #include <exception>
-#include <mutex>
-#include <string>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include "base/text.h"
-
-namespace limber {
+namespace limber::test {
 
 namespace {
 
@@ -103,11 +98,8 @@ bool matches(const UrdfJoint& ours, const urdf::Joint& theirs) {
 }
 
 urdf::ModelInterfaceSharedPtr parse(std::string text) {
-  // urdfdom uses input as a format string in its messages, so logging is disabled; the padding prevents reads past the
-  // end of the buffer
-  static std::once_flag silenced;
-  std::call_once(silenced, [] { console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE); });
-  text.append(8, '\0');
+  console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+  text.append(8, '\0');  // it reads past the end of the buffer
   try {
     return urdf::parseURDF(text);
   } catch (const std::exception&) {
@@ -117,37 +109,29 @@ urdf::ModelInterfaceSharedPtr parse(std::string text) {
 
 }  // namespace
 
-void cross_check_with_urdfdom(const UrdfFile& file, const std::vector<UrdfNode>& tree, Problems& problems) {
+std::vector<std::string> urdfdom_differences(const UrdfFile& file, const std::vector<UrdfNode>& tree) {
   std::string text = "<?xml version=\"1.0\"?>\n<robot name=\"r\">\n";
   for (std::size_t i = 0; i < tree.size(); ++i) {
     write_link(file.links[static_cast<std::size_t>(tree[i].link)], i, text);
     if (tree[i].joint >= 0) write_joint(file.joints[static_cast<std::size_t>(tree[i].joint)], i, tree[i].parent, text);
   }
   const urdf::ModelInterfaceSharedPtr model = parse(text + "</robot>\n");
-  const std::string fix = "Please report this file. Limber's own result is used.";
-  if (!model) {
-    problems.error(1, "urdfdom rejects the checked file", fix);
-    return;
-  }
+  if (!model) return {"urdfdom rejects the file"};
+  std::vector<std::string> differences;
   if (model->links_.size() != tree.size() || model->joints_.size() + 1 != tree.size()) {
-    problems.error(1,
-                   fmt::format("urdfdom finds {} links and {} joints, expected {} and {}", model->links_.size(),
-                               model->joints_.size(), tree.size(), tree.size() - 1),
-                   fix);
+    differences.push_back(fmt::format("urdfdom finds {} links and {} joints, expected {} and {}", model->links_.size(),
+                                      model->joints_.size(), tree.size(), tree.size() - 1));
   }
   for (std::size_t i = 0; i < tree.size(); ++i) {
     const UrdfLink& link = file.links[static_cast<std::size_t>(tree[i].link)];
     const urdf::LinkConstSharedPtr theirs = model->getLink(fmt::format("l{}", i));
-    if (!theirs || !matches(link, *theirs)) {
-      problems.error(link.line, fmt::format("urdfdom reads link '{}' differently", printable(link.name)), fix);
-    }
+    if (!theirs || !matches(link, *theirs)) differences.push_back(fmt::format("link '{}'", link.name));
     if (tree[i].joint < 0) continue;
     const UrdfJoint& joint = file.joints[static_cast<std::size_t>(tree[i].joint)];
     const urdf::JointConstSharedPtr other = model->getJoint(fmt::format("j{}", i));
-    if (!other || !matches(joint, *other)) {
-      problems.error(joint.line, fmt::format("urdfdom reads joint '{}' differently", printable(joint.name)), fix);
-    }
+    if (!other || !matches(joint, *other)) differences.push_back(fmt::format("joint '{}'", joint.name));
   }
+  return differences;
 }
 
-}  // namespace limber
+}  // namespace limber::test
