@@ -282,8 +282,8 @@ function body_:state_hash() end
 ---@field friction_factor number # 0 .. 100, default 1. Ratio of the friction along friction_direction to that across it.
 ---@field restitution number # 0 .. 1, default 0. Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.
 ---@field self_collision boolean # default true. Whether it collides with other parts of its body.
----@field collision_group integer # 0 .. 65535, default 1. Bit set of its groups (16). Two parts collide if each one's group has a bit in the other's mask.
----@field collision_mask integer # 0 .. 65535, default 65535. Bit set of the groups that it collides with (16).
+---@field collision_group integer # 0 .. 65535, default 1. Its groups, as a bit set of 16. Two parts collide if each one's group has a bit in the other's mask.
+---@field collision_mask integer # 0 .. 65535, default 65535. The groups that it collides with, as a bit set of 16.
 ---@field report_contacts boolean # default false. Report when this part begins to touch another.
 ---@field position vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. Beyond 10 km, the stability check restores the body.
 ---@field rotation quat # Link frame, world: x y z w.
@@ -306,8 +306,8 @@ local part_ = {}
 ---@field friction_factor? number # 0 .. 100, default 1. Ratio of the friction along friction_direction to that across it.
 ---@field restitution? number # 0 .. 1, default 0. Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.
 ---@field self_collision? boolean # default true. Whether it collides with other parts of its body.
----@field collision_group? integer # 0 .. 65535, default 1. Bit set of its groups (16). Two parts collide if each one's group has a bit in the other's mask.
----@field collision_mask? integer # 0 .. 65535, default 65535. Bit set of the groups that it collides with (16).
+---@field collision_group? integer # 0 .. 65535, default 1. Its groups, as a bit set of 16. Two parts collide if each one's group has a bit in the other's mask.
+---@field collision_mask? integer # 0 .. 65535, default 65535. The groups that it collides with, as a bit set of 16.
 ---@field report_contacts? boolean # default false. Report when this part begins to touch another.
 ---@field position? vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. Beyond 10 km, the stability check restores the body.
 ---@field rotation? quat # Link frame, world: x y z w.
@@ -341,9 +341,9 @@ function part_:apply_torque(torque) end
 ---@field linear_upper_limit vec3like|number # m, -10000 .. 10000, default 0 0 0. Upper limit along each axis.
 ---@field angular_lower_limit vec3like|number # rad, -10000 .. 10000, default 0 0 0. Lower limit about each axis; equal to the upper: locked; above it: free.
 ---@field angular_upper_limit vec3like|number # rad, -10000 .. 10000, default 0 0 0. Upper limit about each axis; limits may lie beyond ±π.
----@field linear_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per internal step, along the axis.
+---@field linear_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, along the axis.
 ---@field linear_stop_cfm vec3like|number # m/N, 0 .. 1, default 0 0 0. Compliance of locks and limits along the axis.
----@field angular_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per internal step, about the axis.
+---@field angular_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
 ---@field value number # read-only, m | rad. Position of the own axis.
 ---@field speed number # read-only, m/s | rad/s. Speed of the own axis.
@@ -363,9 +363,9 @@ local joint_ = {}
 ---@field linear_upper_limit? vec3like|number # m, -10000 .. 10000, default 0 0 0. Upper limit along each axis.
 ---@field angular_lower_limit? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Lower limit about each axis; equal to the upper: locked; above it: free.
 ---@field angular_upper_limit? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Upper limit about each axis; limits may lie beyond ±π.
----@field linear_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per internal step, along the axis.
+---@field linear_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, along the axis.
 ---@field linear_stop_cfm? vec3like|number # m/N, 0 .. 1, default 0 0 0. Compliance of locks and limits along the axis.
----@field angular_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per internal step, about the axis.
+---@field angular_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm? vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
 
 ---Drives a joint. Properties with three axes accept a vec3, or one number for the own axis (booleans: for all axes).
@@ -518,8 +518,8 @@ function shape_:add_child(child, position, rotation) end
 ---@field gears gear_list # read-only. Created by add_gear, in stream order.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
----@field substeps integer # 1 .. 1000, default 4. Number of internal steps per tick.
----@field solver_iterations integer # 1 .. 10000, default 50. Iterations of the contact and joint solver per internal step.
+---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick.
+---@field solver_iterations integer # 1 .. 10000, default 50. Iterations of the contact and joint solver per substep.
 ---@field panic_motors "held"|"limp" # default held. Motors during a panic: they hold their position with their own strength, or are off.
 ---@field solver "iterative"|"direct" # default direct. Solver of joints: iterative, together with the contacts; or direct, which is exact for trees of joints.
 ---@field seed integer # 0 .. 9007199254740992. Seed of all random numbers; a change affects behaviors at once, scenes at their next start.

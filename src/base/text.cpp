@@ -125,13 +125,13 @@ int hex_digit(char c) {
 
 }  // namespace
 
-std::string plain_name(std::string_view name) {
-  std::string plain;
-  plain.reserve(name.size());
+std::string normalized_name(std::string_view name) {
+  std::string normalized;
+  normalized.reserve(name.size());
   for (const char c : name) {
-    if (c != '_') plain.push_back(lower(c));
+    if (c != '_') normalized.push_back(lower(c));
   }
-  return plain;
+  return normalized;
 }
 
 bool same_name(std::string_view a, std::string_view b) {
@@ -143,6 +143,11 @@ bool same_name(std::string_view a, std::string_view b) {
     if (i == a.size() || k == b.size()) return i == a.size() && k == b.size();
     if (lower(a[i++]) != lower(b[k++])) return false;
   }
+}
+
+bool same_address(std::string_view received, std::string_view address) {
+  if (received.size() > 1 && received.back() == '/') received.remove_suffix(1);
+  return same_name(received, address);
 }
 
 bool is_pattern(std::string_view name) { return name.find_first_of("?*[{") != std::string_view::npos; }

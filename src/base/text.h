@@ -12,9 +12,11 @@ namespace limber {
 
 /// Names of properties, types and parameters are compared without case and underscores. Returns the normalized form:
 /// "angularServo_Position" -> "angularservoposition".
-std::string plain_name(std::string_view name);
-/// True if both names have the same plain_name().
+std::string normalized_name(std::string_view name);
+/// True if both names have the same normalized form. Does not allocate.
 bool same_name(std::string_view a, std::string_view b);
+/// Like same_name() for OSC addresses; also ignores a trailing slash of `received`.
+bool same_address(std::string_view received, std::string_view address);
 
 /// Matches one name against an OSC pattern: `?` `*` `[a-z]` `[!a]` `{ab,cd}`. The work is bounded: a pattern that needs
 /// more than 20 000 steps, or 200 nested stars and braces, matches nothing. A malformed pattern matches only itself.

@@ -1,6 +1,6 @@
 // BackgroundWriter: one thread that writes all files of a show, so that a tick never waits for a disk. A file is a
-// task, which the thread runs when it has been requested. The task whose time came first runs first, and each run is
-// short (a take writes at most 1 MiB), so a slow file delays another one by at most one such run of each task.
+// task, which the thread runs when it has been requested. The task whose time came first runs first, and each call of
+// Task::run() is short (a take writes at most 1 MiB), so a slow file delays the others by at most one call.
 #pragma once
 
 #include <chrono>

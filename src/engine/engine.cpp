@@ -1,10 +1,11 @@
-// Engine: start, the loop and the phases of a tick.
+// Engine: start, the loop and the phases of a pass.
 #include "engine/engine.h"
 
 #include <utility>
 
 #include "base/log/log.h"
 #include "base/math/fixed_math.h"
+#include "base/system/clock.h"
 #include "base/text.h"
 
 namespace limber {
@@ -74,13 +75,14 @@ bool Engine::finished() const {
 
 void Engine::run_pass(bool may_step) {
   fixed::reset_arithmetic();
-  Stopwatch watch;
-  show_.call_log.begin_tick();
+  system::Stopwatch watch;
+  show_.call_log.begin_pass();
   scenes_.requests().serve();
   if (!playback_.begin_pass()) return;
   scenes_.rerun_if_requested();
-  show_.session->dispatcher.begin_tick();
-  (void)show_.session->transport.consume_rewind();  // drops a rewind request of the command line
+  show_.session->dispatcher.begin_pass();
+  (void)
+      show_.session->transport.consume_rewind();  // drops a request that `--set /transport/rewind …` left at the start
   InputSource& input = *show_.input;
   input.execute_messages(may_step);
   times_.commands = watch.lap();
@@ -89,7 +91,7 @@ void Engine::run_pass(bool may_step) {
   simulator_.simulate(running, input, times_);
   watch.lap();
 
-  end_inputs(running);
+  execute_reset_and_take_requests(running);
   health_.update(recovery_.owned_elsewhere());
   publish();
   make_value_snapshot();
@@ -102,8 +104,8 @@ void Engine::run_pass(bool may_step) {
   times_.gc = watch.lap();
 }
 
-// Carries out a requested reset, and begins, continues and ends takes.
-void Engine::end_inputs(bool running) {
+// Executes the requests of this pass to reset the scene, and to begin or end a take, and adds the pass to the take.
+void Engine::execute_reset_and_take_requests(bool running) {
   if (recording_.requested()) {
     begin_recording();
   } else {
@@ -119,7 +121,7 @@ void Engine::end_inputs(bool running) {
 void Engine::begin_recording() {
   world().requests().reset = false;
   show_.undo_stack.clear();  // undo steps from before the take can't be replayed
-  show_.call_log.begin_tick();
+  show_.call_log.begin_pass();
   const std::string file = recording_.begin_requested();
   if (scenes_.reset()) {
     log_info("recording the take {}", printable(file));

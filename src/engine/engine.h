@@ -1,6 +1,6 @@
-// Engine: the main loop of the simulation thread. Each tick executes commands, scene callbacks and physics, publishes a
-// snapshot and waits for the next tick. It owns the running show (ShowState) and the parts of the engine that act on
-// it; other threads use its EngineLink only.
+// Engine: the main loop of the simulation thread. Each pass executes commands and scene callbacks and, unless simulated
+// time is paused, a tick of physics; then it publishes a snapshot and waits for the next tick. It owns the running show
+// (ShowState) and the parts of the engine that act on it; other threads use its EngineLink only.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ namespace limber {
 
 class Engine {
  public:
-  /// Work budget of the messages of one tick; see LiveInput.
-  static constexpr int kTickWork = LiveInput::kTickWork;
+  /// Work budget of the messages of one pass; see LiveInput.
+  static constexpr int kPassWork = LiveInput::kPassWork;
 
   /// The link must outlive the engine. No thread may call its `wake_engine` during the destructor.
   Engine(EngineLink& link, EngineOptions options);
@@ -33,17 +33,18 @@ class Engine {
   Result<void> start();
   /// Runs ticks until the end that the options specify, or until stop(). [sim]
   void run();
-  /// Runs one tick now, regardless of the clock; while paused only commands and handlers. [sim]
+  /// Runs one pass with a tick now, regardless of the clock; while paused only commands and handlers. [sim]
   void tick() { run_pass(true); }
   /// Executes commands, handlers and requests without a time step. [sim]
   void idle() { run_pass(false); }
   /// Makes run() return soon. [any]
   void stop() { show_.pacer.stop(); }
 
-  /// Runs the scene file detached from the show and applies its differences from the last successful run between two
-  /// ticks. A script error is reported, and the show continues unchanged. Blocks until that is done. `reuse_files`:
-  /// runs the sources of the last successful run instead of the files on disk, because a parameter has changed. Returns
-  /// false if nothing was tried, because a take plays or the show has ended. [any but sim, during run()]
+  /// Runs the scene file detached from the show, compares the result with that of the last successful run, and applies
+  /// the differences to the show between two ticks; returns when this is done. A script error is reported, and the show
+  /// continues unchanged. `reuse_files`: runs the sources of the last successful run instead of the files on disk,
+  /// because a parameter has changed. Returns false if it did nothing, because a take plays or the show has ended.
+  /// [any but sim, during run()]
   bool reload(bool reuse_files = false) { return scenes_.reload(reuse_files); }
   /// Reloads at once, on the simulation thread. [sim]
   SceneReloader::ApplyResult reload_now(bool reuse_files = false) {
@@ -87,13 +88,13 @@ class Engine {
   bool restore_before(std::uint64_t tick) { return show_.restore_before(tick); }
   /// Hash of the world, the scene and the random number generators. [sim]
   std::uint64_t state_hash() const { return show_.state_hash(); }
-  /// Number of script errors, rejected values and health events so far, for `--strict`. [sim]
+  /// Number of script errors, rejected values and unstable bodies so far, for `--strict`. [sim]
   std::uint64_t faults() const { return show_.outputs.live().faults() + show_.session->world.stability().events(); }
 
  private:
-  /// One iteration: commands, handlers, requests, publishing and, if `may_step` and not paused, a time step.
+  /// One iteration of the loop: commands, handlers, requests, publishing and, if `may_step` and not paused, a tick.
   void run_pass(bool may_step);
-  void end_inputs(bool running);
+  void execute_reset_and_take_requests(bool running);
   void begin_recording();
   void publish();
   void make_value_snapshot();

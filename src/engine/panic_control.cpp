@@ -13,7 +13,7 @@ void PanicControl::begin_if_requested() {
   show_.presets.stop();
   show_.session->dispatcher.release_mouse_springs();
   world.panic().begin();
-  if (!show_.rules.current) world.panic().end_first_second();
+  if (show_.rules.before_first_revision) world.panic().end_first_second();
   ignored_request_reported_ = false;
   show_.history.pin();
   log_warning(

@@ -1,5 +1,6 @@
-// Session: the world, its tree nodes and the scene of one run. A reset builds a new session and installs it only if the
-// scene has run without an error. [sim]
+// Session: the objects of one run of the scene: the world, the other nodes of the property tree (transport, counters,
+// presets, undo, takes) and the Lua scene. A reset builds a new session and installs it only if the scene has run
+// without an error. [sim]
 #pragma once
 
 #include <memory>
@@ -7,10 +8,11 @@
 
 #include "engine/commands/message_dispatcher.h"
 #include "engine/edits/edit_node.h"
+#include "engine/output/counter_node.h"
 #include "engine/output/engine_link.h"
 #include "engine/output/publisher.h"
 #include "engine/presets/node.h"
-#include "engine/takes/node.h"
+#include "engine/takes/take_node.h"
 #include "engine/transport.h"
 #include "script/scene/scene.h"
 #include "sim/behavior/behavior_list.h"

@@ -21,7 +21,7 @@ SceneOptions ShowState::scene_options() const {
   SceneOptions scene_options = options.scene_options;
   if (rules.limits) scene_options.limits = *rules.limits;
   if (!rules.keeps_timers) scene_options.keep_timers = false;
-  if (!rules.current) scene_options.limits.disable_failed_handlers = false;
+  if (rules.before_first_revision) scene_options.limits.disable_failed_handlers = false;
   return scene_options;
 }
 

@@ -21,9 +21,9 @@
 
 namespace limber {
 
-/// Rules of the version that recorded the take that is replayed. In a live show the current ones.
+/// The engine's rules that apply: while a take is replayed those of the version that recorded it, else the newest.
 struct ShowRules {
-  bool current = true;                 ///< See kTakeRules; false: the rules before the first revision.
+  bool before_first_revision = false;  ///< See kTakeRules.
   bool keeps_timers = true;            ///< Reloads keep timers, and console texts set overrides.
   std::optional<ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
 };
@@ -34,7 +34,7 @@ struct ShowState {
 
   /// Returns an empty session. [any]
   std::unique_ptr<Session> new_session();
-  /// Options for runs of the scene, by the rules in force.
+  /// Options for runs of the scene, by the rules that apply.
   SceneOptions scene_options() const;
   Output& output() { return outputs.current(); }
   /// Makes the writes during its lifetime edits of a controller.

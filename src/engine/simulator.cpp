@@ -10,7 +10,7 @@ namespace limber {
 
 void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
   Session& session = *show_.session;
-  Stopwatch watch;
+  system::Stopwatch watch;
   panic_.end_if_requested();
   if (running) show_.presets.advance(session.world);
   call_handlers(input);

@@ -1,25 +1,10 @@
 // Simulator: the part of a pass after its messages: morphs, handlers and callbacks of the scene, and a time step. [sim]
 #pragma once
 
-#include <utility>
-
-#include "base/system/clock.h"
 #include "engine/panic_control.h"
 #include "engine/show_state.h"
 
 namespace limber {
-
-/// Measures intervals: lap() returns the seconds since the previous lap() or the construction.
-class Stopwatch {
- public:
-  double lap() {
-    const double now = system::clock_seconds();
-    return now - std::exchange(last_, now);
-  }
-
- private:
-  double last_ = system::clock_seconds();
-};
 
 class Simulator {
  public:

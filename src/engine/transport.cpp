@@ -1,4 +1,4 @@
-// The properties and actions of /transport and /osc.
+// The properties and actions of /transport.
 #include "engine/transport.h"
 
 #include <algorithm>
@@ -11,10 +11,6 @@ namespace {
 using namespace properties;
 
 constexpr double kMaxTicks = 100000;
-
-Property counter(std::string name, std::string doc) {
-  return transient(readout(integer(std::move(name), 0, 0, kUnbounded, std::move(doc))));
-}
 
 }  // namespace
 
@@ -132,42 +128,6 @@ Result<void> Transport::act_rewind_ticks(std::span<const double> args) {
   if (!(args[0] >= 1 && args[0] <= kMaxTicks)) return Error{"the number of ticks must be 1 to 100000"};
   rewind_ = RewindRequest{0, static_cast<std::uint64_t>(args[0])};
   return {};
-}
-
-const PropertyTable& CounterNode::table() {
-  static const PropertyTable table(
-      "osc", "/osc", "",
-      {
-          counter("received", "Complete messages received."),
-          counter("malformed", "Datagrams that are not valid OSC."),
-          counter("denied", "Datagrams from senders that --osc-allow does not list."),
-          counter("unknown", "Messages with an unknown address."),
-          counter("refused", "Messages rejected because of their arguments or names."),
-          counter("clamped", "Messages with values that were clamped to their range."),
-          counter("dropped", "Messages dropped because more arrived than a tick can handle."),
-          counter("dropped_kernel", "Datagrams dropped by the kernel because its buffer was full."),
-          counter("sent", "Datagrams sent."),
-          counter("unsent", "Datagrams that could not be sent or delivered."),
-          counter("discarded",
-                  "Requests (play, step, ...) discarded because of a later panic, pause or end of a take."),
-          counter("unheard", "Messages that osc:on handlers missed because their time budget was exceeded."),
-          counter("disabled", "Handlers (osc:on) that failed and are disabled until the scene is saved."),
-      });
-  return table;
-}
-
-CounterNode::CounterNode(Store& store, const Counters& counters)
-    : store_(store), counters_(counters), id_(store.add(table(), store.root(), "osc", this)) {}
-
-void CounterNode::publish() {
-  // in the order of the properties
-  const Counters& counters = counters_;
-  const std::atomic<std::uint64_t>* const all[] = {
-      &counters.received,  &counters.malformed, &counters.denied,         &counters.unknown, &counters.refused,
-      &counters.clamped,   &counters.dropped,   &counters.dropped_kernel, &counters.sent,    &counters.unsent,
-      &counters.discarded, &counters.unheard,   &counters.disabled};
-  double* out = store_.transient_block(id_);
-  for (const auto* count : all) *out++ = static_cast<double>(count->load(std::memory_order_relaxed));
 }
 
 }  // namespace limber

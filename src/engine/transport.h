@@ -1,5 +1,4 @@
-// Transport: the node /transport (play, pause, step, rewind, reset, panic). CounterNode: the node /osc, counters of
-// messages received, sent and lost. [sim]
+// Transport: the node /transport (play, pause, step, rewind, reset, panic). [sim]
 #pragma once
 
 #include <cstdint>
@@ -23,7 +22,7 @@ class Transport {
   bool paused() const;
   /// Consumes one of the ticks requested by `step`. False if none is left.
   bool consume_step();
-  /// Number of requested ticks left. A rewind replays messages, and restores the number afterwards.
+  /// Number of requested ticks left. A rewind executes recorded messages again, and restores the number afterwards.
   int steps() const { return steps_; }
   void set_steps(int steps) { steps_ = steps; }
   /// A request to rewind.
@@ -57,20 +56,6 @@ class Transport {
   int steps_ = 0;
   std::optional<RewindRequest> rewind_;
   mutable std::string health_text_;
-};
-
-/// Publishes the message counters as readouts.
-class CounterNode {
- public:
-  static const PropertyTable& table();
-
-  CounterNode(Store& store, const Counters& counters);
-  void publish();
-
- private:
-  Store& store_;
-  const Counters& counters_;
-  NodeId id_;
 };
 
 }  // namespace limber

@@ -28,7 +28,8 @@ enum class ShapeKind { plane, sphere, box, cylinder, capsule, cone, mesh, compou
 
 /// One collision or visual geometry. The kind decides which fields are used:
 /// plane `normal`; sphere `radius`; box `size` (full edges); cylinder, cone `radius height`;
-/// capsule `radius height` (without the caps); mesh `mesh`. All are centered on the origin; their axis is z.
+/// capsule `radius height` (without the caps); mesh `mesh`; compound none, its children are kept by the Shape of `sim`.
+/// All are centered on the origin; their axis is z.
 struct ShapeModel {
   ShapeKind kind = ShapeKind::box;
   Vec3 normal{0, 0, 1};
@@ -55,7 +56,7 @@ struct MeshModel {
   std::string name;                 ///< The file's name without its extension, for messages.
   std::vector<Vec3> vertices;       ///< Merged vertices of the drawn mesh.
   std::vector<unsigned> triangles;  ///< Three indices per triangle, counter-clockwise seen from outside.
-  std::vector<Vec3> hull;           ///< Vertices of the reduced convex hull, for contact (physics.md: 16..64).
+  std::vector<Vec3> hull;           ///< Vertices of the reduced convex hull, for contacts; kDefaultHullVertices.
   double hull_error = 0;            ///< Largest distance of an omitted vertex from the reduced hull, meters.
   double hull_volume = 0;           ///< Volume of the complete convex hull, m³.
   /// The primitive that the complete hull matches (box, sphere or capsule), in the mesh's frame; empty if none.
@@ -88,7 +89,7 @@ struct JointModel {
   int parent = -1;  ///< Index into BodyModel::links.
   int child = -1;
   Pose frame_in_parent;  ///< Joint frame in the parent link's frame; its z axis is the joint's axis.
-  Pose frame_in_child;   ///< Joint frame in the child link's frame (position 0: the child's origin).
+  Pose frame_in_child;   ///< Joint frame in the child link's frame; from a URDF file, it is at the child's origin.
   bool limited = false;  ///< False: free; otherwise lower <= upper, rad or m.
   double lower = 0;
   double upper = 0;
@@ -116,7 +117,7 @@ struct MergedLink {
 struct Overlap {
   int a = 0;  ///< Indices into BodyModel::links, a < b.
   int b = 0;
-  double depth = 0;  ///< Penetration depth, m.
+  double depth = 0;  ///< Penetration depth of the first pair of shapes found to overlap, m; others may be deeper.
 };
 
 enum class Severity { note, warning, error };

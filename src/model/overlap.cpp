@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kMaxExpansions = 160;
+constexpr int kMaxExpansions = 160;  // to decide whether the depth exceeds the tolerance; a quarter for its precision
 constexpr double kDepthPrecision = 1e-7;  // m
 constexpr double kRelativeDepthPrecision = 0.02;
 // Work limit of find_overlaps(), in box comparisons; a comparison of two shapes costs about 200 of them.
@@ -282,8 +282,8 @@ OverlapSolids solids_of(const OverlapPart& part) {
   return out;
 }
 
-// returns the depth of the first overlapping pair of shapes
-double parts_overlap(const OverlapSolids& a, const OverlapSolids& b, std::size_t& work) {
+// returns the depth of the first overlapping pair of shapes; 0 if there is none
+double first_overlap_depth(const OverlapSolids& a, const OverlapSolids& b, std::size_t& work) {
   for (const ConvexSolid& x : a.solids) {
     for (const ConvexSolid& y : b.solids) {
       ++work;
@@ -330,7 +330,7 @@ OverlapResult find_overlaps(std::span<const OverlapPart> parts,
         ++out.unchecked;
         continue;
       }
-      const double depth = parts_overlap(solids[a], solids[b], work);
+      const double depth = first_overlap_depth(solids[a], solids[b], work);
       if (depth == 0 && work > kMaxOverlapWork) ++out.unchecked;
       if (depth > 0) out.found.push_back({static_cast<int>(a), static_cast<int>(b), depth});
     }

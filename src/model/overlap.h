@@ -14,9 +14,10 @@ namespace limber {
 inline constexpr double kOverlapTolerance = 1e-4;
 
 /// Returns the penetration depth of two shapes in a common frame, m: the length of the shortest translation that
-/// separates them; 0 if it is at most `tolerance`. Accurate to 2 % or 0.1 µm; only the comparison with `tolerance` is
-/// exact, so the depth of deep overlaps may be overestimated by up to their extent. Meshes are represented by their
-/// contact hull, without the collision margin. Planes never overlap, because they are unbounded scenery. [any]
+/// separates them; 0 if it is at most `tolerance`. Whether the depth exceeds `tolerance` is exact. The depth is
+/// accurate to 2 % or 0.1 µm, unless this takes more than 40 iterations; then it is an upper bound. Meshes are
+/// represented by their contact hull, without the collision margin. Planes never overlap, because they are unbounded
+/// scenery. [any]
 double overlap_depth(const PlacedShape& a, const PlacedShape& b, double tolerance = kOverlapTolerance);
 
 /// A part of a body, for find_overlaps().

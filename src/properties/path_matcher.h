@@ -144,10 +144,10 @@ class PathMatcher {
       const std::string_view piece = pieces_.back();
       const bool pattern = is_pattern(piece);
       const Property* const exact = pattern ? nullptr : table.find(piece);
-      const std::string plain = plain_name(piece);
+      const std::string plain = normalized_name(piece);
       for (const Property& property : table.properties()) {
         const bool matches =
-            pattern ? budget_.match(piece, property.name) || budget_.match(plain, plain_name(property.name))
+            pattern ? budget_.match(piece, property.name) || budget_.match(plain, normalized_name(property.name))
                     : &property == exact;
         if (matches) entry->second |= std::uint64_t{1} << property.index;
       }

@@ -62,7 +62,7 @@ PropertyTable::PropertyTable(std::string name, std::string path, std::string leg
     Property& property = properties_[i];
     property.index = i;
     property.width = width_of(property.type);
-    plain_names_.push_back(plain_name(property.name));
+    normalized_names_.push_back(normalized_name(property.name));
     LIMBER_CHECK(known_unit(property.unit));
     LIMBER_CHECK(property.axis_min.empty() || property.axis_min.size() == property.width);
     LIMBER_CHECK(property.axis_max.empty() || property.axis_max.size() == property.width);
@@ -82,7 +82,7 @@ PropertyTable::PropertyTable(std::string name, std::string path, std::string leg
 
 const Property* PropertyTable::find(std::string_view name) const {
   for (std::size_t i = 0; i < properties_.size(); i++) {
-    if (properties_[i].name == name || same_name(plain_names_[i], name)) return &properties_[i];
+    if (properties_[i].name == name || same_name(normalized_names_[i], name)) return &properties_[i];
   }
   return nullptr;
 }

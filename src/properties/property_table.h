@@ -1,5 +1,5 @@
-// Property tables: the properties, states, readouts and actions of each class (body, joint, motor, …). OSC, Lua, the
-// panel, presets and the reference are derived from these tables. A table is immutable once it is built.
+// Property tables: the properties (settings, states, readouts and actions) of each class (body, joint, …). OSC, Lua,
+// the panel, presets and the reference are derived from these tables. A table is immutable once it is built.
 #pragma once
 
 #include <array>
@@ -30,10 +30,10 @@ enum class PropertyType : std::uint8_t {
   flags3,  ///< Three booleans, one per axis.
   quat,    ///< x y z w.
   none,    ///< Actions; `min_args` and `max_args` limit their arguments.
-  text,    ///< A readout that is a string; it has no numbers.
+  text,    ///< A readout that is a string; it has no components.
 };
 
-/// Returns how many numbers a value of the type has.
+/// Returns the number of components of a value of the type.
 std::uint32_t width_of(PropertyType type);
 std::string_view type_name(PropertyType type);
 std::string_view kind_name(PropertyKind kind);
@@ -63,7 +63,7 @@ struct Property : PropertyCallbacks {
   PropertyType type = PropertyType::number;
   PropertyKind kind = PropertyKind::setting;
   std::string unit;          ///< A symbol of units(), or empty for a dimensionless number.
-  double min = -kUnbounded;  ///< Each number is clamped to [min, max].
+  double min = -kUnbounded;  ///< Each component is clamped to [min, max].
   double max = kUnbounded;
   std::vector<double> axis_min;  ///< One range per number, if they differ; min and max then enclose all of them.
   std::vector<double> axis_max;
@@ -90,7 +90,7 @@ struct Property : PropertyCallbacks {
   bool writable() const { return kind == PropertyKind::setting || kind == PropertyKind::state; }
 };
 
-/// Returns the range as text: "0 .. 10", or "0 1 2 .. 5 5 5" if each number has its own.
+/// Returns the range as text: "0 .. 10", or "0 1 2 .. 5 5 5" if each component has its own.
 std::string range_text(const Property& property);
 
 /// How one number of a node's block enters the state hash.
@@ -138,7 +138,7 @@ class PropertyTable {
   std::string path_;
   std::string legacy_prefix_;
   std::vector<Property> properties_;
-  std::vector<std::string> plain_names_;
+  std::vector<std::string> normalized_names_;
   std::uint32_t persistent_width_ = 0;
   std::uint32_t transient_width_ = 0;
   std::vector<HashedNumber> hashed_persistent_;

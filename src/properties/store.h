@@ -38,7 +38,7 @@ class Store : public NodeValues {
   NodeId change_table(NodeId id, const PropertyTable& table, void* object);
 
   /// Sets a property: clamps the value to the range, writes it, marks the property dirty, and notifies the listener.
-  /// The value of a computed property goes to its setter. Errors: NaN or infinity, a wrong number of numbers, a
+  /// The value of a computed property goes to its setter. Errors: NaN or infinity, a wrong number of components, a
   /// property that can't be set, a value that the object rejects. On error nothing is written.
   Result<SetOutcome> set(NodeId id, const Property& property, std::span<const double> values);
   Result<SetOutcome> set(NodeId id, std::string_view property, std::span<const double> values);
@@ -53,8 +53,8 @@ class Store : public NodeValues {
   }
 
   /// The properties of a node that the scene's script set explicitly, as a bit mask: those that were set while an
-  /// ExplicitSetScope existed, including computed properties and the ones behind them, and those that
-  /// mark_explicitly_set() added.
+  /// ExplicitSetScope existed, including computed properties and the stored ones that their setters write, and those
+  /// that mark_explicitly_set() added.
   std::uint64_t explicitly_set(NodeId id) const { return node(id).explicitly_set; }
   void mark_explicitly_set(NodeId id, std::uint64_t properties) {
     if (alive(id)) nodes_[id.slot].explicitly_set |= properties;
@@ -124,15 +124,16 @@ class Store : public NodeValues {
     if (transaction_.active) save_value(id, property);
   }
   /// Called before each write of set() and write_unchecked() with the previous value; for a computed property, with the
-  /// stored properties behind it. `later`: the property will be written over time (by a ramp). In a transaction, the
+  /// stored properties that its setter writes. `over_time`: a morph will write the property. In a transaction, the
   /// calls are deferred until the commit.
   struct Listener {
-    void (*callback)(void* context, NodeId id, const Property& property, bool later, const double* before) = nullptr;
+    void (*callback)(void* context, NodeId id, const Property& property, bool over_time,
+                     const double* before) = nullptr;
     void* context = nullptr;
   };
   /// Sets the listener and returns the previous one.
   Listener set_listener(Listener listener) { return std::exchange(listener_, listener); }
-  /// Notifies the listener about a property; deferred in a transaction unless `later`.
+  /// Notifies the listener about a property; deferred in a transaction unless `over_time`.
   void notify(NodeId id, const Property& property, bool over_time) {
     if (listener_.callback == nullptr) return;
     if (transaction_.active && !over_time) return defer_notification(id, property);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-/// Returns the hash of the numbers of a node's persistent or transient block that differ from their defaults; 0: none
-/// does. `numbers` has an entry for each number.
+/// Returns the hash of the numbers of a node's persistent or transient block that differ from their defaults; 0 if
+/// none differs. `numbers` has an entry for each number.
 std::uint64_t values_hash(std::span<const HashedNumber> numbers, const double* block);
 /// Returns the hash of a node's persistent values; 0: all are at their defaults.
 std::uint64_t persistent_hash(const Store& store, NodeId id);

@@ -21,7 +21,7 @@ TEST(Text, ShortenedKeepsBothEnds) {
 }
 
 TEST(Text, NamesAreComparedWithoutCaseAndUnderscores) {
-  EXPECT_EQ(plain_name("angular_Servo__Position_"), "angularservoposition");
+  EXPECT_EQ(normalized_name("angular_Servo__Position_"), "angularservoposition");
   EXPECT_TRUE(same_name("appInterval", "app_interval"));
   EXPECT_TRUE(same_name("__a", "A"));
   EXPECT_TRUE(same_name("", "___"));

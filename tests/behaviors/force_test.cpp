@@ -44,7 +44,7 @@ TEST(Force, ZeroDirectionAppliesNoForce) {
   expect_near(s.force(part), {0, 0, 0}, 0);
 }
 
-// A force F for one tick of dt changes the velocity by F·dt/m, with any number of internal steps.
+// A force F for one tick of dt changes the velocity by F·dt/m, with any number of substeps.
 TEST(Force, ActsOnEveryInternalStepOfTheTick) {
   Rig s;
   Part& part = s.single_ball({0, 0, 0}, 2);

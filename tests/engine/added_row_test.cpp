@@ -34,7 +34,7 @@ struct ToyRig {
   }
   template <class... A>
   Outcome send(std::string address, A&&... args) {
-    dispatcher.begin_tick();
+    dispatcher.begin_pass();
     return dispatcher.execute(message(std::move(address), std::forward<A>(args)...));
   }
   // of arm/base, arm/tip, 1/base, 1/tip

@@ -211,7 +211,7 @@ TEST(MessageDispatcher, RejectedMessagesChangeNothingAndNameTheAlternatives) {
   Rig rig;
   const std::vector<double> before = rig.everything();
   for (const Case& c : cases) {
-    rig.dispatcher.begin_tick();
+    rig.dispatcher.begin_pass();
     const Outcome outcome = rig.dispatcher.execute(c.message);
     EXPECT_EQ(outcome.kind, c.kind) << c.message.address << ": " << c.expected_error;
     EXPECT_NE(outcome.error.find(c.expected_error), std::string::npos) << c.message.address << "\n  " << outcome.error;
@@ -260,7 +260,7 @@ TEST(MessageDispatcher, NoAnswerLooksLikeAQuery) {
   } bare;
   ASSERT_TRUE(bare.world.add_body("floor").ok());
   const auto check = [](MessageDispatcher& dispatch, const Message& question) {
-    dispatch.begin_tick();
+    dispatch.begin_pass();
     const Outcome asked = dispatch.execute(question);
     ASSERT_EQ(asked.kind, Kind::answered) << question.address << asked.error;
     for (const Message& answer : asked.answers) EXPECT_NE(dispatch.execute(answer).kind, Kind::answered);
@@ -313,15 +313,15 @@ TEST(MessageDispatcher, AnswersListsAndValues) {
 
 TEST(MessageDispatcher, LimitsHintsPerTick) {
   Rig rig;
-  rig.dispatcher.begin_tick();
+  rig.dispatcher.begin_pass();
   int hinted = 0;
   for (int i = 0; i < 1000; i++) {
     const Outcome outcome = rig.dispatcher.execute(message("/physics/part/masss", 1));
     EXPECT_EQ(outcome.kind, Kind::unknown);
     hinted += outcome.error.find("did you mean") != std::string::npos;
   }
-  EXPECT_EQ(hinted, HintBudget::kPerTick);
-  rig.dispatcher.begin_tick();
+  EXPECT_EQ(hinted, HintBudget::kPerPass);
+  rig.dispatcher.begin_pass();
   EXPECT_NE(rig.dispatcher.execute(message("/physics/part/masss", 1)).error.find("did you mean"), std::string::npos);
 }
 

@@ -5,7 +5,7 @@ namespace limber::engine_test {
 namespace {
 
 constexpr int kFloodSize = 10000;
-constexpr int kMessagesPerTick = Engine::kTickWork / 2;  // each message costs 2: 1, and 1 for its value
+constexpr int kMessagesPerTick = Engine::kPassWork / 2;  // each message costs 2: 1, and 1 for its value
 
 double gravity(int i) { return -0.001 * (i + 1); }
 

@@ -34,7 +34,7 @@ TEST(PatternCost, TooMuchWorkIsRejectedAsAWhole) {
                             message("/get", "/physics/body/" + kCostlyPattern + "/part/tip/mass")};
   for (const Message& m : costly) {
     SCOPED_TRACE(m.address.substr(0, 80));
-    many_bodies.dispatcher.begin_tick();
+    many_bodies.dispatcher.begin_pass();
     const Outcome outcome = many_bodies.dispatcher.execute(m);
     // a pattern of stars that matches at once is cheap and accepted
     if (outcome.kind == Kind::rejected) continue;
@@ -47,7 +47,7 @@ TEST(PatternCost, AllPatternsOfATickShareABudget) {
   ManyBodies many_bodies;
   const Message costly = message("/physics/body/" + kCostlyPattern + "/part/tip/mass", 2);
   const Message cheap = message("/physics/body/*/part/tip/mass", 2);
-  many_bodies.dispatcher.begin_tick();
+  many_bodies.dispatcher.begin_pass();
   EXPECT_EQ(many_bodies.dispatcher.execute(cheap).kind, Kind::applied);
   // four of them use up the budget of a tick
   for (int i = 0; i < 5; i++) EXPECT_NE(many_bodies.dispatcher.execute(costly).kind, Kind::applied);
@@ -55,7 +55,7 @@ TEST(PatternCost, AllPatternsOfATickShareABudget) {
   // plain paths are not delayed, and the next tick has a new budget
   EXPECT_EQ(many_bodies.dispatcher.execute(message("/physics/sim/gravity", -1)).kind, Kind::applied);
   EXPECT_EQ(many_bodies.dispatcher.execute(message("/physics/body/arm/part/tip/mass", 3)).kind, Kind::applied);
-  many_bodies.dispatcher.begin_tick();
+  many_bodies.dispatcher.begin_pass();
   EXPECT_EQ(many_bodies.dispatcher.execute(cheap).kind, Kind::applied);
   EXPECT_EQ(many_bodies.read("/physics/body/arm/part/tip/mass").at(0), 2);
 }
@@ -63,7 +63,7 @@ TEST(PatternCost, AllPatternsOfATickShareABudget) {
 TEST(PatternCost, OnePatternMatchesAThousandBodies) {
   ManyBodies many_bodies;
   for (const char* pattern : {"/physics/body/*/part/*/mass", "/physics/body//mass", "//part/t?p/mass", "//mass"}) {
-    many_bodies.dispatcher.begin_tick();
+    many_bodies.dispatcher.begin_pass();
     const Outcome outcome = many_bodies.dispatcher.execute(message(pattern, 2.5));
     EXPECT_EQ(outcome.kind, Kind::applied) << pattern << ": " << outcome.error;
   }

@@ -77,7 +77,7 @@ struct Rig {
 
   template <class... A>
   Outcome send(std::string address, A&&... args) {
-    dispatcher.begin_tick();
+    dispatcher.begin_pass();
     return dispatcher.execute(message(std::move(address), std::forward<A>(args)...));
   }
 

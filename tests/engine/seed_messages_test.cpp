@@ -86,7 +86,7 @@ void check_form(Rig& rig, const Address& a, const Form& form, Notation notation)
     expected[path] = selected ? value_of(a) : before[path];
     any = any || selected;
   }
-  rig.dispatcher.begin_tick();
+  rig.dispatcher.begin_pass();
   const Outcome outcome = rig.dispatcher.execute(m);
   EXPECT_EQ(outcome.kind, any ? Kind::applied : Kind::rejected) << outcome.error;
   EXPECT_EQ(outcome.sets_override, any);

@@ -52,7 +52,7 @@ TEST(LegacyVisuals, InvalidMessagesAreRejectedAsAWhole) {
     Rig rig;
     const Values before = rig.everything();
     const auto expect_rejected = [&](std::vector<Arg> args, const char* why) {
-      rig.dispatcher.begin_tick();
+      rig.dispatcher.begin_pass();
       const Outcome outcome = rig.dispatcher.execute({legacy_address(a), std::move(args)});
       EXPECT_EQ(outcome.kind, Kind::rejected);
       EXPECT_NE(outcome.error.find(why), std::string::npos) << outcome.error;

@@ -53,7 +53,7 @@ std::vector<Message> messages_of(const std::string& packet) {
 Outcome play(Rig& fixture, const std::string& packet) {
   const std::vector<Message> messages = messages_of(packet);
   EXPECT_EQ(messages.size(), 1u);
-  fixture.dispatcher.begin_tick();
+  fixture.dispatcher.begin_pass();
   return fixture.dispatcher.execute(messages.front());
 }
 

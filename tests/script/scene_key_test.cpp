@@ -182,7 +182,7 @@ TEST(SceneCheckpoint, RepeatsWithoutLimits) {
   ASSERT_EQ(fixture.play("local n = 0\nsim:on_step(function() local s = 0; for i = 1, 3e7 do s = s + i % 7 end; "
                          "n = n + 1; print(n, s) end)"),
             "");
-  fixture.scene.set_replaying(true);
+  fixture.scene.set_resimulating(true);
   fixture.tick(2);
   EXPECT_TRUE(fixture.host.faults.empty());
   EXPECT_EQ(fixture.host.printed.size(), 2u);

@@ -27,7 +27,7 @@ struct Hinge {
   // applies an impulse, as a contact does
   void apply_contact_impulse(double impulse) {
     rows.forest.node(0).load.angular.z = impulse;
-    rows.correct(0, 1);
+    rows.solve_once(0, 1);
   }
   const AxisRow& motor() { return rows.rows().back(); }
   WorkBudget budget;
@@ -39,22 +39,22 @@ struct Hinge {
 TEST(AxisActiveSet, RemembersAxesChangedByContacts) {
   Hinge first{{}};
   EXPECT_NEAR(first.motor().impulse, 0.05, 1e-12);
-  EXPECT_EQ(first.rows.defer_remembered(0, 1), 0);
+  EXPECT_EQ(first.rows.defer_as_before(0, 1), 0);
   first.apply_contact_impulse(-1);
   EXPECT_NEAR(first.motor().impulse, 1.05, 1e-12) << "the motor still holds";
   EXPECT_EQ(first.rows.defer_violated(0, 1), 1);
-  EXPECT_TRUE(first.rows.factor_and_correct(0, 1));
+  EXPECT_TRUE(first.rows.factor_and_solve_once(0, 1));
   EXPECT_NEAR(first.motor().impulse, 0.1, 1e-12);
 
   Hinge second{first.rows.active_set(0)};
   EXPECT_EQ(second.motor().initial_status, AxisRow::at_upper);
-  EXPECT_EQ(second.rows.defer_remembered(0, 1), 1);
-  EXPECT_EQ(second.rows.defer_remembered(0, 1), 0) << "only once";
+  EXPECT_EQ(second.rows.defer_as_before(0, 1), 1);
+  EXPECT_EQ(second.rows.defer_as_before(0, 1), 0) << "only once";
   EXPECT_EQ(second.motor().status, AxisRow::deferred);
 
   // no impulse this time: the active set is again that of the tree alone
   Hinge third{second.rows.active_set(0)};
-  EXPECT_EQ(third.rows.defer_remembered(0, 1), 0);
+  EXPECT_EQ(third.rows.defer_as_before(0, 1), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Contact manifolds: complete in one step for every shape, on planes and boxes, at rest and sliding.
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 
 #include <cmath>
 
@@ -183,7 +183,7 @@ TEST(ContactManifold, SelectsTheDeepestAndTheWidestPoints) {
   btRigidBody a(1, nullptr, &shape, btVector3(1, 1, 1));
   btRigidBody b(0, nullptr, &shape);
   btPersistentManifold manifold(&a, &b, 0, 0.02F, BT_LARGE_FLOAT);
-  ContactManifold points(manifold, 0.01F);
+  ManifoldBuilder points(manifold, 0.01F);
   const btVector3 up(0, 0, 1);
   for (int i = 0; i < 16; i++) {
     const auto angle = static_cast<float>(2 * kPi * i / 16);
@@ -212,7 +212,7 @@ TEST(ContactManifold, TransfersImpulsesOfMatchingPoints) {
   btPersistentManifold manifold(&a, &b, 0, 0.02F, BT_LARGE_FLOAT);
   const btVector3 up(0, 0, 1);
   const auto add_all = [&](float x) {
-    ContactManifold points(manifold, 0.01F);
+    ManifoldBuilder points(manifold, 0.01F);
     for (int i = 0; i < 4; i++) points.add({x + static_cast<float>(i % 2), static_cast<float>(i / 2), 0}, up, 0);
     points.write();
   };

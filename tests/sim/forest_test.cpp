@@ -89,7 +89,7 @@ struct ForestRig {
     n.prescribed = 63 & ~kFree[kind];
     for (int k = 0; k < 6; ++k) {
       n.input[k] = draw(-1, 1);
-      if ((n.prescribed >> k & 1) == 0 && draw.below(3) == 0) n.conductance[k] = std::pow(10, draw(-4, 4));
+      if ((n.prescribed >> k & 1) == 0 && draw.below(3) == 0) n.damping[k] = std::pow(10, draw(-4, 4));
     }
     n.load = {draw.vec(1), draw.vec(1)};
   }
@@ -121,7 +121,7 @@ struct ForestRig {
           a[18 * p + 6 + d][18 * i + 12 + k] = dot(unit(d), translated_back(unit(k), node.offset));
         }
         const bool prescribed = (node.prescribed >> d & 1) != 0;
-        a[18 * i + 12 + d][18 * i + 6 + d] = prescribed ? 1 : node.conductance[d];
+        a[18 * i + 12 + d][18 * i + 6 + d] = prescribed ? 1 : node.damping[d];
         b[18 * i + 12 + d] = node.input[d];
         for (int k = 0; k < 6 && !prescribed; ++k) a[18 * i + 12 + d][18 * i + 12 + k] = dot(node.axis[d], unit(k));
       }

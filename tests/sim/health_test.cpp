@@ -64,7 +64,7 @@ TEST(Health, RestoresThenDisablesThenResetEnables) {
   EXPECT_EQ(s.world.stability().events(), 2u);
 }
 
-// A body restored in the first internal step of a tick falls in the remaining ones; in the only step, from the next
+// A body restored in the first substep of a tick falls in the remaining ones; in the only step, from the next
 // tick on.
 TEST(Health, RestoredBodyFallsLikeAnyOther) {
   for (const int substeps : {1, 4}) {

@@ -1,4 +1,4 @@
-// Targets that change from tick to tick: speed of the joint in each internal step.
+// Targets that change from tick to tick: speed of the joint in each substep.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr double kGoalTick = 1.0 / 60;
 constexpr double kGoalMass = 2;
 constexpr double kGoalInertia = 0.5;
 
-// One part attached to the ground with one free axis; records the axis's speed after each internal step.
+// One part attached to the ground with one free axis; records the axis's speed after each substep.
 struct Follower : Rig {
   Follower(int axis, const AxisSettings& settings, bool direct = true) : axis(axis), settings(settings) {
     world.set_direct(direct);
@@ -110,7 +110,7 @@ TEST(JointGoals, JumpIsDelayedByATickAtMost) {
     EXPECT_NEAR(quick.x(), 0.2, 1e-2);
     quick.tick(0.2);
     EXPECT_NEAR(quick.x(), 0.2, 2e-3);
-    // as fast as possible from the first internal step on
+    // as fast as possible from the first substep on
     Follower limited(5, servo_axis(free_axis(), 0, 1, 10000), direct);
     limited.tick(0);
     for (int i = 0; i < 30; ++i) {

@@ -28,7 +28,7 @@ void limit(bool linear, bool upper) {
   }
 }
 
-// A lock's error decreases by the share erp in each internal step.
+// A lock's error decreases by the share erp in each substep.
 void stop_erp(bool linear) {
   for (int axis = linear ? 0 : 3; axis < (linear ? 3 : 6); axis++) {
     for (const double erp : {0.05, 0.2, 0.6}) {

@@ -118,7 +118,7 @@ void spring_stiffness(OneAxisFixture& a) {
   }
 }
 
-// Without stiffness, the speed decreases by the factor 1 + c·h/inertia in each internal step (implicit Euler).
+// Without stiffness, the speed decreases by the factor 1 + c·h/inertia in each substep (implicit Euler).
 void spring_damping(OneAxisFixture& a) {
   a.set_motor("spring_active", 1);
   const double c = 3 * a.inertia();

@@ -61,7 +61,7 @@ inline double kinetic_energy(const btRigidBody& r) {
 /// work of motors, springs and gravity at the velocities after it: there locks, limits, contacts and friction do no or
 /// negative work. The account sums up the excess over this bound. With restitution it uses the mean of the velocities
 /// before and after instead, which makes the sum exact, because a bounce returns energy that the contact absorbed. Call
-/// before() and after() around single internal steps.
+/// before() and after() around single substeps.
 class EnergyAccount {
  public:
   explicit EnergyAccount(WorldFixture& fixture, bool mean = false) : fixture_(fixture), before_share_(mean ? 0.5 : 0) {}
@@ -187,7 +187,7 @@ struct RandomSceneOptions {
   bool direct = true;     ///< False: all scenes use the iterative solver.
 };
 
-/// The scene with a given number: bodies, floor, motors. step() is one internal step.
+/// The scene with a given number: bodies, floor, motors. step() is one substep.
 class RandomScene : public WorldFixture {
  public:
   explicit RandomScene(std::uint64_t number, const RandomSceneOptions& options = {})

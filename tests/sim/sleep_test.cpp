@@ -88,7 +88,7 @@ TEST(Sleep, SleepingPairsAreSkipped) {
   std::uint64_t before = dispatcher.processed_pairs();
   s.ticks(10);
   EXPECT_EQ(dispatcher.processed_pairs() - before, 0u);
-  // a ball rolls elsewhere: only its pair with the floor is processed, once in each internal step
+  // a ball rolls elsewhere: only its pair with the floor is processed, once in each substep
   Part& ball = s.add_single_part(sphere_model(0.1), 1, {{-3, 0, 0.1}, quat_identity()});
   ball.set_velocity({0, 1, 0}, {-10, 0, 0});
   before = dispatcher.processed_pairs();
@@ -273,7 +273,7 @@ TEST(Sleep, StackFallsWhenItsLowestBoxIsRemoved) {
   const double before = s.high.pose().position.z;
   s.world.remove_body(s.low.body());
   s.ticks(6);
-  // 24 internal steps: velocities first, then positions
+  // 24 substeps: velocities first, then positions
   EXPECT_NEAR(before - s.high.pose().position.z, 9.81 / 240 / 240 * 24 * 25 / 2, 1e-4);
 }
 

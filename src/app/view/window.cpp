@@ -342,7 +342,7 @@ Result<void> Window::move_to_monitor(const std::string& which) {
   for (int i = count - 1; i >= 0; i--) {
     const char* const name = glfwGetMonitorName(screens[i]);
     names.insert(names.begin(), fmt::format("{} ({})", i + 1, name == nullptr ? "" : printable(name)));
-    const bool named = name != nullptr && plain_name(name).find(plain_name(which)) != std::string::npos;
+    const bool named = name != nullptr && normalized_name(name).find(normalized_name(which)) != std::string::npos;
     if (number ? *number == i + 1 : named) found = screens[i];
   }
   const GLFWvidmode* const mode = found == nullptr ? nullptr : glfwGetVideoMode(found);

@@ -34,7 +34,7 @@ class Arena {
 
   /// Copies all used memory to `out`. Pages that are equal to those of `before` are shared with it (null: none).
   void capture(PageStore& pages, const PageStore::PageList* before, PageStore::PageList& out) const;
-  /// Restores the arena to its state at the capture; `image` comes from capture() of this arena.
+  /// Restores the arena to its state at the capture; `copy` comes from capture() of this arena.
   void restore(const PageStore& pages, const PageStore::PageList& copy);
 
  private:

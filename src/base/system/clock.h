@@ -4,12 +4,25 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace limber::system {
 
 inline double clock_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+/// Measures intervals: lap() returns the seconds since the previous lap() or the construction.
+class Stopwatch {
+ public:
+  double lap() {
+    const double now = clock_seconds();
+    return now - std::exchange(last_, now);
+  }
+
+ private:
+  double last_ = clock_seconds();
+};
 
 /// Returns the processor time of this thread in seconds, without time of other programs or of suspension.
 double thread_seconds();

@@ -81,7 +81,7 @@ void ThreadPool::worker_main(int thread) {
   }
 }
 
-// Spins until done() or for at most kSpins seconds.
+// Spins until done() or for at most kSpinSeconds.
 template <class Done>
 void ThreadPool::spin_until(Done&& done) const {
   if (!spins_ || done()) return;

@@ -11,7 +11,7 @@
 namespace limber {
 
 namespace {
-// Costs in units of LiveInput::kTickWork: a rejection or an answer, a message to the scene's handlers.
+// Costs in units of LiveInput::kPassWork: a rejection or an answer, a message to the scene's handlers.
 constexpr int kTextWork = 7;
 constexpr int kHandlerWork = 3;
 }  // namespace
@@ -63,8 +63,8 @@ void CommandExecutor::report(Outcome& outcome, const Message& message, const Com
 
 void CommandExecutor::queue_for_handlers(Outcome& outcome, Message& message, const CommandOrigin& origin) {
   const bool unknown = outcome.kind == Outcome::Kind::unknown;
-  const bool fits =
-      show_.handler_queue.push({std::move(message), origin, unknown, std::move(outcome.error)}, show_.rules.current);
+  const bool fits = show_.handler_queue.push({std::move(message), origin, unknown, std::move(outcome.error)},
+                                             !show_.rules.before_first_revision);
   if (!fits) show_.output().count(&Counters::unheard);
 }
 

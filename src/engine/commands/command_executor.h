@@ -10,7 +10,7 @@ class CommandExecutor {
   explicit CommandExecutor(ShowState& show) : show_(show) {}
 
   struct Execution {
-    int work = 0;          ///< Cost in units of LiveInput::kTickWork, in addition to 1.
+    int work = 0;          ///< Cost in units of LiveInput::kPassWork, in addition to 1.
     bool rewound = false;  ///< The message was a request to rewind.
   };
   /// Executes a message of `source` and reports the result. Queues it for the handlers of the scene, which are called

@@ -68,7 +68,7 @@ constexpr const char* kUnsupported[] = {"/physics/joint/basis", "/physics/joint/
 
 // Returns the address in lower case, without underscores and a trailing slash, in `buffer`; empty if it does not fit,
 // because it is longer than any known address.
-std::string_view plain_address(std::string_view address, std::array<char, 96>& buffer) {
+std::string_view normalized_address(std::string_view address, std::array<char, 96>& buffer) {
   if (address.size() > 1 && address.back() == '/') address.remove_suffix(1);
   std::size_t n = 0;
   for (const char c : address) {
@@ -112,7 +112,7 @@ std::optional<std::vector<double>> action_numbers(std::span<const Arg> args, boo
 
 std::string MessageDispatcher::legacy_address(const PropertyTable& table, const Property& property) {
   if (table.legacy_prefix().empty() || property.kind == PropertyKind::readout) return {};
-  return plain_name(table.legacy_prefix() + "/" + property.name);
+  return normalized_name(table.legacy_prefix() + "/" + property.name);
 }
 
 std::span<const SpecialAddress> MessageDispatcher::special_addresses() { return kSpecialAddresses; }
@@ -153,17 +153,17 @@ void MessageDispatcher::add_class(const PropertyTable& table) {
 }
 
 Outcome MessageDispatcher::execute(const Message& message) {
-  const int budget = std::min(PatternBudget::kStepsPerMessage, std::max(tick_budget_.remaining, 0));
+  const int budget = std::min(PatternBudget::kStepsPerMessage, std::max(pass_budget_.remaining, 0));
   message_budget_.remaining = budget;
   Outcome outcome = execute_one(message);
-  tick_budget_.remaining -= budget - message_budget_.remaining;
+  pass_budget_.remaining -= budget - message_budget_.remaining;
   return outcome;
 }
 
 Outcome MessageDispatcher::execute_one(const Message& message) {
   writes_.clear();
   std::array<char, 96> buffer;
-  const auto found = entries_.find(plain_address(message.address, buffer));
+  const auto found = entries_.find(normalized_address(message.address, buffer));
   if (found == entries_.end()) return execute_path(message);
   const AddressEntry& entry = found->second;
   return entry.handler != nullptr ? (this->*entry.handler)(message) : execute_named(entry, message);
@@ -419,13 +419,13 @@ Outcome MessageDispatcher::projection(const Message& message) {
 
 Outcome MessageDispatcher::answer_list(const Message& message) {
   std::array<char, 96> buffer;
-  return query_handler_.list(plain_address(message.address, buffer).substr(std::string_view("/list/").size()),
+  return query_handler_.list(normalized_address(message.address, buffer).substr(std::string_view("/list/").size()),
                              message.args);
 }
 
 Outcome MessageDispatcher::request_scene(const Message& message) {
   std::array<char, 96> buffer;
-  if (plain_address(message.address, buffer).starts_with("/list/")) {
+  if (normalized_address(message.address, buffer).starts_with("/list/")) {
     if (!message.args.empty()) return Outcome::rejected("takes no arguments");
   } else if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil || message.args[0].is_numeric()) {
     return Outcome::rejected("takes the name of a scene; /list/scenes lists them");
@@ -451,14 +451,14 @@ Outcome MessageDispatcher::answer_get(const Message& message) { return query_han
 Outcome MessageDispatcher::execute_preset(const Message& message) {
   if (presets_ == nullptr) return Outcome::rejected("presets are not available here");
   std::array<char, 96> buffer;
-  const std::string_view address = plain_address(message.address, buffer);
+  const std::string_view address = normalized_address(message.address, buffer);
   return presets_->execute(address.substr(address.find_last_of('/') + 1), message, world_);
 }
 
 Outcome MessageDispatcher::request_take(const Message& message) {
   std::array<char, 96> buffer;
   const std::span<const Arg> args = message.args;
-  if (plain_address(message.address, buffer) != "/take/stop") {
+  if (normalized_address(message.address, buffer) != "/take/stop") {
     if (args.size() > 1 || (args.size() == 1 && !args[0].is_text()))
       return Outcome::rejected("takes the name of the take, or nothing");
   } else if (is_button_release(args)) {

@@ -31,8 +31,8 @@ struct SpecialAddress {
 
 class MessageDispatcher {
  public:
-  /// Work budget of all address patterns between two ticks; see PatternBudget.
-  static constexpr int kTickWork = 4 * PatternBudget::kStepsPerMessage;
+  /// Work budget of all address patterns of a pass; see PatternBudget.
+  static constexpr int kPassWork = 4 * PatternBudget::kStepsPerMessage;
 
   /// If `presets` is null, preset messages are rejected. `extra_classes`: more classes, with their objects in a group
   /// of that name in each body; their legacy addresses take precedence over those of the built-in classes.
@@ -44,10 +44,10 @@ class MessageDispatcher {
 
   /// Executes a message. Its effect on values is immediate.
   Outcome execute(const Message& message);
-  /// Refills the work budgets of patterns and of "did you mean" hints. Call it once a tick.
-  void begin_tick() {
-    hints_.remaining = HintBudget::kPerTick;
-    tick_budget_.remaining = kTickWork;
+  /// Refills the work budgets of patterns and of "did you mean" hints. Call it once per pass.
+  void begin_pass() {
+    hints_.remaining = HintBudget::kPerPass;
+    pass_budget_.remaining = kPassWork;
   }
   /// Applies the forces of the mouse springs. Call it before each step.
   void apply_mouse_springs() { mouse_springs_.apply_forces(world_); }
@@ -117,11 +117,11 @@ class MessageDispatcher {
   const Health* health_ = nullptr;
   Store& store_;
   HintBudget hints_;
-  PatternBudget tick_budget_{kTickWork};  // of this tick
+  PatternBudget pass_budget_{kPassWork};  // of this pass
   PatternBudget message_budget_;          // of this message
   Selector selector_{world_, hints_, message_budget_};
   QueryHandler query_handler_{world_, hints_, message_budget_};
-  StringMap<AddressEntry> entries_;     // by plain_address()
+  StringMap<AddressEntry> entries_;     // by normalized_address()
   std::vector<std::string> addresses_;  // keys of entries_, for "did you mean"
   StringMap<PropertyRef> paths_;        // cache of exact paths, cleared when the tree changes
   std::uint64_t paths_version_ = 0;     // structure version of paths_

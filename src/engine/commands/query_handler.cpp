@@ -101,7 +101,7 @@ std::string QueryHandler::address_hint(std::string_view address, const std::vect
       candidates.push_back(store.path(id) + "/" + property.name);
   }
   const std::vector<std::string_view> views(candidates.begin(), candidates.end());
-  const std::string_view nearest = nearest_name(plain_name(address), views);
+  const std::string_view nearest = nearest_name(normalized_name(address), views);
   return nearest.empty() ? "; `limber describe` lists all" : fmt::format("; did you mean '{}'?", nearest);
 }
 

@@ -14,11 +14,11 @@ namespace limber {
 
 class Behavior;
 
-/// Limits the number of "did you mean" hints per tick: searching similar names among a thousand bodies costs far more
+/// Limits the number of "did you mean" hints per pass: searching similar names among a thousand bodies costs far more
 /// than the message itself, and a flood of wrong names must not delay the tick.
 struct HintBudget {
-  static constexpr int kPerTick = 32;
-  int remaining = kPerTick;
+  static constexpr int kPerPass = 32;
+  int remaining = kPerPass;
   bool consume() { return remaining > 0 && remaining-- > 0; }
 };
 

@@ -15,6 +15,7 @@ struct UrgentAddress {
   UrgentKind kind;
 };
 
+// The addresses of both tables are in the form of normalized_name(): lower case, without underscores.
 constexpr std::array kUrgent = {
     UrgentAddress{"/transport/panic", UrgentKind::panic}, UrgentAddress{"/physics/sim/panic", UrgentKind::panic},
     UrgentAddress{"/transport/panicend", UrgentKind::panic_end}, UrgentAddress{"/transport/pause", UrgentKind::pause},
@@ -49,12 +50,7 @@ unsigned discarded_by(const Message& message) {
 
 }  // namespace
 
-bool same_address(std::string_view address, std::string_view plain) {
-  if (address.size() > 1 && address.back() == '/') address.remove_suffix(1);
-  return same_name(address, plain);
-}
-
-std::optional<UrgentKind> urgent_kind_of(std::string_view address) {
+std::optional<UrgentKind> urgent_kind_of_address(std::string_view address) {
   for (const UrgentAddress& urgent : kUrgent) {
     if (same_address(address, urgent.address)) return urgent.kind;
   }
@@ -62,7 +58,7 @@ std::optional<UrgentKind> urgent_kind_of(std::string_view address) {
 }
 
 std::optional<UrgentKind> urgent_kind(const Message& message) {
-  const std::optional<UrgentKind> kind = urgent_kind_of(message.address);
+  const std::optional<UrgentKind> kind = urgent_kind_of_address(message.address);
   if (!kind || message.args.size() > 1) return std::nullopt;
   if (message.args.empty() || message.args[0].kind == Arg::Kind::nil) return kind;
   const Arg& arg = message.args[0];

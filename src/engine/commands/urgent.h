@@ -15,10 +15,8 @@ enum class UrgentKind : std::uint8_t { panic, panic_end, pause, take_stop };
 /// Returns the kind of an urgent request; none for other messages, patterns, the value 0 (a released button) and
 /// invalid arguments. [any]
 std::optional<UrgentKind> urgent_kind(const Message& message);
-/// Returns the kind that belongs to an address, regardless of arguments. [any]
-std::optional<UrgentKind> urgent_kind_of(std::string_view address);
-/// True if a received address equals `plain`, ignoring case, underscores and a trailing slash. Does not allocate. [any]
-bool same_address(std::string_view address, std::string_view plain);
+/// Returns the kind of urgent request that an address belongs to, regardless of the arguments of the message. [any]
+std::optional<UrgentKind> urgent_kind_of_address(std::string_view address);
 
 struct UrgentRequest {
   UrgentKind kind = UrgentKind::panic;

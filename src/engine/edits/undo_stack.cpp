@@ -55,7 +55,7 @@ void UndoStack::on_write(const Store& store, NodeId id, const Property& property
   if (step.edits.size() >= step.purge_at) purge_removed(step, store);
   step.edits.push_back({id, &property, step.values.size()});
   step.values.insert(step.values.end(), old_values, old_values + property.width);
-  values_ += property.width;
+  value_count_ += property.width;
 }
 
 // Purges edits of removed objects, which can't be undone. Without it the step of a controller that never pauses would
@@ -69,7 +69,7 @@ void UndoStack::purge_removed(Step& step, const Store& store) {
     edit.offset = std::exchange(values, values + edit.property->width);
     step.edits[edits++] = edit;
   }
-  values_ -= step.values.size() - values;
+  value_count_ -= step.values.size() - values;
   step.values.resize(values);
   step.edits.resize(edits);
   step.purge_at = std::max(step.purge_at, 2 * step.edits.size());
@@ -132,14 +132,14 @@ void UndoStack::complete_steps(const Store& store) {
 }
 
 void UndoStack::drop(const Step* step) {
-  values_ -= step->values.size();
+  value_count_ -= step->values.size();
   for (OpenStep& open : open_steps_) {
     if (open.step == step) open.step = nullptr;
   }
 }
 
 void UndoStack::trim() {
-  while (undo_steps_.size() > kMaxSteps || (values_ > kMaxValues && undo_steps_.size() > 1)) {
+  while (undo_steps_.size() > kMaxSteps || (value_count_ > kMaxValues && undo_steps_.size() > 1)) {
     drop(undo_steps_.front().get());
     undo_steps_.pop_front();
   }
@@ -247,7 +247,7 @@ void UndoStack::clear() {
   redo_steps_.clear();
   for (OpenStep& open : open_steps_) open.step = nullptr;
   current_ = nullptr;
-  values_ = 0;
+  value_count_ = 0;
   undo_text_.clear();
   redo_text_.clear();
   version_++;
@@ -265,7 +265,7 @@ std::shared_ptr<const UndoStack::State> UndoStack::state() const {
   }
   state->uses = uses_;
   state->pass = pass_;
-  state->values = values_;
+  state->value_count = value_count_;
   state->undo_text = undo_text_;
   state->redo_text = redo_text_;
   return state;
@@ -276,7 +276,7 @@ void UndoStack::restore(const State& state) {
   for (const Step& step : state.undo_steps) undo_steps_.push_back(std::make_unique<Step>(step));
   for (const Step& step : state.redo_steps) redo_steps_.push_back(std::make_unique<Step>(step));
   pass_ = state.pass;
-  values_ = state.values;
+  value_count_ = state.value_count;
   undo_text_ = state.undo_text;
   redo_text_ = state.redo_text;
   uses_ = state.uses;

@@ -28,7 +28,7 @@ class UndoStack {
 
   /// Attributes the following writes to this controller. Its writes within one pass form one step.
   void begin(const CommandOrigin& source, const World& world);
-  /// Records a write. `old_values`: the previous value. `over_time`: the value will be written by a morph.
+  /// Records a write. `old_values`: the previous value. `over_time`: a morph will write values to the property.
   void on_write(const Store& store, NodeId id, const Property& property, bool over_time, const double* old_values);
   /// Ends the pass: completes its steps and drops those that have changed nothing.
   void end(const Store& store);
@@ -60,8 +60,8 @@ class UndoStack {
     std::vector<Edit> edits;
     std::vector<double> values;  // the values to exchange: those before the step, or after it once it is undone
     Overrides::Backup overrides;
-    bool complete = false;       // the step is complete
-    bool over_time = false;      // it writes values over time
+    bool complete = false;       // the pass that began it has ended: it can be undone
+    bool over_time = false;      // a morph writes its values
     std::size_t purge_at = 256;  // number of edits at which edits of removed objects are purged
   };
   // a step that may be extended, with an index of its properties
@@ -69,7 +69,7 @@ class UndoStack {
     struct SlotMask {
       std::uint32_t generation = 0;
       std::uint64_t step = 0;  // OpenStep::number of the step that `mask` belongs to
-      std::uint64_t mask = 0;  // bit mask
+      std::uint64_t mask = 0;  // properties of the node that the step contains, one bit each
     };
     Step* step = nullptr;
     std::uint64_t number = 0;     // unique number of the step
@@ -90,12 +90,12 @@ class UndoStack {
     std::vector<Step> undo_steps, redo_steps;
     std::vector<std::optional<OpenRef>> open_steps;
     std::uint64_t uses = 0, pass = 0;
-    std::size_t values = 0;
+    std::size_t value_count = 0;  ///< Of all steps.
     std::string undo_text, redo_text;
 
     /// Approximate size in bytes.
     std::size_t size() const {
-      return values * 2 * sizeof(double) + (undo_steps.size() + redo_steps.size()) * sizeof(Step);
+      return value_count * 2 * sizeof(double) + (undo_steps.size() + redo_steps.size()) * sizeof(Step);
     }
   };
   std::shared_ptr<const State> state() const;
@@ -120,7 +120,7 @@ class UndoStack {
   Steps undo_steps_, redo_steps_;
   std::array<OpenStep, 8> open_steps_;
   std::uint64_t uses_ = 0;
-  std::size_t values_ = 0;
+  std::size_t value_count_ = 0;  // of all steps
   // of the controller that writes now
   CommandOrigin source_;
   std::uint64_t pass_ = 0;               // counts passes, with and without a time step

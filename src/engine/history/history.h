@@ -1,5 +1,5 @@
 // History: the last seconds of the simulation, for rewind: checkpoints at most a second apart, and all inputs between
-// them. An earlier tick is reached by restoring a checkpoint and replaying the inputs. [sim]
+// them. An earlier tick is reached by restoring a checkpoint and simulating the passes after it again. [sim]
 #pragma once
 
 #include <cstdint>

@@ -8,28 +8,11 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "engine/history/history_input.h"
 
 namespace limber {
 
 namespace {
-
-// The inputs of a pass in the history.
-class HistoryInput final : public RecordedInput {
- public:
-  HistoryInput(ShowState& show, CommandExecutor& executor, RecordedPass& pass)
-      : RecordedInput(show, executor), pass_(pass) {}
-
-  void execute_messages(bool) override { execute(pass_.messages); }
-  bool advances_time(bool) override { return pass_.running; }
-  void record(const Message&, const CommandOrigin&, bool) override {}  // the history has it already
-  Outcome rewind(const Transport::RewindRequest&, const CommandOrigin&) override {
-    return Outcome::rejected("can't rewind while time is rewound");
-  }
-  Outcome request_take(const Message&) override { return Outcome::answered(); }
-
- private:
-  RecordedPass& pass_;
-};
 
 // Session state and other values that survive a rewind: restores them at its end.
 class UnaffectedState {
@@ -63,8 +46,8 @@ class UnaffectedState {
   Store::Listener listener_;
 };
 
-// While an object of this class exists, recorded passes are simulated: the show has no output and saves nothing, and
-// only the calls of scripts that the history lists are stopped.
+// While an object of this class exists, recorded passes are simulated again: the show has no output and saves nothing,
+// and only the calls of scripts that the history lists are stopped.
 class Resimulation {
  public:
   explicit Resimulation(ShowState& show) : show_(show), muted_(show.outputs) { set(true); }
@@ -75,7 +58,7 @@ class Resimulation {
  private:
   void set(bool on) {
     show_.presets.set_replaying(on);
-    if (show_.session->scene != nullptr) show_.session->scene->set_replaying(on);
+    if (show_.session->scene != nullptr) show_.session->scene->set_resimulating(on);
   }
 
   ShowState& show_;
@@ -132,10 +115,11 @@ void Rewinder::resimulate_until(const RewindTarget& target) {
   }
   if (stopped)
     log_warning("rewind: a script exceeded its time limit in the replayed ticks; rewound further than requested");
-  show_.session->dispatcher.begin_tick();
+  show_.session->dispatcher.begin_pass();
 }
 
-// Returns true if a call exceeded its limit that did not before: the rest would diverge and be slow.
+// Stops, and returns true, if a script call that was not stopped when it was recorded now exceeds its time limit: the
+// remaining passes would differ from the recorded ones and be slow.
 bool Rewinder::resimulate_passes(const RewindTarget& target) {
   bool reached = false;
   bool stopped = false;
@@ -151,8 +135,8 @@ bool Rewinder::resimulate_passes(const RewindTarget& target) {
 
 void Rewinder::resimulate(RecordedPass& pass) {
   Session& session = *show_.session;
-  show_.call_log.begin_tick(std::move(pass.stopped_calls));
-  session.dispatcher.begin_tick();
+  show_.call_log.begin_pass(std::move(pass.stopped_calls));
+  session.dispatcher.begin_pass();
   HistoryInput input(show_, executor_, pass);
   input.execute_messages(pass.running);
   PhaseTimes unused_times;

@@ -33,9 +33,9 @@ class InputSource {
 
   /// Records an executed message as an input of the pass, or Lua code from a console (`evaluate`, in the address).
   virtual void record(const Message& message, const CommandOrigin& origin, bool evaluate) = 0;
-  /// Carries out a request to rewind.
+  /// Executes a request to rewind.
   virtual Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) = 0;
-  /// Carries out a request about takes.
+  /// Executes a request about takes.
   virtual Outcome request_take(const Message& message) = 0;
 
   /// Input of a run of the scene.
@@ -45,8 +45,9 @@ class InputSource {
   };
   /// Returns the files of the next run, which has this kind.
   virtual SceneFiles begin_run(TakeSceneRun::Kind) { return {}; }
-  /// True if a changed parameter with `rerun` runs the scene at once; false: not now, or on another thread.
-  virtual bool reruns_at_once() { return false; }
+  /// Returns whether the engine must run the scene again itself, now, because a parameter with `rerun` has changed.
+  /// False if it must not be run again, or if another thread does so.
+  virtual bool must_rerun() { return false; }
 
   /// Compares the state after the pass with the recorded one, if there is one.
   virtual void end_pass() {}

@@ -9,7 +9,7 @@
 namespace limber {
 
 namespace {
-// Costs in units of LiveInput::kTickWork: a console evaluation, a rejected message.
+// Costs in units of LiveInput::kPassWork: a console evaluation, a rejected message.
 constexpr int kEvaluationWork = 512;
 constexpr int kRejectionWork = 8;
 }  // namespace
@@ -63,7 +63,7 @@ void LiveInput::execute_messages(bool may_step) {
   }
   const double start_time = show_.options.clock();
   bool drained = false;
-  for (int work = kTickWork; work > 0;) {
+  for (int work = kPassWork; work > 0;) {
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
       work -= execute(command, edit_scope);
@@ -169,7 +169,7 @@ Outcome LiveInput::rewind(const Transport::RewindRequest& request, const Command
   return outcome;
 }
 
-bool LiveInput::reruns_at_once() {
+bool LiveInput::must_rerun() {
   if (!show_.link.on_rerun || show_.options.fast) return true;
   show_.link.on_rerun();
   return false;
@@ -186,7 +186,7 @@ void LiveInput::reject_messages(const char* reason, bool* stop) {
 }
 
 void LiveInput::reject_commands(const char* reason, bool* stop) {
-  for (int work = kTickWork; work > 0 && next_command_ < commands_.size(); next_command_++) {
+  for (int work = kPassWork; work > 0 && next_command_ < commands_.size(); next_command_++) {
     const Command& command = commands_[next_command_];
     for (const Message& message : command.messages) reject(message, command.origin, reason, stop);
     if (command.evaluation != nullptr) command.evaluation->on_result({Evaluation::Kind::error, reason, 0, 0, 0});
@@ -211,7 +211,7 @@ void LiveInput::reject_urgent(const char* reason, bool* stop) {
 }
 
 void LiveInput::reject(const Message& message, const CommandOrigin& origin, const char* reason, bool* stop) {
-  const std::string address = plain_name(message.address);
+  const std::string address = normalized_name(message.address);
   Outcome outcome = Outcome::rejected(reason);
   if (stop != nullptr && address == "/take/stop") {
     *stop = true;

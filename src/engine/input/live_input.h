@@ -35,8 +35,8 @@ class PanicTimer {
  public:
   static constexpr double kSeconds = 1;
 
-  /// Call it once per pass, at the real time `now` (s). `step`: seconds that the panic grows older; nothing: those
-  /// since the last call. True when the first second is over.
+  /// Call it once per pass, at the real time `now` (s). `step`: seconds to add to the panic's age; without a value, the
+  /// real time since the last call. Returns true when the first second is over.
   bool update(const Panic& panic, double now, std::optional<double> step);
   /// Restarts the measurement at real time `now`.
   void restart(double now);
@@ -51,7 +51,8 @@ class PendingQueries {
  public:
   static constexpr std::size_t kMax = 256;
 
-  /// Postpones a query if the sender has requested ticks that are not done (`steps`); notes requests for ticks.
+  /// Call it for each message. Remembers the senders of /transport/step, and postpones their queries while `steps`
+  /// requested ticks are left. Returns true if the message was postponed.
   bool postpone(const Message& message, const CommandOrigin& origin, int steps);
   struct Query {
     Message message;
@@ -70,7 +71,7 @@ class LiveInput final : public InputSource {
   /// Work budget of the messages of one pass: 1 per message and per value, more if a text is formatted or the scene has
   /// handlers. The remaining messages wait in order for the next passes, so a flood does not stop time. A datagram is
   /// never split.
-  static constexpr int kTickWork = 8192;
+  static constexpr int kPassWork = 8192;
 
   LiveInput(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, TakeRecording& recording)
       : show_(show), executor_(executor), rewinder_(rewinder), recording_(recording) {}
@@ -83,11 +84,11 @@ class LiveInput final : public InputSource {
   void record(const Message& message, const CommandOrigin& origin, bool evaluate) override;
   Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
   Outcome request_take(const Message& message) override { return recording_.request(message); }
-  bool reruns_at_once() override;
+  bool must_rerun() override;
   bool is_paced() const override { return !show_.options.fast || show_.session->transport.paused(); }
 
-  /// Answers queries and rejects all other commands of this pass. `stop`: set by /take/stop; null: /take/stop is
-  /// rejected, too, and so is a panic, which otherwise waits.
+  /// Answers queries and rejects all other commands of this pass. /take/stop sets `stop` to true, and a panic remains
+  /// queued for the next pass. If `stop` is null, both are rejected as well.
   void reject_messages(const char* reason, bool* stop);
   /// Rejects the commands that have left the queue, within the work budget of a pass.
   void reject_commands(const char* reason, bool* stop = nullptr);

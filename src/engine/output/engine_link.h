@@ -21,7 +21,7 @@ namespace limber {
 struct EngineLink {
   static constexpr std::size_t kMaxItems = 65536;                  ///< Maximum number of waiting outgoing messages.
   static constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  ///< A datagram of 16 KiB may grow to 0.8 MiB.
-  /// Maximum number of waiting datagrams: about twenty ticks of work if they are expensive (LiveInput::kTickWork).
+  /// Maximum number of waiting datagrams: about twenty ticks of work if they are expensive (LiveInput::kPassWork).
   static constexpr std::size_t kMaxCommands = 16384;
   static constexpr std::size_t kMaxPanelItems = 1024;  ///< Maximum number of waiting answers to the panel.
   CommandQueue command_queue{kMaxCommands, kMaxBytes};

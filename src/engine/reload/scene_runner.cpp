@@ -282,7 +282,7 @@ void SceneRunner::play_scene(const std::string& file, std::unique_ptr<Session>& 
 
 void SceneRunner::rerun_if_requested() {
   if (!reloader_.consume_rerun(*show_.session)) return;
-  if (show_.input->reruns_at_once()) run_now(TakeSceneRun::Kind::rerun, true);
+  if (show_.input->must_rerun()) run_now(TakeSceneRun::Kind::rerun, true);
 }
 
 }  // namespace limber

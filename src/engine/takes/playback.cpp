@@ -11,8 +11,6 @@ namespace limber {
 
 namespace {
 
-constexpr const char* kReplayingError = "a take is being replayed; messages are rejected";
-constexpr const char* kPlayingError = "a take plays; /take/stop ends it";
 constexpr std::size_t kMaxReplayHistoryBytes = std::size_t{1}
                                                << 30;  // a replay must be able to rewind as far as the recorded session
 
@@ -29,60 +27,13 @@ ScriptLimits replay_limits(bool in_show) {
 
 ShowRules rules_of(const TakePlayer& player, bool in_show) {
   ShowRules rules;
-  rules.current = player.rules() > 0;
+  rules.before_first_revision = player.rules() == 0;
   rules.keeps_timers = player.keeps_timers();
   if (!player.current_scripts()) rules.limits = replay_limits(in_show);
   return rules;
 }
 
 }  // namespace
-
-void TakeInput::execute_messages(bool) {
-  live_.reject_messages(in_show_ ? kPlayingError : kReplayingError, in_show_ ? &stop_requested_ : nullptr);
-  show().outputs.live().mute_answers(true);
-  execute(player_->messages());
-}
-
-// The take decides. Ticks requested by a recorded /transport/step are consumed as in the recorded session.
-bool TakeInput::advances_time(bool) {
-  const bool running = player_->tick().running;
-  Transport& transport = show().session->transport;
-  if (running && transport.paused()) (void)transport.consume_step();
-  return running;
-}
-
-void TakeInput::end_handlers(std::uint64_t called) {
-  RecordedInput::end_handlers(called);
-  show().outputs.live().mute_answers(false);
-}
-
-void TakeInput::record(const Message& message, const CommandOrigin& origin, bool evaluate) {
-  show().history.record_input(message, origin, evaluate);
-}
-
-Outcome TakeInput::rewind(const Transport::RewindRequest& request, const CommandOrigin&) {
-  return rewinder_.rewind(request);
-}
-
-InputSource::SceneFiles TakeInput::begin_run(TakeSceneRun::Kind kind) {
-  const TakeSceneRun* const recorded = player_->consume_run(kind);
-  SceneFiles files;
-  if (player_->current_scripts()) return files;
-  files.fails = recorded == nullptr || !recorded->succeeded;
-  if (!files.fails) files.sources = player_->sources(*recorded);
-  return files;
-}
-
-// A run on another thread is in the take as an input of its own.
-bool TakeInput::reruns_at_once() {
-  return player_->current_scripts() ? live_.reruns_at_once() : player_->next_run_is(TakeSceneRun::Kind::rerun);
-}
-
-void TakeInput::end_pass() {
-  player_->compare(show().session->world, show().call_log, [this] { return show().state_hash(); });
-}
-
-Result<void> TakeInput::accepts_changes() const { return Error{kPlayingError}; }
 
 TakePlayback::TakePlayback(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, LiveInput& live,
                            SceneRunner& scenes, TakeRecording& recording, RecoveryControl& recovery)
@@ -117,7 +68,7 @@ Result<void> TakePlayback::begin(std::unique_ptr<TakePlayer> player, const std::
   options.preset = initial_state.preset;
   options.sets = initial_state.sets;
   show_.recovered = initial_state.recovered.empty() ? nullptr : initial_state.recovered.front();
-  show_.call_log.begin_tick(input_->player().stopped_calls());
+  show_.call_log.begin_pass(input_->player().stopped_calls());
   Result<void> started = run_start();
   if (!started) return started;
   input_->end_pass();
@@ -156,7 +107,7 @@ bool TakePlayback::begin_pass() {
 bool TakePlayback::next_tick() {
   TakePlayer& player = input_->player();
   if (!player.next()) return false;
-  show_.call_log.begin_tick(player.stopped_calls());
+  show_.call_log.begin_pass(player.stopped_calls());
   while (const TakeSceneRun* run = player.next_external_run()) run_scene(*run);
   return true;
 }
@@ -229,7 +180,7 @@ Result<void> TakePlayback::check(TakePlayer& player) {
 // which are used after the replay; on return the presets that were open, if they belong to another scene.
 std::unique_ptr<Session> TakePlayback::begin_in_show(std::unique_ptr<TakePlayer> player, const std::string& file,
                                                      Presets::Bank& bank) {
-  live_.reject_commands(kReplayingError);
+  live_.reject_commands(TakeInput::kReplayingError);
   recovery_.set_suspended(true);
   show_.overrides.clear();
   show_.undo_stack.clear();

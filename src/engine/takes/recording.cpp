@@ -106,7 +106,7 @@ std::function<void(const std::string&)> TakeRecording::failure_reporter() {
 
 Outcome TakeRecording::request(const Message& message) {
   Outcome outcome = Outcome::answered();
-  const std::string address = plain_name(message.address);
+  const std::string address = normalized_name(message.address);
   if (address == "/take/stop") {
     if (recorder_ == nullptr) return Outcome::rejected("no take is being recorded; /take/record starts one");
     end_requested_ = true;
@@ -133,7 +133,7 @@ Outcome TakeRecording::request(const Message& message) {
 }
 
 Result<void> TakeRecording::start() {
-  show_.call_log.begin_tick();
+  show_.call_log.begin_pass();
   const std::string& file = show_.options.record;
   recorder_ = std::make_unique<TakeRecorder>(show_.writer, TakeWriter::Target{file, false},
                                              capture_initial_state(show_, false), failure_reporter());

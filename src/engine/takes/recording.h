@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/show_state.h"
-#include "engine/takes/node.h"
 #include "engine/takes/recorder.h"
+#include "engine/takes/take_node.h"
 
 namespace limber {
 

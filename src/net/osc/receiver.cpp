@@ -160,7 +160,7 @@ namespace {
 struct UrgentAddresses {
   bool any = false;
   static void bundle(int, std::uint64_t) {}
-  void message(const char* address, const char*) { any = any || urgent_kind_of(address).has_value(); }
+  void message(const char* address, const char*) { any = any || urgent_kind_of_address(address).has_value(); }
   static void argument(char, const char*) {}
   static void end_message() {}
 };

@@ -100,7 +100,7 @@ std::string find_json(const ValueSnapshot& snapshot, std::string_view words, std
   const TreeSnapshot& tree = *snapshot.tree;
   std::vector<std::string> normalized;
   for (const std::string_view word : split(words, ' ')) {
-    if (!word.empty()) normalized.push_back(plain_name(word));
+    if (!word.empty()) normalized.push_back(normalized_name(word));
   }
   std::string out = R"({"FOUND":[)";
   Writer writer(snapshot, out);
@@ -108,9 +108,9 @@ std::string find_json(const ValueSnapshot& snapshot, std::string_view words, std
   for (std::uint32_t node = 0; node < tree.nodes().size() && !normalized.empty() && found <= limit; node++) {
     if (tree.nodes()[node].table->properties().empty()) continue;
     const std::string object = node == 0 ? "" : tree.path(node);
-    const std::string plain = plain_name(object);
+    const std::string plain = normalized_name(object);
     for (const Property& property : tree.nodes()[node].table->properties()) {
-      const std::string property_path = plain + "/" + plain_name(property.name);
+      const std::string property_path = plain + "/" + normalized_name(property.name);
       const bool matches = std::all_of(normalized.begin(), normalized.end(), [&](const std::string& word) {
         return property_path.find(word) != std::string::npos;
       });

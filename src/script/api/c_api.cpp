@@ -37,8 +37,8 @@ static_assert(offsetof(LimberNeighbor, distance) == offsetof(Neighbor, distance)
 static_assert(sizeof(LimberMeans) == sizeof(NeighborMeans));
 static_assert(offsetof(LimberMeans, offset) == offsetof(NeighborMeans, offset));
 static_assert(offsetof(LimberMeans, velocity) == offsetof(NeighborMeans, velocity));
-static_assert(offsetof(LimberMeans, spin) == offsetof(NeighborMeans, spin));
-static_assert(offsetof(LimberMeans, push) == offsetof(NeighborMeans, push));
+static_assert(offsetof(LimberMeans, angular_velocity) == offsetof(NeighborMeans, angular_velocity));
+static_assert(offsetof(LimberMeans, separation) == offsetof(NeighborMeans, separation));
 
 const LimberApi& limber_api() {
   static const LimberApi api = {

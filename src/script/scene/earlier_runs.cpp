@@ -138,8 +138,8 @@ void EarlierRuns::collect_garbage() {
   for (Run& run : runs_) run.vm->collect_garbage();
 }
 
-void EarlierRuns::set_replaying(bool on) {
-  for (Run& run : runs_) run.vm->guard().set_replaying(on);
+void EarlierRuns::set_resimulating(bool on) {
+  for (Run& run : runs_) run.vm->guard().set_resimulating(on);
 }
 
 void EarlierRuns::set_limits(const ScriptLimits& limits) {

@@ -66,7 +66,7 @@ class EarlierRuns {
   /// Ends the timers that a run's calls have canceled.
   void apply_cancellations(ScriptContext& by, std::uint64_t tick);
   void collect_garbage();
-  void set_replaying(bool on);
+  void set_resimulating(bool on);
   void set_limits(const ScriptLimits& limits);
   /// Returns the hash continued with the runs that have pending timers; unchanged if there are none.
   std::uint64_t hash(std::uint64_t start) const;

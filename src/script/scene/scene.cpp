@@ -87,9 +87,9 @@ void Scene::collect_garbage() {
 
 std::uint64_t Scene::state_hash(std::uint64_t start) const { return earlier_->hash(context_->hash(start)); }
 
-void Scene::set_replaying(bool on) {
-  vm_->guard().set_replaying(on);
-  earlier_->set_replaying(on);
+void Scene::set_resimulating(bool on) {
+  vm_->guard().set_resimulating(on);
+  earlier_->set_resimulating(on);
 }
 
 VmMode Scene::mode() const { return vm_->mode(); }

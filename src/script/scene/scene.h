@@ -74,8 +74,8 @@ class Scene {
   bool handle_message(const Message& message, const CommandOrigin& origin);
   /// Collects garbage after a tick: about 100 µs at most; does nothing if there is little garbage.
   void collect_garbage();
-  /// While `on`, a recorded run is repeated: only the calls that the log lists are stopped. [sim]
-  void set_replaying(bool on);
+  /// While `on`, a rewind simulates recorded passes again: only the calls that the log lists are stopped. [sim]
+  void set_resimulating(bool on);
   VmMode mode() const;
   /// Switches to live mode; false while another scene is live and not disarmed.
   bool arm();

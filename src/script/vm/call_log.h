@@ -1,4 +1,4 @@
-// CallLog: numbers the guarded script calls of a tick and records those that were stopped. Stops for CPU time or memory
+// CallLog: numbers the guarded script calls of a pass and records those that were stopped. Stops for CPU time or memory
 // differ from run to run, so a take stores their numbers, and a replay skips the same calls. [sim]
 #pragma once
 
@@ -19,8 +19,8 @@ struct StoppedCall {
 
 class CallLog {
  public:
-  /// Starts a tick; `skip_list`: the calls that it must skip.
-  void begin_tick(std::vector<StoppedCall> skip_list = {}) {
+  /// Starts a pass; `skip_list`: the calls that it must skip.
+  void begin_pass(std::vector<StoppedCall> skip_list = {}) {
     count_ = rewound_at_ = 0;
     rewound_stops_ = 0;
     stopped_.clear();
@@ -41,7 +41,7 @@ class CallLog {
     stopped_.push_back({count_, std::move(file), line, std::move(text)});
   }
 
-  /// Records a rewind within the tick. History numbers the calls from here, a take from the start of the tick.
+  /// Records a rewind within the pass. History numbers the calls from here, a take from the start of the pass.
   void record_rewind() {
     rewound_at_ = count_;
     rewound_stops_ = stopped_.size();

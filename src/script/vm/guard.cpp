@@ -184,9 +184,9 @@ void Guard::begin(Kind kind) {
     if (call_log_ != nullptr) call_log_->count_call();
     context_.begin_call();
   }
-  memory_.begin_call(replaying_);
+  memory_.begin_call(resimulating_);
   current_guard = this;
-  const double budget = replaying_ ? limits_.replay_ms : kind == Kind::call ? limits_.call_ms : limits_.run_ms;
+  const double budget = resimulating_ ? limits_.replay_ms : kind == Kind::call ? limits_.call_ms : limits_.run_ms;
   watch_.begin(static_cast<std::int64_t>(budget * kMillisecond));
 }
 
@@ -199,10 +199,10 @@ bool Guard::next_call(bool& changed) {
   if (call_log_ != nullptr && call_log_->skips_next()) return false;
   // later stop requests for the previous call have no effect; earlier ones are seen below
   watch_.next_call();
-  if (stop_.reason != Reason::none || (memory_.used() > memory_.cap() / 2 && !replaying_)) return false;
+  if (stop_.reason != Reason::none || (memory_.used() > memory_.cap() / 2 && !resimulating_)) return false;
   if (call_log_ != nullptr) call_log_->count_call();
   if (context_.next_call()) changed = true;
-  memory_.begin_call(replaying_);
+  memory_.begin_call(resimulating_);
   return true;
 }
 

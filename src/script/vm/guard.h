@@ -87,9 +87,9 @@ class Guard {
   const LuaMemory& memory() const { return memory_; }
   /// Serializes the memory count for a checkpoint.
   void serialize(Archive& archive);
-  /// While `on`, a recorded run is repeated: only the calls that the log lists are stopped, and those that need many
-  /// times the original budget because the runs have diverged.
-  void set_replaying(bool on) { replaying_ = on; }
+  /// While `on`, a rewind simulates recorded passes again: only the calls that the log lists are stopped, and those
+  /// that need many times the original budget because the re-simulation has diverged.
+  void set_resimulating(bool on) { resimulating_ = on; }
 
  private:
   enum class Reason : std::uint8_t { none, time, memory };
@@ -130,7 +130,7 @@ class Guard {
   bool live_ = false;
   bool running_ = false;
   bool memory_stop_ = false;
-  bool replaying_ = false;
+  bool resimulating_ = false;
   Stop stop_;
 };
 

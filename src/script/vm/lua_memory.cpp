@@ -41,8 +41,8 @@ void LuaMemory::detach(lua_State* state) { lua_setallocf(state, base_allocator_,
 
 void LuaMemory::serialize(Archive& archive) { archive.serialize(used_); }
 
-void LuaMemory::begin_call(bool replaying) {
-  if (replaying) {
+void LuaMemory::begin_call(bool resimulating) {
+  if (resimulating) {
     end_call();
     alarm_at_ = used_ + kReplayAllowance;
     return;

@@ -21,9 +21,9 @@ class LuaMemory {
   void attach(lua_State* state);
   void detach(lua_State* state);
 
-  /// Monitors the allocations between these two calls. `replaying`: the call is known to succeed, so only an
+  /// Monitors the allocations between these two calls. `resimulating`: the call is known to succeed, so only an
   /// amount far above normal calls triggers `full`.
-  void begin_call(bool replaying = false);
+  void begin_call(bool resimulating = false);
   void end_call() {
     alarm_at_ = kNever;
     in_call_ = false;

@@ -42,15 +42,15 @@ class BehaviorList {
   std::vector<BehaviorGroup*> groups() const;
   NodeId group_node() const { return group_node_; }
 
-  /// Copies all behaviors of `source` with their values to its copy, as a new member if they belong to a group. Does
-  /// nothing if the source is of another world: the caller must add them then.
+  /// Copies all behaviors of `source` with their values to its copy; those that belong to a group become new members of
+  /// it. Does nothing if the source is of another world: the caller must add them then.
   void copy(const Body& source, Body& copy);
   void on_body_destroyed(Body& body);
   /// Starts the body's behaviors again before the next step, with freshly seeded generators.
   void on_body_reset(Body& body);
-  /// Replaces the instances of a reloaded type by instances of the type that now has its name. Properties that exist
-  /// in both keep their values (clamped). Targets, place, generator and intervals are preserved, and
-  /// Behavior::adopt_state() is called. Instances of a type that was removed are left unchanged.
+  /// Replaces each instance of the type that had this name before a reload by an instance of the new type. Properties
+  /// that exist in both keep their values (clamped). Targets, place, random generator and timer intervals are
+  /// preserved, and Behavior::adopt_state() is called. Instances of a type that was removed are left unchanged.
   void replace_instances(std::string_view type);
 
   /// Updates group members and targets to the present bodies. Cheap if none was added, removed or changed.

@@ -1,5 +1,6 @@
 // BehaviorTransaction: logs a guarded call's changes of behaviors, to roll them back if the call fails. Behaviors that
-// the call removes are hidden until it ends. [sim]
+// the call removes are hidden until it ends. There is no rollback(): it registers functions that undo the changes with
+// WorldTransaction::record(), which runs them. [sim]
 #pragma once
 
 #include <cstddef>

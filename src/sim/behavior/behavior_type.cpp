@@ -45,7 +45,7 @@ Property error_property() {
 
 std::string normalized_type_name(std::string_view name) {
   constexpr std::string_view kSuffix = "behavior";
-  std::string normalized = plain_name(name);
+  std::string normalized = normalized_name(name);
   if (normalized.size() > kSuffix.size() && normalized.ends_with(kSuffix))
     normalized.resize(normalized.size() - kSuffix.size());
   return normalized;
@@ -120,7 +120,7 @@ Result<std::shared_ptr<const BehaviorType>> BehaviorTypes::require(std::string_v
   for (const auto& type : types_) names.push_back(type->name);
   // search similar names without the suffix of ofxDabPhysics' class names
   const std::string normalized = normalized_type_name(name);
-  const std::string_view typed_name = normalized.size() < plain_name(name).size() ? normalized : name;
+  const std::string_view typed_name = normalized.size() < normalized_name(name).size() ? normalized : name;
   return Error{fmt::format("there is no behavior type '{}'{}", printable(name), name_hint(typed_name, names))};
 }
 

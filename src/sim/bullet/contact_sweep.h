@@ -1,4 +1,5 @@
-// ContactSweep: projected Gauss-Seidel sweeps over the contacts and friction of an island, in a compact row format.
+// ContactSweep: projected Gauss-Seidel sweeps (iterations, not motions) over the contacts and friction of an island, in
+// a compact row format.
 #pragma once
 
 #include "sim/bullet/bullet.h"

@@ -20,7 +20,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
 
   void set_direct(bool on) { direct_enabled_ = on; }
   bool direct_enabled() const { return direct_enabled_; }
-  /// Sets the number of internal steps per tick, and of those that are left, the current one included.
+  /// Sets the number of substeps per tick, and of those that are left, the current one included.
   void set_substep(int steps_left, int count) {
     steps_left_ = steps_left;
     step_count_ = count;

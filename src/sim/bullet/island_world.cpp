@@ -45,8 +45,8 @@ void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
 }  // namespace
 
 WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), thread_pool(setup.thread_pool) {
-  // Bullet's default pools of 4096 contact pairs take 4 MB, which each checkpoint would have to compare; exceeding a
-  // smaller pool costs no measurable time (arms-1000)
+  // Bullet's default pools of 4096 contact pairs take 4 MB, which each checkpoint would have to compare with the
+  // previous one. A smaller pool may be exceeded; this costs no measurable time (benchmark arms-1000).
   btDefaultCollisionConstructionInfo pools;
   pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kManifoldPoolSize;
   configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
@@ -231,7 +231,7 @@ void IslandWorld::updateAabbs() {
   for_each(objects, [&](int i, btCollisionObject& object) {
     if (i + kObjectsAhead / 2 < count) Broadphase::prefetch_proxy(*objects[i + kObjectsAhead / 2]);
     left_aabb_[i] =
-        Broadphase::left_aabb(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
+        Broadphase::refit_aabb(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
   });
   int left_count = 0;
   for (int i = 0; i < count; ++i) {

@@ -20,8 +20,8 @@ namespace limber {
 
 class IslandSolver;
 
-/// Components of a world. IslandWorld inherits them first, so that they are constructed before and destroyed after
-/// Bullet's world, which refers to them.
+/// Bullet's components of a world. IslandWorld inherits them first, so that they are constructed before and destroyed
+/// after Bullet's world, which refers to them.
 struct WorldParts {
   explicit WorldParts(const WorldSetup& setup);
   ~WorldParts();
@@ -46,8 +46,8 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   explicit IslandWorld(const WorldSetup& setup = {});
   ~IslandWorld() override;
 
-  /// One tick: `substeps` equal internal steps of `h` seconds each. Forces applied before it act during all of them and
-  /// are cleared at its end, as are the joints' averages. Does nothing unless h > 0 and substeps > 0.
+  /// One tick: `substeps` equal steps of `h` seconds each. Forces applied before it act during all of them and are
+  /// cleared at its end, when the mean forces of the joints are computed. Does nothing unless h > 0 and substeps > 0.
   void step(double h, int substeps);
 
   /// Joints keep the order in which they were added. By default the joined parts stop colliding with each other at
@@ -73,10 +73,10 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void exclude_pair(btCollisionObject& a, btCollisionObject& b);
   void include_pair(btCollisionObject& a, btCollisionObject& b);
 
-  /// Reads the joints' rates again; to be called if velocities were changed in an internal step's callback.
+  /// Reads the joints' rates again; to be called if velocities were changed in a substep's callback.
   void refresh_joints();
 
-  /// True if a part has been unstable (stability.h) since the present internal step began.
+  /// True if a part has been unstable (stability.h) since the present substep began.
   bool is_unstable() const { return unstable_.load(std::memory_order_relaxed); }
 
   /// Selects the direct solver (true) or the iterative one for all islands, from the next step on.
@@ -109,15 +109,15 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void end_joints(Islands::Range range, btScalar h, bool any_fast);
 
   std::atomic<bool> unstable_{false};
-  bool first_substep_ = false;  // first and last internal step of a tick
+  bool first_substep_ = false;  // first and last substep of a tick
   bool last_substep_ = false;
 
   SleepTracker sleep_{*this};
-  btScalar step_length_ = 0;  // of the last internal step, s
+  btScalar step_length_ = 0;  // of the last substep, s
   btScalar tick_length_ = 0;
 
   AwakeObjects awake_;
-  Islands islands_;  // of the present internal step
+  Islands islands_;  // of the present substep
   // scratch: proxies of objects that left their boxes; null for the others
   btAlignedObjectArray<btBroadphaseProxy*> left_aabb_;
 };

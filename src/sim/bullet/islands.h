@@ -1,4 +1,4 @@
-// Islands: the islands of an internal step (bodies that are joined, or whose bounding boxes overlap), with their
+// Islands: the islands of a substep (bodies that are joined, or whose bounding boxes overlap), with their
 // bodies, joints and contacts sorted by island, and batches of islands to solve.
 #pragma once
 

@@ -15,8 +15,8 @@ struct RestTolerance {
   btScalar distance;
   btScalar angle;
 };
-/// For islands with joints, where resting parts stay within 2e-7. A part at a turning point leaves this range within
-/// kRest if it accelerates by more than 8e-5 m/s² or rad/s².
+/// For islands with joints, where resting parts stay within 2e-7 m and rad. A part that reverses its motion isn't taken
+/// for resting if it accelerates by more than 8e-5 m/s² or rad/s²: it leaves this range within kRest.
 constexpr RestTolerance kJointedTolerance{btScalar(1e-5), btScalar(1e-5)};
 /// For other islands, since stacks jitter in the iterative solver.
 constexpr RestTolerance kOtherTolerance{btScalar(1e-4), btScalar(1e-3)};

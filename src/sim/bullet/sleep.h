@@ -10,11 +10,11 @@
 
 namespace limber {
 
-/// An island (parts that touch or are joined) is put to sleep at the end of a tick if for half of kRest, or kRest with
-/// joints, none of its parts left its pose, no force acted, no property changed, and no motor commanded a motion. A
-/// sleeping island has no velocity, its contacts retain their impulses and its joints their readouts. Islands that
-/// neither touch nor are joined to a static object sleep only if they don't move at all, since nothing brings them to
-/// rest.
+/// An island (parts that touch or are joined) falls asleep at the end of a tick when it has been at rest for kRest, or
+/// half of it without joints: none of its parts left its pose, no force acted, no property changed, and no motor
+/// commanded a motion. A sleeping island has no velocity, its contacts retain their impulses and its joints their
+/// readouts. Islands that neither touch nor are joined to a static object sleep only if they don't move at all, since
+/// nothing brings them to rest.
 ///
 /// btCollisionObject::isActive() is true for awake objects; static objects are active only in a step in which they were
 /// moved. Objects are identified by their index in the world's array. Decisions depend only on an island's own history,
@@ -33,15 +33,15 @@ class SleepTracker {
   /// Sets whether the object permits its island to sleep.
   void allow(btCollisionObject& object, bool may_sleep);
 
-  /// Wakes the object and its island in the next internal step and restarts its time at rest; of a static object: wakes
-  /// objects that touch it or are joined to it. [any thread]
+  /// Wakes the object and its island in the next substep and restarts its time at rest. If the object is static, wakes
+  /// the objects that touch it or are joined to it instead. [any]
   void wake(const btCollisionObject& object) {
     const int i = object.getWorldArrayIndex();
     if (i < 0 || i >= wake_requested_.size()) return;
     std::atomic_ref<std::uint8_t>(wake_requested_[i]).store(1, std::memory_order_relaxed);
     any_wake_requested_.store(true, std::memory_order_relaxed);
   }
-  /// True if wake() was called for the object since the last internal step and not canceled.
+  /// True if wake() was called for the object since the last substep and not canceled.
   bool wake_requested(const btCollisionObject& object) const;
   void cancel_wake(const btCollisionObject& object);
   bool any_wake_requested() const { return any_wake_requested_.load(std::memory_order_relaxed); }
@@ -52,11 +52,11 @@ class SleepTracker {
   bool execute_wakes(bool mid_tick);
   /// Wakes islands that an awake object touches. Call after contacts were found. Returns true if something woke.
   bool wake_touched(bool mid_tick);
-  /// Ends an internal step: static objects that were moved in it are inactive again.
+  /// Ends a substep: static objects that were moved in it are inactive again.
   void end_step();
 
-  /// Compares the part's pose with its rest pose. Call in a tick's last internal step, after the part has moved.
-  /// `seconds`: length of the tick. [any thread, a different part each]
+  /// Compares the part's pose with its rest pose. Call in a tick's last substep, after the part has moved.
+  /// `seconds`: length of the tick. [any, each thread for other parts]
   void observe(const btRigidBody& body, btScalar seconds);
   /// Ends a tick: puts islands at rest to sleep. Returns true if one fell asleep.
   bool end_tick(const AwakeObjects& awake);
@@ -71,8 +71,8 @@ class SleepTracker {
     float seconds;     // time at rest
   };
   struct Track {
-    RestPose with_joints;     // tolerance for islands with joints
-    RestPose without_joints;  // tolerance for other islands
+    RestPose with_joints;     // with the tolerance for islands with joints
+    RestPose without_joints;  // with the tolerance for other islands
     std::uint32_t group;      // identifies the island that it sleeps with
     bool may_sleep;
   };

@@ -1,4 +1,4 @@
-// Rotation of a body within one internal step: split into a spin about a body axis, which is integrated exactly at any
+// Rotation of a body within one substep: split into a spin about a body axis, which is integrated exactly at any
 // speed, and the rest, which is clamped beyond a quarter of pi. docs/solver.md. [any]
 #pragma once
 
@@ -6,10 +6,10 @@
 
 namespace limber {
 
-/// Rotation per internal step, rad, beyond which rotation other than spin is clamped (to less than pi, as in Bullet):
+/// Rotation per substep, rad, beyond which rotation other than spin is clamped (to less than pi, as in Bullet):
 /// pivots would move along straight lines instead of arcs, and joints would drift apart.
 inline constexpr double kMaxRotationPerStep = kPi / 4;
-/// Below this rotation per internal step, rad, a constant angular velocity is accurate enough.
+/// Below this rotation per substep, rad, a constant angular velocity is accurate enough.
 inline constexpr double kSlowRotation = 0.05;
 
 /// Angular velocity of a body, split into spin and rest. All vectors are in world axes.
@@ -42,8 +42,8 @@ RotationStep split_rotation(const btRigidBody& body, const Vec3& w, double h);
 
 /// True if a body without joints rotates fast enough to be moved by integrate_free_rotation().
 bool moves_freely(const btRigidBody& body, double h);
-/// Rotates a torque-free body without joints for `h` s by Euler's equations, in as many substeps as it needs: energy
-/// and angular momentum are conserved at any speed.
+/// Rotates a torque-free body without joints for `h` s by Euler's equations, in as many smaller steps as it needs:
+/// energy and angular momentum are conserved at any speed.
 void integrate_free_rotation(const Vec3& inertia, Quat& rotation, Vec3& w, double h);
 
 /// Change of the angular velocity of a body in a step of `h` s by its own rotation, as if it had no joints; world axes.
@@ -58,8 +58,8 @@ double move_body(btRigidBody& body, double h);
 /// Angular velocity without spin about a driven joint's axis or a principal axis; world axes.
 Vec3 tumbling_velocity(const btRigidBody& body, double h);
 
-/// Largest angular velocity, rad/s, removed by the clamp since reset_clamp(), which is called at the start of a tick;
-/// 0: none. Stored in the body.
+/// clamped_by() returns the largest angular velocity, rad/s, that the clamp has removed since reset_clamp(), which is
+/// called at the start of a tick; 0: none. It is stored in the body.
 void reset_clamp(btRigidBody& body);
 void record_clamp(btRigidBody& body, double amount);
 double clamped_by(const btRigidBody& body);

@@ -14,7 +14,7 @@ namespace {
 /// Near others that would cost more, since every overlapping box is a candidate for contacts. Boxes of objects that
 /// moved by more than their own size (teleported) are not extended.
 constexpr btScalar kExtensionSteps = 2;
-/// Largest extension of an AABB along its object's motion in a step, m. Contacts can't stop faster objects.
+/// Largest extension of an AABB along its object's motion in a step, m. Faster objects may tunnel through others.
 constexpr btScalar kMaxExtension = 10;
 /// Prefetch distances for objects that left their box and for their tree leaves, which another processor may have
 /// written.
@@ -186,7 +186,7 @@ void Broadphase::update_pairs(btBroadphaseProxy* handle) {
   mark_for_search(proxy);
 }
 
-bool Broadphase::left_aabb(btCollisionObject& object, btScalar h) {
+bool Broadphase::refit_aabb(btCollisionObject& object, btScalar h) {
   if (object.getBroadphaseHandle() == nullptr) return false;
   Proxy& proxy = *static_cast<Proxy*>(object.getBroadphaseHandle());
   if (proxy.leaf == nullptr) return proxy.update_plane();

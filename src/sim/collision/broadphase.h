@@ -34,13 +34,13 @@ class Broadphase : public btBroadphaseInterface {
   /// Updates the pairs of an object in the next step, after its permission to collide with others has changed.
   void update_pairs(btBroadphaseProxy* proxy);
 
-  /// True if the object left its fattened AABB, or is static and was moved; update_aabbs() must be called with it then.
-  /// `h`: the step's length, s; the AABB includes the object's motion in the step. [any thread, a different object
-  /// each]
-  static bool left_aabb(btCollisionObject& object, btScalar h);
-  /// Prefetches memory for left_aabb().
+  /// Computes the AABB of an object again, including its motion in a step of `h` s. Returns true if the object left its
+  /// fattened AABB, or is static and was moved; update_aabbs() must be called with it then. [any thread, a different
+  /// object each]
+  static bool refit_aabb(btCollisionObject& object, btScalar h);
+  /// Prefetches memory for refit_aabb().
   static void prefetch_proxy(const btCollisionObject& object);
-  /// Updates the fattened AABBs of objects for which left_aabb() returned true.
+  /// Updates the fattened AABBs of objects for which refit_aabb() returned true.
   void update_aabbs(std::span<btBroadphaseProxy* const> proxies);
 
   btBroadphaseProxy* createProxy(const btVector3& low, const btVector3& high, int shape, void* object, int group,

@@ -13,7 +13,7 @@
 
 #include "sim/collision/box_axes.h"
 #include "sim/collision/contact_features.h"
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 
 namespace limber {
 namespace {
@@ -63,7 +63,7 @@ class PlaneAlgorithm : public PairAlgorithm {
     const btTransform& pose = convex.getWorldTransform();
     const btVector3 normal = plane.getWorldTransform().getBasis() * plane_shape.getPlaneNormal();
     const btScalar constant = plane_shape.getPlaneConstant() + normal.dot(plane.getWorldTransform().getOrigin());
-    ContactManifold points(manifold(), info.m_timeStep);
+    ManifoldBuilder points(manifold(), info.m_timeStep);
     ContactFeature feature;
     const btScalar height = normal.dot(pose.getOrigin()) - constant;
     find_points_on_plane(shape, -(normal * pose.getBasis()), height, points.max_distance(), feature);
@@ -115,7 +115,7 @@ const ContactFeature& clip(const ContactFeature& reference, ContactFeature& inci
 }
 
 // Adds the points of the incident feature near the reference face. `flipped`: the reference face is body A's.
-void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ContactManifold& points) {
+void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ManifoldBuilder& points) {
   ContactFeature spare;
   const ContactFeature& clipped = clip(reference, incident, spare);
   const btVector3& normal = reference.normal;
@@ -137,7 +137,7 @@ class BoxAlgorithm : public PairAlgorithm {
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* out) override {
     out->setPersistentManifold(&manifold());
-    ContactManifold points(manifold(), info.m_timeStep);
+    ManifoldBuilder points(manifold(), info.m_timeStep);
     const auto& shape_a = static_cast<const btBoxShape&>(*a->getCollisionShape());
     const auto& shape_b = static_cast<const btBoxShape&>(*b->getCollisionShape());
     const Box box_a(shape_a, a->getWorldTransform());
@@ -218,7 +218,7 @@ class ConvexAlgorithm : public PairAlgorithm {
     out->setPersistentManifold(&manifold());
     const auto& shape_a = static_cast<const btConvexShape&>(*a->getCollisionShape());
     const auto& shape_b = static_cast<const btConvexShape&>(*b->getCollisionShape());
-    ContactManifold points(manifold(), info.m_timeStep);
+    ManifoldBuilder points(manifold(), info.m_timeStep);
     ClosestPoints nearest;
     const btScalar breaking = manifold().getContactBreakingThreshold();
     find_nearest(*a, *b, std::max(points.max_distance(), breaking), nearest);
@@ -261,7 +261,7 @@ class ConvexAlgorithm : public PairAlgorithm {
 
   // Returns false if no face of either shape has the contact normal.
   static bool add_faces(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btVector3& normal,
-                        ContactManifold& points) {
+                        ManifoldBuilder& points) {
     ContactFeature feature_a;
     ContactFeature feature_b;
     find_world_feature(a, -normal, feature_a);

@@ -2,7 +2,7 @@
 // that the previous one fetched.
 #include "sim/collision/dispatcher.h"
 
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 
 namespace limber {
 namespace {

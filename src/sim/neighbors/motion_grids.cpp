@@ -36,7 +36,7 @@ void MotionGrids::gather_velocities() {
   for (std::size_t i = 0; i < velocities_.size(); i++) {
     const PartData& part = cloud_.data(cloud_.point_parts()[i]);
     put(velocities_[i].velocity, cloud_.velocity_of(part));
-    put(velocities_[i].spin, cloud_.spin_of(part));
+    put(velocities_[i].angular_velocity, cloud_.angular_velocity_of(part));
   }
 }
 
@@ -53,7 +53,7 @@ void MotionGrids::fill_motions(Grid& grid, bool velocities) {
     const std::uint32_t i = order[k];
     if (velocities) {
       store(motion.velocity, load(velocities_[i].velocity));
-      store(motion.spin, load(velocities_[i].spin));
+      store(motion.angular_velocity, load(velocities_[i].angular_velocity));
     }
     motion.position[0] = points.x[i];
     motion.position[1] = points.y[i];

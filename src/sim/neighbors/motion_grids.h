@@ -32,7 +32,7 @@ class MotionGrids {
 
  private:
   struct alignas(32) Velocities {  // with the layout of NeighborMotion
-    float velocity[4], spin[4];
+    float velocity[4], angular_velocity[4];
   };
   void gather_velocities();
 

@@ -10,7 +10,7 @@ namespace limber {
 namespace {
 
 // Returns the unit vector times 1 − distance/max_distance, or zero if the points coincide.
-Float4 push_vector(const Float4& r, float inverse_max_distance) {
+Float4 separation_vector(const Float4& r, float inverse_max_distance) {
   const float distance = std::sqrt((r[0] * r[0] + r[1] * r[1]) + r[2] * r[2]);
   return distance > 0 ? r * (1 / distance - inverse_max_distance) : Float4{};
 }
@@ -19,7 +19,7 @@ Float4 push_vector(const Float4& r, float inverse_max_distance) {
 
 void MeansCalculator::compute(const Query& query, std::span<NeighborMeans> means) {
   if (!(query.max_distance > query.min_distance) || cloud_.size() == 0) return;
-  if (query.min_distance <= 0 && (query.want & kWantPush) == 0 && covers_all(query))
+  if (query.min_distance <= 0 && (query.want & kWantSeparation) == 0 && covers_all(query))
     return compute_by_totals(query, means);
   MotionGrids::Grid& grid = grids_.find(static_cast<float>(query.max_distance));
   grids_.fill_motions(grid, (query.want & kWantVelocity) != 0);
@@ -28,10 +28,10 @@ void MeansCalculator::compute(const Query& query, std::span<NeighborMeans> means
       return compute_by_grid<0>(query, grid, means);
     case kWantVelocity:
       return compute_by_grid<kWantVelocity>(query, grid, means);
-    case kWantPush:
-      return compute_by_grid<kWantPush>(query, grid, means);
+    case kWantSeparation:
+      return compute_by_grid<kWantSeparation>(query, grid, means);
     default:
-      return compute_by_grid<kWantVelocity | kWantPush>(query, grid, means);
+      return compute_by_grid<kWantVelocity | kWantSeparation>(query, grid, means);
   }
 }
 
@@ -39,7 +39,7 @@ NeighborMeans MeansCalculator::compute(const PartData& part, double min_distance
   if (!(max_distance > min_distance) || cloud_.size() == 0) return {};
   MotionGrids::Grid& grid = grids_.find(static_cast<float>(max_distance));
   grids_.fill_motions(grid, true);
-  return sum_near<kWantVelocity | kWantPush>(grid, part, min_distance, max_distance);
+  return sum_near<kWantVelocity | kWantSeparation>(grid, part, min_distance, max_distance);
 }
 
 // True if no two parts, of the cloud and of the query, are farther apart than `max_distance`.
@@ -63,13 +63,13 @@ void MeansCalculator::compute_by_totals(const Query& query, std::span<NeighborMe
   for (std::size_t k = 0; k < points.size(); k++) {
     const PartData& part = cloud_.data(cloud_.point_parts()[k]);
     const Totals summand{1, Vec3(points.x[k], points.y[k], points.z[k]), cloud_.velocity_of(part),
-                         cloud_.spin_of(part)};
+                         cloud_.angular_velocity_of(part)};
     const std::int32_t ordinal = cloud_.body_ordinal(static_cast<std::size_t>(part.body));
     for (Totals* sum : {&all, &body_totals_[static_cast<std::size_t>(ordinal)]}) {
       sum->count += summand.count;
       sum->position += summand.position;
       sum->velocity += summand.velocity;
-      sum->spin += summand.spin;
+      sum->angular_velocity += summand.angular_velocity;
     }
   }
   for (std::size_t i = 0; i < query.parts.size(); i++) {
@@ -81,7 +81,8 @@ void MeansCalculator::compute_by_totals(const Query& query, std::span<NeighborMe
     means[i].count = static_cast<std::uint32_t>(count);
     put(means[i].offset, (all.position - own.position) / count - cloud_.center_of(part));
     put(means[i].velocity, (all.velocity - own.velocity) / count - cloud_.velocity_of(part));
-    put(means[i].spin, (all.spin - own.spin) / count - cloud_.spin_of(part));
+    put(means[i].angular_velocity,
+        (all.angular_velocity - own.angular_velocity) / count - cloud_.angular_velocity_of(part));
   }
 }
 
@@ -94,7 +95,7 @@ void MeansCalculator::compute_by_grid(const Query& query, MotionGrids::Grid& gri
     return;
   }
   sum_pairs<Want>(query, grid);
-  const Push none{};
+  const Separation none{};
   grid_index_.assign(cloud_.parts().size(), PartCloud::kNoIndex);
   const std::span<const std::uint32_t> order = grid.grid.order();
   for (std::uint32_t index = 0; index < order.size(); index++) {
@@ -103,8 +104,8 @@ void MeansCalculator::compute_by_grid(const Query& query, MotionGrids::Grid& gri
   for (std::size_t i = 0; i < query.parts.size(); i++) {
     const std::uint32_t index = grid_index_[query.set_indices[i]];
     if (index == PartCloud::kNoIndex) continue;  // its body is disabled
-    const Push& push = (Want & kWantPush) != 0 ? pushes_[index] : none;
-    means[i] = means_from_sums(sums_[index], push, Want, grid.motions[index]);
+    const Separation& separation = (Want & kWantSeparation) != 0 ? separations_[index] : none;
+    means[i] = means_from_sums(sums_[index], separation, Want, grid.motions[index]);
   }
 }
 
@@ -119,29 +120,29 @@ NeighborMeans MeansCalculator::sum_near(MotionGrids::Grid& grid, const PartData&
   found_.resize(cloud_.size() + kPointPadding);
   const std::uint32_t count = grid.grid.find_near(query, static_cast<float>(min_distance), max_radius, found_.data());
   const Float4 center_point{query.x, query.y, query.z, 0};
-  Float4 offset{}, velocity{}, spin{}, push{};
+  Float4 offset{}, velocity{}, angular_velocity{}, separation{};
   for (std::uint32_t j = 0; j < count; j++) {
     const NeighborMotion& neighbor = grid.motions[found_[j]];
     const Float4 r = load(neighbor.position) - center_point;
     offset += r;
     if constexpr ((Want & kWantVelocity) != 0) {
       velocity += load(neighbor.velocity);
-      spin += load(neighbor.spin);
+      angular_velocity += load(neighbor.angular_velocity);
     }
-    if constexpr ((Want & kWantPush) != 0) push += push_vector(r, inverse_max_distance);
+    if constexpr ((Want & kWantSeparation) != 0) separation += separation_vector(r, inverse_max_distance);
   }
   NeighborSum sum{};
-  Push pushes;
+  Separation separations;
   store(sum.offset, offset);
   store(sum.velocity, velocity);
-  store(sum.spin, spin);
-  store(pushes.sum, push);
+  store(sum.angular_velocity, angular_velocity);
+  store(separations.sum, separation);
   NeighborMotion own{};
   if constexpr ((Want & kWantVelocity) != 0) {
     put(own.velocity, cloud_.velocity_of(part));
-    put(own.spin, cloud_.spin_of(part));
+    put(own.angular_velocity, cloud_.angular_velocity_of(part));
   }
-  return means_from_sums(sum, pushes, Want, own);
+  return means_from_sums(sum, separations, Want, own);
 }
 
 template <unsigned Want>
@@ -151,7 +152,7 @@ void MeansCalculator::sum_pairs(const Query& query, MotionGrids::Grid& grid) {
   const auto n = static_cast<std::uint32_t>(cloud_.size());
   found_.resize(n + kPointPadding);
   sums_.assign(n, NeighborSum{});
-  if constexpr ((Want & kWantPush) != 0) pushes_.assign(n, Push{});
+  if constexpr ((Want & kWantSeparation) != 0) separations_.assign(n, Separation{});
   const AddPairs add = select_add_pairs(PointFinder::widest(), (Want & kWantVelocity) != 0);
   const NeighborMotion* const motions = grid.motions.data();
   for (std::uint32_t index = 0; index < n; index++) {
@@ -159,25 +160,25 @@ void MeansCalculator::sum_pairs(const Query& query, MotionGrids::Grid& grid) {
     const std::span<const std::uint32_t> found(found_.data(), count);
     if (count == 0) continue;
     add(index, found, motions, sums_.data());
-    if constexpr ((Want & kWantPush) != 0) push_pairs(index, found, motions, 1 / max_distance);
+    if constexpr ((Want & kWantSeparation) != 0) sum_pair_separations(index, found, motions, 1 / max_distance);
   }
 }
 
-void MeansCalculator::push_pairs(std::uint32_t index, std::span<const std::uint32_t> found,
-                                 const NeighborMotion* motions, float inverse_max_distance) {
+void MeansCalculator::sum_pair_separations(std::uint32_t index, std::span<const std::uint32_t> found,
+                                           const NeighborMotion* motions, float inverse_max_distance) {
   const Float4 own_position = load(motions[index].position) - Float4{0, 0, 0, 1};
-  Float4 push = load(pushes_[index].sum);
+  Float4 separation = load(separations_[index].sum);
   for (const std::uint32_t other : found) {
-    const Float4 vector = push_vector(load(motions[other].position) - own_position, inverse_max_distance);
-    push += vector;
-    float* const other_sum = pushes_[other].sum;
+    const Float4 vector = separation_vector(load(motions[other].position) - own_position, inverse_max_distance);
+    separation += vector;
+    float* const other_sum = separations_[other].sum;
     store(other_sum, load(other_sum) - vector);
   }
-  store(pushes_[index].sum, push);
+  store(separations_[index].sum, separation);
 }
 
 // Converts sums over neighbors to means; motions relative to the part's own.
-NeighborMeans MeansCalculator::means_from_sums(const NeighborSum& sum, const Push& push, unsigned want,
+NeighborMeans MeansCalculator::means_from_sums(const NeighborSum& sum, const Separation& separation, unsigned want,
                                                const NeighborMotion& own) {
   NeighborMeans means;
   const float count = sum.offset[3];
@@ -187,10 +188,11 @@ NeighborMeans MeansCalculator::means_from_sums(const NeighborSum& sum, const Pus
   for (std::size_t a = 0; a < 3; a++) means.offset[a] = sum.offset[a] * inverse_count;
   if ((want & kWantVelocity) != 0) {
     for (std::size_t a = 0; a < 3; a++) means.velocity[a] = sum.velocity[a] * inverse_count - own.velocity[a];
-    for (std::size_t a = 0; a < 3; a++) means.spin[a] = sum.spin[a] * inverse_count - own.spin[a];
+    for (std::size_t a = 0; a < 3; a++)
+      means.angular_velocity[a] = sum.angular_velocity[a] * inverse_count - own.angular_velocity[a];
   }
-  if ((want & kWantPush) != 0) {
-    for (std::size_t a = 0; a < 3; a++) means.push[a] = push.sum[a] * inverse_count;
+  if ((want & kWantSeparation) != 0) {
+    for (std::size_t a = 0; a < 3; a++) means.separation[a] = separation.sum[a] * inverse_count;
   }
   return means;
 }

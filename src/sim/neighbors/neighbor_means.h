@@ -14,15 +14,15 @@ namespace limber {
 /// Means over the neighbors of a part: parts of other bodies between two distances. All zero if there are none.
 struct NeighborMeans {
   std::uint32_t count = 0;
-  float offset[3] = {};    ///< mean offset, m
-  float velocity[3] = {};  ///< mean velocity relative to the part, m/s
-  float spin[3] = {};      ///< mean angular velocity relative to the part, rad/s
-  float push[3] = {};      ///< mean of unit vectors to the neighbors times 1 − distance/max_distance
+  float offset[3] = {};            ///< mean offset, m
+  float velocity[3] = {};          ///< mean velocity relative to the part, m/s
+  float angular_velocity[3] = {};  ///< mean angular velocity relative to the part, rad/s
+  float separation[3] = {};        ///< mean of unit vectors to the neighbors times 1 − distance/max_distance
 };
 
 /// Bits for the means that are needed besides count and offset.
 inline constexpr unsigned kWantVelocity = 1;
-inline constexpr unsigned kWantPush = 2;
+inline constexpr unsigned kWantSeparation = 2;
 
 /// Keeps its scratch memory from query to query. [sim]
 class MeansCalculator {
@@ -45,12 +45,12 @@ class MeansCalculator {
   NeighborMeans compute(const PartData& part, double min_distance, double max_distance);
 
  private:
-  struct alignas(16) Push {
+  struct alignas(16) Separation {
     float sum[4];
   };
   struct Totals {
     double count = 0;
-    Vec3 position{0}, velocity{0}, spin{0};
+    Vec3 position{0}, velocity{0}, angular_velocity{0};
   };
 
   bool covers_all(const Query& query) const;
@@ -62,9 +62,9 @@ class MeansCalculator {
   /// Sums the neighbors of all points, visiting each pair once.
   template <unsigned Want>
   void sum_pairs(const Query& query, MotionGrids::Grid& grid);
-  void push_pairs(std::uint32_t index, std::span<const std::uint32_t> found, const NeighborMotion* motions,
-                  float inverse_max_distance);
-  static NeighborMeans means_from_sums(const NeighborSum& sum, const Push& push, unsigned want,
+  void sum_pair_separations(std::uint32_t index, std::span<const std::uint32_t> found, const NeighborMotion* motions,
+                            float inverse_max_distance);
+  static NeighborMeans means_from_sums(const NeighborSum& sum, const Separation& separation, unsigned want,
                                        const NeighborMotion& own);
 
   const PartCloud& cloud_;
@@ -73,7 +73,7 @@ class MeansCalculator {
   std::vector<std::uint32_t> found_;
   std::vector<std::uint32_t> grid_index_;  // index in the grid by index of the part
   std::vector<NeighborSum> sums_;          // by index in the grid
-  std::vector<Push> pushes_;
+  std::vector<Separation> separations_;
   std::vector<Totals> body_totals_;  // by ordinal
 };
 

@@ -23,7 +23,7 @@ struct Neighbor {
 
 class NeighborSet {
  public:
-  /// `parts`: in stream order, without duplicates.
+  /// `parts`: in stream order (bodies in the order of World::bodies(), a body from root to tip), without duplicates.
   NeighborSet(World& world, std::vector<Part*> parts);
   NeighborSet(const NeighborSet&) = delete;
   NeighborSet& operator=(const NeighborSet&) = delete;
@@ -37,8 +37,9 @@ class NeighborSet {
   /// `max_distance` covers all parts, the cost is linear in their number.
   std::span<const NeighborMeans> means(std::span<Part* const> parts, double min_distance, double max_distance,
                                        unsigned want);
-  /// Returns the means for one part. If it is in the set, the first query in a tick computes the means of all parts.
-  /// A `min_distance` below 0 counts as 0. Valid until the next call.
+  /// Returns the means for one part. A `min_distance` below 0 counts as 0. If the part is in the set, the first query
+  /// in a tick computes the means of all parts, as one array in the order of parts(), which is valid until the next
+  /// tick or change of the set. For another part, the result is valid until the next call.
   const NeighborMeans& means_near(const Part& part, double min_distance, double max_distance, unsigned want);
   /// Index in parts() by the slot of a part, or -1. A result of means_near() for a part of the set is an element of
   /// an array of the results for all parts in this order, which is valid until the next tick or change of the set.

@@ -19,9 +19,10 @@ void add_pairs_4(std::uint32_t index, std::span<const std::uint32_t> found, cons
   const Float4 one{0, 0, 0, 1}, two{0, 0, 0, 2};
   const NeighborMotion& own = motions[index];
   const Float4 own_position = load(own.position) - one;
-  const Float4 own_velocity = load(own.velocity), own_spin = load(own.spin);
+  const Float4 own_velocity = load(own.velocity), own_angular_velocity = load(own.angular_velocity);
   NeighborSum& own_sum = sums[index];
-  Float4 offset = load(own_sum.offset), velocity = load(own_sum.velocity), spin = load(own_sum.spin);
+  Float4 offset = load(own_sum.offset), velocity = load(own_sum.velocity),
+         angular_velocity = load(own_sum.angular_velocity);
   for (const std::uint32_t other : found) {
     const NeighborMotion& neighbor = motions[other];
     NeighborSum& other_sum = sums[other];
@@ -30,13 +31,13 @@ void add_pairs_4(std::uint32_t index, std::span<const std::uint32_t> found, cons
     store(other_sum.offset, load(other_sum.offset) - (r - two));
     if constexpr (!Motions) continue;
     velocity += load(neighbor.velocity);
-    spin += load(neighbor.spin);
+    angular_velocity += load(neighbor.angular_velocity);
     store(other_sum.velocity, load(other_sum.velocity) + own_velocity);
-    store(other_sum.spin, load(other_sum.spin) + own_spin);
+    store(other_sum.angular_velocity, load(other_sum.angular_velocity) + own_angular_velocity);
   }
   store(own_sum.offset, offset);
   store(own_sum.velocity, velocity);
-  store(own_sum.spin, spin);
+  store(own_sum.angular_velocity, angular_velocity);
 }
 
 #if defined(__x86_64__)

@@ -12,11 +12,11 @@ namespace limber {
 
 /// Position (m), velocity (m/s) and angular velocity (rad/s) of a point; the fourth component of its position is 1.
 struct alignas(64) NeighborMotion {
-  float position[4], velocity[4], spin[4], unused[4];
+  float position[4], velocity[4], angular_velocity[4], unused[4];
 };
 /// Sums over the neighbors of a point; the fourth component of the offset is their count.
 struct alignas(64) NeighborSum {
-  float offset[4], velocity[4], spin[4], unused[4];
+  float offset[4], velocity[4], angular_velocity[4], unused[4];
 };
 
 /// Copies a vector in single precision.

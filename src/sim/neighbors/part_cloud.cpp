@@ -15,7 +15,7 @@ struct PartOffsets {
   std::uint32_t position = Part::table().at("position").offset;
   std::uint32_t rotation = Part::table().at("rotation").offset;
   std::uint32_t velocity = Part::table().at("linear_velocity").offset;
-  std::uint32_t spin = Part::table().at("angular_velocity").offset;
+  std::uint32_t angular_velocity = Part::table().at("angular_velocity").offset;
 };
 const PartOffsets& part_offsets() {
   static const PartOffsets found;
@@ -84,7 +84,7 @@ bool PartCloud::gather() {
     if (i + kAhead < parts_.size()) {
       __builtin_prefetch(transient + part_data_[i + kAhead].enabled_offset);
       __builtin_prefetch(transient + part_data_[i + kAhead].transient_offset);
-      __builtin_prefetch(transient + part_data_[i + kAhead].transient_offset + part_offsets().spin + 2);
+      __builtin_prefetch(transient + part_data_[i + kAhead].transient_offset + part_offsets().angular_velocity + 2);
     }
     if (transient[part_data_[i].enabled_offset] == 0) continue;
     const Vec3 center = center_of(part_data_[i]);
@@ -120,8 +120,8 @@ Vec3 PartCloud::velocity_of(const PartData& data) const {
   return vec3_at(world_.store().transient_values().data() + data.transient_offset + part_offsets().velocity);
 }
 
-Vec3 PartCloud::spin_of(const PartData& data) const {
-  return vec3_at(world_.store().transient_values().data() + data.transient_offset + part_offsets().spin);
+Vec3 PartCloud::angular_velocity_of(const PartData& data) const {
+  return vec3_at(world_.store().transient_values().data() + data.transient_offset + part_offsets().angular_velocity);
 }
 
 }  // namespace limber

@@ -60,7 +60,7 @@ class PartCloud {
   bool enabled(const PartData& data) const;
   Vec3 center_of(const PartData& data) const;
   Vec3 velocity_of(const PartData& data) const;
-  Vec3 spin_of(const PartData& data) const;
+  Vec3 angular_velocity_of(const PartData& data) const;
 
  private:
   void index_parts();

@@ -80,7 +80,7 @@ bool CoupledSystem::discard_impulses() {
   trees_.axes.restore();
   for (CoupledRow& row : rows) row.impulse = row.saved_impulse;
   for (const Tree& t : trees_) {
-    if (!trees_.axes.factor_and_correct(t.first, t.last)) return false;
+    if (!trees_.axes.factor_and_solve_once(t.first, t.last)) return false;
   }
   collect_deferred_axes();
   return true;
@@ -174,7 +174,7 @@ double CoupledSystem::solve_lcp(LcpSolve how) {
       rows.apply_load(row, change);
     }
   }
-  for (const Tree& t : trees_) trees_.axes.correct(t.first, t.last);
+  for (const Tree& t : trees_) trees_.axes.solve_once(t.first, t.last);
   return violation;
 }
 

@@ -128,7 +128,7 @@ bool DelassusMatrix::update(BoxedLcp& lcp, IndexedSpan<const int> rows) {
   known_axes_.clear();
   for (int i = 0; i < trees_.node_count(); ++i) {
     const TreeNode& node = trees_.axes.forest.node(i);
-    known_axes_.push_back({node.prescribed, node.conductance});
+    known_axes_.push_back({node.prescribed, node.damping});
   }
   for (int i = 0; i < lcp.size(); ++i) {
     if (!std::isfinite(lcp.response(i, i))) return false;
@@ -143,7 +143,7 @@ bool DelassusMatrix::find_released_axes() {
   for (int i = 0; i < trees_.node_count(); ++i) {
     const TreeNode& node = trees_.axes.forest.node(i);
     const KnownAxes& before = known_axes_[i];
-    if ((node.prescribed & ~before.prescribed) != 0 || node.conductance != before.conductance) return false;
+    if ((node.prescribed & ~before.prescribed) != 0 || node.damping != before.damping) return false;
     for (int k = 0; k < 6; ++k) {
       if (((before.prescribed & ~node.prescribed) >> k & 1U) != 0) released_.push_back({{i, {}}, {}, k, -1});
     }

@@ -31,7 +31,7 @@ class DelassusMatrix {
   };
   struct KnownAxes {  // state of a node's axes when the matrix was built
     unsigned prescribed;
-    FixedArray<double, 6> conductance;
+    FixedArray<double, 6> damping;
   };
   struct HalfResponse {  // half response of a row in one tree
     int tree = -1;

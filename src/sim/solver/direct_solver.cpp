@@ -1,4 +1,4 @@
-// DirectSolver: the phases of a step, each with its own state, in the order in which they run.
+// DirectSolver: the stages of a substep, each with its own state, in the order in which they run.
 #include "sim/solver/direct_solver.h"
 
 #include <algorithm>
@@ -21,12 +21,10 @@ constexpr int kMaxContactRows = 360;
 constexpr int kMaxRowsWithoutJoints = 60;
 /// Exchanges of the active set of a tree before axes that have not converged are deferred.
 constexpr int kMaxExchanges = 16;
-/// Passes that restore the friction cone, and that limit the rotation by motors.
-constexpr int kMaxConePasses = 2;
-constexpr int kMaxRotationPasses = 3;
-/// Passes of the drift correction, and those that scale it down because it adds energy.
-constexpr int kMaxDriftPasses = 4;
-constexpr int kMaxEnergyPasses = 2;
+constexpr int kMaxConePasses = 2;      // solves after the friction was limited to the friction cone
+constexpr int kMaxRotationPasses = 3;  // solves after the target rates of motors were reduced
+constexpr int kMaxDriftPasses = 4;     // solves after the drift correction was updated
+constexpr int kMaxEnergyPasses = 2;    // solves after the drift correction was reduced because it adds energy
 /// Velocity changes above this count as divergence: m/s, rad/s.
 constexpr double kMaxVelocity = 1e5;
 
@@ -38,7 +36,8 @@ double natural_residual(double residual, double impulse, double lower, double up
 
 }  // namespace
 
-/// The phases and what they share. A phase is valid from the function that begins it until the trees are built again.
+/// The stages and the data that they share. The begin() of a stage must be called again after the trees were built
+/// again.
 class DirectSolver::Step {
  public:
   Island island;
@@ -80,7 +79,7 @@ bool DirectSolver::Step::solve() {
   bool solved = build_trees();
   if (solved && spin_clamp_.clamp_before()) solved = build_trees();
   if (solved) solved = solve_without_corrections();
-  // beyond the budget the clamp waits for the next step
+  // if the budget is spent, the next step clamps the rotation before its solve
   if (solved && !budget_.exceeded() && spin_clamp_.clamp_after()) {
     solved = build_trees() && solve_without_corrections();
   }
@@ -116,8 +115,8 @@ bool DirectSolver::Step::solve_velocities() {
 bool DirectSolver::Step::solve_trees() {
   for (const Tree& t : trees_) {
     if (!trees_.axes.solve(t.first, t.last, kMaxExchanges)) return false;
-    const bool has_deferred = !coupled_.rows.empty() && trees_.axes.defer_remembered(t.first, t.last) > 0;
-    if (has_deferred && !trees_.axes.factor_and_correct(t.first, t.last)) return false;
+    const bool has_deferred = !coupled_.rows.empty() && trees_.axes.defer_as_before(t.first, t.last) > 0;
+    if (has_deferred && !trees_.axes.factor_and_solve_once(t.first, t.last)) return false;
   }
   coupled_.collect_deferred_axes();
   return true;
@@ -238,11 +237,11 @@ DirectResiduals DirectSolver::Step::measure_residuals() {
   for (int i = 0; i < island.links.size(); ++i) {
     if (trees_.node_of_link(i) < 0) continue;
     for (const AxisRow& row : trees_.axes.rows(trees_.node_of_link(i))) {
-      double& largest = row.bounded() ? out.bounded : out.locked;
+      double& largest = row.bounded() ? out.bounded : out.unbounded;
       largest = std::max(largest, axis_residual(island.links[i], row));
     }
   }
-  for (int i = 0; i < coupled_.rows.fixed_count(); ++i) out.contact = std::max(out.contact, coupled_residual(i));
+  for (int i = 0; i < coupled_.rows.fixed_count(); ++i) out.coupled = std::max(out.coupled, coupled_residual(i));
   return out;
 }
 

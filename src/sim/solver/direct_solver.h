@@ -1,6 +1,6 @@
 // DirectSolver: solves one island exactly. Its joints form trees (articulated bodies); contacts, gears and joints that
-// close loops are coupled rows, solved as an LCP with the trees' response. docs/solver.md. The phases of a step are in
-// direct_solver.cpp; nothing outside of the solver needs their headers.
+// close loops are coupled rows, solved as an LCP with the trees' response. docs/solver.md. The stages of a substep
+// are in direct_solver.cpp; nothing outside of the solver needs their headers.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ namespace limber {
 class GearConstraint;
 class JointConstraint;
 
-/// Bullet's data of the island. Written to only once everything is solved, except by SpinClamp.
+/// Bullet's data of the island. The results are written to them when the whole island is solved. Before, only the
+/// velocities of bodies that rotate too fast for the step are reduced (SpinClamp).
 struct IslandPools {
   btAlignedObjectArray<btSolverBody>& bodies;
   btAlignedObjectArray<btSolverConstraint>& contacts;
@@ -26,7 +27,7 @@ struct IslandPools {
   btAlignedObjectArray<btSolverConstraint>& rollings;
 };
 
-/// Numbers of solves of islands that have joints or contacts (one per island and internal step), by solver.
+/// Counts islands that have joints or contacts, once per substep, by the solver that solved them.
 struct DirectCounts {
   std::uint64_t islands = 0;  ///< All of them; those not counted as `direct` were solved by the iterative solver.
   std::uint64_t direct = 0;
@@ -36,9 +37,9 @@ struct DirectCounts {
 
 /// Largest residuals of the last island solved: m/s, rad/s.
 struct DirectResiduals {
-  double locked = 0;
-  double bounded = 0;
-  double contact = 0;
+  double unbounded = 0;  ///< Of rows of tree joints without bounds on the impulse: locks, springs.
+  double bounded = 0;    ///< Of the other rows of tree joints: motors, limits, friction.
+  double coupled = 0;    ///< Of contacts, gears and joints that close loops.
 };
 
 /// Per island: begin(), add_joint() and add_gear(), then solve(). [sim]
@@ -54,8 +55,8 @@ class DirectSolver {
   /// Adds a gear whose row is planned, with the solver body of each of its sides.
   void add_gear(GearConstraint& gear, const std::array<int, 4>& bodies);
   int joint_count() const;
-  /// Solves the island. Returns false if the iterative solver must do it; nothing is written then, but after a failed
-  /// attempt the warm-start impulses of the previous step are removed.
+  /// Solves the island. Returns false if the iterative solver must do it; no result is written then, but after a failed
+  /// attempt the warm-start impulses of the previous step are removed from `pools`, joints and gears.
   bool solve(const IslandPools& pools, const btContactSolverInfo& info);
 
   /// Counts since construction.

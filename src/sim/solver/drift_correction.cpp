@@ -76,7 +76,8 @@ DriftCorrection::BodyMotion DriftCorrection::predict_motion(int body) const {
   return {v, turn.translation(v.linear, island_.h), turn.rotation(island_.h), turn.clamped(island_.h) > 0};
 }
 
-// Predicts the position error that a joint gets in this step in addition to its rates, along the parent's axes, m.
+// Predicts the change of a joint's position error in this step that its rates at the start don't predict, along the
+// parent's axes, m.
 Vec3 DriftCorrection::predict_drift(int link) {
   const double h = island_.h;
   const Island::Link& l = island_.links[link];

@@ -1,6 +1,7 @@
-// DriftCorrection: the position error that a step would cause in locks because bodies rotate is predicted and
-// subtracted from the locks' target rates. The idea of SHAKE (Ryckaert, Ciccotti and Berendsen, Numerical integration
-// of the cartesian equations of motion of a system with constraints, 1977), in velocities.
+// DriftCorrection: predicts the position error that the rotation of bodies will cause at locked axes in a step, and
+// changes the target velocities of these axes so that the error doesn't arise. The idea of SHAKE (Ryckaert, Ciccotti
+// and Berendsen, Numerical integration of the cartesian equations of motion of a system with constraints, 1977), in
+// velocities.
 #pragma once
 
 #include "sim/solver/coupled_rows.h"
@@ -26,9 +27,8 @@ class DriftCorrection {
   /// Scales down the correction of a joint. Returns true if it had one.
   bool scale(int link, double fraction);
 
-  /// Smallest correction, m; and that for bodies that rotate fast, since a top would lose energy.
-  static constexpr double kMinDrift = 1e-4;
-  static constexpr double kMinFastDrift = 1e-6;
+  static constexpr double kMinDrift = 1e-4;      ///< Smaller changes are ignored, m.
+  static constexpr double kMinFastDrift = 1e-6;  ///< The same if bodies rotate fast: a spinning top would lose energy.
 
  private:
   struct BodyMotion {  // motion of a body in the step, with the velocity found

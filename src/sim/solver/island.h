@@ -16,7 +16,7 @@ inline Spatial make_spatial(const btVector3& linear, const btVector3& angular) {
   return {from_bt(linear), from_bt(angular)};
 }
 
-/// One island of bodies during one internal step. [sim]
+/// One island of bodies during one substep. [sim]
 struct Island {
   struct Link {  ///< A joint between two solver bodies.
     JointConstraint* joint;

@@ -121,7 +121,7 @@ bool PositionCorrection::solve_displacements() {
     if (!add_node(i)) return false;
   }
   return std::all_of(trees_.begin(), trees_.end(),
-                     [&](const Tree& t) { return axes_.pivot(t.first, t.last, kMaxClosingExchanges); });
+                     [&](const Tree& t) { return axes_.solve_from_scratch(t.first, t.last, kMaxClosingExchanges); });
 }
 
 bool PositionCorrection::add_node(int node) {

@@ -1,5 +1,5 @@
-// WorldTransaction: the undo log of a guarded script call; rolls back the call's changes to the world if it fails. The
-// store logs property values; this class logs other fields, forces, and objects that were added or removed. [sim]
+// WorldTransaction: the rollback log of a guarded script call; rolls back the call's changes to the world if it fails.
+// The store logs property values; this class logs other fields, forces, and objects that were added or removed. [sim]
 #pragma once
 
 #include <cstddef>
@@ -50,7 +50,8 @@ class WorldTransaction {
   /// True if nothing was logged since begin(), so there is nothing to roll back.
   bool is_empty() const;
 
-  /// True once in each guarded call for each `saved_in_call`, in which it notes the call; false outside of calls.
+  /// Returns true at the first use of `saved_in_call` in a guarded call, and stores the number of the call in it; false
+  /// outside of guarded calls.
   bool first_in_call(std::uint64_t& saved_in_call) const {
     return active_ && std::exchange(saved_in_call, call_) != call_;
   }
@@ -61,7 +62,7 @@ class WorldTransaction {
   }
   /// Saves the pending forces of a part. Call before a change, within a call.
   void save_forces(const Part& part);
-  /// Saves the number of children of a compound. Call before adding one.
+  /// Saves nothing of a compound but the number of its children. Call before adding one.
   void save(Shape& shape);
   /// Saves Bullet's pose and velocity of a part. Call before its pending changes are applied ahead of the next step.
   void save_motion(Part& part);

@@ -65,7 +65,7 @@ bool BodyRecovery::restore_good_pose(const Part& part, const std::string& instab
     member.apply_pose();
     member.apply_velocity();
     member.wake();  // together with the parts that touch it, since its contacts are removed below
-    // the force that caused the instability would do so again in this tick's next internal step
+    // the force that caused the instability would do so again in this tick's next substep
     member.rigid().clearForces();
     member.rigid().applyGravity();
     // without this, the contacts would warm-start from their previous impulses

@@ -35,7 +35,7 @@ class BodyRecovery {
   /// Restores the last good pose, at rest, because a part is unstable; the second time since the last reset it also
   /// disables the body. Logs this, once per tick; returns true if it did.
   bool restore_good_pose(const Part& part, const std::string& instability);
-  /// After the last internal step: discards forces that a restored body got for further steps.
+  /// After the last substep: discards forces that a restored body got for further steps.
   void finish_restore();
 
   /// For checkpoints.

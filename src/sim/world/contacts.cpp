@@ -1,4 +1,4 @@
-// Contacts: tracks pairs of reporting parts over the internal steps of a tick.
+// Contacts: tracks pairs of reporting parts over the substeps of a tick.
 #include "sim/world/contacts.h"
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 #include "base/memory/archive.h"
 #include "sim/bullet/bullet.h"
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 #include "sim/world/part.h"
 
 namespace limber {
@@ -40,7 +40,7 @@ void Contacts::begin_tick() {
   }
 }
 
-// Adds a touching point as of the last internal step.
+// Adds a touching point as of the last substep.
 void Contacts::Pair::add(btManifoldPoint& point) {
   touching = true;
   if ((point.m_contactPointFlags & kContactClosed) == 0) {

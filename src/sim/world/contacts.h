@@ -1,4 +1,4 @@
-// Contacts: contact-begin events of parts that report contacts, collected over the internal steps of a tick. [sim]
+// Contacts: contact-begin events of parts that report contacts, collected over the substeps of a tick. [sim]
 #pragma once
 
 #include <cstdint>
@@ -32,12 +32,12 @@ class Contacts {
   void set_reporting(bool on) { state_.reporting += on ? 1 : -1; }
   /// To be called before a part is removed: removes its pairs.
   void remove_part(const Part& part);
-  /// To be called before the tick's first internal step.
+  /// To be called before the tick's first substep.
   void begin_tick();
-  /// To be called after each internal step; costs nothing while no part reports. A speculative contact decelerates an
+  /// To be called after each substep; costs nothing while no part reports. A speculative contact decelerates an
   /// approaching part before the surfaces meet; its event is delayed until it has closed, but at most to the next tick.
   void collect(btDispatcher& dispatcher);
-  /// To be called after the last internal step: collects the events of the tick.
+  /// To be called after the last substep: collects the events of the tick.
   void end_tick();
   std::span<const ContactEvent> events() const { return state_.events; }
   /// For checkpoints.
@@ -52,7 +52,7 @@ class Contacts {
     Vec3 position;
     bool touched_before;
     bool touching;
-    bool closing;        // as of the last internal step: a point presses but has not closed
+    bool closing;        // as of the last substep: a point presses but has not closed
     bool event_pending;  // it was closing when the previous tick ended: its event is reported in this tick
     void add(btManifoldPoint& point);
   };

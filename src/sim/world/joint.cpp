@@ -100,10 +100,10 @@ const PropertyTable& Joint::table() {
                          "Lower limit about each axis; equal to the upper: locked; above it: free."),
           limit_property("angular_upper_limit", "rad", 1e4, "Upper limit about each axis; limits may lie beyond ±π."),
           stop_property("linear_stop_erp", "", 0.2,
-                        "Share of the error of a lock or limit corrected per internal step, along the axis."),
+                        "Share of the error of a lock or limit corrected per substep, along the axis."),
           stop_property("linear_stop_cfm", "m/N", 0, "Compliance of locks and limits along the axis."),
           stop_property("angular_stop_erp", "", 0.2,
-                        "Share of the error of a lock or limit corrected per internal step, about the axis."),
+                        "Share of the error of a lock or limit corrected per substep, about the axis."),
           stop_property("angular_stop_cfm", "rad/(N·m)", 0, "Compliance of locks and limits about the axis."),
           transient(
               hashed(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Position of the own axis.")))),

@@ -49,7 +49,7 @@ class Panic {
   /// Returns the drive of an axis with motor mode `mode`: during a panic, it holds its position with its own
   /// strength, or is off.
   AxisDrive drive(MotorMode mode) const;
-  /// Damps all velocities; call after each internal step of h seconds.
+  /// Damps all velocities; call after each substep of h seconds.
   void damp(double h);
   /// For checkpoints.
   void serialize(Archive& archive) { archive.serialize(state_); }

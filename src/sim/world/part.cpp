@@ -169,9 +169,9 @@ const PropertyTable& Part::table() {
               boolean("self_collision", true, "Whether it collides with other parts of its body.")),
           on_change<&Part::apply_collision>(integer(
               "collision_group", 1, 0, 65535,
-              "Bit set of its groups (16). Two parts collide if each one's group has a bit in the other's mask.")),
+              "Its groups, as a bit set of 16. Two parts collide if each one's group has a bit in the other's mask.")),
           on_change<&Part::apply_collision>(
-              integer("collision_mask", 65535, 0, 65535, "Bit set of the groups that it collides with (16).")),
+              integer("collision_mask", 65535, 0, 65535, "The groups that it collides with, as a bit set of 16.")),
           on_change<&Part::apply_report_contacts>(
               boolean("report_contacts", false, "Report when this part begins to touch another.")),
           transient(state(on_change<&Part::apply_pose>(

@@ -67,7 +67,7 @@ class Part {
   const Pose& start_pose() const { return state_.start; }
   void set_start_pose(const Pose& pose) { state_.start = pose; }
 
-  /// Forces (N) and torques (N·m) act in each internal step of the next tick, impulses (N·s) once at its start; then
+  /// Forces (N) and torques (N·m) act in each substep of the next tick, impulses (N·s) once at its start; then
   /// they are cleared. All in world axes. `at`: point in world coordinates; without it, the center of mass.
   void apply_force(const Vec3& force);
   void apply_force_at(const Vec3& force, const Vec3& at);
@@ -75,9 +75,11 @@ class Part {
   void apply_impulse(const Vec3& impulse);
   void apply_impulse_at(const Vec3& impulse, const Vec3& at);
   void clear_forces();
-  /// Saves the pending forces in the world's undo log, before a guarded call changes them or the velocity.
+  /// Saves the pending forces, and nothing else, in the world's rollback log, before a guarded call changes them or the
+  /// velocity.
   void save_for_rollback();
-  /// Applies pending property changes to Bullet now, ahead of the next step.
+  /// Applies pending property changes to Bullet now, ahead of the next step: in a guarded call those of this part
+  /// alone, whose motion it saves for the rollback, else those of all nodes.
   void flush();
 
   /// Adds it to Bullet's world or removes it; called by the body.

@@ -19,13 +19,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kMaxSpeed = 500;
-/// Limits of speed (m/s), rotation (rad/s) and distance from the origin (m); kMaxTumblingRate is for rotation about an
-/// axis that is neither a driven joint's nor a principal axis.
-constexpr double kMaxTumblingRate = 1000;
-/// For any rotation: more than any property can request.
-constexpr double kMaxSpin = 2e4;
-constexpr double kMaxDistance = 1e4;
+constexpr double kMaxSpeed = 500;          // m/s
+constexpr double kMaxTumblingRate = 1000;  // rad/s, about an axis that is neither a driven joint's nor a principal axis
+constexpr double kMaxRotationRate = 2e4;   // rad/s, about any axis: more than any property can request
+constexpr double kMaxDistance = 1e4;       // m, from the origin
 
 /// Contacts deeper than this, in m, count as an overlap; a mass ratio of jointed parts above kMassRatio is a likely
 /// cause.
@@ -52,7 +49,7 @@ const char* find_instability(const btRigidBody& part, double h) {
     return "has a position or velocity that is not a number";
   if (speed >= kMaxSpeed * kMaxSpeed) return "is faster than 500 m/s";
   if (distance >= kMaxDistance * kMaxDistance) return "is farther than 10 km from the origin";
-  if (spin >= kMaxSpin * kMaxSpin) return "rotates faster than 20000 rad/s";
+  if (spin >= kMaxRotationRate * kMaxRotationRate) return "rotates faster than 20000 rad/s";
   return glm::length(tumbling_velocity(part, h)) < kMaxTumblingRate ? nullptr : "tumbles faster than 1000 rad/s";
 }
 

@@ -14,9 +14,9 @@ class Body;
 class Part;
 class World;
 
-/// Describes the instability of a part after an internal step of `h` s as a predicate for a message ("is faster than
-/// …"), or returns null if it is stable. Rotation about a driven joint's axis or a principal axis isn't counted. [any,
-/// while no thread writes]
+/// Describes the instability of a part after a substep of `h` s as a predicate for a message ("is faster than …"), or
+/// returns null if it is stable. Below 20000 rad/s, rotation about a driven joint's axis or a principal axis isn't
+/// counted. [any, while no thread writes]
 const char* find_instability(const btRigidBody& part, double h);
 
 /// Returns the likely cause of a part's instability and a remedy, as a clause for a message.
@@ -26,7 +26,7 @@ class StabilityCheck {
  public:
   explicit StabilityCheck(World& world) : world_(world) {}
 
-  /// Restores each body with an unstable part; call after each internal step of `h` s. NaN and infinite values must not
+  /// Restores each body with an unstable part; call after each substep of `h` s. NaN and infinite values must not
   /// reach the next one, where they would spread.
   void check_parts(double h);
   /// Restores a body of which a joint came apart; call after its readouts were published.

@@ -1,5 +1,5 @@
 // World: owns the bodies, gears, shapes and behaviors of a scene and runs the physical part of a tick: behaviors,
-// property changes, Bullet, readouts, contacts, health checks. [sim]
+// property changes, Bullet, readouts, contacts, stability check. [sim]
 #pragma once
 
 #include <cstdint>
@@ -59,8 +59,8 @@ class World {
   /// Adds an empty body. Errors: the name is taken or contains characters that can't be printed.
   Result<Body*> add_body(std::string name);
   Result<Body*> add_body(const std::shared_ptr<const BodyModel>& model, std::string name, const BuildOptions& options);
-  /// Copies a body of this or another world with all its values, to the same place. If the copy is moved (set_pose)
-  /// before the next step, it never collides with its original.
+  /// Copies a body of this or another world with all its values, to the same place, so that both overlap. Contacts are
+  /// found in the next step: moving the copy (set_pose) before it avoids a collision of the two.
   Result<Body*> copy_body(const Body& source, std::string name);
   /// Removes a body and the gears of its joints. In a guarded call the body is hidden at once and destroyed when the
   /// call succeeds.
@@ -82,7 +82,7 @@ class World {
   int substeps() const;
   std::uint64_t seed() const;
 
-  /// Runs one tick: behaviors, pending property changes, `substeps` internal steps, readouts, contacts, health
+  /// Runs one tick: behaviors, pending property changes, `substeps` substeps, readouts, contacts, health
   /// checks. Returns how long they took.
   TickTimes step();
   /// Applies pending property changes without advancing time: while paused, and before the first tick.

@@ -50,7 +50,7 @@ class BenchArms {
 int default_iterations();
 /// Returns a scene with this many arms: ticks of 1/60 s, 4 substeps.
 ArmScene arm_scene(int arms);
-/// Returns the same scene with the direct solver, which needs a single internal step per tick.
+/// Returns the same scene with the direct solver, which needs a single substep per tick.
 ArmScene direct_arm_scene(int arms);
 
 /// Runs Limber's arms and, if requested, the plain Bullet loop, interleaved. Returns the results.

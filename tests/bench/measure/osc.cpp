@@ -69,7 +69,7 @@ double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, 
     for (const Packet& packet : packets) receiver.process(packet.data(), packet.size(), {0x7f000001, 9});
     double seconds = system::clock_seconds() - start;
     // a tick processes a limited number of messages
-    for (int work = 0; work < 2 * messages; work += Engine::kTickWork) {
+    for (int work = 0; work < 2 * messages; work += Engine::kPassWork) {
       arms.tick();
       seconds += arms.engine().times().commands;
     }

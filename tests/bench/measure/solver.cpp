@@ -64,7 +64,7 @@ Json residuals(RawScene scene, int steps) {
   const auto player = RawSimulation::make(scene, RawSolver::direct);
   for (int i = 0; i < steps; ++i) player->step();
   const RawSimulation::Direct d = player->direct();
-  return {{"locked", d.locked}, {"bounded", d.bounded}, {"contact", d.contact}};
+  return {{"unbounded", d.unbounded}, {"bounded", d.bounded}, {"coupled", d.coupled}};
 }
 
 Json play(const RawScene& scene, int steps, double seconds = 6) {

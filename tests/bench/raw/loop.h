@@ -19,8 +19,8 @@ struct ArmScene {
   double speed = 10;     ///< of each servo, rad/s
   double force = 10000;  ///< of each servo, N·m
   int solver_iterations = 10;
-  double step = 1.0 / 240;  ///< internal step, s
-  int substeps = 4;         ///< internal steps per tick
+  double step = 1.0 / 240;  ///< substep, s
+  int substeps = 4;         ///< substeps per tick
 
   bool hanging = false;  ///< from bases above the floor, instead of standing on it
   bool direct = false;   ///< our world: use the direct solver

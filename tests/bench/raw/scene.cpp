@@ -216,9 +216,9 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorl
     max_residuals_ = {0,
                       0,
                       0,
-                      std::max(max_residuals_.locked, r.locked),
+                      std::max(max_residuals_.unbounded, r.unbounded),
                       std::max(max_residuals_.bounded, r.bounded),
-                      std::max(max_residuals_.contact, r.contact)};
+                      std::max(max_residuals_.coupled, r.coupled)};
   }
   RawMeasurements measurements() const override {
     RawMeasurements m;

@@ -76,7 +76,7 @@ class RawSimulation {
   /// Stock Bullet with another of its solvers, which must outlive the player.
   static std::unique_ptr<RawSimulation> make_stock(const RawScene& scene, btConstraintSolver& solver);
   virtual ~RawSimulation() = default;
-  /// Advances by one internal step, with servo targets for the present time.
+  /// Advances by one substep, with servo targets for the present time.
   virtual void step() = 0;
   virtual RawMeasurements measurements() const = 0;
   virtual RawEnergy energy() const = 0;

@@ -92,11 +92,11 @@ function P.add_neighbor_members(class)
   function class.methods.neighbor_means(h, of, near, far)
     local m = means(h, class, "neighbor_means", of, near, far, kVelocity)
     return m.count, V(m.offset[0], m.offset[1], m.offset[2]), V(m.velocity[0], m.velocity[1], m.velocity[2]),
-      V(m.spin[0], m.spin[1], m.spin[2])
+      V(m.angular_velocity[0], m.angular_velocity[1], m.angular_velocity[2])
   end
   function class.methods.neighbor_push(h, of, near, far)
     local m = means(h, class, "neighbor_push", of, near, far, kPush)
-    return (V(m.push[0], m.push[1], m.push[2]))
+    return (V(m.separation[0], m.separation[1], m.separation[2]))
   end
 end
 

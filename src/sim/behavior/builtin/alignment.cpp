@@ -44,7 +44,7 @@ class Alignment final : public NeighborBehavior {
           1 - (glm::length(to_vec3(member.means[i].offset)) - min_distance) / (max_distance - min_distance), 0.0, 1.0);
       wrench.force += limited_gain(linear * s, member.mass(i), member.dt) * to_vec3(member.means[i].velocity);
       const double gain = angular * s;
-      const Vec3 spin = to_vec3(member.means[i].spin);
+      const Vec3 spin = to_vec3(member.means[i].angular_velocity);
       const bool stable = std::abs(gain) * member.dt <= member.min_inertia(i);
       wrench.torque += stable ? gain * spin : limited_torque(*member.parts[i], member.mass(i), gain, spin, member.dt);
     }

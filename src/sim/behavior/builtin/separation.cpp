@@ -13,14 +13,14 @@ class Separation final : public NeighborBehavior {
   enum Parameter : std::uint32_t { amount = first_specific };
 
  private:
-  unsigned needed_means() const override { return kWantPush; }
+  unsigned needed_means() const override { return kWantSeparation; }
 
   void apply(const MemberInput& member) const override {
     const double strength = member.values[amount];
     for (std::size_t i = 0; i < member.parts.size(); i++) {
       if (member.means[i].count == 0) continue;
-      const float* push = member.means[i].push;
-      member.wrench(i).force -= strength * Vec3(push[0], push[1], push[2]);
+      const float* separation = member.means[i].separation;
+      member.wrench(i).force -= strength * Vec3(separation[0], separation[1], separation[2]);
     }
   }
 };

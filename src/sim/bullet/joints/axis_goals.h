@@ -1,4 +1,4 @@
-// AxisGoals: interpolates the targets of a joint's servos and springs over the internal steps of a tick, so that
+// AxisGoals: interpolates the targets of a joint's servos and springs over the substeps of a tick, so that
 // targets that change once per tick cause a smooth motion.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-/// Target of one internal step: m or rad, m/s or rad/s.
+/// Target of one substep: m or rad, m/s or rad/s.
 struct GoalStep {
   double from;       ///< Target at the end of the previous step.
   double to;         ///< At the end of this step: on the straight line from the last tick's target to this tick's.
@@ -29,7 +29,7 @@ class AxisGoals {
   /// Sets the smoothing time, s; 0: no filter. Allocates on the first use, within the caller's BulletMemory::Scope.
   void set_smoothing(double time);
   double smoothing() const { return filter_ == nullptr ? 0 : filter_->time; }
-  /// Call once in each internal step of length h. `steps_left`: number of internal steps to the end of the tick, this
+  /// Call once in each substep of length h. `steps_left`: number of substeps to the end of the tick, this
   /// one included.
   GoalStep advance(int axis, double target, double h, int steps_left);
   /// To be called after end_tick(). True if a target moved in that tick: it was set, or the filter has not reached it
@@ -51,7 +51,7 @@ class AxisGoals {
     float rate = 0;       // in this tick
     float last_rate = 0;  // in the previous tick
   };
-  /// Three equal first-order stages: no overshoot, and a ramp is delayed only.
+  /// Three equal first-order stages: they don't overshoot, and a ramp is only delayed.
   struct Filter {
     BT_DECLARE_ALIGNED_ALLOCATOR();
     double time = 0;

@@ -16,7 +16,7 @@ enum class AxisDrive : std::uint8_t { off, spin, servo, spring };
 struct AxisSettings {
   float lower = 0;        ///< lower == upper: locked at this position; lower > upper: free; else limited.
   float upper = 0;        ///< Angular limits are not restricted to ±pi, and their range may exceed 2 pi.
-  float stop_erp = 0.2f;  ///< 0 .. 1: part of a lock's or limit's error that one internal step repairs.
+  float stop_erp = 0.2f;  ///< 0 .. 1: part of a lock's or limit's error that one substep repairs.
   /// Compliance of a lock or limit at rest, m/N or rad/(N·m), independent of the step; any value >= 0 is stable.
   /// Together with stop_erp it is a spring 1/stop_cfm with damping h·(1 - stop_erp)/(stop_erp·stop_cfm).
   float stop_cfm = 0;

@@ -9,7 +9,7 @@
 namespace limber {
 namespace {
 
-/// Fraction of the position error that one internal step corrects.
+/// Fraction of the position error that one substep corrects.
 constexpr double kCorrectedFraction = 0.5;
 /// Fastest correction, rad/s or m/s, as for a joint's locks.
 constexpr double kMaxCorrectionSpeed = 20;

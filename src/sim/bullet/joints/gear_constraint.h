@@ -58,7 +58,7 @@ class GearConstraint : public btTypedConstraint {
     double bound = 0;     ///< Largest impulse in either direction.
     double mobility = 0;  ///< Inverse effective mass: rate per impulse of the dynamic bodies without joints.
   };
-  /// Plans the row of the next internal step of length h; both joints must have been planned.
+  /// Plans the row of the next substep of length h; both joints must have been planned.
   void plan(btScalar h);
   const Row& row() const { return row_; }
   /// Dynamic bodies, each once.

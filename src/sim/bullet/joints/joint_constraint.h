@@ -23,7 +23,7 @@ class JointConstraint : public btTypedConstraint {
   JointConstraint(btRigidBody& parent, btRigidBody& child, const btTransform& frame_in_parent,
                   const btTransform& frame_in_child);
 
-  /// Sets an axis, from the next internal step on. Values are clamped (positions to ±1e6, speeds to ±1e5, forces to
+  /// Sets an axis, from the next substep on. Values are clamped (positions to ±1e6, speeds to ±1e5, forces to
   /// 1e12). If a free angular axis becomes limited, its angle changes by full turns to be nearest to the limits'
   /// center.
   void set_axis(int axis, const AxisSettings& settings);
@@ -69,9 +69,9 @@ class JointConstraint : public btTypedConstraint {
 
   // The following functions are for IslandSolver, DirectSolver and IslandWorld.
 
-  /// Sets the internal step that plan() plans.
+  /// Sets the substep that plan() plans.
   void set_step(const StepTiming& step) { step_ = step; }
-  /// Reads the pose and plans the rows of the internal step in `memory` (JointRows).
+  /// Reads the pose and plans the rows of the substep in `memory` (JointRows).
   const JointRows& plan(JointRow* memory);
   const JointRows& rows() const { return rows_; }
   /// Sets the impulses of the planned rows, in their order, once the step is solved.
@@ -80,7 +80,7 @@ class JointConstraint : public btTypedConstraint {
   void set_impulses(const btSolverConstraint* rows, int count);
   JointWarmStart& warm_start() { return warm_start_; }
   const JointWarmStart& warm_start() const { return warm_start_; }
-  /// Filtered impulse of the linear locks on the child in an internal step (JointWarmStart), N·s, world.
+  /// Filtered impulse of the linear locks on the child in a substep (JointWarmStart), N·s, world.
   btVector3 lock_impulse() const;
   /// Advances fast angles after the parts moved for `h` s (JointPose::predict_angles).
   void predict_angles(btScalar h) { pose_.predict_angles(h); }
@@ -108,7 +108,7 @@ class JointConstraint : public btTypedConstraint {
   JointAxes axes_{};
   JointDrives drives_;
   JointWarmStart warm_start_;
-  std::array<float, 6> repair_impulse_{};  // of the last internal step, on a limit that is exceeded
+  std::array<float, 6> repair_impulse_{};  // of the last substep, on a limit that is exceeded
   StepTiming step_;
   JointRows rows_;
   btScalar bounce_ = 0;

@@ -10,11 +10,11 @@
 
 namespace limber {
 
-/// In each internal step: begin_step(), plan() for each axis with a drive, end_plan(), store() for each row,
+/// In each substep: begin_step(), plan() for each axis with a drive, end_plan(), store() for each row,
 /// end_step(). [sim]
 class JointDrives {
  public:
-  /// An axis in the present internal step.
+  /// An axis in the present substep.
   struct Axis {
     int index;
     const AxisSettings& settings;
@@ -45,11 +45,11 @@ class JointDrives {
   /// motor that presses against a limit applies its full force there, and the limit reacts.
   Vec3 applied_force() const { return {applied_[0], applied_[1], applied_[2]}; }
   Vec3 applied_torque() const { return {applied_[3], applied_[4], applied_[5]}; }
-  /// Stiffness of the spring in the last internal step, limited to inertia/(16 h²); 0 without a spring.
+  /// Stiffness of the spring in the last substep, limited to inertia/(16 h²); 0 without a spring.
   double stiffness_applied(int axis) const { return static_cast<double>(stiffness_applied_[at(axis)]); }
-  /// True if a spring's stiffness was limited in the last internal step.
+  /// True if a spring's stiffness was limited in the last substep.
   bool spring_limited() const { return spring_limited_; }
-  /// True if the target of a servo was outside the limits in the last internal step.
+  /// True if the target of a servo was outside the limits in the last substep.
   bool target_outside(int axis) const { return (targets_outside_ >> axis & 1) != 0; }
   bool target_outside() const { return targets_outside_ != 0; }
 
@@ -66,7 +66,7 @@ class JointDrives {
   void estimate_inertia(const Axis& axis);
 
   AxisGoals goals_;
-  std::array<float, 6> impulse_{};       // of the last internal step
+  std::array<float, 6> impulse_{};       // of the last substep
   std::array<float, 6> tick_impulse_{};  // sum over the current tick
   std::array<float, 6> applied_{};
   std::array<float, 6> previous_rate_{};

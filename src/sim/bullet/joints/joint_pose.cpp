@@ -8,7 +8,7 @@ namespace limber {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
-/// Angles that change by more than this in one internal step are predicted before they are read, rad.
+/// Angles that change by more than this in one substep are predicted before they are read, rad.
 constexpr double kPredictedTurn = 0.5;
 /// Least squared cosine of the middle angle: within 5.7 degrees of the singular pose, rates are underestimated.
 constexpr btScalar kMinCosine2 = btScalar(0.01);

@@ -1,4 +1,4 @@
-// JointRows: the constraint rows that a joint plans for one internal step.
+// JointRows: the constraint rows that a joint plans for one substep.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// JointWarmStart: impulses and solver state that a joint keeps from one internal step for the next.
+// JointWarmStart: impulses and solver state that a joint keeps from one substep for the next.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class JointWarmStart {
   /// Impulses of the rows of the block (JointRows::first_of_block).
   const float* block_impulses() const { return block_impulses_.data(); }
   void clear_block_impulses() { block_impulses_.fill(0); }
-  /// Filtered impulse of the linear locks on the child in an internal step along the parent-side axes, N·s. It follows
+  /// Filtered impulse of the linear locks on the child in a substep along the parent-side axes, N·s. It follows
   /// decreases at once, and increases or changes of direction within about ten steps.
   const std::array<float, 3>& lock_impulse() const { return lock_impulse_; }
   /// Active set of the last step, for AxisActiveSet.

@@ -11,9 +11,9 @@ void AxisActiveSet::clear(int capacity) {
   rows_.clear();
   pending_.clear();
   row_start_.assign(1, 0);
-  ordered_bounds_.clear();
-  bounds_start_.assign(1, 0);
-  bound_rows_.clear();
+  bounded_rows_.clear();
+  bounded_rows_start_.assign(1, 0);
+  bounded_row_indices_.clear();
   rates_.clear();
   known_impulses_.clear();
   changes_.clear();
@@ -49,14 +49,14 @@ void AxisActiveSet::end_node(const FixedArray<double, 6>& rates, const ActiveSet
     } else if (row.hard()) {
       bounded_axes |= 1u << row.axis;
     } else {
-      // a soft stop starts at rest: at the bound nearest to zero impulse
+      // a soft limit starts inactive: at the bound that is nearest to zero
       row.status = std::fabs(row.lower) <= std::fabs(row.upper) ? AxisRow::at_lower : AxisRow::at_upper;
     }
   }
   for (int axis = 0; axis < 6; ++axis) {
     if ((bounded_axes >> axis & 1) != 0) build_bounds(node, axis, previous[axis]);
   }
-  bounds_start_.push_back(ordered_bounds_.size());
+  bounded_rows_start_.push_back(bounded_rows_.size());
 }
 
 IndexedSpan<AxisRow> AxisActiveSet::rows(int node) {
@@ -67,13 +67,13 @@ bool AxisActiveSet::factor(int first, int last) {
   for (int i = first; i < last; ++i) {
     TreeNode& n = forest.node(i);
     n.prescribed = 0;
-    n.conductance.fill(0);
+    n.damping.fill(0);
     for (const AxisRow& row : rows(i)) {
       if (row.status != AxisRow::active) continue;
       if (row.hard()) {
         n.prescribed |= 1u << row.axis;
       } else {
-        n.conductance[row.axis] += 1 / row.softness;
+        n.damping[row.axis] += 1 / row.softness;
       }
     }
   }
@@ -130,7 +130,7 @@ void AxisActiveSet::accumulate_node(int i) {
   n.load = {};
 }
 
-void AxisActiveSet::correct(int first, int last) {
+void AxisActiveSet::solve_once(int first, int last) {
   budget_.charge(kNodeVectors * (last - first), 6);
   for (int i = first; i < last; ++i) prepare_node(i);
   forest.solve(first, last);

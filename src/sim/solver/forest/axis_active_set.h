@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <span>
-#include "sim/solver/indexed_array.h"
 
 #include "sim/solver/forest/forest.h"
+#include "sim/solver/indexed_array.h"
 #include "sim/solver/work_budget.h"
 
 namespace limber {
@@ -28,21 +28,21 @@ struct AxisRow {
   /// Identifies the row among those of its axis from step to step; an axis has at most one hard row of each kind.
   Kind kind = other;
   Status status = active;
-  /// Of a deferred row: status that the LCP solver starts with; `deferred`: derived from the impulse.
+  /// The status with which the LCP solver starts a deferred row; `deferred`: unknown, it derives it from the impulse.
   Status initial_status = deferred;
-  double initial_impulse = 0;  ///< Of a deferred row: impulse that the LCP solver starts with.
+  double initial_impulse = 0;  ///< The impulse with which the LCP solver starts a deferred row.
 
   bool hard() const { return softness == 0; }
   bool bounded() const { return lower > -kInfinity || upper < kInfinity; }
   bool constant() const { return lower == upper; }
 };
 
-/// Warm start of the active set of a joint: for each axis the row that was active, and whether contacts changed it. 0:
-/// unknown.
+/// Warm start of the active set of a joint: for each axis the row that was active in the previous step, and whether
+/// contacts changed this. 0: unknown.
 using ActiveSetMemory = FixedArray<std::uint8_t, 6>;
 
-/// Constraint rows of a forest, their impulses and the bodies' velocity changes. Rows that contacts change are deferred
-/// to the coupled system, which applies impulses to them by add_pending(). [sim]
+/// Constraint rows of a forest, their impulses and the bodies' velocity changes. Rows whose status depends on contacts
+/// are deferred: the coupled system solves them, and applies impulses to them by add_pending(). [sim]
 class AxisActiveSet {
  public:
   explicit AxisActiveSet(WorkBudget& budget) : budget_(budget) {}
@@ -70,19 +70,20 @@ class AxisActiveSet {
   /// Sets a velocity change that was applied to the body from outside; rates must include it already.
   void set_change(int node, const Spatial& change) { changes_[node] = change; }
 
-  /// Solves the whole trees of nodes first .. last - 1 until no row is violated, in at most `max_exchanges` exchanges
-  /// of the active set. Rows of axes that have not converged by then are deferred. Returns false if an axis moves no
-  /// mass.
-  bool pivot(int first, int last, int max_exchanges);
-  /// Like pivot(), but first tries the existing factor, if there is one.
+  /// Factors and solves the whole trees of nodes first .. last - 1 until no row is violated, in at most `max_exchanges`
+  /// exchanges of the active set. Rows of axes that have not converged by then are deferred. Returns false if the
+  /// system is singular because an axis has no inertia.
+  bool solve_from_scratch(int first, int last, int max_exchanges);
+  /// Like solve_from_scratch(), but first tries the existing factor, if there is one.
   bool solve(int first, int last, int max_exchanges);
-  /// One exact solve with the loads of the nodes and the pending impulses of deferred rows; clears the loads.
-  void correct(int first, int last);
+  /// Solves once, with the existing factor, the loads of the nodes and the pending impulses of deferred rows; clears
+  /// the loads. Doesn't change the active set.
+  void solve_once(int first, int last);
   /// Defers rows that are violated now. Returns the number of axes; if it isn't 0, call factor() next.
   int defer_violated(int first, int last);
   /// Defers the axes where contacts changed the active set in the previous step, since they probably will again.
   /// Returns their number.
-  int defer_remembered(int first, int last);
+  int defer_as_before(int first, int last);
   /// Defers the bounded hard rows of one axis. Returns 0 if it has none or they were deferred before.
   int defer_axis(int node, int axis);
   /// Defers all bounded hard rows. Returns the number of axes.
@@ -90,11 +91,11 @@ class AxisActiveSet {
   /// save() stores impulses, rates and changes; restore() restores them. Rows deferred in between stay deferred.
   void save();
   void restore();
-  /// Clears loads, then factors and solves once. Call after restore(). Returns false if an axis moves no mass.
-  bool factor_and_correct(int first, int last);
-  /// Factors the trees for the present status of the rows. Returns false if an axis moves no mass.
+  /// Clears loads, then factors and solves once. Call after restore(). Returns false if the system is singular.
+  bool factor_and_solve_once(int first, int last);
+  /// Factors the trees for the present status of the rows. Returns false if the system is singular.
   bool factor(int first, int last);
-  /// Adds an impulse of a deferred row that the next correct() applies.
+  /// Adds an impulse of a deferred row that the next solve_once() applies.
   void add_pending(AxisRow& row, double impulse) { pending_[index_of(row)] += impulse; }
   /// Violation of the row's equation: velocity - softness·impulse - rate.
   double residual(const AxisRow& row) const {
@@ -108,36 +109,38 @@ class AxisActiveSet {
   // The bounded hard rows of one axis, sorted by velocity. At most one is active: in state 2i + 1 row i is active, rows
   // before it are at their lower bounds and rows after it at their upper bounds; in state 2i none is active, and the
   // boundary is between rows i - 1 and i.
-  struct OrderedBounds {
+  struct BoundedRows {
     int node = 0;
     int axis = 0;
-    int first = 0;  // in bound_rows_
+    int first = 0;  // in bounded_row_indices_
     int count = 0;
     int state = 0;
     int next_state = 0;
     bool deferred = false;
     bool deferred_before = false;  // contacts changed its state in the step before
   };
-  AxisRow& row_of(const OrderedBounds& s, int i) { return rows_[bound_rows_[s.first + i]]; }
-  const AxisRow& row_of(const OrderedBounds& s, int i) const { return rows_[bound_rows_[s.first + i]]; }
-  void build_bounds(int node, int axis, std::uint8_t remembered);
-  void reconcile_limits(const OrderedBounds& s);
-  void sort_bounds(const OrderedBounds& s);
-  bool admissible(const OrderedBounds& s, int state) const;
-  int remembered_state(const OrderedBounds& s, std::uint8_t code) const;
-  int default_state(const OrderedBounds& s) const;
-  int final_state(const OrderedBounds& s) const;
-  void apply_state(OrderedBounds& s);
+  AxisRow& row_of(const BoundedRows& bounded, int i) { return rows_[bounded_row_indices_[bounded.first + i]]; }
+  const AxisRow& row_of(const BoundedRows& bounded, int i) const {
+    return rows_[bounded_row_indices_[bounded.first + i]];
+  }
+  void build_bounds(int node, int axis, std::uint8_t previous);
+  void reconcile_limits(const BoundedRows& bounded);
+  void sort_bounds(const BoundedRows& bounded);
+  bool admissible(const BoundedRows& bounded, int state) const;
+  int previous_state(const BoundedRows& bounded, std::uint8_t code) const;
+  int default_state(const BoundedRows& bounded) const;
+  int final_state(const BoundedRows& bounded) const;
+  void apply_state(BoundedRows& bounded);
   template <class F>
   int defer_if(int first, int last, F&& matches);
   void defer_row(AxisRow& row);
-  int required_state(const OrderedBounds& s) const;
+  int required_state(const BoundedRows& bounded) const;
   int find_violations(int first, int last);
   bool is_violated(const AxisRow& row) const;
   void exchange(int first, int last, bool only_last);
   void prepare_node(int i);
   void accumulate_node(int i);
-  IndexedSpan<OrderedBounds> ordered_bounds(int first, int last);
+  IndexedSpan<BoundedRows> bounded_rows(int first, int last);
 
   /// Cost of a factorization or of a solve per node, in vectors of six elements.
   static constexpr int kNodeVectors = 28;
@@ -146,9 +149,9 @@ class AxisActiveSet {
   IndexedArray<AxisRow> rows_;
   IndexedArray<double> pending_;
   IndexedArray<int> row_start_;  // by node
-  IndexedArray<OrderedBounds> ordered_bounds_;
-  IndexedArray<int> bounds_start_;  // by node
-  IndexedArray<int> bound_rows_;
+  IndexedArray<BoundedRows> bounded_rows_;
+  IndexedArray<int> bounded_rows_start_;  // by node
+  IndexedArray<int> bounded_row_indices_;
   IndexedArray<FixedArray<double, 6>> rates_;
   IndexedArray<FixedArray<double, 6>> known_impulses_;  // known impulse changes on prescribed axes
   IndexedArray<Spatial> changes_;

@@ -12,8 +12,8 @@ namespace {
 double tolerance_of(double size, double offset) { return 1e-6 * (offset + std::fabs(size)); }
 constexpr double kImpulseOffset = 1e-4;
 
-// Code of a remembered state: one of these plus the kind of a row: the active row; or, if no row is active, the row
-// above the boundary (which is below that row), or if there is none, the row below the boundary.
+// Code of a state in the previous step: one of these plus the kind of a row: the active row; or, if no row is active,
+// the row above the boundary (which is below that row), or if there is none, the row below the boundary.
 constexpr int kActiveRow = 1;
 constexpr int kBoundaryBelow = 6;
 constexpr int kBoundaryAbove = 11;
@@ -25,97 +25,99 @@ constexpr int kMaxStalledRounds = 3;
 
 }  // namespace
 
-bool AxisActiveSet::admissible(const OrderedBounds& s, int state) const {
-  if (state < 0 || state > 2 * s.count) return false;
-  for (int i = 0; i < s.count; ++i) {
+bool AxisActiveSet::admissible(const BoundedRows& bounded, int state) const {
+  if (state < 0 || state > 2 * bounded.count) return false;
+  for (int i = 0; i < bounded.count; ++i) {
     if (state == 2 * i + 1) continue;
-    const AxisRow& row = row_of(s, i);
+    const AxisRow& row = row_of(bounded, i);
     if (2 * i + 1 < state ? row.lower <= -AxisRow::kInfinity : row.upper >= AxisRow::kInfinity) return false;
   }
   return true;
 }
 
-int AxisActiveSet::remembered_state(const OrderedBounds& s, std::uint8_t code) const {
+int AxisActiveSet::previous_state(const BoundedRows& bounded, std::uint8_t code) const {
   if (code == 0) return -1;
   const int base = code >= kBoundaryAbove ? kBoundaryAbove : (code >= kBoundaryBelow ? kBoundaryBelow : kActiveRow);
-  for (int i = 0; i < s.count; ++i) {
-    if (row_of(s, i).kind != code - base) continue;
+  for (int i = 0; i < bounded.count; ++i) {
+    if (row_of(bounded, i).kind != code - base) continue;
     const int state = base == kActiveRow ? 2 * i + 1 : (base == kBoundaryBelow ? 2 * i : 2 * i + 2);
-    return admissible(s, state) ? state : -1;
+    return admissible(bounded, state) ? state : -1;
   }
   return -1;
 }
 
 // Default state: a motor reaches its speed, friction sticks, limits are inactive.
-int AxisActiveSet::default_state(const OrderedBounds& s) const {
+int AxisActiveSet::default_state(const BoundedRows& bounded) const {
   for (const AxisRow::Kind kind : {AxisRow::motor, AxisRow::friction}) {
-    for (int i = 0; i < s.count; ++i) {
-      if (row_of(s, i).kind == kind && admissible(s, 2 * i + 1)) return 2 * i + 1;
+    for (int i = 0; i < bounded.count; ++i) {
+      if (row_of(bounded, i).kind == kind && admissible(bounded, 2 * i + 1)) return 2 * i + 1;
     }
   }
-  for (int state = 0; state <= 2 * s.count; state += 2) {
-    if (admissible(s, state)) return state;
+  for (int state = 0; state <= 2 * bounded.count; state += 2) {
+    if (admissible(bounded, state)) return state;
   }
-  for (int state = 1; state <= 2 * s.count; state += 2) {
-    if (admissible(s, state)) return state;
+  for (int state = 1; state <= 2 * bounded.count; state += 2) {
+    if (admissible(bounded, state)) return state;
   }
   return 0;
 }
 
-void AxisActiveSet::build_bounds(int node, int axis, std::uint8_t remembered) {
-  OrderedBounds s;
-  s.node = node;
-  s.axis = axis;
-  s.first = bound_rows_.size();
+void AxisActiveSet::build_bounds(int node, int axis, std::uint8_t previous) {
+  BoundedRows bounded;
+  bounded.node = node;
+  bounded.axis = axis;
+  bounded.first = bounded_row_indices_.size();
   for (const AxisRow& row : rows(node)) {
     if (row.axis != axis || !row.hard() || !row.bounded() || row.constant()) continue;
-    bound_rows_.push_back(index_of(row));
-    s.count++;
+    bounded_row_indices_.push_back(index_of(row));
+    bounded.count++;
   }
-  reconcile_limits(s);
-  sort_bounds(s);
-  s.state = remembered_state(s, remembered % kChangedByContacts);
-  s.deferred_before = s.state >= 0 && remembered >= kChangedByContacts;
-  if (s.state < 0) s.state = default_state(s);
-  apply_state(s);
-  for (int i = 0; s.deferred_before && i < s.count; ++i) row_of(s, i).initial_status = row_of(s, i).status;
-  ordered_bounds_.push_back(s);
+  reconcile_limits(bounded);
+  sort_bounds(bounded);
+  bounded.state = previous_state(bounded, previous % kChangedByContacts);
+  bounded.deferred_before = bounded.state >= 0 && previous >= kChangedByContacts;
+  if (bounded.state < 0) bounded.state = default_state(bounded);
+  apply_state(bounded);
+  for (int i = 0; bounded.deferred_before && i < bounded.count; ++i)
+    row_of(bounded, i).initial_status = row_of(bounded, i).status;
+  bounded_rows_.push_back(bounded);
 }
 
 // Contradicting limits: the lower one is reduced to the upper one.
-void AxisActiveSet::reconcile_limits(const OrderedBounds& s) {
+void AxisActiveSet::reconcile_limits(const BoundedRows& bounded) {
   double min_upper_velocity = AxisRow::kInfinity;
-  for (int i = 0; i < s.count; ++i) {
-    const AxisRow& row = row_of(s, i);
+  for (int i = 0; i < bounded.count; ++i) {
+    const AxisRow& row = row_of(bounded, i);
     if (row.lower <= -AxisRow::kInfinity) min_upper_velocity = std::min(min_upper_velocity, row.velocity);
   }
-  for (int i = 0; i < s.count; ++i) {
-    AxisRow& row = row_of(s, i);
+  for (int i = 0; i < bounded.count; ++i) {
+    AxisRow& row = row_of(bounded, i);
     if (row.upper >= AxisRow::kInfinity) row.velocity = std::min(row.velocity, min_upper_velocity);
   }
 }
 
-// Sorts the rows, which are the last of bound_rows_, by velocity; of equals, rows without an upper bound come first,
-// those without a lower bound last.
-void AxisActiveSet::sort_bounds(const OrderedBounds& s) {
+// Sorts the rows, which are the last of bounded_row_indices_, by velocity; of equals, rows without an upper bound come
+// first, those without a lower bound last.
+void AxisActiveSet::sort_bounds(const BoundedRows& bounded) {
   const auto rank = [](const AxisRow& row) {
     return row.upper >= AxisRow::kInfinity ? 0 : (row.lower <= -AxisRow::kInfinity ? 2 : 1);
   };
   const auto ordered = [&](const AxisRow& low, const AxisRow& high) {
     return low.velocity < high.velocity || (low.velocity == high.velocity && rank(low) <= rank(high));
   };
-  for (int i = s.first; i < s.first + s.count; ++i) {
-    for (int k = i; k > s.first && !ordered(rows_[bound_rows_[k - 1]], rows_[bound_rows_[k]]); --k) {
-      std::swap(bound_rows_[k - 1], bound_rows_[k]);
+  for (int i = bounded.first; i < bounded.first + bounded.count; ++i) {
+    for (int k = i; k > bounded.first && !ordered(rows_[bounded_row_indices_[k - 1]], rows_[bounded_row_indices_[k]]);
+         --k) {
+      std::swap(bounded_row_indices_[k - 1], bounded_row_indices_[k]);
     }
   }
 }
 
 // State of a deferred axis after the step, derived from its impulses.
-int AxisActiveSet::final_state(const OrderedBounds& s) const {
+int AxisActiveSet::final_state(const BoundedRows& bounded) const {
   int below = 0;
-  for (int i = 0; i < s.count; ++i) {
-    const AxisRow& row = row_of(s, i);
+  for (int i = 0; i < bounded.count; ++i) {
+    const AxisRow& row = row_of(bounded, i);
     const double slack = tolerance_of(row.impulse, kImpulseOffset);
     if (row.impulse > row.lower + slack && row.impulse < row.upper - slack) return 2 * i + 1;
     if (row.impulse <= row.lower + slack) below++;
@@ -125,22 +127,23 @@ int AxisActiveSet::final_state(const OrderedBounds& s) const {
 
 ActiveSetMemory AxisActiveSet::active_set(int node) const {
   ActiveSetMemory out{};
-  for (int k = bounds_start_[node]; k < bounds_start_[node + 1]; ++k) {
-    const OrderedBounds& s = ordered_bounds_[k];
-    const int state = s.deferred ? final_state(s) : s.state;
+  for (int k = bounded_rows_start_[node]; k < bounded_rows_start_[node + 1]; ++k) {
+    const BoundedRows& bounded = bounded_rows_[k];
+    const int state = bounded.deferred ? final_state(bounded) : bounded.state;
     const int i = state / 2;
-    const bool top = i == s.count;
+    const bool top = i == bounded.count;
     const int base = (state & 1) != 0 ? kActiveRow : (top ? kBoundaryAbove : kBoundaryBelow);
-    const int flag = s.deferred && state != s.state ? kChangedByContacts : 0;
-    out[s.axis] = static_cast<std::uint8_t>(flag + base + row_of(s, top ? i - 1 : i).kind);
+    const int flag = bounded.deferred && state != bounded.state ? kChangedByContacts : 0;
+    out[bounded.axis] = static_cast<std::uint8_t>(flag + base + row_of(bounded, top ? i - 1 : i).kind);
   }
   return out;
 }
 
-void AxisActiveSet::apply_state(OrderedBounds& s) {
-  for (int i = 0; i < s.count; ++i) {
-    row_of(s, i).status =
-        s.state == 2 * i + 1 ? AxisRow::active : (2 * i + 1 < s.state ? AxisRow::at_lower : AxisRow::at_upper);
+void AxisActiveSet::apply_state(BoundedRows& bounded) {
+  for (int i = 0; i < bounded.count; ++i) {
+    row_of(bounded, i).status = bounded.state == 2 * i + 1
+                                    ? AxisRow::active
+                                    : (2 * i + 1 < bounded.state ? AxisRow::at_lower : AxisRow::at_upper);
   }
 }
 
@@ -148,10 +151,10 @@ void AxisActiveSet::apply_state(OrderedBounds& s) {
 template <class F>
 int AxisActiveSet::defer_if(int first, int last, F&& matches) {
   int deferred = 0;
-  for (OrderedBounds& s : ordered_bounds(first, last)) {
-    if (s.deferred || !matches(s)) continue;
-    s.deferred = true;
-    for (int i = 0; i < s.count; ++i) defer_row(row_of(s, i));
+  for (BoundedRows& bounded : bounded_rows(first, last)) {
+    if (bounded.deferred || !matches(bounded)) continue;
+    bounded.deferred = true;
+    for (int i = 0; i < bounded.count; ++i) defer_row(row_of(bounded, i));
     deferred++;
   }
   return deferred;
@@ -164,30 +167,31 @@ void AxisActiveSet::defer_row(AxisRow& row) {
 }
 
 // Returns the state that the present impulses and rates require.
-int AxisActiveSet::required_state(const OrderedBounds& s) const {
-  const int i = s.state / 2;
-  if ((s.state & 1) != 0) {
-    const AxisRow& row = row_of(s, i);
+int AxisActiveSet::required_state(const BoundedRows& bounded) const {
+  const int i = bounded.state / 2;
+  if ((bounded.state & 1) != 0) {
+    const AxisRow& row = row_of(bounded, i);
     // if the next row has the same velocity, skip the state between them
     const auto same_velocity = [&](int k) {
-      return k >= 0 && k < s.count && std::fabs(row_of(s, k).velocity - row.velocity) <= tolerance_of(row.velocity, 1);
+      return k >= 0 && k < bounded.count &&
+             std::fabs(row_of(bounded, k).velocity - row.velocity) <= tolerance_of(row.velocity, 1);
     };
     if (row.impulse < row.lower - tolerance_of(row.lower, kImpulseOffset))
-      return s.state + (same_velocity(i + 1) ? 2 : 1);
+      return bounded.state + (same_velocity(i + 1) ? 2 : 1);
     if (row.impulse > row.upper + tolerance_of(row.upper, kImpulseOffset))
-      return s.state - (same_velocity(i - 1) ? 2 : 1);
-    return s.state;
+      return bounded.state - (same_velocity(i - 1) ? 2 : 1);
+    return bounded.state;
   }
-  const double present_rate = rate(s.node, s.axis);
+  const double present_rate = rate(bounded.node, bounded.axis);
   if (i > 0) {
-    const AxisRow& row = row_of(s, i - 1);
+    const AxisRow& row = row_of(bounded, i - 1);
     if (present_rate < row.velocity - tolerance_of(row.velocity, 1) && row.lower < row.upper) return 2 * i - 1;
   }
-  if (i < s.count) {
-    const AxisRow& row = row_of(s, i);
+  if (i < bounded.count) {
+    const AxisRow& row = row_of(bounded, i);
     if (present_rate > row.velocity + tolerance_of(row.velocity, 1) && row.lower < row.upper) return 2 * i + 1;
   }
-  return s.state;
+  return bounded.state;
 }
 
 // True if a bounded soft row must change its status. Such rows are independent of the others of their axis.
@@ -202,17 +206,17 @@ bool AxisActiveSet::is_violated(const AxisRow& row) const {
                                          : violation < -tolerance_of(row.velocity, 1);
 }
 
-IndexedSpan<AxisActiveSet::OrderedBounds> AxisActiveSet::ordered_bounds(int first, int last) {
-  const auto begin = bounds_start_[first];
-  return IndexedSpan<OrderedBounds>(ordered_bounds_).subspan(begin, bounds_start_[last] - begin);
+IndexedSpan<AxisActiveSet::BoundedRows> AxisActiveSet::bounded_rows(int first, int last) {
+  const auto begin = bounded_rows_start_[first];
+  return IndexedSpan<BoundedRows>(bounded_rows_).subspan(begin, bounded_rows_start_[last] - begin);
 }
 
 int AxisActiveSet::find_violations(int first, int last) {
   int violated = 0;
-  for (OrderedBounds& s : ordered_bounds(first, last)) {
-    s.next_state = s.deferred ? s.state : required_state(s);
-    if (!admissible(s, s.next_state)) s.next_state = s.state;
-    if (s.next_state != s.state) violated++;
+  for (BoundedRows& bounded : bounded_rows(first, last)) {
+    bounded.next_state = bounded.deferred ? bounded.state : required_state(bounded);
+    if (!admissible(bounded, bounded.next_state)) bounded.next_state = bounded.state;
+    if (bounded.next_state != bounded.state) violated++;
   }
   for (int i = first; i < last; ++i) {
     for (const AxisRow& row : rows(i)) violated += is_violated(row) ? 1 : 0;
@@ -221,7 +225,7 @@ int AxisActiveSet::find_violations(int first, int last) {
 }
 
 void AxisActiveSet::exchange(int first, int last, bool only_last) {
-  const IndexedSpan<OrderedBounds> all = ordered_bounds(first, last);
+  const IndexedSpan<BoundedRows> all = bounded_rows(first, last);
   for (int k = all.size(); k-- > 0;) {
     if (all[k].next_state == all[k].state) continue;
     all[k].state = all[k].next_state;
@@ -241,19 +245,19 @@ void AxisActiveSet::exchange(int first, int last, bool only_last) {
 
 bool AxisActiveSet::solve(int first, int last, int max_exchanges) {
   if (factored_[first] != 0) {
-    correct(first, last);
+    solve_once(first, last);
     if (find_violations(first, last) == 0) return true;
     exchange(first, last, false);
   }
-  return pivot(first, last, max_exchanges);
+  return solve_from_scratch(first, last, max_exchanges);
 }
 
-bool AxisActiveSet::pivot(int first, int last, int max_exchanges) {
+bool AxisActiveSet::solve_from_scratch(int first, int last, int max_exchanges) {
   int min_violated = rows_.size() + 1;
   int stalled_rounds_left = kMaxStalledRounds;
   for (int round = 0;; ++round) {
     if (!factor(first, last)) return false;
-    correct(first, last);
+    solve_once(first, last);
     const int violated = find_violations(first, last);
     if (violated == 0) return true;
     if (round >= max_exchanges) break;
@@ -268,19 +272,19 @@ bool AxisActiveSet::pivot(int first, int last, int max_exchanges) {
     exchange(first, last, single);
   }
   defer_violated(first, last);
-  return factor_and_correct(first, last);
+  return factor_and_solve_once(first, last);
 }
 
-int AxisActiveSet::defer_remembered(int first, int last) {
-  return defer_if(first, last, [](const OrderedBounds& s) { return s.deferred_before; });
+int AxisActiveSet::defer_as_before(int first, int last) {
+  return defer_if(first, last, [](const BoundedRows& bounded) { return bounded.deferred_before; });
 }
 
 int AxisActiveSet::defer_axis(int node, int axis) {
-  return defer_if(node, node + 1, [axis](const OrderedBounds& s) { return s.axis == axis; });
+  return defer_if(node, node + 1, [axis](const BoundedRows& bounded) { return bounded.axis == axis; });
 }
 
 int AxisActiveSet::defer_all(int first, int last) {
-  return defer_if(first, last, [](const OrderedBounds&) { return true; });
+  return defer_if(first, last, [](const BoundedRows&) { return true; });
 }
 
 void AxisActiveSet::save() {
@@ -300,17 +304,17 @@ void AxisActiveSet::restore() {
   changes_ = saved_changes_;
 }
 
-bool AxisActiveSet::factor_and_correct(int first, int last) {
+bool AxisActiveSet::factor_and_solve_once(int first, int last) {
   for (int i = first; i < last; ++i) forest.node(i).load = {};
   if (!factor(first, last)) return false;
-  correct(first, last);
+  solve_once(first, last);
   return true;
 }
 
 int AxisActiveSet::defer_violated(int first, int last) {
   const int violated = find_violations(first, last);
   if (violated == 0) return 0;
-  defer_if(first, last, [](const OrderedBounds& s) { return s.next_state != s.state; });
+  defer_if(first, last, [](const BoundedRows& bounded) { return bounded.next_state != bounded.state; });
   for (int i = first; i < last; ++i) {
     for (AxisRow& row : rows(i)) {
       if (is_violated(row)) defer_row(row);

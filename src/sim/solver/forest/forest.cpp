@@ -35,7 +35,7 @@ bool Forest::factor(int first, int last) {
     for (int k = 0; k < 6; ++k) {
       if ((n.prescribed >> k & 1) != 0) continue;
       n.inertia_axis[k] = n.articulated_inertia * n.axis[k];
-      const double d = dot(n.axis[k], n.inertia_axis[k]) + n.conductance[k];
+      const double d = dot(n.axis[k], n.inertia_axis[k]) + n.damping[k];
       // written so that NaN fails the test
       if (!(d > kMinRelativeInertia * dot(n.axis[k], n.inertia * n.axis[k]))) return false;
       n.inverse_d[k] = 1 / d;
@@ -80,7 +80,7 @@ void Forest::solve(int first, int last) {
         continue;
       }
       n.rate[j] = n.free_rate[j] - dot(n.inertia_axis[j], v) * n.inverse_d[j];
-      n.impulse[j] = n.input[j] - n.conductance[j] * n.rate[j];
+      n.impulse[j] = n.input[j] - n.damping[j] * n.rate[j];
       v += n.axis[j] * n.rate[j];
     }
     n.velocity_change = v;

@@ -6,9 +6,9 @@
 
 #include <array>
 #include <span>
-#include "sim/solver/indexed_array.h"
 
 #include "sim/solver/forest/spatial_algebra.h"
+#include "sim/solver/indexed_array.h"
 
 namespace limber {
 
@@ -22,8 +22,8 @@ struct TreeNode {
   FixedArray<Spatial, 6> axis;  ///< Motion subspace S: motion of the body at rate 1 of each axis.
 
   // input of solve()
-  unsigned prescribed = 0;              ///< Bit i is set: axis i is prescribed.
-  FixedArray<double, 6> conductance{};  ///< Free axis: impulse that it loses per rate, >= 0.
+  unsigned prescribed = 0;          ///< Bit i is set: axis i is prescribed.
+  FixedArray<double, 6> damping{};  ///< Free axis: implicit damping, impulse per rate, >= 0.
   FixedArray<double, 6> input{};  ///< Prescribed axis: its change of rate. Free axis: its impulse at no change of rate.
   Spatial load;                   ///< External impulse on the body.
 
@@ -35,7 +35,7 @@ struct TreeNode {
   // factor (in brackets: Featherstone's symbols)
   SpatialInertia articulated_inertia;   ///< Articulated-body inertia of the subtree, as the parent sees it [I^A].
   FixedArray<Spatial, 6> inertia_axis;  ///< Free axes: inertia · axis at the time of their elimination [U].
-  FixedArray<double, 6> inverse_d{};    ///< Free axes: 1 / (axis · inertia_axis + conductance) [1/D].
+  FixedArray<double, 6> inverse_d{};    ///< Free axes: 1 / (axis · inertia_axis + damping) [1/D].
   int first_free = 0;                   ///< Index of its first free axis, among those of its tree.
   FixedArray<double, 6> free_rate{};
   Spatial prescribed_motion;
@@ -62,7 +62,7 @@ class Forest {
   /// Factors the nodes first .. last - 1, which must be whole trees. Returns false if an axis moves (nearly) no mass;
   /// the factor must not be used then.
   bool factor(int first, int last);
-  /// Computes the outputs for `input` and `load`, with the factor of the present `prescribed` and `conductance`.
+  /// Computes the outputs for `input` and `load`, with the factor of the present `prescribed` and `damping`.
   void solve(int first, int last);
   /// Like solve(), but with prescribed axes at rest: computes only `velocity_change`, and `rate` of free axes.
   void respond(int first, int last);

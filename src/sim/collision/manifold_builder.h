@@ -1,4 +1,4 @@
-// ContactManifold: replaces all contact points of two objects by those of the present step.
+// ManifoldBuilder: replaces all contact points of two objects by those of the present step.
 #pragma once
 
 #include <array>
@@ -11,12 +11,13 @@ namespace limber {
 inline constexpr int kContactClosed = 1 << 16;
 
 /// Collects the points of one step, reduces them to at most four (the deepest, and those that span the largest area),
-/// and writes them to Bullet's manifold. Points that existed before retain their impulses for warm starting. A body
-/// that slides has its complete set of points in every step. [sim]
-class ContactManifold {
+/// and writes them to Bullet's manifold. Points that existed before retain their impulses for warm starting. Bullet
+/// collects the points of a manifold over several steps; here each step finds all of them, also while a body slides.
+/// [sim]
+class ManifoldBuilder {
  public:
   /// `h`: length of the step, s. Body A is the first one of the manifold.
-  ContactManifold(btPersistentManifold& manifold, btScalar h);
+  ManifoldBuilder(btPersistentManifold& manifold, btScalar h);
 
   /// Upper bound of the distance of points that can touch within the step, m.
   btScalar max_distance() const { return max_distance_; }
@@ -24,8 +25,8 @@ class ContactManifold {
   btScalar max_rotation_distance() const { return max_rotation_distance_; }
   /// Linear motion of B relative to A in the step, m; 0 if contacts begin only where surfaces touch.
   const btVector3& relative_motion() const { return relative_motion_; }
-  /// Adds a point on the surface of B, `distance` (negative: depth) below that of A along the normal of B. Ignored if
-  /// the surfaces can't touch there within the step.
+  /// Adds a contact: a point on the surface of B, with the opposite point of A at `distance` along the outward normal
+  /// of B (negative: penetration). Ignored if the surfaces can't touch there within the step, or after kMaxCandidates.
   void add(const btVector3& point_on_b, const btVector3& normal, btScalar distance);
   bool empty() const { return count_ == 0; }
   /// Writes the points to the manifold.
@@ -37,7 +38,7 @@ class ContactManifold {
     btVector3 normal;
     btScalar distance;
   };
-  static constexpr int kMaxPoints = 128;
+  static constexpr int kMaxCandidates = 128;
 
   const Point& at(int i) const { return points_[static_cast<std::size_t>(i)]; }
   btScalar approach(const btVector3& point, const btVector3& normal) const;
@@ -56,7 +57,7 @@ class ContactManifold {
   btScalar max_distance_;
   bool speculative_;  // contacts may begin before the surfaces touch; see Part::apply_surface
   int count_ = 0;
-  std::array<Point, kMaxPoints> points_;
+  std::array<Point, kMaxCandidates> points_;
 };
 
 /// Result of Bullet's own algorithms, one point at a time; a point that replaces an older one retains its warm-start

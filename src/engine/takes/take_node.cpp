@@ -1,5 +1,5 @@
 // The properties of /take.
-#include "engine/takes/node.h"
+#include "engine/takes/take_node.h"
 
 namespace limber {
 

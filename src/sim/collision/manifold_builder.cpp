@@ -1,5 +1,5 @@
 // Reduces the contact points of a step to at most four, and transfers impulses from the previous step.
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace limber {
 namespace {
 
-constexpr int kMaxManifoldPoints = 4;
+constexpr int kMaxPoints = 4;
 /// Distance (or Bullet's breaking threshold, if smaller) up to which points are contacts even without an approach, m.
 constexpr btScalar kContactDistance = 1e-3F;
 /// A point must be deeper, farther or wider by more than rounding errors to replace an earlier one, so that the choice
@@ -43,7 +43,7 @@ void copy_warm_start(const btManifoldPoint& from, btManifoldPoint& to) {
 
 }  // namespace
 
-ContactManifold::ContactManifold(btPersistentManifold& manifold, btScalar h)
+ManifoldBuilder::ManifoldBuilder(btPersistentManifold& manifold, btScalar h)
     : manifold_(manifold),
       a_(dynamic_body(manifold.getBody0())),
       b_(dynamic_body(manifold.getBody1())),
@@ -62,7 +62,7 @@ ContactManifold::ContactManifold(btPersistentManifold& manifold, btScalar h)
 
 // Decrease of the distance at a point in the step. Rotation moves points on a circle: without the second-order term a
 // fast wheel would be braked by points that never touch.
-btScalar ContactManifold::approach(const btVector3& point, const btVector3& normal) const {
+btScalar ManifoldBuilder::approach(const btVector3& point, const btVector3& normal) const {
   const auto displacement = [&](const btRigidBody& body) {
     const btVector3 arm = point - body.getWorldTransform().getOrigin();
     const btVector3& spin = body.getAngularVelocity();
@@ -72,13 +72,13 @@ btScalar ContactManifold::approach(const btVector3& point, const btVector3& norm
   return (b_ != nullptr ? displacement(*b_) : 0) - (a_ != nullptr ? displacement(*a_) : 0);
 }
 
-void ContactManifold::add(const btVector3& point_on_b, const btVector3& normal, btScalar distance) {
-  if (distance > max_distance_ || count_ == kMaxPoints) return;
+void ManifoldBuilder::add(const btVector3& point_on_b, const btVector3& normal, btScalar distance) {
+  if (distance > max_distance_ || count_ == kMaxCandidates) return;
   if (distance > contact_distance_ && distance > contact_distance_ + approach(point_on_b, normal)) return;
   points_[static_cast<std::size_t>(count_++)] = {point_on_b, normal, distance};
 }
 
-int ContactManifold::find_deepest() const {
+int ManifoldBuilder::find_deepest() const {
   int best = 0;
   for (int i = 1; i < count_; ++i) {
     if (at(i).distance < at(best).distance - kDepthTolerance) best = i;
@@ -86,7 +86,7 @@ int ContactManifold::find_deepest() const {
   return best;
 }
 
-int ContactManifold::find_farthest(int from) const {
+int ManifoldBuilder::find_farthest(int from) const {
   int best = -1;
   btScalar largest = SIMD_EPSILON * SIMD_EPSILON;
   for (int i = 0; i < count_; ++i) {
@@ -100,7 +100,7 @@ int ContactManifold::find_farthest(int from) const {
 }
 
 // The point farthest from the line through a and b on one side; -1: none that spans an area.
-int ContactManifold::find_widest(int a, int b, btScalar side) const {
+int ManifoldBuilder::find_widest(int a, int b, btScalar side) const {
   const btVector3 line = at(b).on_b - at(a).on_b;
   const btVector3 across = at(a).normal.cross(line) * side;
   int best = -1;
@@ -115,9 +115,9 @@ int ContactManifold::find_widest(int a, int b, btScalar side) const {
   return best;
 }
 
-void ContactManifold::reduce() {
+void ManifoldBuilder::reduce() {
   if (count_ <= 1) return;
-  int chosen_index[kMaxManifoldPoints];
+  int chosen_index[kMaxPoints];
   int count = 0;
   chosen_index[count++] = find_deepest();
   const int far = find_farthest(chosen_index[0]);
@@ -128,13 +128,13 @@ void ContactManifold::reduce() {
       if (wide >= 0) chosen_index[count++] = wide;
     }
   }
-  Point chosen[kMaxManifoldPoints];
+  Point chosen[kMaxPoints];
   for (int i = 0; i < count; ++i) chosen[i] = at(chosen_index[i]);
   for (int i = 0; i < count; ++i) points_[static_cast<std::size_t>(i)] = chosen[i];
   count_ = count;
 }
 
-void ContactManifold::write() {
+void ManifoldBuilder::write() {
   if (count_ == 0) {
     manifold_.setNumContacts(0);
     return;
@@ -142,9 +142,9 @@ void ContactManifold::write() {
   reduce();
   const btCollisionObject* a = manifold_.getBody0();
   const btCollisionObject* b = manifold_.getBody1();
-  btManifoldPoint old_points[kMaxManifoldPoints];
-  bool used[kMaxManifoldPoints] = {};
-  const int old_count = std::min(manifold_.getNumContacts(), kMaxManifoldPoints);
+  btManifoldPoint old_points[kMaxPoints];
+  bool used[kMaxPoints] = {};
+  const int old_count = std::min(manifold_.getNumContacts(), kMaxPoints);
   for (int i = 0; i < old_count; ++i) old_points[i] = manifold_.getContactPoint(i);
   manifold_.setNumContacts(count_);
   const btScalar friction = btManifoldResult::calculateCombinedFriction(a, b);
@@ -165,6 +165,7 @@ void ContactManifold::write() {
     point.m_lateralFrictionDir1.setZero();
     point.m_lateralFrictionDir2.setZero();
     int nearest = -1;
+    // one point that follows one point is the same contact, however far it moved, such as that of a rolling sphere
     btScalar nearest2 = count_ == 1 && old_count == 1 ? BT_LARGE_FLOAT : match_distance * match_distance;
     for (int k = 0; k < old_count; ++k) {
       const btScalar distance2 = std::min((old_points[k].m_localPointA - point.m_localPointA).length2(),
