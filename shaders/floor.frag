@@ -43,15 +43,15 @@ void main() {
   vec3 albedo = floor_color.rgb * tint.rgb;
   bool stage = along.w > 0.5;
   float open = stage ? ambient_visibility(at) : 1.0;
-  vec4 l = lamp(at);
-  float facing_lamp = max(dot(n, l.xyz), 0.0);
-  float incoming = l.w * facing_lamp;
+  vec4 l = light_at(at);
+  float facing_light = max(dot(n, l.xyz), 0.0);
+  float incoming = l.w * facing_light;
   if (incoming > 0.0) incoming *= shadow_factor(at, n, l.xyz, gl_FragCoord.xy);
-  vec3 light = albedo * (sky.rgb * open + lamp_color.rgb * incoming * mix(1.0, open, 0.5));
+  vec3 light = albedo * (sky.rgb * open + light_color.rgb * incoming * mix(1.0, open, 0.5));
 
   vec2 p = vec2(dot(at, along.xyz), dot(at, across.xyz));
   float line = max(0.4 * lines(p, 1.0), lines(p, 5.0));
-  vec3 shown = mix(filmic(light), grid.rgb, grid.w * line * exp(-far * tone.y * 2.2));
+  vec3 shown = mix(filmic(light), grid.rgb, grid.w * line * exp(-far * fog_density * 2.2));
   float haze = fog(far);
   float mirrors = stage ? floor_color.w * (0.55 + 0.45 * (1.0 - max(dot(n, to_eye), 0.0))) : 0.0;
   float alpha = tint.w * mix(1.0 - mirrors, 1.0, haze);

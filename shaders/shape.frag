@@ -8,7 +8,7 @@ out vec4 color;
 
 void main() {
 #ifdef MIRRORED
-  if (at.z < tone.z) discard;  // replaces gl_ClipDistance
+  if (at.z < floor_height) discard;  // replaces gl_ClipDistance
 #endif
   vec3 n = normalize(facing);
   vec3 to_eye = eye.xyz - at;
@@ -16,16 +16,16 @@ void main() {
   to_eye /= far;
 
   // ambient light from above decreases near the floor
-  float open = mix(0.55, 1.0, smoothstep(0.0, 0.9, at.z - tone.z));
+  float open = mix(0.55, 1.0, smoothstep(0.0, 0.9, at.z - floor_height));
   vec3 light = v_ambient.rgb * mix(ground.rgb, sky.rgb * open, 0.5 + 0.5 * n.z);
 
-  vec4 l = lamp(at);
-  float facing_lamp = dot(n, l.xyz);
+  vec4 l = light_at(at);
+  float facing_light = dot(n, l.xyz);
   float incoming = 0.0;
-  if (facing_lamp > 0.0 && l.w > 0.0) incoming = l.w * shadow_factor(at, n, l.xyz, gl_FragCoord.xy);
+  if (facing_light > 0.0 && l.w > 0.0) incoming = l.w * shadow_factor(at, n, l.xyz, gl_FragCoord.xy);
   vec3 half_way = normalize(l.xyz + to_eye);
   float shine = v_specular * (v_ambient.w + 8.0) * 0.04 * pow(max(dot(n, half_way), 0.0), v_ambient.w);
-  light += lamp_color.rgb * incoming * max(facing_lamp, 0.0) * (v_diffuse.rgb + shine);
+  light += light_color.rgb * incoming * max(facing_light, 0.0) * (v_diffuse.rgb + shine);
 
   float edge = 1.0 - clamp(dot(n, to_eye), 0.0, 1.0);
   light += rim.rgb * pow(edge, 2.8) * (0.45 + 0.55 * n.z);
@@ -34,6 +34,6 @@ void main() {
   float alpha = v_diffuse.w;
   if (alpha < 1.0) alpha = mix(alpha, 1.0, 0.7 * edge * edge * edge);
   // reflections fade with height above the floor
-  if (eye.w > 0.5) alpha *= exp(-0.28 * (at.z - tone.z));
+  if (eye.w > 0.5) alpha *= exp(-0.28 * (at.z - floor_height));
   color = vec4(dithered(mix(filmic(light), background(-to_eye), fog(far)), gl_FragCoord.xy), alpha);
 }

@@ -29,7 +29,7 @@ void main() {
   gl_Position = view_proj * vec4(at, 1.0);
 #if CLIP_DISTANCE
   // clips in the mirror pass only; some drivers use it even if GL_CLIP_DISTANCE0 is disabled
-  gl_ClipDistance[0] = eye.w > 0.5 ? at.z - tone.z : 1.0;
+  gl_ClipDistance[0] = eye.w > 0.5 ? at.z - floor_height : 1.0;
 #endif
 #ifdef GROUND
   depth = gl_Position.z;  // the projection is orthographic: w is 1

@@ -8,7 +8,7 @@ namespace limber {
 inline constexpr int kSuccess = 0;
 inline constexpr int kInputError = 1;    ///< The input is invalid: a scene, a model, an answer.
 inline constexpr int kUsageError = 2;    ///< The command line is invalid.
-inline constexpr int kMachineError = 3;  ///< The machine is at fault: a port is in use, a folder is not writable.
+inline constexpr int kMachineError = 3;  ///< A problem of the machine: a port is in use, a folder is not writable.
 
 /// Prints an error to stderr, with unprintable bytes escaped, and returns `code`.
 int fail(int code, std::string_view text);

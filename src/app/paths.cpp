@@ -17,7 +17,7 @@ namespace limber {
 namespace fs = std::filesystem;
 
 std::string data_dir() {
-  std::error_code fault;
+  std::error_code error;
   const fs::path program = system::executable_path();
   std::vector<fs::path> candidates;
   if (!program.empty()) {
@@ -27,7 +27,7 @@ std::string data_dir() {
   }
   candidates.emplace_back(install_data_dir());
   for (const fs::path& candidate : candidates) {
-    if (fs::is_directory(candidate / "scripts", fault) && fs::is_directory(candidate / "urdf", fault))
+    if (fs::is_directory(candidate / "scripts", error) && fs::is_directory(candidate / "urdf", error))
       return candidate.string();
   }
   return {};
@@ -53,15 +53,15 @@ std::string shell_word(std::string_view text) {
 
 std::string program_command() {
   const std::string program = system::executable_path();
-  std::error_code fault;
-  if (program.empty() || fs::equivalent(find_in_path("limber"), program, fault)) return "limber";
+  std::error_code error;
+  if (program.empty() || fs::equivalent(find_in_path("limber"), program, error)) return "limber";
   return shell_word(program);
 }
 
 std::string shader_dir() {
   const std::string data = data_dir();
-  std::error_code fault;
-  if (data.empty() || !fs::is_regular_file(fs::path(data) / "shaders/common.glsl", fault)) return {};
+  std::error_code error;
+  if (data.empty() || !fs::is_regular_file(fs::path(data) / "shaders/common.glsl", error)) return {};
   return (fs::path(data) / "shaders").string();
 }
 
@@ -77,11 +77,11 @@ std::string find_scene(std::string_view name, std::vector<std::string>& searched
   std::vector<fs::path> candidates{fs::path(name)};
   const std::string data = data_dir();
   if (!data.empty() && fs::path(name).is_relative()) candidates.push_back(fs::path(data) / name);
-  std::error_code fault;
+  std::error_code error;
   for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate, fault)) return candidate.string();
+    if (fs::is_regular_file(candidate, error)) return candidate.string();
     // in the data folder itself both places are the same
-    const std::string absolute = fs::absolute(candidate, fault).lexically_normal().string();
+    const std::string absolute = fs::absolute(candidate, error).lexically_normal().string();
     if (searched.empty() || searched.back() != absolute) searched.push_back(absolute);
   }
   return {};

@@ -1,4 +1,4 @@
-// A joint of the file is a link of the body. BVH has no rest rotations, so rotations are relative to the rest pose.
+// Writes each link of the body as a BVH joint. BVH has no rest rotations, so rotations are relative to the rest pose.
 #include "export/writers.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 #include "base/system/file.h"
 #include "base/text.h"
+#include "export/atomic_file.h"
 #include "export/names.h"
-#include "export/out_file.h"
 
 namespace limber {
 
@@ -74,14 +74,14 @@ class BvhFile {
     if (Result<void> opened = file_.open(); !opened) return opened;
     std::string text = "HIERARCHY\n";
     if (has_several_roots_)
-      text += fmt::format("ROOT {}\n{{\n  OFFSET 0 0 0\n  {}", names_.unique(word_name(body.name)), kChannels);
+      text += fmt::format("ROOT {}\n{{\n  OFFSET 0 0 0\n  {}", names_.unique(sanitize_bvh_name(body.name)), kChannels);
     for (std::size_t i = 0; i < order_.links.size(); i++) add_joint(text, body, i);
     close_joints(text, has_several_roots_ ? 1 : 0);
     if (has_several_roots_) text += "}\n";
     text += "MOTION\nFrames: ";
     count_at_ = text.size();
     text += std::string(kCountWidth, ' ') + fmt::format("\nFrame Time: {:.9f}\n", 1 / rate_);
-    return file_.put(text);
+    return file_.write(text);
   }
 
   /// Appends a frame `times` times. The first sample is also used for the frames before the body appeared.
@@ -107,7 +107,7 @@ class BvhFile {
   /// Repeats the last frame.
   Result<void> repeat(std::uint64_t times = 1) {
     for (; times > 0; times--) {
-      if (Result<void> put = file_.put(line_); !put) return put;
+      if (Result<void> written = file_.write(line_); !written) return written;
       count_++;
     }
     return {};
@@ -145,8 +145,8 @@ class BvhFile {
       offset -= y_up(rest_poses_[index_of_[static_cast<std::size_t>(parent_[i])]].position);
     }
     text += fmt::format("{0}{1} {2}\n{0}{{\n{3}OFFSET {4:.6f} {5:.6f} {6:.6f}\n{3}{7}", indent(depth),
-                        depth == 0 ? "ROOT" : "JOINT", names_.unique(word_name(link.name)), indent(depth + 1), offset.x,
-                        offset.y, offset.z, kChannels);
+                        depth == 0 ? "ROOT" : "JOINT", names_.unique(sanitize_bvh_name(link.name)), indent(depth + 1),
+                        offset.x, offset.y, offset.z, kChannels);
     open_joints_.push_back({false, y_up(rest_poses_[i].rotation * end_site_of(link))});
   }
 
@@ -155,7 +155,7 @@ class BvhFile {
     Vec3 end_offset{0};
   };
 
-  OutFile file_;
+  AtomicFile file_;
   double rate_;
   UniqueNames names_;
   LinkOrder order_;
@@ -193,7 +193,7 @@ class BvhWriter : public MotionWriter {
                       "--body, or give the name of a folder, without .bvh",
                       printable(path_), printable(body.name))};
     const std::string name =
-        single_file_ ? path_ : fmt::format("{}/{}.bvh", folder_, names_.unique(file_name(body.name)));
+        single_file_ ? path_ : fmt::format("{}/{}.bvh", folder_, names_.unique(sanitize_file_name(body.name)));
     files_.push_back(std::make_unique<BvhFile>(name, body, rate_));
     return files_.back()->begin(body);
   }
@@ -257,7 +257,7 @@ Vec3 bvh_angles(const Quat& rotation, const Vec3& previous) {
                                                                                            : second_solution;
 }
 
-Result<std::unique_ptr<MotionWriter>> write_bvh(const std::string& path, double rate) {
+Result<std::unique_ptr<MotionWriter>> make_bvh_writer(const std::string& path, double rate) {
   auto writer = std::make_unique<BvhWriter>(path, rate);
   if (const Result<void> begun = writer->begin(); !begun) return Error{begun.error()};
   return std::unique_ptr<MotionWriter>(std::move(writer));

@@ -10,8 +10,8 @@
 
 #include "base/system/file.h"
 #include "base/text.h"
+#include "export/atomic_file.h"
 #include "export/names.h"
-#include "export/out_file.h"
 
 namespace limber {
 
@@ -66,12 +66,12 @@ class CsvWriter : public MotionWriter {
       }
     }
     line_ += '\n';
-    return file_->put(line_);
+    return file_->write(line_);
   }
 
   Result<void> finish() override {
     if (column_changes_.empty()) {
-      if (Result<void> put = file_->put(header_ + "\n"); !put) return put;
+      if (Result<void> written = file_->write(header_ + "\n"); !written) return written;
     }
     if (column_changes_.size() <= 1) return file_->finish();
     if (Result<void> flushed = file_->flush(); !flushed) return flushed;
@@ -101,11 +101,11 @@ class CsvWriter : public MotionWriter {
 
   // copies the lines below the complete header and appends empty cells for columns that were added later
   Result<void> pad_lines() {
-    OutFile padded(path_, temporary_name(path_ + ".whole"));
+    AtomicFile padded(path_, temporary_name(path_ + ".whole"));
     const system::Descriptor in = system::open_file(file_->temporary_path(), system::OpenMode::read);
     if (!in.is_open()) return read_error();
     if (Result<void> opened = padded.open(); !opened) return opened;
-    if (Result<void> put = padded.put(header_ + "\n"); !put) return put;
+    if (Result<void> written = padded.write(header_ + "\n"); !written) return written;
     std::string chunk(std::size_t{1} << 16u, '\0');
     std::string out;
     std::uint64_t line = 0;  // 0: the incomplete first header
@@ -125,7 +125,7 @@ class CsvWriter : public MotionWriter {
           out += c;
         }
       }
-      if (Result<void> put = padded.put(out); !put) return put;
+      if (Result<void> written = padded.write(out); !written) return written;
     }
     file_.reset();
     return padded.finish();
@@ -136,7 +136,7 @@ class CsvWriter : public MotionWriter {
   }
 
   std::string path_;
-  std::optional<OutFile> file_;
+  std::optional<AtomicFile> file_;
   UniqueNames names_;
   std::string header_ = "time";
   std::string line_;
@@ -148,7 +148,7 @@ class CsvWriter : public MotionWriter {
 
 }  // namespace
 
-Result<std::unique_ptr<MotionWriter>> write_csv(const std::string& path) {
+Result<std::unique_ptr<MotionWriter>> make_csv_writer(const std::string& path) {
   auto writer = std::make_unique<CsvWriter>(path);
   if (const Result<void> begun = writer->begin(); !begun) return Error{begun.error()};
   return std::unique_ptr<MotionWriter>(std::move(writer));

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "export/atomic_file.h"
 #include "export/gltf_model.h"
 #include "export/names.h"
-#include "export/out_file.h"
 
 namespace limber {
 
@@ -30,9 +30,9 @@ std::string little_endian_words(std::initializer_list<std::uint64_t> numbers) {
   return out;
 }
 
-Result<void> put_all(OutFile& file, const std::vector<std::string_view>& pieces) {
+Result<void> write_all(AtomicFile& file, const std::vector<std::string_view>& pieces) {
   for (const std::string_view piece : pieces) {
-    if (Result<void> put = file.put(piece); !put) return put;
+    if (Result<void> written = file.write(piece); !written) return written;
   }
   return {};
 }
@@ -66,7 +66,7 @@ class GltfWriter : public MotionWriter {
 
   Result<void> finish() override {
     const std::filesystem::path path(path_);
-    const std::string uri = is_glb() ? "" : uri_name(std::filesystem::path(bin_.path()).filename().string());
+    const std::string uri = is_glb() ? "" : percent_encode(std::filesystem::path(bin_.path()).filename().string());
     Result<GltfModel> model = gltf_model(tracks_, printable(path.stem().string()), uri);
     if (!model) return Error{fmt::format("{}: {}", printable(path_), model.error())};
     return is_glb() ? finish_glb(*model) : finish_gltf(*model);
@@ -76,8 +76,8 @@ class GltfWriter : public MotionWriter {
   bool is_glb() const { return path_.ends_with(".glb"); }
 
   Result<void> finish_gltf(const GltfModel& model) {
-    if (Result<void> put = put_all(bin_, model.pieces); !put) return put;
-    if (Result<void> put = file_.put(model.json); !put) return put;
+    if (Result<void> written = write_all(bin_, model.pieces); !written) return written;
+    if (Result<void> written = file_.write(model.json); !written) return written;
     if (model.bytes > 0) {
       if (Result<void> finished = bin_.finish(); !finished) return finished;
     }
@@ -89,24 +89,25 @@ class GltfWriter : public MotionWriter {
     const bool has_bytes = model.bytes > 0;
     const std::uint64_t total_bytes = 12 + 8 + model.json.size() + (has_bytes ? 8 + model.bytes : 0);
     const std::string header = little_endian_words({kMagic, 2, total_bytes, model.json.size(), kJsonChunk});
-    if (Result<void> put = put_all(file_, {header, model.json}); !put) return put;
+    if (Result<void> written = write_all(file_, {header, model.json}); !written) return written;
     if (has_bytes) {
-      if (Result<void> put = file_.put(little_endian_words({model.bytes, kBinaryChunk})); !put) return put;
-      if (Result<void> put = put_all(file_, model.pieces); !put) return put;
+      if (Result<void> written = file_.write(little_endian_words({model.bytes, kBinaryChunk})); !written)
+        return written;
+      if (Result<void> written = write_all(file_, model.pieces); !written) return written;
     }
     return file_.finish();
   }
 
   std::string path_;
   std::uint64_t max_bytes_;
-  OutFile file_;
-  OutFile bin_;  // beside a .gltf
+  AtomicFile file_;
+  AtomicFile bin_;  // beside a .gltf
   GltfTracks tracks_;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t max_bytes) {
+Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path, std::uint64_t max_bytes) {
   auto writer = std::make_unique<GltfWriter>(path, max_bytes);
   if (const Result<void> begun = writer->begin(); !begun) return Error{begun.error()};
   return std::unique_ptr<MotionWriter>(std::move(writer));

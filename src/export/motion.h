@@ -24,7 +24,7 @@ struct Surface {
 };
 using Surfaces = std::vector<Surface>;
 
-/// A rigid link of a body.
+/// A part of a body (Part); file formats and URDF call it a link.
 struct MotionLink {
   std::string name;
   int parent = -1;                           ///< Index among the body's links, in any order; -1: no parent.

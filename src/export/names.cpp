@@ -27,9 +27,9 @@ std::string UniqueNames::unique(std::string_view name) {
   return candidate;
 }
 
-std::string word_name(std::string_view name) { return with_underscores(name, " \t{}"); }
+std::string sanitize_bvh_name(std::string_view name) { return with_underscores(name, " \t{}"); }
 
-std::string file_name(std::string_view name) {
+std::string sanitize_file_name(std::string_view name) {
   std::string out = with_underscores(name, "/\\:*?\"<>|");
   if (out.front() == '.') out.front() = '_';
   if (out.size() <= kMaxBytes) return out;
@@ -38,7 +38,7 @@ std::string file_name(std::string_view name) {
   return out.substr(0, end);
 }
 
-std::string uri_name(std::string_view name) {
+std::string percent_encode(std::string_view name) {
   std::string out;
   for (const char c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||

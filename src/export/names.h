@@ -17,10 +17,10 @@ class UniqueNames {
 };
 
 /// Replaces blanks and braces, which end a name in a BVH file, by '_'; an empty name becomes "_".
-std::string word_name(std::string_view name);
-/// A file name (without folders) that is valid on any file system; at most 120 bytes.
-std::string file_name(std::string_view name);
+std::string sanitize_bvh_name(std::string_view name);
+/// Returns a file name (without folders) that is valid on any file system; at most 120 bytes.
+std::string sanitize_file_name(std::string_view name);
 /// Percent-encodes one segment of a URI: everything except letters, digits and "-._~".
-std::string uri_name(std::string_view name);
+std::string percent_encode(std::string_view name);
 
 }  // namespace limber

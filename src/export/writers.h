@@ -12,12 +12,12 @@ namespace limber {
 /// CSV: one line per frame with the pose of every link and the value of every joint. Memory use is independent of the
 /// number of frames: lines are written to disk as they arrive. If a body was added after the first frame, finish()
 /// rewrites the file with the complete header.
-Result<std::unique_ptr<MotionWriter>> write_csv(const std::string& path);
+Result<std::unique_ptr<MotionWriter>> make_csv_writer(const std::string& path);
 
 /// BVH: one motion capture skeleton per body. Y up, meters, degrees. If `path` ends with .bvh, it writes one file, and
 /// a second body is an error; otherwise a folder of that name, which must not exist, with one file per body. `rate`:
 /// frames per second. Memory use is independent of the number of frames.
-Result<std::unique_ptr<MotionWriter>> write_bvh(const std::string& path, double rate);
+Result<std::unique_ptr<MotionWriter>> make_bvh_writer(const std::string& path, double rate);
 
 /// Returns the Euler angles about z, x and y, rad: R = Rz·Rx·Ry, the order of the channels in a BVH file. Of all
 /// equivalent angles, chooses those nearest to `previous`, so that a curve never jumps.
@@ -29,6 +29,6 @@ inline constexpr std::uint64_t kMaxGltfKeyBytes = std::uint64_t{1800} << 20u;
 /// glTF 2.0: bodies with meshes and one animation, for 3D editors and the web. Y up, meters. A `path` that ends with
 /// .glb gives one file; .gltf a text file and NAME.bin. Keyframes are stored in memory until finish(), 28 bytes per
 /// link and frame; more than `max_bytes` are an error.
-Result<std::unique_ptr<MotionWriter>> write_gltf(const std::string& path, std::uint64_t max_bytes = kMaxGltfKeyBytes);
+Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path, std::uint64_t max_bytes = kMaxGltfKeyBytes);
 
 }  // namespace limber

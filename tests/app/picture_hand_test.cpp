@@ -28,7 +28,7 @@ class MouseRig {
     } while (values_ == nullptr || values_->request < ask);
     now_ = show.link.snapshots.read();
   }
-  ViewState view() const { return {*now_, *values_, make_view_camera(camera_of(*now_), 400, 400), 400, 400, clock}; }
+  ViewState view() const { return {*now_, *values_, camera_matrices(camera_of(*now_), 400, 400), 400, 400, clock}; }
   void move(double x, double y) {
     InputEvent event;
     event.x = x;
@@ -92,8 +92,8 @@ TEST(ViewportMouse, DragPullsThePartToTheMouse) {
   fixture.button(true);
   EXPECT_TRUE(fixture.mouse.has_grab());
   fixture.move(280, 120);
-  ASSERT_TRUE(fixture.mouse.drag_marker(fixture.view()).has_value());
-  EXPECT_EQ(fixture.mouse.drag_marker(fixture.view())->name, "my body  ball");
+  ASSERT_TRUE(fixture.mouse.spring_marker(fixture.view()).has_value());
+  EXPECT_EQ(fixture.mouse.spring_marker(fixture.view())->name, "my body  ball");
   fixture.play(120);
   // fovy is 40° and the surface 9.5 m away: 200 pixels are 9.5·tan 20°; the ball turns about the grabbed point
   const double meters = 9.5 * std::tan(20 * kPi / 180) * 80 / 200;

@@ -22,8 +22,8 @@ TEST(SnapshotInterpolation, MixesConsecutiveTicks) {
   EXPECT_TRUE(snapshots.empty());
   snapshots.add(snapshot_of(1), 10);
   snapshots.add(snapshot_of(2), 10.02);
-  EXPECT_EQ(snapshots.before().tick, 1u);
-  EXPECT_EQ(snapshots.now().tick, 2u);
+  EXPECT_EQ(snapshots.previous().tick, 1u);
+  EXPECT_EQ(snapshots.current().tick, 2u);
   EXPECT_NEAR(snapshots.mix(10.025), 0.25, 1e-9);
   EXPECT_EQ(snapshots.mix(11), 1);
 }
@@ -32,8 +32,8 @@ TEST(SnapshotInterpolation, DrawsTheLatestAfterAJump) {
   SnapshotInterpolation snapshots;
   snapshots.add(snapshot_of(1), 10);
   snapshots.add(snapshot_of(5), 10.02);
-  EXPECT_EQ(snapshots.before().tick, 5u);
-  EXPECT_EQ(snapshots.now().tick, 5u);
+  EXPECT_EQ(snapshots.previous().tick, 5u);
+  EXPECT_EQ(snapshots.current().tick, 5u);
 }
 
 TEST(ChangeDetector, ReportsEachVisibleChangeOnce) {

@@ -14,7 +14,7 @@
 #include "base/fixed_math_reference.h"
 #include "base/hash.h"
 #include "base/random.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber::base_test {
 namespace {
@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(Each, FixedMath, testing::ValuesIn(math_functions()),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST_P(FixedMath, ErrorIsBelowTheBound) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "thousands of values");
+  LIMBER_SKIP_IF(is_emulated(), "thousands of values");
   const MathFunction& f = GetParam();
   const WorstCase worst = worst_case(f, 1, 20000);
   EXPECT_LE(worst.ulps, f.max_ulps) << std::hexfloat << worst.x << ", " << worst.y;
@@ -71,7 +71,7 @@ Function* library(const char* name) {
 }
 
 TEST(LibmReplacement, GivesLibrariesTheFixedFunctions) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "thousands of values");
+  LIMBER_SKIP_IF(is_emulated(), "thousands of values");
   EXPECT_TRUE(m::is_libm_replaced());
   Random random(7);
   for (int i = 0; i < 20000; i++) {
@@ -94,7 +94,7 @@ TEST(LibmReplacement, GivesLibrariesTheFixedFunctions) {
 }
 
 TEST(LibmReplacement, SquaresAsCompiledLuaDoes) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "thousands of values");
+  LIMBER_SKIP_IF(is_emulated(), "thousands of values");
   Random random(8);
   for (int i = 0; i < 20000; i++) {
     const double x = random.uniform(-1e3, 1e3);

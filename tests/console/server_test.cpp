@@ -11,7 +11,7 @@
 #include "base/system/net/local_socket.h"
 #include "console/private_folder.h"
 #include "engine/show.h"
-#include "net/console/console_link.h"
+#include "net/console/console_client.h"
 
 namespace limber {
 namespace {
@@ -50,19 +50,19 @@ struct ServerTest : testing::Test {
     const Result<void> started = server.start();
     ASSERT_TRUE(started.ok()) << started.error();
   }
-  ConsoleLink connect() {
+  ConsoleClient connect() {
     Result<system::Descriptor> connection = connect_console(server.path());
     EXPECT_TRUE(connection.ok()) << (connection.ok() ? "" : connection.error());
-    return ConsoleLink(connection ? std::move(*connection) : system::Descriptor());
+    return ConsoleClient(connection ? std::move(*connection) : system::Descriptor());
   }
   /// A console that has received its first line.
-  ConsoleLink connect_and_greet() {
-    ConsoleLink link = connect();
+  ConsoleClient connect_and_greet() {
+    ConsoleClient link = connect();
     EXPECT_EQ(next(link).kind, Kind::hello);
     return link;
   }
   /// Returns the next line while the engine ticks.
-  ConsoleLine next(ConsoleLink& link) {
+  ConsoleLine next(ConsoleClient& link) {
     for (int i = 0; i < kMaxPolls && !link.ended(); i++) {
       if (std::optional<ConsoleLine> line = link.next(1)) return *line;
       show.ticks(1);
@@ -73,7 +73,7 @@ struct ServerTest : testing::Test {
     end.text = "ended";
     return end;
   }
-  std::string evaluate(ConsoleLink& link, const std::string& text) {
+  std::string evaluate(ConsoleClient& link, const std::string& text) {
     EXPECT_TRUE(link.send({++id, ConsoleRequest::Kind::evaluate, text}));
     const ConsoleLine line = next(link);
     EXPECT_EQ(line.id, id);
@@ -89,7 +89,7 @@ struct ServerTest : testing::Test {
 
 TEST_F(ServerTest, GreetsAndAnswers) {
   start();
-  ConsoleLink link = connect();
+  ConsoleClient link = connect();
   const ConsoleLine hello = next(link);
   EXPECT_EQ(hello.kind, Kind::hello);
   EXPECT_EQ(hello.text, "scene.lua");
@@ -117,12 +117,12 @@ TEST_F(ServerTest, TheSocketExistsWhileItRuns) {
   EXPECT_EQ(path, socket_path(folder.path(), getpid()));
   EXPECT_FALSE(std::filesystem::exists(dead));
   EXPECT_EQ(console_sockets(folder.path()).size(), 1U);
-  ConsoleLink link = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
   server.stop();
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(next(link).text, "ended");
   start();
-  ConsoleLink again = connect_and_greet();
+  ConsoleClient again = connect_and_greet();
   EXPECT_EQ(evaluate(again, "1"), "1");
 }
 
@@ -139,7 +139,7 @@ TEST_F(ServerTest, AnotherUserIsRejected) {
   const std::uint64_t warnings = log_count(LogLevel::warning);
   Result<system::Descriptor> connection = connect_console(others.path());
   ASSERT_TRUE(connection.ok());
-  ConsoleLink link(std::move(*connection));
+  ConsoleClient link(std::move(*connection));
   link.send({1, ConsoleRequest::Kind::evaluate, "ball:remove()"});
   EXPECT_EQ(next(link).text, "ended") << "no first line";
   show.ticks(3);
@@ -149,8 +149,8 @@ TEST_F(ServerTest, AnotherUserIsRejected) {
 
 TEST_F(ServerTest, OutputOfARequestPrecedesItsResult) {
   start();
-  ConsoleLink link = connect_and_greet();
-  ConsoleLink other = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
+  ConsoleClient other = connect_and_greet();
   EXPECT_TRUE(link.send({7, ConsoleRequest::Kind::evaluate, "print('a', 1) warn('b') return 3"}));
   ConsoleLine line = next(link);
   EXPECT_EQ(line.kind, Kind::print);
@@ -172,7 +172,7 @@ TEST_F(ServerTest, OutputOfARequestPrecedesItsResult) {
 TEST_F(ServerTest, SendsTheLogSinceTheConnection) {
   log_warning("before");
   start();
-  ConsoleLink link = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
   log_info("not for consoles");
   log_error("a fault\nof two lines");
   ConsoleLine line = next(link);
@@ -194,17 +194,17 @@ TEST_F(ServerTest, SendsTheLogSinceTheConnection) {
 
 TEST_F(ServerTest, AcceptsEightConnections) {
   start();
-  std::vector<ConsoleLink> links;
+  std::vector<ConsoleClient> links;
   for (std::size_t i = 0; i < ConsoleServer::kMaxConnections; i++) links.push_back(connect_and_greet());
-  ConsoleLink ninth = connect();
+  ConsoleClient ninth = connect();
   const ConsoleLine line = next(ninth);
   EXPECT_EQ(line.kind, Kind::rejected);
   EXPECT_EQ(line.text, "8 consoles are open already; close one");
-  for (ConsoleLink& link : links) EXPECT_EQ(evaluate(link, "2 * 2"), "4");
+  for (ConsoleClient& link : links) EXPECT_EQ(evaluate(link, "2 * 2"), "4");
   links.pop_back();
   // its slot is free when the server has noticed that it left
   for (int i = 0; i < kMaxPolls; i++) {
-    ConsoleLink next_one = connect();
+    ConsoleClient next_one = connect();
     if (next(next_one).kind == Kind::hello) return;
   }
   ADD_FAILURE() << "the slot was not freed";
@@ -212,7 +212,7 @@ TEST_F(ServerTest, AcceptsEightConnections) {
 
 TEST_F(ServerTest, GarbageIsAnsweredAndTheNextLineWorks) {
   start();
-  ConsoleLink link = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
   const std::string garbage = "hello\n\xff\xfe\n[[[[\n{\"evaluate\":3}\n\r\n\n";
   ASSERT_EQ(send(link.fd(), garbage.data(), garbage.size(), 0), static_cast<ssize_t>(garbage.size()));
   for (int i = 0; i < 4; i++) {
@@ -225,8 +225,8 @@ TEST_F(ServerTest, GarbageIsAnsweredAndTheNextLineWorks) {
 
 TEST_F(ServerTest, ATooLongLineIsRejected) {
   start();
-  ConsoleLink link = connect_and_greet();
-  ConsoleLink other = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
+  ConsoleClient other = connect_and_greet();
   const std::string much(65536, 'x');
   std::size_t sent = 0;
   while (sent < 4 * kMaxLine) {
@@ -245,8 +245,8 @@ TEST_F(ServerTest, ATooLongLineIsRejected) {
 
 TEST_F(ServerTest, ASlowReaderDoesNotDelayOthers) {
   start();
-  ConsoleLink slow = connect_and_greet();
-  ConsoleLink other = connect_and_greet();
+  ConsoleClient slow = connect_and_greet();
+  ConsoleClient other = connect_and_greet();
   // sends requests without reading until the connection blocks
   std::uint64_t request_count = 0;
   std::string rest;
@@ -271,12 +271,12 @@ TEST_F(ServerTest, ASlowReaderDoesNotDelayOthers) {
 TEST_F(ServerTest, BrokenConnectionsAreRemoved) {
   start();
   for (int i = 0; i < 300; i++) {
-    ConsoleLink link = connect();
+    ConsoleClient link = connect();
     if (i % 2 == 0) link.send({1, ConsoleRequest::Kind::evaluate, "state.left = (state.left or 0) + 1"});
     if (i % 3 == 0) show.ticks(1);
   }
   for (int i = 0; i < kMaxPolls; i++) {
-    ConsoleLink link = connect();
+    ConsoleClient link = connect();
     const ConsoleLine line = next(link);
     if (line.kind != Kind::hello) continue;
     EXPECT_EQ(evaluate(link, "state.n > 0"), "true");
@@ -287,7 +287,7 @@ TEST_F(ServerTest, BrokenConnectionsAreRemoved) {
 
 TEST_F(ServerTest, AHalfClosedConnectionIsAnswered) {
   start();
-  ConsoleLink link = connect_and_greet();
+  ConsoleClient link = connect_and_greet();
   const std::string requests =
       "{\"id\":1,\"evaluate\":\"1\"}\n{\"id\":2,\"evaluate\":\"2\"}";  // no line feed at the end
   ASSERT_EQ(send(link.fd(), requests.data(), requests.size(), 0), static_cast<ssize_t>(requests.size()));
@@ -305,11 +305,11 @@ TEST_F(ServerTest, InvalidInputDoesNotChangeTheRun) {
   };
   start();
   Random random(11, "console");
-  std::vector<ConsoleLink> links;
+  std::vector<ConsoleClient> links;
   const std::string good = request_line({1, ConsoleRequest::Kind::evaluate, "state.hash = nil"});
   while (show.engine.world().tick() < 400) {
     if (links.size() < 4) links.push_back(connect());
-    ConsoleLink& link = links[static_cast<std::size_t>(random.uniform() * static_cast<double>(links.size()))];
+    ConsoleClient& link = links[static_cast<std::size_t>(random.uniform() * static_cast<double>(links.size()))];
     std::string bytes;
     for (int i = 0; i < 64; i++) bytes += static_cast<char>(static_cast<int>(random.uniform() * 256));
     if (random.uniform() < 0.5) bytes = good.substr(0, static_cast<std::size_t>(random.uniform() * 30)) + bytes;
@@ -321,7 +321,7 @@ TEST_F(ServerTest, InvalidInputDoesNotChangeTheRun) {
   EXPECT_EQ(show.engine.faults(), 0U);
   links.clear();
   for (int i = 0; i < kMaxPolls; i++) {
-    ConsoleLink link = connect();
+    ConsoleClient link = connect();
     if (next(link).kind != Kind::hello) continue;
     EXPECT_EQ(evaluate(link, "'well'"), "well");
     return;

@@ -59,13 +59,13 @@ TEST(RenderScene, ReadsMaterialsCameraAndAppearanceFromProperties) {
   EXPECT_EQ(material(0).diffuse_color, Vec3(0, 0, 1));
   EXPECT_EQ(material(0).specular_pow, 77);
   EXPECT_EQ(material_of(*now, 0).specular_pow, 10) << "0: the defaults of the table";
-  const CameraView camera = camera_of(*now);
+  const CameraSettings camera = camera_of(*now);
   EXPECT_EQ(camera.position, Vec3(1, 2, -3));
   EXPECT_EQ(camera.fovy, 50);
   EXPECT_EQ(camera.aspect, 1.5);
   EXPECT_EQ(camera.near, 0.1);
   EXPECT_EQ(camera.far, 60);
-  AppearanceView appearance = appearance_of(*now);
+  AppearanceSettings appearance = appearance_of(*now);
   EXPECT_FALSE(appearance.studio);
   EXPECT_FALSE(appearance.custom_background);
   EXPECT_TRUE(appearance.floor);

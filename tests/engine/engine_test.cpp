@@ -143,7 +143,7 @@ TEST(Engine, AnswersGoToTheSender) {
   ASSERT_EQ(out.size(), 3U);
   EXPECT_EQ(text_of(out[0].message), "/physics/sim/substeps 4");
   EXPECT_EQ(text_of(out[1].message), "/list/bodies ");
-  EXPECT_EQ(out[0].destination, Outgoing::Destination::sender);
+  EXPECT_EQ(out[0].destination, Outgoing::Destination::reply);
   EXPECT_EQ(out[1].origin.port, 2);
   EXPECT_EQ(out[2].destination, Outgoing::Destination::error);
   EXPECT_EQ(out[2].origin.ip, 3U);

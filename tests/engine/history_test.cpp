@@ -9,7 +9,7 @@
 #include "engine/behaviors.h"
 #include "engine/rewound.h"
 #include "engine/taken.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber::engine_test {
 namespace {
@@ -50,23 +50,23 @@ void expect_same_with_rewinds(const EngineOptions& options, TickInputs inputs, s
 }
 
 TEST(History, RewindIsExactForEveryBehavior) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
   expect_same_with_rewinds(rewind_options(folder), no_inputs, 500, 1);
 }
 
 TEST(History, RewindIsExactForScripts) {
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   write_rewind_scene(folder);
   expect_same_with_rewinds(rewind_options(folder), no_inputs, 700, 2);
 }
 
 TEST(History, RewindIsExactWithManyInputs) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   write_rewind_scene(folder);
   for (std::uint64_t seed = 3; seed < 6; seed++)
@@ -95,7 +95,7 @@ TEST(History, RewindRepeatsNoOutput) {
 }
 
 TEST(History, RewindsAsFarAsHistoryReaches) {
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   folder.write("scripts/scene.lua", kEveryBehavior);
   Show show(rewind_options(folder));
@@ -169,8 +169,8 @@ TEST(History, PendingStepsContinueAfterARewind) {
 }
 
 TEST(History, StepsBackAndForthWhilePaused) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   write_rewind_scene(folder);
   Show show(rewind_options(folder));

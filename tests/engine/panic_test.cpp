@@ -5,7 +5,7 @@
 #include "engine/edited.h"
 #include "engine/rewound.h"
 #include "engine/taken.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber::engine_test {
 namespace {
@@ -53,11 +53,11 @@ std::string reply_to(Show& show, const char* address) {
 
 class PanicButton : public testing::Test {
  protected:
-  void SetUp() override { LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "its tests use one thread"); }
+  void SetUp() override { LIMBER_SKIP_IF(kThreadSanitizer, "its tests use one thread"); }
 };
 
 TEST_F(PanicButton, EveryShowComesToRest) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   for (const char* scene : {"arms", "hello", "live", "quadruped", "swarm"}) {
     for (const double motors : {0.0, 1.0}) {
       Show show(std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene + ".lua");

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/random.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber {
 namespace {
@@ -42,7 +42,7 @@ bool same(const Preset& a, const Preset& b) {
 
 class PresetText : public testing::Test {
  protected:
-  void SetUp() override { LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "its tests use one thread"); }
+  void SetUp() override { LIMBER_SKIP_IF(kThreadSanitizer, "its tests use one thread"); }
 };
 
 TEST_F(PresetText, RoundTripIsExact) {
@@ -161,7 +161,7 @@ TEST_F(PresetText, MakesNamesUnique) {
 }
 
 TEST_F(PresetText, ReadsAHundredMegabytes) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   std::string text = R"({ "limber presets": 1, "presets": [ { "name": "large", "values": {)";
   std::size_t node_count = 0;
   while (text.size() < 100'000'000) {

@@ -3,7 +3,7 @@
 
 #include "engine/taken.h"
 #include "engine/takes/writer.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber::engine_test {
 namespace {
@@ -40,7 +40,7 @@ struct SmallTake {
 };
 
 TEST(Take, ReplaysARandomSessionExactly) {
-  LIMBER_LEAVE_OUT_IF(kThreadSanitizer, "it uses one thread");
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   const ShowFolder folder;
   write_take_scene(folder);
   const std::string take = folder.path("wild.take");

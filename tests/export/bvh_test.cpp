@@ -131,7 +131,7 @@ TEST(BvhAngles, NeverJump) {
 }
 
 TEST_F(BvhTest, ForwardKinematicsMatchTheLinks) {
-  const auto writer = opened(write_bvh(path("arm.bvh"), 50));
+  const auto writer = opened(make_bvh_writer(path("arm.bvh"), 50));
   const MotionBody body = three_links("arm");
   ASSERT_EQ(error_text(writer->add_body(body)), "");
   std::vector<MotionSample> truth;
@@ -166,7 +166,7 @@ TEST_F(BvhTest, ForwardKinematicsMatchTheLinks) {
 }
 
 TEST_F(BvhTest, WritesOneFileOfEqualLengthPerBody) {
-  const auto writer = opened(write_bvh(path("out"), 50));
+  const auto writer = opened(make_bvh_writer(path("out"), 50));
   ASSERT_EQ(error_text(writer->add_body(three_links("one/two"))), "");
   ASSERT_EQ(error_text(writer->add_frame(0, std::vector{posed(0, 0)})), "");
   ASSERT_EQ(error_text(writer->add_frame(1, std::vector{posed(1, 0)})), "");
@@ -194,7 +194,7 @@ TEST_F(BvhTest, SeveralRootLinksGetACommonRoot) {
   MotionSample sample = posed(0.5, 0.5);
   sample.links.push_back({{5, 6, 7}, quat_axis({0, 1, 0}, 1)});
   sample.links.push_back(sample.links.back() * Pose{{0, 1, 0}});
-  const auto writer = opened(write_bvh(path("two.bvh"), 50));
+  const auto writer = opened(make_bvh_writer(path("two.bvh"), 50));
   ASSERT_EQ(error_text(writer->add_body(body)), "");
   ASSERT_EQ(error_text(writer->add_frame(0, std::vector{sample})), "");
   ASSERT_EQ(error_text(writer->finish()), "");
@@ -209,7 +209,7 @@ TEST_F(BvhTest, SeveralRootLinksGetACommonRoot) {
 
 TEST_F(BvhTest, RejectsASecondBodyInOneFile) {
   {
-    const auto writer = opened(write_bvh(path("a.bvh"), 50));
+    const auto writer = opened(make_bvh_writer(path("a.bvh"), 50));
     ASSERT_EQ(error_text(writer->add_body(three_links("one"))), "");
     EXPECT_EQ(error_text(writer->add_body(three_links("two"))),
               path("a.bvh") +
@@ -217,12 +217,12 @@ TEST_F(BvhTest, RejectsASecondBodyInOneFile) {
                   "folder, without .bvh");
   }
   {
-    const auto writer = opened(write_bvh(path("none"), 50));
+    const auto writer = opened(make_bvh_writer(path("none"), 50));
     ASSERT_EQ(error_text(writer->add_frame(0, {})), "");
     EXPECT_EQ(error_text(writer->finish()), path("none") + ": there is no body to write");
   }
   {
-    const auto writer = opened(write_bvh(path("left"), 50));
+    const auto writer = opened(make_bvh_writer(path("left"), 50));
     ASSERT_EQ(error_text(writer->add_body(three_links("one"))), "");
     ASSERT_EQ(error_text(writer->add_frame(0, std::vector{posed(0, 0)})), "");
   }

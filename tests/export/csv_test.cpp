@@ -37,7 +37,7 @@ MotionBody ball(const std::string& name) { return {name, {{"ball", -1, {}, nullp
 MotionSample ball_at(double x) { return {true, {Pose{{x, 0, 1}}}, {}}; }
 
 TEST_F(CsvTest, WritesOneLinePerFrame) {
-  const auto writer = opened(write_csv(path("a.csv")));
+  const auto writer = opened(make_csv_writer(path("a.csv")));
   const MotionBody hinge{"door", {{"leaf", -1, {}, nullptr}}, {{"hinge", {"angle"}}}};
   ASSERT_EQ(error_text(writer->add_body(hinge)), "");
   const Quat half = quat_xyzw(0, 0, 1, 0);
@@ -54,7 +54,7 @@ TEST_F(CsvTest, WritesOneLinePerFrame) {
 }
 
 TEST_F(CsvTest, AbsentBodiesHaveEmptyCells) {
-  const auto writer = opened(write_csv(path("a.csv")));
+  const auto writer = opened(make_csv_writer(path("a.csv")));
   ASSERT_EQ(error_text(writer->add_body(ball("a"))), "");
   ASSERT_EQ(error_text(writer->add_frame(0, std::vector{ball_at(0)})), "");
   ASSERT_EQ(error_text(writer->add_frame(1, std::vector{ball_at(1)})), "");
@@ -83,7 +83,7 @@ TEST_F(CsvTest, AbsentBodiesHaveEmptyCells) {
 
 // a file larger than the chunks in which it is rewritten
 TEST_F(CsvTest, PadsManyLines) {
-  const auto writer = opened(write_csv(path("a.csv")));
+  const auto writer = opened(make_csv_writer(path("a.csv")));
   ASSERT_EQ(error_text(writer->add_body(ball("a"))), "");
   for (int i = 0; i < 20000; i++) ASSERT_EQ(error_text(writer->add_frame(i, std::vector{ball_at(i)})), "");
   ASSERT_EQ(error_text(writer->add_body(ball("b"))), "");
@@ -101,7 +101,7 @@ TEST_F(CsvTest, PadsManyLines) {
 }
 
 TEST_F(CsvTest, QuotesNamesForOneColumnEach) {
-  const auto writer = opened(write_csv(path("a.csv")));
+  const auto writer = opened(make_csv_writer(path("a.csv")));
   for (const char* name : {"a, \"b\"/c", "größe 雪", "same", "same"})
     ASSERT_EQ(error_text(writer->add_body(ball(name))), "");
   ASSERT_EQ(error_text(writer->add_frame(0, std::vector{ball_at(0), ball_at(1), ball_at(2), ball_at(3)})), "");
@@ -116,7 +116,7 @@ TEST_F(CsvTest, QuotesNamesForOneColumnEach) {
 }
 
 TEST_F(CsvTest, WritesTheTimeWithoutBodies) {
-  const auto writer = opened(write_csv(path("a.csv")));
+  const auto writer = opened(make_csv_writer(path("a.csv")));
   ASSERT_EQ(error_text(writer->add_frame(0, {})), "");
   ASSERT_EQ(error_text(writer->add_frame(0.5, {})), "");
   ASSERT_EQ(error_text(writer->finish()), "");
@@ -126,7 +126,7 @@ TEST_F(CsvTest, WritesTheTimeWithoutBodies) {
 TEST_F(CsvTest, LeavesNoUnfinishedFile) {
   std::ofstream(path("a.csv")) << "previous";
   {
-    const auto writer = opened(write_csv(path("a.csv")));
+    const auto writer = opened(make_csv_writer(path("a.csv")));
     ASSERT_EQ(error_text(writer->add_body(ball("a"))), "");
     for (int i = 0; i < 5000; i++) ASSERT_EQ(error_text(writer->add_frame(i, std::vector{ball_at(i)})), "");
     EXPECT_EQ(files().size(), 2u) << "the temporary file";
@@ -137,7 +137,7 @@ TEST_F(CsvTest, LeavesNoUnfinishedFile) {
 
 TEST_F(CsvTest, ReportsAFullDiskAndLeavesNoFile) {
   {
-    const auto writer = opened(write_csv(path("a.csv")));
+    const auto writer = opened(make_csv_writer(path("a.csv")));
     ASSERT_EQ(error_text(writer->add_body(ball("a"))), "");
     const FullDisk full(100000);
     std::string error;
@@ -145,7 +145,7 @@ TEST_F(CsvTest, ReportsAFullDiskAndLeavesNoFile) {
     EXPECT_EQ(error, path("a.csv") + " can't be written: File too large");
   }
   EXPECT_EQ(files(), std::vector<std::string>{});
-  const auto nowhere = write_csv(path("no/a.csv"));
+  const auto nowhere = make_csv_writer(path("no/a.csv"));
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error(), path("no/a.csv") + " can't be written: No such file or directory");
 }

@@ -50,7 +50,7 @@ std::size_t keys_of(const Json& json, const std::string& node, const std::string
 }
 
 TEST_F(GltfTest, WritesANodePerLinkAndAKeyPerFrame) {
-  const auto writer = opened(write_gltf(path("a.glb")));
+  const auto writer = opened(make_gltf_writer(path("a.glb")));
   const auto seen = triangle({1, 0, 0});
   for (const char* name : {"one", "two"}) ASSERT_EQ(error_text(writer->add_body(three_links(name, seen))), "");
   std::vector<std::vector<MotionSample>> truth;
@@ -88,7 +88,7 @@ TEST_F(GltfTest, WritesANodePerLinkAndAKeyPerFrame) {
 }
 
 TEST_F(GltfTest, RotationsTakeTheShortWay) {
-  const auto writer = opened(write_gltf(path("a.glb")));
+  const auto writer = opened(make_gltf_writer(path("a.glb")));
   ASSERT_EQ(error_text(writer->add_body(three_links("a"))), "");
   // after a full turn, the same rotation has the opposite quaternion
   for (int i = 0; i <= 100; i++)
@@ -106,7 +106,7 @@ TEST_F(GltfTest, RotationsTakeTheShortWay) {
 }
 
 TEST_F(GltfTest, AbsentBodiesHaveScaleZero) {
-  const auto writer = opened(write_gltf(path("a.glb")));
+  const auto writer = opened(make_gltf_writer(path("a.glb")));
   ASSERT_EQ(error_text(writer->add_body(three_links("goes"))), "");
   ASSERT_EQ(error_text(writer->add_frame(0, std::vector{posed(0, 0)})), "");
   ASSERT_EQ(error_text(writer->add_frame(1, std::vector{posed(1, 0)})), "");
@@ -135,7 +135,7 @@ TEST_F(GltfTest, AbsentBodiesHaveScaleZero) {
 }
 
 TEST_F(GltfTest, SharesEqualMaterialsAndMeshes) {
-  const auto writer = opened(write_gltf(path("a.gltf")));
+  const auto writer = opened(make_gltf_writer(path("a.gltf")));
   MotionBody body = three_links("a", triangle({0.5, 0.25, 1}, 0.5));
   body.links[1].surfaces = triangle({0.5, 0.25, 1}, 0.5);
   body.links[2].surfaces = triangle({0, 1, 0});
@@ -157,7 +157,7 @@ TEST_F(GltfTest, SharesEqualMaterialsAndMeshes) {
 }
 
 TEST_F(GltfTest, MakesNamesUnique) {
-  const auto writer = opened(write_gltf(path("my show & 雪.gltf")));
+  const auto writer = opened(make_gltf_writer(path("my show & 雪.gltf")));
   for (const char* name : {"limber", "a b", "a b", "größe \"x\""})
     ASSERT_EQ(error_text(writer->add_body(three_links(name))), "");
   const std::vector<MotionSample> four(4, posed(0, 0));
@@ -175,7 +175,7 @@ TEST_F(GltfTest, MakesNamesUnique) {
 }
 
 TEST_F(GltfTest, WritesASceneWithoutBodies) {
-  const auto writer = opened(write_gltf(path("a.glb")));
+  const auto writer = opened(make_gltf_writer(path("a.glb")));
   ASSERT_EQ(error_text(writer->add_frame(0, {})), "");
   ASSERT_EQ(error_text(writer->finish()), "");
   const Json json = json_of(text("a.glb"));
@@ -184,7 +184,7 @@ TEST_F(GltfTest, WritesASceneWithoutBodies) {
 }
 
 TEST_F(GltfTest, ReportsTooManyKeys) {
-  auto writer = write_gltf(path("a.glb"), 28 * 3 * 2);
+  auto writer = make_gltf_writer(path("a.glb"), 28 * 3 * 2);
   ASSERT_TRUE(writer) << writer.error();
   ASSERT_EQ(error_text((*writer)->add_body(three_links("a"))), "");
   ASSERT_EQ(error_text((*writer)->add_frame(0, std::vector{posed(0, 0)})), "");
@@ -197,7 +197,7 @@ TEST_F(GltfTest, ReportsTooManyKeys) {
 
 TEST_F(GltfTest, ReportsAFullDiskAndLeavesNoFile) {
   for (const char* name : {"a.glb", "a.gltf"}) {
-    const auto writer = opened(write_gltf(path(name)));
+    const auto writer = opened(make_gltf_writer(path(name)));
     ASSERT_EQ(error_text(writer->add_body(three_links("a"))), "");
     for (int i = 0; i < 2000; i++) ASSERT_EQ(error_text(writer->add_frame(i, std::vector{posed(0.01 * i, 0)})), "");
     const FullDisk full(50000);

@@ -247,7 +247,7 @@ void play(std::span<const std::uint8_t> bytes) {
   SilentHost host;
   ScriptContext context(world, host, options);
   context.random.set_name("fuzz");
-  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::interpreted : VmMode::live);
+  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::interpreted : VmMode::compiled);
   const std::string before =
       "local ball = sim:add_sphere_shape('ball', 0.1) "
       "for i, name in ipairs { 'one', 'two' } do "

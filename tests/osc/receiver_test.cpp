@@ -1,4 +1,5 @@
-// The receiver: malformed datagrams change only counters; allow list, pings, rejected types, time tags, a full inbox.
+// The receiver: malformed datagrams change only counters; allow list, pings, rejected types, time tags, a full command
+// queue.
 #include "net/osc/receiver.h"
 
 #include <gtest/gtest.h>
@@ -175,7 +176,7 @@ TEST(Receiver, DeliversInOrderOfTimeTags) {
   log_to_stderr(true);
 }
 
-// The inbox is limited; further commands are dropped and their messages counted.
+// The command queue is limited; further commands are dropped and their messages counted.
 TEST(Receiver, CountsMessagesDroppedByFullInbox) {
   log_to_stderr(false);
   ReceiverFixture fixture;

@@ -109,13 +109,13 @@ TEST(SendBudget, ReportsReductions) {
     for (int k = 0; k < (ms < 20'000 ? 10 : 1); k++) (void)greedy->try_consume(1, 1);
     for (const SendBudget::Report& report : budget.reports(ms * kMs)) {
       EXPECT_EQ(report.account, greedy);
-      reports.emplace_back(ms / 1000.0, report.reduced);
+      reports.emplace_back(ms / 1000.0, report.throttled);
       if (reports.size() == 2) values = report.values;
     }
   }
   EXPECT_EQ(reports, (std::vector<std::pair<double, bool>>{{2, true}, {12, true}, {22, false}}));
   EXPECT_NEAR(values, kEachTest.values, 5);
-  EXPECT_EQ(budget.reduced(), 0u);
+  EXPECT_EQ(budget.throttled(), 0u);
 }
 
 }  // namespace

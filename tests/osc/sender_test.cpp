@@ -43,7 +43,7 @@ struct SenderFixture {
 
 TEST(Sender, RepliesToSender) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::sender,
+  fixture.sender.send({Outgoing::Destination::reply,
                        origin_of(fixture.requester),
                        {"/list/bodies", {Arg::of("arm1"), Arg::of("arm2")}}});
   EXPECT_EQ(fixture.requester.receive(), Bytes().text("/list/bodies").text(",ss").text("arm1").text("arm2").str());
@@ -134,7 +134,7 @@ TEST(Sender, CountsFailedSends) {
 
 TEST(Sender, SkipsReplyWithoutAddress) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::sender, {CommandSource::panel, 0, 0}, {"/a", {}}});
+  fixture.sender.send({Outgoing::Destination::reply, {CommandSource::panel, 0, 0}, {"/a", {}}});
   EXPECT_EQ(fixture.counters.sent, 0u);
 }
 

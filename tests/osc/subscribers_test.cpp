@@ -32,7 +32,7 @@ struct SubscribersFixture {
   /// Limits per sender and in total, values per second.
   SubscribersFixture(double values_each, double values_all) : per_sender{1e9, values_each}, total{1e9, values_all} {}
   bool send(const Outgoing& out) {
-    const bool value = out.destination == Outgoing::Destination::sender;
+    const bool value = out.destination == Outgoing::Destination::reply;
     if (value && !subscribers.try_consume({out.origin.ip, out.origin.port}, 40, 1)) return false;
     sent.push_back(out);
     return true;
@@ -287,7 +287,7 @@ TEST(Subscribers, ReportTooManyValues) {
   SentMessages errors;
   for (const Outgoing& out : sent) {
     if (out.destination == Outgoing::Destination::error) errors.push_back(engine_test::text_of(out.message));
-    values += out.destination == Outgoing::Destination::sender ? 1 : 0;
+    values += out.destination == Outgoing::Destination::reply ? 1 : 0;
   }
   EXPECT_EQ(errors, SentMessages{"/error /subscribe matches more than 4096 values; the others are not sent"});
   EXPECT_LE(values, Feed::kMaxValues);

@@ -98,7 +98,7 @@ TEST(BehaviorsInTheTree, SendPathEventsAndValues) {
   const QueryHost host = fake_query_host();
   QueryHub hub(show.link, host, {});
   SortingSink line;
-  Client client({CommandSource::oscquery, 0x7f000001, 5}, line, hub.host());
+  QueryClient client({CommandSource::oscquery, 0x7f000001, 5}, line, hub.host());
   hub.add_client(client);
   const auto update = [&] {
     hub.request_values();

@@ -32,7 +32,7 @@ struct ClientFixture {
   std::vector<std::pair<CommandOrigin, std::string>> packets;
   QueryHost host = fake_query_host(&packets);
   FillingSink sink;
-  Client client{{CommandSource::oscquery, 0x7f000001, 77}, sink, host};
+  QueryClient client{{CommandSource::oscquery, 0x7f000001, 77}, sink, host};
 
   ClientFixture() { show.send("/transport/pause"); }
   Frames new_frames() {
@@ -45,7 +45,7 @@ std::string command(const std::string& word, const std::string& path) {
   return json{{"COMMAND", word}, {"DATA", path}}.dump();
 }
 
-TEST(Client, HandlesListenAndIgnore) {
+TEST(QueryClient, HandlesListenAndIgnore) {
   ClientFixture fixture;
   EXPECT_EQ(fixture.new_frames(), Frames{});
   EXPECT_TRUE(fixture.client.on_text(command("LISTEN", "/scene/wind")));
@@ -60,7 +60,7 @@ TEST(Client, HandlesListenAndIgnore) {
   EXPECT_EQ(fixture.new_frames(), Frames{});
 }
 
-TEST(Client, SendsValuesWithTypeTags) {
+TEST(QueryClient, SendsValuesWithTypeTags) {
   ClientFixture fixture;
   for (const char* path : {"/scene/style", "/scene/lively", "/scene/where", "/physics/body/arm/part/base/rotation",
                            "/physics/sim/seed", "/physics/sim/substeps"})
@@ -70,7 +70,7 @@ TEST(Client, SendsValuesWithTypeTags) {
                                           "b /physics/sim/seed h 1", "b /physics/sim/substeps i 4"}));
 }
 
-TEST(Client, IgnoresUnknownCommands) {
+TEST(QueryClient, IgnoresUnknownCommands) {
   ClientFixture fixture;
   std::string deep(60000, '[');
   const std::vector<std::string> none = {"",
@@ -99,7 +99,7 @@ TEST(Client, IgnoresUnknownCommands) {
   EXPECT_EQ(fixture.new_frames(), Frames{"b /scene/wind f 0"}) << "after all that it is served";
 }
 
-TEST(Client, ForwardsPacketsWithOrigin) {
+TEST(QueryClient, ForwardsPacketsWithOrigin) {
   ClientFixture fixture;
   fixture.client.on_binary("abc");
   fixture.client.on_text(command("LISTEN", "/scene/wind"));
@@ -112,7 +112,7 @@ TEST(Client, ForwardsPacketsWithOrigin) {
   EXPECT_TRUE(fixture.packets[1].first.is_subscriber) << "listening clients get no echo";
 }
 
-TEST(Client, DoesNotEchoOwnValues) {
+TEST(QueryClient, DoesNotEchoOwnValues) {
   ClientFixture fixture;
   fixture.client.on_text(command("LISTEN", "/scene/wind"));
   fixture.new_frames();
@@ -124,11 +124,11 @@ TEST(Client, DoesNotEchoOwnValues) {
   EXPECT_EQ(fixture.new_frames(), Frames{"b /scene/wind f 6"});
 }
 
-TEST(Client, SkipsValuesForSlowClient) {
+TEST(QueryClient, SkipsValuesForSlowClient) {
   ClientFixture fixture;
   fixture.client.on_text(command("LISTEN", "/scene/wind"));
   fixture.new_frames();
-  fixture.sink.full = Client::kMaxQueuedForValues;
+  fixture.sink.full = QueryClient::kMaxQueuedForValues;
   for (int i = 1; i < 9; i++) {
     fixture.show.send("/scene/wind", i);
     EXPECT_EQ(fixture.new_frames(), Frames{});
@@ -137,16 +137,16 @@ TEST(Client, SkipsValuesForSlowClient) {
   EXPECT_EQ(fixture.new_frames(), Frames{"b /scene/wind f 8"});
 }
 
-TEST(Client, SendsPathEventsAndReplies) {
+TEST(QueryClient, SendsPathEventsAndReplies) {
   ClientFixture fixture;
   const Frames notices = {R"({"COMMAND":"PATH_ADDED","DATA":"/x"})"};
   fixture.client.on_snapshot(make_value_snapshot(fixture.show), notices);
   EXPECT_EQ(fixture.sink.consume_frames(), Frames{"t " + notices[0]});
-  fixture.client.send_reply({Outgoing::Destination::sender, {}, engine_test::message("/scene/wind", 0.5)}, 0);
+  fixture.client.send_reply({Outgoing::Destination::reply, {}, engine_test::message("/scene/wind", 0.5)}, 0);
   EXPECT_EQ(fixture.sink.consume_frames(), Frames{"b /scene/wind  0.5"});
 }
 
-TEST(Client, LimitsErrorsToTenPerSecond) {
+TEST(QueryClient, LimitsErrorsToTenPerSecond) {
   ClientFixture fixture;
   const Outgoing error{Outgoing::Destination::error, {}, error_message("/a", "b")};
   for (int i = 0; i < 30; i++) fixture.client.send_reply(error, 5.0 + 0.01 * i);
@@ -155,7 +155,7 @@ TEST(Client, LimitsErrorsToTenPerSecond) {
   EXPECT_EQ(fixture.sink.consume_frames(), Frames{"b /error  /a b"});
 }
 
-TEST(Client, SendsLogOnRequest) {
+TEST(QueryClient, SendsLogOnRequest) {
   ClientFixture fixture;
   log_to_stderr(false);
   log_warning("before it came");

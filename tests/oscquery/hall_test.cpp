@@ -106,7 +106,7 @@ TEST(QueryHub, LimitsPendingRequests) {
 TEST(QueryHub, UpdatesClientsOncePerTick) {
   QueryHubFixture fixture;
   FrameSink line;
-  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  QueryClient client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
   fixture.hub.add_client(client);
   client.on_text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
   fixture.make_snapshot();
@@ -130,7 +130,7 @@ TEST(QueryHub, UpdatesClientsOncePerTick) {
 TEST(QueryHub, IdleClientsRequestFewSnapshots) {
   QueryHubFixture fixture;
   FrameSink line;
-  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  QueryClient client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
   fixture.hub.add_client(client);
   const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
   for (int i = 0; i < 60; i++) {
@@ -154,7 +154,7 @@ TEST(QueryHub, IdleClientsRequestFewSnapshots) {
 TEST(QueryHub, RepeatedRequestsDoNotDelayPendingOne) {
   QueryHubFixture fixture;
   FrameSink line;
-  Client client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
+  QueryClient client({CommandSource::oscquery, 1, 1}, line, fixture.hub.host());
   fixture.hub.add_client(client);
   client.on_text(R"({"COMMAND":"LISTEN","DATA":"/scene/wind"})");
   const std::uint64_t ask = fixture.show.link.value_snapshot_requests.load();
@@ -170,8 +170,8 @@ TEST(QueryHub, SendsRepliesToOrigin) {
   QueryHubFixture fixture;
   FrameSink one;
   FrameSink two;
-  Client first({CommandSource::oscquery, 1, 1}, one, fixture.hub.host());
-  Client second({CommandSource::oscquery, 1, 2}, two, fixture.hub.host());
+  QueryClient first({CommandSource::oscquery, 1, 1}, one, fixture.hub.host());
+  QueryClient second({CommandSource::oscquery, 1, 2}, two, fixture.hub.host());
   fixture.hub.add_client(first);
   fixture.hub.add_client(second);
   fixture.show.link.command_queue.push({{engine_test::message("/get", "/scene/wind")}, second.origin()});

@@ -1,10 +1,10 @@
-// PanelContext: undo and redo, messages and snapshot requests.
+// GuiContext: undo and redo, messages and snapshot requests.
 #include "panel/rig.h"
 
 namespace limber::gui_test {
 namespace {
 
-TEST(PanelContext, UndoesWholeDrag) {
+TEST(GuiContext, UndoesWholeDrag) {
   PanelFixture fixture;
   fixture.drag("/scene/rate", 0.75);
   const double first = fixture.read("/scene/rate");
@@ -28,7 +28,7 @@ TEST(PanelContext, UndoesWholeDrag) {
   EXPECT_EQ(fixture.read("/scene/rate"), last) << "after a new edit there is nothing to redo";
 }
 
-TEST(PanelContext, UndoesEditsOfAnyController) {
+TEST(GuiContext, UndoesEditsOfAnyController) {
   PanelFixture fixture;
   fixture.drag("/scene/rate", 0.75);
   const double dragged = fixture.read("/scene/rate");
@@ -40,9 +40,9 @@ TEST(PanelContext, UndoesEditsOfAnyController) {
   EXPECT_EQ(fixture.read("/scene/rate"), dragged);
 }
 
-TEST(PanelContext, MessagesHaveThePanelAsSource) {
+TEST(GuiContext, MessagesHaveThePanelAsSource) {
   EngineLink link;
-  PanelContext context(link);
+  GuiContext context(link);
   context.send("/transport/play");
   std::vector<Command> commands;
   link.command_queue.drain(commands);
@@ -51,9 +51,9 @@ TEST(PanelContext, MessagesHaveThePanelAsSource) {
   EXPECT_EQ(commands[0].messages.at(0).address, "/transport/play");
 }
 
-TEST(PanelContext, LimitsSnapshotRequests) {
+TEST(GuiContext, LimitsSnapshotRequests) {
   EngineLink link;
-  PanelContext context(link);
+  GuiContext context(link);
   for (int i = 0; i < 240; i++) {
     context.begin_frame(i / 240.0);
     const std::shared_ptr<ValueSnapshot> snapshot = link.value_snapshots.acquire_buffer();

@@ -148,7 +148,7 @@ TEST(Gui, RestoresStyleUnlessSceneSetsOne) {
   fixture.click("/visuals/look/style");
   fixture.click("/visuals/look/style=studio");
   EXPECT_EQ(fixture.read("/visuals/look/style"), 1);
-  const PanelSettings settings = fixture.gui->settings();
+  const GuiSettings settings = fixture.gui->settings();
   EXPECT_EQ(settings.style, "studio");
   for (const auto& [scene, style] :
        {std::pair(std::string(kScene), 1.0), {std::string(kScene) + "visuals.look.style = \"stage\"\n", 0.0}}) {
@@ -216,7 +216,7 @@ TEST(Gui, ReturnsOnlyActionsOfTheWindow) {
   fixture.key(GuiKey::home);
   fixture.key(GuiKey::f2);
   EXPECT_EQ(fixture.gui->consume_actions(),
-            (std::vector<HotkeyAction>{HotkeyAction::full_screen, HotkeyAction::default_view}));
+            (std::vector<HotkeyAction>{HotkeyAction::toggle_full_screen, HotkeyAction::default_view}));
   EXPECT_TRUE(fixture.gui->consume_actions().empty());
 }
 

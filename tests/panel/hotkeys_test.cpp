@@ -31,10 +31,10 @@ TEST(Hotkeys, PanicUsesKeyOfEveryKeyboard) {
 
 TEST(Hotkeys, BindingsReplaceDefaults) {
   const Hotkeys hotkeys(KeyBindings{{"panic", "ctrl+SHIFT+p"}, {"step", "N"}, {"reset", "K"}});
-  EXPECT_TRUE(hotkeys.faults().empty());
+  EXPECT_TRUE(hotkeys.errors().empty());
   EXPECT_EQ(hotkeys.match({GuiKey::p, {true, true, false}}, true)->action, HotkeyAction::panic);
   EXPECT_EQ(hotkeys.match({GuiKey::f12, {}}, false), nullptr);
-  EXPECT_EQ(hotkeys.match({GuiKey::n, {}}, false)->action, HotkeyAction::step);
+  EXPECT_EQ(hotkeys.match({GuiKey::n, {}}, false)->action, HotkeyAction::step_forward);
   EXPECT_EQ(hotkeys.match({GuiKey::k, {}}, false)->action, HotkeyAction::reset);
   EXPECT_EQ(hotkeys.match({GuiKey::k, {}}, true), nullptr) << "it types a letter";
   EXPECT_EQ(keys_text(*hotkeys.find("panic"), {}), "Ctrl+Shift+P");
@@ -42,18 +42,18 @@ TEST(Hotkeys, BindingsReplaceDefaults) {
 }
 
 TEST(Hotkeys, ReportInvalidBindings) {
-  const auto fault = [](const std::string& name, const std::string& key) {
+  const auto error = [](const std::string& name, const std::string& key) {
     const Hotkeys hotkeys(KeyBindings{{name, key}});
-    EXPECT_EQ(hotkeys.faults().size(), 1u) << name << " " << key;
+    EXPECT_EQ(hotkeys.errors().size(), 1u) << name << " " << key;
     EXPECT_EQ(hotkeys.all().size(), Hotkeys().all().size());
-    return hotkeys.faults().empty() ? "" : hotkeys.faults().front();
+    return hotkeys.errors().empty() ? "" : hotkeys.errors().front();
   };
-  EXPECT_EQ(fault("panic", "Ctrl+R"), "key 'Ctrl+R' for 'panic': already used by 'record'");
-  EXPECT_EQ(fault("step", "5"), "key '5' for 'step': already used by 'recall'");
-  EXPECT_EQ(fault("panic", "Hyper+R"), "key 'Hyper+R' for 'panic': not a key; expected for example Ctrl+Shift+R");
-  EXPECT_EQ(fault("panick", "F9"), "key 'F9' for 'panick': hotkey not found or not configurable");
-  EXPECT_EQ(fault("recall", "F9"), "key 'F9' for 'recall': hotkey not found or not configurable");
-  EXPECT_EQ(fault("play", "Escape"), "key 'Escape' for 'play': reserved for navigation and text fields");
+  EXPECT_EQ(error("panic", "Ctrl+R"), "key 'Ctrl+R' for 'panic': already used by 'record'");
+  EXPECT_EQ(error("step", "5"), "key '5' for 'step': already used by 'recall'");
+  EXPECT_EQ(error("panic", "Hyper+R"), "key 'Hyper+R' for 'panic': not a key; expected for example Ctrl+Shift+R");
+  EXPECT_EQ(error("panick", "F9"), "key 'F9' for 'panick': hotkey not found or not configurable");
+  EXPECT_EQ(error("recall", "F9"), "key 'F9' for 'recall': hotkey not found or not configurable");
+  EXPECT_EQ(error("play", "Escape"), "key 'Escape' for 'play': reserved for navigation and text fields");
   for (const char* text : {"", "Ctrl+", "Ctrl", "RR", "F13"}) EXPECT_FALSE(parse_key(text)) << text;
 }
 

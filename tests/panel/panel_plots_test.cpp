@@ -26,7 +26,7 @@ TEST(PanelPlots, PlotsSelectedProperty) {
 // Returns the number of samples that the plotted line covers; each is a 299th of the width.
 double samples_drawn(const PanelFixture& fixture, const std::string& path) {
   const PanelRect at = fixture.rect_of("plot:" + path);
-  const std::uint32_t color = packed_color(Tone::accent) & 0xffffff;
+  const std::uint32_t color = packed_color(ThemeColor::accent) & 0xffffff;
   double right = at.x;
   const ImDrawData& draw_data = *ImGui::GetDrawData();
   for (int i = 0; i < draw_data.CmdListsCount; i++) {

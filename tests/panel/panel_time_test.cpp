@@ -116,10 +116,10 @@ TEST(PanelTime, PlaysLatestTake) {
   ASSERT_EQ(saved_takes(fixture.folder()).size(), 1u);
   ASSERT_TRUE(engine_test::play_take(fixture.show, saved_takes(fixture.folder())[0]).ok());
   fixture.sync();
-  EXPECT_TRUE(fixture.gui->context().take_state().playing);
+  EXPECT_TRUE(fixture.gui->context().take_state().in_show);
   fixture.click("take.stop");
   fixture.sync();
-  EXPECT_FALSE(fixture.gui->context().take_state().playing);
+  EXPECT_FALSE(fixture.gui->context().take_state().in_show);
   EXPECT_TRUE(fixture.is_visible("take.play"));
   EXPECT_NE(fixture.gui->context().notice.text.find("has ended; live control resumes"), std::string::npos)
       << fixture.gui->context().notice.text;

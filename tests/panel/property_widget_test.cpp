@@ -7,7 +7,7 @@
 
 #include "panel/rig.h"
 #include "properties/property_table.h"
-#include "ui/panel/widgets/number_bar.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber::gui_test {
 namespace {
@@ -47,8 +47,8 @@ TEST(PropertyWidget, EveryBarSetsItsPropertyAndUndoes) {
       const std::string name = property.width > 1 ? path + "/0" : path;
       ASSERT_TRUE(fixture.is_visible(name));
       const double before = fixture.read(path);
-      const BarRange range{property.low(0), property.high(0), property.initial[0], property.step,
-                           property.type == PropertyType::integer};
+      const SliderRange range{property.low(0), property.high(0), property.initial[0], property.step,
+                              property.type == PropertyType::integer};
       const double to = range.bounded() && range.position_of(before) > 0.6 ? 0.3 : 0.8;
       fixture.drag(name, to);
       EXPECT_NE(fixture.read(path), before) << "the dragged value";
@@ -64,7 +64,7 @@ TEST(PropertyWidget, SetsOneComponentOfVector) {
   PanelFixture fixture;
   fixture.drag("/physics/sim/gravity/0", 0.6);
   const double x = fixture.read("/physics/sim/gravity", 0);
-  EXPECT_NEAR((BarRange{-10000, 10000, 0, 0, false}).position_of(x), 0.6, 0.04);
+  EXPECT_NEAR((SliderRange{-10000, 10000, 0, 0, false}).position_of(x), 0.6, 0.04);
   EXPECT_EQ(fixture.read("/physics/sim/gravity", 1), 0);
   EXPECT_EQ(fixture.read("/physics/sim/gravity", 2), -9.81);
 }
@@ -158,7 +158,7 @@ TEST(PropertyWidget, ShowsDraggedValue) {
   fixture.move(at.x + at.width * 0.5, at.y + 4);
   fixture.frames(2);
   PendingValues::Values values{};
-  PanelContext& context = fixture.gui->context();
+  GuiContext& context = fixture.gui->context();
   ASSERT_TRUE(context.values(*context.find("/scene/rate"), values));
   EXPECT_NEAR(values[0], 1, 0.03);
   fixture.button(false);
@@ -202,9 +202,9 @@ TEST(PropertyWidget, EditsColors) {
 }
 
 TEST(PropertyWidget, WideRangesHaveNonlinearScale) {
-  for (const BarRange& range :
-       {BarRange{0, 2, 0.5, 0, false}, BarRange{-10000, 10000, 0, 0, false}, BarRange{0.001, 1e6, 1, 0, false},
-        BarRange{-1e9, 1e9, 1, 0, false}, BarRange{1, 10000, 50, 0, true}, BarRange{-1, 3000, 1, 0, false}}) {
+  for (const SliderRange& range :
+       {SliderRange{0, 2, 0.5, 0, false}, SliderRange{-10000, 10000, 0, 0, false}, SliderRange{0.001, 1e6, 1, 0, false},
+        SliderRange{-1e9, 1e9, 1, 0, false}, SliderRange{1, 10000, 50, 0, true}, SliderRange{-1, 3000, 1, 0, false}}) {
     double before = -1e300;
     for (double place = 0.1; place <= 1; place += 0.01) {
       const double value = range.value_at(place);
@@ -215,7 +215,7 @@ TEST(PropertyWidget, WideRangesHaveNonlinearScale) {
     EXPECT_NEAR(range.value_at(0), range.min, std::abs(range.min) * 1e-9);
     EXPECT_NEAR(range.value_at(1), range.max, std::abs(range.max) * 1e-9);
   }
-  EXPECT_NEAR((BarRange{0.001, 1e6, 1, 0, false}).value_at(0.4), 1, 0.01) << "the typical magnitude is at 40 %";
+  EXPECT_NEAR((SliderRange{0.001, 1e6, 1, 0, false}).value_at(0.4), 1, 0.01) << "the typical magnitude is at 40 %";
 }
 
 }  // namespace

@@ -60,7 +60,8 @@ class PanelFixture {
     return options;
   }
 
-  /// Draws a frame after the commands in the simulation's inbox have been executed; simulated time does not advance.
+  /// Draws a frame after the commands in the simulation's command queue have been executed; simulated time does not
+  /// advance.
   void frame() {
     show.engine.idle();
     clock_ += 1.0 / 60;

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-PanelSettings own_settings() {
-  PanelSettings settings;
+GuiSettings own_settings() {
+  GuiSettings settings;
   settings.text_size = 21;
   settings.hidden = true;
   settings.morph_seconds = 0.25;
@@ -23,7 +23,7 @@ PanelSettings own_settings() {
   settings.favorites = {"/physics/sim/gravity", "/scene/größe"};
   settings.keys = {{"panic", "F9"}};
   settings.style = "studio";
-  settings.fullscreen = settings.hide_pointer = true;
+  settings.full_screen = settings.hide_pointer = true;
   settings.monitor = "DP-1";
   settings.window_width = 1500;
   settings.window_height = 800;
@@ -31,13 +31,13 @@ PanelSettings own_settings() {
 }
 
 TEST(Settings, RoundTrip) {
-  const Result<PanelSettings> back = read_settings(settings_text(own_settings()));
+  const Result<GuiSettings> back = read_settings(settings_text(own_settings()));
   ASSERT_TRUE(back.ok()) << back.error();
   EXPECT_EQ(*back, own_settings());
 }
 
 TEST(Settings, RepairsMissingAndInvalidValues) {
-  EXPECT_EQ(*read_settings("{}"), PanelSettings());
+  EXPECT_EQ(*read_settings("{}"), GuiSettings());
   EXPECT_EQ(read_settings(R"({"text_size": 400})")->text_size, 28);
   EXPECT_EQ(read_settings(R"({"text_size": "big", "favourites": [1, "/a", null]})")->text_size, 16);
   EXPECT_EQ(read_settings(R"({"favourites": [1, "/a", null]})")->favorites, std::set<std::string>{"/a"});
@@ -52,11 +52,11 @@ TEST(Settings, RepairsMissingAndInvalidValues) {
 TEST(Settings, RenamesDamagedFile) {
   const fs::path folder = fs::path(::testing::TempDir()) / fmt::format("limber_settings_{}", ::getpid());
   const std::string file = (folder / "limber" / "panel.json").string();
-  EXPECT_EQ(load_settings(file), PanelSettings()) << "there is none yet";
+  EXPECT_EQ(load_settings(file), GuiSettings()) << "there is none yet";
   save_settings(file, own_settings());
   EXPECT_EQ(load_settings(file), own_settings());
   std::ofstream(file) << "{ \"text_size\": 2";
-  EXPECT_EQ(load_settings(file), PanelSettings());
+  EXPECT_EQ(load_settings(file), GuiSettings());
   EXPECT_FALSE(fs::exists(file));
   EXPECT_TRUE(fs::exists(file + ".damaged")) << "nothing is lost";
   save_settings(file, own_settings());

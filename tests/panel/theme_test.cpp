@@ -16,16 +16,18 @@ TEST(Theme, ContrastMatchesWcag) {
 }
 
 TEST(Theme, TextHasEnoughContrast) {
-  for (const TextOnTone& pair : text_combinations()) {
-    EXPECT_GE(contrast(tone(pair.text), tone(pair.background)), kMinContrast)
-        << "tone " << static_cast<int>(pair.text) << " on " << static_cast<int>(pair.background);
+  for (const TextOnBackground& pair : text_combinations()) {
+    EXPECT_GE(contrast(color_of(pair.text), color_of(pair.background)), kMinContrast)
+        << "color " << static_cast<int>(pair.text) << " on " << static_cast<int>(pair.background);
   }
 }
 
-TEST(Theme, CoversAllCombinationsOfTones) {
-  for (const Tone words : {Tone::text, Tone::secondary, Tone::accent, Tone::red, Tone::green, Tone::blue}) {
-    EXPECT_TRUE(std::any_of(text_combinations().begin(), text_combinations().end(),
-                            [&](const TextOnTone& w) { return w.text == words && w.background == Tone::panel; }));
+TEST(Theme, CoversAllCombinationsOfColors) {
+  for (const ThemeColor words : {ThemeColor::text, ThemeColor::secondary, ThemeColor::accent, ThemeColor::red,
+                                 ThemeColor::green, ThemeColor::blue}) {
+    EXPECT_TRUE(std::any_of(text_combinations().begin(), text_combinations().end(), [&](const TextOnBackground& w) {
+      return w.text == words && w.background == ThemeColor::panel;
+    }));
   }
 }
 

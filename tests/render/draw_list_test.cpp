@@ -8,7 +8,7 @@
 namespace limber::view_test {
 namespace {
 
-const DrawView kEye{{0, -10, 0}, {0, 1, 0}, 1000, 0};
+const DrawCamera kEye{{0, -10, 0}, {0, 1, 0}, 1000, 0};
 
 Vec3 position_of(const DrawList& list, std::size_t i) {
   const Instance& instance = list.instances().at(i);

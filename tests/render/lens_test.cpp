@@ -6,18 +6,18 @@
 namespace limber::view_test {
 namespace {
 
-Vec3 seen(const ViewCamera& view_camera, const Vec3& point) {
+Vec3 seen(const CameraMatrices& view_camera, const Vec3& point) {
   const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
   return Vec3(clip) / static_cast<double>(clip.w);
 }
 
-TEST(ViewCamera, FollowsTheCameraProperties) {
+TEST(CameraMatrices, FollowsTheCameraProperties) {
   TestScene scene;
   for (const auto& [eye, target] : {std::pair{Vec3(4.5, -6, 3.5), Vec3(0, 0, 1)},
                                     {Vec3(-2, 3, 0.5), Vec3(1, 1, 1)},
                                     {Vec3(0, 0, 9), Vec3(0, 0, 0)}}) {
     scene.look_from(eye, target);
-    const ViewCamera view_camera = make_view_camera(camera_of(*scene.snapshot()), 160, 90);
+    const CameraMatrices view_camera = camera_matrices(camera_of(*scene.snapshot()), 160, 90);
     EXPECT_LT(glm::length(view_camera.eye - eye), 1e-9);
     EXPECT_LT(glm::length(view_camera.target - target), 1e-9);
     EXPECT_LT(glm::length(view_camera.forward - normalized(target - eye)), 1e-9);
@@ -30,23 +30,23 @@ TEST(ViewCamera, FollowsTheCameraProperties) {
   }
 }
 
-TEST(ViewCamera, FocalLengthIsInPixels) {
-  CameraView camera;
+TEST(CameraMatrices, FocalLengthIsInPixels) {
+  CameraSettings camera;
   camera.fovy = 90;  // the view is 2 m high at a distance of 1 m
-  EXPECT_NEAR(make_view_camera(camera, 400, 100).focal_pixels, 50, 1e-9);
+  EXPECT_NEAR(camera_matrices(camera, 400, 100).focal_pixels, 50, 1e-9);
   camera.aspect = 1;
-  const ViewCamera square = make_view_camera(camera, 400, 100);
+  const CameraMatrices square = camera_matrices(camera, 400, 100);
   EXPECT_NEAR(square.projection[0][0], square.projection[1][1], 1e-6)
       << "the property overrides the aspect ratio of the view";
 }
 
-TEST(ViewCamera, FitsTheViewIntoTheFreeArea) {
-  CameraView camera;
+TEST(CameraMatrices, FitsTheViewIntoTheFreeArea) {
+  CameraSettings camera;
   camera.fovy = 90;
   camera.position = {0, 0, -2};  // looks down from 2 m: the view is 4 m high there
   camera.distance = 2;
   const FreeArea free{0.1, 0.2, 0.5, 0.6};
-  const ViewCamera view_camera = make_view_camera(camera, 400, 200, free);
+  const CameraMatrices view_camera = camera_matrices(camera, 400, 200, free);
   const Vec3 middle = seen(view_camera, view_camera.target);
   EXPECT_NEAR(middle.x, 2 * 0.35 - 1, 1e-5) << "0.1 and half of 0.5";
   EXPECT_NEAR(middle.y, 1 - 2 * 0.5, 1e-5) << "0.2 and half of 0.6";

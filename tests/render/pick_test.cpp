@@ -22,7 +22,7 @@ TEST(Pick, ReturnsTheNearestPart) {
   Part& side = scene.add("side", box, {3, 0, 0});
   scene.look_from({0, -10, 0}, {0, 0, 0});
   const auto now = scene.snapshot();
-  const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100);
+  const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100);
   const auto at = [&](Part& part) { return scene.store.view()->slots[part.id().slot].transient; };
   const auto middle = pick(*now, view_camera, 0, 0);
   ASSERT_TRUE(middle.has_value());
@@ -41,7 +41,7 @@ TEST(Pick, UsesTheFreeArea) {
   scene.add("ball", ball_of(0.5), {0, 0, 0});
   scene.look_from({0, -10, 0}, {0, 0, 0});
   const auto now = scene.snapshot();
-  const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
+  const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
   EXPECT_FALSE(pick(*now, view_camera, 0, 0).has_value());
   EXPECT_TRUE(pick(*now, view_camera, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
 }
@@ -71,7 +71,7 @@ TEST(Pick, TestsTheExactShape) {
     alone.look_from({0, -1000, 0}, {0, 0, 0});  // so far away that rays are almost parallel
     alone.set("/visuals/camera/fovy", {1});
     const auto now = alone.snapshot();
-    const ViewCamera view_camera = make_view_camera(camera_of(*now), 200, 100);
+    const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100);
     const auto at = [&](const Vec3& point) {
       const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
       return pick(*now, view_camera, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
@@ -87,7 +87,7 @@ TEST(Pick, IgnoresDisabledParts) {
   scene.look_from({0, -10, 0}, {0, 0, 0});
   scene.set("/physics/body/ball/enabled", {0});
   const auto now = scene.snapshot();
-  EXPECT_FALSE(pick(*now, make_view_camera(camera_of(*now), 200, 100), 0, 0).has_value());
+  EXPECT_FALSE(pick(*now, camera_matrices(camera_of(*now), 200, 100), 0, 0).has_value());
 }
 
 }  // namespace

@@ -113,11 +113,11 @@ TEST(Renderer, HorizonHasNoEdge) {
 
 // the center of a ball's shadow on the floor
 Vec3 shadow_of(const Snapshot& now, const Vec3& ball, double radius) {
-  const ViewCamera view_camera = make_view_camera(camera_of(now), 160, 90);
+  const CameraMatrices view_camera = camera_matrices(camera_of(now), 160, 90);
   const Lighting lighting = compute_lighting(appearance_of(now), view_camera, camera_of(now).far,
                                              {glm::vec3(ball), static_cast<float>(radius), 0, 1024});
-  const Vec3 lamp(lighting.frame.lamp_at);
-  const Vec3 direction = lighting.frame.lamp_at.w > 0.5 ? normalized(lamp - ball) : normalized(lamp);
+  const Vec3 light(lighting.frame.light_position);
+  const Vec3 direction = lighting.frame.light_position.w > 0.5 ? normalized(light - ball) : normalized(light);
   return ball - direction * (ball.z / direction.z);
 }
 

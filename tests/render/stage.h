@@ -149,7 +149,7 @@ struct Spot {
   int y = 0;
 };
 inline Spot spot_of(const Snapshot& now, const Vec3& point, int width, int height) {
-  const ViewCamera view_camera = make_view_camera(camera_of(now), width, height);
+  const CameraMatrices view_camera = camera_matrices(camera_of(now), width, height);
   const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
   return {static_cast<int>((0.5 + 0.5 * clip.x / clip.w) * width),
           static_cast<int>((0.5 - 0.5 * clip.y / clip.w) * height)};

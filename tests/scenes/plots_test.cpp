@@ -10,7 +10,7 @@
 #include "app/program.h"
 #include "doc_page.h"
 #include "sim/behavior/behavior_type.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber {
 namespace {
@@ -64,7 +64,7 @@ std::map<std::string, std::string> draw_plots() {
 }
 
 TEST(Plots, AreUpToDate) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   const std::map<std::string, std::string> plots = draw_plots();
   EXPECT_EQ(plots.size(), BehaviorTypes().all().size());
   for (const auto& [name, svg] : plots) {

@@ -7,7 +7,7 @@
 
 #include "player.h"
 #include "sim/behavior/behavior_group.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber {
 namespace {
@@ -158,7 +158,7 @@ std::vector<double> travel(Player& player, double seconds) {
 }
 
 TEST(Scenes, ABehaviorOfAnArmIsSwitchedOnOverOsc) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   Player player("arms.lua");
   player.send("/physics/body/*/behavior/{bend,twist}/active", {Arg::of(0.0)});
   player.play(4);
@@ -177,7 +177,7 @@ TEST(Scenes, ABehaviorOfAnArmIsSwitchedOnOverOsc) {
 }
 
 TEST(Scenes, AGustBendsTheArmsAndDiesDown) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   Player player("arms.lua");
   player.play(2);
   const auto depth = [&](int arm) {
@@ -200,7 +200,7 @@ TEST(Scenes, AGustBendsTheArmsAndDiesDown) {
 }
 
 TEST(Scenes, TheSwarmAlignsAndStaysInItsArena) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   Player player("swarm.lua");
   std::vector<const Part*> heads;
   for (const auto& body : player.world().bodies()) {

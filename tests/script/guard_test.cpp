@@ -208,21 +208,21 @@ TEST(Guard, CallsFromCppAreGuarded) {
 
 TEST(Guard, OnlyOneStateIsLive) {
   ScriptFixture first(short_limits());
-  EXPECT_EQ(first.scene.mode(), VmMode::live);
+  EXPECT_EQ(first.scene.mode(), VmMode::compiled);
   auto second = std::make_unique<ScriptFixture>(short_limits(), true);
   EXPECT_EQ(second->scene.mode(), VmMode::interpreted);
-  EXPECT_FALSE(second->scene.arm());
-  first.scene.disarm();
-  EXPECT_TRUE(second->scene.arm());
-  EXPECT_EQ(second->scene.mode(), VmMode::live);
-  EXPECT_FALSE(first.scene.arm());
+  EXPECT_FALSE(second->scene.enable_jit());
+  first.scene.disable_jit();
+  EXPECT_TRUE(second->scene.enable_jit());
+  EXPECT_EQ(second->scene.mode(), VmMode::compiled);
+  EXPECT_FALSE(first.scene.enable_jit());
   const char* const kEndless = "sim:on_start(function() while true do end end)";
   ASSERT_EQ(first.play(kEndless), "");
   ASSERT_EQ(second->play(kEndless), "");
   EXPECT_EQ(first.host.faults.size(), 1u);
   EXPECT_EQ(second->host.faults.size(), 1u);
   second.reset();
-  EXPECT_TRUE(first.scene.arm());
+  EXPECT_TRUE(first.scene.enable_jit());
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ TEST(Match, ReportsPatternFaultsLikeLua) {
            {"%bx", "unbalanced pattern"},
            {"%fa", "missing '[' after '%f' in pattern"},
            {std::string(33, '(') + "a" + std::string(33, ')'), "too many captures"}}) {
-    MatchSearch search([] { return false; });
+    PatternMatcher search([] { return false; });
     EXPECT_EQ(search.find("aaaa", pattern, 0, true), SearchResult::bad_pattern) << pattern;
     EXPECT_STREQ(search.fault(), fault.c_str()) << pattern;
   }
@@ -177,7 +177,7 @@ TEST(Match, ReportsPatternFaultsLikeLua) {
 }
 
 TEST(Match, EndsExponentialPatterns) {
-  MatchSearch search([] { return false; });
+  PatternMatcher search([] { return false; });
   const std::string text(1000, 'a');
   std::string stars;
   for (int i = 0; i < 20; i++) stars += "a*";
@@ -193,13 +193,13 @@ TEST(Match, EndsExponentialPatterns) {
 
 TEST(Match, PollsForAStop) {
   int polls = 0;
-  MatchSearch search([&] { return ++polls == 3; });
+  PatternMatcher search([&] { return ++polls == 3; });
   EXPECT_EQ(search.find(std::string(1 << 20, 'x'), "%d", 0, true), SearchResult::too_long);
   EXPECT_EQ(polls, 3);
 }
 
 TEST(Match, FindsPlainTextInALongText) {
-  MatchSearch search([] { return false; });
+  PatternMatcher search([] { return false; });
   std::string text(300'000, 'a');
   const std::string wanted = "aab" + std::string(100, 'a');
   for (const std::size_t at : {std::size_t{0}, std::size_t{65'500}, std::size_t{131'000}, std::size_t{299'897}}) {

@@ -65,7 +65,7 @@ sim:every(0.2, function() state.beats = (state.beats or 0) + 1; print("beat", st
 TEST(SceneCheckpoint, ScriptsRepeatAfterARestore) {
   ScriptFixture fixture({}, true);
   ASSERT_EQ(fixture.play(kBusy, 40), "");
-  ASSERT_EQ(fixture.scene.mode(), VmMode::live);
+  ASSERT_EQ(fixture.scene.mode(), VmMode::compiled);
   Saved saved;
   saved.capture(fixture);
   const std::vector<std::string> first = output_of_ticks(fixture, 120);

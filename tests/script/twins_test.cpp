@@ -10,7 +10,7 @@
 
 #include "base/sanitized.h"
 #include "behavior_stage.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber {
 namespace {
@@ -152,7 +152,7 @@ bool is_quick(const Twin& twin) {
 }
 
 TEST_P(Twins, MoveAlike) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer && !is_quick(GetParam()), "quicker types execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer && !is_quick(GetParam()), "quicker types execute the same code");
   const Twin& twin = GetParam();
   const Trajectory alone = played("force", "amp = 0", false);
   for (std::size_t set = 0; set < std::min(twin.sets.size(), kSets); set++) {

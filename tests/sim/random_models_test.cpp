@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber::test {
 namespace {
@@ -57,22 +57,22 @@ void play_scenes(const RandomSceneOptions& options) {
 }
 
 TEST(RandomModels, TreesWithoutContactsGainNoEnergy) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "random scenes");
+  LIMBER_SKIP_IF(is_emulated(), "random scenes");
   play_scenes({.contacts = false, .loops = false, .iterative = false});
 }
 
 TEST(RandomModels, TreesInContactGainNoEnergy) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "random scenes");
+  LIMBER_SKIP_IF(is_emulated(), "random scenes");
   play_scenes({.loops = false, .iterative = false});
 }
 
 TEST(RandomModels, NoSceneGainsEnergy) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "random scenes");
+  LIMBER_SKIP_IF(is_emulated(), "random scenes");
   play_scenes({});
 }
 
 TEST(RandomModels, JointsOfTreesStayClosed) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "random scenes");
+  LIMBER_SKIP_IF(is_emulated(), "random scenes");
   for (std::uint64_t n = 1; n <= 12; n++) {
     const RandomOutcome o = play_random_scene(n, 0, 2, {.contacts = false, .loops = false, .iterative = false});
     EXPECT_LE(o.created, 0.1 * o.max_kinetic + 1e-3) << "scene " << n << " at " << o.created_at << " s";
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(RandomModels, FormerFailure, ::testing::Values(2, 26, 6
 // A servo of 10 N·m holds a load and drops it: the account does not count work of the motor or of gravity as gained
 // energy, but it does count an impulse that it can't see.
 TEST(RandomModels, AccountFindsUnexplainedEnergy) {
-  LIMBER_LEAVE_OUT_IF(is_emulated(), "random scenes");
+  LIMBER_SKIP_IF(is_emulated(), "random scenes");
   WorldFixture s;
   s.set(s.world.id(), "timestep", {1.0 / 240});
   s.substeps(1);

@@ -94,9 +94,9 @@ Result<void> check_not_existing(const Plan& plan, bool overwrite) {
 }
 
 Result<std::unique_ptr<MotionWriter>> open_writer(const Plan& plan, double rate) {
-  if (plan.format == Format::csv) return write_csv(plan.output);
-  if (plan.format == Format::bvh) return write_bvh(plan.output, rate);
-  return write_gltf(plan.output);
+  if (plan.format == Format::csv) return make_csv_writer(plan.output);
+  if (plan.format == Format::bvh) return make_bvh_writer(plan.output, rate);
+  return make_gltf_writer(plan.output);
 }
 
 // number of ticks that advance time
@@ -119,7 +119,7 @@ EngineOptions engine_options(const ExportCommand& command) {
 
 struct ExportResult {
   std::uint64_t frames = 0;
-  bool cancelled = false;
+  bool canceled = false;
   Result<void> written;
 };
 
@@ -139,7 +139,7 @@ ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, Eng
   for (; !command.to || end.frames < static_cast<std::uint64_t>(wanted); end.frames++) {
     const double at = command.from + static_cast<double>(end.frames) / command.rate;
     const OfflineClock::Outcome outcome = clock.advance_to(at);
-    end.cancelled = outcome == OfflineClock::Outcome::cancelled;
+    end.canceled = outcome == OfflineClock::Outcome::canceled;
     if (outcome != OfflineClock::Outcome::reached) break;
     end.written = source.add_frame(at, clock.before(), clock.now(), clock.mix(at), writer);
     if (!end.written) break;
@@ -177,7 +177,7 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
   MotionSource source(command.bodies);
   const ExportResult end = write_frames(command, *ticks, engine, clock, source, **writer);
   if (!end.written) return fail(kMachineError, end.written.error());
-  if (end.cancelled) {
+  if (end.canceled) {
     print_notice("cancelled; {} was not written", printable(plan->output));
     return kInputError;
   }

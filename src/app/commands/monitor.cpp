@@ -8,7 +8,7 @@
 #include "app/exit_code.h"
 #include "base/log/output.h"
 #include "base/system/signals.h"
-#include "net/console/console_link.h"
+#include "net/console/console_client.h"
 
 namespace limber {
 
@@ -50,17 +50,17 @@ class MessagePrinter {
 }  // namespace
 
 int monitor_command(const MonitorCommand& command) {
-  ConsoleLine hello;
-  Result<ConsoleLink> link = choose_program(command.pid, hello);
-  if (!link) return fail(kInputError, "monitor: " + link.error());
+  Result<ConnectedProgram> program = connect_to_program(command.pid);
+  if (!program) return fail(kInputError, "monitor: " + program.error());
+  auto& [client, hello] = *program;
   handle_end_signals();
   const auto kind = command.changes ? ConsoleRequest::Kind::changes : ConsoleRequest::Kind::traffic;
-  if (!link->send({1, kind, command.pattern})) return fail(kInputError, "monitor: limber ended");
+  if (!client.send({1, kind, command.pattern})) return fail(kInputError, "monitor: limber ended");
   MessagePrinter printer(command);
   while (end_requested == 0) {
-    const std::optional<ConsoleLine> line = link->next(-1);
+    const std::optional<ConsoleLine> line = client.next(-1);
     if (!line) {
-      if (link->ended() || result_error() != 0) return kSuccess;
+      if (client.ended() || result_error() != 0) return kSuccess;
       continue;
     }
     if (line->kind == Kind::error || line->kind == Kind::rejected) return fail(kInputError, "monitor: " + line->text);

@@ -72,24 +72,24 @@ std::string fill_template(std::string_view text, std::string_view name) {
 
 // writes a file that must not exist; returns 0 or errno
 int write_new(const fs::path& path, std::string_view text) {
-  std::error_code fault;
-  fs::create_directories(path.parent_path(), fault);
-  if (fault) return fault.value();
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) return error.value();
   const system::Descriptor file = system::open_file(path.string(), system::OpenMode::create_new, 0666);
   return file.is_open() && system::write_all(file.fd(), text) ? 0 : errno;
 }
 
 // writes the file, prints its name and returns the exit code
 int write_and_report(const fs::path& path, std::string_view text) {
-  const int fault = write_new(path, text);
-  if (fault == EEXIST)
+  const int error = write_new(path, text);
+  if (error == EEXIST)
     return fail(kInputError,
                 fmt::format("new: {} already exists and is not overwritten; choose another name", path.string()));
-  if (fault != 0) {
-    const bool by_path = fault == ENOTDIR || fault == ENAMETOOLONG || fault == ELOOP;
-    const bool full = fault == ENOSPC || fault == EDQUOT;
+  if (error != 0) {
+    const bool by_path = error == ENOTDIR || error == ENAMETOOLONG || error == ELOOP;
+    const bool full = error == ENOSPC || error == EDQUOT;
     return fail(by_path ? kInputError : kMachineError,
-                fmt::format("new: {} can't be written: {}; {}", path.string(), std::generic_category().message(fault),
+                fmt::format("new: {} can't be written: {}; {}", path.string(), std::generic_category().message(error),
                             by_path ? "choose another place"
                             : full  ? "free disk space"
                                     : "check the folder's permissions"));
@@ -103,12 +103,12 @@ int new_show(const std::string& folder) {
     return fail(kUsageError,
                 fmt::format("new: '{}' is not a valid folder name: use printable text, such as my_show", folder));
   }
-  std::error_code fault;
+  std::error_code error;
   const fs::path root(folder);
-  if (fs::exists(root, fault) && !(fs::is_directory(root, fault) && fs::is_empty(root, fault)))
+  if (fs::exists(root, error) && !(fs::is_directory(root, error) && fs::is_empty(root, error)))
     return fail(kInputError, fmt::format("new: {} already exists; choose a new or empty folder", folder));
-  const std::string name = fs::absolute(root, fault).lexically_normal().filename().string();
-  const std::string title = name.empty() ? fs::absolute(root, fault).parent_path().filename().string() : name;
+  const std::string name = fs::absolute(root, error).lexically_normal().filename().string();
+  const std::string title = name.empty() ? fs::absolute(root, error).parent_path().filename().string() : name;
   constexpr std::string_view kFolder = "show/";
   for (const EmbeddedFile& file : template_files()) {
     if (!file.name.starts_with(kFolder)) continue;
@@ -122,10 +122,10 @@ int new_show(const std::string& folder) {
 
 // the nearest folder at or above the current one that contains scripts/; empty: none
 fs::path show_folder() {
-  std::error_code fault;
-  const fs::path here = fs::current_path(fault);
+  std::error_code error;
+  const fs::path here = fs::current_path(error);
   const fs::path show = ScriptFiles((here / "scene.lua").string(), "").show_folder();
-  return !fault && fs::is_directory(show / "scripts", fault) ? show : fs::path();
+  return !error && fs::is_directory(show / "scripts", error) ? show : fs::path();
 }
 
 // returns why a behavior can't have this name in a show: the name (normalized as in scenes) belongs to an existing type
@@ -138,8 +138,8 @@ std::string name_conflict(const fs::path& show, std::string_view name) {
   const std::string found = ScriptFiles((show / "scripts" / "scene.lua").string(), data_dir()).find_behavior(name);
   if (found.empty()) return {};
   const std::string type = fs::path(found).stem().string();
-  std::error_code fault;
-  const bool of_the_show = fs::equivalent(fs::path(found).parent_path(), show / "behaviors_lua", fault);
+  std::error_code error;
+  const bool of_the_show = fs::equivalent(fs::path(found).parent_path(), show / "behaviors_lua", error);
   if (of_the_show) return type == name ? "" : fmt::format("{} an existing behavior: {}", is(type), found);
   constexpr std::string_view kTwin = "lua_";
   if (type.starts_with(kTwin) && built_in.find(type.substr(kTwin.size())) != nullptr) {
@@ -168,10 +168,10 @@ int new_file(const NewCommand& command) {
         "new: no show found here. Change to its folder (which contains scripts/), or create one: limber new show DIR");
   }
   if (!scene) {
-    if (const std::string why = name_conflict(show, name); !why.empty())
+    if (const std::string reason = name_conflict(show, name); !reason.empty())
       return fail(
           kInputError,
-          "new: " + why + "; choose another name (case, underscores and a trailing 'behavior' make no difference)");
+          "new: " + reason + "; choose another name (case, underscores and a trailing 'behavior' make no difference)");
   }
   const EmbeddedFile* const text = find_embedded(template_files(), scene ? "scene.lua" : "behavior.lua");
   LIMBER_CHECK(text != nullptr);

@@ -75,7 +75,7 @@ Arg parse_arg(const std::string& word) {
 
 Result<Message> tagged_message(const std::string& address, std::string_view tags,
                                const std::vector<std::string>& words) {
-  if (const char* const fault = fault_of_tags(tags)) return Error{fmt::format("--tags '{}' has {}", tags, fault)};
+  if (const char* const error = fault_of_tags(tags)) return Error{fmt::format("--tags '{}' has {}", tags, error)};
   const auto count = static_cast<std::size_t>(
       std::ranges::count_if(tags, [](char tag) { return kWithoutWord.find(tag) == std::string_view::npos; }));
   Message message{address, {}};

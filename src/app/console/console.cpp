@@ -99,12 +99,11 @@ int evaluate_lines(ConsoleSession& session) {
 }  // namespace
 
 int console_command(const ConsoleCommand& command) {
-  ConsoleLine hello;
-  Result<ConsoleLink> link = choose_program(command.pid, hello);
-  if (!link) return fail(kInputError, "console: " + link.error());
+  Result<ConnectedProgram> program = connect_to_program(command.pid);
+  if (!program) return fail(kInputError, "console: " + program.error());
   const bool typed = system::at_terminal();
-  if (!command.expression && typed) return console_terminal(std::move(*link), hello);
-  ConsoleSession session(std::move(*link));
+  if (!command.expression && typed) return console_terminal(std::move(*program));
+  ConsoleSession session(std::move(program->client));
   return command.expression ? evaluate_once(session, *command.expression) : evaluate_lines(session);
 }
 

@@ -31,10 +31,10 @@ std::string ConsoleHistory::default_file() {
 }
 
 ConsoleHistory::ConsoleHistory(std::string file) : file_(std::move(file)) {
-  std::error_code fault;
-  if (file_.empty() || !fs::is_regular_file(file_, fault)) return;
+  std::error_code error;
+  if (file_.empty() || !fs::is_regular_file(file_, error)) return;
   std::ifstream in(file_, std::ios::binary);
-  if (const std::uintmax_t size = fs::file_size(file_, fault); !fault && size > kMaxFileBytes)
+  if (const std::uintmax_t size = fs::file_size(file_, error); !error && size > kMaxFileBytes)
     in.seekg(-static_cast<std::streamoff>(kMaxFileBytes), std::ios::end);
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   std::size_t line_count = 0;

@@ -17,16 +17,16 @@ bool is_reply(Kind kind) { return kind >= Kind::done && kind <= Kind::names; }
 
 }  // namespace
 
-// Returns the reply; nullopt if the user cancelled or the program has ended.
+// Returns the reply; nullopt if the user canceled or the program has ended.
 std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) {
   request.id = ++last_request_;
-  if (!link_.send(request)) return {};
+  if (!client_.send(request)) return {};
   while (true) {
-    std::optional<ConsoleLine> line = link_.next(-1);
+    std::optional<ConsoleLine> line = client_.next(-1);
     if (line && line->id == last_request_ && is_reply(line->kind)) return line;
     if (line) {
       show(*line);
-    } else if (link_.ended() || is_cancelled_()) {
+    } else if (client_.ended() || is_canceled_()) {
       return {};
     }
   }
@@ -34,7 +34,7 @@ std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) 
 
 ConsoleSession::EvaluationStatus ConsoleSession::evaluate(const std::string& text) {
   const std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::evaluate, text});
-  if (!reply) return link_.ended() ? EvaluationStatus::program_ended : EvaluationStatus::cancelled;
+  if (!reply) return client_.ended() ? EvaluationStatus::program_ended : EvaluationStatus::canceled;
   if (reply->kind == Kind::incomplete) return EvaluationStatus::incomplete;
   show(*reply);
   return reply->kind == Kind::error ? EvaluationStatus::failed : EvaluationStatus::done;
@@ -48,7 +48,7 @@ std::vector<std::string> ConsoleSession::complete(const std::string& text, std::
 }
 
 bool ConsoleSession::has_messages() {
-  while (std::optional<ConsoleLine> line = link_.next(0)) messages_.push_back(std::move(*line));
+  while (std::optional<ConsoleLine> line = client_.next(0)) messages_.push_back(std::move(*line));
   return !messages_.empty();
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "net/console/console_link.h"
+#include "net/console/console_client.h"
 
 namespace limber {
 
@@ -19,17 +19,17 @@ class ConsoleSession {
     done,
     failed,         ///< The error was shown.
     incomplete,     ///< Nothing was evaluated: the text needs more lines.
-    cancelled,      ///< The user cancelled the evaluation while waiting for its result.
+    canceled,       ///< The user canceled the evaluation while waiting for its result.
     program_ended,  ///< The program has ended.
   };
 
-  /// `is_cancelled` is called after a signal; it returns true if the user no longer waits for the answer.
+  /// `is_canceled` is called after a signal; it returns true if the user no longer waits for the answer.
   explicit ConsoleSession(
-      ConsoleLink link, std::function<bool()> is_cancelled = [] { return false; })
-      : link_(std::move(link)), is_cancelled_(std::move(is_cancelled)) {}
+      ConsoleClient client, std::function<bool()> is_canceled = [] { return false; })
+      : client_(std::move(client)), is_canceled_(std::move(is_canceled)) {}
 
-  int fd() const { return link_.fd(); }
-  bool ended() const { return link_.ended(); }
+  int fd() const { return client_.fd(); }
+  bool ended() const { return client_.ended(); }
   /// Evaluates the text and shows the result.
   EvaluationStatus evaluate(const std::string& text);
   /// Returns the possible completions of the last word of `text`; sets `word` to the length of that word in bytes.
@@ -42,8 +42,8 @@ class ConsoleSession {
   std::optional<ConsoleLine> send_request(ConsoleRequest request);
   void show(const ConsoleLine& line) const;
 
-  ConsoleLink link_;
-  std::function<bool()> is_cancelled_;
+  ConsoleClient client_;
+  std::function<bool()> is_canceled_;
   std::uint64_t last_request_ = 0;
   std::vector<ConsoleLine> messages_;
 };

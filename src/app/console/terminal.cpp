@@ -41,7 +41,7 @@ bool consume_interrupt() {
 
 class Terminal {
  public:
-  explicit Terminal(ConsoleLink link);
+  explicit Terminal(ConsoleClient client);
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
@@ -66,11 +66,11 @@ class Terminal {
   EditLine* edit_ = nullptr;
   ::History* history_ = nullptr;
   std::string pending_;  // lines of an incomplete chunk
-  bool cancelled_ = false;
+  bool canceled_ = false;
   std::mbstate_t bytes_{};  // state of an incomplete multibyte character
 };
 
-Terminal::Terminal(ConsoleLink link) : session_(std::move(link), consume_interrupt) {
+Terminal::Terminal(ConsoleClient client) : session_(std::move(client), consume_interrupt) {
   // only the character encoding; numbers keep the decimal point
   if (std::setlocale(LC_CTYPE, "") == nullptr || MB_CUR_MAX < 2) std::setlocale(LC_CTYPE, "C.UTF-8");
   history_ = history_init();
@@ -117,7 +117,7 @@ char* Terminal::prompt(EditLine* edit) {
 int Terminal::read_key(EditLine* edit, wchar_t* key) { return of(edit).next_key(key); }
 
 unsigned char Terminal::on_cancel(EditLine* edit, int) {
-  of(edit).cancelled_ = true;
+  of(edit).canceled_ = true;
   return CC_NEWLINE;
 }
 
@@ -204,7 +204,7 @@ int Terminal::run() {
   while (true) {
     int count = 0;
     const char* typed = el_gets(edit_, &count);
-    if (std::exchange(cancelled_, false)) {
+    if (std::exchange(canceled_, false)) {
       write_result("^C\n");
       pending_.clear();
       continue;
@@ -220,7 +220,7 @@ int Terminal::run() {
       continue;
     }
     pending_.clear();
-    if (status == ConsoleSession::EvaluationStatus::cancelled)
+    if (status == ConsoleSession::EvaluationStatus::canceled)
       write_result(" (cancelled; the evaluation may still be running)\n");
   }
   print_result("{}\n", session_.ended() ? "\nlimber has ended" : "");
@@ -229,10 +229,10 @@ int Terminal::run() {
 
 }  // namespace
 
-int console_terminal(ConsoleLink link, const ConsoleLine& hello) {
+int console_terminal(ConnectedProgram program) {
   print_result("limber {}, process {}, plays {}. Lua console: Tab completes, Ctrl+C cancels a line, Ctrl+D exits.\n",
-               hello.version, hello.pid, hello.text);
-  return Terminal(std::move(link)).run();
+               program.hello.version, program.hello.pid, program.hello.text);
+  return Terminal(std::move(program.client)).run();
 }
 
 }  // namespace limber

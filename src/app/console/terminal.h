@@ -1,11 +1,11 @@
 // The interactive console: a line editor with history and completion on top of a ConsoleSession.
 #pragma once
 
-#include "net/console/console_link.h"
+#include "net/console/console_client.h"
 
 namespace limber {
 
 /// Runs until the user leaves (Ctrl+D) or the program ends. Returns the exit code. [main]
-int console_terminal(ConsoleLink link, const ConsoleLine& hello);
+int console_terminal(ConnectedProgram program);
 
 }  // namespace limber

@@ -77,18 +77,13 @@ bool same_parts(const MotionBody& known, const Body& body) {
          });
 }
 
-Pose pose_in(const Snapshot& snapshot, std::uint32_t part) {
-  const double* const block = snapshot.transient.data() + part;
-  return {vec3_at(block + transient_offsets().part_position), quat_at(block + transient_offsets().part_rotation)};
-}
-
 Pose interpolate(const Pose& a, const Pose& b, double mix) {
   return {glm::mix(a.position, b.position, mix), slerp(a.rotation, b.rotation, mix)};
 }
 
 // sets the parent of each link by the first joint that leads to it and closes no loop, and the rest poses along these
 // joints
-void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& now) {
+void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& current) {
   std::map<const Part*, int> number;
   for (std::size_t i = 0; i < body.parts().size(); i++) number[body.parts()[i].get()] = static_cast<int>(i);
   std::vector<const Joint*> by(motion.links.size(), nullptr);
@@ -105,7 +100,7 @@ void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& 
   for (const std::size_t i : link_order(motion).links) {
     MotionLink& link = motion.links[i];
     if (link.parent < 0) {
-      link.rest = now.front().inverse() * now[i];
+      link.rest = current.front().inverse() * current[i];
     } else {
       const JointSpec& spec = by[i]->spec();
       link.rest = motion.links[static_cast<std::size_t>(link.parent)].rest * spec.frame_in_parent *
@@ -122,19 +117,19 @@ bool MotionSource::is_selected(const std::string& name) const {
          });
 }
 
-MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
+MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& entry, const Snapshot& current) {
   Track track;
   track.content = content_of(body);
   track.body.name = body.name();
-  std::map<std::uint32_t, std::vector<RenderInstance>> pieces;
-  for (const RenderInstance& piece : now.render_scene->instances) {
-    if (piece.enabled_offset == entry.enabled_offset) pieces[piece.part_offset].push_back(piece);
+  std::map<std::uint32_t, std::vector<RenderInstance>> instances;
+  for (const RenderInstance& instance : current.render_scene->instances) {
+    if (instance.enabled_offset == entry.enabled_offset) instances[instance.part_offset].push_back(instance);
   }
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < body.parts().size(); i++) {
-    poses.push_back(pose_in(now, entry.part_offsets[i]));
+    poses.push_back(part_pose(current, entry.part_offsets[i]));
     track.body.links.push_back(
-        {body.parts()[i]->name(), -1, {}, surfaces_.surfaces_of(now, pieces[entry.part_offsets[i]])});
+        {body.parts()[i]->name(), -1, {}, surfaces_.surfaces_of(current, instances[entry.part_offsets[i]])});
   }
   set_parents(track.body, body, poses);
   for (std::size_t i = 0; i < body.joints().size(); i++) {
@@ -146,26 +141,28 @@ MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& 
   return track;
 }
 
-int MotionSource::find_track(const Body& body, const BodyEntry& entry, const Snapshot& now) {
-  if (std::find(names_.begin(), names_.end(), body.name()) == names_.end()) names_.push_back(body.name());
+int MotionSource::find_or_add_track(const Body& body, const BodyEntry& entry, const Snapshot& current) {
   if (body.parts().empty() || !is_selected(body.name())) return -1;
   for (std::size_t i = 0; i < tracks_.size(); i++) {
     const Track& track = tracks_[i];
     if (track.body.name == body.name() && track.content == content_of(body) && same_parts(track.body, body))
       return static_cast<int>(i);
   }
-  tracks_.push_back(make_track(body, entry, now));
+  tracks_.push_back(make_track(body, entry, current));
   return static_cast<int>(tracks_.size()) - 1;
 }
 
-void MotionSource::update(const World& world, const Snapshot& now) {
-  if (recent_[0].body_list == now.body_list) return;
+void MotionSource::update(const World& world, const Snapshot& current) {
+  if (recent_[0].body_list == current.body_list) return;
   std::swap(recent_[0], recent_[1]);
   BodyListTracks& tracks = recent_[0];
-  tracks.body_list = now.body_list;
+  tracks.body_list = current.body_list;
   tracks.track_of.clear();
-  for (std::size_t i = 0; i < now.body_list->bodies.size(); i++)
-    tracks.track_of.push_back(find_track(*world.bodies()[i], now.body_list->bodies[i], now));
+  for (std::size_t i = 0; i < current.body_list->bodies.size(); i++) {
+    const Body& body = *world.bodies()[i];
+    if (std::find(names_.begin(), names_.end(), body.name()) == names_.end()) names_.push_back(body.name());
+    tracks.track_of.push_back(find_or_add_track(body, current.body_list->bodies[i], current));
+  }
   tracks.body_of.assign(tracks_.size(), -1);
   for (std::size_t i = 0; i < tracks.track_of.size(); i++) {
     if (tracks.track_of[i] >= 0) tracks.body_of[static_cast<std::size_t>(tracks.track_of[i])] = static_cast<int>(i);
@@ -176,12 +173,12 @@ const MotionSource::BodyListTracks& MotionSource::tracks_of(const BodyList* body
   return recent_[0].body_list.get() == body_list ? recent_[0] : recent_[1];
 }
 
-Result<void> MotionSource::add_frame(double time, const Snapshot& before, const Snapshot& now, double mix,
+Result<void> MotionSource::add_frame(double time, const Snapshot& previous, const Snapshot& current, double mix,
                                      MotionWriter& writer) {
-  const Snapshot& snapshot = mix >= 1 ? now : before;
+  const Snapshot& snapshot = mix >= 1 ? current : previous;
   const BodyListTracks& here = tracks_of(snapshot.body_list.get());
-  const BodyListTracks& next = tracks_of(now.body_list.get());
-  const bool interpolates = mix < 1 && now.time >= before.time;
+  const BodyListTracks& next = tracks_of(current.body_list.get());
+  const bool interpolates = mix < 1 && current.time >= previous.time;
   for (MotionSample& sample : samples_) sample.present = false;
   for (std::size_t i = 0; i < here.track_of.size(); i++) {
     const BodyEntry& a = snapshot.body_list->bodies[i];
@@ -194,8 +191,8 @@ Result<void> MotionSource::add_frame(double time, const Snapshot& before, const 
       if (Result<void> added = writer.add_body(track.body); !added) return added;
     }
     const bool continues = interpolates && number < next.body_of.size() && next.body_of[number] >= 0;
-    const BodyEntry& b = continues ? now.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
-    fill_sample(track, {snapshot, a}, {continues ? now : snapshot, b}, continues ? mix : 0);
+    const BodyEntry& b = continues ? current.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
+    fill_sample(track, {snapshot, a}, {continues ? current : snapshot, b}, continues ? mix : 0);
   }
   return writer.add_frame(time, samples_);
 }
@@ -206,8 +203,8 @@ void MotionSource::fill_sample(const Track& track, const BodyAt& from, const Bod
   sample.links.resize(from.body.part_offsets.size());
   sample.values.resize(track.values.size());
   for (std::size_t k = 0; k < sample.links.size(); k++)
-    sample.links[k] = interpolate(pose_in(from.snapshot, from.body.part_offsets[k]),
-                                  pose_in(to.snapshot, to.body.part_offsets[k]), mix);
+    sample.links[k] = interpolate(part_pose(from.snapshot, from.body.part_offsets[k]),
+                                  part_pose(to.snapshot, to.body.part_offsets[k]), mix);
   for (std::size_t k = 0; k < track.values.size(); k++) {
     const Value& value = track.values[k];
     const double start = from.snapshot.transient[from.body.joint_offsets[value.joint] + value.offset];

@@ -1,5 +1,5 @@
-// MotionSource: feeds a MotionWriter from an engine that runs offline: which bodies exist, with which links, and their
-// poses at times between two ticks.
+// MotionSource: passes the bodies of an offline engine, their links and their poses at times between two ticks to a
+// MotionWriter.
 #pragma once
 
 #include <array>
@@ -25,11 +25,12 @@ class MotionSource {
 
   /// Updates the list of bodies; called before the first tick and after each. A body that is created again with the
   /// same name, parts and joints (after a reset, for example) continues the same track. [sim]
-  void update(const World& world, const Snapshot& now);
+  void update(const World& world, const Snapshot& current);
   /// Adds a frame that is interpolated between the two snapshots by `mix`, 0 .. 1: positions linearly, rotations along
-  /// the shortest arc. Bodies that `now` adds or removes change at `mix` 1, and there is no interpolation across a
-  /// reset.
-  Result<void> add_frame(double time, const Snapshot& before, const Snapshot& now, double mix, MotionWriter& writer);
+  /// the shortest arc. A body that is only in one of the snapshots appears or disappears at `mix` 1. There is no
+  /// interpolation across a reset.
+  Result<void> add_frame(double time, const Snapshot& previous, const Snapshot& current, double mix,
+                         MotionWriter& writer);
 
   /// Number of bodies that were in a frame.
   std::size_t bodies() const { return samples_.size(); }
@@ -64,8 +65,8 @@ class MotionSource {
   };
   void fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix);
 
-  int find_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
-  Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& now);
+  int find_or_add_track(const Body& body, const BodyEntry& entry, const Snapshot& current);
+  Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& current);
   bool is_selected(const std::string& name) const;
   const BodyListTracks& tracks_of(const BodyList* body_list) const;
 

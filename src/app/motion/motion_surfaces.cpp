@@ -100,20 +100,20 @@ void add_shape(Builder& builder, const ShapeModel& shape, const Pose& origin) {
 }  // namespace
 
 std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snapshot,
-                                                            std::span<const RenderInstance> pieces) {
+                                                            std::span<const RenderInstance> instances) {
   std::string key;
   std::vector<Paint> paints;
-  for (const RenderInstance& piece : pieces) {
-    const RenderShape& form = snapshot.render_scene->shapes[piece.shape];
+  for (const RenderInstance& instance : instances) {
+    const RenderShape& form = snapshot.render_scene->shapes[instance.shape];
     paints.push_back(paint_of(material_of(snapshot, form.material)));
-    add_piece(key, form.geometry, piece.origin, paints.back());
+    add_piece(key, form.geometry, instance.origin, paints.back());
   }
   const auto [at, fresh] = cache_.try_emplace(key);
   if (!fresh) return at->second.surfaces;
   Surfaces surfaces;
   std::vector<Builder> builders;
-  surfaces.reserve(pieces.size());  // builders keep references to its elements
-  for (std::size_t i = 0; i < pieces.size(); i++) {
+  surfaces.reserve(instances.size());  // builders keep references to its elements
+  for (std::size_t i = 0; i < instances.size(); i++) {
     if (paints[i].alpha < kMinAlpha) continue;
     std::size_t n = 0;
     while (n < surfaces.size() && (surfaces[n].color != paints[i].color || surfaces[n].alpha != paints[i].alpha)) n++;
@@ -122,8 +122,8 @@ std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snap
       surfaces[n].color = paints[i].color;
       surfaces[n].alpha = paints[i].alpha;
     }
-    const ShapeModel& shape = snapshot.render_scene->shapes[pieces[i].shape].geometry;
-    add_shape(builders[n], shape, pieces[i].origin);
+    const ShapeModel& shape = snapshot.render_scene->shapes[instances[i].shape].geometry;
+    add_shape(builders[n], shape, instances[i].origin);
     at->second.meshes.push_back(shape.mesh);
   }
   std::erase_if(surfaces, [](const Surface& surface) { return surface.triangles.empty(); });

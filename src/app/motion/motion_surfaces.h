@@ -19,9 +19,9 @@ inline constexpr double kPlaneEdge = 20;
 /// Builds surfaces and shares equal ones.
 class MotionSurfaces {
  public:
-  /// Returns the surfaces of the pieces of one part, with their current colors. Parts that look alike share them. Null
-  /// if nothing is visible.
-  std::shared_ptr<const Surfaces> surfaces_of(const Snapshot& snapshot, std::span<const RenderInstance> pieces);
+  /// Returns the surfaces of the instances of one part, with their current colors. Parts that look alike share them.
+  /// Null if nothing is visible.
+  std::shared_ptr<const Surfaces> surfaces_of(const Snapshot& snapshot, std::span<const RenderInstance> instances);
 
  private:
   struct CacheEntry {

@@ -57,16 +57,16 @@ int fail_not_ours(const std::string& file) {
 
 // writes a temporary file first, so that no incomplete unit is ever read
 Result<void> write_unit(const std::string& file, std::string_view text) {
-  std::error_code fault;
-  fs::create_directories(fs::path(file).parent_path(), fault);
-  if (fault) return Error{fault.message()};
+  std::error_code error;
+  fs::create_directories(fs::path(file).parent_path(), error);
+  if (error) return Error{error.message()};
   const std::string temporary = fmt::format("{}.{}.new", file, system::process_id());
   if (Result<void> written = system::replace_file(temporary, text, 0644); !written) {
     (void)system::remove_file(temporary);
     return written;
   }
-  fs::rename(temporary, file, fault);
-  if (fault) return Error{fault.message()};
+  fs::rename(temporary, file, error);
+  if (error) return Error{error.message()};
   system::sync_folder(file);
   return {};
 }
@@ -85,7 +85,7 @@ std::vector<std::string> words_of_service(const ServiceCommand& command) {
 }
 
 int install(const ServiceCommand& command) {
-  if (const std::string why = conflicting_option(command.play); !why.empty()) return fail(kUsageError, why);
+  if (const std::string reason = conflicting_option(command.play); !reason.empty()) return fail(kUsageError, reason);
   if (service_folder().empty()) return fail(kMachineError, "HOME is not set: there is no folder for units");
   std::vector<std::string> searched;
   const bool replays = !command.play.take.replay.empty();
@@ -94,14 +94,14 @@ int install(const ServiceCommand& command) {
   const std::string name = command.name.empty() ? service_name(scene) : command.name;
   if (!is_valid_name(name))
     return fail(kUsageError, fmt::format("--name '{}': use only letters, digits, _ and -", printable(name)));
-  std::error_code fault;
+  std::error_code error;
   const ServiceUnit unit{.scene = scene,
                          .name = fmt::format("{}{}", kPrefix, name),
                          .program = system::executable_path(),
-                         .folder = fs::current_path(fault).string(),
+                         .folder = fs::current_path(error).string(),
                          .words = words_of_service(command),
                          .window = !command.play.display.headless};
-  if (fault || unit.program.empty())
+  if (error || unit.program.empty())
     return fail(kMachineError, "the path of the program or the current folder is unknown");
   const Result<std::string> text = service_unit_text(unit);
   if (!text) return fail(kInputError, text.error());
@@ -122,8 +122,8 @@ int install(const ServiceCommand& command) {
 
 std::vector<std::string> installed_names() {
   std::vector<std::string> names;
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(service_folder(), fault)) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(service_folder(), error)) {
     const std::string file = entry.path().filename().string();
     if (!file.starts_with(kPrefix) || !file.ends_with(kSuffix) || owner_of(entry.path().string()) != Owner::limber)
       continue;
@@ -137,8 +137,8 @@ std::vector<std::string> installed_names() {
 void remove_links(const std::string& name) {
   for (const char* target : {"default.target", "graphical-session.target"}) {
     const std::string link = fmt::format("{}/{}.wants/{}{}{}", service_folder(), target, kPrefix, name, kSuffix);
-    std::error_code fault;
-    if (fs::is_symlink(link, fault)) (void)system::remove_file(link);
+    std::error_code error;
+    if (fs::is_symlink(link, error)) (void)system::remove_file(link);
   }
 }
 

@@ -45,14 +45,14 @@ void FileWatch::watch(const std::vector<SourceFile>& files, Time now) {
 void FileWatch::add_watched(std::map<std::string, std::set<std::string>>& folders, std::set<std::string>& visited,
                             const fs::path& file) const {
   if (!visited.insert(file.string()).second || visited.size() > kMaxPaths) return;
-  std::error_code fault;
+  std::error_code error;
   for (fs::path path = file; path.has_parent_path() && path.parent_path() != path; path = path.parent_path()) {
     const fs::path folder = path.parent_path();
-    if (!fs::is_directory(folder, fault)) continue;
+    if (!fs::is_directory(folder, error)) continue;
     folders[folder.string()].insert(path.filename().string());
-    if (!fs::is_symlink(path, fault)) continue;
-    const fs::path target = (fs::canonical(folder, fault) / fs::read_symlink(path, fault)).lexically_normal();
-    if (!fault) add_watched(folders, visited, path == file ? target : target / file.lexically_relative(path));
+    if (!fs::is_symlink(path, error)) continue;
+    const fs::path target = (fs::canonical(folder, error) / fs::read_symlink(path, error)).lexically_normal();
+    if (!error) add_watched(folders, visited, path == file ? target : target / file.lexically_relative(path));
   }
 }
 

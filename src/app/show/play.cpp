@@ -10,10 +10,10 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/show/engine_thread.h"
 #include "app/show/query_host.h"
-#include "app/show/scene_watch.h"
+#include "app/show/scene_loader.h"
 #include "app/show/service_notifier.h"
-#include "app/show/show.h"
 #include "app/show/show_loop.h"
 #include "app/show/shutdown_guard.h"
 #include "app/view/render.h"
@@ -190,35 +190,37 @@ class Playing {
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc.allow, options.network.query_names)) {
     if ((!options.fast || options.watch) && options.take.replay.empty())
-      scene_watch_.emplace(link_, engine_, scene_file_);
+      scene_loader_.emplace(link_, engine_, scene_file_);
   }
 
   /// Returns the exit code.
   int play() {
     bool interrupted = false;
     {
-      Show show(engine_);
-      DisplayWatchdog frames;
-      ShowLoop loop(show, engine_, link_, notifier_, frames, options_);
-      if (const std::optional<int> failed = start(show, loop)) return *failed;
-      const auto end_without_window = [&](const char* why) {
-        log_error("{}", why);
+      EngineThread engine_thread(engine_);
+      DisplayWatchdog display_watchdog;
+      ShowLoop loop(engine_thread, engine_, link_, notifier_, display_watchdog, options_);
+      if (const std::optional<int> failed = start(engine_thread, loop)) return *failed;
+      const auto end_without_window = [&](const char* reason) {
+        log_error("{}", reason);
         const bool ended = interrupted || loop.run_headless();
-        show.end();
+        engine_thread.end();
         end_program(close(ended));
       };
-      frames.start([&] { end_without_window("the display does not answer"); });
+      display_watchdog.start([&] { end_without_window("the display does not answer"); });
       const bool waits = loop.open_window();
-      if (!show.result() && !waits) return fail_start(show.exit_code(), show.result().error());
-      show.allow_ticks(waits);
-      if (scene_watch_) scene_watch_->start();
-      if (!show.result()) log_error("{}\nthe world stays empty until the file is fixed", show.result().error());
+      if (!engine_thread.result() && !waits)
+        return fail_start(engine_thread.exit_code(), engine_thread.result().error());
+      engine_thread.allow_ticks(waits);
+      if (scene_loader_) scene_loader_->start();
+      if (!engine_thread.result())
+        log_error("{}\nthe world stays empty until the file is fixed", engine_thread.result().error());
       // Xlib ends the program when the display is lost: the callback plays on headless instead and ends the program
       // itself
       Window::on_display_lost([&] { end_without_window("the display is lost; playing on headless"); });
       interrupted = loop.run();
       Window::on_display_lost({});
-      frames.ending();
+      display_watchdog.ending();
       loop.close_window();
     }
     return close(interrupted);
@@ -230,23 +232,24 @@ class Playing {
     return options;
   }
   // runs the scene, then opens the ports; returns the exit code if the show can't be played
-  std::optional<int> start(const Show& show, ShowLoop& loop) {
+  std::optional<int> start(const EngineThread& engine_thread, ShowLoop& loop) {
     loop.wait_for_scene();
-    if (!show.result() && !loop.may_wait_for_fix()) return fail_start(show.exit_code(), show.result().error());
+    if (!engine_thread.result() && !loop.may_wait_for_fix())
+      return fail_start(engine_thread.exit_code(), engine_thread.result().error());
     const std::optional<ListenAddress> at =
         query_address(query_addresses_, effective_config(osc_, link_.osc_config.read().get()));
     if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
       return fail_start(kMachineError, open.error());
     if (!options_.fast) open_console(console_);
-    loop.each_second([this, at] {
+    loop.set_retry([this, at] {
       retry_query(at, query_);
       if (!options_.fast) open_console(console_, true);
     });
     return std::nullopt;
   }
-  int fail_start(int code, const std::string& why) {
+  int fail_start(int code, const std::string& reason) {
     engine_.end_recovery();
-    return fail(code, why);
+    return fail(code, reason);
   }
   int close(bool ended) {
     notifier_.stopping();
@@ -255,7 +258,7 @@ class Playing {
       engine_.finish_saving();
       engine_.end_recovery();
       guard.files_written();
-      scene_watch_.reset();
+      scene_loader_.reset();
       query_.stop();
       network_.stop();
       console_.stop();
@@ -273,7 +276,7 @@ class Playing {
   Engine engine_;
   Network network_;
   ConsoleServer console_;
-  std::optional<SceneWatch> scene_watch_;
+  std::optional<SceneLoader> scene_loader_;
   QueryServer query_;
 };
 
@@ -300,7 +303,7 @@ int render_scene(const PlayOptions& options, EngineOptions engine_options) {
   Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
   const RenderResult rendered = render(options.display, engine, link, duration, system::signal_arrived);
-  return rendered.code != kSuccess ? rendered.code : finish(options, engine, rendered.cancelled);
+  return rendered.code != kSuccess ? rendered.code : finish(options, engine, rendered.canceled);
 }
 
 Result<void> open_output(const PlayOptions& options) {
@@ -348,9 +351,9 @@ int play_command(const PlayOptions& options) {
   std::vector<std::string> searched;
   const std::string scene = replays ? options.scene : find_scene(options.scene, searched);
   // absolute, because the current folder may be replaced while the show plays
-  std::error_code fault;
-  const std::filesystem::path scene_path = std::filesystem::absolute(scene, fault);
-  Result<EngineOptions> engine_options = parse_engine(options, fault || scene.empty() ? scene : scene_path.string());
+  std::error_code error;
+  const std::filesystem::path scene_path = std::filesystem::absolute(scene, error);
+  Result<EngineOptions> engine_options = parse_engine(options, error || scene.empty() ? scene : scene_path.string());
   if (!engine_options) return fail(kUsageError, engine_options.error());
   if (scene.empty()) return fail(kInputError, scene_not_found(options.scene, searched));
   if (options.display.offline()) return render_scene(options, std::move(*engine_options));

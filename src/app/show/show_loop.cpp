@@ -26,26 +26,26 @@ using system::Signal;
 constexpr std::chrono::milliseconds kStatusInterval = 1s;
 
 // a thread that doesn't return can't be joined; all files are written, so the process may end
-[[noreturn]] void leave(std::string_view why) {
-  write_message(MessageLevel::warning, why);
+[[noreturn]] void leave(std::string_view reason) {
+  write_message(MessageLevel::warning, reason);
   begin_output_shutdown();
   end_program(kInputError);
 }
 
 }  // namespace
 
-ShowLoop::ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
-                   DisplayWatchdog& frames, const PlayOptions& options)
-    : show_(show),
+ShowLoop::ShowLoop(const EngineThread& engine_thread, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
+                   DisplayWatchdog& display_watchdog, const PlayOptions& options)
+    : engine_thread_(engine_thread),
       engine_(engine),
       link_(link),
       notifier_(notifier),
-      frames_(frames),
+      display_watchdog_(display_watchdog),
       options_(options),
       prints_status_(!options.log.quiet && !system::standard_error_is_journal()) {}
 
 void ShowLoop::wait_for_scene() {
-  while (!show_.started()) {
+  while (!engine_thread_.started()) {
     notifier_.loading();
     if (system::wait_for_signal(kStatusInterval) == Signal::terminate) leave("interrupted while the scene was loading");
   }
@@ -57,32 +57,30 @@ bool ShowLoop::may_wait_for_fix() const {
 
 bool ShowLoop::should_await_display() const {
   const DisplayOptions& display = options_.display;
-  const bool requested = display.fullscreen || !display.monitor.empty() || notifier_.present();
+  const bool requested = display.full_screen || !display.monitor.empty() || notifier_.present();
   return requested && !display.headless && !options_.fast && Window::has_display();
 }
 
 bool ShowLoop::open_window() {
   if (options_.fast) return false;
-  std::string why;
+  std::string reason;
   if (!options_.display.headless) {
-    auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
-    if (window) {
-      window_ = std::move(*window);
-      return true;
-    }
-    why = fmt::format(" ({})", window.error());
+    const Result<void> opened = try_window();
+    if (opened) return true;
+    reason = fmt::format(" ({})", opened.error());
   }
   awaits_display_ = should_await_display();
-  print_notice("playing headless{}; {}", why,
+  print_notice("playing headless{}; {}", reason,
                awaits_display_ ? "the window opens as soon as there is a display" : "Ctrl+C ends it");
   return awaits_display_;
 }
 
-bool ShowLoop::try_window() {
-  auto window = frames_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
-  if (!window) return false;
+Result<void> ShowLoop::try_window() {
+  auto window =
+      display_watchdog_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
+  if (!window) return Error{window.error()};
   window_ = std::move(*window);
-  return true;
+  return {};
 }
 
 void ShowLoop::print_status() const {
@@ -109,10 +107,10 @@ void ShowLoop::retry() {
 }
 
 bool ShowLoop::run() {
-  while (!show_.over()) {
+  while (!engine_thread_.over()) {
     retry();
     const WindowShow::End end =
-        window_ != nullptr ? frames_.call([&] { return window_->frame(); }) : WindowShow::End::none;
+        window_ != nullptr ? display_watchdog_.call([&] { return window_->frame(); }) : WindowShow::End::none;
     if (end == WindowShow::End::lost) return run_headless();
     const bool closed = end == WindowShow::End::closed;
     const Signal signal = system::wait_for_signal(window_ != nullptr ? 0ms : kStatusInterval);
@@ -126,7 +124,7 @@ bool ShowLoop::run() {
 
 bool ShowLoop::run_headless() {
   awaits_display_ = false;
-  while (!show_.over()) {
+  while (!engine_thread_.over()) {
     retry();
     const Signal signal = system::wait_for_signal(kStatusInterval);
     if (signal == Signal::none) print_status();
@@ -138,7 +136,7 @@ bool ShowLoop::run_headless() {
 }
 
 void ShowLoop::close_window() {
-  frames_.call([&] { window_.reset(); });
+  display_watchdog_.call([&] { window_.reset(); });
 }
 
 void ShowLoop::end_show() {
@@ -149,12 +147,12 @@ void ShowLoop::end_show() {
   // the program and to its group), so a tick of normal length may still finish
   using Clock = std::chrono::steady_clock;
   Clock::time_point deadline = Clock::now() + 900ms;
-  while (!show_.over() && Clock::now() < deadline) {
+  while (!engine_thread_.over() && Clock::now() < deadline) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
     if (system::wait_for_signal(left) != Signal::terminate) continue;
     deadline = std::min(deadline, Clock::now() + std::chrono::milliseconds(250));
   }
-  if (!show_.over()) leave("interrupted during a long tick. Reduce substeps or solver_iterations");
+  if (!engine_thread_.over()) leave("interrupted during a long tick. Reduce substeps or solver_iterations");
 }
 
 }  // namespace limber

@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
+#include "app/show/engine_thread.h"
 #include "app/show/play.h"
 #include "app/show/service_notifier.h"
-#include "app/show/show.h"
 #include "app/view/display_watchdog.h"
 #include "app/view/window_show.h"
 #include "engine/engine.h"
@@ -20,18 +20,18 @@ namespace limber {
 class ShowLoop {
  public:
   /// All arguments must outlive the loop.
-  ShowLoop(const Show& show, Engine& engine, EngineLink& link, ServiceNotifier& notifier, DisplayWatchdog& frames,
-           const PlayOptions& options);
+  ShowLoop(const EngineThread& engine_thread, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
+           DisplayWatchdog& display_watchdog, const PlayOptions& options);
 
   /// Waits until the scene has run. A signal ends the program.
   void wait_for_scene();
   /// True if a show with a broken scene may wait until its file is fixed: with a window, and not for a replay.
   bool may_wait_for_fix() const;
-  /// Opens the window. Returns false if there is none (already reported) and the loop does not wait for
-  /// a display.
+  /// Opens the window. Returns true if it is open, or opens as soon as there is a display. Reports the error.
   bool open_window();
-  /// `retry` is called about once a second while the show plays, to open ports and the console if that failed before.
-  void each_second(std::function<void()> retry) { retry_ = std::move(retry); }
+  /// Sets a function that is called about once a second while the show plays, to open ports and the console if that
+  /// failed before.
+  void set_retry(std::function<void()> retry) { retry_ = std::move(retry); }
   /// Runs until the show is over, or a signal or the window ends it. Returns true if a signal or
   /// the window ended it.
   bool run();
@@ -43,16 +43,16 @@ class ShowLoop {
  private:
   /// True if the window was requested explicitly and therefore opens as soon as there is a display.
   bool should_await_display() const;
-  bool try_window();
+  Result<void> try_window();
   void print_status() const;
   void retry();
   void end_show();
 
-  const Show& show_;
+  const EngineThread& engine_thread_;
   Engine& engine_;
   EngineLink& link_;
   ServiceNotifier& notifier_;
-  DisplayWatchdog& frames_;
+  DisplayWatchdog& display_watchdog_;
   const PlayOptions& options_;
   const bool prints_status_;
   std::unique_ptr<WindowShow> window_;

@@ -14,8 +14,8 @@ constexpr double kLocalCameraTime = 0.3;
 constexpr double kOrbitSpeed = 2.5;  // rad per height of the view
 constexpr double kZoomStep = 0.88;   // factor of the distance per step
 
-Orbit orbit_of(const CameraView& camera) {
-  const ViewCamera view_camera = make_view_camera(camera, 1, 1);
+Orbit orbit_of(const CameraSettings& camera) {
+  const CameraMatrices view_camera = camera_matrices(camera, 1, 1);
   return {view_camera.eye, view_camera.target};
 }
 
@@ -44,7 +44,7 @@ std::vector<Message> CameraControl::follow(const Snapshot& snapshot, std::uint32
   return set_camera({at + follow_offset_, at});
 }
 
-std::vector<Message> CameraControl::move(const MouseMovement& mouse, const CameraView& camera, double height,
+std::vector<Message> CameraControl::move(const MouseMovement& mouse, const CameraSettings& camera, double height,
                                          double now) {
   if (now - moved_at_ > kLocalCameraTime) orbit_ = orbit_of(camera);
   moved_at_ = now;

@@ -26,7 +26,7 @@ class CameraControl {
   void stop_following() { followed_.reset(); }
 
   /// `height`: of the part of the window that shows the view, pixels. `now` in s.
-  std::vector<Message> move(const MouseMovement& mouse, const CameraView& camera, double height, double now);
+  std::vector<Message> move(const MouseMovement& mouse, const CameraSettings& camera, double height, double now);
 
  private:
   Orbit default_view_;

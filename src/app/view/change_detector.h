@@ -10,7 +10,7 @@ namespace limber {
 /// [main]
 class ChangeDetector {
  public:
-  /// Returns true if the snapshot (may be null) or the window's size differ visibly from those of the last change, or
+  /// Returns true if the snapshot (may be null) or the window's size differs visibly from those of the last change, or
   /// `input` is set.
   bool changed(const std::shared_ptr<const Snapshot>& newest, int width, int height, bool input);
 

@@ -18,7 +18,7 @@ constexpr int kMaxSize = 16384;
 constexpr const char* kGlVariable = "LIMBER_GL";
 
 // returns the error of an invalid value of --gl; empty: valid
-std::string gl_choice_fault(const std::string& text) {
+std::string gl_choice_error(const std::string& text) {
   if (text == "auto" || gl_apis(text).size() == 1) return {};
   return fmt::format("'{}' must be auto, core, es or 3.1 ({} sets it, too)", text, kGlVariable);
 }
@@ -39,8 +39,8 @@ void add_display_options(CLI::App& play, DisplayOptions& o) {
     play.add_flag_function(
         name, [&value, is](std::int64_t) { value = is; }, text);
   };
-  flag("--fullscreen", o.fullscreen, true, "Fill the monitor; remembered for the next start.");
-  flag("--windowed", o.fullscreen, false, "Use a normal window; remembered.");
+  flag("--fullscreen", o.full_screen, true, "Fill the monitor; remembered for the next start.");
+  flag("--windowed", o.full_screen, false, "Use a normal window; remembered.");
   play.add_option("--monitor", o.monitor, "Monitor of the window: a number from 1, or a name; remembered.")
       ->type_name("N|NAME");
   flag("--hide-pointer", o.hide_pointer, true, "Hide the mouse pointer over the window; remembered.");
@@ -70,13 +70,13 @@ void add_gl_option(CLI::App& command, std::string& choice) {
                       "OpenGL version: 3.3 (core), ES 3.0 (es) or 3.1; default: the value of LIMBER_GL, else "
                       "auto, the first of them that the driver supports.")
           ->type_name("auto|core|es|3.1")
-          ->check(CLI::Validator([](std::string& text) { return gl_choice_fault(text); }, "", "gl"));
+          ->check(CLI::Validator([](std::string& text) { return gl_choice_error(text); }, "", "gl"));
   // not CLI11's envname(): its newer versions ignore a variable with an invalid value
   command.parse_complete_callback([option, &choice] {
     const char* const variable = std::getenv(kGlVariable);
     if (option->count() > 0 || variable == nullptr || *variable == 0) return;
     choice = variable;
-    if (const std::string fault = gl_choice_fault(choice); !fault.empty()) throw CLI::ValidationError("--gl", fault);
+    if (const std::string error = gl_choice_error(choice); !error.empty()) throw CLI::ValidationError("--gl", error);
   });
 }
 

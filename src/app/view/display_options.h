@@ -19,7 +19,7 @@ struct DisplayOptions {
   std::string gl;                    ///< Kind of OpenGL, see gl_apis().
   std::string quality;               ///< Empty: not given.
   std::string size;                  ///< Empty: not given.
-  std::optional<bool> fullscreen;    ///< Fill the monitor; nothing: as in the last session.
+  std::optional<bool> full_screen;   ///< Fill the monitor; nothing: as in the last session.
   std::string monitor;               ///< Number from 1, or name; empty: as in the last session.
   std::optional<bool> hide_pointer;  ///< Hide the mouse pointer over the window; nothing: as in the last session.
   std::string screenshot;            ///< File of a still image; empty: none.

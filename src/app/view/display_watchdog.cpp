@@ -26,7 +26,7 @@ void DisplayWatchdog::start(std::function<void()> end) {
 }
 
 void DisplayWatchdog::watch() {
-  system::name_this_thread("limber-frames");
+  system::name_this_thread("limber-display");
   for (int polls = 0; !done_.load();) {
     std::this_thread::sleep_for(kFramePollInterval);
     polls = ending_.load() || system::termination_is_pending() ? polls + 1 : 0;

@@ -92,12 +92,12 @@ Result<void> FilmFile::start_ffmpeg(int width, int height, double fps) {
                                           "-pix_fmt",  "yuv420p",
                                           "-movflags", "+faststart",
                                           "-y",        temporary_file_};
-  const int fault = ffmpeg_.start(words);
-  if (fault == 0) return {};
+  const int error = ffmpeg_.start(words);
+  if (error == 0) return {};
   return Error{
       fmt::format("ffmpeg, which is needed for videos, can't be started: {}. On Debian: apt-get install ffmpeg. Or "
                   "render images with --render shot_%05d.png",
-                  std::strerror(fault))};
+                  std::strerror(error))};
 }
 
 FilmFile::~FilmFile() {

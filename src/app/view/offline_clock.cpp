@@ -19,7 +19,7 @@ OfflineClock::OfflineClock(Engine& engine, EngineLink& link, const std::function
 OfflineClock::Outcome OfflineClock::advance_to(double seconds) {
   int idle = 0;  // consecutive ticks that didn't advance time
   while (elapsed_ < seconds - 1e-9) {
-    if (cancel_()) return Outcome::cancelled;
+    if (cancel_()) return Outcome::canceled;
     if (engine_.is_replaying() && engine_.replay_finished()) return Outcome::ended;
     before_ = now_;
     before_tick_();

@@ -17,7 +17,7 @@ class OfflineClock {
   OfflineClock(Engine& engine, EngineLink& link, const std::function<bool()>& cancel);
 
   /// Reason why advance_to() has returned.
-  enum class Outcome : std::uint8_t { reached, stuck, ended, cancelled };
+  enum class Outcome : std::uint8_t { reached, stuck, ended, canceled };
   /// Ticks until `seconds` is reached. `stuck`: the simulation is paused; `ended`: the replayed take has ended.
   Outcome advance_to(double seconds);
   /// Sets callbacks that run before and after each tick.

@@ -21,8 +21,8 @@ std::vector<std::string> behavior_types() {
   std::vector<std::string> names;
   const BehaviorTypes built_in;
   for (const auto& type : built_in.all()) names.push_back(type->name);
-  std::error_code fault;
-  for (const auto& entry : fs::directory_iterator(fs::path(data_dir()) / "behaviors_lua", fault)) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(fs::path(data_dir()) / "behaviors_lua", error)) {
     if (entry.path().extension() == ".lua") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
@@ -46,7 +46,7 @@ GuiOptions panel_options(Window* window, GlApi api) {
   options.history = history->lines();
   options.store_line = [history](const std::string& line) { history->add(line); };
   if (window == nullptr) return options;
-  options.copy = [window](const std::string& text) { window->clipboard(text); };
+  options.copy = [window](const std::string& text) { window->set_clipboard(text); };
   options.paste = [window] { return window->clipboard(); };
   return options;
 }

@@ -42,7 +42,7 @@ class StillPanel {
     };
     while (outdated()) engine_.idle();
     for (int i = 0; i < kLayoutFrames; i++) frame();
-    renderer.draw_over([&] { gui_.paint(); });
+    renderer.draw_over([&] { gui_.render(); });
   }
 
  private:
@@ -62,7 +62,7 @@ RenderResult draw_still(const DisplayOptions& options, const ImageSize& size, Re
     clock.on_before_tick([&] { panel->frame(); });
   }
   const OfflineClock::Outcome outcome = clock.advance_to(at);
-  if (outcome == OfflineClock::Outcome::cancelled) return {kSuccess, true};
+  if (outcome == OfflineClock::Outcome::canceled) return {kSuccess, true};
   if (outcome == OfflineClock::Outcome::stuck)
     return failure(kInputError, "the simulation is paused before the time of --at");
   if (panel) panel->frame();
@@ -85,15 +85,15 @@ RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, Ren
   if (!film) return failure(kMachineError, film.error());
   Progress progress("frame", frames);
   std::uint64_t done = 0;
-  bool cancelled = false;
+  bool canceled = false;
   for (; done < frames; done++) {
     const double at = static_cast<double>(done) / fps;
     const OfflineClock::Outcome outcome = clock.advance_to(at);
     if (outcome == OfflineClock::Outcome::stuck)
       return failure(kInputError, fmt::format("the simulation is paused at {:.2f} s", at));
     if (outcome == OfflineClock::Outcome::ended) break;
-    if (outcome == OfflineClock::Outcome::cancelled || cancel()) {
-      cancelled = true;
+    if (outcome == OfflineClock::Outcome::canceled || cancel()) {
+      canceled = true;
       break;
     }
     if (const auto drawn = renderer.draw(clock.before(), clock.now(), clock.mix(at), size.width, size.height); !drawn)
@@ -105,13 +105,13 @@ RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, Ren
   print_notice("{}: {} frames, {} × {}, {} a second{}", printable(options.render), done, size.width, size.height,
                number_text(fps),
                done < frames
-                   ? fmt::format("; {}, {} were requested", cancelled ? "cancelled" : "the take has ended", frames)
+                   ? fmt::format("; {}, {} were requested", canceled ? "cancelled" : "the take has ended", frames)
                    : "");
   // run to the full duration, like a run without --render
-  if (cancelled) return {kSuccess, true};
+  if (canceled) return {kSuccess, true};
   const OfflineClock::Outcome outcome = clock.advance_to(duration);
   if (outcome == OfflineClock::Outcome::stuck) return failure(kInputError, "the simulation is paused");
-  return {kSuccess, outcome == OfflineClock::Outcome::cancelled};
+  return {kSuccess, outcome == OfflineClock::Outcome::canceled};
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace limber {
 
 /// Result of a rendering.
 struct RenderResult {
-  int code = 0;            ///< Exit code; an error was already printed.
-  bool cancelled = false;  ///< Stopped by `cancel`; the frames drawn so far are complete.
+  int code = 0;           ///< Exit code; an error was already printed.
+  bool canceled = false;  ///< Stopped by `cancel`; the frames drawn so far are complete.
 };
 
 /// Renders as the options say. The engine must be started and not running elsewhere: it ticks on this thread. `cancel`

@@ -17,26 +17,27 @@ class SnapshotInterpolation {
 
   /// Adds the newest snapshot, which may be the one added before.
   void add(std::shared_ptr<const Snapshot> newest, double now) {
-    if (newest == now_) return;
-    const bool moves = now_ != nullptr && newest->tick == now_->tick + 1 && newest->render_scene == now_->render_scene;
-    before_ = moves ? now_ : newest;
-    if (moves || now_ == nullptr) {
+    if (newest == current_) return;
+    const bool continuous =
+        current_ != nullptr && newest->tick == current_->tick + 1 && newest->render_scene == current_->render_scene;
+    previous_ = continuous ? current_ : newest;
+    if (continuous || current_ == nullptr) {
       interval_ = std::min(now - time_, kLongestInterval);
       time_ = now;
     }
-    now_ = std::move(newest);
+    current_ = std::move(newest);
   }
 
-  bool empty() const { return now_ == nullptr; }
-  const Snapshot& before() const { return *before_; }
-  const Snapshot& now() const { return *now_; }
-  /// Position of a frame between before() and now(), from 0 to 1.
+  bool empty() const { return current_ == nullptr; }
+  const Snapshot& previous() const { return *previous_; }
+  const Snapshot& current() const { return *current_; }
+  /// Position of a frame between previous() and current(), from 0 to 1.
   double mix(double now) const { return interval_ <= 0 ? 1 : std::clamp((now - time_) / interval_, 0.0, 1.0); }
 
  private:
-  std::shared_ptr<const Snapshot> before_, now_;
-  double time_ = 0;      // time at which now_ was added
-  double interval_ = 0;  // time between before_ and now_
+  std::shared_ptr<const Snapshot> previous_, current_;
+  double time_ = 0;      // time at which current_ was added
+  double interval_ = 0;  // time between previous_ and current_
 };
 
 }  // namespace limber

@@ -112,14 +112,14 @@ void ViewportMouse::frame(const ViewState& view) {
   messages_.push_back(std::move(hold));
 }
 
-std::optional<ViewportMouse::DragMarker> ViewportMouse::drag_marker(const ViewState& view) const {
+std::optional<SpringMarker> ViewportMouse::spring_marker(const ViewState& view) const {
   if (!grab_ || !grab_->moved || grab_->part_offset >= view.now.transient.size()) return std::nullopt;
   const glm::vec4 clip = view.camera.projection * view.camera.view *
                          glm::vec4(glm::vec3(grabbed_point(view, grab_->part_offset, grab_->point)), 1);
   if (clip.w <= 0) return std::nullopt;
-  return DragMarker{(static_cast<double>(clip.x / clip.w) + 1) / 2 * view.width,
-                    (1 - static_cast<double>(clip.y / clip.w)) / 2 * view.height, x_, y_,
-                    fmt::format("{}  {}", grab_->body, grab_->part)};
+  return SpringMarker{(static_cast<double>(clip.x / clip.w) + 1) / 2 * view.width,
+                      (1 - static_cast<double>(clip.y / clip.w)) / 2 * view.height, x_, y_,
+                      fmt::format("{}  {}", grab_->body, grab_->part)};
 }
 
 }  // namespace limber

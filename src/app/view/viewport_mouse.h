@@ -10,6 +10,7 @@
 #include "base/message.h"
 #include "engine/output/value_snapshot.h"
 #include "ui/panel/input.h"
+#include "ui/panel/spring_marker.h"
 #include "ui/render/pick.h"
 
 namespace limber {
@@ -18,7 +19,7 @@ namespace limber {
 struct ViewState {
   const Snapshot& now;
   const ValueSnapshot& values;  ///< Values of the same show; if its structure is older than `now`, no part is found.
-  ViewCamera camera;
+  CameraMatrices camera;
   int width = 1;
   int height = 1;
   double clock = 0;  ///< s
@@ -48,12 +49,8 @@ class ViewportMouse {
   const std::optional<std::uint32_t>& followed() const { return followed_; }
   void stop_following() { followed_.reset(); }
 
-  /// Marker in the view for a drag: grabbed point and target, pixels.
-  struct DragMarker {
-    double x = 0, y = 0, to_x = 0, to_y = 0;
-    std::string name;
-  };
-  std::optional<DragMarker> drag_marker(const ViewState& view) const;
+  /// Returns the marker of the current drag.
+  std::optional<SpringMarker> spring_marker(const ViewState& view) const;
 
  private:
   struct Grab {

@@ -41,7 +41,7 @@ void set_handler(const char* setter, Handler handler) {
   if (const auto set = reinterpret_cast<Setter>(system::find_symbol(setter))) set(handler);
 }
 
-std::string glfw_fault() {
+std::string glfw_error() {
   const char* text = nullptr;
   glfwGetError(&text);
   return text == nullptr ? "unknown error of GLFW" : text;
@@ -157,11 +157,11 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
   if (!is_set("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
 #endif
   if (glfwInit() != GLFW_TRUE) {
-    const std::string why = glfw_fault();
-    const char* const fix = is_set("DISPLAY") || why.starts_with("Wayland")
+    const std::string reason = glfw_error();
+    const char* const fix = is_set("DISPLAY") || reason.starts_with("Wayland")
                                 ? "Set DISPLAY (and XAUTHORITY) or WAYLAND_DISPLAY as in the desktop session"
                                 : "GLFW needs an X server here. On Debian: apt-get install xwayland, log in again";
-    return Error{fmt::format("no window can be opened: {}. {}", why, fix)};
+    return Error{fmt::format("no window can be opened: {}. {}", reason, fix)};
   }
   request_failed = false;
   set_handler("XSetIOErrorHandler", handle_lost_display);
@@ -172,16 +172,16 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
       if (window != nullptr) return std::unique_ptr<Window>(new Window(window, api));
     }
   }
-  const std::string fault = gl_context_error(apis, available_versions());
+  const std::string error = gl_context_error(apis, available_versions());
   glfwTerminate();
-  return Error{fmt::format("no window can be opened: {}", fault)};
+  return Error{fmt::format("no window can be opened: {}", error)};
 }
 
 Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const std::string& title, int width,
                                                     int height) {
   GLFWmonitor* const first_monitor = monitor_of(first.window_);
   GLFWwindow* const window = glfwCreateWindow(width, height, title.c_str(), nullptr, first.window_);
-  if (window == nullptr) return Error{fmt::format("no second window can be opened: {}", glfw_fault())};
+  if (window == nullptr) return Error{fmt::format("no second window can be opened: {}", glfw_error())};
   std::unique_ptr<Window> beside(new Window(window, first.api_));
   glfwMakeContextCurrent(first.window_);
   int count = 0;
@@ -325,11 +325,11 @@ std::string Window::clipboard() const {
   return text == nullptr ? "" : text;
 }
 
-void Window::clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
+void Window::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
 std::vector<InputEvent> Window::consume_events() { return std::exchange(events_, {}); }
 MouseMovement Window::consume_mouse() { return std::exchange(mouse_, {}); }
-void Window::title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
+void Window::set_title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 
 bool Window::is_full_screen() const { return glfwGetWindowMonitor(window_) != nullptr; }
 

@@ -65,8 +65,8 @@ class Window {
   /// Returns the labels of keys that are identified by their position. [main]
   KeyLabels key_labels() const;
   std::string clipboard() const;
-  void clipboard(const std::string& text);
-  void title(const std::string& text);
+  void set_clipboard(const std::string& text);
+  void set_title(const std::string& text);
   /// Centers the window on a monitor, given by its number from 1 or by its name or a part of it (case-insensitive). The
   /// error lists the monitors. [main]
   Result<void> move_to_monitor(const std::string& which);

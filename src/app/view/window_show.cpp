@@ -28,7 +28,7 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& optio
   system::lower_thread_priority();
   Result<ImageSize> size = image_size(options);
   if (!size) return Error{size.error()};
-  const PanelSettings settings = load_settings(settings_file());
+  const GuiSettings settings = load_settings(settings_file());
   if (options.size.empty() && settings.window_width > 0 && settings.window_height > 0)
     *size = {settings.window_width, settings.window_height};
   Result<std::unique_ptr<Window>> window =
@@ -50,8 +50,7 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& optio
 }
 
 WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer,
-                       const DisplayOptions& options, const PanelSettings& settings, std::string scene,
-                       EngineLink& link)
+                       const DisplayOptions& options, const GuiSettings& settings, std::string scene, EngineLink& link)
     : window_(std::move(window)),
       renderer_(std::move(renderer)),
       settings_file_(settings_file()),
@@ -64,22 +63,22 @@ WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer>
   panel.settings = settings;
   if (!options.monitor.empty()) panel.settings.monitor = options.monitor;
   if (options.hide_pointer) panel.settings.hide_pointer = *options.hide_pointer;
-  const bool fullscreen = options.fullscreen.value_or(settings.fullscreen);
+  const bool full_screen = options.full_screen.value_or(settings.full_screen);
   gui_ = std::make_unique<Gui>(link_, std::move(panel));
   if (const std::string& monitor = gui_->settings().monitor; !monitor.empty()) {
     if (const Result<void> moved = window_->move_to_monitor(monitor); !moved) log_warning("{}", moved.error());
   }
   if (gui_->settings().hide_pointer) window_->hide_pointer();
-  if (fullscreen) window_->toggle_full_screen();
+  if (full_screen) window_->toggle_full_screen();
 }
 
 WindowShow::~WindowShow() {
-  PanelSettings now = gui_->settings();
+  GuiSettings now = gui_->settings();
   if (!fixed_size_ && window_->width() > 0 && !window_->is_full_screen()) {
     now.window_width = window_->width();
     now.window_height = window_->height();
   }
-  now.fullscreen = window_->is_full_screen();
+  now.full_screen = window_->is_full_screen();
   if (now != saved_settings_) save_settings(settings_file_, now);
 }
 
@@ -102,17 +101,18 @@ void WindowShow::handle_input(int width, int height, double now) {
   if (output_ != nullptr) {
     for (const InputEvent& key : output_->consume_keys()) gui_->push(key);
   }
-  if (gui_->context().show_help) gui_->key_labels(window_->key_labels());
+  if (gui_->context().show_help) gui_->set_key_labels(window_->key_labels());
   gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
   for (const HotkeyAction action : gui_->consume_actions()) act(action);
-  PanelContext& context = gui_->context();
+  GuiContext& context = gui_->context();
   if (context.value_snapshot != nullptr) {
-    const ViewState view{snapshots_.now(),
-                         *context.value_snapshot,
-                         make_view_camera(camera_of(snapshots_.now()), width, height, free_part(*gui_, width, height)),
-                         width,
-                         height,
-                         now};
+    const ViewState view{
+        snapshots_.current(),
+        *context.value_snapshot,
+        camera_matrices(camera_of(snapshots_.current()), width, height, free_part(*gui_, width, height)),
+        width,
+        height,
+        now};
     for (const InputEvent& event : events) {
       const bool release = event.kind == InputEvent::Kind::button && !event.down;
       if (release || event.kind == InputEvent::Kind::move || !gui_->wants_mouse()) viewport_mouse_.event(event, view);
@@ -122,17 +122,15 @@ void WindowShow::handle_input(int width, int height, double now) {
       send(std::move(messages));
     if (std::string selection = viewport_mouse_.consume_selection(); !selection.empty())
       context.select(std::move(selection));
-    context.spring_marker.reset();
-    if (const auto marker = viewport_mouse_.drag_marker(view))
-      context.spring_marker = {marker->x, marker->y, marker->to_x, marker->to_y, marker->name};
+    context.spring_marker = viewport_mouse_.spring_marker(view);
   }
   handle_mouse();
   follow_part();
 }
 
 void WindowShow::act(HotkeyAction action) {
-  if (action == HotkeyAction::output) toggle_output();
-  if (action == HotkeyAction::full_screen)
+  if (action == HotkeyAction::toggle_output_window) toggle_output();
+  if (action == HotkeyAction::toggle_full_screen)
     output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
   if (action != HotkeyAction::default_view && action != HotkeyAction::restore_view) return;
   viewport_mouse_.stop_following();
@@ -150,12 +148,12 @@ void WindowShow::toggle_output() {
 }
 
 Result<void> WindowShow::draw_window(double mix, int width, int height) {
-  if (Result<void> drawn =
-          renderer_->draw(snapshots_.before(), snapshots_.now(), mix, width, height, free_part(*gui_, width, height));
+  if (Result<void> drawn = renderer_->draw(snapshots_.previous(), snapshots_.current(), mix, width, height,
+                                           free_part(*gui_, width, height));
       !drawn)
     return drawn;
   renderer_->present(width, height);
-  gui_->paint();
+  gui_->render();
   window_->swap();
   return {};
 }
@@ -163,16 +161,17 @@ Result<void> WindowShow::draw_window(double mix, int width, int height) {
 // after the first window's frame was submitted
 Result<void> WindowShow::draw_output(double mix) {
   if (output_ != nullptr && output_->closed()) output_.reset();
-  return output_ == nullptr ? Result<void>() : output_->draw(*renderer_, snapshots_.before(), snapshots_.now(), mix);
+  return output_ == nullptr ? Result<void>()
+                            : output_->draw(*renderer_, snapshots_.previous(), snapshots_.current(), mix);
 }
 
 void WindowShow::follow_part() {
   const std::optional<std::uint32_t> part = viewport_mouse_.followed();
-  if (!part || *part >= snapshots_.now().transient.size()) {
+  if (!part || *part >= snapshots_.current().transient.size()) {
     viewport_mouse_.stop_following();
     return camera_.stop_following();
   }
-  send(camera_.follow(snapshots_.now(), *part));
+  send(camera_.follow(snapshots_.current(), *part));
 }
 
 void WindowShow::handle_mouse() {
@@ -182,15 +181,15 @@ void WindowShow::handle_mouse() {
   const double height = std::max(window_->height(), 1) *
                         free_part(*gui_, std::max(window_->width(), 1), std::max(window_->height(), 1)).height;
   if (mouse.pan_x != 0 || mouse.pan_y != 0) viewport_mouse_.stop_following();
-  send(camera_.move(mouse, camera_of(snapshots_.now()), height, system::clock_seconds()));
+  send(camera_.move(mouse, camera_of(snapshots_.current()), height, system::clock_seconds()));
 }
 
 void WindowShow::update_title(double now) {
   const std::optional<double> rate = frames_.count(now);
   if (!rate) return;
-  const Snapshot& snapshot = snapshots_.now();
-  window_->title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_, *rate,
-                             snapshot.speed, snapshot.paused ? "  paused" : ""));
+  const Snapshot& snapshot = snapshots_.current();
+  window_->set_title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_, *rate,
+                                 snapshot.speed, snapshot.paused ? "  paused" : ""));
 }
 
 void WindowShow::check_for_changes(double now) {

@@ -39,7 +39,7 @@ class WindowShow {
 
  private:
   WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, const DisplayOptions& options,
-             const PanelSettings& settings, std::string scene, EngineLink& link);
+             const GuiSettings& settings, std::string scene, EngineLink& link);
 
   void update_snapshots(double now);
   void check_for_changes(double now);
@@ -59,10 +59,10 @@ class WindowShow {
   ViewportMouse viewport_mouse_;
   CameraControl camera_;
   std::string settings_file_;
-  PanelSettings saved_settings_;  // the settings as saved in the file
-  double panel_scale_ = 1;        // scale of the panel relative to the screen's own
-  bool fixed_size_ = false;       // the command line sets the window's size
-  std::unique_ptr<Gui> gui_;      // destroyed before its context
+  GuiSettings saved_settings_;  // the settings as saved in the file
+  double panel_scale_ = 1;      // scale of the panel relative to the screen's own
+  bool fixed_size_ = false;     // the command line sets the window's size
+  std::unique_ptr<Gui> gui_;    // destroyed before its context
   std::string scene_;
   EngineLink& link_;
   SnapshotInterpolation snapshots_;

@@ -37,7 +37,7 @@ struct Command {
 /// An outgoing message and its destination.
 struct Outgoing {
   enum class Destination : std::uint8_t {
-    sender,   ///< An answer to `origin`.
+    reply,    ///< An answer to `origin`.
     error,    ///< An error, to `origin` and to targets that subscribe to errors.
     targets,  ///< A message of the scene (osc:send), to every target.
     event,    ///< Contacts, transport, script errors: to every target and subscriber.

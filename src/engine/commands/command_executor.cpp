@@ -56,7 +56,7 @@ void CommandExecutor::report(Outcome& outcome, const Message& message, const Com
       output.note_write(show_.session->store, origin, write.ref, write.ref.property == outcome.clamped);
   }
   if (!outcome.warning.empty()) output.warn_sender(message, origin, outcome.warning);
-  for (Message& answer : outcome.answers) output.push({Outgoing::Destination::sender, origin, std::move(answer)});
+  for (Message& answer : outcome.answers) output.push({Outgoing::Destination::reply, origin, std::move(answer)});
   if (outcome.kind == Outcome::Kind::rejected) output.report_rejected(message, origin, outcome.error);
   if (outcome.kind == Outcome::Kind::scene_request) output.request_scene(message, origin);
 }

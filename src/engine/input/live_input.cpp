@@ -221,7 +221,7 @@ void LiveInput::reject(const Message& message, const CommandOrigin& origin, cons
     outcome = show_.session->dispatcher.execute(message);
   }
   Output& output = show_.output();
-  for (Message& answer : outcome.answers) output.push({Outgoing::Destination::sender, origin, std::move(answer)});
+  for (Message& answer : outcome.answers) output.push({Outgoing::Destination::reply, origin, std::move(answer)});
   if (outcome.kind == Outcome::Kind::scene_request && output.accepts_scene_requests())
     return output.request_scene(message, origin);
   if (outcome.kind != Outcome::Kind::answered)

@@ -69,15 +69,15 @@ struct EngineLink {
   /// Pushes an outgoing message to the queue of its receiver and wakes the receiver.
   void push_out(Outgoing out) {
     const bool answer =
-        out.destination == Outgoing::Destination::sender || out.destination == Outgoing::Destination::error;
+        out.destination == Outgoing::Destination::reply || out.destination == Outgoing::Destination::error;
     if (answer && out.origin.source == CommandSource::oscquery) {
       query_output_queue.push(out);
       wake_query();
-      if (out.destination == Outgoing::Destination::sender) return;
+      if (out.destination == Outgoing::Destination::reply) return;
     }
     if (answer && out.origin.source == CommandSource::panel) {
       panel_output_queue.push(out);
-      if (out.destination == Outgoing::Destination::sender) return;
+      if (out.destination == Outgoing::Destination::reply) return;
     }
     output_queue.push(std::move(out));
     wake_network();

@@ -23,6 +23,11 @@ const TransientOffsets& transient_offsets() {
   return offsets;
 }
 
+Pose part_pose(const Snapshot& snapshot, std::uint32_t part_offset) {
+  const double* const part = snapshot.transient.data() + part_offset;
+  return {vec3_at(part + transient_offsets().part_position), quat_at(part + transient_offsets().part_rotation)};
+}
+
 void Publisher::update_body_list() {
   auto body_list = std::make_shared<BodyList>();
   const StoreView& view = *world_.store().view();

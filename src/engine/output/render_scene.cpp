@@ -130,7 +130,7 @@ Material material_of(const Snapshot& snapshot, std::uint32_t material) {
           vec3_at(v + at(table, "diffuse_color"))};
 }
 
-CameraView camera_of(const Snapshot& snapshot) {
+CameraSettings camera_of(const Snapshot& snapshot) {
   static const PropertyTable& table = Camera::table();
   const double* const v = snapshot.visuals.data() + Visuals::table().persistent_width();
   return {vec3_at(v + at(table, "position")),
@@ -142,7 +142,7 @@ CameraView camera_of(const Snapshot& snapshot) {
           v[at(table, "distance")]};
 }
 
-AppearanceView appearance_of(const Snapshot& snapshot) {
+AppearanceSettings appearance_of(const Snapshot& snapshot) {
   static const PropertyTable& table = Appearance::table();
   static const Property& background = Visuals::table().at("background");
   const double* const b = snapshot.visuals.data() + background.offset;

@@ -60,7 +60,7 @@ struct Material {
 Material material_of(const Snapshot& snapshot, std::uint32_t material);
 
 /// The camera. The view matrix is T(position)·Rx·Ry·Rz, with rotations in degrees.
-struct CameraView {
+struct CameraSettings {
   Vec3 position{0};
   Vec3 rotation{0};
   double fovy = 40;
@@ -69,10 +69,10 @@ struct CameraView {
   double far = 200;
   double distance = 1;
 };
-CameraView camera_of(const Snapshot& snapshot);
+CameraSettings camera_of(const Snapshot& snapshot);
 
 /// The properties of /visuals/look, and the background.
-struct AppearanceView {
+struct AppearanceSettings {
   bool studio = false;
   double exposure = 1;
   double ambient = 1;
@@ -86,6 +86,6 @@ struct AppearanceView {
   Vec3 background{0};              ///< Hue, saturation, brightness.
   bool custom_background = false;  ///< `background` was set; else the style's own background is used.
 };
-AppearanceView appearance_of(const Snapshot& snapshot);
+AppearanceSettings appearance_of(const Snapshot& snapshot);
 
 }  // namespace limber

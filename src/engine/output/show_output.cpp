@@ -12,7 +12,7 @@ namespace limber {
 
 void LiveOutput::push(Outgoing out) {
   const bool answer =
-      out.destination == Outgoing::Destination::sender || out.destination == Outgoing::Destination::error;
+      out.destination == Outgoing::Destination::reply || out.destination == Outgoing::Destination::error;
   if (answer && answers_muted_) return;
   link_.push_out(std::move(out));
 }

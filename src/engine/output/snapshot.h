@@ -65,4 +65,7 @@ struct Snapshot {
   std::vector<OverlayMark> overlay;   ///< Empty while the debug overlay is off.
 };
 
+/// Returns the world pose of a part, given by the index of its block (BodyEntry::part_offsets). [any]
+Pose part_pose(const Snapshot& snapshot, std::uint32_t part_offset);
+
 }  // namespace limber

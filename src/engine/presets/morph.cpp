@@ -29,6 +29,15 @@ std::optional<Easing> easing_of(std::string_view name) {
 
 std::string_view easing_names() { return "linear, smooth, in, out"; }
 
+std::vector<std::string> easings() {
+  std::vector<std::string> names;
+  for (std::string_view name : split(easing_names(), ',')) {
+    if (name.starts_with(' ')) name.remove_prefix(1);
+    names.emplace_back(name);
+  }
+  return names;
+}
+
 double ease(Easing easing, double fraction) {
   switch (easing) {
     case Easing::smooth:

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,6 +19,8 @@ enum class Easing : std::uint8_t { linear, smooth, in, out };
 std::optional<Easing> easing_of(std::string_view name);
 /// Returns "linear, smooth, in, out".
 std::string_view easing_names();
+/// The same as a list, in the order of Easing. [any]
+std::vector<std::string> easings();
 /// Returns the eased fraction, 0 to 1, for a fraction of the time, 0 to 1.
 double ease(Easing easing, double fraction);
 

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxPresetCommands = 256;  // preset commands of scripts p
 void SceneHost::send(Message message) { show_.output().push({Outgoing::Destination::targets, {}, std::move(message)}); }
 
 void SceneHost::reply(const CommandOrigin& to, Message message) {
-  show_.output().push({Outgoing::Destination::sender, to, std::move(message)});
+  show_.output().push({Outgoing::Destination::reply, to, std::move(message)});
 }
 
 void SceneHost::send_direct(const CommandOrigin& to, Message message) {

@@ -82,7 +82,7 @@ bool SceneRunner::reset() {
   capture_run(*fresh, options, show_.options.scene);
   if (options.seed) copy_session_value(*fresh, "seed");
   install_session(std::move(fresh));
-  if (show_.session->scene != nullptr) show_.session->scene->arm();  // the JIT was off while two scenes existed
+  if (show_.session->scene != nullptr) show_.session->scene->enable_jit();  // the JIT was off while two scenes existed
   reapply_overrides();
   begin_show();
   show_.send_transport();
@@ -272,7 +272,7 @@ void SceneRunner::play_scene(const std::string& file, std::unique_ptr<Session>& 
   show_.undo_stack.clear();
   capture_run(*fresh, show_.scene_options(), file);
   bank = show_.presets.open(std::move(bank));
-  if (show_.session->scene != nullptr) show_.session->scene->disarm();
+  if (show_.session->scene != nullptr) show_.session->scene->disable_jit();
   fresh = install_session(std::move(fresh));
   show_.session->make_live(host_);
   show_.scene_seed = show_.session->world.seed();

@@ -186,7 +186,7 @@ std::unique_ptr<Session> TakePlayback::begin_in_show(std::unique_ptr<TakePlayer>
   show_.undo_stack.clear();
   presets_after_ = show_.presets.exchange({});
   if (presets_after_.file != bank.file) std::swap(presets_after_, bank);
-  if (show_.session->scene != nullptr) show_.session->scene->disarm();
+  if (show_.session->scene != nullptr) show_.session->scene->disable_jit();
   std::unique_ptr<Session> previous = scenes_.swap_session(show_.new_session());
   if (const Result<void> started = begin(std::move(player), file, true); !started) {
     show_.output().report_fault(fmt::format("{}: {}", printable(file), started.error()));

@@ -87,8 +87,8 @@ void ConsoleConnection::handle(const std::string& line, const Submit& submit, co
     if (subscription) subscription_ = std::move(*subscription);
     return;
   }
-  if (const std::string fault = submit(*request); !fault.empty()) {
-    append(result_line(request->id, {Evaluation::Kind::error, fault}));
+  if (const std::string error = submit(*request); !error.empty()) {
+    append(result_line(request->id, {Evaluation::Kind::error, error}));
     return;
   }
   pending_ = true;

@@ -34,18 +34,18 @@ struct ConsoleLine {
   enum class Kind : std::uint8_t {
     hello,       ///< First line: `text` is the scene; `version` and `pid` identify the program.
     done,        ///< Results of a request, as in Evaluation.
-    value,       //
-    error,       //
-    incomplete,  //
+    value,       ///< Result of an expression: `text`.
+    error,       ///< The request failed: `text`.
+    incomplete,  ///< The request's text is an incomplete statement.
     names,       ///< Completions: `names`, `word`.
     print,       ///< A script printed `text`; `id` is the request that was running, if any.
     warning,     ///< A log line; `id` as for print.
-    fault,       //
+    fault,       ///< An error of a script; `id` as for print.
     missed,      ///< `count` lines were dropped because the console did not read them in time.
     rejected,    ///< The connection is about to close; `text` is the reason.
-    in,          ///< A message arrived from `end` at `time`: `text`.
-    out,         ///< A message was sent to `end`.
-    change,      ///< A value changed: `text` has path, old and new value; `end`: the controller that set it, if any.
+    in,          ///< A message arrived from `origin` at `time`: `text`.
+    out,         ///< A message was sent to `origin`.
+    change,      ///< A value changed: `text` has path, old and new value; `origin`: the controller that set it, if any.
   };
   Kind kind = Kind::done;
   std::uint64_t id = 0;

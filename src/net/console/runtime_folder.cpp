@@ -28,7 +28,7 @@ constexpr int kConnectTimeout = 2;  // seconds
 std::string error_text(int error_number) { return std::generic_category().message(error_number); }
 
 // returns the reason why a folder is not private to this user; empty if it is
-std::string folder_fault(const std::string& folder) {
+std::string folder_error(const std::string& folder) {
   const std::optional<system::FileStatus> status = system::link_status(folder);
   if (!status) return error_text(errno);
   if (!status->folder) return "it is not a folder";
@@ -47,8 +47,8 @@ std::optional<int> pid_of(std::string_view name) {
   if (!name.starts_with(kSocketPrefix) || !name.ends_with(kSocketSuffix)) return {};
   name = name.substr(kSocketPrefix.size(), name.size() - kSocketPrefix.size() - kSocketSuffix.size());
   int pid = 0;
-  const auto [end, fault] = std::from_chars(name.data(), name.data() + name.size(), pid);
-  if (fault != std::errc{} || end != name.data() + name.size() || pid <= 0) return {};
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), pid);
+  if (error != std::errc{} || end != name.data() + name.size() || pid <= 0) return {};
   return pid;
 }
 
@@ -57,7 +57,7 @@ std::optional<int> pid_of(std::string_view name) {
 std::vector<std::string> runtime_folders() {
   std::vector<std::string> folders;
   const auto add = [&](const std::string& folder) {
-    if (folder.starts_with('/') && folder_fault(folder).empty() && std::ranges::count(folders, folder) == 0)
+    if (folder.starts_with('/') && folder_error(folder).empty() && std::ranges::count(folders, folder) == 0)
       folders.push_back(folder);
   };
   const char* runtime_dir = std::getenv("XDG_RUNTIME_DIR");
@@ -71,8 +71,8 @@ Result<std::string> make_runtime_folder() {
   const std::string folder = temp_folder();
   if (!system::make_folder(folder, 0700) && errno != EEXIST)
     return Error{fmt::format("the folder {} can't be created: {}", folder, error_text(errno))};
-  if (const std::string fault = folder_fault(folder); !fault.empty())
-    return Error{fmt::format("the folder {} can't be used: {}", folder, fault)};
+  if (const std::string error = folder_error(folder); !error.empty())
+    return Error{fmt::format("the folder {} can't be used: {}", folder, error)};
   return folder;
 }
 
@@ -82,8 +82,8 @@ std::string socket_path(std::string_view folder, int pid) {
 
 std::vector<ConsoleSocket> console_sockets(const std::string& folder) {
   std::vector<ConsoleSocket> found;
-  std::error_code fault;
-  for (fs::directory_iterator at(folder, fault), end; !fault && at != end; at.increment(fault)) {
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     const std::optional<int> pid = pid_of(at->path().filename().string());
     std::error_code ignored;
     if (!pid || !fs::is_socket(at->symlink_status(ignored))) continue;

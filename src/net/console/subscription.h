@@ -20,7 +20,7 @@ class Subscription {
   virtual void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>& drop) = 0;
 };
 
-/// Creates the subscription for a request; the error describes the fault in its pattern. `link` outlives it.
+/// Creates the subscription for a request; the error describes the mistake in its pattern. `link` outlives it.
 Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const ConsoleRequest& request);
 
 }  // namespace limber

@@ -1,13 +1,14 @@
-// Fixed-size hash tables with one slot per address, so memory does not grow with the number of senders.
+// Stores the addresses in direct-mapped hash tables of fixed size, so that memory does not grow with the number of
+// senders.
 #include "net/osc/amplification_limit.h"
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/sip_hash.h"
 #include "base/system/net/interfaces.h"
 
 namespace limber {
@@ -18,30 +19,6 @@ constexpr Cidr kLoopback{0x7f000000, 8};
 
 }  // namespace
 
-// The two words are hashed as 16 little-endian bytes and their length, like in the reference implementation.
-std::uint64_t sip_hash(const std::array<std::uint64_t, 2>& key, std::uint64_t first, std::uint64_t second) {
-  std::uint64_t v0 = key[0] ^ 0x736f6d6570736575u;
-  std::uint64_t v1 = key[1] ^ 0x646f72616e646f6du;
-  std::uint64_t v2 = key[0] ^ 0x6c7967656e657261u;
-  std::uint64_t v3 = key[1] ^ 0x7465646279746573u;
-  const auto rounds = [&](int count) {
-    for (int i = 0; i < count; i++) {
-      v0 += v1, v1 = std::rotl(v1, 13) ^ v0, v0 = std::rotl(v0, 32);
-      v2 += v3, v3 = std::rotl(v3, 16) ^ v2;
-      v0 += v3, v3 = std::rotl(v3, 21) ^ v0;
-      v2 += v1, v1 = std::rotl(v1, 17) ^ v2, v2 = std::rotl(v2, 32);
-    }
-  };
-  for (const std::uint64_t word : {first, second, std::uint64_t{16} << 56}) {
-    v3 ^= word;
-    rounds(2);
-    v0 ^= word;
-  }
-  v2 ^= 0xff;
-  rounds(4);
-  return v0 ^ v1 ^ v2 ^ v3;
-}
-
 std::vector<Cidr> connected_subnets() {
   std::vector<Cidr> list = {kLoopback};
   for (const system::Subnet& subnet : system::connected_subnets()) {
@@ -51,9 +28,10 @@ std::vector<Cidr> connected_subnets() {
   return list;
 }
 
-AmplificationLimit::AmplificationLimit(std::vector<Cidr> allow, Subnets connected, std::array<std::uint64_t, 2> secret)
+AmplificationLimit::AmplificationLimit(std::vector<Cidr> allow, ListSubnets list_subnets,
+                                       std::array<std::uint64_t, 2> secret)
     : allow_(std::move(allow)),
-      connected_(std::move(connected)),
+      list_subnets_(std::move(list_subnets)),
       secret_(secret),
       sources_(kSlots),
       verified_(kSlots) {}
@@ -72,7 +50,7 @@ bool AmplificationLimit::trusted(std::uint32_t ip, std::int64_t now) {
   // interfaces may have changed
   if (subnets_at_ && now - *subnets_at_ < kSubnetsLifetime) return false;
   subnets_at_ = now;
-  subnets_ = connected_();
+  subnets_ = list_subnets_();
   return std::ranges::any_of(subnets_, in);
 }
 
@@ -107,12 +85,12 @@ bool AmplificationLimit::try_send(const Endpoint& to, std::size_t bytes, std::in
   return false;
 }
 
-std::optional<std::string> AmplificationLimit::make_challenge(std::uint32_t ip, bool wants_more, std::int64_t now) {
+std::optional<std::string> AmplificationLimit::make_challenge(std::uint32_t ip, bool is_subscribing, std::int64_t now) {
   if (trusted(ip, now)) return std::nullopt;
   const Verified& known = verified(ip);
   if (known.ip == ip && now < known.until) return std::nullopt;
   Source& to = source(ip);
-  if (!wants_more && !to.withheld) return std::nullopt;
+  if (!is_subscribing && !to.withheld) return std::nullopt;
   if (to.token_at != 0 && now - to.token_at < kTokenInterval) return std::nullopt;
   to.token_at = now;
   to.withheld = false;

@@ -1,7 +1,7 @@
 // AmplificationLimit: protects against amplification attacks. Senders on this machine, in a directly connected subnet
-// or in --osc-allow are not limited. An address in another network may be forged, and answers would then hit an
-// uninvolved machine: it gets at most three bytes for each byte received from it, until it has returned a token that
-// was sent there (as in QUIC address validation, RFC 9000 section 8).
+// or in --osc-allow are not limited. A datagram from another network may have a forged source address, and answers
+// would then hit an uninvolved machine. An unverified address therefore gets at most three bytes for each byte received
+// from it, until it has returned a token that was sent there (as in QUIC address validation, RFC 9000 section 8).
 #pragma once
 
 #include <array>
@@ -30,11 +30,11 @@ class AmplificationLimit {
   static constexpr std::int64_t kSubnetsLifetime = 5'000'000'000;      ///< ns for which the list of subnets is cached.
   static constexpr std::size_t kSlots = 1024;  ///< Number of remembered addresses; a power of two.
 
-  using Subnets = std::function<std::vector<Cidr>()>;
+  using ListSubnets = std::function<std::vector<Cidr>()>;
 
-  /// `connected` returns the directly connected subnets; it is called again for unknown senders. `secret` is the key of
-  /// the tokens.
-  AmplificationLimit(std::vector<Cidr> allow, Subnets connected, std::array<std::uint64_t, 2> secret);
+  /// `list_subnets` returns the directly connected subnets; it is called again for unknown senders. `secret` is the key
+  /// of the tokens.
+  AmplificationLimit(std::vector<Cidr> allow, ListSubnets list_subnets, std::array<std::uint64_t, 2> secret);
 
   /// True if the address is not limited, regardless of tokens.
   bool trusted(std::uint32_t ip, std::int64_t now);
@@ -45,9 +45,8 @@ class AmplificationLimit {
   /// As try_consume(); warns about withheld datagrams.
   bool try_send(const Endpoint& to, std::size_t bytes, std::int64_t now);
 
-  /// Returns a token to send to the address now, if a datagram was withheld or the address needs more than answers
-  /// (`wants_more`).
-  std::optional<std::string> make_challenge(std::uint32_t ip, bool wants_more, std::int64_t now);
+  /// Returns a token to send to the address now, if a datagram was withheld or the sender is subscribing.
+  std::optional<std::string> make_challenge(std::uint32_t ip, bool is_subscribing, std::int64_t now);
   /// Verifies a returned token and lifts the limit. Returns false if the token is wrong or too old.
   bool verify_token(std::uint32_t ip, std::string_view token, std::int64_t now);
 
@@ -71,7 +70,7 @@ class AmplificationLimit {
   std::string token_of(std::uint32_t ip, std::int64_t epoch) const;
 
   std::vector<Cidr> allow_;
-  Subnets connected_;
+  ListSubnets list_subnets_;
   std::array<std::uint64_t, 2> secret_;
   std::vector<Cidr> subnets_;
   std::optional<std::int64_t> subnets_at_;
@@ -80,9 +79,6 @@ class AmplificationLimit {
   std::uint64_t withheld_ = 0;
   WarningThrottle withheld_log_;
 };
-
-/// SipHash-2-4 (Aumasson, Bernstein 2012) of two words. [any]
-std::uint64_t sip_hash(const std::array<std::uint64_t, 2>& key, std::uint64_t first, std::uint64_t second);
 
 /// The subnets of the system's interfaces and loopback. [any]
 std::vector<Cidr> connected_subnets();

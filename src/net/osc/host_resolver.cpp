@@ -93,14 +93,14 @@ void HostResolver::invalidate_failed() {
   std::erase_if(shared_->results, [](const auto& entry) { return entry.second && !entry.second->ok(); });
 }
 
-void TargetResolver::begin_plan() {
-  reported_faults_.clear();
+void TargetResolver::begin_config() {
+  reported_errors_.clear();
   host_names_.invalidate();
 }
 
 std::vector<std::string> TargetResolver::resolve(const std::vector<StreamTarget>& configured, Sender& sender,
                                                  std::int64_t now, std::chrono::milliseconds wait) {
-  std::vector<std::string> faults;
+  std::vector<std::string> errors;
   targets_.clear();
   retry_at_.reset();
   for (const StreamTarget& config : configured) {
@@ -117,15 +117,15 @@ std::vector<std::string> TargetResolver::resolve(const std::vector<StreamTarget>
       continue;
     }
     retry_at_ = now + kLookUpRetryInterval;
-    std::string fault =
+    std::string error =
         fmt::format("OSC out {}:{}: {}; retried every 5 s. Correct the name in the scene or with --osc-out HOST:PORT",
                     printable(config.host), config.port, endpoint->error());
-    if (std::ranges::find(reported_faults_, fault) != reported_faults_.end()) continue;
-    reported_faults_.push_back(fault);
-    faults.push_back(std::move(fault));
+    if (std::ranges::find(reported_errors_, error) != reported_errors_.end()) continue;
+    reported_errors_.push_back(error);
+    errors.push_back(std::move(error));
   }
   sender.set_targets(targets_);
-  return faults;
+  return errors;
 }
 
 bool TargetResolver::consume_retry(std::int64_t now) {

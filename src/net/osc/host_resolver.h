@@ -46,17 +46,17 @@ class HostResolver {
   std::shared_ptr<Shared> shared_;
 };
 
-/// The stream targets of a plan with their addresses. Look-ups of unknown names are repeated every 5 s. [net]
+/// The stream targets of a configuration with their addresses. Look-ups of unknown names are repeated every 5 s. [net]
 class TargetResolver {
  public:
   /// As HostResolver.
   TargetResolver(ResolveFunction look_up, std::function<void()> notify)
       : host_names_(std::move(look_up), std::move(notify)) {}
 
-  /// Before the first resolve() of a plan: resolves all names again.
-  void begin_plan();
+  /// Before the first resolve() of a configuration: resolves all names again.
+  void begin_config();
   /// Sets the targets that have a resolved address and are not an own input of the sender. Waits for each look-up up to
-  /// `wait`. Returns the errors, each once per plan. `now` in ns.
+  /// `wait`. Returns the errors, each once per configuration. `now` in ns.
   std::vector<std::string> resolve(const std::vector<StreamTarget>& configured, Sender& sender, std::int64_t now,
                                    std::chrono::milliseconds wait = {});
   const std::vector<ResolvedTarget>& targets() const { return targets_; }
@@ -71,7 +71,7 @@ class TargetResolver {
  private:
   HostResolver host_names_;
   std::vector<ResolvedTarget> targets_;
-  std::vector<std::string> reported_faults_;  // errors of this plan
+  std::vector<std::string> reported_errors_;  // errors of this configuration
   std::optional<std::int64_t> retry_at_;
 };
 

@@ -36,7 +36,7 @@ void NetworkStatus::set(std::vector<Endpoint> bound, const std::vector<ResolvedT
   const std::scoped_lock lock(mutex_);
   bound_ = std::move(bound);
   lines_.clear();
-  for (const Endpoint& end : bound_) lines_.push_back("OSC in " + endpoint_text(end));
+  for (const Endpoint& endpoint : bound_) lines_.push_back("OSC in " + endpoint_text(endpoint));
   if (bound_.empty()) lines_.emplace_back("OSC in off");
   for (const ResolvedTarget& target : targets) lines_.push_back("OSC out " + target_text(target.config));
   if (targets.empty()) lines_.emplace_back("OSC out off");
@@ -77,19 +77,23 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
       options_(std::move(options)),
       clock_(std::move(clock)),
       wake_(std::make_shared<system::Wake>()),
-      receiver_(link, options_.allow,
-                {[this](const Outgoing& out) {
-                   out.origin.source == CommandSource::oscquery ? link_.push_out(out) : sender_.send(out);
-                 },
-                 [this](const CommandOrigin& to) { pong(to); },
-                 [this](const Message& message, const CommandOrigin& origin) { return subscribe(message, origin); },
-                 [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
-                 [this](const Endpoint& from, std::size_t bytes) { record_received(from, bytes); },
-                 [this](const Message& message, const CommandOrigin& origin) { handle_token(message, origin); },
-                 [this](const CommandOrigin& origin) {
-                   if (origin.source == CommandSource::osc) sender_.record_error_answer({origin.ip, origin.port});
-                 }},
-                clock_),
+      receiver_(
+          link, options_.allow,
+          {.error =
+               [this](const Outgoing& out) {
+                 out.origin.source == CommandSource::oscquery ? link_.push_out(out) : sender_.send(out);
+               },
+           .pong = [this](const CommandOrigin& to) { pong(to); },
+           .subscribe = [this](const Message& message,
+                               const CommandOrigin& origin) { return subscribe(message, origin); },
+           .is_subscriber = [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
+           .received = [this](const Endpoint& from, std::size_t bytes) { record_received(from, bytes); },
+           .token = [this](const Message& message, const CommandOrigin& origin) { handle_token(message, origin); },
+           .error_answered =
+               [this](const CommandOrigin& origin) {
+                 if (origin.source == CommandSource::osc) sender_.record_error_answer({origin.ip, origin.port});
+               }},
+          clock_),
       sender_(
           link.counters, link.message_log, [this](const Endpoint& sender) { return receiver_.socket_of(sender); },
           clock_),
@@ -97,7 +101,7 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
       streams_(link, offsets, clock_, subscription_gate()),
       subscribers_(link, clock_,
                    [this](const Outgoing& out) {
-                     if (out.destination == Outgoing::Destination::sender) return sender_.send_value(out);
+                     if (out.destination == Outgoing::Destination::reply) return sender_.send_value(out);
                      sender_.send(out);
                      return true;
                    }),
@@ -114,16 +118,16 @@ Network::~Network() { stop(); }
 Result<void> Network::start() {
   if (thread_.joinable()) return {};
   last_config_ = link_.osc_config.read();
-  std::vector<std::string> faults;
-  if (const Result<void> opened = sender_.open(); !opened) faults.push_back(opened.error());
-  std::ranges::move(apply(effective_config(options_, last_config_.get())), std::back_inserter(faults));
+  std::vector<std::string> errors;
+  if (const Result<void> opened = sender_.open(); !opened) errors.push_back(opened.error());
+  std::ranges::move(apply(effective_config(options_, last_config_.get())), std::back_inserter(errors));
   // a machine that has just booted may not resolve names yet
-  for (const std::string& fault : resolve_targets(kStartLookUpTimeout)) log_warning("{}", fault);
-  if (!faults.empty() && !options_.optional) {
+  for (const std::string& error : resolve_targets(kStartLookUpTimeout)) log_warning("{}", error);
+  if (!errors.empty() && !options_.optional) {
     stop();
-    return Error{fmt::format("{}", fmt::join(faults, "\n"))};
+    return Error{fmt::format("{}", fmt::join(errors, "\n"))};
   }
-  for (const std::string& fault : faults) log_warning("{}", fault);
+  for (const std::string& error : errors) log_warning("{}", error);
   stop_ = false;
   thread_ = std::thread([this] { run(); });
   return {};
@@ -157,11 +161,11 @@ void Network::run() {
     retry_look_ups();
     subscribers_.work();
     update_subscribers();
-    publish_health();
+    publish_health();  // before the answers, so that a client that has received one finds the counts
     outbox_.send(sender_, kMessagesPerPass);
     streams_.send_due(sender_.socket());
     unreachable_.poll(sender_.socket(), link_.counters, clock_.steady());
-    publish_health();
+    publish_health();  // sending may have withheld datagrams
   }
 }
 
@@ -183,21 +187,22 @@ void Network::wait_for_events() {
   (void)system::wait_ready(descriptors, limit);
 }
 
-// Opens and closes the ports that differ from the previous plan. Returns the errors. Call resolve_targets() next.
-std::vector<std::string> Network::apply(const OscConfig& plan) {
-  std::vector<std::string> faults = receiver_.listen(plan.listen);
-  config_ = plan;
+// Opens and closes the ports that differ from the previous configuration. Returns the errors. Call resolve_targets()
+// next.
+std::vector<std::string> Network::apply(const OscConfig& config) {
+  std::vector<std::string> errors = receiver_.listen(config.listen);
+  config_ = config;
   update_own_endpoints();
-  targets_.begin_plan();
-  return faults;
+  targets_.begin_config();
+  return errors;
 }
 
-// Returns the errors, each once per plan.
+// Returns the errors, each once per configuration.
 std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait) {
-  std::vector<std::string> faults = targets_.resolve(config_.targets, sender_, clock_.steady(), wait);
+  std::vector<std::string> errors = targets_.resolve(config_.targets, sender_, clock_.steady(), wait);
   update_streams();
   update_status_lines();
-  return faults;
+  return errors;
 }
 
 void Network::update_status_lines() { status_.set(receiver_.bound(), targets_.targets()); }
@@ -207,14 +212,14 @@ void Network::apply_new_config() {
   std::shared_ptr<const OscConfig> scene_config = link_.osc_config.read();
   const bool received = scene_config != last_config_;
   last_config_ = std::move(scene_config);
-  const OscConfig plan = received ? effective_config(options_, last_config_.get()) : config_;
-  const bool changed = plan != config_;
+  const OscConfig config = received ? effective_config(options_, last_config_.get()) : config_;
+  const bool changed = config != config_;
   if (!changed && !resolved) return;
   const std::vector<std::string> before = status_lines();
-  std::vector<std::string> faults;
-  if (changed) faults = apply(plan);
-  std::ranges::move(resolve_targets(), std::back_inserter(faults));
-  for (const std::string& fault : faults) log_error("{}", fault);
+  std::vector<std::string> errors;
+  if (changed) errors = apply(config);
+  std::ranges::move(resolve_targets(), std::back_inserter(errors));
+  for (const std::string& error : errors) log_error("{}", error);
   if (!changed && status_lines() == before) return;  // a host name is still not found
   for (const std::string& line : status_lines()) log_info("{}", line);
 }
@@ -264,7 +269,7 @@ void Network::pong(const CommandOrigin& to) {
   const std::uint64_t tick = newest ? newest->tick : 0;
   const double time = newest ? newest->time : 0;
   if (to.source != CommandSource::oscquery) return sender_.pong(to, tick, time);
-  link_.push_out({Outgoing::Destination::sender, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
+  link_.push_out({Outgoing::Destination::reply, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
 }
 
 void Network::update_own_endpoints() {
@@ -285,11 +290,11 @@ void Network::record_received(const Endpoint& from, std::size_t bytes) {
   challenge(from, false);
 }
 
-void Network::challenge(const Endpoint& end, bool wants_more) {
-  const std::optional<std::string> token = amplification_.make_challenge(end.ip, wants_more, clock_.steady());
+void Network::challenge(const Endpoint& peer, bool is_subscribing) {
+  const std::optional<std::string> token = amplification_.make_challenge(peer.ip, is_subscribing, clock_.steady());
   if (token)
     sender_.send(
-        {Outgoing::Destination::sender, {CommandSource::osc, end.ip, end.port}, {"/token", {Arg::of(*token)}}});
+        {Outgoing::Destination::reply, {CommandSource::osc, peer.ip, peer.port}, {"/token", {Arg::of(*token)}}});
 }
 
 void Network::handle_token(const Message& message, const CommandOrigin& origin) {
@@ -299,12 +304,12 @@ void Network::handle_token(const Message& message, const CommandOrigin& origin) 
 }
 
 Result<void> Network::subscribe(const Message& message, const CommandOrigin& origin) {
-  const Endpoint end{origin.ip, origin.port};
-  if (origin.source == CommandSource::osc && sender_.is_own_input(end)) {
-    sender_.report_own_input(end);
+  const Endpoint peer{origin.ip, origin.port};
+  if (origin.source == CommandSource::osc && sender_.is_own_input(peer)) {
+    sender_.report_own_input(peer);
     return {};
   }
-  if (origin.source == CommandSource::osc) challenge(end, true);
+  if (origin.source == CommandSource::osc) challenge(peer, true);
   return subscribers_.handle(message, origin);
 }
 

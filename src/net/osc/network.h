@@ -79,7 +79,7 @@ class Outbox {
 
 /// OSC input and output of one engine. Create it before the engine starts: the constructor sets `link.wake_network`,
 /// which stays callable after the Network is destroyed. Call start() after the scene has run once, so that the scene's
-/// OSC plan is applied. `link` must outlive the Network.
+/// OSC configuration is applied. `link` must outlive the Network.
 class Network {
  public:
   Network(EngineLink& link, OscOptions options, const TransientOffsets& offsets, NetClock clock = {},
@@ -107,7 +107,7 @@ class Network {
  private:
   void run();
   void wait_for_events();
-  std::vector<std::string> apply(const OscConfig& plan);
+  std::vector<std::string> apply(const OscConfig& config);
   std::vector<std::string> resolve_targets(std::chrono::milliseconds wait = {});
   void update_status_lines();
   void apply_new_config();
@@ -122,7 +122,7 @@ class Network {
   void handle_token(const Message& message, const CommandOrigin& origin);
   Result<void> subscribe(const Message& message, const CommandOrigin& origin);
   SendGate subscription_gate();
-  void challenge(const Endpoint& end, bool wants_more);
+  void challenge(const Endpoint& peer, bool is_subscribing);
   void publish_health();
 
   EngineLink& link_;

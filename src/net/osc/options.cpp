@@ -163,8 +163,8 @@ Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text) {
   for (std::size_t i = 1; i < pieces.size(); i++) {
     const std::size_t equals = pieces[i].find('=');
     const std::string_view value = equals == std::string_view::npos ? "" : pieces[i].substr(equals + 1);
-    if (const std::optional<std::string> fault = set_option(target, pieces[i].substr(0, equals), value)) {
-      return Error{fmt::format("--osc-out '{}': {}; {}", printable(text), *fault, kOutUsage)};
+    if (const std::optional<std::string> error = set_option(target, pieces[i].substr(0, equals), value)) {
+      return Error{fmt::format("--osc-out '{}': {}; {}", printable(text), *error, kOutUsage)};
     }
   }
   return std::vector<StreamTarget>{target};
@@ -190,12 +190,12 @@ Result<std::vector<Cidr>> parse_osc_allow(std::string_view text) {
 OscConfig default_osc_config() { return {{ListenAddress{}}, {StreamTarget{}}}; }
 
 OscConfig effective_config(const OscOptions& options, const OscConfig* scene) {
-  OscConfig plan = default_osc_config();
-  if (scene != nullptr && !scene->listen.empty()) plan.listen = scene->listen;
-  if (scene != nullptr && !scene->targets.empty()) plan.targets = scene->targets;
-  if (options.in) plan.listen = *options.in;
-  if (options.out) plan.targets = *options.out;
-  return plan;
+  OscConfig config = default_osc_config();
+  if (scene != nullptr && !scene->listen.empty()) config.listen = scene->listen;
+  if (scene != nullptr && !scene->targets.empty()) config.targets = scene->targets;
+  if (options.in) config.listen = *options.in;
+  if (options.out) config.targets = *options.out;
+  return config;
 }
 
 std::string target_text(const StreamTarget& target) {

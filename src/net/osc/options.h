@@ -1,4 +1,4 @@
-// OSC command line options: parsing, and their precedence over the scene's plan and the default.
+// OSC command line options: parsing, and their precedence over the scene's configuration and the default.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,7 @@ Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text);
 /// Parses `CIDR,…`, such as `192.168.1.0/24` or a single address. [any]
 Result<std::vector<Cidr>> parse_osc_allow(std::string_view text);
 
-/// The plan with the two default ports, which are those of ofxDabPhysics.
+/// The configuration with the two default ports, which are those of ofxDabPhysics.
 OscConfig default_osc_config();
 
 /// Returns the listen addresses and targets, each from the first source that sets them: command line, scene, default.

@@ -21,7 +21,7 @@ constexpr int kMaxBatches = 64;
 constexpr int kReceiveBuffer = 4 << 20;
 constexpr std::int64_t kListenRetryInterval = 1'000'000'000;  // ns between two attempts to open a port
 constexpr std::size_t kDatagramOverhead = 256;                // budget per datagram in addition to its bytes
-constexpr const char* kInboxFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
+constexpr const char* kQueueFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
 constexpr const char* kListenHint =
     "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
 
@@ -50,15 +50,15 @@ void Receiver::close() { sockets_.clear(); }
 
 std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addresses) {
   std::erase_if(sockets_, [&](const auto& s) { return std::ranges::find(addresses, s->address) == addresses.end(); });
-  std::vector<std::string> faults;
+  std::vector<std::string> errors;
   for (const ListenAddress& address : addresses) {
     const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->address == address; });
     if (open_already) continue;
-    if (std::optional<std::string> fault = open(address)) faults.push_back(*fault);
+    if (std::optional<std::string> error = open(address)) errors.push_back(*error);
   }
   retry_at_.reset();
   if (can_retry(addresses)) retry_at_ = clock_.steady() + kListenRetryInterval;
-  return faults;
+  return errors;
 }
 
 // Ports may be in use, or have an address that does not exist yet. Their errors were already reported.
@@ -151,7 +151,7 @@ void Receiver::enqueue(ListenSocket& socket, const char* data, std::size_t size,
     return;
   }
   link_.counters.dropped.fetch_add(1, std::memory_order_relaxed);
-  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
+  warn_throttled(queue_full_log_, [] { return kQueueFullText; });
 }
 
 namespace {
@@ -209,8 +209,8 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
     });
     return;
   }
-  const char* fault = packet_fault(data, size);
-  Result<Decoded> decoded = fault == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{fault});
+  const char* error = packet_fault(data, size);
+  Result<Decoded> decoded = error == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{error});
   if (!decoded) {
     link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
     warn_throttled(malformed_log_, [&] {
@@ -241,10 +241,10 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
 }
 
 void Receiver::log_messages(const CommandOrigin& origin, const Decoded& packet) {
-  const std::string end =
+  const std::string peer =
       endpoint_text({origin.ip, origin.port}) + (origin.source == CommandSource::oscquery ? " (WebSocket)" : "");
-  for (const Message& message : packet.messages) link_.message_log.add(true, end, message);
-  for (const RejectedMessage& rejected : packet.rejected) link_.message_log.add(true, end, {rejected.address, {}});
+  for (const Message& message : packet.messages) link_.message_log.add(true, peer, message);
+  for (const RejectedMessage& rejected : packet.rejected) link_.message_log.add(true, peer, {rejected.address, {}});
 }
 
 // A packet that scan() found to be due is applied now, even if the clock has changed since.
@@ -288,7 +288,7 @@ void Receiver::push(Command command, bool urgent_pushed) {
     return;
   }
   link_.counters.dropped.fetch_add(count, std::memory_order_relaxed);
-  warn_throttled(inbox_full_log_, [] { return kInboxFullText; });
+  warn_throttled(queue_full_log_, [] { return kQueueFullText; });
 }
 
 void Receiver::reject(const CommandOrigin& origin, const std::string& address, const std::string& text) {

@@ -1,7 +1,7 @@
 // Receiver: owns the listening sockets. A datagram is checked against the allow list, validated and decoded; then it
-// is pushed into the engine's inbox as one command with all its messages, at once or at its time tag. Sockets are read
-// ahead of decoding, so that urgent requests (engine/commands/urgent.h) reach the engine even when many datagrams are
-// queued before them.
+// is pushed into the engine's command queue as one command with all its messages, at once or at its time tag. Sockets
+// are read ahead of decoding, so that urgent requests (engine/commands/urgent.h) reach the engine even when many
+// datagrams are queued before them.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@
 
 namespace limber {
 
-/// Callbacks for everything that the receiver does not push into the engine's inbox.
+/// Callbacks for everything that the receiver does not push into the engine's command queue.
 struct ReceiverCallbacks {
   /// Sends an /error message to the sender of a rejected message.
   std::function<void(const Outgoing&)> error = [](const Outgoing&) {};
@@ -63,7 +63,7 @@ class Receiver {
 
   /// Result of scanning a packet before it is decoded.
   struct ScanResult {
-    std::uint64_t arrival = 0;  ///< As Command::arrival; 0: the inbox assigns the number.
+    std::uint64_t arrival = 0;  ///< As Command::arrival; 0: the command queue assigns the number.
     bool urgent = false;        ///< Its urgent requests were pushed to the engine.
   };
   static constexpr std::size_t kMaxQueued = 16384;  ///< Maximum number of datagrams queued for decoding.
@@ -133,7 +133,7 @@ class Receiver {
   std::array<KnownSender, kKnownSlots> known_senders_{};
   bool wake_pending_ = false;  // since the engine was last woken
   bool reported_buffer_ = false;
-  WarningThrottle malformed_log_, denied_log_, inbox_full_log_, kernel_drops_log_, far_future_log_, schedule_full_log_;
+  WarningThrottle malformed_log_, denied_log_, queue_full_log_, kernel_drops_log_, far_future_log_, schedule_full_log_;
 };
 
 }  // namespace limber

@@ -19,16 +19,16 @@ bool SendBudget::Account::try_consume(std::size_t bytes, std::size_t values) {
 }
 
 std::optional<SendBudget::Report> SendBudget::Account::end_window(std::int64_t now, double seconds) {
-  const bool reduced = std::exchange(withheld_, 0) > 0;
-  const bool changed = std::exchange(reduced_, reduced) != reduced;
+  const bool throttled = std::exchange(withheld_, 0) > 0;
+  const bool changed = std::exchange(throttled_, throttled) != throttled;
   const SendLimits spent = std::exchange(spent_, {});
-  if (!changed && !(reduced && now - reported_ >= kReportInterval)) return {};
+  if (!changed && !(throttled && now - reported_ >= kReportInterval)) return {};
   reported_ = now;
-  return Report{this, reduced, spent.bytes / seconds, spent.values / seconds};
+  return Report{this, throttled, spent.bytes / seconds, spent.values / seconds};
 }
 
 SendBudget::Account* SendBudget::open_account() {
-  Account& account = accounts_.emplace_back(SendLimits{each_.bytes * kBurst, each_.values * kBurst});
+  Account& account = accounts_.emplace_back(SendLimits{per_sender_.bytes * kBurst, per_sender_.values * kBurst});
   demands_.reserve(accounts_.size());
   reports_.reserve(accounts_.size());
   return &account;
@@ -52,15 +52,15 @@ void SendBudget::refill(std::int64_t now) {
 }
 
 void SendBudget::distribute(double SendLimits::*member, double seconds) {
-  const double max = each_.*member * seconds;
+  const double max = per_sender_.*member * seconds;
   const auto demand_of = [&](const Account& account) {
-    return std::clamp(each_.*member * kBurst - account.available(member), 0.0, max);
+    return std::clamp(per_sender_.*member * kBurst - account.available(member), 0.0, max);
   };
   demands_.clear();
   for (const Account& account : accounts_) demands_.push_back(demand_of(account));
   std::ranges::sort(demands_);
   // the level up to which demands are met in full
-  double remaining = all_.*member * seconds;
+  double remaining = total_.*member * seconds;
   double level = max;
   for (std::size_t i = 0; i < demands_.size(); i++) {
     const double part = remaining / static_cast<double>(demands_.size() - i);
@@ -84,8 +84,8 @@ const std::vector<SendBudget::Report>& SendBudget::reports(std::int64_t now) {
   return reports_;
 }
 
-std::size_t SendBudget::reduced() const {
-  return static_cast<std::size_t>(std::ranges::count_if(accounts_, [](const Account& a) { return a.reduced(); }));
+std::size_t SendBudget::throttled() const {
+  return static_cast<std::size_t>(std::ranges::count_if(accounts_, [](const Account& a) { return a.throttled(); }));
 }
 
 }  // namespace limber

@@ -22,20 +22,21 @@ class SendBudget {
   static constexpr SendLimits kPerSender{24e6, 20e3};  ///< Per sender: a thousand bodies' `pos` at 60 Hz.
   static constexpr SendLimits kTotal{48e6, 50e3};
   static constexpr double kBurst = 0.1;  ///< s of a sender's limit that may be sent at once.
-  /// ns; interval in which reductions are determined and reported.
+  /// ns; interval in which throttling is determined and reported.
   static constexpr std::int64_t kWindow = 2'000'000'000;
   static constexpr std::int64_t kMinRefillInterval = 1'000'000;  ///< ns; minimum time between two refills.
-  /// ns; interval of repeated reports for a reduced sender.
+  /// ns; interval of repeated reports for a throttled sender.
   static constexpr std::int64_t kReportInterval = 10'000'000'000;
 
-  explicit SendBudget(SendLimits each = kPerSender, SendLimits all = kTotal) : each_(each), all_(all) {}
+  explicit SendBudget(SendLimits per_sender = kPerSender, SendLimits total = kTotal)
+      : per_sender_(per_sender), total_(total) {}
 
   class Account;
-  /// Reports that a sender's reduction has begun, continues or has ended.
+  /// Reports that throttling of a sender has begun, continues or has ended.
   struct Report {
     const Account* account = nullptr;
-    bool reduced = false;  ///< False: the sender is no longer reduced.
-    double bytes = 0;      ///< Per second, in the last window.
+    bool throttled = false;  ///< False: the sender is no longer throttled.
+    double bytes = 0;        ///< Per second, in the last window.
     double values = 0;
   };
   /// The budget of one sender.
@@ -52,13 +53,13 @@ class SendBudget {
     /// Ends a window of `seconds`; returns a report if one is due.
     std::optional<Report> end_window(std::int64_t now, double seconds);
     /// True if charges were rejected in the last window.
-    bool reduced() const { return reduced_; }
+    bool throttled() const { return throttled_; }
 
    private:
     SendLimits available_;
     SendLimits spent_;            // in this window
     std::uint64_t withheld_ = 0;  // number of rejected charges in this window
-    bool reduced_ = false;
+    bool throttled_ = false;
     std::int64_t reported_ = 0;
   };
 
@@ -72,16 +73,16 @@ class SendBudget {
 
   /// Returns the reports of the window that has ended; empty within a window.
   const std::vector<Report>& reports(std::int64_t now);
-  /// Number of senders that are currently reduced.
-  std::size_t reduced() const;
+  /// Number of senders that are currently throttled.
+  std::size_t throttled() const;
   /// Time in ns of the next window's end, when reports() has new results.
   std::int64_t window_end() const { return window_start_ + kWindow; }
 
  private:
   void distribute(double SendLimits::*member, double seconds);
 
-  const SendLimits each_;
-  const SendLimits all_;
+  const SendLimits per_sender_;
+  const SendLimits total_;
   std::list<Account> accounts_;
   std::vector<double> demands_;  // scratch memory of distribute()
   std::vector<Report> reports_;

@@ -57,9 +57,9 @@ void Sender::send(const Outgoing& out) {
   const std::span<const char> packet = encode(out.message);
   if (packet.empty()) return;
   switch (out.destination) {
-    case Outgoing::Destination::sender:
+    case Outgoing::Destination::reply:
     case Outgoing::Destination::direct:
-      send_to_origin(out.origin, packet, out.destination == Outgoing::Destination::sender);
+      send_to_origin(out.origin, packet, out.destination == Outgoing::Destination::reply);
       return;
     case Outgoing::Destination::error:
       send_to_origin(out.origin, packet, true);
@@ -117,32 +117,32 @@ void Sender::set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint3
   addresses_ = std::move(addresses);
 }
 
-bool Sender::is_own_input(const Endpoint& end) const {
+bool Sender::is_own_input(const Endpoint& target) const {
   constexpr std::uint32_t kLoopback = 127;
   return std::ranges::any_of(inputs_, [&](const Endpoint& input) {
-    if (input.port != end.port) return false;
+    if (input.port != target.port) return false;
     const bool here =
-        end.ip == 0 || end.ip >> 24 == kLoopback || std::ranges::find(addresses_, end.ip) != addresses_.end();
-    return input.ip == end.ip || (here && (input.ip == 0 || end.ip == 0));
+        target.ip == 0 || target.ip >> 24 == kLoopback || std::ranges::find(addresses_, target.ip) != addresses_.end();
+    return input.ip == target.ip || (here && (input.ip == 0 || target.ip == 0));
   });
 }
 
-void Sender::report_own_input(const Endpoint& end) {
+void Sender::report_own_input(const Endpoint& target) {
   constexpr std::size_t kMaxReported = 16;
-  if (std::ranges::find(reported_own_inputs_, end) != reported_own_inputs_.end() ||
+  if (std::ranges::find(reported_own_inputs_, target) != reported_own_inputs_.end() ||
       reported_own_inputs_.size() >= kMaxReported)
     return;
-  reported_own_inputs_.push_back(end);
+  reported_own_inputs_.push_back(target);
   loops_++;
   log_warning("OSC out {}: this is the program's own input; nothing is sent there. Choose another port (reported once)",
-              endpoint_text(end));
+              endpoint_text(target));
 }
 
-void Sender::record_error_answer(const Endpoint& end) {
-  if (!error_limiter_.record_answer(end, clock_.steady())) return;
+void Sender::record_error_answer(const Endpoint& peer) {
+  if (!error_limiter_.record_answer(peer, clock_.steady())) return;
   loops_++;
   log_warning("OSC in: {} answers /error messages, which would loop forever; it gets none for a minute (reported once)",
-              endpoint_text(end));
+              endpoint_text(peer));
 }
 
 void Sender::send_to_targets(std::span<const char> packet, bool errors_only) {
@@ -152,9 +152,10 @@ void Sender::send_to_targets(std::span<const char> packet, bool errors_only) {
 }
 
 void Sender::send_to_subscribers(std::span<const char> packet) {
-  for (const Endpoint& end : subscribers_) {
-    const bool target_too = std::ranges::any_of(targets_, [&](const ResolvedTarget& t) { return t.endpoint == end; });
-    if (!target_too && may_serve_(end, packet.size(), 1)) send_to(end, packet);
+  for (const Endpoint& subscriber : subscribers_) {
+    const bool target_too =
+        std::ranges::any_of(targets_, [&](const ResolvedTarget& t) { return t.endpoint == subscriber; });
+    if (!target_too && may_serve_(subscriber, packet.size(), 1)) send_to(subscriber, packet);
   }
 }
 

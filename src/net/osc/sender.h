@@ -44,9 +44,9 @@ class Sender {
   }
   /// Sets the endpoints this program listens on and this machine's addresses. Nothing is sent to its own inputs.
   void set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses);
-  bool is_own_input(const Endpoint& end) const;
+  bool is_own_input(const Endpoint& target) const;
   /// Warns once that a target is the program's own input.
-  void report_own_input(const Endpoint& end);
+  void report_own_input(const Endpoint& target);
 
   /// Opens the socket. Call it before sending.
   Result<void> open();
@@ -55,18 +55,18 @@ class Sender {
   system::UdpSender& socket() { return out_; }
   void set_targets(std::vector<ResolvedTarget> targets) { targets_ = std::move(targets); }
   /// Sets the additional receivers of events.
-  void set_subscribers(std::vector<Endpoint> ends) { subscribers_ = std::move(ends); }
+  void set_subscribers(std::vector<Endpoint> endpoints) { subscribers_ = std::move(endpoints); }
 
-  /// Sends a message to the receivers that `out.to` names. Error messages are limited to ten a second per sender, and
-  /// none is sent if the rejected message was itself an answer or a stream, so that two programs aimed at each other do
-  /// not loop.
+  /// Sends a message to the receivers that `out.destination` selects. Error messages are limited to ten a second per
+  /// sender, and none is sent if the rejected message was itself an answer or a stream, so that two programs aimed at
+  /// each other do not loop.
   void send(const Outgoing& out);
   /// Sends a `/pong` to the sender of a `/ping`.
   void pong(const CommandOrigin& to, std::uint64_t tick, double time);
   /// Sends a subscribed value. Returns false if the subscriber's budget does not allow it now.
   bool send_value(const Outgoing& out);
-  /// Records that `end` answers /error messages; it gets none for a minute.
-  void record_error_answer(const Endpoint& end);
+  /// Records that `peer` answers /error messages; it gets none for a minute.
+  void record_error_answer(const Endpoint& peer);
   /// Number of message loops detected and stopped.
   std::uint64_t loops() const { return loops_; }
 

@@ -41,8 +41,8 @@ std::string normalize_stream(const std::string& text) {
 }  // namespace
 
 Subscribers::Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
-                         SendLimits each, SendLimits all)
-    : link_(link), clock_(clock), send_(std::move(send)), budget_(each, all) {}
+                         SendLimits per_sender, SendLimits total)
+    : link_(link), clock_(clock), send_(std::move(send)), budget_(per_sender, total) {}
 
 Subscribers::Subscriber* Subscribers::find(const CommandOrigin& origin) const {
   const auto found = std::ranges::find_if(subscribers_, [&](const auto& s) { return s->origin == origin; });
@@ -147,26 +147,26 @@ void Subscribers::work() {
   const std::int64_t now = clock_.steady();
   expire(now);
   budget_.refill(now);
-  report_reductions(now);
+  report_throttling(now);
   if (!in_round_) begin_round();
   if (in_round_ && !continue_round(now)) return;
-  if (pending_request_ != 0) return;
+  if (snapshot_request_ != 0) return;
   const bool due = std::ranges::any_of(subscribers_, [now](const auto& subscriber) {
     return std::ranges::any_of(subscriber->subscriptions,
                                [now](const auto& s) { return !s->stream && s->next_due <= now; });
   });
-  if (due) pending_request_ = link_.request_value_snapshot();
+  if (due) snapshot_request_ = link_.request_value_snapshot();
 }
 
 void Subscribers::begin_round() {
   const std::shared_ptr<const ValueSnapshot> newest = link_.value_snapshots.read();
   if (newest == nullptr) return;
-  const bool fresh = pending_request_ != 0 && newest->request >= pending_request_;
+  const bool fresh = snapshot_request_ != 0 && newest->request >= snapshot_request_;
   if (newest->number == snapshot_number_ && !fresh) return;
   snapshot_ = newest;
   snapshot_number_ = newest->number;
   sends_values_ = fresh;
-  if (fresh) pending_request_ = 0;
+  if (fresh) snapshot_request_ = 0;
   in_round_ = true;
   served_count_ = 0;
   round_offset_++;
@@ -197,7 +197,7 @@ bool Subscribers::serve(Subscriber& subscriber, std::int64_t now, int& left) {
   return true;
 }
 
-// Reports paths that match no value; such values may appear later.
+// Reports paths that match no value; a matching value may appear later.
 void Subscribers::check_paths(Subscriber& subscriber) {
   for (const auto& s : subscriber.subscriptions) {
     if (s->stream || std::exchange(s->checked, true)) continue;
@@ -218,7 +218,7 @@ bool Subscribers::send_values(Subscriber& subscriber, const Subscription& s, int
       s.path, [&](const std::string& path, const Property& property, const PropertyValue& value) {
         exhausted = left <= 0;
         if (exhausted) return false;
-        Outgoing out{Outgoing::Destination::sender, subscriber.origin, {path, {}}};
+        Outgoing out{Outgoing::Destination::reply, subscriber.origin, {path, {}}};
         for (std::uint32_t i = 0; i < property.width; i++) out.message.args.push_back(Arg::of(value.numbers[i]));
         if (property.type == PropertyType::text) out.message.args.push_back(Arg::of(value.text));
         if (!send_(out)) return false;
@@ -229,21 +229,21 @@ bool Subscribers::send_values(Subscriber& subscriber, const Subscription& s, int
   return complete || !exhausted;
 }
 
-bool Subscribers::try_consume(const Endpoint& end, std::size_t bytes, std::size_t datagrams) {
-  Subscriber* const subscriber = find({CommandSource::osc, end.ip, end.port});
+bool Subscribers::try_consume(const Endpoint& peer, std::size_t bytes, std::size_t datagrams) {
+  Subscriber* const subscriber = find({CommandSource::osc, peer.ip, peer.port});
   return subscriber != nullptr && subscriber->account->try_consume(bytes, datagrams);
 }
 
-void Subscribers::report_reductions(std::int64_t now) {
+void Subscribers::report_throttling(std::int64_t now) {
   for (const SendBudget::Report& report : budget_.reports(now)) {
     const auto subscriber =
         std::ranges::find(subscribers_, report.account, [](const auto& each) { return each->account; });
     Message message{"/subscription/full", {}};
-    if (report.reduced)
+    if (report.throttled)
       message = {"/subscription/reduced", {Arg::of(std::round(report.values)), Arg::of(std::round(report.bytes))}};
     send_({Outgoing::Destination::direct, (*subscriber)->origin, std::move(message)});
   }
-  link_.health.set(HealthItem::reduced, budget_.reduced());
+  link_.health.set(HealthItem::reduced, budget_.throttled());
 }
 
 std::optional<std::int64_t> Subscribers::timeout() const {
@@ -253,7 +253,7 @@ std::optional<std::int64_t> Subscribers::timeout() const {
   for (const auto& subscriber : subscribers_) {
     for (const auto& s : subscriber->subscriptions) {
       consider(s->expires_at);
-      if (!s->stream && pending_request_ == 0) consider(s->next_due);
+      if (!s->stream && snapshot_request_ == 0) consider(s->next_due);
     }
   }
   if (!subscribers_.empty()) consider(budget_.window_end());
@@ -273,9 +273,9 @@ std::vector<ResolvedTarget> Subscribers::targets() const {
 }
 
 std::vector<Endpoint> Subscribers::endpoints() const {
-  std::vector<Endpoint> ends;
-  for (const auto& subscriber : subscribers_) ends.push_back({subscriber->origin.ip, subscriber->origin.port});
-  return ends;
+  std::vector<Endpoint> endpoints;
+  for (const auto& subscriber : subscribers_) endpoints.push_back({subscriber->origin.ip, subscriber->origin.port});
+  return endpoints;
 }
 
 }  // namespace limber

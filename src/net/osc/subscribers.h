@@ -1,5 +1,5 @@
-// Subscribers: senders that asked with /subscribe for a path's changes or a stream. A subscription expires unless it is
-// renewed, and its traffic is limited by a budget (net/osc/send_budget.h). If several paths of one sender match the
+// Subscribers: peers that asked with /subscribe for a path's changes or a stream. A subscription expires unless it is
+// renewed, and its traffic is limited by a budget (net/osc/send_budget.h). If several paths of one subscriber match the
 // same value, the value is sent once, at the highest of their rates. Work is done in slices, so that input is not
 // delayed.
 #pragma once
@@ -19,20 +19,20 @@
 
 namespace limber {
 
-/// The subscriptions of all senders. [net]
+/// The subscriptions of all peers. [net]
 class Subscribers {
  public:
   static constexpr std::int64_t kLifetime = 30'000'000'000;  ///< ns without renewal until a subscription expires.
-  static constexpr std::size_t kMaxSubscribers = 64;         ///< Maximum number of senders.
-  static constexpr std::size_t kMaxSubscriptions = 256;      ///< Maximum number of paths and streams per sender.
+  static constexpr std::size_t kMaxSubscribers = 64;         ///< Maximum number of subscribed peers.
+  static constexpr std::size_t kMaxSubscriptions = 256;      ///< Maximum number of paths and streams per peer.
 
   static constexpr int kValuesPerSlice = 128;  ///< Values sent per call of work().
-  /// Number of compared values that costs as much of a slice as one sent value.
+  /// In the budget of a slice, one sent value counts as much as this number of compared values.
   static constexpr std::size_t kComparisonsPerValue = 64;
 
   /// `send` sends values, events and errors; it returns false if a value may not be sent now.
   Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
-              SendLimits each = SendBudget::kPerSender, SendLimits all = SendBudget::kTotal);
+              SendLimits per_sender = SendBudget::kPerSender, SendLimits total = SendBudget::kTotal);
 
   static bool handles(const Message& message) {
     return message.address == "/subscribe" || message.address == "/unsubscribe";
@@ -47,9 +47,9 @@ class Subscribers {
   /// Expires subscriptions, reads new value snapshots and sends the values that are due. Call it on each wake-up and
   /// when timeout() has elapsed. Does at most one slice of work; timeout() is 0 while there is more.
   void work();
-  /// Charges a datagram to a subscriber's budget. Returns false if the budget is exhausted or `end` has no
+  /// Charges a datagram to a subscriber's budget. Returns false if the budget is exhausted or `peer` has no
   /// subscription.
-  bool try_consume(const Endpoint& end, std::size_t bytes, std::size_t datagrams);
+  bool try_consume(const Endpoint& peer, std::size_t bytes, std::size_t datagrams);
   std::optional<std::int64_t> timeout() const;
 
   /// True if targets() or endpoints() changed since the last call.
@@ -73,7 +73,7 @@ class Subscribers {
     SendBudget::Account* account = nullptr;
     Feed feed;
     std::uint64_t snapshot_number = 0;  // number of the last snapshot
-    bool reported_truncated = false;    // it was reported that too many values match
+    bool reported_truncated = false;    // an error about too many matching values was sent
   };
 
   Subscriber* find(const CommandOrigin& origin) const;
@@ -87,7 +87,7 @@ class Subscribers {
   bool serve(Subscriber& subscriber, std::int64_t now, int& left);
   void check_paths(Subscriber& subscriber);
   bool send_values(Subscriber& subscriber, const Subscription& s, int& left);
-  void report_reductions(std::int64_t now);
+  void report_throttling(std::int64_t now);
 
   EngineLink& link_;
   const NetClock& clock_;
@@ -96,11 +96,11 @@ class Subscribers {
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
   std::shared_ptr<const ValueSnapshot> snapshot_;  // the snapshot being compared and sent
   std::uint64_t snapshot_number_ = 0;
-  bool in_round_ = false;              // some subscribers have not been served with snapshot_
-  bool sends_values_ = false;          // snapshot_ was requested for due values, so they are sent
-  std::size_t served_count_ = 0;       // number of subscribers served in this round
-  std::size_t round_offset_ = 0;       // offset of the round's first subscriber; it rotates for fairness
-  std::uint64_t pending_request_ = 0;  // number of the snapshot request; 0: none is pending
+  bool in_round_ = false;               // some subscribers have not been served with snapshot_
+  bool sends_values_ = false;           // this round sends values; false: it only updates the feeds
+  std::size_t served_count_ = 0;        // number of subscribers served in this round
+  std::size_t round_offset_ = 0;        // offset of the round's first subscriber; it rotates for fairness
+  std::uint64_t snapshot_request_ = 0;  // number of the snapshot request; 0: none is pending
   bool changed_ = false;
 };
 

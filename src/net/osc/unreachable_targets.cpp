@@ -24,15 +24,15 @@ void UnreachableTargets::poll(system::UdpSender& sender, Counters& counters, std
   }
 }
 
-void UnreachableTargets::record(const Endpoint& end, int error, std::int64_t now) {
-  const auto known = last_failure_.find(end);
+void UnreachableTargets::record(const Endpoint& target, int error, std::int64_t now) {
+  const auto known = last_failure_.find(target);
   const bool repeated = known != last_failure_.end() && now - known->second < kQuietPeriod;
   if (known == last_failure_.end() && last_failure_.size() >= kMaxTargets)
     last_failure_.erase(std::ranges::min_element(last_failure_, {}, [](const auto& entry) { return entry.second; }));
-  last_failure_[end] = now;
+  last_failure_[target] = now;
   if (repeated) return;
   const std::string reason = error == ECONNREFUSED ? "no listener yet" : std::generic_category().message(error);
-  log_info("OSC out {}: {}; sending anyway", endpoint_text(end), reason);
+  log_info("OSC out {}: {}; sending anyway", endpoint_text(target), reason);
 }
 
 }  // namespace limber

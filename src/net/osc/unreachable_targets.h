@@ -21,7 +21,7 @@ class UnreachableTargets {
   void poll(system::UdpSender& sender, Counters& counters, std::int64_t now);
 
  private:
-  void record(const Endpoint& end, int error, std::int64_t now);
+  void record(const Endpoint& target, int error, std::int64_t now);
 
   std::map<Endpoint, std::int64_t> last_failure_;
 };

@@ -14,8 +14,8 @@ class WarningThrottle {
  public:
   static constexpr std::int64_t kInterval = 60'000'000'000;  ///< ns
 
-  /// Returns the suffix for the warning, "" or " (and 17 more since the last warning)"; empty if the warning is to be
-  /// suppressed. `now` in ns.
+  /// Returns nullopt if the warning must be suppressed, otherwise the suffix to append: "" or " (and 17 more since the
+  /// last warning)". `now` in ns.
   std::optional<std::string> admit(std::int64_t now) {
     if (logged_ && now - last_ < kInterval) {
       suppressed_++;

@@ -20,10 +20,10 @@ std::string_view level_name(LogLevel level) {
 
 }  // namespace
 
-Client::Client(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host)
+QueryClient::QueryClient(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host)
     : origin_(origin), sink_(sink), host_(host) {}
 
-bool Client::on_text(std::string_view frame) {
+bool QueryClient::on_text(std::string_view frame) {
   const nlohmann::json json = nlohmann::json::parse(frame, nullptr, false);
   if (!json.is_object()) return false;
   const auto command = json.find("COMMAND");
@@ -45,9 +45,10 @@ bool Client::on_text(std::string_view frame) {
   return needs_value;
 }
 
-void Client::on_binary(std::string_view frame) { host_.process(origin_, std::string(frame)); }
+void QueryClient::on_binary(std::string_view frame) { host_.process(origin_, std::string(frame)); }
 
-void Client::on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot, std::span<const std::string> events) {
+void QueryClient::on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot,
+                              std::span<const std::string> events) {
   for (const std::string& event : events) sink_.send(true, event);
   if (!is_listening()) return;
   feed_.update(snapshot, origin_);
@@ -58,7 +59,7 @@ void Client::on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot, s
   });
 }
 
-void Client::send_reply(const Outgoing& out, double now) {
+void QueryClient::send_reply(const Outgoing& out, double now) {
   if (out.destination == Outgoing::Destination::error) {
     if (now - error_window_start_ >= 1) {
       error_window_start_ = now;
@@ -69,7 +70,7 @@ void Client::send_reply(const Outgoing& out, double now) {
   sink_.send(false, host_.encode(out.message, ""));
 }
 
-void Client::send_log() {
+void QueryClient::send_log() {
   if (!wants_log_ || sink_.queued_bytes() >= kMaxQueuedForValues) return;
   std::vector<LogLine> lines = log_since(seen_line_);
   if (lines.empty()) return;

@@ -1,5 +1,5 @@
-// Client: protocol state of one WebSocket connection: the paths it listens to and the frames sent to it. It does no I/O
-// itself. [query]
+// QueryClient: protocol state of one WebSocket connection: the paths it listens to and the frames sent to it. It does
+// no I/O itself. [query]
 #pragma once
 
 #include <cstdint>
@@ -27,14 +27,14 @@ class ClientSink {
 };
 
 /// One WebSocket client.
-class Client {
+class QueryClient {
  public:
   /// Values are sent only while fewer bytes are queued.
   static constexpr std::size_t kMaxQueuedForValues = std::size_t{64} << 10;
   static constexpr int kMaxErrors = 10;  ///< Per second.
 
   /// `sink` must outlive the client.
-  Client(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host);
+  QueryClient(const CommandOrigin& origin, ClientSink& sink, const QueryHost& host);
 
   /// Handles a text frame: `{"COMMAND":"LISTEN","DATA":"/path"}`, IGNORE or LIMBER_LOG (`DATA` true or false). Ignores
   /// unknown frames. Returns true if the client waits for the first value of a path.

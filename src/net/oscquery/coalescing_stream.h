@@ -1,5 +1,5 @@
 // CoalescingStream: a stream that buffers whole frames and writes many of them with one system call. It closes the
-// connection of a client that receives nothing for some seconds. [query]
+// connection if a write makes no progress for some seconds because the client doesn't read. [query]
 #pragma once
 
 #include <functional>
@@ -18,7 +18,7 @@
 namespace limber {
 
 /// The layer below Beast's WebSocket stream. Beast's own writes (pongs, close frames) and append() are sent in call
-/// order, each unbroken.
+/// order and never interleaved.
 class CoalescingStream {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;

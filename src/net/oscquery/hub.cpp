@@ -25,21 +25,21 @@ HostInfo QueryHub::info() const { return {names_, host_.osc_port()}; }
 
 void QueryHub::handle_request(HttpRequest request, Respond respond) {
   if (std::optional<HttpResponse> known = respond_without_tree(request, info())) return respond(std::move(*known));
-  if (pending_.size() >= kMaxRequests) return respond(too_busy("too many requests at once; try again"));
-  pending_.push_back({std::move(request), std::move(respond), link_.request_value_snapshot(), now_()});
+  if (waiting_requests_.size() >= kMaxRequests) return respond(too_busy("too many requests at once; try again"));
+  waiting_requests_.push_back({std::move(request), std::move(respond), link_.request_value_snapshot(), now_()});
 }
 
-void QueryHub::add_client(Client& client) {
+void QueryHub::add_client(QueryClient& client) {
   clients_.push_back(&client);
   request_values();
 }
 
-void QueryHub::remove_client(const Client& client) { std::erase(clients_, &client); }
+void QueryHub::remove_client(const QueryClient& client) { std::erase(clients_, &client); }
 
 void QueryHub::request_values() {
   // a request is pending: coalesce all further ones into one that follows it
-  if (pending_request_ != 0) return (void)(request_again_ = true);
-  pending_request_ = link_.request_value_snapshot();
+  if (clients_snapshot_request_ != 0) return (void)(request_again_ = true);
+  clients_snapshot_request_ = link_.request_value_snapshot();
   last_request_ = now_();
 }
 
@@ -47,9 +47,9 @@ void QueryHub::on_link_event() {
   send_replies();
   const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
   if (snapshot == nullptr) return;
-  respond_pending(snapshot);
-  if (pending_request_ == 0 || snapshot->request < pending_request_) return;
-  pending_request_ = 0;
+  respond_waiting(snapshot);
+  if (clients_snapshot_request_ == 0 || snapshot->request < clients_snapshot_request_) return;
+  clients_snapshot_request_ = 0;
   update_clients(snapshot);
   if (std::exchange(request_again_, false)) request_values();
 }
@@ -60,50 +60,50 @@ void QueryHub::update_clients(const std::shared_ptr<const ValueSnapshot>& snapsh
     events = path_events_between(*snapshot_->tree, *snapshot->tree);
   snapshot_ = snapshot;
   // a client may be removed while a snapshot is delivered to it
-  for (Client* const client : std::vector<Client*>(clients_)) {
+  for (QueryClient* const client : std::vector<QueryClient*>(clients_)) {
     if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->on_snapshot(snapshot, events);
   }
 }
 
-void QueryHub::respond_pending(const std::shared_ptr<const ValueSnapshot>& snapshot) {
-  std::vector<PendingRequest> ready;
-  std::erase_if(pending_, [&](PendingRequest& w) {
+void QueryHub::respond_waiting(const std::shared_ptr<const ValueSnapshot>& snapshot) {
+  std::vector<WaitingRequest> ready;
+  std::erase_if(waiting_requests_, [&](WaitingRequest& w) {
     if (snapshot->request < w.snapshot_request) return false;
     ready.push_back(std::move(w));
     return true;
   });
   std::size_t bytes = 0;
-  for (const PendingRequest& pending : ready) {
+  for (const WaitingRequest& waiting : ready) {
     if (bytes > kMaxResponseBytes) {
-      pending.respond(too_busy("too many large responses at once; try again"));
+      waiting.respond(too_busy("too many large responses at once; try again"));
       continue;
     }
-    HttpResponse response = respond_from_tree(pending.request, *snapshot);
+    HttpResponse response = respond_from_tree(waiting.request, *snapshot);
     bytes += response.body.size();
-    pending.respond(std::move(response));
+    waiting.respond(std::move(response));
   }
 }
 
 void QueryHub::tick() {
   const double now = now_();
   const bool listening =
-      std::any_of(clients_.begin(), clients_.end(), [](const Client* c) { return c->is_listening(); });
+      std::any_of(clients_.begin(), clients_.end(), [](const QueryClient* c) { return c->is_listening(); });
   // half a tick of tolerance, because timers are inexact
   const double interval = listening ? kTick / 2 : kIdleTick - kTick / 2;
-  if (!clients_.empty() && pending_request_ == 0 && now - last_request_ >= interval) request_values();
-  for (Client* const client : std::vector<Client*>(clients_)) {
+  if (!clients_.empty() && clients_snapshot_request_ == 0 && now - last_request_ >= interval) request_values();
+  for (QueryClient* const client : std::vector<QueryClient*>(clients_)) {
     if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->send_log();
   }
-  // do not delay requests while the engine is busy or has not started
-  std::vector<PendingRequest> expired;
-  std::erase_if(pending_, [&](PendingRequest& w) {
+  // answer requests that have waited for kRequestTimeout from the latest snapshot, or with 503 if there is none
+  std::vector<WaitingRequest> expired;
+  std::erase_if(waiting_requests_, [&](WaitingRequest& w) {
     if (now - w.since < kRequestTimeout) return false;
     expired.push_back(std::move(w));
     return true;
   });
   const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
-  for (const PendingRequest& pending : expired) {
-    pending.respond(snapshot != nullptr ? respond_from_tree(pending.request, *snapshot)
+  for (const WaitingRequest& waiting : expired) {
+    waiting.respond(snapshot != nullptr ? respond_from_tree(waiting.request, *snapshot)
                                         : too_busy("the simulation is busy; try again"));
   }
 }
@@ -111,7 +111,7 @@ void QueryHub::tick() {
 void QueryHub::send_replies() {
   link_.query_output_queue.drain(replies_);
   for (const Outgoing& out : replies_) {
-    const auto to = std::ranges::find_if(clients_, [&](const Client* c) { return c->origin() == out.origin; });
+    const auto to = std::ranges::find_if(clients_, [&](const QueryClient* c) { return c->origin() == out.origin; });
     if (to != clients_.end()) (*to)->send_reply(out, now_());
   }
 }

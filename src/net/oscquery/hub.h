@@ -35,8 +35,8 @@ class QueryHub {
   /// Calls `respond` immediately, or later from on_link_event() or tick().
   void handle_request(HttpRequest request, Respond respond);
 
-  void add_client(Client& client);
-  void remove_client(const Client& client);
+  void add_client(QueryClient& client);
+  void remove_client(const QueryClient& client);
   /// Requests a value snapshot soon, because a client waits for its first values.
   void request_values();
 
@@ -45,12 +45,12 @@ class QueryHub {
   /// Updates clients and expires requests. Call it every kTick while busy().
   void tick();
   /// Discards all pending requests without a response and thereby releases their connections.
-  void cancel_all() { pending_.clear(); }
+  void cancel_all() { waiting_requests_.clear(); }
   /// True if there are pending requests or connected clients.
-  bool busy() const { return !pending_.empty() || !clients_.empty(); }
+  bool busy() const { return !waiting_requests_.empty() || !clients_.empty(); }
 
  private:
-  struct PendingRequest {
+  struct WaitingRequest {
     HttpRequest request;
     Respond respond;
     std::uint64_t snapshot_request = 0;
@@ -58,17 +58,17 @@ class QueryHub {
   };
 
   void update_clients(const std::shared_ptr<const ValueSnapshot>& snapshot);
-  void respond_pending(const std::shared_ptr<const ValueSnapshot>& snapshot);
+  void respond_waiting(const std::shared_ptr<const ValueSnapshot>& snapshot);
   void send_replies();
 
   EngineLink& link_;
   const QueryHost host_;
   const std::vector<std::string> names_;
   double (*now_)();
-  std::vector<PendingRequest> pending_;
-  std::vector<Client*> clients_;
+  std::vector<WaitingRequest> waiting_requests_;
+  std::vector<QueryClient*> clients_;
   std::shared_ptr<const ValueSnapshot> snapshot_;  // the last one sent to the clients
-  std::uint64_t pending_request_ = 0;              // request number for the clients; 0: none is pending
+  std::uint64_t clients_snapshot_request_ = 0;     // request number for the clients; 0: none is pending
   bool request_again_ = false;                     // request another one after it
   double last_request_ = 0;                        // time of the last request for the clients, s
   std::vector<Outgoing> replies_;

@@ -117,7 +117,7 @@ class WebSocket : public ClientSink, public std::enable_shared_from_this<WebSock
   }
 
   void start() {
-    client_ = std::make_unique<Client>(origin_, *this, context_.hub.host());
+    client_ = std::make_unique<QueryClient>(origin_, *this, context_.hub.host());
     context_.hub.add_client(*client_);
     read();
   }
@@ -145,7 +145,7 @@ class WebSocket : public ClientSink, public std::enable_shared_from_this<WebSock
   const CommandOrigin origin_;
   websocket::stream<CoalescingStream, false> ws_;
   beast::flat_buffer buffer_;
-  std::unique_ptr<Client> client_;
+  std::unique_ptr<QueryClient> client_;
 };
 
 }  // namespace

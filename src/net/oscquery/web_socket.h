@@ -1,5 +1,5 @@
-// A WebSocket connection after its upgrade: passes incoming frames to a Client and sends outgoing frames in few system
-// calls. [query]
+// A WebSocket connection after its upgrade: passes incoming frames to a QueryClient and sends outgoing frames in few
+// system calls. [query]
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>

@@ -20,7 +20,7 @@ ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
     : world(&w),
       host(h),
       options(std::move(o)),
-      search([this] { return guard->stop_requested(); }),
+      pattern_matcher([this] { return guard->stop_requested(); }),
       behaviors(std::make_shared<BehaviorScripts>(*this)) {
   set_world(world);
 }
@@ -76,7 +76,7 @@ void ScriptContext::begin_call() {
 }
 
 bool ScriptContext::next_call() {
-  if (!world->transaction().is_empty() || !effects.can_wait() || timers.cancelled()) {
+  if (!world->transaction().is_empty() || !effects.can_wait() || timers.canceled()) {
     end_call(true);
     begin_call();
     return true;
@@ -108,7 +108,7 @@ Behavior* behavior_of(const ScriptContext& c, NodeId id) {
 
 BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
-  // groups of the store without properties are also called groups
+  // a node of the store without properties (Store::is_group) is no group of behaviors, but its table has the same name
   if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
   return static_cast<BehaviorGroup*>(store.object(id));
 }

@@ -20,6 +20,7 @@
 #include "script/scene/script_files.h"
 #include "script/scene/script_host.h"
 #include "script/scene/sources.h"
+#include "script/vm/guard.h"
 #include "script/vm/pattern_match.h"
 #include "sim/behavior/selection.h"
 #include "sim/neighbors/neighbor_set.h"
@@ -31,9 +32,9 @@ namespace limber {
 class Behavior;
 class BehaviorGroup;
 class BehaviorScripts;
-class Guard;
 
-/// The answer of an API call, which the prelude reads, and its text.
+/// The result of the last API call and facts about the running script call (`top_level`, `call`, `in_behavior`), which
+/// the prelude reads.
 class Answer : public LimberAnswer {
  public:
   Answer() : LimberAnswer{} {}
@@ -92,22 +93,23 @@ struct SceneTimers {
     std::int32_t number;
   };
   std::optional<double> checked_at;         ///< Time at which timers were last checked.
-  std::vector<Cancellation> cancellations;  ///< By successful calls and the current one.
-  std::size_t of_earlier_calls = 0;         ///< Number of those by successful calls.
+  std::vector<Cancellation> cancellations;  ///< Committed ones first, then those of the running call.
+  std::size_t committed_count = 0;
 
-  void begin_call() { of_earlier_calls = cancellations.size(); }
-  /// True if the current call has cancelled a timer.
-  bool cancelled() const { return cancellations.size() > of_earlier_calls; }
-  void rollback() { cancellations.resize(of_earlier_calls); }
+  void begin_call() { committed_count = cancellations.size(); }
+  /// True if the running call has canceled a timer.
+  bool canceled() const { return cancellations.size() > committed_count; }
+  void rollback() { cancellations.resize(committed_count); }
 };
 
-struct ScriptContext {
+struct ScriptContext final : CallHooks {
   ScriptContext(World& w, ScriptHost& h, SceneOptions o);
   ~ScriptContext();
   ScriptContext(const ScriptContext&) = delete;
   ScriptContext& operator=(const ScriptContext&) = delete;
 
-  World* world;  ///< Replaced when a detached run goes live; null after the run was replaced.
+  World*
+      world;  ///< Replaced when a detached run goes live; null after the run was replaced, unless its timers continue.
   WorldViews views;
   /// Attaches the views to that world, or detaches them (null).
   void set_world(World* new_world);
@@ -118,7 +120,7 @@ struct ScriptContext {
 
   Answer answer;
   CollectedArguments arguments;
-  MatchSearch search;  ///< Ends early when the running call is to be stopped.
+  PatternMatcher pattern_matcher;  ///< Ends early when the running call is to be stopped.
   NeighborResults neighbors;
   LoadedModels loaded;
   SceneOsc osc;
@@ -131,12 +133,12 @@ struct ScriptContext {
   Guard* guard = nullptr;  ///< Of the scene's Vm.
   CallEffects effects;
   /// Starts recording changes for a rollback.
-  void begin_call();
+  void begin_call() override;
   /// Success: sends the messages. Failure: rolls back all changes, including random draws.
-  void end_call(bool success);
+  void end_call(bool success) override;
   /// Ends a successful call and begins another. Returns true if the ended call did more than apply forces; otherwise
   /// the switch costs almost nothing.
-  bool next_call();
+  bool next_call() override;
 
   /// The generator of the scene's file.
   Random& generator() { return random.generator(world->seed(), answer.top_level != 0); }

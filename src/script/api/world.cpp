@@ -45,19 +45,21 @@ std::int32_t matches(void*, const char* pattern, std::int32_t pattern_length, co
   return pattern_match(text_of(pattern, pattern_length), text_of(name, length)) ? 1 : 0;
 }
 
-const LimberMatch* match(void* c) { return reinterpret_cast<const LimberMatch*>(&context_of(c).search.last_match()); }
+const LimberMatch* match(void* c) {
+  return reinterpret_cast<const LimberMatch*>(&context_of(c).pattern_matcher.last_match());
+}
 
 std::int32_t find_match(void* c, const char* text, std::int32_t length, const char* pattern,
                         std::int32_t pattern_length, std::int32_t from, std::int32_t anchors) {
   ScriptContext& context = context_of(c);
-  switch (context.search.find(text_of(text, length), text_of(pattern, pattern_length), static_cast<std::size_t>(from),
-                              anchors != 0)) {
+  switch (context.pattern_matcher.find(text_of(text, length), text_of(pattern, pattern_length),
+                                       static_cast<std::size_t>(from), anchors != 0)) {
     case SearchResult::found:
       return 1;
     case SearchResult::not_found:
       return 0;
     case SearchResult::bad_pattern:
-      return context.reject(context.search.fault());
+      return context.reject(context.pattern_matcher.fault());
     case SearchResult::too_long:
       break;
   }
@@ -68,8 +70,8 @@ std::int32_t find_match(void* c, const char* text, std::int32_t length, const ch
 
 std::int32_t find_plain(void* c, const char* text, std::int32_t length, const char* wanted, std::int32_t wanted_length,
                         std::int32_t from) {
-  const std::size_t at = context_of(c).search.find_plain(text_of(text, length), text_of(wanted, wanted_length),
-                                                         static_cast<std::size_t>(from));
+  const std::size_t at = context_of(c).pattern_matcher.find_plain(text_of(text, length), text_of(wanted, wanted_length),
+                                                                  static_cast<std::size_t>(from));
   return at == std::string_view::npos ? -1 : static_cast<std::int32_t>(at);
 }
 

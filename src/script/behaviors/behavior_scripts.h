@@ -30,7 +30,7 @@ struct BehaviorFile {
 
 class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
  public:
-  /// Context and Vm must exist until close().
+  /// Context and Vm must exist until detach().
   explicit BehaviorScripts(ScriptContext& context) : context_(&context) {}
 
   void attach(Vm& vm) { vm_ = &vm; }

@@ -70,7 +70,7 @@ end
 
 -- completes a creation: checks the result, then sets the properties from opts
 local function finish_creation(code, class, opts, own, h)
-  if code ~= 0 then P.check(code, P.fail_removed, h) end
+  if code ~= 0 then P.handle_result(code, P.fail_removed, h) end
   return P.apply_opts(P.answered_handle(), class, opts, own)
 end
 P.finish_creation = finish_creation
@@ -82,14 +82,14 @@ function P.pose_of(opts, subject, missing)
   for i = 0, 6 do pose[i] = missing or 0 end
   if not missing then pose[6] = 1 end
   if p ~= nil then
-    p = P.want_vec3(p, subject .. ": position")
-    pose[0], pose[1], pose[2] = P.want_number(p.x, subject), P.want_number(p.y, subject), P.want_number(p.z, subject)
+    p = P.check_vec3(p, subject .. ": position")
+    pose[0], pose[1], pose[2] = P.check_number(p.x, subject), P.check_number(p.y, subject), P.check_number(p.z, subject)
   end
   if q ~= nil then
-    q = P.want_quat(q, subject .. ": rotation")
+    q = P.check_quat(q, subject .. ": rotation")
     if q.x == 0 and q.y == 0 and q.z == 0 and q.w == 0 then fail("%s: quat(0, 0, 0, 0) is not a rotation", subject) end
-    pose[3], pose[4] = P.want_number(q.x, subject), P.want_number(q.y, subject)
-    pose[5], pose[6] = P.want_number(q.z, subject), P.want_number(q.w, subject)
+    pose[3], pose[4] = P.check_number(q.x, subject), P.check_number(q.y, subject)
+    pose[5], pose[6] = P.check_number(q.z, subject), P.check_number(q.w, subject)
   end
   return pose
 end
@@ -99,11 +99,11 @@ local function shape_named(key) return (P.find_in(P.sim, shapes, key)) end
 local part_own = { mass = true, position = true, rotation = true }
 method(body, "add_part", function(h, name, of_shape, opts)
   local subject = "add_part"
-  P.want_text(name, subject .. ": the name")
+  P.check_text(name, subject .. ": the name")
   of_shape = shape_named(of_shape)
   P.check_opts(part, opts, part_own, subject)
   local mass = opts and opts.mass
-  if mass ~= nil and P.want_number(mass, subject .. ": mass") < 0 then
+  if mass ~= nil and P.check_number(mass, subject .. ": mass") < 0 then
     fail("%s: mass must not be negative (0: a part that never moves)", subject)
   end
   local code = api.add_part(ctx, h.slot_, h.generation_, name, #name, of_shape.slot_, of_shape.generation_,
@@ -115,16 +115,16 @@ local joint_own = { type = true, position = true, axis = true }
 local frame = ffi.new("double[6]")
 method(body, "add_joint", function(h, name, parent, child, opts)
   local subject = "add_joint"
-  P.want_text(name, subject .. ": the name")
+  P.check_text(name, subject .. ": the name")
   parent, child = P.find_in(h, parts, parent), P.find_in(h, parts, child)
   P.check_opts(joint, opts, joint_own, subject)
   opts = opts or {}
-  local kind = P.want_text(opts.type or "revolute", subject .. ": type")
-  local position = P.want_vec3(opts.position or child.position, subject .. ": position")
-  local axis = P.want_vec3(opts.axis or { 0, 0, 1 }, subject .. ": axis")
+  local kind = P.check_text(opts.type or "revolute", subject .. ": type")
+  local position = P.check_vec3(opts.position or child.position, subject .. ": position")
+  local axis = P.check_vec3(opts.axis or { 0, 0, 1 }, subject .. ": axis")
   frame[0], frame[1], frame[2] = position.x, position.y, position.z
   frame[3], frame[4], frame[5] = axis.x, axis.y, axis.z
-  for i = 0, 5 do P.want_number(frame[i], subject) end
+  for i = 0, 5 do P.check_number(frame[i], subject) end
   local code = api.add_joint(ctx, h.slot_, h.generation_, name, #name, kind, #kind, parent.slot_, child.slot_, frame)
   return finish_creation(code, joint, opts, joint_own, h)
 end)
@@ -136,7 +136,7 @@ method(body, "add_motor", function(h, of_joint, opts)
 end)
 
 method(body, "copy", function(h, name, opts)
-  P.want_text(name, "copy: the name")
+  P.check_text(name, "copy: the name")
   P.check_opts(body, opts, {}, "copy")
   return finish_creation(api.copy_body(ctx, h.slot_, h.generation_, name, #name), body, opts, {}, h)
 end)
@@ -146,7 +146,7 @@ local function edit_pair(name, edit)
   method(body, name, function(h, a, b)
     a, b = P.find_in(h, parts, a), P.find_in(h, parts, b)
     local code = api.edit_pair(ctx, h.slot_, h.generation_, a.slot_, a.generation_, b.slot_, b.generation_, edit)
-    P.check(code, P.fail_removed, h)
+    P.handle_result(code, P.fail_removed, h)
   end)
 end
 edit_pair("exclude_pair", 1)
@@ -208,24 +208,24 @@ end)
 local K = ffi.typeof("link")
 local links = {}
 method(body, "link", function(h, name)
-  P.want_text(name, "body:link")
-  P.check(api.link_pose(ctx, h.slot_, h.generation_, name, #name), P.fail_removed, h)
+  P.check_text(name, "body:link")
+  P.handle_result(api.link_pose(ctx, h.slot_, h.generation_, name, #name), P.fail_removed, h)
   for _, known in ipairs(links) do
     if known.body == h and known.name == name then return known.handle end
   end
-  local entry = { body = h, name = name, handle = K(h.slot_, h.generation_, #links + 1) }
-  links[#links + 1] = entry
-  return entry.handle
+  local link = { body = h, name = name, handle = K(h.slot_, h.generation_, #links + 1) }
+  links[#links + 1] = link
+  return link.handle
 end)
 
 function P.each_link(f)
-  for _, entry in ipairs(links) do f(entry) end
+  for _, link in ipairs(links) do f(link) end
 end
 
 local function link_pose(k)
-  local entry = links[k.number_]
-  local code = api.link_pose(ctx, k.slot_, k.generation_, entry.name, #entry.name)
-  if code ~= 0 then P.check(code, P.fail_removed, entry.body) end
+  local link = links[k.number_]
+  local code = api.link_pose(ctx, k.slot_, k.generation_, link.name, #link.name)
+  if code ~= 0 then P.handle_result(code, P.fail_removed, link.body) end
 end
 local link_members = {
   name = function(k) return links[k.number_].name end,
@@ -241,8 +241,8 @@ local link_members = {
   end,
 }
 local function link_label(k)
-  local entry = links[k.number_]
-  return string.format("link '%s/%s'", P.names[entry.body], entry.name)
+  local link = links[k.number_]
+  return string.format("link '%s/%s'", P.names[link.body], link.name)
 end
 ffi.metatype(K, {
   __index = function(k, key)
@@ -258,7 +258,7 @@ method(shape, "add_child", function(h, child, position, rotation)
   child = shape_named(child)
   local code = api.add_child(ctx, h.slot_, h.generation_, child.slot_, child.generation_,
     P.pose_of({ position = position, rotation = rotation }, "add_child"))
-  P.check(code, P.fail_removed, h)
+  P.handle_result(code, P.fail_removed, h)
   return h
 end)
 

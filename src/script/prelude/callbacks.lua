@@ -5,17 +5,17 @@ local fail, istype, floor = P.fail, P.ffi.istype, math.floor
 local method = P.sim_method
 local number = answer.number
 
--- Registrations of a call that fails are rolled back. Each entry has a timer to reactivate, or a list and its previous
--- length. Entries of earlier calls are obsolete.
+-- Undo log of registrations, used if the call fails. Each record has a timer to reactivate, or a list and its previous
+-- length. Records of earlier calls are obsolete.
 local journal = {}
 function P.journal(list)
   if #journal > 0 and journal[1].call ~= answer.call then journal = {} end
   journal[#journal + 1] = { call = answer.call, list = list, count = #list }
 end
--- True in an earlier run: its file has been saved since, so only timers of its callbacks continue.
+-- True in an earlier run: its file has been saved since, so only timers that its callbacks have created continue.
 local earlier = false
 
--- returns true in an earlier run, which can't register anything any more (reported once for each line)
+-- returns true in an earlier run, which can no longer register anything (reported once for each line)
 function P.is_earlier_run(subject)
   if earlier then
     P.warn_once(subject ..
@@ -24,17 +24,17 @@ function P.is_earlier_run(subject)
   return earlier
 end
 
-local function add(list, entry, subject)
+local function add(list, callback, subject)
   if P.is_earlier_run(subject) then return end
   P.journal(list)
-  entry.in_callback = answer.top_level == 0
-  list[#list + 1] = entry
+  callback.in_callback = answer.top_level == 0
+  list[#list + 1] = callback
 end
 P.on_failure[#P.on_failure + 1] = function()
   for i = #journal, 1, -1 do
     local record = journal[i]
     if record.call == answer.call then
-      if record.timer then record.timer.off = nil end
+      if record.timer then record.timer.disabled = nil end
       if record.list then
         for k = #record.list, record.count + 1, -1 do record.list[k] = nil end
       end
@@ -47,10 +47,10 @@ end
 local function call_all(list, a, b, c, d)
   local n = #list
   for i = 1, n do
-    local entry = list[i]
-    if not entry.off then
-      if not guarded(entry.f, a, b, c, d) then
-        entry.off = true
+    local callback = list[i]
+    if not callback.disabled then
+      if not guarded(callback.f, a, b, c, d) then
+        callback.disabled = true
         api.report(ctx)
       end
     end
@@ -61,15 +61,15 @@ jit.off(call_all)
 local starts, steps, contacts, timers = {}, {}, {}, {}
 
 method("on_start", function(_, f)
-  P.want_function(f, "sim:on_start")
+  P.check_function(f, "sim:on_start")
   add(starts, { f = f }, "sim:on_start")
 end)
 method("on_step", function(_, f)
-  P.want_function(f, "sim:on_step")
+  P.check_function(f, "sim:on_step")
   add(steps, { f = f }, "sim:on_step")
 end)
 method("on_contact", function(_, f)
-  P.want_function(f, "sim:on_contact")
+  P.check_function(f, "sim:on_contact")
   add(contacts, { f = f }, "sim:on_contact")
 end)
 
@@ -78,95 +78,97 @@ local kTolerance = 1e-9
 local T = ffi.typeof("timer")
 local timer_of = setmetatable({}, { __mode = "v" })
 local timer_count = 0
-local afters = {}  -- the top level's sim:after in their order, including finished ones; the next run takes them over
+-- the timers that sim:after has created at the top level, in this order, including finished ones; the next run
+-- continues them
+local delayed_timers = {}
 
 local function now() return P.sim.time end
 
-local function add_timer(f, entry)
+local function add_timer(f, timer)
   timer_count = timer_count + 1
-  entry.f, entry.handle = f, T(timer_count, 0)
-  entry.in_callback = answer.top_level == 0
-  timer_of[timer_count] = entry
+  timer.f, timer.handle = f, T(timer_count, 0)
+  timer.in_callback = answer.top_level == 0
+  timer_of[timer_count] = timer
   P.journal(timers)
-  timers[#timers + 1] = entry
-  return entry.handle
+  timers[#timers + 1] = timer
+  return timer.handle
 end
 
-local function periods_until(entry, time) return floor((time + kTolerance) / entry.period) end
+local function periods_until(timer, time) return floor((time + kTolerance) / timer.period) end
 
 method("every", function(_, seconds, f)
-  if P.want_number(seconds, "sim:every") <= 0 then
+  if P.check_number(seconds, "sim:every") <= 0 then
     fail("sim:every takes seconds above 0, not %s", tostring(seconds))
   end
-  P.want_function(f, "sim:every")
-  local entry = { period = seconds }
-  entry.periods = periods_until(entry, now())
-  return add_timer(f, entry)
+  P.check_function(f, "sim:every")
+  local timer = { period = seconds }
+  timer.periods = periods_until(timer, now())
+  return add_timer(f, timer)
 end)
 method("after", function(_, seconds, f)
-  if P.want_number(seconds, "sim:after") < 0 then
+  if P.check_number(seconds, "sim:after") < 0 then
     fail("sim:after takes seconds of 0 or more, not %s", tostring(seconds))
   end
-  P.want_function(f, "sim:after")
-  local entry = { due = now() + seconds, seconds = seconds }
-  local handle = add_timer(f, entry)
-  if not entry.in_callback then afters[#afters + 1] = entry end
+  P.check_function(f, "sim:after")
+  local timer = { due = now() + seconds, seconds = seconds }
+  local handle = add_timer(f, timer)
+  if not timer.in_callback then delayed_timers[#delayed_timers + 1] = timer end
   return handle
 end)
 method("at", function(_, time, f)
-  P.want_number(time, "sim:at")
-  P.want_function(f, "sim:at")
+  P.check_number(time, "sim:at")
+  P.check_function(f, "sim:at")
   return add_timer(f, { due = time, fixed = true })
 end)
 
--- The run goes live after timers were last checked at `time`: periods continue, and fixed times before it don't fire
--- again.
+-- Called when this run goes live. The previous run last checked its timers at `time`: timers of sim:every keep their
+-- phase, and a timer of sim:at that was due by then doesn't fire again.
 function P.resume_timers(time)
-  for _, entry in ipairs(timers) do
-    if entry.period then
-      entry.periods = periods_until(entry, time)
-    elseif entry.fixed and time + kTolerance >= entry.due then
-      entry.off = true
+  for _, timer in ipairs(timers) do
+    if timer.period then
+      timer.periods = periods_until(timer, time)
+    elseif timer.fixed and time + kTolerance >= timer.due then
+      timer.disabled = true
     end
   end
 end
 
--- Serializes top-level timers of sim:after for the next run: delay, due time, whether it has ended. Failed ones have no
--- due time: they count again, since the edit may have fixed them.
-function P.entry.afters()
+-- Serializes the top level's timers of sim:after for the next run: delay, due time, whether it has ended. A failed
+-- timer is saved without a due time: it starts again, since the edit may have fixed it.
+function P.exports.delayed_timers()
   local list = {}
-  for i, entry in ipairs(afters) do
-    list[i] = { entry.seconds, not entry.failed and entry.due, entry.off == true and not entry.failed }
+  for i, timer in ipairs(delayed_timers) do
+    list[i] = { timer.seconds, not timer.failed and timer.due, timer.disabled == true and not timer.failed }
   end
-  return P.plain_text(list, "afters", function() end)
+  return P.plain_text(list, "delayed timers", function() end)
 end
 
--- Takes over the timers of the previous run. The n-th timer with a given delay continues the n-th one with that delay:
--- same due time, and no second call if it has fired or was canceled. Others start in this run.
-function P.entry.adopt_afters(text)
+-- Continues the delayed timers of the previous run. The n-th timer with a given delay continues the n-th one with that
+-- delay: same due time, and no second call if it has fired or was canceled. Others start in this run.
+function P.exports.adopt_delayed_timers(text)
   local of_delay = {}
   for _, before in ipairs(P.plain_value(text) or {}) do
     local queue = of_delay[before[1]] or { at = 1 }
     of_delay[before[1]] = queue
     queue[#queue + 1] = before
   end
-  for _, entry in ipairs(afters) do
-    local queue = of_delay[entry.seconds]
+  for _, timer in ipairs(delayed_timers) do
+    local queue = of_delay[timer.seconds]
     local before = queue and queue[queue.at]
     if before then
       queue.at = queue.at + 1
-      entry.due, entry.off = before[2] or entry.due, before[3] or nil
+      timer.due, timer.disabled = before[2] or timer.due, before[3] or nil
     end
   end
 end
 
--- number of pending timers of callbacks, and how many of them repeat
-function P.entry.callback_timers()
+-- returns the number of pending timers that callbacks have created, and how many of them repeat
+function P.exports.callback_timers()
   local count, repeating = 0, 0
-  for _, entry in ipairs(timers) do
-    if not entry.off and entry.in_callback then
+  for _, timer in ipairs(timers) do
+    if not timer.disabled and timer.in_callback then
       count = count + 1
-      if entry.period then repeating = repeating + 1 end
+      if timer.period then repeating = repeating + 1 end
     end
   end
   return count, repeating
@@ -177,37 +179,38 @@ local function clear(list)
 end
 
 -- Makes this an earlier run: ends everything registered by the top level, and everything but timers. Returns the number
--- of callback handlers that ended.
-function P.entry.retire()
+-- of ended handlers that callbacks have registered.
+function P.exports.retire()
   earlier = true
   local removed = P.remove_handlers()
   for _, list in ipairs { steps, contacts } do
-    for _, entry in ipairs(list) do
-      if entry.in_callback and not entry.off then removed = removed + 1 end
+    for _, callback in ipairs(list) do
+      if callback.in_callback and not callback.disabled then removed = removed + 1 end
     end
     clear(list)
   end
   clear(starts)
-  clear(afters)
+  clear(delayed_timers)
   local remaining = {}
-  for _, entry in ipairs(timers) do
-    if not entry.off and entry.in_callback then remaining[#remaining + 1] = entry end
+  for _, timer in ipairs(timers) do
+    if not timer.disabled and timer.in_callback then remaining[#remaining + 1] = timer end
   end
   clear(timers)
-  for i, entry in ipairs(remaining) do timers[i] = entry end
+  for i, timer in ipairs(remaining) do timers[i] = timer end
   return removed
 end
 
--- Timers in `state` are identified in all runs by the number of the run that set them; 0 in a handle is this run.
+-- A timer handle has the timer's number and the number of the run that created it (0: this run), so that each run can
+-- identify a timer in `state`.
 P.run_number = -1
-function P.entry.set_run_number(number) P.run_number = number end
+function P.exports.set_run_number(number) P.run_number = number end
 function P.timer(number, run) return T(number, run == P.run_number and 0 or run) end
 function P.timer_text(handle) return handle.number_, handle.run_ == 0 and P.run_number or handle.run_ end
 
 -- cancels a timer of this earlier run for another run
-function P.entry.cancel_timer(number)
-  local entry = timer_of[number]
-  if entry then entry.off = true end
+function P.exports.cancel_timer(number)
+  local timer = timer_of[number]
+  if timer then timer.disabled = true end
 end
 
 local timer_methods = {
@@ -215,11 +218,11 @@ local timer_methods = {
     if not istype(T, handle) then fail("cancel is a method of a timer: write timer:cancel()") end
     P.needs_callback("timer:cancel")
     if handle.run_ ~= 0 then return api.cancel_timer(ctx, handle.run_, handle.number_) end
-    local entry = timer_of[handle.number_]
-    if not entry or entry.off then return end
+    local timer = timer_of[handle.number_]
+    if not timer or timer.disabled then return end
     P.journal(timers)
-    journal[#journal].timer = entry
-    entry.off = true
+    journal[#journal].timer = timer
+    timer.disabled = true
   end,
 }
 ffi.metatype(T, {
@@ -230,10 +233,10 @@ ffi.metatype(T, {
   __tostring = function() return "timer" end,
 })
 
-local function is_due(entry, time)
-  if entry.off then return false end
-  if entry.period then return periods_until(entry, time) > entry.periods end
-  return time + kTolerance >= entry.due
+local function is_due(timer, time)
+  if timer.disabled then return false end
+  if timer.period then return periods_until(timer, time) > timer.periods end
+  return time + kTolerance >= timer.due
 end
 
 local function run_timers()
@@ -241,25 +244,25 @@ local function run_timers()
   if n == 0 then return end
   local time = now()
   for i = 1, n do
-    local entry = timers[i]
-    local due = is_due(entry, time)
-    if entry.period and not entry.off then entry.periods = periods_until(entry, time) end
+    local timer = timers[i]
+    local due = is_due(timer, time)
+    if timer.period and not timer.disabled then timer.periods = periods_until(timer, time) end
     if due then
-      local ok = guarded(entry.f)
+      local ok = guarded(timer.f)
       if not ok then
-        entry.failed = true
+        timer.failed = true
         api.report(ctx)
       end
-      if not (ok and entry.period) then entry.off = true end
+      if not (ok and timer.period) then timer.disabled = true end
     end
   end
   -- remove finished timers, keeping the order of the others
   local remaining = 0
   for i = 1, #timers do
-    local entry = timers[i]
-    if not entry.off then
+    local timer = timers[i]
+    if not timer.disabled then
       remaining = remaining + 1
-      timers[remaining] = entry
+      timers[remaining] = timer
     end
   end
   for i = #timers, remaining + 1, -1 do timers[i] = nil end
@@ -282,25 +285,26 @@ local function run_contacts()
   end
 end
 
-function P.entry.start()
+function P.exports.start()
   call_all(starts)
 end
-function P.entry.tick(dt)
+function P.exports.tick(dt)
   run_timers()
   run_contacts()
   call_all(steps, dt)
   P.report_fallbacks()
 end
 
--- in an earlier run: true if a timer is due; then runs the timers and returns the number of pending ones
-function P.entry.timers_due()
+-- earlier runs: returns true if a timer is due
+function P.exports.timers_due()
   local time = now()
-  for _, entry in ipairs(timers) do
-    if is_due(entry, time) then return true end
+  for _, timer in ipairs(timers) do
+    if is_due(timer, time) then return true end
   end
   return false
 end
-function P.entry.run_timers()
+-- earlier runs: runs the due timers and returns the number of pending ones
+function P.exports.run_timers()
   run_timers()
   return #timers
 end

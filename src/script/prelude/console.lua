@@ -76,7 +76,7 @@ local kExpression = "return nil, "
 local function call_and_show(chunk, skipped) return show_all(select(1 + skipped, chunk())) end
 
 -- returns kind and text of an Evaluation (base/evaluation.h)
-function P.entry.evaluate(text)
+function P.exports.evaluate(text)
   if not P.env then return "error", "no scene has run yet" end
   text = text:gsub("^%s*=", "")
   P.sources.console = text
@@ -291,7 +291,7 @@ local function complete(text)
   return table.concat(list, "\n"), #word
 end
 
-function P.entry.complete(text)
+function P.exports.complete(text)
   if not P.env then return "names", "", 0 end
   local ok, list, word = xpcall(complete, P.handler, text)
   if not ok then return "names", "", 0 end

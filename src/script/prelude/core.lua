@@ -30,7 +30,7 @@ local ctx = ffi.cast("void*", P.context)
 local answer = api.answer(ctx)
 local getinfo, format, sub, byte, concat = debug.getinfo, string.format, string.sub, string.byte, table.concat
 
-P.entry = {}       -- functions called from C++
+P.exports = {}       -- functions called from C++
 P.on_failure = {}  -- functions to run after a guarded call that failed
 P.metatables = {}  -- metatables of cdata by the number of the type
 local metatype = ffi.metatype
@@ -97,7 +97,7 @@ function P.warn_once(text)
 end
 
 -- handles the result code of a write, an action or a creation; `fail_removed` raises the error for a removed object
-function P.check(code, fail_removed, object)
+function P.handle_result(code, fail_removed, object)
   if code == 0 then return end
   if code == 1 then return P.warn_once(P.text()) end
   if code == -2 then return fail_removed(object) end
@@ -129,17 +129,17 @@ function P.needs_scene(subject)
   end
 end
 
-function P.want_function(f, subject)
+function P.check_function(f, subject)
   if type(f) ~= "function" then P.fail("%s takes a function, not %s", subject, P.describe(f)) end
 end
-function P.want_number(x, subject)
+function P.check_number(x, subject)
   if type(x) ~= "number" then P.fail("%s takes a number, not %s", subject, P.describe(x)) end
   if x ~= x or x == math.huge or x == -math.huge then
     P.fail("%s takes a finite number, not %s", subject, tostring(x))
   end
   return x
 end
-function P.want_text(x, subject)
+function P.check_text(x, subject)
   if type(x) ~= "string" then P.fail("%s takes text, not %s", subject, P.describe(x)) end
   return x
 end

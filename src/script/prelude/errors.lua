@@ -104,7 +104,7 @@ function P.stopped_fault(trace)
   return fault_of(#file > 0 and file or nil, line, P.text(), trace or {})
 end
 
-P.entry.handler, P.entry.stopped_fault = P.handler, P.stopped_fault
-function P.entry.failed()
+P.exports.handler, P.exports.stopped_fault = P.handler, P.stopped_fault
+function P.exports.failed()
   for _, f in ipairs(P.on_failure) do f() end
 end

@@ -50,13 +50,13 @@ local function bounds(n, first, last)
   return first, last
 end
 
-local function want_text(value, name)
+local function check_text(value, name)
   if type(value) == "string" then return value end
   if type(value) == "number" then return tostring(value) end
   fail("string.%s takes text, not %s", name, describe(value))
 end
 -- an integer; NaN becomes 0
-local function want_position(value, missing, name)
+local function check_position(value, missing, name)
   if value == nil then return missing end
   local number = tonumber(value)
   if not number then fail("string.%s takes a number there, not %s", name, describe(value)) end
@@ -65,17 +65,17 @@ local function want_position(value, missing, name)
 end
 
 function string.sub(text, first, last)
-  text = want_text(text, "sub")
+  text = check_text(text, "sub")
   if first == nil then fail("string.sub takes a text and its first position") end
-  first, last = bounds(#text, want_position(first, 1, "sub"), want_position(last, -1, "sub"))
+  first, last = bounds(#text, check_position(first, 1, "sub"), check_position(last, -1, "sub"))
   if not (first <= last) then return "" end
   return native_sub(text, first, last)
 end
 
 function string.byte(text, first, last)
-  text = want_text(text, "byte")
-  first = want_position(first, 1, "byte")
-  first, last = bounds(#text, first, want_position(last, first, "byte"))
+  text = check_text(text, "byte")
+  first = check_position(first, 1, "byte")
+  first, last = bounds(#text, first, check_position(last, first, "byte"))
   if not (first <= last) then return end
   return native_byte(text, first, last)
 end

@@ -74,7 +74,7 @@ end
 function P.find_in(owner, kind, key)
   if type(key) == "string" then
     local code = api.find(ctx, owner.slot_, owner.generation_, kind, key, #key)
-    if code ~= 0 then P.check(code, P.fail_removed, owner) end
+    if code ~= 0 then P.handle_result(code, P.fail_removed, owner) end
     return (handle_of(answer.slot, answer.generation))
   end
   if type(key) == "number" then

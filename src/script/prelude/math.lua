@@ -1,7 +1,7 @@
 -- Additions to Lua's `math`, colors, and the file's seeded random generator.
 local P = ...
 local ffi, api, ctx, answer, fail = P.ffi, P.api, P.ctx, P.answer, P.fail
-local V, want_number, istype = P.V, P.want_number, P.ffi.istype
+local V, check_number, istype = P.V, P.check_number, P.ffi.istype
 
 local extra = {}
 P.math_extra = extra
@@ -27,7 +27,7 @@ function P.make_random(slot)
   return function(low, high)
     if low == nil then return api.random_uniform(ctx, slot, 0) end
     if high == nil then low, high = 1, low end
-    low, high = math.floor(want_number(low, "math.random")), math.floor(want_number(high, "math.random"))
+    low, high = math.floor(check_number(low, "math.random")), math.floor(check_number(high, "math.random"))
     if low > high then fail("math.random: the range %d .. %d is empty", low, high) end
     return low + math.floor(api.random_uniform(ctx, slot, 0) * (high - low + 1))
   end
@@ -35,7 +35,7 @@ end
 
 -- red, green, blue to hue, saturation, brightness, each 0 .. 1
 function P.rgb(r, g, b)
-  r, g, b = want_number(r, "rgb"), want_number(g, "rgb"), want_number(b, "rgb")
+  r, g, b = check_number(r, "rgb"), check_number(g, "rgb"), check_number(b, "rgb")
   local high, low = math.max(r, g, b), math.min(r, g, b)
   local span, hue = high - low, 0
   if span > 0 then
@@ -54,7 +54,7 @@ local function check(self, method)
 end
 local function to_vec3(v)
   if type(v) == "number" then return (V(v, v, v)) end
-  return P.want_vec3(v, "rng:uniform")
+  return P.check_vec3(v, "rng:uniform")
 end
 function methods.uniform(self, a, b)
   check(self, "uniform")

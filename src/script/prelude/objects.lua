@@ -179,7 +179,7 @@ local function set_three(property)
         fail_type(h, property, value, own and "a vec3, or one number for the own axis" or "a vec3")
       code = api.set3(ctx, h.slot_, h.generation_, index, v.x, v.y, v.z)
     end
-    if code ~= 0 then P.check(code, fail_removed, h) end
+    if code ~= 0 then P.handle_result(code, fail_removed, h) end
   end
 end
 
@@ -200,7 +200,7 @@ local function set_flags(property)
     end
     local code = api.set3(ctx, h.slot_, h.generation_, index, number(h, value, x), number(h, value, y),
       number(h, value, z))
-    if code ~= 0 then P.check(code, fail_removed, h) end
+    if code ~= 0 then P.handle_result(code, fail_removed, h) end
   end
 end
 
@@ -213,13 +213,13 @@ local function setter_of(property)
     return function(h, q)
       if not istype(Q, q) then fail_type(h, property, q, "a quat") end
       local code = api.set4(ctx, h.slot_, h.generation_, index, q.x, q.y, q.z, q.w)
-      if code ~= 0 then P.check(code, fail_removed, h) end
+      if code ~= 0 then P.handle_result(code, fail_removed, h) end
     end
   elseif kind == kBoolean then
     return function(h, value)
       if type(value) ~= "boolean" then fail_type(h, property, value, "true or false") end
       local code = api.set1(ctx, h.slot_, h.generation_, index, value and 1 or 0)
-      if code ~= 0 then P.check(code, fail_removed, h) end
+      if code ~= 0 then P.handle_result(code, fail_removed, h) end
     end
   elseif kind == kChoice then
     return function(h, value)
@@ -227,13 +227,13 @@ local function setter_of(property)
         fail_type(h, property, value, "one of '" .. table.concat(property.choices, "' '") .. "'")
       end
       local code = api.set_choice(ctx, h.slot_, h.generation_, index, value, #value)
-      if code ~= 0 then P.check(code, fail_removed, h) end
+      if code ~= 0 then P.handle_result(code, fail_removed, h) end
     end
   end
   return function(h, value)
     if type(value) ~= "number" then fail_type(h, property, value, "a number") end
     local code = api.set1(ctx, h.slot_, h.generation_, index, value)
-    if code ~= 0 then P.check(code, fail_removed, h) end
+    if code ~= 0 then P.handle_result(code, fail_removed, h) end
   end
 end
 
@@ -266,7 +266,7 @@ local function method_of(class, property)
       if f ~= nil then n = put(h, n, f) end
     end
     local code = api.act(ctx, h.slot_, h.generation_, index, numbers, n)
-    if code ~= 0 then P.check(code, fail_removed, h) end
+    if code ~= 0 then P.handle_result(code, fail_removed, h) end
   end
 end
 

@@ -6,8 +6,8 @@ local fail, describe = P.fail, P.describe
 local handlers = {}
 local address_now, sender_now
 
-local function want_address(address, subject)
-  P.want_text(address, subject)
+local function check_address(address, subject)
+  P.check_text(address, subject)
   if string.byte(address, 1) ~= 47 then fail("%s: '%s' is not an address; it must begin with /", subject, address) end
   if #address > 1024 or address:find("[%c\128-\255 ]") then
     fail("%s: an address is up to 1024 characters of plain ASCII without blanks", subject)
@@ -17,23 +17,23 @@ end
 
 local function put(value, subject)
   local kind = type(value)
-  if kind == "number" then return api.message_number(ctx, P.want_number(value, subject)) end
+  if kind == "number" then return api.message_number(ctx, P.check_number(value, subject)) end
   if kind == "boolean" then return api.message_flag(ctx, value and 1 or 0) end
   if kind == "string" then return api.message_text(ctx, value, #value) end
   local v = P.as_vec3(value)
   if not v then fail("%s sends numbers, text, booleans and vec3s, not %s", subject, describe(value)) end
-  api.message_number(ctx, P.want_number(v.x, subject))
-  api.message_number(ctx, P.want_number(v.y, subject))
-  api.message_number(ctx, P.want_number(v.z, subject))
+  api.message_number(ctx, P.check_number(v.x, subject))
+  api.message_number(ctx, P.check_number(v.y, subject))
+  api.message_number(ctx, P.check_number(v.z, subject))
 end
 
 -- the message is complete before it is sent: an invalid value sends nothing
 local function send(subject, route, ip, port, address, ...)
   P.needs_callback(subject)
-  want_address(address, subject)
+  check_address(address, subject)
   api.message_begin(ctx, address, #address)
   for i = 1, select("#", ...) do put((select(i, ...)), subject) end
-  P.check(api.message_send(ctx, route, ip, port))
+  P.handle_result(api.message_send(ctx, route, ip, port))
 end
 
 local osc = {}
@@ -45,8 +45,8 @@ end
 
 function osc.on(self, pattern, f)
   check(self, "on")
-  want_address(pattern, "osc:on")
-  P.want_function(f, "osc:on")
+  check_address(pattern, "osc:on")
+  P.check_function(f, "osc:on")
   if P.is_earlier_run("osc:on") then return end
   P.journal(handlers)
   handlers[#handlers + 1] = { pattern = pattern, f = f, in_callback = answer.top_level == 0 }
@@ -73,7 +73,7 @@ end
 function osc.listen(self, port)
   check(self, "listen")
   P.needs_top_level("osc:listen")
-  P.want_number(port, "osc:listen")
+  P.check_number(port, "osc:listen")
   if port < 1 or port > 65535 or port % 1 ~= 0 then
     fail("osc:listen takes a port 1 .. 65535, not %s", tostring(port))
   end
@@ -109,16 +109,16 @@ end
 function osc.stream_to(self, target, opts)
   check(self, "stream_to")
   P.needs_top_level("osc:stream_to")
-  P.want_text(target, "osc:stream_to")
+  P.check_text(target, "osc:stream_to")
   P.check_opts({ setters = {} }, opts, stream_opts, "osc:stream_to")
   opts = opts or {}
-  local rate = opts.rate == nil and 60 or P.want_number(opts.rate, "osc:stream_to: rate")
+  local rate = opts.rate == nil and 60 or P.check_number(opts.rate, "osc:stream_to: rate")
   if rate < 0.1 or rate > 1000 then fail("osc:stream_to: rate is 0.1 .. 1000, not %s", tostring(rate)) end
   local bodies = opts.bodies == nil and "*" or opts.bodies
   if P.class_of(bodies) == P.classes.body then bodies = bodies.name end
-  P.want_text(bodies, "osc:stream_to: bodies")
+  P.check_text(bodies, "osc:stream_to: bodies")
   if opts.errors ~= nil and type(opts.errors) ~= "boolean" then fail("osc:stream_to: errors is true or false") end
-  P.check(api.osc_target(ctx, target, #target, rate, streams_of(opts.streams), bodies, #bodies,
+  P.handle_result(api.osc_target(ctx, target, #target, rate, streams_of(opts.streams), bodies, #bodies,
     bundle_of(opts.bundle), opts.errors and 1 or 0))
 end
 
@@ -142,8 +142,8 @@ ffi.metatype(A, {
 })
 function osc.to(self, target)
   check(self, "to")
-  P.want_text(target, "osc:to")
-  P.check(api.osc_address(ctx, target, #target))
+  P.check_text(target, "osc:to")
+  P.handle_result(api.osc_address(ctx, target, #target))
   return A(answer.number[0], answer.number[1])
 end
 
@@ -162,22 +162,22 @@ P.on_failure[#P.on_failure + 1] = function() api.osc_handlers(ctx, #handlers) en
 
 -- Calls every handler with a matching pattern. A handler that fails or is stopped is reported and disabled; its
 -- messages still count as handled.
-function P.entry.message(address, sender, ...)
+function P.exports.message(address, sender, ...)
   local handled = false
   local previous_address, previous_sender = address_now, sender_now
   address_now, sender_now = address, sender
   for i = 1, #handlers do
-    local entry = handlers[i]
-    local pattern = entry.pattern
+    local handler = handlers[i]
+    local pattern = handler.pattern
     if pattern == address or api.osc_matches(ctx, pattern, #pattern, address, #address) ~= 0 then
       handled = true
-      if not entry.off and not P.guarded(entry.f, ...) then
+      if not handler.disabled and not P.guarded(handler.f, ...) then
         api.report(ctx)
-        entry.off = api.disable_handler(ctx) ~= 0
+        handler.disabled = api.disable_handler(ctx) ~= 0
       end
     end
   end
   address_now, sender_now = previous_address, previous_sender
   return handled
 end
-jit.off(P.entry.message)
+jit.off(P.exports.message)

@@ -42,9 +42,9 @@ local function check_spec(spec, i)
     end
   end
   for _, key in ipairs { "unit", "doc" } do
-    if spec[key] ~= nil then P.want_text(spec[key], "params: '" .. name .. "': " .. key) end
+    if spec[key] ~= nil then P.check_text(spec[key], "params: '" .. name .. "': " .. key) end
   end
-  if spec.step ~= nil and P.want_number(spec.step, "params: '" .. name .. "': step") <= 0 then
+  if spec.step ~= nil and P.check_number(spec.step, "params: '" .. name .. "': step") <= 0 then
     fail("params: '%s': step is above 0", name)
   end
   if spec.rerun ~= nil and type(spec.rerun) ~= "boolean" then
@@ -59,7 +59,7 @@ local function choices_of(spec, name)
     fail("params: '%s' is text, so it needs choices = { … }", name)
   end
   for i, choice in ipairs(choices) do
-    P.want_text(choice, "params: '" .. name .. "': a choice")
+    P.check_text(choice, "params: '" .. name .. "': a choice")
     if choice == spec[2] then at = i end
   end
   if not at then fail("params: '%s': the default %s is none of its choices%s", name, describe(spec[2]),
@@ -76,7 +76,7 @@ local function declare_one(spec, i)
     put(initial, spec[2], "the default", name)
     if spec.min ~= nil then put(low, spec.min, "min", name) end
     if spec.max ~= nil then put(high, spec.max, "max", name) end
-    for k = 0, 2 do P.want_number(initial[k], "params: '" .. name .. "'") end
+    for k = 0, 2 do P.check_number(initial[k], "params: '" .. name .. "'") end
   elseif kind == kBoolean then
     put(low, 0)
     put(high, 1)
@@ -86,12 +86,12 @@ local function declare_one(spec, i)
     put(low, 0)
     put(high, #choices - 1)
   end
-  P.check(api.param_property(ctx, name, #name, kind, initial, low, high))
+  P.handle_result(api.param_property(ctx, name, #name, kind, initial, low, high))
   for _, choice in ipairs(choices) do api.param_choice(ctx, choice, #choice) end
   if spec.doc then api.param_doc(ctx, spec.doc, #spec.doc) end
   if spec.step then api.param_step(ctx, spec.step) end
   if spec.rerun then api.param_rerun(ctx) end
-  if spec.unit then P.check(api.param_unit(ctx, spec.unit, #spec.unit)) end
+  if spec.unit then P.handle_result(api.param_unit(ctx, spec.unit, #spec.unit)) end
 end
 
 -- passes a list of declarations, of the scene or of a behavior, to the API

@@ -18,7 +18,7 @@ end
 
 -- a preset by name or number
 local function put_which(which, subject)
-  if type(which) == "number" then return api.message_number(ctx, P.want_number(which, subject)) end
+  if type(which) == "number" then return api.message_number(ctx, P.check_number(which, subject)) end
   if type(which) ~= "string" then
     fail("%s takes the name or the number of a preset, not %s", subject, describe(which))
   end
@@ -32,7 +32,7 @@ end
 local store_opts = { rows = true, except = true, poses = true, velocities = true }
 local function put_patterns(patterns, subject)
   for _, pattern in ipairs(type(patterns) == "table" and patterns or { patterns }) do
-    P.want_text(pattern, subject)
+    P.check_text(pattern, subject)
     api.message_text(ctx, pattern, #pattern)
   end
 end
@@ -46,7 +46,7 @@ end
 
 function presets.store(self, name, opts)
   begin(self, "store")
-  P.want_text(name, "presets:store: the name")
+  P.check_text(name, "presets:store: the name")
   P.check_opts({ setters = {} }, opts, store_opts, "presets:store")
   api.message_text(ctx, name, #name)
   if opts then
@@ -66,9 +66,9 @@ function presets.recall(self, which, seconds, easing)
   begin(self, "recall")
   put_which(which, "presets:recall")
   if seconds == nil and easing ~= nil then fail("presets:recall takes seconds before the easing") end
-  if seconds ~= nil then api.message_number(ctx, P.want_number(seconds, "presets:recall: the seconds")) end
+  if seconds ~= nil then api.message_number(ctx, P.check_number(seconds, "presets:recall: the seconds")) end
   if easing ~= nil then
-    P.want_text(easing, "presets:recall: the easing")
+    P.check_text(easing, "presets:recall: the easing")
     api.message_text(ctx, easing, #easing)
   end
   finish("recall")
@@ -78,7 +78,7 @@ function presets.morph(self, a, b, amount)
   begin(self, "morph")
   put_which(a, "presets:morph")
   put_which(b, "presets:morph")
-  api.message_number(ctx, P.want_number(amount, "presets:morph: the amount"))
+  api.message_number(ctx, P.check_number(amount, "presets:morph: the amount"))
   finish("morph")
 end
 

@@ -16,10 +16,10 @@ local function gather_handles()
   for i, handle in ipairs(gathered) do pointers[i - 1] = ffi.cast("int32_t*", handle) end
   api.handles(ctx, pointers, #gathered)
 end
-P.entry.gather_handles = gather_handles
+P.exports.gather_handles = gather_handles
 
 -- called after a successful run, not on the simulation thread
-function P.entry.prepare()
+function P.exports.prepare()
   P.find_written()
   gather_handles()
 end
@@ -36,7 +36,7 @@ local function index_handles()
 end
 
 -- after the handles were remapped; `timers_at`: time of the last timer check of the live run, or nil
-function P.entry.become_live(timers_at)
+function P.exports.become_live(timers_at)
   index_handles()
   P.number_classes()
   P.reindex_lists()
@@ -46,7 +46,7 @@ function P.entry.become_live(timers_at)
 end
 
 -- in an earlier run: another run went live, and objects were rebuilt
-function P.entry.handles_moved()
+function P.exports.handles_moved()
   index_handles()
   P.update_classes()
   P.reindex_lists()

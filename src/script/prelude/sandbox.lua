@@ -133,13 +133,13 @@ local function compile_and_run(text, name)
 end
 
 -- runs a scene's file; false if it fails
-function P.entry.run(text, name)
+function P.exports.run(text, name)
   P.sources[name], P.main = text, name
   return P.guarded_run(compile_and_run, text, name)
 end
 
 -- all names that a scene sees, one per line: globals, members of libraries, then members and methods of objects
-function P.entry.names()
+function P.exports.names()
   local lines = {}
   local env = P.make_env(-1)
   for _, name in ipairs(P.sorted_keys(env)) do

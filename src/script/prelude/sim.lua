@@ -19,12 +19,12 @@ P.sim_method = method
 
 method("body", function(h, key) return P.find_in(h, bodies, key) end)
 method("find_body", function(h, name)
-  P.want_text(name, "sim:find_body")
+  P.check_text(name, "sim:find_body")
   if api.find(ctx, h.slot_, h.generation_, bodies, name, #name) ~= 0 then return nil end
   return P.answered_handle()
 end)
 method("add_body", function(_, name, opts)
-  P.want_text(name, "add_body: the name")
+  P.check_text(name, "add_body: the name")
   P.check_opts(classes.body, opts, {}, "add_body")
   return P.finish_creation(api.add_body(ctx, name, #name), classes.body, opts, {})
 end)
@@ -42,7 +42,7 @@ class.setters.collision_groups = function(_, names)
   if type(names) ~= "table" or #names > 16 then fail("sim.collision_groups is a list of at most 16 names") end
   local seen, list = {}, {}
   for i, name in ipairs(names) do
-    P.want_text(name, "sim.collision_groups: name " .. i)
+    P.check_text(name, "sim.collision_groups: name " .. i)
     if seen[name] then fail("sim.collision_groups: duplicate name '%s'", name) end
     seen[name], list[i] = true, name
   end
@@ -52,26 +52,27 @@ end
 -- shapes
 local numbers = ffi.new("double[3]")
 local function add_shape(name, kind, x, y, z)
-  P.want_text(name, "add_" .. kind .. "_shape: the name")
+  P.check_text(name, "add_" .. kind .. "_shape: the name")
   numbers[0], numbers[1], numbers[2] = x or 0, y or 0, z or 0
-  P.check(api.add_shape(ctx, name, #name, kind, numbers))
+  P.handle_result(api.add_shape(ctx, name, #name, kind, numbers))
   return P.answered_handle()
 end
 method("add_plane_shape", function(_, name, normal)
-  local n = P.want_vec3(normal == nil and { 0, 0, 1 } or normal, "add_plane_shape: the normal")
+  local n = P.check_vec3(normal == nil and { 0, 0, 1 } or normal, "add_plane_shape: the normal")
   return add_shape(name, "plane", n.x, n.y, n.z)
 end)
 method("add_sphere_shape", function(_, name, radius)
-  return add_shape(name, "sphere", P.want_number(radius, "add_sphere_shape: the radius"))
+  return add_shape(name, "sphere", P.check_number(radius, "add_sphere_shape: the radius"))
 end)
 method("add_box_shape", function(_, name, size)
-  local s = P.want_vec3(size, "add_box_shape: the size (full edges)")
+  local s = P.check_vec3(size, "add_box_shape: the size (full edges)")
   return add_shape(name, "box", s.x, s.y, s.z)
 end)
 for _, kind in ipairs { "cylinder", "capsule", "cone" } do
   method("add_" .. kind .. "_shape", function(_, name, radius, height)
     local subject = "add_" .. kind .. "_shape: the "
-    return add_shape(name, kind, P.want_number(radius, subject .. "radius"), P.want_number(height, subject .. "height"))
+    P.check_number(radius, subject .. "radius")
+    return add_shape(name, kind, radius, P.check_number(height, subject .. "height"))
   end)
 end
 method("add_compound_shape", function(_, name) return add_shape(name, "compound") end)
@@ -79,7 +80,7 @@ method("add_compound_shape", function(_, name) return add_shape(name, "compound"
 local mesh_opts = { scale = true, max_vertices = true }
 method("add_convex_mesh_shape", function(_, name, source, opts)
   local subject = "add_convex_mesh_shape"
-  P.want_text(name, subject .. ": the name")
+  P.check_text(name, subject .. ": the name")
   P.check_opts({ setters = {} }, opts, mesh_opts, subject)
   opts = opts or {}
   local from_file = type(source) == "string"
@@ -88,24 +89,24 @@ method("add_convex_mesh_shape", function(_, name, source, opts)
   end
   local scale = opts.scale == nil and 1 or opts.scale
   if type(scale) == "number" then scale = P.V(scale, scale, scale) end
-  scale = P.want_vec3(scale, subject .. ": scale")
-  local max_vertices = P.want_number(opts.max_vertices or (from_file and 64 or 255), subject .. ": max_vertices")
+  scale = P.check_vec3(scale, subject .. ": scale")
+  local max_vertices = P.check_number(opts.max_vertices or (from_file and 64 or 255), subject .. ": max_vertices")
   if max_vertices < 4 or max_vertices > 255 then
     fail("%s: max_vertices is 4 .. 255, not %s", subject, tostring(max_vertices))
   end
   for _, x in ipairs { scale.x, scale.y, scale.z } do
-    if P.want_number(x, subject .. ": scale") == 0 then fail("%s: scale must not be 0", subject) end
+    if P.check_number(x, subject .. ": scale") == 0 then fail("%s: scale must not be 0", subject) end
   end
   api.mesh_clear(ctx)
   if not from_file then
     if #source > 100000 then fail("%s takes up to 100000 points", subject) end
     for i, point in ipairs(source) do
-      local p = P.want_vec3(point, subject .. ": point " .. i)
-      api.mesh_point(ctx, P.want_number(p.x, subject), P.want_number(p.y, subject), P.want_number(p.z, subject))
+      local p = P.check_vec3(point, subject .. ": point " .. i)
+      api.mesh_point(ctx, P.check_number(p.x, subject), P.check_number(p.y, subject), P.check_number(p.z, subject))
     end
   end
   local file = from_file and source or ""
-  P.check(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, max_vertices))
+  P.handle_result(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, max_vertices))
   return P.answered_handle()
 end)
 
@@ -125,7 +126,7 @@ local function motor_option(motors)
   api.urdf_flag(ctx, 2, motors == "servo" and 1 or 0)
 end
 method("load_urdf", function(_, path, opts)
-  P.want_text(path, "load_urdf: the file")
+  P.check_text(path, "load_urdf: the file")
   P.check_opts(classes.body, opts, urdf_own, "load_urdf")
   opts = opts or {}
   api.urdf_clear(ctx)
@@ -137,16 +138,16 @@ method("load_urdf", function(_, path, opts)
       fail("load_urdf: pose is a table { joint = value }, not %s", describe(opts.pose))
     end
     for _, joint in ipairs(P.sorted_keys(opts.pose)) do
-      joint = P.want_text(joint, "load_urdf: pose, a joint's name")
-      api.urdf_pose(ctx, joint, #joint, P.want_number(opts.pose[joint], "load_urdf: pose, " .. joint))
+      joint = P.check_text(joint, "load_urdf: pose, a joint's name")
+      api.urdf_pose(ctx, joint, #joint, P.check_number(opts.pose[joint], "load_urdf: pose, " .. joint))
     end
   end
   local paths = opts.package_path
   for _, folder in ipairs(type(paths) == "table" and paths or { paths }) do
-    P.want_text(folder, "load_urdf: package_path")
+    P.check_text(folder, "load_urdf: package_path")
     api.urdf_package_path(ctx, folder, #folder)
   end
-  local name = opts.name == nil and "" or P.want_text(opts.name, "load_urdf: name")
+  local name = opts.name == nil and "" or P.check_text(opts.name, "load_urdf: name")
   local code = api.load_urdf(ctx, path, #path, name, #name, P.pose_of(opts, "load_urdf", 0 / 0))
   return P.finish_creation(code, classes.body, opts, urdf_own)
 end)
@@ -164,7 +165,7 @@ end
 P.finish_class(gear)
 
 local gear_own = { name = true, offset = true }
-local function want_joint(value, subject)
+local function check_joint(value, subject)
   local of = P.class_of(value)
   if not of or of.name ~= "joint" then
     fail("add_gear: %s is a joint, as body:joint(name), not %s", subject, describe(value))
@@ -181,18 +182,18 @@ local function free_gear_name(h, wanted)
   return name
 end
 method("add_gear", function(h, joint_a, joint_b, ratio, opts)
-  want_joint(joint_a, "joint_a")
-  want_joint(joint_b, "joint_b")
-  P.want_number(ratio, "add_gear: the ratio")
+  check_joint(joint_a, "joint_a")
+  check_joint(joint_b, "joint_b")
+  P.check_number(ratio, "add_gear: the ratio")
   P.check_opts(gear, opts, gear_own, "add_gear")
   opts = opts or {}
   local name = opts.name
   if name == nil then
     name = free_gear_name(h, P.names[joint_a] .. "_" .. P.names[joint_b])
   else
-    P.want_text(name, "add_gear: name")
+    P.check_text(name, "add_gear: name")
   end
-  local offset = opts.offset == nil and 0 / 0 or P.want_number(opts.offset, "add_gear: offset")
+  local offset = opts.offset == nil and 0 / 0 or P.check_number(opts.offset, "add_gear: offset")
   local code = api.add_gear(ctx, name, #name, joint_a.slot_, joint_a.generation_, joint_b.slot_, joint_b.generation_,
     ratio, offset)
   return P.finish_creation(code, gear, opts, gear_own, joint_a)

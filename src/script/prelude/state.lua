@@ -35,8 +35,8 @@ local initial_text, written_keys = "", {}
 -- initial value of `state` for the top level
 function P.first_state() return table_of(initial_text) end
 
-function P.entry.state() return text_of(state_now(), "state") end
-function P.entry.set_initial_state(text) initial_text = text end
+function P.exports.state() return text_of(state_now(), "state") end
+function P.exports.set_initial_state(text) initial_text = text end
 
 -- finds the keys that the top level wrote; the others are taken over from the live run
 function P.find_written()
@@ -50,7 +50,7 @@ function P.find_written()
   for key in next, before do compare(key) end
 end
 
-function P.entry.adopt_state(text)
+function P.exports.adopt_state(text)
   local now = state_now()
   if text == initial_text or not now then return end
   local merged = table_of(text)
@@ -80,7 +80,7 @@ local function change(target, before, after)
 end
 
 -- Runs of one scene share `state`: applies the changes made by another run.
-function P.entry.change_state(before, after)
+function P.exports.change_state(before, after)
   local now = state_now()
   if now then change(now, table_of(before), table_of(after)) end
 end

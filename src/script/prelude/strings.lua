@@ -8,17 +8,17 @@ local match = api.match(ctx)
 local kMaxLength = 4 * 2 ^ 20  -- max. length for functions that process a whole text in C
 
 local text_of = tostring
-local function want_text(value, name)
+local function check_text(value, name)
   if type(value) == "string" then return value end
   if type(value) == "number" then return text_of(value) end
   fail("string.%s takes text, not %s", name, describe(value))
 end
-local function want_short(value, name)
-  value = want_text(value, name)
+local function check_short(value, name)
+  value = check_text(value, name)
   if #value > kMaxLength then fail("string.%s takes texts of up to 4 MB", name) end
   return value
 end
-local function want_integer(value, missing, name)
+local function check_integer(value, missing, name)
   if value == nil then return missing end
   local number = tonumber(value)
   if not number then fail("string.%s takes a number there, not %s", name, describe(value)) end
@@ -68,7 +68,7 @@ local function search(text, pattern, from, anchors, name)
 end
 
 local function start_of(text, init, name)
-  init = want_integer(init, 1, name)
+  init = check_integer(init, 1, name)
   if init < 0 then init = init + #text else init = init - 1 end
   return math.max(0, math.min(#text, init))
 end
@@ -79,7 +79,7 @@ local function is_pattern(pattern) return native.find(pattern, "[%^%$%*%+%?%.%(%
 local S = {}
 
 function S.find(text, pattern, init, plain)
-  text, pattern = want_text(text, "find"), want_text(pattern, "find")
+  text, pattern = check_text(text, "find"), check_text(pattern, "find")
   local from = start_of(text, init, "find")
   if plain or not is_pattern(pattern) then
     local at = api.find_plain(ctx, text, #text, pattern, #pattern, from)
@@ -93,13 +93,13 @@ function S.find(text, pattern, init, plain)
 end
 
 function S.match(text, pattern, init)
-  text, pattern = want_text(text, "match"), want_text(pattern, "match")
+  text, pattern = check_text(text, "match"), check_text(pattern, "match")
   if not search(text, pattern, start_of(text, init, "match"), 1, "match") then return nil end
   return whole_or_captures(text)
 end
 
 function S.gmatch(text, pattern)
-  text, pattern = want_text(text, "gmatch"), want_text(pattern, "gmatch")
+  text, pattern = check_text(text, "gmatch"), check_text(pattern, "gmatch")
   local from = 0
   return function()
     if from > #text or not search(text, pattern, from, 0, "gmatch") then return nil end
@@ -153,14 +153,14 @@ local function replaced(kind, replacement, text)
 end
 
 function S.gsub(text, pattern, replacement, max_count)
-  text, pattern = want_text(text, "gsub"), want_text(pattern, "gsub")
+  text, pattern = check_text(text, "gsub"), check_text(pattern, "gsub")
   local kind = type(replacement)
   if kind == "number" then kind, replacement = "string", text_of(replacement) end
   if kind ~= "string" and kind ~= "table" and kind ~= "function" then
     fail("string.gsub replaces by text, a table or a function, not %s", describe(replacement))
   end
   if kind == "string" and not native.find(replacement, "%", 1, true) then kind = "plain" end
-  max_count = want_integer(max_count, #text + 1, "gsub")
+  max_count = check_integer(max_count, #text + 1, "gsub")
   local pieces, copied, from, count = {}, 0, 0, 0
   while count < max_count and from <= #text and search(text, pattern, from, 1, "gsub") do
     local start, stop = match.start, match["end"]
@@ -189,7 +189,7 @@ local function check_format(text, ...)
   end
   for i = 1, select("#", ...) do
     local value = select(i, ...)
-    if type(value) == "string" then want_short(value, "format") end
+    if type(value) == "string" then check_short(value, "format") end
   end
 end
 -- LuaJIT 2.1.0-beta3 crashes when it compiles a format with very many parts.
@@ -197,7 +197,7 @@ local function format_long(...) return native.format(...) end
 jit.off(format_long)
 local kLongFormat = 500
 function S.format(text, ...)
-  text = want_short(text, "format")
+  text = check_short(text, "format")
   check_format(text, ...)
   local native_format = #text > kLongFormat and format_long or native.format
   if plain(...) then return native_format(text, ...) end
@@ -209,8 +209,8 @@ function S.format(text, ...)
 end
 
 function S.rep(text, count, separator)
-  text, count = want_text(text, "rep"), want_integer(count, 0, "rep")
-  separator = separator ~= nil and want_text(separator, "rep") or ""
+  text, count = check_text(text, "rep"), check_integer(count, 0, "rep")
+  separator = separator ~= nil and check_text(separator, "rep") or ""
   if count <= 0 or #text + #separator == 0 then return "" end
   if (#text + #separator) * count > 8 * 2 ^ 20 then
     fail("string.rep makes texts of up to 8 MB, not %.0f bytes", (#text + #separator) * count)
@@ -221,7 +221,7 @@ end
 
 for _, name in ipairs { "lower", "upper", "reverse" } do
   local f = native[name]
-  S[name] = function(text) return f(want_short(text, name)) end
+  S[name] = function(text) return f(check_short(text, name)) end
 end
 
 -- separate tables, so that scripts can't modify each other's

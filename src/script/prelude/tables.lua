@@ -6,7 +6,7 @@ local fail, describe, floor = P.fail, P.describe, math.floor
 local native = { concat = table.concat, insert = table.insert, maxn = table.maxn, remove = table.remove, pcall = pcall,
   resume = coroutine.resume, create = coroutine.create }
 
-local function want_table(t, subject)
+local function check_table(t, subject)
   if type(t) ~= "table" then fail("%s takes a table, not %s", subject, describe(t)) end
   return t
 end
@@ -40,8 +40,8 @@ local function merge(from, to, left, middle, right, before)
   end
 end
 function P.sort(t, before)
-  want_table(t, "table.sort")
-  if before ~= nil then P.want_function(before, "table.sort") end
+  check_table(t, "table.sort")
+  if before ~= nil then P.check_function(before, "table.sort") end
   before = before or ascending
   local n, list, other = #t, {}, {}
   for i = 1, n do list[i] = t[i] end
@@ -58,7 +58,7 @@ end
 
 local T = { sort = P.sort }
 function T.concat(t, separator, first, last)
-  want_table(t, "table.concat")
+  check_table(t, "table.concat")
   local ok, text = native.pcall(native.concat, t, separator, first, last)
   if not ok then fail("table.concat: %s", text) end
   return text
@@ -66,7 +66,7 @@ end
 -- outside of 1 … #t + 1 the native function would iterate over all integers between
 function T.insert(...)
   local t, at, value = ...
-  want_table(t, "table.insert")
+  check_table(t, "table.insert")
   local given = select("#", ...)
   if given == 2 then return native.insert(t, at) end
   if given ~= 3 then fail("table.insert takes a table, a place if it is not the end, and a value") end
@@ -95,7 +95,7 @@ local function unwrap(ok, ...)
   return ...
 end
 local function create(f)
-  P.want_function(f, "coroutine.create")
+  P.check_function(f, "coroutine.create")
   return native.create(f)
 end
 local C = { create = create, resume = resume, status = coroutine.status, running = coroutine.running,

@@ -1,7 +1,8 @@
 -- Immutable values: vec3, quat, and the three booleans of a flags property.
 -- In this and the following files, functions that may be called in loops over many parts return (f(x)) in parentheses:
 -- LuaJIT's compiler counts a tail call as a loop iteration and aborts a trace after fifteen. Without the parentheses
--- lua_rotation_target was interpreted, and stopped for its time; lua_alignment took more than twice as long.
+-- the behavior lua_rotation_target ran interpreted and exceeded its time budget; lua_alignment took more than twice as
+-- long.
 local P = ...
 local ffi, fail, describe = P.ffi, P.fail, P.describe
 local istype, format, sqrt = ffi.istype, string.format, math.sqrt
@@ -19,17 +20,17 @@ local function as_vec3(v)
 end
 P.as_vec3 = as_vec3
 
-local function want_vec3(v, subject)
+local function check_vec3(v, subject)
   if istype(V, v) then return v end
   return as_vec3(v) or fail("%s takes a vec3, not %s", subject, describe(v))
 end
-P.want_vec3 = want_vec3
+P.check_vec3 = check_vec3
 
-local function want_quat(q, subject)
+local function check_quat(q, subject)
   if istype(Q, q) then return q end
   fail("%s takes a quat, not %s", subject, describe(q))
 end
-P.want_quat = want_quat
+P.check_quat = check_quat
 
 local function unknown_member(kind, methods)
   return function(_, key)
@@ -62,20 +63,20 @@ P.value_members = {
 }
 
 local vec3_methods = {}
-function vec3_methods.length(v) return (length(want_vec3(v, "vec3:length"))) end
+function vec3_methods.length(v) return (length(check_vec3(v, "vec3:length"))) end
 function vec3_methods.normalized(v)
-  v = want_vec3(v, "vec3:normalized")
+  v = check_vec3(v, "vec3:normalized")
   local n = length(v)
   if n > 0 then return (V(v.x / n, v.y / n, v.z / n)) end
   return (V(0, 0, 0))
 end
 function vec3_methods.dot(a, b)
-  a, b = want_vec3(a, "vec3:dot"), want_vec3(b, "vec3:dot")
+  a, b = check_vec3(a, "vec3:dot"), check_vec3(b, "vec3:dot")
   return a.x * b.x + a.y * b.y + a.z * b.z
 end
-function vec3_methods.cross(a, b) return (cross(want_vec3(a, "vec3:cross"), want_vec3(b, "vec3:cross"))) end
+function vec3_methods.cross(a, b) return (cross(check_vec3(a, "vec3:cross"), check_vec3(b, "vec3:cross"))) end
 function vec3_methods.lerp(a, b, t)
-  a, b, t = want_vec3(a, "vec3:lerp"), want_vec3(b, "vec3:lerp"), P.want_number(t, "vec3:lerp")
+  a, b, t = check_vec3(a, "vec3:lerp"), check_vec3(b, "vec3:lerp"), P.check_number(t, "vec3:lerp")
   return (V(a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t))
 end
 setmetatable(vec3_methods, { __index = unknown_member("vec3", P.value_members.vec3) })
@@ -111,7 +112,7 @@ ffi.metatype(V, {
 })
 
 function P.vec3(x, y, z)
-  if type(x) == "table" and y == nil and z == nil then return want_vec3(x, "vec3") end
+  if type(x) == "table" and y == nil and z == nil then return check_vec3(x, "vec3") end
   if (x and type(x) ~= "number") or (y and type(y) ~= "number") or (z and type(z) ~= "number") then
     fail("vec3 takes three numbers, not %s, %s, %s", describe(x), describe(y), describe(z))
   end
@@ -127,13 +128,13 @@ end
 
 local quat_methods = {}
 function quat_methods.inverse(q)
-  q = want_quat(q, "quat:inverse")
+  q = check_quat(q, "quat:inverse")
   local n = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w
   if n == 0 then fail("quat(0, 0, 0, 0) is not a rotation and has no inverse") end
   return (Q(-q.x / n, -q.y / n, -q.z / n, q.w / n))
 end
 function quat_methods.slerp(a, b, t)
-  a, b, t = want_quat(a, "quat:slerp"), want_quat(b, "quat:slerp"), P.want_number(t, "quat:slerp")
+  a, b, t = check_quat(a, "quat:slerp"), check_quat(b, "quat:slerp"), P.check_number(t, "quat:slerp")
   local cosine = a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w
   local sign = cosine < 0 and -1 or 1
   local p, s = 1 - t, t
@@ -180,15 +181,15 @@ local function quat(_, x, y, z, w)
 end
 
 local function axis(direction, angle)
-  local v = want_vec3(direction, "quat.axis")
-  local n, half = length(v), P.want_number(angle, "quat.axis") / 2
+  local v = check_vec3(direction, "quat.axis")
+  local n, half = length(v), P.check_number(angle, "quat.axis") / 2
   if n == 0 then fail("quat.axis: the axis must not be zero") end
   local s = math.sin(half) / n
   return (Q(v.x * s, v.y * s, v.z * s, math.cos(half)))
 end
 
 local function half_angle(angle)
-  angle = P.want_number(angle or 0, "quat.euler") / 2
+  angle = P.check_number(angle or 0, "quat.euler") / 2
   return math.sin(angle), math.cos(angle)
 end
 local function euler(x, y, z)

@@ -26,16 +26,16 @@ camera.setters.projection = function(h, value)
   if type(value) ~= "table" or #value ~= 4 then
     fail("visuals.camera: 'projection' takes { fovy, aspect, near, far }, not %s", describe(value))
   end
-  for i, name in ipairs(projection_members) do P.want_number(value[i], "visuals.camera: " .. name) end
+  for i, name in ipairs(projection_members) do P.check_number(value[i], "visuals.camera: " .. name) end
   if value[4] <= value[3] then fail("visuals.camera: far must be greater than near") end
   for i, name in ipairs(projection_members) do camera.setters[name](h, value[i]) end
 end
 
 camera.methods.look_at = function(h, eye, target, seconds)
   P.check_self(h, camera, "look_at")
-  eye, target = P.want_vec3(eye, "look_at: the eye"), P.want_vec3(target, "look_at: the target")
+  eye, target = P.check_vec3(eye, "look_at: the eye"), P.check_vec3(target, "look_at: the target")
   if seconds ~= nil then
-    if P.want_number(seconds, "look_at: the seconds") <= 0 then
+    if P.check_number(seconds, "look_at: the seconds") <= 0 then
       fail("look_at takes seconds above 0, not %s; without seconds the change is immediate", tostring(seconds))
     end
     P.needs_callback("camera:look_at with seconds")

@@ -41,6 +41,6 @@ local own = P.empty_list()
 warm(P.S, "__len", own)
 warm(P.S, "__index", own, 1)
 
-function P.entry.warm()
+function P.exports.warm()
   for _, call in ipairs(calls) do call_often(call[1], call[2], call[3], call[4]) end
 end

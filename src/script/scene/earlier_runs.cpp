@@ -54,8 +54,8 @@ void HandleNames::resolve(const ScriptContext& context) const {
   }
 }
 
-EarlierRuns::Run::Run(std::unique_ptr<ScriptContext> its_context, std::unique_ptr<Vm> its_vm)
-    : context(std::move(its_context)), vm(std::move(its_vm)) {}
+EarlierRuns::Run::Run(std::unique_ptr<ScriptContext> new_context, std::unique_ptr<Vm> new_vm)
+    : context(std::move(new_context)), vm(std::move(new_vm)) {}
 EarlierRuns::Run::~Run() = default;
 EarlierRuns::Run::Run(Run&&) noexcept = default;
 EarlierRuns::Run& EarlierRuns::Run::operator=(Run&& other) noexcept {
@@ -88,7 +88,7 @@ void EarlierRuns::resolve_handles(NodeId params) {
   }
 }
 
-// Each run keeps its memory and may allocate a little more, so the total is bounded by a small multiple of the limit.
+// Each run keeps its memory and may allocate a little more, so the total stays below 17 times the limit.
 ScriptLimits EarlierRuns::limits_of(const Run& run, const ScriptLimits& limits) {
   ScriptLimits own = limits;
   own.memory = run.vm->guard().memory().used() + limits.memory / kMaxRuns;

@@ -36,7 +36,7 @@ class EarlierRuns {
   static constexpr std::size_t kMaxRuns = 16;
 
   struct Run {
-    Run(std::unique_ptr<ScriptContext> its_context, std::unique_ptr<Vm> its_vm);
+    Run(std::unique_ptr<ScriptContext> new_context, std::unique_ptr<Vm> new_vm);
     ~Run();
     Run(Run&&) noexcept;
     Run& operator=(Run&&) noexcept;
@@ -70,7 +70,8 @@ class EarlierRuns {
   void set_limits(const ScriptLimits& limits);
   /// Returns the hash continued with the runs that have pending timers; unchanged if there are none.
   std::uint64_t hash(std::uint64_t start) const;
-  /// Releases runs that ended before that tick; no rewind can reach the time when they had timers.
+  /// Releases the runs whose timers ended before that tick. Call it when the history begins later, so that no rewind
+  /// needs them.
   void release_ended(std::uint64_t before);
 
   std::vector<Run>& all() { return runs_; }

@@ -94,9 +94,9 @@ void Scene::set_resimulating(bool on) {
 
 VmMode Scene::mode() const { return vm_->mode(); }
 
-bool Scene::arm() { return vm_->arm(); }
+bool Scene::enable_jit() { return vm_->enable_jit(); }
 
-void Scene::disarm() { vm_->disarm(); }
+void Scene::disable_jit() { vm_->disable_jit(); }
 
 Evaluation Scene::evaluate(std::string_view text) { return vm_->query("evaluate", text); }
 

@@ -43,9 +43,8 @@ struct CarriedTimers {
 class Scene {
  public:
   /// World and host outlive the scene. Objects that a scene created in the world stay when the scene is destroyed,
-  /// except its parameters. The mode is live only if `wanted` and no other scene of the process is, because only one
-  /// can be compiled.
-  Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::live);
+  /// except its parameters. The mode is `compiled` only if it is `wanted` and no other scene of the process has it.
+  Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::compiled);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -77,9 +76,9 @@ class Scene {
   /// While `on`, a rewind simulates recorded passes again: only the calls that the log lists are stopped. [sim]
   void set_resimulating(bool on);
   VmMode mode() const;
-  /// Switches to live mode; false while another scene is live and not disarmed.
-  bool arm();
-  void disarm();
+  /// Enables the JIT compiler. Returns false while another scene has it.
+  bool enable_jit();
+  void disable_jit();
   /// Returns a world's hash continued with the scene's generators and parameters.
   std::uint64_t state_hash(std::uint64_t start) const;
 

@@ -96,14 +96,14 @@ std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId
   }
   if (old != nullptr) {
     vm_->adopt_state(previous->vm_->state_text());
-    if (c.options.keep_timers) vm_->adopt_afters(previous->vm_->afters_text());
+    if (c.options.keep_timers) vm_->adopt_delayed_timers(previous->vm_->delayed_timers_text());
     c.timers.checked_at = old->timers.checked_at;
-    previous->disarm();
+    previous->disable_jit();
     adopt_run(*previous);
   }
   vm_->set_run_number(run_number_);
   vm_->become_live(c.timers.checked_at);
-  arm();
+  enable_jit();
   c.host.configure_osc(c.osc.config);
   return defaults;
 }

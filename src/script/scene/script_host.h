@@ -24,7 +24,7 @@ class ScriptHost {
   /// osc:to("host:port"):send.
   virtual void send_direct(const CommandOrigin& to, Message message) = 0;
   /// Ports and targets declared by osc:listen and osc:stream_to; called once after a successful run.
-  virtual void configure_osc(const OscConfig& plan) = 0;
+  virtual void configure_osc(const OscConfig& config) = 0;
   /// sim:reset() from a callback: carried out between two ticks.
   virtual void request_reset() = 0;
   /// sim:panic() from a callback: carried out before the next step.

@@ -17,7 +17,7 @@ std::string string_at(lua_State* L, int index) {
 
 }  // namespace
 
-void BehaviorCalls::store_entries() {
+void BehaviorCalls::store_exports() {
   lua_State* const L = vm_.state();
   const auto reference = [L](const char* name) {
     lua_getfield(L, -1, name);
@@ -63,7 +63,7 @@ std::int32_t BehaviorCalls::make(std::int32_t file, NodeId id) {
   lua_pushnumber(L, file);
   lua_pushnumber(L, id.slot);
   lua_pushnumber(L, id.generation);
-  const std::int32_t number = call_entry(L, 3, 1) ? static_cast<std::int32_t>(lua_tointeger(L, -1)) : 0;
+  const std::int32_t number = call_export(L, 3, 1) ? static_cast<std::int32_t>(lua_tointeger(L, -1)) : 0;
   lua_settop(L, 0);
   return number;
 }
@@ -72,7 +72,7 @@ BehaviorFault BehaviorCalls::start(std::int32_t number) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, clear_lists_);
   lua_pushnumber(L, number);
-  call_entry(L, 1, 0);
+  call_export(L, 1, 0);
   if (!push(start_of_, number)) return {};
   BehaviorFault fault = guarded_call(1, 0);
   lua_settop(L, 0);
@@ -108,7 +108,7 @@ BehaviorFault BehaviorCalls::restore(std::int32_t number, std::string_view state
   lua_rawgeti(L, LUA_REGISTRYINDEX, restore_);
   lua_pushnumber(L, number);
   lua_pushlstring(L, state.data(), state.size());
-  if (!call_entry(L, 2, 1) || !migrate || !push(migrate_of_, number)) {
+  if (!call_export(L, 2, 1) || !migrate || !push(migrate_of_, number)) {
     lua_settop(L, 0);
     return {};
   }
@@ -118,7 +118,7 @@ BehaviorFault BehaviorCalls::restore(std::int32_t number, std::string_view state
   lua_pushnumber(L, number);
   lua_pushvalue(L, -3);
   BehaviorFault fault;
-  if (call_entry(L, 2, 3) && !lua_isnil(L, -3)) {
+  if (call_export(L, 2, 3) && !lua_isnil(L, -3)) {
     fault = {string_at(L, -3), string_at(L, -2), static_cast<int>(lua_tointeger(L, -1))};
   }
   lua_settop(L, 0);
@@ -129,7 +129,7 @@ Result<std::string> BehaviorCalls::state(std::int32_t number) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, state_);
   lua_pushnumber(L, number);
-  if (!call_entry(L, 1, 2)) return Error{"its state could not be read"};
+  if (!call_export(L, 1, 2)) return Error{"its state could not be read"};
   Result<std::string> state = string_at(L, -2);
   if (lua_isnil(L, -2)) state = Error{string_at(L, -1)};
   lua_settop(L, 0);
@@ -140,7 +140,7 @@ void BehaviorCalls::drop(std::int32_t number) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, drop_);
   lua_pushnumber(L, number);
-  call_entry(L, 1, 0);
+  call_export(L, 1, 0);
 }
 
 }  // namespace limber

@@ -19,8 +19,8 @@ class BehaviorCalls {
   BehaviorCalls(const BehaviorCalls&) = delete;
   BehaviorCalls& operator=(const BehaviorCalls&) = delete;
 
-  /// Stores references to the prelude's entries; their table is on top of the stack.
-  void store_entries();
+  /// Stores references to the functions that the prelude exports; their table is on top of the stack.
+  void store_exports();
 
   /// Creates the `self` of an instance and returns its number, from 1.
   std::int32_t make(std::int32_t file, NodeId id);
@@ -41,7 +41,7 @@ class BehaviorCalls {
   BehaviorFault guarded_call(int arguments, int results);
 
   Vm& vm_;
-  int make_ = -1;  // registry references of entries
+  int make_ = -1;  // registry references of exported functions
   int clear_lists_ = -1;
   int restore_ = -1;
   int accept_migrated_state_ = -1;

@@ -17,7 +17,6 @@
 #include "base/check.h"
 #include "base/memory/archive.h"
 #include "base/system/signals.h"
-#include "script/api/script_context.h"
 #include "script/vm/call_log.h"
 
 namespace limber {
@@ -33,8 +32,8 @@ std::int64_t poll_interval(const ScriptLimits& limits) {
 
 thread_local Guard* current_guard = nullptr;
 
-// the profiler exists once per process: its owner is the live guard
-std::atomic<Guard*> live_guard{nullptr};
+// the profiler exists once per process: its owner is the guard whose state has the JIT compiler
+std::atomic<Guard*> jit_guard{nullptr};
 void (*leave_compiled_code)(int) = nullptr;  // the profiler's signal handler, which sets the flag
 
 void no_profile(void*, lua_State*, int, int) {}
@@ -64,9 +63,9 @@ void set_hot_thresholds(lua_State* L, int rounds) {
 
 }  // namespace
 
-Guard::Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits)
+Guard::Guard(lua_State* state, CallHooks& hooks, const ScriptLimits& limits)
     : state_(state),
-      context_(context),
+      hooks_(hooks),
       limits_(limits),
       memory_(
           limits.memory, [](void* guard) { static_cast<Guard*>(guard)->stop(Reason::memory); }, this),
@@ -80,7 +79,7 @@ Guard::Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limit
 
 Guard::~Guard() {
   watchdog_->remove(watch_);
-  disarm();
+  disable_jit();
   memory_.detach(state_);
 }
 
@@ -99,10 +98,10 @@ void Guard::set_functions(const Functions& functions) {
   functions_.handler = luaL_ref(state_, LUA_REGISTRYINDEX);
 }
 
-bool Guard::arm() {
-  if (live_) return true;
+bool Guard::enable_jit() {
+  if (jit_enabled_) return true;
   Guard* expected = nullptr;
-  if (!live_guard.compare_exchange_strong(expected, this)) return false;
+  if (!jit_guard.compare_exchange_strong(expected, this)) return false;
   luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
   // only its signal handler is needed, not its timer
   leave_compiled_code = system::extract_profile_handler();
@@ -110,16 +109,16 @@ bool Guard::arm() {
     luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
     if (limits_.hot_loop > 0) set_hot_thresholds(state_, limits_.hot_loop);
   }
-  live_ = true;
+  jit_enabled_ = true;
   return true;
 }
 
-void Guard::disarm() {
-  if (!live_) return;
-  live_ = false;
+void Guard::disable_jit() {
+  if (!jit_enabled_) return;
+  jit_enabled_ = false;
   luaJIT_profile_stop(state_);
   luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
-  live_guard = nullptr;
+  jit_guard = nullptr;
 }
 
 bool Guard::call(int arguments, int results, Kind kind) {
@@ -154,19 +153,19 @@ bool Guard::call(int arguments, int results, Kind kind) {
     if (fault_.stopped && kind == Kind::call && call_log_ != nullptr)
       call_log_->record_stop(fault_.file, fault_.line, fault_.text);
   }
-  if (kind == Kind::call) context_.end_call(success);
+  if (kind == Kind::call) hooks_.end_call(success);
   return success;
 }
 
 // repeats the failure of a call that was stopped when the take was recorded
 bool Guard::skip_call(int arguments) {
-  context_.begin_call();
+  hooks_.begin_call();
   const StoppedCall& stop = call_log_->skip();
   fault_ = {stop.file, stop.line, stop.text, true};
   lua_settop(state_, lua_gettop(state_) - arguments - 1);
   lua_rawgeti(state_, LUA_REGISTRYINDEX, functions_.failed);
   lua_pcall(state_, 0, 0, 0);
-  context_.end_call(false);
+  hooks_.end_call(false);
   return false;
 }
 
@@ -182,7 +181,7 @@ void Guard::begin(Kind kind) {
   stop_.begin_call();
   if (kind == Kind::call) {
     if (call_log_ != nullptr) call_log_->count_call();
-    context_.begin_call();
+    hooks_.begin_call();
   }
   memory_.begin_call(resimulating_);
   current_guard = this;
@@ -201,7 +200,7 @@ bool Guard::next_call(bool& changed) {
   watch_.next_call();
   if (stop_.reason != Reason::none || (memory_.used() > memory_.cap() / 2 && !resimulating_)) return false;
   if (call_log_ != nullptr) call_log_->count_call();
-  if (context_.next_call()) changed = true;
+  if (hooks_.next_call()) changed = true;
   memory_.begin_call(resimulating_);
   return true;
 }
@@ -210,7 +209,7 @@ void Guard::attribute_to_function() {
   if (fault_.line == 0) set_place_to_function(lua_gettop(state_));
 }
 
-// LuaJIT calls no message handler if the stack overflows while a compiled trace is left.
+// Needed because LuaJIT calls no message handler if the stack overflows while execution leaves a compiled trace.
 void Guard::attribute_to_file(std::string_view name) {
   if (fault_.line != 0 || !fault_.file.empty()) return;
   fault_.file = name;
@@ -237,7 +236,7 @@ void Guard::stop(Reason reason) {
   stop_.hook_set = true;
   lua_sethook(state_, nullptr, 0, 0);
   lua_sethook(state_, &Guard::on_hook, LUA_MASKCOUNT, 1);
-  if (live_) leave_compiled_code(SIGPROF);
+  if (jit_enabled_) leave_compiled_code(SIGPROF);
 }
 
 // an error caught by the script is raised again at its next instruction

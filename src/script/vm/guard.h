@@ -19,7 +19,6 @@ namespace limber {
 
 class Archive;
 class CallLog;
-struct ScriptContext;
 
 /// The reason for a failed call, for display.
 struct ScriptFault {
@@ -29,6 +28,17 @@ struct ScriptFault {
   bool stopped = false;  ///< Stopped by the guard for time or memory; false: the script itself raised an error.
 };
 
+/// Called at the beginning and end of each guarded call, to record its effects and to commit or roll them back.
+struct CallHooks {
+  virtual void begin_call() = 0;
+  virtual void end_call(bool success) = 0;
+  /// Commits the running call and begins another. Returns true if the ended one did more than apply forces.
+  virtual bool next_call() = 0;
+
+ protected:
+  ~CallHooks() = default;
+};
+
 class Guard {
  public:
   enum class Kind : std::uint8_t {
@@ -36,7 +46,7 @@ class Guard {
     run,   ///< A scene's top level: budget run_ms; not rolled back, since the scene of a failed run is discarded.
   };
 
-  Guard(lua_State* state, ScriptContext& context, const ScriptLimits& limits);
+  Guard(lua_State* state, CallHooks& hooks, const ScriptLimits& limits);
   ~Guard();
   Guard(const Guard&) = delete;
   Guard& operator=(const Guard&) = delete;
@@ -69,11 +79,11 @@ class Guard {
   /// Counts the calls in `calls` from now on; it outlives the guard.
   void set_call_log(CallLog& calls) { call_log_ = &calls; }
 
-  VmMode mode() const { return live_ ? VmMode::live : VmMode::interpreted; }
-  /// Switches to live mode; false while another state of the process is live.
-  bool arm();
-  /// Switches back to interpreted mode.
-  void disarm();
+  VmMode mode() const { return jit_enabled_ ? VmMode::compiled : VmMode::interpreted; }
+  /// Enables the JIT compiler, if the limits allow it. Returns false while another state of the process has it.
+  bool enable_jit();
+  /// Disables the JIT compiler: compiled code is no longer executed.
+  void disable_jit();
 
   // queries of the prelude during a call
   bool stopped() const { return stop_.error_raised; }
@@ -118,7 +128,7 @@ class Guard {
   static void on_hook(lua_State* state, lua_Debug* at);
 
   lua_State* state_;
-  ScriptContext& context_;
+  CallHooks& hooks_;
   ScriptLimits limits_;
   LuaMemory memory_;
   Watch watch_;
@@ -127,7 +137,7 @@ class Guard {
   Functions functions_;  // with on_error as handler, which calls the prelude's
   CallLog* call_log_ = nullptr;
   Kind kind_ = Kind::call;
-  bool live_ = false;
+  bool jit_enabled_ = false;
   bool running_ = false;
   bool memory_stop_ = false;
   bool resimulating_ = false;

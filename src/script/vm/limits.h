@@ -11,11 +11,11 @@ namespace limber {
 /// Factor for all time budgets: the approximate slowdown of C++ code by sanitizers.
 inline constexpr double kBudgetScale = kSanitized ? 10 : 1;
 
-/// Execution mode of a Lua state. Only one in the process can be live, because compiled code is stopped through
-/// LuaJIT's profiler.
+/// Execution mode of a Lua state. Only one state in the process can use the JIT compiler, because compiled code is
+/// stopped through LuaJIT's profiler.
 enum class VmMode : std::uint8_t {
-  interpreted,  ///< Interpreted.
-  live,         ///< Compiled (JIT).
+  interpreted,
+  compiled,  ///< By the JIT compiler, unless ScriptLimits::compiled is false.
 };
 
 struct ScriptLimits {

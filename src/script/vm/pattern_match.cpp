@@ -73,13 +73,13 @@ unsigned char byte(const char* p) { return static_cast<unsigned char>(*p); }
 
 }  // namespace
 
-const char* MatchSearch::set_fault(const char* fault) {
+const char* PatternMatcher::set_fault(const char* fault) {
   if (fault_ == nullptr) fault_ = fault;
   return nullptr;
 }
 
 // returns false when the search must end
-bool MatchSearch::count_steps(std::ptrdiff_t steps) {
+bool PatternMatcher::count_steps(std::ptrdiff_t steps) {
   steps_left_ -= steps;
   if (steps_left_ > next_poll_) return true;
   next_poll_ = steps_left_ - kPollInterval;
@@ -87,7 +87,7 @@ bool MatchSearch::count_steps(std::ptrdiff_t steps) {
   return !exhausted_;
 }
 
-SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors) {
+SearchResult PatternMatcher::find(std::string_view text, std::string_view pattern, std::size_t from, bool anchors) {
   begin_ = text.data();
   end_ = begin_ + text.size();
   // as in Lua, a zero byte ends a pattern
@@ -116,7 +116,7 @@ SearchResult MatchSearch::find(std::string_view text, std::string_view pattern, 
   return SearchResult::not_found;
 }
 
-std::size_t MatchSearch::find_plain(std::string_view text, std::string_view wanted, std::size_t from) {
+std::size_t PatternMatcher::find_plain(std::string_view text, std::string_view wanted, std::size_t from) {
   // in blocks, to poll `stop` between them
   constexpr std::size_t kBlockSize = std::size_t{1} << 16u;
   const std::size_t block_size = std::max(kBlockSize, 4 * wanted.size());
@@ -130,7 +130,7 @@ std::size_t MatchSearch::find_plain(std::string_view text, std::string_view want
   return std::string_view::npos;
 }
 
-const char* MatchSearch::match(const char* s, const char* p) {
+const char* PatternMatcher::match(const char* s, const char* p) {
   if (++depth_ > kMaxMatchDepth) return set_fault("pattern too complex");
   const char* const e = match_here(s, p);
   depth_--;
@@ -138,7 +138,7 @@ const char* MatchSearch::match(const char* s, const char* p) {
 }
 
 // Consumes %bxy, %f[set] or %1 at p; s becomes null if it does not match. False: the escape is part of a single item.
-bool MatchSearch::consume_escape(const char*& s, const char*& p) {
+bool PatternMatcher::consume_escape(const char*& s, const char*& p) {
   const char kind = p + 1 == pattern_end_ ? '\0' : p[1];
   if (kind == 'b') {
     s = balance(s, p + 2);
@@ -156,7 +156,7 @@ bool MatchSearch::consume_escape(const char*& s, const char*& p) {
 }
 
 // Returns the end of the match of pattern p at s; null: no match, or ended().
-const char* MatchSearch::match_here(const char* s, const char* p) {
+const char* PatternMatcher::match_here(const char* s, const char* p) {
   while (p != pattern_end_) {
     if (ended()) return nullptr;
     switch (*p) {
@@ -186,7 +186,7 @@ const char* MatchSearch::match_here(const char* s, const char* p) {
 
 // matches one character or class with its suffix (* + - ?); `advanced`: s and p have
 // advanced, so the caller continues with the next item
-const char* MatchSearch::match_item(const char*& s, const char*& p, bool& advanced) {
+const char* PatternMatcher::match_item(const char*& s, const char*& p, bool& advanced) {
   const char* const ep = class_end(p);
   if (ep == nullptr) return nullptr;
   const bool fits = s < end_ && matches_single(s, p, ep);
@@ -213,7 +213,7 @@ const char* MatchSearch::match_item(const char*& s, const char*& p, bool& advanc
   }
 }
 
-const char* MatchSearch::max_expand(const char* s, const char* p, const char* ep) {
+const char* PatternMatcher::max_expand(const char* s, const char* p, const char* ep) {
   std::ptrdiff_t i = 0;
   while (s + i < end_ && matches_single(s + i, p, ep)) i++;
   for (; i >= 0 && !ended(); i--) {
@@ -223,7 +223,7 @@ const char* MatchSearch::max_expand(const char* s, const char* p, const char* ep
   return nullptr;
 }
 
-const char* MatchSearch::min_expand(const char* s, const char* p, const char* ep) {
+const char* PatternMatcher::min_expand(const char* s, const char* p, const char* ep) {
   while (!ended()) {
     if (const char* const e = match(s, ep + 1)) return e;
     if (s >= end_ || !matches_single(s, p, ep)) return nullptr;
@@ -232,7 +232,7 @@ const char* MatchSearch::min_expand(const char* s, const char* p, const char* ep
   return nullptr;
 }
 
-const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_t length) {
+const char* PatternMatcher::start_capture(const char* s, const char* p, std::int32_t length) {
   if (match_.count >= Match::kMaxCaptures) return set_fault("too many captures");
   const auto at = static_cast<std::size_t>(match_.count++);
   match_.from[at] = static_cast<std::int32_t>(s - begin_);
@@ -242,7 +242,7 @@ const char* MatchSearch::start_capture(const char* s, const char* p, std::int32_
   return e;
 }
 
-const char* MatchSearch::end_capture(const char* s, const char* p) {
+const char* PatternMatcher::end_capture(const char* s, const char* p) {
   std::int32_t open = match_.count - 1;
   while (open >= 0 && match_.length[static_cast<std::size_t>(open)] != Match::kUnfinished) open--;
   if (open < 0) return set_fault("invalid pattern capture");
@@ -253,7 +253,7 @@ const char* MatchSearch::end_capture(const char* s, const char* p) {
   return e;
 }
 
-const char* MatchSearch::back_reference(const char* s, char digit) {
+const char* PatternMatcher::back_reference(const char* s, char digit) {
   const int wanted = digit - '1';
   const auto at = static_cast<std::size_t>(wanted);
   if (wanted < 0 || wanted >= match_.count || match_.length[at] == Match::kUnfinished) {
@@ -266,7 +266,7 @@ const char* MatchSearch::back_reference(const char* s, char digit) {
   return std::memcmp(begin_ + match_.from[at], s, length) == 0 ? s + length : nullptr;
 }
 
-const char* MatchSearch::balance(const char* s, const char* p) {
+const char* PatternMatcher::balance(const char* s, const char* p) {
   if (pattern_end_ - p < 2) return set_fault("unbalanced pattern");
   if (s >= end_ || *s != *p) return nullptr;
   int open = 1;
@@ -282,7 +282,7 @@ const char* MatchSearch::balance(const char* s, const char* p) {
 }
 
 // p points to the set and is advanced past it
-bool MatchSearch::frontier(const char* s, const char*& p) {
+bool PatternMatcher::frontier(const char* s, const char*& p) {
   if (p == pattern_end_ || *p != '[') return set_fault("missing '[' after '%f' in pattern") != nullptr;
   const char* const ep = class_end(p);
   if (ep == nullptr) return false;
@@ -294,7 +294,7 @@ bool MatchSearch::frontier(const char* s, const char*& p) {
   return at;
 }
 
-const char* MatchSearch::class_end(const char* p) {
+const char* PatternMatcher::class_end(const char* p) {
   const char first = *p++;
   if (first == '%') {
     if (p == pattern_end_) return set_fault("malformed pattern (ends with '%')");
@@ -309,7 +309,7 @@ const char* MatchSearch::class_end(const char* p) {
   return p + 1;
 }
 
-bool MatchSearch::matches_single(const char* s, const char* p, const char* ep) {
+bool PatternMatcher::matches_single(const char* s, const char* p, const char* ep) {
   if (!count_steps(ep - p)) return false;
   switch (*p) {
     case '.':
@@ -324,7 +324,7 @@ bool MatchSearch::matches_single(const char* s, const char* p, const char* ep) {
 }
 
 // last: points to the ]
-bool MatchSearch::in_set(unsigned char c, const char* p, const char* last) {
+bool PatternMatcher::in_set(unsigned char c, const char* p, const char* last) {
   const bool wanted = p[1] != '^';
   if (!wanted) p++;
   while (++p < last) {

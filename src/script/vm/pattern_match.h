@@ -1,5 +1,5 @@
-// MatchSearch: Lua patterns with a step limit. Lua's own matcher is C code that can't be interrupted, and some patterns
-// take it exponential time; this one gives the same results, counts its steps and can be stopped.
+// PatternMatcher: Lua patterns with a step limit. Lua's own matcher is C code that can't be interrupted, and some
+// patterns take it exponential time; this one gives the same results, counts its steps and can be stopped.
 #pragma once
 
 #include <array>
@@ -25,14 +25,14 @@ struct Match {
 enum class SearchResult : std::uint8_t {
   found,
   not_found,
-  bad_pattern,  ///< Malformed pattern; see MatchSearch::fault().
+  bad_pattern,  ///< Malformed pattern; see PatternMatcher::fault().
   too_long      ///< Too many steps, or stopped by `stop`.
 };
 
-class MatchSearch {
+class PatternMatcher {
  public:
   /// `stop` is polled regularly; true ends the search early.
-  explicit MatchSearch(std::function<bool()> stop) : stop_(std::move(stop)) {}
+  explicit PatternMatcher(std::function<bool()> stop) : stop_(std::move(stop)) {}
 
   /// Finds the first match at or after `from`. `anchors`: a ^ at the start of the pattern anchors it at `from`, as in
   /// find, match and gsub, but not in gmatch.

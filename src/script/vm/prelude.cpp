@@ -52,11 +52,11 @@ std::string_view text_at(lua_State* state, int index) {
   return text == nullptr ? std::string_view("an error without a message") : std::string_view(text, length);
 }
 
-bool call_entry(lua_State* state, int arguments, int results) {
-  const bool entry_caught_all = lua_pcall(state, arguments, results, 0) == 0;
-  if (entry_caught_all) return true;
+bool call_export(lua_State* state, int arguments, int results) {
+  const bool caught_all = lua_pcall(state, arguments, results, 0) == 0;
+  if (caught_all) return true;
   log_error("script: {}", text_at(state, -1));
-  LIMBER_CHECK(entry_caught_all);
+  LIMBER_CHECK(caught_all);
   lua_settop(state, 0);
   return false;
 }

@@ -20,6 +20,6 @@ std::span<const std::string_view> prelude_order();
 std::string_view text_at(lua_State* state, int index);
 /// Calls the prelude's function below its arguments on the stack. It catches all errors of scripts; another error is a
 /// fault of the prelude. Then it is logged, the stack is cleared, and the result is false. [sim]
-bool call_entry(lua_State* state, int arguments, int results);
+bool call_export(lua_State* state, int arguments, int results);
 
 }  // namespace limber

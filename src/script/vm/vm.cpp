@@ -88,9 +88,9 @@ Vm::Vm(ScriptContext& context, VmMode wanted)
     : state_(open_state(heap_)), guard_(state_.get(), context, context.options.limits) {
   context.guard = &guard_;
   load_prelude(context);
-  store_entries();
+  store_exports();
   context.behaviors->attach(*this);
-  if (wanted == VmMode::live) arm();
+  if (wanted == VmMode::compiled) enable_jit();
   collector_.emplace(state_.get(), guard_.memory());
 }
 
@@ -141,9 +141,9 @@ void Vm::load_prelude(ScriptContext& context) {
   }
 }
 
-void Vm::store_entries() {
+void Vm::store_exports() {
   lua_State* const L = state_.get();
-  lua_getfield(L, -1, "entry");
+  lua_getfield(L, -1, "exports");
   const auto reference = [L](const char* name) {
     lua_getfield(L, -1, name);
     return luaL_ref(L, LUA_REGISTRYINDEX);
@@ -160,16 +160,16 @@ void Vm::store_entries() {
     functions.failed = reference("failed");
     guard_.set_functions(functions);
     lua_pushvalue(L, -1);
-    entries_ = luaL_ref(L, LUA_REGISTRYINDEX);
+    exports_ = luaL_ref(L, LUA_REGISTRYINDEX);
     warm_ = reference("warm");
-    behaviors_.store_entries();
+    behaviors_.store_exports();
   }
   lua_settop(L, 0);
 }
 
 // compiles the most frequently used prelude functions before scripts call them
-bool Vm::arm() {
-  if (!guard_.arm()) return false;
+bool Vm::enable_jit() {
+  if (!guard_.enable_jit()) return false;
   lua_rawgeti(state_.get(), LUA_REGISTRYINDEX, warm_);
   call(0, 0);
   return true;
@@ -237,13 +237,13 @@ bool Vm::handle_message(const Message& message, const CommandOrigin& origin) {
   return handled;
 }
 
-Evaluation Vm::query(const char* entry, std::string_view text) {
+Evaluation Vm::query(const char* function, std::string_view text) {
   using Kind = Evaluation::Kind;
   constexpr std::pair<std::string_view, Kind> kKinds[] = {
       {"value", Kind::value}, {"error", Kind::error}, {"incomplete", Kind::incomplete}, {"names", Kind::names}};
   lua_State* const L = state_.get();
-  lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
-  lua_getfield(L, -1, entry);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, exports_);
+  lua_getfield(L, -1, function);
   push(L, text);
   Evaluation result;
   if (call(1, 3)) {

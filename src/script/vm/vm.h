@@ -26,8 +26,8 @@ struct ScriptPlace;
 
 class Vm {
  public:
-  /// The prelude's API calls work on `context`, which outlives the Vm. The mode is live only if `wanted` and no other
-  /// Vm of the process is live. [sim]
+  /// The prelude's API calls work on `context`, which outlives the Vm. The mode is `compiled` only if it is
+  /// `wanted` and no other Vm of the process has it. [sim]
   Vm(ScriptContext& context, VmMode wanted);
   ~Vm();
   Vm(const Vm&) = delete;
@@ -42,7 +42,7 @@ class Vm {
   void tick(double dt);
   /// Runs the matching osc:on handlers; false if there are none. [sim]
   bool handle_message(const Message& message, const CommandOrigin& origin);
-  /// Calls the prelude function `entry` of console.lua ("evaluate" or "complete") with a text. [sim]
+  /// Calls the exported `function` of console.lua ("evaluate" or "complete") with a text. [sim]
   Evaluation query(const char* entry, std::string_view text);
   /// Calls into behaviors of behaviors_lua/.
   BehaviorCalls& behaviors() { return behaviors_; }
@@ -52,10 +52,9 @@ class Vm {
   Guard& guard() { return guard_; }
   lua_State* state() const { return state_.get(); }
   VmMode mode() const { return guard_.mode(); }
-  /// Switches to live mode; false while another Vm is live and not disarmed.
-  bool arm();
-  /// Switches back to interpreted mode.
-  void disarm() { guard_.disarm(); }
+  /// Enables the JIT compiler, as Guard::enable_jit(), and compiles the prelude's most frequently used functions.
+  bool enable_jit();
+  void disable_jit() { guard_.disable_jit(); }
 
   /// Returns `state` serialized as text; equal data give equal texts. [sim]
   std::string state_text();
@@ -68,8 +67,8 @@ class Vm {
   /// Handles have been remapped; timers continue from the given time of the last check, if any. [sim]
   void become_live(std::optional<double> timers_at);
 
-  // Functions for an earlier run, which has been replaced; only timers of its callbacks continue.
-  /// Timers set by callbacks, and how many of them repeat.
+  // Functions for an earlier run, which has been replaced; only timers that its callbacks have created continue.
+  /// Pending timers that callbacks have created, and how many of them repeat.
   struct CallbackTimers {
     std::uint64_t timers = 0;
     std::uint64_t repeating = 0;
@@ -77,9 +76,9 @@ class Vm {
   CallbackTimers callback_timers();
   /// Ends everything but such timers. Returns the number of handlers registered by callbacks that ended.
   std::uint64_t retire();
-  /// Serializes top-level timers of sim:after, and takes over those of the previous run.
-  std::string afters_text();
-  void adopt_afters(std::string_view afters);
+  /// Serializes the top level's timers of sim:after; continues those of the previous run.
+  std::string delayed_timers_text();
+  void adopt_delayed_timers(std::string_view timers);
   /// Sets the run's number, by which timers in `state` identify it.
   void set_run_number(std::uint64_t number);
   /// Cancels a timer of this run by its number.
@@ -108,12 +107,12 @@ class Vm {
 
  private:
   void load_prelude(ScriptContext& context);
-  void store_entries();
-  bool call(int arguments, int results) { return call_entry(state_.get(), arguments, results); }
-  void push_entry(const char* name);
-  std::string text_from(const char* entry);
-  std::uint64_t count_from(const char* entry);
-  void call_with(const char* entry, double number);
+  void store_exports();
+  bool call(int arguments, int results) { return call_export(state_.get(), arguments, results); }
+  void push_export(const char* name);
+  std::string text_from(const char* name);
+  std::uint64_t count_from(const char* name);
+  void call_with(const char* name, double number);
 
   struct Closer {
     void operator()(lua_State* state) const;
@@ -122,7 +121,7 @@ class Vm {
   std::unique_ptr<lua_State, Closer> state_;
   Guard guard_;
   std::optional<GarbageCollector> collector_;  // created after the prelude is loaded
-  int entries_ = -1;  // registry references: the table of the prelude's entries, and individual ones
+  int exports_ = -1;  // registry references: the table of the functions that the prelude exports, and individual ones
   int run_ = -1;
   int start_ = -1;
   int tick_ = -1;

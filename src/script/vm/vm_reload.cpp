@@ -6,17 +6,17 @@
 namespace limber {
 
 // pushes a prelude function by name; functions that are called once per reload have no registry reference
-void Vm::push_entry(const char* name) {
+void Vm::push_export(const char* name) {
   lua_State* const L = state_.get();
-  lua_rawgeti(L, LUA_REGISTRYINDEX, entries_);
+  lua_rawgeti(L, LUA_REGISTRYINDEX, exports_);
   lua_getfield(L, -1, name);
   lua_remove(L, -2);
 }
 
-std::string Vm::text_from(const char* entry) {
+std::string Vm::text_from(const char* name) {
   lua_State* const L = state_.get();
   std::string text;
-  push_entry(entry);
+  push_export(name);
   if (call(0, 1)) {
     std::size_t length = 0;
     const char* const bytes = lua_tolstring(L, -1, &length);
@@ -26,8 +26,8 @@ std::string Vm::text_from(const char* entry) {
   return text;
 }
 
-std::uint64_t Vm::count_from(const char* entry) {
-  push_entry(entry);
+std::uint64_t Vm::count_from(const char* name) {
+  push_export(name);
   const std::uint64_t count = call(0, 1) ? static_cast<std::uint64_t>(lua_tonumber(state_.get(), -1)) : 0;
   lua_settop(state_.get(), 0);
   return count;
@@ -37,25 +37,25 @@ std::string Vm::state_text() { return text_from("state"); }
 
 void Vm::begin_detached(std::string_view state) {
   lua_State* const L = state_.get();
-  push_entry("set_initial_state");
+  push_export("set_initial_state");
   lua_pushlstring(L, state.data(), state.size());
   call(1, 0);
 }
 
 void Vm::prepare() {
-  push_entry("prepare");
+  push_export("prepare");
   call(0, 0);
 }
 
 void Vm::adopt_state(std::string_view state) {
-  push_entry("adopt_state");
+  push_export("adopt_state");
   lua_pushlstring(state_.get(), state.data(), state.size());
   call(1, 0);
 }
 
 void Vm::become_live(std::optional<double> timers_at) {
   lua_State* const L = state_.get();
-  push_entry("become_live");
+  push_export("become_live");
   if (timers_at) {
     lua_pushnumber(L, *timers_at);
   } else {
@@ -67,7 +67,7 @@ void Vm::become_live(std::optional<double> timers_at) {
 Vm::CallbackTimers Vm::callback_timers() {
   lua_State* const L = state_.get();
   CallbackTimers all;
-  push_entry("callback_timers");
+  push_export("callback_timers");
   if (call(0, 2)) {
     all.timers = static_cast<std::uint64_t>(lua_tonumber(L, -2));
     all.repeating = static_cast<std::uint64_t>(lua_tonumber(L, -1));
@@ -78,16 +78,16 @@ Vm::CallbackTimers Vm::callback_timers() {
 
 std::uint64_t Vm::retire() { return count_from("retire"); }
 
-std::string Vm::afters_text() { return text_from("afters"); }
+std::string Vm::delayed_timers_text() { return text_from("delayed_timers"); }
 
-void Vm::adopt_afters(std::string_view afters) {
-  push_entry("adopt_afters");
-  lua_pushlstring(state_.get(), afters.data(), afters.size());
+void Vm::adopt_delayed_timers(std::string_view timers) {
+  push_export("adopt_delayed_timers");
+  lua_pushlstring(state_.get(), timers.data(), timers.size());
   call(1, 0);
 }
 
-void Vm::call_with(const char* entry, double number) {
-  push_entry(entry);
+void Vm::call_with(const char* name, double number) {
+  push_export(name);
   lua_pushnumber(state_.get(), number);
   call(1, 0);
 }
@@ -97,17 +97,17 @@ void Vm::set_run_number(std::uint64_t number) { call_with("set_run_number", stat
 void Vm::cancel_timer(std::int32_t number) { call_with("cancel_timer", number); }
 
 void Vm::gather_handles() {
-  push_entry("gather_handles");
+  push_export("gather_handles");
   call(0, 0);
 }
 
 void Vm::handles_moved() {
-  push_entry("handles_moved");
+  push_export("handles_moved");
   call(0, 0);
 }
 
 bool Vm::timers_due() {
-  push_entry("timers_due");
+  push_export("timers_due");
   const bool due = call(0, 1) && lua_toboolean(state_.get(), -1) != 0;
   lua_settop(state_.get(), 0);
   return due;
@@ -119,7 +119,7 @@ std::uint64_t Vm::run_timers() {
 }
 
 void Vm::apply_state_changes(std::string_view before, std::string_view after) {
-  push_entry("change_state");
+  push_export("change_state");
   lua_pushlstring(state_.get(), before.data(), before.size());
   lua_pushlstring(state_.get(), after.data(), after.size());
   call(2, 0);

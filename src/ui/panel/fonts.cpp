@@ -46,11 +46,11 @@ bool is_known(unsigned character) {
 
 std::string find_font(const FontChoice& choice, const std::string& root, std::vector<std::string>& warnings) {
   namespace fs = std::filesystem;
-  std::error_code fault;
+  std::error_code error;
   const fs::path best = fs::path(root) / choice.file;
-  if (fs::is_regular_file(best, fault)) return best.string();
+  if (fs::is_regular_file(best, error)) return best.string();
   const fs::path other = fs::path(root) / choice.replacement;
-  const bool dejavu = fs::is_regular_file(other, fault);
+  const bool dejavu = fs::is_regular_file(other, error);
   warnings.push_back(fmt::format("font {} not found, using {} instead. Install it with apt-get install {}", choice.name,
                                  dejavu ? "DejaVu" : "a bitmap font of fixed size", choice.package));
   return dejavu ? other.string() : "";
@@ -84,10 +84,10 @@ FontFiles find_fonts(const std::string& root) {
   FontFiles files;
   files.text = find_font(kTextFont, root, files.warnings);
   files.code = find_font(kCodeFont, root, files.warnings);
-  std::error_code fault;
+  std::error_code error;
   for (const char* const other : kFallbackFonts) {
     const std::filesystem::path file = std::filesystem::path(root) / other;
-    if (files.fallback.empty() && std::filesystem::is_regular_file(file, fault)) files.fallback = file.string();
+    if (files.fallback.empty() && std::filesystem::is_regular_file(file, error)) files.fallback = file.string();
   }
   return files;
 }

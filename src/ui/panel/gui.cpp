@@ -32,12 +32,12 @@ const char* get_clipboard(void* options) {
 }
 
 // Performs the hotkey actions that only need the context.
-void perform_in_context(HotkeyAction action, PanelContext& context) {
+void perform_in_context(HotkeyAction action, GuiContext& context) {
   switch (action) {
     case HotkeyAction::play_pause:
       if (context.snapshot != nullptr) context.send(context.snapshot->paused ? "/transport/play" : "/transport/pause");
       break;
-    case HotkeyAction::step:
+    case HotkeyAction::step_forward:
       context.step_time(1);
       break;
     case HotkeyAction::step_back:
@@ -46,11 +46,11 @@ void perform_in_context(HotkeyAction action, PanelContext& context) {
     case HotkeyAction::rewind:
       context.rewind(kRewindSeconds);
       break;
-    case HotkeyAction::record:
-      context.record();
+    case HotkeyAction::toggle_recording:
+      context.toggle_recording();
       break;
-    case HotkeyAction::play_take:
-      context.play_take();
+    case HotkeyAction::toggle_take_playback:
+      context.toggle_take_playback();
       break;
     case HotkeyAction::panic:
       context.panic();
@@ -64,7 +64,7 @@ void perform_in_context(HotkeyAction action, PanelContext& context) {
     case HotkeyAction::redo:
       context.redo();
       break;
-    case HotkeyAction::overlay:
+    case HotkeyAction::toggle_overlay:
       context.toggle_overlay();
       break;
     default:
@@ -91,7 +91,7 @@ Gui::Gui(EngineLink& link, GuiOptions options)
   for (const std::string& warning : files_.warnings) log_warning("{}", warning);
   context_.settings = options_.settings;
   hotkeys_ = Hotkeys(context_.settings.keys);
-  for (const std::string& fault : hotkeys_.faults()) log_warning("panel settings: {}", fault);
+  for (const std::string& error : hotkeys_.errors()) log_warning("panel settings: {}", error);
   context_.copy = options_.copy;
   context_.options = &options_;
   for (const PanelType& type : panel_types()) panels_.push_back({type, type.make()});
@@ -164,7 +164,7 @@ void Gui::frame(const GuiFrame& frame) {
   ImGui::Render();
 }
 
-void Gui::paint() {
+void Gui::render() {
   ImGui::SetCurrentContext(imgui_context_);
   if (options_.draws) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
 }
@@ -205,34 +205,33 @@ void Gui::bind_key(const KeyPress& press) {
     keys[name] = key_text(press);
   }
   hotkeys_ = Hotkeys(keys);
-  for (const std::string& fault : hotkeys_.faults()) context_.show_notice(fault);
+  for (const std::string& error : hotkeys_.errors()) context_.show_notice(error);
 }
 
 void Gui::perform(HotkeyAction action, const KeyPress& press) {
-  PanelSettings& settings = context_.settings;
+  GuiSettings& settings = context_.settings;
   const auto text_size = [&](double change) {
-    settings.text_size =
-        std::clamp(settings.text_size + change, PanelSettings::kMinTextSize, PanelSettings::kMaxTextSize);
+    settings.text_size = std::clamp(settings.text_size + change, GuiSettings::kMinTextSize, GuiSettings::kMaxTextSize);
     context_.show_notice(fmt::format("Text size {:.0f} px", settings.text_size));
   };
   const auto digit = static_cast<std::size_t>(press.key) - static_cast<std::size_t>(GuiKey::digit_1) + 1;
   switch (action) {
-    case HotkeyAction::hide:
+    case HotkeyAction::toggle_panel:
       settings.hidden = !settings.hidden;
       break;
-    case HotkeyAction::help:
+    case HotkeyAction::toggle_help:
       context_.show_help = !context_.show_help;
       break;
-    case HotkeyAction::search:
+    case HotkeyAction::focus_search:
       context_.requests.focus_search = true;
       break;
-    case HotkeyAction::larger:
+    case HotkeyAction::increase_text_size:
       text_size(1);
       break;
-    case HotkeyAction::smaller:
+    case HotkeyAction::decrease_text_size:
       text_size(-1);
       break;
-    case HotkeyAction::recall:
+    case HotkeyAction::recall_preset:
       context_.recall(static_cast<double>(digit));
       break;
     case HotkeyAction::store_view:
@@ -242,12 +241,12 @@ void Gui::perform(HotkeyAction action, const KeyPress& press) {
       views_.restore(context_, digit);
       actions_.push_back(action);  // ends following an object
       break;
-    case HotkeyAction::earlier:
-    case HotkeyAction::later:
-      context_.requests.move_behavior = action == HotkeyAction::earlier ? -1 : 1;
+    case HotkeyAction::move_behavior_earlier:
+    case HotkeyAction::move_behavior_later:
+      context_.requests.move_behavior = action == HotkeyAction::move_behavior_earlier ? -1 : 1;
       break;
-    case HotkeyAction::output:
-    case HotkeyAction::full_screen:
+    case HotkeyAction::toggle_output_window:
+    case HotkeyAction::toggle_full_screen:
     case HotkeyAction::default_view:
       actions_.push_back(action);
       break;
@@ -293,8 +292,8 @@ void Gui::draw_tabs(std::size_t slot, const std::vector<DockedPanel*>& panels) {
       continue;
     }
     ImGui::PushStyleColor(ImGuiCol_Button,
-                          packed_color(i == selected ? Tone::field : Tone::panel, i == selected ? 1 : 0));
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(i == selected ? Tone::text : Tone::secondary));
+                          packed_color(i == selected ? ThemeColor::field : ThemeColor::panel, i == selected ? 1 : 0));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(i == selected ? ThemeColor::text : ThemeColor::secondary));
     if (ImGui::Button(fmt::format("{}###tab_{}", title, type.name).c_str())) selected = i;
     ImGui::PopStyleColor(2);
     context_.names.add(fmt::format("tab:{}", type.name));
@@ -321,7 +320,7 @@ void Gui::draw_help_key(const Hotkey& hotkey) {
 
 void Gui::draw_key_text(const std::string& keys) const {
   ImGui::PushFont(context_.fonts.code);
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(ThemeColor::accent));
   ImGui::TextUnformatted(keys.c_str());
   ImGui::PopStyleColor();
   ImGui::PopFont();
@@ -362,19 +361,19 @@ void Gui::draw_help() {
 }
 
 // Draws the mouse spring: a circle at the dragged point, a line to the mouse and the part's name.
-void Gui::draw_spring(const PanelContext::SpringMarker& spring) const {
+void Gui::draw_spring(const SpringMarker& spring) const {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const auto s = static_cast<float>(context_.scale);
   const ImVec2 from{static_cast<float>(spring.x), static_cast<float>(spring.y)};
   const ImVec2 to{static_cast<float>(spring.to_x), static_cast<float>(spring.to_y)};
-  list.AddCircle(from, 13 * s, packed_color(Tone::accent), 32, 2 * s);
-  list.AddLine(from, to, packed_color(Tone::text), 1.5F * s);
-  list.AddCircleFilled(to, 4 * s, packed_color(Tone::text), 16);
+  list.AddCircle(from, 13 * s, packed_color(ThemeColor::accent), 32, 2 * s);
+  list.AddLine(from, to, packed_color(ThemeColor::text), 1.5F * s);
+  list.AddCircleFilled(to, 4 * s, packed_color(ThemeColor::text), 16);
   const ImVec2 size = ImGui::CalcTextSize(spring.name.c_str());
   const ImVec2 at{to.x + 12 * s, to.y - size.y / 2};
   list.AddRectFilled({at.x - 5 * s, at.y - 3 * s}, {at.x + size.x + 5 * s, at.y + size.y + 3 * s},
-                     packed_color(Tone::panel, 0.9), 4 * s);
-  list.AddText(at, packed_color(Tone::text), spring.name.c_str());
+                     packed_color(ThemeColor::panel, 0.9), 4 * s);
+  list.AddText(at, packed_color(ThemeColor::text), spring.name.c_str());
 }
 
 // Draws the panic banner in the middle of the view.

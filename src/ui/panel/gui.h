@@ -1,5 +1,6 @@
-// Gui: the panel over the view, built with Dear ImGui. Read panel.h and property_widget.h next. It reads snapshots,
-// sends messages and holds no simulation state. It draws with OpenGL, or not at all in tests.
+// Gui: the user interface over the view, built with Dear ImGui. Users call all of it the panel; in the code a Panel is
+// one of its parts, such as the list of behaviors. It reads snapshots, sends messages and holds no simulation state. It
+// draws with OpenGL, or not at all in tests. Read panel.h and property_widget.h next.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "ui/panel/gui_context.h"
 #include "ui/panel/hotkeys.h"
 #include "ui/panel/input.h"
 #include "ui/panel/layout.h"
 #include "ui/panel/panel.h"
-#include "ui/panel/panel_context.h"
 #include "ui/panel/stored_views.h"
 
 struct ImGuiContext;
@@ -23,8 +24,8 @@ namespace limber {
 struct GuiOptions {
   bool draws = true;                       ///< Draw with OpenGL in the current context; false: nothing is drawn.
   std::string glsl = "#version 330 core";  ///< First line of the shaders, as required by the context.
-  std::string font_root = "/";
-  PanelSettings settings;
+  std::string font_root = "/";             ///< Root of the file system for the search of fonts; tests set another.
+  GuiSettings settings;
   std::vector<std::string> behavior_types;  ///< Types that can be added.
   std::vector<std::string> history;         ///< Console lines of earlier sessions.
   std::function<void(const std::string&)> store_line = [](const std::string&) {};  ///< Stores a console line.
@@ -55,19 +56,19 @@ class Gui {
   /// Runs one frame: reads snapshots, lays out the panels, sends messages. [main]
   void frame(const GuiFrame& frame);
   /// Draws the last frame to the current OpenGL framebuffer. [main]
-  void paint();
+  void render();
 
   /// True if the mouse is over the panel or drags one of its widgets, so that the view must ignore it.
   bool wants_mouse() const;
   /// Sets the labels of keys on the user's keyboard, for the help. [main]
-  void key_labels(KeyLabels labels) { key_labels_ = std::move(labels); }
+  void set_key_labels(KeyLabels labels) { key_labels_ = std::move(labels); }
   /// Returns the hotkey actions since the last call that the window must perform.
   std::vector<HotkeyAction> consume_actions();
 
   const WidgetNames& names() const { return context_.names; }
-  const PanelSettings& settings() const { return context_.settings; }
+  const GuiSettings& settings() const { return context_.settings; }
   const Layout& layout() const { return layout_; }
-  PanelContext& context() { return context_; }
+  GuiContext& context() { return context_; }
   const GuiOptions& options() const { return options_; }
 
  private:
@@ -83,7 +84,7 @@ class Gui {
   void bind_key(const KeyPress& press);
   void draw_slot(PanelSlot slot);
   void draw_tabs(std::size_t slot, const std::vector<DockedPanel*>& panels);
-  void draw_spring(const PanelContext::SpringMarker& spring) const;
+  void draw_spring(const SpringMarker& spring) const;
   void draw_help();
   void draw_help_key(const Hotkey& hotkey);
   void draw_key_text(const std::string& keys) const;
@@ -92,7 +93,7 @@ class Gui {
 
   GuiOptions options_;
   ImGuiContext* imgui_context_;
-  PanelContext context_;
+  GuiContext context_;
   StoredViews views_;
   InputQueue input_;
   Layout layout_;

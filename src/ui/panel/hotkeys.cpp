@@ -21,30 +21,30 @@ constexpr std::array kHotkeys = {
     Hotkey{{GuiKey::f12, {}}, A::panic, "panic", "Panic: stop all motion; press again to resume", true},
     Hotkey{{GuiKey::period, kCtrl}, A::panic, "panic_2", "Panic", true},
     Hotkey{{GuiKey::space, {}}, A::play_pause, "play", "Play or pause"},
-    Hotkey{{GuiKey::period, {}}, A::step, "step", "Step one tick"},
+    Hotkey{{GuiKey::period, {}}, A::step_forward, "step", "Step one tick"},
     Hotkey{{GuiKey::comma, {}}, A::step_back, "step_back", "Step back one tick"},
     Hotkey{{GuiKey::comma, kShift}, A::rewind, "rewind", "Rewind two seconds"},
-    Hotkey{{GuiKey::r, kCtrl}, A::record, "record", "Record a take from the start of the scene, or stop it"},
-    Hotkey{{GuiKey::r, kCtrlShift}, A::play_take, "play_take", "Play the latest take, or stop it"},
+    Hotkey{{GuiKey::r, kCtrl}, A::toggle_recording, "record", "Record a take from the start of the scene, or stop it"},
+    Hotkey{{GuiKey::r, kCtrlShift}, A::toggle_take_playback, "play_take", "Play the latest take, or stop it"},
     Hotkey{{GuiKey::backspace, kCtrl}, A::reset, "reset", "Reset the scene", true},
-    Hotkey{{GuiKey::digit_1, {}}, A::recall, "recall", "Recall a preset", false, 8},
+    Hotkey{{GuiKey::digit_1, {}}, A::recall_preset, "recall", "Recall a preset", false, 8},
     Hotkey{{GuiKey::z, kCtrl}, A::undo, "undo", "Undo an edit"},
     Hotkey{{GuiKey::z, kCtrlShift}, A::redo, "redo", "Redo an edit"},
     Hotkey{{GuiKey::y, kCtrl}, A::redo, "redo_2", "Redo an edit"},
-    Hotkey{{GuiKey::f, kCtrl}, A::search, "search", "Search parameters", true},
-    Hotkey{{GuiKey::up, kCtrl}, A::earlier, "earlier", "Run the selected behavior earlier"},
-    Hotkey{{GuiKey::down, kCtrl}, A::later, "later", "Run the selected behavior later"},
-    Hotkey{{GuiKey::equal, kCtrl}, A::larger, "larger", "Larger text", true},
-    Hotkey{{GuiKey::minus, kCtrl}, A::smaller, "smaller", "Smaller text", true},
+    Hotkey{{GuiKey::f, kCtrl}, A::focus_search, "search", "Search parameters", true},
+    Hotkey{{GuiKey::up, kCtrl}, A::move_behavior_earlier, "earlier", "Run the selected behavior earlier"},
+    Hotkey{{GuiKey::down, kCtrl}, A::move_behavior_later, "later", "Run the selected behavior later"},
+    Hotkey{{GuiKey::equal, kCtrl}, A::increase_text_size, "larger", "Larger text", true},
+    Hotkey{{GuiKey::minus, kCtrl}, A::decrease_text_size, "smaller", "Smaller text", true},
     Hotkey{{GuiKey::home, {}}, A::default_view, "home_view", "Default view"},
     Hotkey{{GuiKey::digit_1, kCtrl}, A::restore_view, "go_to_view", "Restore a stored view", false, 9},
     Hotkey{{GuiKey::digit_1, kCtrlShift}, A::store_view, "keep_view", "Store this view", false, 9},
-    Hotkey{{GuiKey::f1, {}}, A::hide, "hide", "Hide the panel", true},
-    Hotkey{{GuiKey::f2, {}}, A::help, "help", "Show this help", true},
-    Hotkey{{GuiKey::f3, {}}, A::overlay, "overlay", "Show joints, contacts, forces and targets", true},
-    Hotkey{{GuiKey::f10, {}}, A::output, "output", "Open or close the output window", true},
+    Hotkey{{GuiKey::f1, {}}, A::toggle_panel, "hide", "Hide the panel", true},
+    Hotkey{{GuiKey::f2, {}}, A::toggle_help, "help", "Show this help", true},
+    Hotkey{{GuiKey::f3, {}}, A::toggle_overlay, "overlay", "Show joints, contacts, forces and targets", true},
+    Hotkey{{GuiKey::f10, {}}, A::toggle_output_window, "output", "Open or close the output window", true},
     Hotkey{{GuiKey::f11, {}},
-           A::full_screen,
+           A::toggle_full_screen,
            "full_screen",
            "Full screen on or off: the output window, else this one",
            true},
@@ -123,7 +123,7 @@ Hotkeys::Hotkeys(const KeyBindings& bindings) : list_(kHotkeys.begin(), kHotkeys
     if (reason.empty()) {
       hotkey->press = *press;
     } else {
-      faults_.push_back(fmt::format("key '{}' for '{}': {}", printable(text), printable(name), reason));
+      errors_.push_back(fmt::format("key '{}' for '{}': {}", printable(text), printable(name), reason));
     }
   }
 }

@@ -15,35 +15,35 @@ namespace limber {
 
 enum class HotkeyAction : std::uint8_t {
   play_pause,
-  step,
+  step_forward,
   step_back,
   rewind,
-  record,
-  play_take,
+  toggle_recording,
+  toggle_take_playback,
   panic,
   reset,
-  hide,
-  help,
-  search,
+  toggle_panel,
+  toggle_help,
+  focus_search,
   undo,
   redo,
-  larger,
-  smaller,
-  overlay,
-  earlier,
-  later,
-  output,
-  full_screen,
+  increase_text_size,
+  decrease_text_size,
+  toggle_overlay,
+  move_behavior_earlier,
+  move_behavior_later,
+  toggle_output_window,
+  toggle_full_screen,
   default_view,
   store_view,
   restore_view,
-  recall,
+  recall_preset,
 };
 
 /// One or several consecutive keys for an action.
 struct Hotkey {
   KeyPress press;
-  HotkeyAction action = HotkeyAction::help;
+  HotkeyAction action = HotkeyAction::toggle_help;
   const char* name = "";  ///< Unique; used in the panel's settings.
   const char* description = "";
   bool while_typing = false;  ///< Also active while a text field has the focus.
@@ -66,8 +66,8 @@ class Hotkeys {
  public:
   explicit Hotkeys(const KeyBindings& bindings = {});
   std::span<const Hotkey> all() const { return list_; }
-  /// Error texts of rejected bindings.
-  const std::vector<std::string>& faults() const { return faults_; }
+  /// Errors of rejected bindings.
+  const std::vector<std::string>& errors() const { return errors_; }
   const Hotkey* find(std::string_view name) const;
   /// Returns the hotkey of a key press or null. `typing`: a text field has the focus.
   const Hotkey* match(const KeyPress& press, bool typing) const;
@@ -76,7 +76,7 @@ class Hotkeys {
 
  private:
   std::vector<Hotkey> list_;
-  std::vector<std::string> faults_;
+  std::vector<std::string> errors_;
 };
 
 /// Returns "Ctrl+R", or "1 .. 8" for consecutive keys.

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "ui/panel/gui_context.h"
 #include "ui/panel/layout.h"
-#include "ui/panel/panel_context.h"
 
 namespace limber {
 
@@ -21,11 +21,11 @@ class Panel {
   Panel& operator=(const Panel&) = delete;
 
   /// Draws into the current window.
-  virtual void draw(PanelContext& context) = 0;
+  virtual void draw(GuiContext& context) = 0;
   /// Called in each frame before drawing, even if the panel is hidden; handles events that must not be missed.
-  virtual void update(PanelContext& context) { (void)context; }
+  virtual void update(GuiContext& context) { (void)context; }
   /// Text after the title, for example a count.
-  virtual std::string badge(const PanelContext& context) const {
+  virtual std::string badge(const GuiContext& context) const {
     (void)context;
     return {};
   }

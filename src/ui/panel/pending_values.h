@@ -1,5 +1,5 @@
 // PendingValues: values set in the panel that are not yet contained in a value snapshot. The panel displays them until
-// a snapshot arrives that was made after the last set value.
+// a snapshot arrives that was taken after the last set().
 #pragma once
 
 #include <array>

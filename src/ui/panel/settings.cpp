@@ -27,7 +27,7 @@ double number_of(const Json& json, const char* name, double fallback, double low
   return found != json.end() && found->is_number() ? std::clamp(found->get<double>(), low, high) : fallback;
 }
 
-void read_lists(const Json& json, PanelSettings& settings) {
+void read_lists(const Json& json, GuiSettings& settings) {
   if (const auto list = json.find("favourites"); list != json.end() && list->is_array()) {
     for (const Json& path : *list) {
       if (path.is_string()) settings.favorites.insert(path.get<std::string>());
@@ -42,18 +42,18 @@ void read_lists(const Json& json, PanelSettings& settings) {
 
 }  // namespace
 
-Result<PanelSettings> read_settings(std::string_view text) {
+Result<GuiSettings> read_settings(std::string_view text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return Error{"not a JSON object"};
-  PanelSettings settings;
+  GuiSettings settings;
   settings.text_size =
-      number_of(json, "text_size", settings.text_size, PanelSettings::kMinTextSize, PanelSettings::kMaxTextSize);
-  settings.morph_seconds = number_of(json, "morph_seconds", settings.morph_seconds, 0, PanelSettings::kMaxMorphSeconds);
+      number_of(json, "text_size", settings.text_size, GuiSettings::kMinTextSize, GuiSettings::kMaxTextSize);
+  settings.morph_seconds = number_of(json, "morph_seconds", settings.morph_seconds, 0, GuiSettings::kMaxMorphSeconds);
   settings.easing = static_cast<int>(number_of(json, "easing", settings.easing, 0, 3));
   settings.window_width = static_cast<int>(number_of(json, "window_width", 0, 0, kMaxWindowSize));
   settings.window_height = static_cast<int>(number_of(json, "window_height", 0, 0, kMaxWindowSize));
   for (const auto& [name, value] : {std::pair("hidden", &settings.hidden),
-                                    {"fullscreen", &settings.fullscreen},
+                                    {"fullscreen", &settings.full_screen},
                                     {"hide_pointer", &settings.hide_pointer}}) {
     if (const auto found = json.find(name); found != json.end() && found->is_boolean()) *value = found->get<bool>();
   }
@@ -65,7 +65,7 @@ Result<PanelSettings> read_settings(std::string_view text) {
   return settings;
 }
 
-std::string settings_text(const PanelSettings& s) {
+std::string settings_text(const GuiSettings& s) {
   const Json json = {{"text_size", s.text_size},
                      {"hidden", s.hidden},
                      {"morph_seconds", s.morph_seconds},
@@ -75,7 +75,7 @@ std::string settings_text(const PanelSettings& s) {
                      {"keys", s.keys},
                      {"window_width", s.window_width},
                      {"window_height", s.window_height},
-                     {"fullscreen", s.fullscreen},
+                     {"fullscreen", s.full_screen},
                      {"hide_pointer", s.hide_pointer},
                      {"monitor", s.monitor}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -88,27 +88,27 @@ std::string settings_file() {
   return home != nullptr && home[0] == '/' ? std::string(home) + "/.config/limber/panel.json" : "";
 }
 
-PanelSettings load_settings(const std::string& file) {
-  std::error_code fault;
-  if (file.empty() || !fs::is_regular_file(file, fault)) return {};
+GuiSettings load_settings(const std::string& file) {
+  std::error_code error;
+  if (file.empty() || !fs::is_regular_file(file, error)) return {};
   std::string text;
-  if (fs::file_size(file, fault) <= kMaxFileSize && !fault) {
+  if (fs::file_size(file, error) <= kMaxFileSize && !error) {
     std::ifstream in(file, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(in), {});
   }
-  const Result<PanelSettings> read = read_settings(text);
+  const Result<GuiSettings> read = read_settings(text);
   if (read) return *read;
   const std::string renamed = file + ".damaged";
-  fs::rename(file, renamed, fault);
+  fs::rename(file, renamed, error);
   log_warning("panel settings in {} are damaged ({}); using the defaults. The file {}", printable(file), read.error(),
-              fault ? "will be overwritten" : "was renamed to " + printable(renamed));
+              error ? "will be overwritten" : "was renamed to " + printable(renamed));
   return {};
 }
 
-void save_settings(const std::string& file, const PanelSettings& settings) {
+void save_settings(const std::string& file, const GuiSettings& settings) {
   if (file.empty()) return;
-  std::error_code fault;
-  fs::create_directories(fs::path(file).parent_path(), fault);
+  std::error_code error;
+  fs::create_directories(fs::path(file).parent_path(), error);
   const std::string temporary = file + ".new";
   bool written = false;
   {
@@ -117,8 +117,8 @@ void save_settings(const std::string& file, const PanelSettings& settings) {
     out.close();
     written = out.good();
   }
-  if (written) fs::rename(temporary, file, fault);
-  if (!written || fault)
+  if (written) fs::rename(temporary, file, error);
+  if (!written || error)
     log_warning("can't save the panel settings to {}. Check that the folder is writable", printable(file));
 }
 

@@ -1,4 +1,4 @@
-// PanelSettings: the panel's persistent settings, stored as JSON.
+// GuiSettings: the panel's persistent settings, stored as JSON.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-struct PanelSettings {
+struct GuiSettings {
   static constexpr double kMinTextSize = 12;
   static constexpr double kMaxTextSize = 28;
   static constexpr double kMaxMorphSeconds = 60;
@@ -22,26 +22,26 @@ struct PanelSettings {
   std::set<std::string> favorites;          ///< Addresses of properties.
   std::map<std::string, std::string> keys;  ///< Rebound hotkeys by name: "Ctrl+R".
   std::string style;                        ///< Of the view; empty: none was selected.
-  bool fullscreen = false;
+  bool full_screen = false;
   bool hide_pointer = false;
   std::string monitor;   ///< Number or name; empty: none was selected.
   int window_width = 0;  ///< 0: not known yet.
   int window_height = 0;
-  bool operator==(const PanelSettings&) const = default;
+  bool operator==(const GuiSettings&) const = default;
 };
 
 /// Parses settings. Missing values get their default, numbers are clamped to their range. Fails if the text is not a
 /// JSON object. [any]
-Result<PanelSettings> read_settings(std::string_view text);
+Result<GuiSettings> read_settings(std::string_view text);
 /// Returns the settings in the format of read_settings(). [any]
-std::string settings_text(const PanelSettings& settings);
+std::string settings_text(const GuiSettings& settings);
 
 /// Returns $XDG_CONFIG_HOME/limber/panel.json, or the same below ~/.config; empty if there is no home directory. [any]
 std::string settings_file();
 /// Reads the file; without it, returns the defaults. A damaged file is renamed to panel.json.damaged, which is logged.
 /// [main]
-PanelSettings load_settings(const std::string& file);
+GuiSettings load_settings(const std::string& file);
 /// Writes the file atomically; a failure is only logged. [main]
-void save_settings(const std::string& file, const PanelSettings& settings);
+void save_settings(const std::string& file, const GuiSettings& settings);
 
 }  // namespace limber

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "ui/panel/panel_context.h"
+#include "ui/panel/gui_context.h"
 
 namespace limber {
 
@@ -12,7 +12,7 @@ constexpr const char* kEye = "/visuals/camera/eye";
 constexpr const char* kTarget = "/visuals/camera/target";
 }  // namespace
 
-void StoredViews::store(PanelContext& context, std::size_t number) {
+void StoredViews::store(GuiContext& context, std::size_t number) {
   const auto eye = context.find(kEye);
   const auto target = context.find(kTarget);
   View view;
@@ -21,7 +21,7 @@ void StoredViews::store(PanelContext& context, std::size_t number) {
   context.show_notice(fmt::format("View {} stored", number));
 }
 
-void StoredViews::restore(PanelContext& context, std::size_t number) const {
+void StoredViews::restore(GuiContext& context, std::size_t number) const {
   const std::optional<View>& view = views_.at(number - 1);
   if (!view) return context.show_notice(fmt::format("View {0} is empty; Ctrl+Shift+{0} stores one", number));
   const auto point = [](const PendingValues::Values& v) {

@@ -9,15 +9,15 @@
 
 namespace limber {
 
-class PanelContext;
+class GuiContext;
 
 /// Numbers are from 1 to 9. The views are kept until the window is closed. [main]
 class StoredViews {
  public:
   /// Stores the camera's current view.
-  void store(PanelContext& context, std::size_t number);
+  void store(GuiContext& context, std::size_t number);
   /// Sets the camera to the stored view. If there is none, a notice says so.
-  void restore(PanelContext& context, std::size_t number) const;
+  void restore(GuiContext& context, std::size_t number) const;
 
  private:
   struct View {

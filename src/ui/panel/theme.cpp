@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<Rgb, static_cast<std::size_t>(Tone::count)> kTones = {{
+constexpr std::array<Rgb, static_cast<std::size_t>(ThemeColor::count)> kThemeColors = {{
     {0x09, 0x0b, 0x12},  // back
     {0x12, 0x14, 0x18},  // panel
     {0x2c, 0x30, 0x3b},  // line
@@ -30,18 +30,29 @@ constexpr std::array<Rgb, static_cast<std::size_t>(Tone::count)> kTones = {{
 }};
 
 constexpr std::array kTextCombinations = {
-    TextOnTone{Tone::text, Tone::panel},       TextOnTone{Tone::text, Tone::field},
-    TextOnTone{Tone::text, Tone::hover},       TextOnTone{Tone::text, Tone::header},
-    TextOnTone{Tone::text, Tone::selected},    TextOnTone{Tone::text, Tone::fill},
-    TextOnTone{Tone::secondary, Tone::panel},  TextOnTone{Tone::secondary, Tone::field},
-    TextOnTone{Tone::secondary, Tone::header}, TextOnTone{Tone::secondary, Tone::selected},
-    TextOnTone{Tone::accent, Tone::panel},     TextOnTone{Tone::accent, Tone::field},
-    TextOnTone{Tone::accent, Tone::header},    TextOnTone{Tone::on_active, Tone::active},
-    TextOnTone{Tone::red, Tone::panel},        TextOnTone{Tone::red, Tone::field},
-    TextOnTone{Tone::green, Tone::panel},      TextOnTone{Tone::blue, Tone::panel},
-    TextOnTone{Tone::green, Tone::back},       TextOnTone{Tone::blue, Tone::back},
-    TextOnTone{Tone::text, Tone::back},        TextOnTone{Tone::secondary, Tone::back},
-    TextOnTone{Tone::red, Tone::back},
+    TextOnBackground{ThemeColor::text, ThemeColor::panel},
+    TextOnBackground{ThemeColor::text, ThemeColor::field},
+    TextOnBackground{ThemeColor::text, ThemeColor::hover},
+    TextOnBackground{ThemeColor::text, ThemeColor::header},
+    TextOnBackground{ThemeColor::text, ThemeColor::selected},
+    TextOnBackground{ThemeColor::text, ThemeColor::fill},
+    TextOnBackground{ThemeColor::secondary, ThemeColor::panel},
+    TextOnBackground{ThemeColor::secondary, ThemeColor::field},
+    TextOnBackground{ThemeColor::secondary, ThemeColor::header},
+    TextOnBackground{ThemeColor::secondary, ThemeColor::selected},
+    TextOnBackground{ThemeColor::accent, ThemeColor::panel},
+    TextOnBackground{ThemeColor::accent, ThemeColor::field},
+    TextOnBackground{ThemeColor::accent, ThemeColor::header},
+    TextOnBackground{ThemeColor::on_active, ThemeColor::active},
+    TextOnBackground{ThemeColor::red, ThemeColor::panel},
+    TextOnBackground{ThemeColor::red, ThemeColor::field},
+    TextOnBackground{ThemeColor::green, ThemeColor::panel},
+    TextOnBackground{ThemeColor::blue, ThemeColor::panel},
+    TextOnBackground{ThemeColor::green, ThemeColor::back},
+    TextOnBackground{ThemeColor::blue, ThemeColor::back},
+    TextOnBackground{ThemeColor::text, ThemeColor::back},
+    TextOnBackground{ThemeColor::secondary, ThemeColor::back},
+    TextOnBackground{ThemeColor::red, ThemeColor::back},
 };
 
 constexpr double kPanelAlpha = 0.94;  // opacity of panels: the view is slightly visible through them
@@ -53,37 +64,37 @@ double linear(std::uint8_t channel) {
 
 double luminance(const Rgb& c) { return 0.2126 * linear(c[0]) + 0.7152 * linear(c[1]) + 0.0722 * linear(c[2]); }
 
-ImVec4 color(Tone t, double alpha = 1) { return ImGui::ColorConvertU32ToFloat4(packed_color(t, alpha)); }
+ImVec4 color(ThemeColor t, double alpha = 1) { return ImGui::ColorConvertU32ToFloat4(packed_color(t, alpha)); }
 
 void set_colors(ImVec4* colors) {
-  const auto set = [&](Tone t, std::initializer_list<ImGuiCol> slots, double alpha = 1) {
+  const auto set = [&](ThemeColor t, std::initializer_list<ImGuiCol> slots, double alpha = 1) {
     for (const ImGuiCol slot : slots) colors[slot] = color(t, alpha);
   };
-  for (int i = 0; i < ImGuiCol_COUNT; i++) colors[i] = color(Tone::line);
-  set(Tone::text, {ImGuiCol_Text, ImGuiCol_CheckMark});
-  set(Tone::secondary, {ImGuiCol_TextDisabled});
-  set(Tone::panel, {ImGuiCol_WindowBg}, kPanelAlpha);
-  set(Tone::panel, {ImGuiCol_PopupBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_MenuBarBg}, 0.98);
-  set(Tone::panel, {ImGuiCol_ChildBg, ImGuiCol_ScrollbarBg, ImGuiCol_BorderShadow, ImGuiCol_TableRowBg}, 0);
-  set(Tone::line, {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong});
-  set(Tone::field, {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_TabActive, ImGuiCol_TabUnfocusedActive});
-  set(Tone::hover, {ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_ButtonHovered, ImGuiCol_TabHovered,
-                    ImGuiCol_HeaderHovered, ImGuiCol_ScrollbarGrab});
-  set(Tone::header, {ImGuiCol_Tab, ImGuiCol_TabUnfocused, ImGuiCol_TableHeaderBg});
-  set(Tone::selected, {ImGuiCol_Header, ImGuiCol_HeaderActive, ImGuiCol_ButtonActive});
-  set(Tone::fill, {ImGuiCol_TextSelectedBg});
-  set(Tone::accent, {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive, ImGuiCol_NavHighlight,
-                     ImGuiCol_PlotLines, ImGuiCol_PlotHistogram, ImGuiCol_DragDropTarget});
-  set(Tone::secondary, {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive});
-  set(Tone::back, {ImGuiCol_ModalWindowDimBg, ImGuiCol_NavWindowingDimBg}, 0.6);
+  for (int i = 0; i < ImGuiCol_COUNT; i++) colors[i] = color(ThemeColor::line);
+  set(ThemeColor::text, {ImGuiCol_Text, ImGuiCol_CheckMark});
+  set(ThemeColor::secondary, {ImGuiCol_TextDisabled});
+  set(ThemeColor::panel, {ImGuiCol_WindowBg}, kPanelAlpha);
+  set(ThemeColor::panel, {ImGuiCol_PopupBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_MenuBarBg}, 0.98);
+  set(ThemeColor::panel, {ImGuiCol_ChildBg, ImGuiCol_ScrollbarBg, ImGuiCol_BorderShadow, ImGuiCol_TableRowBg}, 0);
+  set(ThemeColor::line, {ImGuiCol_Border, ImGuiCol_Separator, ImGuiCol_TableBorderLight, ImGuiCol_TableBorderStrong});
+  set(ThemeColor::field, {ImGuiCol_FrameBg, ImGuiCol_Button, ImGuiCol_TabActive, ImGuiCol_TabUnfocusedActive});
+  set(ThemeColor::hover, {ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_ButtonHovered, ImGuiCol_TabHovered,
+                          ImGuiCol_HeaderHovered, ImGuiCol_ScrollbarGrab});
+  set(ThemeColor::header, {ImGuiCol_Tab, ImGuiCol_TabUnfocused, ImGuiCol_TableHeaderBg});
+  set(ThemeColor::selected, {ImGuiCol_Header, ImGuiCol_HeaderActive, ImGuiCol_ButtonActive});
+  set(ThemeColor::fill, {ImGuiCol_TextSelectedBg});
+  set(ThemeColor::accent, {ImGuiCol_CheckMark, ImGuiCol_SliderGrab, ImGuiCol_SliderGrabActive, ImGuiCol_NavHighlight,
+                           ImGuiCol_PlotLines, ImGuiCol_PlotHistogram, ImGuiCol_DragDropTarget});
+  set(ThemeColor::secondary, {ImGuiCol_ScrollbarGrabHovered, ImGuiCol_ScrollbarGrabActive});
+  set(ThemeColor::back, {ImGuiCol_ModalWindowDimBg, ImGuiCol_NavWindowingDimBg}, 0.6);
 }
 
 }  // namespace
 
-Rgb tone(Tone tone) { return kTones[static_cast<std::size_t>(tone)]; }
+Rgb color_of(ThemeColor color) { return kThemeColors[static_cast<std::size_t>(color)]; }
 
-std::uint32_t packed_color(Tone which, double alpha) {
-  const Rgb c = tone(which);
+std::uint32_t packed_color(ThemeColor which, double alpha) {
+  const Rgb c = color_of(which);
   return IM_COL32(c[0], c[1], c[2], static_cast<std::uint32_t>(std::lround(alpha * 255)));
 }
 
@@ -93,7 +104,7 @@ double contrast(const Rgb& a, const Rgb& b) {
   return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
 }
 
-std::span<const TextOnTone> text_combinations() { return kTextCombinations; }
+std::span<const TextOnBackground> text_combinations() { return kTextCombinations; }
 
 void apply_theme(double scale) {
   ImGuiStyle style;  // a new style, because ScaleAllSizes() multiplies the current sizes

@@ -8,7 +8,7 @@
 namespace limber {
 
 /// The palette, by purpose.
-enum class Tone : std::uint8_t {
+enum class ThemeColor : std::uint8_t {
   back,       ///< Background.
   panel,      ///< Panel background.
   line,       ///< Panel border.
@@ -23,28 +23,28 @@ enum class Tone : std::uint8_t {
   active,     ///< Active button.
   on_active,  ///< Text on `active`.
   red,        ///< Errors.
-  green,      ///< Outgoing messages, lamps.
+  green,      ///< Outgoing messages, indicators.
   blue,       ///< Incoming messages.
   count
 };
 
 /// Red, green, blue, 0 .. 255.
 using Rgb = std::array<std::uint8_t, 3>;
-/// Returns the color of a tone.
-Rgb tone(Tone tone);
-/// Returns the color of a tone as Dear ImGui's ImU32.
-std::uint32_t packed_color(Tone tone, double alpha = 1);
+/// Returns its value.
+Rgb color_of(ThemeColor color);
+/// Returns the color as Dear ImGui's ImU32.
+std::uint32_t packed_color(ThemeColor color, double alpha = 1);
 
 /// WCAG contrast ratio of two colors, 1 .. 21.
 double contrast(const Rgb& a, const Rgb& b);
 
 inline constexpr double kMinContrast = 4.5;
-struct TextOnTone {
-  Tone text;
-  Tone background;
+struct TextOnBackground {
+  ThemeColor text;
+  ThemeColor background;
 };
-/// Returns the combinations of text and background tones in use. Each has a contrast of at least kMinContrast.
-std::span<const TextOnTone> text_combinations();
+/// Returns the combinations of text and background in use. Each has a contrast of at least kMinContrast.
+std::span<const TextOnBackground> text_combinations();
 
 /// Resets the style of Dear ImGui's current context. `scale`: pixels per unit, where a unit is a pixel at text size 16.
 void apply_theme(double scale);

@@ -16,8 +16,8 @@ constexpr double kMaxOrbitDistance = 1e5;
 
 }  // namespace
 
-ViewCamera make_view_camera(const CameraView& camera, int width, int height, const FreeArea& free_area) {
-  ViewCamera out;
+CameraMatrices camera_matrices(const CameraSettings& camera, int width, int height, const FreeArea& free_area) {
+  CameraMatrices out;
   const glm::dvec3 r = glm::radians(camera.rotation);
   glm::dmat4 view = glm::translate(glm::dmat4(1), camera.position);
   view = glm::rotate(view, r.x, glm::dvec3(1, 0, 0));

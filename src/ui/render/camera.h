@@ -1,4 +1,4 @@
-// ViewCamera: the matrices of a camera, computed from its properties. Orbit: camera control by mouse.
+// CameraMatrices: computed from a camera's properties. Orbit: camera control by mouse.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -8,7 +8,7 @@
 namespace limber {
 
 /// A camera: matrices and the vectors they were computed from.
-struct ViewCamera {
+struct CameraMatrices {
   glm::mat4 view;
   glm::mat4 projection;
   Vec3 eye{0};
@@ -23,7 +23,7 @@ struct FreeArea {
 };
 /// Computes the camera for a view of that size, pixels. The field of view spans the height of `free_area`, centered
 /// in it; the view extends beyond it. [any]
-ViewCamera make_view_camera(const CameraView& camera, int width, int height, const FreeArea& free_area = {});
+CameraMatrices camera_matrices(const CameraSettings& camera, int width, int height, const FreeArea& free_area = {});
 
 /// An orbit camera with a target point. Angles in radians; the camera stays upright.
 struct Orbit {

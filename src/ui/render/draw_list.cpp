@@ -1,4 +1,4 @@
-// Converts a scene's pieces and poses to batched instances.
+// Converts the instances of a scene and their poses to batches.
 #include "ui/render/draw_list.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ constexpr float kMinVisibleAlpha = 0.002F;  // alpha below which instances are n
 constexpr float kMinShadowAlpha = 0.5F;     // alpha below which instances cast no shadow
 constexpr std::size_t kMaxBoundsSamples = 2000;
 
-float real(double v) { return static_cast<float>(v); }
-glm::vec3 real(const Vec3& v) { return {real(v.x), real(v.y), real(v.z)}; }
+float to_float(double v) { return static_cast<float>(v); }
+glm::vec3 to_float(const Vec3& v) { return {to_float(v.x), to_float(v.y), to_float(v.z)}; }
 
 double bounding_radius(const ShapeModel& shape) {
   double far = 0;
@@ -36,35 +36,32 @@ double bounding_radius(const ShapeModel& shape) {
   }
 }
 
-// ofxDabPhysics's scales of diffuse and ambient light are 0.5 for full reflection, hence the factor 2; its exponents
-// are for Phong highlights, the shader's for Blinn-Phong, hence the factor 4
-Instance instance_material(const Material& m) {
-  Instance out{};
-  const Vec3 diffuse = rgb_of(m.diffuse_color);
-  const Vec3 ambient = rgb_of(m.ambient_color);
-  for (int i = 0; i < 3; i++) {
-    out.diffuse[i] = real(2 * m.diffuse_scale * linear_light_of(diffuse[i]));
-    out.ambient[i] = real(2 * m.ambient_scale * linear_light_of(ambient[i]));
-  }
-  out.alpha = real(1 - m.transparency);
-  out.specular = real(m.specular_scale);
-  out.power = real(10 + 4 * m.specular_pow);
-  return out;
-}
-
-Pose interpolate(const double* a, const double* b, double mix, const TransientOffsets& at) {
-  const Vec3 p = vec3_at(b + at.part_position);
-  const Quat q = quat_at(b + at.part_rotation);
-  if (mix >= 1) return {p, q};
-  const Quat from = quat_at(a + at.part_rotation);
-  const Quat to = glm::dot(from, q) < 0 ? -q : q;
-  return {glm::mix(vec3_at(a + at.part_position), p, mix), glm::normalize(from * (1 - mix) + to * mix)};
+// `mix`: 0 (`from`) to 1 (`to`); rotations are interpolated linearly, which suffices for the angles of a tick
+Pose interpolate(const Pose& from, const Pose& to, double mix) {
+  const Quat rotation = glm::dot(from.rotation, to.rotation) < 0 ? -to.rotation : to.rotation;
+  return {glm::mix(from.position, to.position, mix), glm::normalize(from.rotation * (1 - mix) + rotation * mix)};
 }
 
 }  // namespace
 
-void DrawList::rebuild_shapes(const Snapshot& now) {
-  scene_ = now.render_scene;
+// ofxDabPhysics's scales of diffuse and ambient light are 0.5 for full reflection, hence the factor 2; its exponents
+// are for Phong highlights, the shader's for Blinn-Phong, hence the factor 4
+DrawList::InstanceMaterial DrawList::instance_material(const Material& m) {
+  InstanceMaterial out{};
+  const Vec3 diffuse = rgb_of(m.diffuse_color);
+  const Vec3 ambient = rgb_of(m.ambient_color);
+  for (int i = 0; i < 3; i++) {
+    out.diffuse[i] = to_float(2 * m.diffuse_scale * linear_light_of(diffuse[i]));
+    out.ambient[i] = to_float(2 * m.ambient_scale * linear_light_of(ambient[i]));
+  }
+  out.alpha = to_float(1 - m.transparency);
+  out.specular = to_float(m.specular_scale);
+  out.specular_exponent = to_float(10 + 4 * m.specular_pow);
+  return out;
+}
+
+void DrawList::rebuild_shapes(const Snapshot& current) {
+  scene_ = current.render_scene;
   meshes_.clear();
   shapes_.clear();
   models_.clear();
@@ -82,8 +79,8 @@ void DrawList::rebuild_shapes(const Snapshot& now) {
       models_[shape.mesh.get()] = shape.mesh;
     }
     const MeshSize size = shape.mesh != nullptr ? MeshSize{} : mesh_size(shape);
-    for (int i = 0; i < 3; i++) shape_draw.size.extent[i] = real(size.extent[i]);
-    shape_draw.size.rounding_radius = real(size.rounding_radius);
+    for (int i = 0; i < 3; i++) shape_draw.size.extent[i] = to_float(size.extent[i]);
+    shape_draw.size.rounding_radius = to_float(size.rounding_radius);
     const auto [number, fresh] = numbers.try_emplace(shape_draw.mesh, static_cast<std::uint32_t>(meshes_.size()));
     if (fresh) meshes_.push_back(shape_draw.mesh);
     shape_draw.mesh_index = number->second;
@@ -91,69 +88,73 @@ void DrawList::rebuild_shapes(const Snapshot& now) {
   }
 }
 
-void DrawList::update_materials(const Snapshot& now) {
-  materials_version_ = now.visuals_version;
+void DrawList::update_materials(const Snapshot& current) {
+  materials_version_ = current.visuals_version;
   std::uint32_t max_material = 0;
   for (const ShapeDraw& shape : shapes_) max_material = std::max(max_material, shape.material);
   materials_.clear();
-  for (std::uint32_t i = 0; i <= max_material; i++) materials_.push_back(instance_material(material_of(now, i)));
+  for (std::uint32_t i = 0; i <= max_material; i++) materials_.push_back(instance_material(material_of(current, i)));
 }
 
-void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const DrawView& view) {
-  const Instance& material = materials_[shape.material];
+void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera) {
+  const InstanceMaterial& material = materials_[shape.material];
   if (material.alpha < kMinVisibleAlpha || !is_finite(pose.position) || !is_finite(pose.rotation)) return;
   if (shape.mesh.kind == ShapeKind::plane) {
-    planes_.push_back({real(pose.position),
-                       real(pose.rotation * shape.normal),
+    planes_.push_back({to_float(pose.position),
+                       to_float(pose.rotation * shape.normal),
                        {material.diffuse[0], material.diffuse[1], material.diffuse[2]},
                        material.alpha});
     return;
   }
   const Pose at = pose * shape.offset;
-  Instance instance = material;
-  const glm::vec3 position = real(at.position);
+  Instance instance{};
+  const glm::vec3 position = to_float(at.position);
   for (int i = 0; i < 3; i++) {
     instance.position[i] = position[i];
     instance.extent[i] = shape.size.extent[i];
+    instance.diffuse[i] = material.diffuse[i];
+    instance.ambient[i] = material.ambient[i];
   }
   instance.rounding_radius = shape.size.rounding_radius;
-  instance.rotation[0] = real(at.rotation.x);
-  instance.rotation[1] = real(at.rotation.y);
-  instance.rotation[2] = real(at.rotation.z);
-  instance.rotation[3] = real(at.rotation.w);
-  const double depth = glm::dot(at.position - view.position, view.forward);
-  const double pixels = shape.bounding_radius * view.focal_pixels / std::max(depth, 0.1);
+  instance.specular = material.specular;
+  instance.specular_exponent = material.specular_exponent;
+  instance.alpha = material.alpha;
+  instance.rotation[0] = to_float(at.rotation.x);
+  instance.rotation[1] = to_float(at.rotation.y);
+  instance.rotation[2] = to_float(at.rotation.z);
+  instance.rotation[3] = to_float(at.rotation.w);
+  const double depth = glm::dot(at.position - camera.position, camera.forward);
+  const double pixels = shape.bounding_radius * camera.focal_pixels / std::max(depth, 0.1);
   const int detail = std::min(kDetailLevels - 1, (pixels > 40   ? 0
                                                   : pixels > 12 ? 1
                                                   : pixels > 4  ? 2
                                                                 : 3) +
-                                                     view.detail_bias);
+                                                     camera.detail_bias);
   const auto key = shape.mesh_index * kDetailLevels + static_cast<std::uint32_t>(detail);
-  (material.alpha < 1 ? transparent_instances_ : opaque_instances_).push_back({instance, key, real(depth)});
+  (material.alpha < 1 ? transparent_instances_ : opaque_instances_).push_back({instance, key, to_float(depth)});
   positions_.push_back(position);
-  radii_.push_back(real(shape.bounding_radius));
+  radii_.push_back(to_float(shape.bounding_radius));
 }
 
-void DrawList::update(const Snapshot& before, const Snapshot& now, double mix, const DrawView& eye) {
-  if (scene_ != now.render_scene) {
-    rebuild_shapes(now);
-    update_materials(now);
-  } else if (materials_version_ != now.visuals_version) {
-    update_materials(now);
+void DrawList::update(const Snapshot& previous, const Snapshot& current, double mix, const DrawCamera& camera) {
+  if (scene_ != current.render_scene) {
+    rebuild_shapes(current);
+    update_materials(current);
+  } else if (materials_version_ != current.visuals_version) {
+    update_materials(current);
   }
-  const bool interpolates = before.render_scene == now.render_scene && before.transient.size() == now.transient.size();
-  const TransientOffsets& at = transient_offsets();
+  const bool interpolates =
+      mix < 1 && previous.render_scene == current.render_scene && previous.transient.size() == current.transient.size();
   opaque_instances_.clear();
   transparent_instances_.clear();
   planes_.clear();
   positions_.clear();
   radii_.clear();
-  for (const RenderInstance& piece : scene_->instances) {
-    if (now.transient[piece.enabled_offset] == 0) continue;
-    const double* const to = now.transient.data() + piece.part_offset;
-    const Pose part =
-        interpolate(interpolates ? before.transient.data() + piece.part_offset : to, to, interpolates ? mix : 1, at);
-    add_instance(shapes_[piece.shape], part * piece.origin, eye);
+  for (const RenderInstance& instance : scene_->instances) {
+    if (current.transient[instance.enabled_offset] == 0) continue;
+    Pose part = part_pose(current, instance.part_offset);
+    if (interpolates) part = interpolate(part_pose(previous, instance.part_offset), part, mix);
+    add_instance(shapes_[instance.shape], part * instance.origin, camera);
   }
   compute_bounds();
   build_batches();

@@ -25,7 +25,7 @@ struct Instance {
   float diffuse[3];  // linear, scaled
   float alpha;
   float ambient[3];
-  float power;
+  float specular_exponent;
 };
 
 /// Identifies a mesh: a primitive's, or one from a file (`model` is set).
@@ -46,7 +46,7 @@ struct Batch {
 };
 
 /// An infinite plane of the scene.
-struct PlaneView {
+struct RenderPlane {
   glm::vec3 origin;
   glm::vec3 normal;
   glm::vec3 tint;  ///< Linear.
@@ -54,7 +54,7 @@ struct PlaneView {
 };
 
 /// The camera, for choosing levels of detail and sorting transparent instances.
-struct DrawView {
+struct DrawCamera {
   Vec3 position{0};
   Vec3 forward{0, 1, 0};
   double focal_pixels = 1000;  ///< Focal length in pixels: size of 1 m at a distance of 1 m.
@@ -64,15 +64,15 @@ struct DrawView {
 /// [main]
 class DrawList {
  public:
-  /// Rebuilds the lists. `mix`: interpolation from 0 (`before`) to 1 (`now`). Snapshots of different scenes are not
-  /// interpolated: then only `now` is used. [main]
-  void update(const Snapshot& before, const Snapshot& now, double mix, const DrawView& eye);
+  /// Rebuilds the lists. `mix`: interpolation from 0 (`previous`) to 1 (`current`). Snapshots of different scenes are
+  /// not interpolated: then only `current` is used. [main]
+  void update(const Snapshot& previous, const Snapshot& current, double mix, const DrawCamera& camera);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Batch>& opaque() const { return opaque_; }
   /// Transparent batches, farthest first.
   const std::vector<Batch>& transparent() const { return transparent_; }
-  const std::vector<PlaneView>& planes() const { return planes_; }
+  const std::vector<RenderPlane>& planes() const { return planes_; }
   /// Center and radius of a sphere around nearly all instances; robust against a few stray bodies.
   const glm::vec3& center() const { return center_; }
   float radius() const { return radius_; }
@@ -82,10 +82,18 @@ class DrawList {
   const std::map<const MeshModel*, std::shared_ptr<const MeshModel>>& models() const { return models_; }
 
  private:
+  struct InstanceSize {
+    float extent[3];
+    float rounding_radius;
+  };
+  struct InstanceMaterial {
+    float specular, specular_exponent, alpha;
+    float diffuse[3], ambient[3];
+  };
   struct ShapeDraw {
     MeshKey mesh;
     std::uint32_t mesh_index = 0;
-    Instance size{};             // only extent and rounding radius are set
+    InstanceSize size;
     double bounding_radius = 0;  // m
     Pose offset;                 // pose of the mesh in the shape's frame
     std::uint32_t material = 0;
@@ -96,9 +104,10 @@ class DrawList {
     std::uint32_t key = 0;  // mesh number * kDetailLevels + detail
     float depth = 0;
   };
-  void rebuild_shapes(const Snapshot& now);
-  void update_materials(const Snapshot& now);
-  void add_instance(const ShapeDraw& shape, const Pose& pose, const DrawView& view);
+  static InstanceMaterial instance_material(const Material& m);
+  void rebuild_shapes(const Snapshot& current);
+  void update_materials(const Snapshot& current);
+  void add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera);
   void compute_bounds();
   void sort_opaque();
   void sort_transparent();
@@ -109,7 +118,7 @@ class DrawList {
   std::uint64_t materials_version_ = 0;
   std::vector<MeshKey> meshes_;  // by mesh number
   std::vector<ShapeDraw> shapes_;
-  std::vector<Instance> materials_;  // by material; only the material's attributes are set
+  std::vector<InstanceMaterial> materials_;
   std::map<const MeshModel*, std::shared_ptr<const MeshModel>> models_;
   std::vector<VisibleInstance> opaque_instances_, transparent_instances_;
   std::vector<std::uint32_t> first_, order_;  // scratch
@@ -117,7 +126,7 @@ class DrawList {
   std::vector<float> radii_, scratch_numbers_;
   std::vector<Instance> instances_;
   std::vector<Batch> opaque_, transparent_;
-  std::vector<PlaneView> planes_;
+  std::vector<RenderPlane> planes_;
   glm::vec3 center_{0};
   float radius_ = 1;
 };

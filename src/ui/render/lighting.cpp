@@ -1,4 +1,4 @@
-// The two styles (stage and studio), and the placement of lamp, maps and fog for a scene's size.
+// The two styles (stage and studio), and the placement of light, maps and fog for a scene's size.
 #include "ui/render/lighting.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace limber {
 namespace {
 
 struct Style {
-  glm::vec3 lamp_direction;  // direction to the lamp
-  glm::vec3 lamp_color;
+  glm::vec3 light_direction;  // direction to the light
+  glm::vec3 light_color;
   glm::vec3 sky;
   glm::vec3 ground;
   glm::vec3 rim;
@@ -73,34 +73,34 @@ const glm::mat4& to_map() {
   return matrix;
 }
 
-// sets the lamp's position and cone, and the projection of its shadow map, which covers the lit area
-void set_lamp(const Style& style, const SceneBounds& bounds, float radius, Lighting& out) {
-  const glm::vec3 direction = glm::normalize(style.lamp_direction);
+// sets the light's position and cone, and the projection of its shadow map, which covers the lit area
+void set_light(const Style& style, const SceneBounds& bounds, float radius, Lighting& out) {
+  const glm::vec3 direction = glm::normalize(style.light_direction);
   // aims below the scene's center, so that the floor is lit, too
   glm::vec3 target = bounds.center;
   target.z = glm::mix(bounds.floor_height, bounds.center.z, 0.5F);
-  FrameBlock& frame = out.frame;
+  FrameUniforms& frame = out.frame;
   float map_width = 0;  // width of the map, m
   if (style.spot) {
     const float away = 3.2F * radius;
     const glm::vec3 from = target + direction * away;
     const float outer = std::atan(1.9F * radius / away);
     const float inner = std::atan(0.4F * radius / away);
-    frame.lamp_at = glm::vec4(from, 1);
-    frame.lamp_aim = glm::vec4(-direction, std::cos(outer));
-    frame.lamp_color.w = std::cos(inner);
+    frame.light_position = glm::vec4(from, 1);
+    frame.light_direction = glm::vec4(-direction, std::cos(outer));
+    frame.light_color.w = std::cos(inner);
     map_width = 2 * away * std::tan(outer);
-    out.lamp_clip = glm::perspective(2 * outer, 1.0F, 0.25F * away, away + 6 * radius) * look_at_matrix(from, target);
+    out.shadow_clip = glm::perspective(2 * outer, 1.0F, 0.25F * away, away + 6 * radius) * look_at_matrix(from, target);
   } else {
     const float half = 2.4F * radius;
-    frame.lamp_at = glm::vec4(direction, 0);
-    frame.lamp_aim = glm::vec4(-direction, -2);
-    frame.lamp_color.w = -1;
+    frame.light_position = glm::vec4(direction, 0);
+    frame.light_direction = glm::vec4(-direction, -2);
+    frame.light_color.w = -1;
     map_width = 2 * half;
-    out.lamp_clip = glm::ortho(-half, half, -half, half, 0.0F, 9 * radius) *
-                    look_at_matrix(target + direction * 4.5F * radius, target);
+    out.shadow_clip = glm::ortho(-half, half, -half, half, 0.0F, 9 * radius) *
+                      look_at_matrix(target + direction * 4.5F * radius, target);
   }
-  frame.lamp_map = to_map() * out.lamp_clip;
+  frame.shadow_map = to_map() * out.shadow_clip;
   const float texels = 3.2F;
   frame.soft.x = texels / static_cast<float>(bounds.shadow_map_size);
   frame.soft.y = frame.soft.x * map_width;
@@ -122,11 +122,11 @@ void set_ground_map(const SceneBounds& bounds, float radius, Lighting& out) {
 
 }  // namespace
 
-Lighting compute_lighting(const AppearanceView& appearance, const ViewCamera& camera, double far,
+Lighting compute_lighting(const AppearanceSettings& appearance, const CameraMatrices& camera, double far,
                           const SceneBounds& bounds) {
   const Style& style = appearance.studio ? kStudio : kStage;
   Lighting out{};
-  FrameBlock& frame = out.frame;
+  FrameUniforms& frame = out.frame;
   const float radius = std::max(bounds.radius, kMinLitRadius);
   frame.view_proj = camera.projection * camera.view;
   frame.clip_to_world = glm::inverse(frame.view_proj);
@@ -145,8 +145,8 @@ Lighting compute_lighting(const AppearanceView& appearance, const ViewCamera& ca
   frame.sky = glm::vec4(style.sky * tint * as_float(appearance.ambient), 0);
   frame.ground = glm::vec4(style.ground * tint * as_float(appearance.ambient), 0);
   frame.rim = glm::vec4(style.rim * as_float(appearance.rim), 0);
-  frame.lamp_color = glm::vec4(style.lamp_color * as_float(appearance.lamp), 0);
-  set_lamp(style, bounds, radius, out);
+  frame.light_color = glm::vec4(style.light_color * as_float(appearance.lamp), 0);
+  set_light(style, bounds, radius, out);
   set_ground_map(bounds, radius, out);
   out.has_shadows = appearance.shadow > 0 && appearance.lamp > 0;
 
@@ -159,9 +159,11 @@ Lighting compute_lighting(const AppearanceView& appearance, const ViewCamera& ca
   const float view_distance = as_float(glm::distance(camera.eye, Vec3(bounds.center))) + radius;
   const float fog = style.fog * as_float(appearance.fog) / std::max(1.0F, view_distance / 14);
   const float min_fog = as_float(2.6 / std::max(far, 1e-3));
-  frame.tone = glm::vec4(as_float(appearance.exposure), std::max(fog, min_fog), bounds.floor_height,
-                         as_float(appearance.shadow));
-  out.floor_half_width = 3.0F / frame.tone.y;
+  frame.exposure = as_float(appearance.exposure);
+  frame.fog_density = std::max(fog, min_fog);
+  frame.floor_height = bounds.floor_height;
+  frame.shadow_strength = as_float(appearance.shadow);
+  out.floor_half_width = 3.0F / frame.fog_density;
   return out;
 }
 

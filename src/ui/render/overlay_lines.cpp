@@ -30,18 +30,19 @@ Vec3 axis_of(const OverlayMark& mark, int further) {
   return mark.rotation * axis;
 }
 
-OverlayMark interpolate(const OverlayMark& before, const OverlayMark& now, double mix) {
-  OverlayMark mark = now;
-  mark.position = glm::mix(before.position, now.position, mix);
-  mark.vector = glm::mix(before.vector, now.vector, mix);
-  mark.rotation = glm::slerp(before.rotation, now.rotation, mix);
-  mark.value = glm::mix(before.value, now.value, mix);
+OverlayMark interpolate(const OverlayMark& previous, const OverlayMark& current, double mix) {
+  OverlayMark mark = current;
+  mark.position = glm::mix(previous.position, current.position, mix);
+  mark.vector = glm::mix(previous.vector, current.vector, mix);
+  mark.rotation = glm::slerp(previous.rotation, current.rotation, mix);
+  mark.value = glm::mix(previous.value, current.value, mix);
   return mark;
 }
 
 // true if both are the same mark; contacts have no identity across ticks
-bool is_same_mark(const OverlayMark& before, const OverlayMark& now) {
-  return before.kind == now.kind && before.slot == now.slot && before.axis == now.axis && now.kind != Kind::contact;
+bool is_same_mark(const OverlayMark& previous, const OverlayMark& current) {
+  return previous.kind == current.kind && previous.slot == current.slot && previous.axis == current.axis &&
+         current.kind != Kind::contact;
 }
 
 }  // namespace
@@ -142,12 +143,12 @@ void OverlayLines::draw(const OverlayMark& mark) {
   arrow(mark.position, mark.vector * (size * std::min(1.0, kMaxWeights / length)), 0.4 * size);
 }
 
-void OverlayLines::update(const Snapshot& before, const Snapshot& now, double mix, double pixels) {
+void OverlayLines::update(const Snapshot& previous, const Snapshot& current, double mix, double pixels) {
   lines_.clear();
   width_ = pixels;
-  const std::vector<OverlayMark>& old = before.overlay;
-  for (std::size_t i = 0; i < now.overlay.size(); i++) {
-    const OverlayMark& mark = now.overlay[i];
+  const std::vector<OverlayMark>& old = previous.overlay;
+  for (std::size_t i = 0; i < current.overlay.size(); i++) {
+    const OverlayMark& mark = current.overlay[i];
     draw(mix < 1 && i < old.size() && is_same_mark(old[i], mark) ? interpolate(old[i], mark, mix) : mark);
   }
 }

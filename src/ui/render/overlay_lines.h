@@ -22,9 +22,9 @@ struct OverlayLine {
 /// [main]
 class OverlayLines {
  public:
-  /// Rebuilds the lines. `mix`: interpolation from 0 (`before`) to 1 (`now`); marks that are only in `now` are not
-  /// interpolated. `pixels`: width of a symbol's lines. Allocates only when it grows. [main]
-  void update(const Snapshot& before, const Snapshot& now, double mix, double pixels);
+  /// Rebuilds the lines. `mix`: interpolation from 0 (`previous`) to 1 (`current`); marks that are only in `current`
+  /// are not interpolated. `pixels`: width of a symbol's lines. Allocates only when it grows. [main]
+  void update(const Snapshot& previous, const Snapshot& current, double mix, double pixels);
   std::span<const OverlayLine> lines() const { return lines_; }
 
  private:

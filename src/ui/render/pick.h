@@ -1,4 +1,4 @@
-// Picking: finds the part under a point of the view.
+// Picking: finds the part that the user points at.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,18 @@
 
 namespace limber {
 
-/// The part under a point of the view.
+/// A part that the user points at.
 struct Picked {
   std::uint32_t part_offset = 0;  ///< Offset of the part's values in Snapshot::transient.
   Vec3 point{0};                  ///< Hit point on its surface, world.
   double distance = 0;            ///< Distance from the eye, m.
 };
 
-/// Returns the nearest part at a point of the view (-1..1, right and up). Ignores planes and disabled parts. Tests the
-/// exact shape of spheres and boxes, and the triangles of other shapes. [any]
-std::optional<Picked> pick(const Snapshot& now, const ViewCamera& camera, double x, double y);
+/// Returns the nearest part at a point in normalized device coordinates (-1..1, right and up). Ignores planes and
+/// disabled parts. Tests the exact shape of spheres and boxes, and the triangles of other shapes. [any]
+std::optional<Picked> pick(const Snapshot& current, const CameraMatrices& camera, double x, double y);
 
-/// Unit direction from the eye through a point of the view (-1..1, right and up). [any]
-Vec3 ray_through(const ViewCamera& camera, double x, double y);
-
-/// World pose of a part. [any]
-Pose part_pose(const Snapshot& now, std::uint32_t part_offset);
+/// Returns the unit direction from the eye through a point in normalized device coordinates. [any]
+Vec3 ray_through(const CameraMatrices& camera, double x, double y);
 
 }  // namespace limber

@@ -15,10 +15,10 @@ namespace limber {
 Result<void> write_png(const Pixels& pixels, const std::string& file) {
   const std::string temporary = file + ".part";
   std::FILE* const out = std::fopen(temporary.c_str(), "wb");
-  const auto fault = [&] {
+  const auto describe_error = [&] {
     return Error{fmt::format("'{}' can't be written: {}", printable(file), std::strerror(errno))};
   };
-  if (out == nullptr) return fault();
+  if (out == nullptr) return describe_error();
   struct Sink {
     std::FILE* out;
     bool ok = true;
@@ -32,7 +32,7 @@ Result<void> write_png(const Pixels& pixels, const std::string& file) {
       stbi_write_png_to_func(write, &sink, pixels.width, pixels.height, 4, pixels.bytes.data(), 4 * pixels.width);
   const bool closed = std::fclose(out) == 0;
   if (written != 0 && sink.ok && closed && std::rename(temporary.c_str(), file.c_str()) == 0) return {};
-  const Error error = fault();
+  const Error error = describe_error();
   std::remove(temporary.c_str());
   return error;
 }

@@ -22,7 +22,7 @@ struct Renderer::QualitySettings {
   int shadow_taps;
   int contact_taps;
   int dither;
-  int lamp_map_size;
+  int shadow_map_size;
   int ground_map_size;
   int detail_bias;
   bool mirror;
@@ -35,13 +35,13 @@ constexpr float kMinFloorNormalZ = 0.9999F;  // z of the normal above which a pl
 // OpenGL takes offsets in a buffer as pointers: NOLINTNEXTLINE(performance-no-int-to-ptr)
 const void* offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
-void describe_instance(std::size_t first) {
-  constexpr std::array<std::size_t, 5> kAt = {offsetof(Instance, position), offsetof(Instance, rotation),
-                                              offsetof(Instance, extent), offsetof(Instance, diffuse),
-                                              offsetof(Instance, ambient)};
-  for (std::size_t i = 0; i < kAt.size(); i++) {
+void bind_instance_attributes(std::size_t first) {
+  constexpr std::array<std::size_t, 5> kOffsets = {offsetof(Instance, position), offsetof(Instance, rotation),
+                                                   offsetof(Instance, extent), offsetof(Instance, diffuse),
+                                                   offsetof(Instance, ambient)};
+  for (std::size_t i = 0; i < kOffsets.size(); i++) {
     glVertexAttribPointer(static_cast<GLuint>(2 + i), 4, GL_FLOAT, GL_FALSE, sizeof(Instance),
-                          offset(first * sizeof(Instance) + kAt[i]));
+                          offset(first * sizeof(Instance) + kOffsets[i]));
   }
 }
 
@@ -52,10 +52,10 @@ Renderer::Renderer(GlApi api, std::string shader_folder, const QualitySettings& 
       settings_(settings),
       shaders_(api, std::move(shader_folder), std::move(defines)),
       instances_(GlBuffer::make()),
-      frame_(GlBuffer::make()),
+      uniforms_(GlBuffer::make()),
       no_attributes_(GlVertexArray::make()),
-      lamp_(make_depth(settings.lamp_map_size, true)),
-      ground_(make_depth(settings.ground_map_size, false)),
+      shadow_map_(make_depth(settings.shadow_map_size, true)),
+      ground_map_(make_depth(settings.ground_map_size, false)),
       target_(api),
       output_(api),
       overlay_buffer_(GlBuffer::make()),
@@ -67,8 +67,30 @@ Renderer::Renderer(GlApi api, std::string shader_folder, const QualitySettings& 
 }
 
 Result<std::unique_ptr<Renderer>> Renderer::make(GlApi api, const std::string& shader_folder, Quality quality) {
-  static const std::array<QualitySettings, 3> settings_by_quality = {
-      {{0, 1, 0, 0, 1024, 8, 1, false}, {2, 6, 6, 1, 1024, 256, 0, true}, {4, 14, 12, 1, 2048, 512, 0, true}}};
+  static const std::array<QualitySettings, 3> settings_by_quality = {{{.samples = 0,
+                                                                       .shadow_taps = 1,
+                                                                       .contact_taps = 0,
+                                                                       .dither = 0,
+                                                                       .shadow_map_size = 1024,
+                                                                       .ground_map_size = 8,
+                                                                       .detail_bias = 1,
+                                                                       .mirror = false},
+                                                                      {.samples = 2,
+                                                                       .shadow_taps = 6,
+                                                                       .contact_taps = 6,
+                                                                       .dither = 1,
+                                                                       .shadow_map_size = 1024,
+                                                                       .ground_map_size = 256,
+                                                                       .detail_bias = 0,
+                                                                       .mirror = true},
+                                                                      {.samples = 4,
+                                                                       .shadow_taps = 14,
+                                                                       .contact_taps = 12,
+                                                                       .dither = 1,
+                                                                       .shadow_map_size = 2048,
+                                                                       .ground_map_size = 512,
+                                                                       .detail_bias = 0,
+                                                                       .mirror = true}}};
   for (const char* extension : {"GL_ARB_explicit_attrib_location", "GL_ARB_instanced_arrays"}) {
     if (api == GlApi::gl31 && !epoxy_has_gl_extension(extension))
       return Error{fmt::format("{} lacks {}. Update the graphics driver, or draw in software: LIBGL_ALWAYS_SOFTWARE=1",
@@ -92,7 +114,7 @@ Renderer::DepthMap Renderer::make_depth(int side, bool compares) const {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
   if (compares) glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
+  glBindFramebuffer(GL_FRAMEBUFFER, *map.framebuffer);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, *map.texture, 0);
   const GLenum none = GL_NONE;
   glDrawBuffers(1, &none);
@@ -134,8 +156,8 @@ void Renderer::release_unused_meshes() {
   });
 }
 
-void Renderer::upload(const FrameBlock& frame) {
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, *frame_);
+void Renderer::upload(const FrameUniforms& frame) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, *uniforms_);
   glBufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
 }
 
@@ -145,17 +167,17 @@ void Renderer::draw_batches(const std::vector<Batch>& batches, int detail_bias, 
     const GpuMesh& gpu = mesh(batch.mesh, std::min(batch.detail + detail_bias, kDetailLevels - 1));
     glBindVertexArray(*gpu.array);
     glBindBuffer(GL_ARRAY_BUFFER, *instances_);
-    describe_instance(batch.first);
+    bind_instance_attributes(batch.first);
     glDrawElementsInstanced(GL_TRIANGLES, gpu.count, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(batch.count));
   }
 }
 
 // `clamp_depth`: geometry in front of the near plane is clamped to it instead of clipped
 void Renderer::draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool clamp_depth) {
-  FrameBlock frame{};
+  FrameUniforms frame{};
   frame.view_proj = clip;
   upload(frame);
-  glBindFramebuffer(GL_FRAMEBUFFER, *map.frame);
+  glBindFramebuffer(GL_FRAMEBUFFER, *map.framebuffer);
   glViewport(0, 0, side, side);
   glClear(GL_DEPTH_BUFFER_BIT);
   glUseProgram(shaders_.program(clamp_depth && !api_.depth_clamp ? "ground" : "depth"));
@@ -183,8 +205,8 @@ void Renderer::draw_sky() {
 
 // draws the scene mirrored at the floor, as seen in a reflection; the floor is blended over it
 void Renderer::draw_mirrored(const Lighting& lighting) {
-  const float floor = lighting.frame.tone.z;
-  FrameBlock frame = lighting.frame;
+  const float floor = lighting.frame.floor_height;
+  FrameUniforms frame = lighting.frame;
   glm::mat4 reflection = glm::translate(glm::mat4(1), glm::vec3(0, 0, 2 * floor));
   reflection = glm::scale(reflection, glm::vec3(1, 1, -1));
   frame.view_proj = frame.view_proj * reflection;
@@ -202,7 +224,7 @@ void Renderer::draw_mirrored(const Lighting& lighting) {
   glFrontFace(GL_CCW);
 }
 
-void Renderer::draw_floor(const PlaneView& plane, const Lighting& lighting, bool is_floor) {
+void Renderer::draw_plane(const RenderPlane& plane, const Lighting& lighting, bool is_floor) {
   const glm::vec3 n = glm::normalize(plane.normal);
   const glm::vec3 eye(lighting.frame.eye);
   const glm::vec3 below = eye - n * glm::dot(eye - plane.origin, n);
@@ -225,34 +247,34 @@ void Renderer::draw_floor(const PlaneView& plane, const Lighting& lighting, bool
 }
 
 // draws the scene's planes; the first horizontal one is the floor; without one, draws a floor at height 0
-void Renderer::draw_floors(const Lighting& lighting, const AppearanceView& appearance) {
+void Renderer::draw_planes(const Lighting& lighting, const AppearanceSettings& appearance) {
   glDisable(GL_CULL_FACE);
   bool has_floor = false;
-  for (const PlaneView& plane : draw_list_.planes()) {
+  for (const RenderPlane& plane : draw_list_.planes()) {
     const bool horizontal = std::abs(plane.normal.z) > kMinFloorNormalZ;
-    draw_floor(plane, lighting, horizontal && !has_floor);
+    draw_plane(plane, lighting, horizontal && !has_floor);
     has_floor = has_floor || horizontal;
   }
-  if (!has_floor && appearance.floor && lighting.frame.eye.z > lighting.frame.tone.z)
-    draw_floor({{0, 0, 0}, {0, 0, 1}, glm::vec3(1), 1}, lighting, true);
+  if (!has_floor && appearance.floor && lighting.frame.eye.z > lighting.frame.floor_height)
+    draw_plane({{0, 0, 0}, {0, 0, 1}, glm::vec3(1), 1}, lighting, true);
   glEnable(GL_CULL_FACE);
 }
 
 // draws the overlay on top in two passes: faint where it is occluded, then fully where it is visible
-void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const RenderTarget& target) {
-  constexpr double kLinesOfHeight = 720;  // height of a view in which lines are about a pixel wide
-  constexpr float kBehind = 0.3F;
-  if (now.overlay.empty()) return;
-  overlay_.update(before, now, mix, std::max(1.0, 1.3 * target.height() / kLinesOfHeight));
+void Renderer::draw_overlay(const Snapshot& previous, const Snapshot& current, double mix, const RenderTarget& target) {
+  constexpr double kReferenceHeight = 720;  // height of a view in which lines are 1.3 pixels wide
+  constexpr float kOccludedOpacity = 0.3F;
+  if (current.overlay.empty()) return;
+  overlay_.update(previous, current, mix, std::max(1.0, 1.3 * target.height() / kReferenceHeight));
   const std::span<const OverlayLine> lines = overlay_.lines();
   glBindVertexArray(*overlay_array_);
   glBindBuffer(GL_ARRAY_BUFFER, *overlay_buffer_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(lines.size_bytes()), lines.data(), GL_STREAM_DRAW);
-  constexpr std::array<std::size_t, 3> kAt = {offsetof(OverlayLine, from), offsetof(OverlayLine, to),
-                                              offsetof(OverlayLine, color)};
-  for (GLuint i = 0; i < kAt.size(); i++) {
+  constexpr std::array<std::size_t, 3> kOffsets = {offsetof(OverlayLine, from), offsetof(OverlayLine, to),
+                                                   offsetof(OverlayLine, color)};
+  for (GLuint i = 0; i < kOffsets.size(); i++) {
     glEnableVertexAttribArray(i);
-    glVertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(OverlayLine), offset(kAt[i]));
+    glVertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(OverlayLine), offset(kOffsets[i]));
     glVertexAttribDivisor(i, 1);
   }
   glUseProgram(shaders_.program("overlay"));
@@ -266,42 +288,46 @@ void Renderer::draw_overlay(const Snapshot& before, const Snapshot& now, double 
     glUniform4f(shaders_.uniform("overlay", "strength"), strength, 0, 0, 0);
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(lines.size()));
   };
-  pass(GL_GREATER, kBehind);
+  pass(GL_GREATER, kOccludedOpacity);
   pass(GL_LEQUAL, 1);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   glEnable(GL_CULL_FACE);
 }
 
-// uploads the instances and draws the shadow map and the ground map
-void Renderer::draw_shadows(const Lighting& lighting) {
+void Renderer::upload_instances() {
   const std::vector<Instance>& instances = draw_list_.instances();
   glBindBuffer(GL_ARRAY_BUFFER, *instances_);
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(instances.size() * sizeof(Instance)), instances.data(),
                GL_STREAM_DRAW);
+}
+
+// draws the shadow map and the ground map, and leaves them bound for the passes that follow
+void Renderer::draw_depth_maps(const Lighting& lighting) {
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);
   glEnable(GL_CULL_FACE);
   set_srgb_conversion(api_, true);
-  draw_depth(lamp_, settings_.lamp_map_size, lighting.lamp_clip, false);
-  if (settings_.contact_taps > 0) draw_depth(ground_, settings_.ground_map_size, lighting.ground_clip, true);
+  draw_depth(shadow_map_, settings_.shadow_map_size, lighting.shadow_clip, false);
+  if (settings_.contact_taps > 0) draw_depth(ground_map_, settings_.ground_map_size, lighting.ground_clip, true);
   glActiveTexture(GL_TEXTURE1);
-  glBindTexture(GL_TEXTURE_2D, *ground_.texture);
+  glBindTexture(GL_TEXTURE_2D, *ground_map_.texture);
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, *lamp_.texture);
+  glBindTexture(GL_TEXTURE_2D, *shadow_map_.texture);
 }
 
-Result<void> Renderer::draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
+Result<void> Renderer::draw(const Snapshot& previous, const Snapshot& current, double mix, int width, int height,
                             const FreeArea& free_area) {
-  return draw_into(target_, before, now, mix, width, height, free_area);
+  return draw_into(target_, previous, current, mix, width, height, free_area);
 }
 
-Result<void> Renderer::draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height) {
-  return draw_into(output_, before, now, mix, width, height, {});
+Result<void> Renderer::draw_output(const Snapshot& previous, const Snapshot& current, double mix, int width,
+                                   int height) {
+  return draw_into(output_, previous, current, mix, width, height, {});
 }
 
-Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, const Snapshot& now, double mix,
+Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& previous, const Snapshot& current, double mix,
                                  int width, int height, const FreeArea& free_area) {
   width = std::max(width, 1);
   height = std::max(height, 1);
@@ -309,25 +335,26 @@ Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, c
     return Error{fmt::format("an image of {} × {} is too large: {} supports up to {} per side", width, height,
                              gl_driver(), max_size_)};
   if (Result<void> sized = target.resize(width, height, settings_.samples); !sized) return sized;
-  const CameraView camera = camera_of(now);
-  const AppearanceView appearance = appearance_of(now);
-  const ViewCamera view_camera = make_view_camera(camera, width, height, free_area);
-  draw_list_.update(before, now, mix,
-                    {view_camera.eye, view_camera.forward, view_camera.focal_pixels, settings_.detail_bias});
+  const CameraSettings camera = camera_of(current);
+  const AppearanceSettings appearance = appearance_of(current);
+  const CameraMatrices matrices = camera_matrices(camera, width, height, free_area);
+  draw_list_.update(previous, current, mix,
+                    {matrices.eye, matrices.forward, matrices.focal_pixels, settings_.detail_bias});
   release_unused_meshes();
-  SceneBounds bounds{draw_list_.center(), draw_list_.radius(), 0, settings_.lamp_map_size};
-  for (const PlaneView& plane : draw_list_.planes()) {
+  SceneBounds bounds{draw_list_.center(), draw_list_.radius(), 0, settings_.shadow_map_size};
+  for (const RenderPlane& plane : draw_list_.planes()) {
     if (std::abs(plane.normal.z) <= kMinFloorNormalZ) continue;
     bounds.floor_height = plane.origin.z;
     break;
   }
-  Lighting lighting = compute_lighting(appearance, view_camera, camera.far, bounds);
+  Lighting lighting = compute_lighting(appearance, matrices, camera.far, bounds);
   if (!settings_.mirror) {
     lighting.has_mirror = false;
     lighting.frame.floor_color.w = 0;
   }
 
-  draw_shadows(lighting);
+  upload_instances();
+  draw_depth_maps(lighting);
   target.begin();
   upload(lighting.frame);
   // a reflective floor is blended over the mirrored scene, so it comes first; otherwise shapes come first, so that the
@@ -336,12 +363,12 @@ Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, c
     draw_sky();
     draw_mirrored(lighting);
     upload(lighting.frame);
-    draw_floors(lighting, appearance);
+    draw_planes(lighting, appearance);
   }
   glUseProgram(shaders_.program("shape"));
   draw_batches(draw_list_.opaque(), 0, false);
   if (!lighting.has_mirror) {
-    draw_floors(lighting, appearance);
+    draw_planes(lighting, appearance);
     draw_sky();
   }
   glUseProgram(shaders_.program("shape"));
@@ -350,7 +377,7 @@ Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& before, c
   draw_batches(draw_list_.transparent(), 0, false);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
-  draw_overlay(before, now, mix, target);
+  draw_overlay(previous, current, mix, target);
 
   target.resolve(shaders_);
   glBindVertexArray(0);

@@ -28,14 +28,14 @@ class Renderer {
   /// reload_shaders(); empty: use the embedded shaders. Errors if the driver lacks a required feature. [main]
   static Result<std::unique_ptr<Renderer>> make(GlApi api, const std::string& shader_folder, Quality quality);
 
-  /// Draws the scene interpolated between two snapshots (`mix` 0: before, 1: now). Sizes below 1 are raised to 1;
-  /// errors if the size is above max_size() or memory is insufficient. `free_area`: the part not covered by
+  /// Draws the scene interpolated between two snapshots (`mix` 0: `previous`, 1: `current`). Sizes below 1 are raised
+  /// to 1; errors if the size is above max_size() or memory is insufficient. `free_area`: the part not covered by
   /// panels. [main]
-  Result<void> draw(const Snapshot& before, const Snapshot& now, double mix, int width, int height,
+  Result<void> draw(const Snapshot& previous, const Snapshot& current, double mix, int width, int height,
                     const FreeArea& free_area = {});
-  Result<void> draw(const Snapshot& now, int width, int height) { return draw(now, now, 1, width, height); }
+  Result<void> draw(const Snapshot& current, int width, int height) { return draw(current, current, 1, width, height); }
   /// Draws a second image of the scene for the output window, without panels; independent of draw()'s image. [main]
-  Result<void> draw_output(const Snapshot& before, const Snapshot& now, double mix, int width, int height);
+  Result<void> draw_output(const Snapshot& previous, const Snapshot& current, double mix, int width, int height);
   /// Calls `draw` with draw()'s last image bound as the framebuffer, without sRGB conversion. [main]
   void draw_over(const std::function<void()>& draw) const { target_.draw_over(draw); }
   /// Reads back draw()'s last image. [main]
@@ -47,9 +47,9 @@ class Renderer {
   /// Copies draw()'s last image to the window's default framebuffer, scaled to that size. [main]
   void present(int width, int height) const { target_.present(width, height); }
   /// Copies draw_output()'s last image; called with another context current, which shares objects with the first.
-  /// `frame` is a framebuffer of that other context. [main]
-  void present_output(const GlFramebuffer& frame, int width, int height) const {
-    output_.present_shared(frame, width, height);
+  /// `framebuffer` belongs to that other context. [main]
+  void present_output(const GlFramebuffer& framebuffer, int width, int height) const {
+    output_.present_shared(framebuffer, width, height);
   }
 
   /// Reloads shaders from changed files; true if the view must be drawn again. [main]
@@ -70,23 +70,24 @@ class Renderer {
   // a depth texture with its framebuffer
   struct DepthMap {
     GlTexture texture;
-    GlFramebuffer frame;
+    GlFramebuffer framebuffer;
   };
   Renderer(GlApi api, std::string shader_folder, const QualitySettings& settings, std::string defines);
 
   DepthMap make_depth(int side, bool compares) const;
-  Result<void> draw_into(RenderTarget& target, const Snapshot& before, const Snapshot& now, double mix, int width,
+  Result<void> draw_into(RenderTarget& target, const Snapshot& previous, const Snapshot& current, double mix, int width,
                          int height, const FreeArea& free_area);
-  void draw_overlay(const Snapshot& before, const Snapshot& now, double mix, const RenderTarget& target);
+  void draw_overlay(const Snapshot& previous, const Snapshot& current, double mix, const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);
   void release_unused_meshes();
-  void upload(const FrameBlock& frame);
+  void upload(const FrameUniforms& frame);
   void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool clamp_depth);
   void draw_batches(const std::vector<Batch>& batches, int detail_bias, bool shadow_casters_only);
   void draw_mirrored(const Lighting& lighting);
-  void draw_floors(const Lighting& lighting, const AppearanceView& appearance);
-  void draw_shadows(const Lighting& lighting);
-  void draw_floor(const PlaneView& plane, const Lighting& lighting, bool is_floor);
+  void draw_planes(const Lighting& lighting, const AppearanceSettings& appearance);
+  void upload_instances();
+  void draw_depth_maps(const Lighting& lighting);
+  void draw_plane(const RenderPlane& plane, const Lighting& lighting, bool is_floor);
   void draw_sky();
 
   const GlApiInfo& api_;
@@ -95,9 +96,9 @@ class Renderer {
   DrawList draw_list_;
   std::shared_ptr<const RenderScene> meshes_scene_;
   std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
-  GlBuffer instances_, frame_;
+  GlBuffer instances_, uniforms_;
   GlVertexArray no_attributes_;  // without attributes, for shaders that generate their vertices
-  DepthMap lamp_, ground_;
+  DepthMap shadow_map_, ground_map_;
   RenderTarget target_, output_;
   OverlayLines overlay_;
   GlBuffer overlay_buffer_;

@@ -130,7 +130,7 @@ Result<GlProgram> Shaders::build(const Program& files, bool embedded) const {
   if (const GLuint block = glGetUniformBlockIndex(*program, "Frame"); block != GL_INVALID_INDEX)
     glUniformBlockBinding(*program, block, 0);
   glUseProgram(*program);
-  constexpr std::array<const char*, 2> kTextures = {"lamp_depth", "ground_depth"};
+  constexpr std::array<const char*, 2> kTextures = {"shadow_depth", "ground_depth"};
   for (std::size_t i = 0; i < kTextures.size(); i++)
     glUniform1i(glGetUniformLocation(*program, kTextures[i]), static_cast<GLint>(i));
   return program;
@@ -143,14 +143,14 @@ void Shaders::report_error(const std::string& text) {
 }
 
 Result<void> Shaders::build_all() {
-  std::string fault;
+  std::string error;
   for (const ProgramFiles& files : kPrograms) {
     if (files.replaced_feature != nullptr && api_.*files.replaced_feature) continue;
     Program& entry = programs_[files.name];
     entry = {files.vertex, files.fragment, files.defines, {}};
     Result<GlProgram> program = build(entry, folder_.empty());
     if (!program && !folder_.empty()) {
-      fault = program.error();
+      error = program.error();
       program = build(entry, true);
     }
     if (!program) return Error{fmt::format("OpenGL rejects the embedded shaders: {}", program.error())};
@@ -160,7 +160,7 @@ Result<void> Shaders::build_all() {
     for (const EmbeddedFile& file : shader_files())
       stamps_[std::string(file.name)] = FileStamp(folder_ + "/" + std::string(file.name));
   }
-  report_error(fault);
+  report_error(error);
   return {};
 }
 
@@ -174,18 +174,18 @@ bool Shaders::reload() {
   }
   if (!changed) return false;
   bool any_rebuilt = false;
-  std::string fault;
+  std::string error;
   for (auto& [name, entry] : programs_) {
     Result<GlProgram> program = build(entry, false);
     if (!program) {
-      fault = program.error();
+      error = program.error();
       continue;
     }
     entry.program = std::move(*program);
     any_rebuilt = true;
   }
-  if (fault.empty()) log_info("shaders: reloaded");
-  report_error(fault);
+  if (error.empty()) log_info("shaders: reloaded");
+  report_error(error);
   return any_rebuilt;
 }
 

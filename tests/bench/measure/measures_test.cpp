@@ -7,7 +7,7 @@
 
 #include "bench/measure/arms.h"
 #include "sim/world/world.h"
-#include "support/left_out.h"
+#include "support/skip.h"
 
 namespace limber {
 namespace {
@@ -87,7 +87,7 @@ TEST(Measures, RunsBothSolvers) {
 }
 
 TEST(Measures, TwoThreadsGiveTheSameState) {
-  LIMBER_LEAVE_OUT_IF(kAddressSanitizer, "shorter tests execute the same code");
+  LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   MeasureOptions options;
   options.ticks = 1;
   const Json figures = figures_of("threads", options);

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/paths.h"
-#include "app/show/scene_watch.h"
+#include "app/show/scene_loader.h"
 #include "base/log/log.h"
 #include "bench/measure/show_folder.h"
 #include "bench/measure/times.h"
@@ -34,19 +34,19 @@ void save(const ShowFolder& folder, std::string_view robot, int arms, int versio
   std::ofstream(folder.scene()) << fmt::format(kScene, data_dir(), robot, arms, 0.001 * version, version);
 }
 
-// a running show with its SceneWatch, and a reader of its messages
+// a running show with its SceneLoader, and a reader of its messages
 class ReloadedShow {
  public:
-  explicit ReloadedShow(const std::string& scene) : engine_(link_, options_of(scene)), watch_(link_, engine_, scene) {
+  explicit ReloadedShow(const std::string& scene) : engine_(link_, options_of(scene)), loader_(link_, engine_, scene) {
     started_ = engine_.start();
     if (!started_) return;
     sim_ = std::thread([this] { engine_.run(); });
-    watch_.start();
+    loader_.start();
   }
   ~ReloadedShow() {
     engine_.stop();
     if (sim_.joinable()) sim_.join();
-    watch_.stop();
+    loader_.stop();
   }
   ReloadedShow(const ReloadedShow&) = delete;
   ReloadedShow& operator=(const ReloadedShow&) = delete;
@@ -82,7 +82,7 @@ class ReloadedShow {
 
   EngineLink link_;
   Engine engine_;
-  SceneWatch watch_;
+  SceneLoader loader_;
   Result<void> started_;
   std::thread sim_;
   std::vector<Outgoing> out_;

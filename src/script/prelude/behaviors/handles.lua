@@ -83,7 +83,7 @@ end
 
 local function class_of_type(kind, group)
   P.require_behavior_type(kind)
-  P.check(api.behavior_type(ctx, kind, #kind, group))
+  P.handle_result(api.behavior_type(ctx, kind, #kind, group))
   return P.class_of_table(answer.count)
 end
 
@@ -91,8 +91,8 @@ local own = { parts = true, joints = true, motors = true }
 body.methods.add_behavior = function(h, kind, name, opts)
   local subject = "add_behavior"
   P.check_self(h, body, subject)
-  P.want_text(kind, subject .. ": the type")
-  P.want_text(name, subject .. ": the name")
+  P.check_text(kind, subject .. ": the type")
+  P.check_text(name, subject .. ": the name")
   local class = class_of_type(kind, 0)
   P.check_opts(class, opts, own, subject)
   api.select_clear(ctx)
@@ -115,8 +115,8 @@ local group_own = { bodies = true, parts = true, neighbor_parts = true }
 sim.methods.add_group_behavior = function(h, kind, name, opts)
   local subject = "add_group_behavior"
   P.check_self(h, sim, subject)
-  P.want_text(kind, subject .. ": the type")
-  P.want_text(name, subject .. ": the name")
+  P.check_text(kind, subject .. ": the type")
+  P.check_text(name, subject .. ": the name")
   local class = class_of_type(kind, 1)
   P.check_opts(class, opts, group_own, subject)
   api.select_clear(ctx)

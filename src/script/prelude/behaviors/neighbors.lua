@@ -39,7 +39,7 @@ local function fail_call(h, class, method, of, ...)
   if not istype(part, of) then fail("%s: neighbors are those of a part, not of %s", P.label(h), describe(of)) end
   P.slot_of(of)
   for i = 1, select("#", ...) do
-    P.want_number((select(i, ...)), select("#", ...) == 1 and method .. ": the radius" or method .. ": a distance")
+    P.check_number((select(i, ...)), select("#", ...) == 1 and method .. ": the radius" or method .. ": a distance")
   end
 end
 

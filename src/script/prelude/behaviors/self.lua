@@ -172,13 +172,14 @@ end
 
 -- Called from C++: each start, step and migrate is a guarded call with a function and a handle from these tables,
 -- indexed by the instance's number.
-local entry = P.entry
+local exports = P.exports
 local selfs, starts, steps, migrates = {}, {}, {}, {}
-entry.behavior_self, entry.behavior_start, entry.behavior_step, entry.behavior_migrate = selfs, starts, steps, migrates
+exports.behavior_self, exports.behavior_start = selfs, starts
+exports.behavior_step, exports.behavior_migrate = steps, migrates
 
 -- Steps many instances in one call; each is still guarded individually, from one behavior_next to the next. The loop is
 -- compiled together with the steps, whereas a separate call from C++ would be interpreted up to its first loop.
-function entry.step_behaviors(dt)
+function exports.step_behaviors(dt)
   local number = api.behavior_next(ctx)
   while number > 0 do
     steps[number](selfs[number], dt)
@@ -186,7 +187,7 @@ function entry.step_behaviors(dt)
   end
 end
 
-function entry.make_behavior(file, slot, generation)
+function exports.make_behavior(file, slot, generation)
   local of = P.behavior_types[file]
   local number = #instances + 1
   local h = of.class.ctype(slot, generation, number)
@@ -203,17 +204,17 @@ function entry.make_behavior(file, slot, generation)
 end
 
 -- called before a start: the instance's targets may have changed
-function entry.clear_behavior_lists(number) drop_lists(number) end
+function exports.clear_behavior_lists(number) drop_lists(number) end
 
 -- sets the state from text and returns it
-function entry.restore_behavior(number, text)
+function exports.restore_behavior(number, text)
   local state = P.plain_value(text)
   instances[number].state = state
   return state
 end
 
 -- accepts the result of migrate; if it is invalid returns text, file and line of the error
-function entry.accept_migrated_state(number, state)
+function exports.accept_migrated_state(number, state)
   local instance = instances[number]
   if type(state) == "table" then
     instance.state = state
@@ -226,13 +227,13 @@ end
 
 -- the state as text, or nil and the reason why it can't be serialized
 local function reject(path, reason) error(string.format("%s %s; %s", path, reason, P.plain_kinds), 0) end
-function entry.behavior_state(number)
+function exports.behavior_state(number)
   local ok, text = pcall(P.plain_text, instances[number].state, "state", reject)
   if ok then return text end
   return nil, text
 end
 
-function entry.drop_behavior(number)
+function exports.drop_behavior(number)
   drop_lists(number)
   instances[number], selfs[number], steps[number] = false, false, false
 end

@@ -21,7 +21,7 @@ namespace {
 
 class BehaviorsPanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     for (const Evaluator::Response& response : evaluator_.consume_responses()) {
       if (response.result.kind == Evaluation::Kind::error)
         context.show_notice(response.result.text.substr(0, response.result.text.find('\n')));
@@ -35,7 +35,7 @@ class BehaviorsPanel : public Panel {
     queued_moves_ -= queued_moves_ > 0 ? 1 : -1;
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const float side = ImGui::GetFrameHeight();
     ImGui::TextDisabled("%s",
                         body_ == 0 ? "All bodies" : std::string(context.value_snapshot->tree->name(body_)).c_str());
@@ -51,7 +51,7 @@ class BehaviorsPanel : public Panel {
       queued_moves_++;
     ImGui::SameLine(0, gap);
     if (icon_button(context.names, "behaviors.add", Icon::plus, "Add a behavior", false, side)) ImGui::OpenPopup("add");
-    add_popup(context);
+    draw_add_popup(context);
     if (!ImGui::BeginChild("##list", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(entries_.size()), ImGui::GetFrameHeightWithSpacing());
@@ -65,7 +65,7 @@ class BehaviorsPanel : public Panel {
 
  private:
   // Rebuilds the list if the tree or the selected body has changed, and updates the entries from each value snapshot.
-  void update_entries(const PanelContext& context) {
+  void update_entries(const GuiContext& context) {
     const std::shared_ptr<const TreeSnapshot>& tree = context.value_snapshot->tree;
     const std::uint32_t body = selected_body(context);
     if (tree != tree_ || body != body_) {
@@ -81,7 +81,7 @@ class BehaviorsPanel : public Panel {
   }
 
   // Moves the selected entry past the previous or the next line.
-  void move(PanelContext& context, int direction) {
+  void move(GuiContext& context, int direction) {
     const auto entry =
         std::ranges::find_if(entries_, [&](const BehaviorEntry& e) { return e.pattern == context.selected; });
     if (entry == entries_.end()) return context.show_notice("Select a behavior first");
@@ -91,7 +91,7 @@ class BehaviorsPanel : public Panel {
       last_move_request_ = context.send(std::move(message));
   }
 
-  static std::uint32_t selected_body(const PanelContext& context) {
+  static std::uint32_t selected_body(const GuiContext& context) {
     constexpr std::string_view kBodies = "/physics/body/";
     const std::string& path = context.selected;
     if (!path.starts_with(kBodies) || path.find('*') != std::string::npos) return 0;
@@ -100,7 +100,7 @@ class BehaviorsPanel : public Panel {
     return ref && ref->property == nullptr ? ref->node : 0;
   }
 
-  void draw_line(PanelContext& context, const BehaviorEntry& entry) {
+  void draw_line(GuiContext& context, const BehaviorEntry& entry) {
     ImGui::PushID(entry.pattern.c_str());
     const std::string address = entry.pattern + "/active";
     const auto count = static_cast<int>(entry.nodes.size());
@@ -108,7 +108,7 @@ class BehaviorsPanel : public Panel {
     const int active = pending ? (*pending != 0 ? count : 0) : entry.active;
     bool on = active == count;
     const bool mixed = active > 0 && active < count;
-    if (mixed) ImGui::PushStyleColor(ImGuiCol_CheckMark, packed_color(Tone::accent, 0));
+    if (mixed) ImGui::PushStyleColor(ImGuiCol_CheckMark, packed_color(ThemeColor::accent, 0));
     if (ImGui::Checkbox("##active", &on)) context.set_all(address, on ? 1 : 0);
     if (mixed) ImGui::PopStyleColor();
     context.names.add(address);
@@ -117,13 +117,13 @@ class BehaviorsPanel : public Panel {
     if (mixed)  // active on some bodies: a bar instead of the check mark
       ImGui::GetWindowDrawList()->AddRectFilled({low.x + side * 0.25F, low.y + side * 0.44F},
                                                 {low.x + side * 0.75F, low.y + side * 0.58F},
-                                                packed_color(Tone::accent));
+                                                packed_color(ThemeColor::accent));
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
     draw_name(context, entry, active, count);
     ImGui::PopID();
   }
 
-  void draw_name(PanelContext& context, const BehaviorEntry& entry, int active, int count) {
+  void draw_name(GuiContext& context, const BehaviorEntry& entry, int active, int count) {
     const std::string time = entry.time >= 0.5 ? fmt::format("{:.0f} µs", entry.time) : "";
     const float right = ImGui::CalcTextSize(time.c_str()).x;
     const float close = ImGui::GetFrameHeight() * 0.9F;
@@ -136,20 +136,22 @@ class BehaviorsPanel : public Panel {
     draw_tooltip(entry, active, count);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float y = from.y + ImGui::GetStyle().FramePadding.y;
-    const Tone tone = !entry.error.empty() ? Tone::red : active > 0 ? Tone::text : Tone::secondary;
+    const ThemeColor color = !entry.error.empty() ? ThemeColor::red
+                             : active > 0         ? ThemeColor::text
+                                                  : ThemeColor::secondary;
     float x = from.x + 3;
     if (!entry.error.empty()) {
       draw_icon(Icon::warning, x + ImGui::GetFontSize() * 0.4F, y + ImGui::GetFontSize() * 0.5F,
-                ImGui::GetFontSize() * 0.4F, packed_color(Tone::red));
+                ImGui::GetFontSize() * 0.4F, packed_color(ThemeColor::red));
       x += ImGui::GetFontSize() * 1.05F;
     }
     list.PushClipRect(from, {from.x + width, from.y + ImGui::GetFrameHeight()}, true);
-    list.AddText({x, y}, packed_color(tone), entry.name.c_str());
+    list.AddText({x, y}, packed_color(color), entry.name.c_str());
     const std::string suffix = entry.group ? "group" : count > 1 ? fmt::format("\u00d7{}", count) : "";
     const float end = x + ImGui::CalcTextSize(entry.name.c_str()).x;
-    list.AddText({end + ImGui::GetFontSize() * 0.5F, y}, packed_color(Tone::secondary), suffix.c_str());
+    list.AddText({end + ImGui::GetFontSize() * 0.5F, y}, packed_color(ThemeColor::secondary), suffix.c_str());
     list.PopClipRect();
-    list.AddText({from.x + width + ImGui::GetStyle().ItemInnerSpacing.x, y}, packed_color(Tone::secondary),
+    list.AddText({from.x + width + ImGui::GetStyle().ItemInnerSpacing.x, y}, packed_color(ThemeColor::secondary),
                  time.c_str());
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - close);
     if (ImGui::InvisibleButton("##remove", {close, ImGui::GetFrameHeight()})) remove(context, entry);
@@ -157,7 +159,7 @@ class BehaviorsPanel : public Panel {
     const ImVec2 at = ImGui::GetItemRectMin();
     const bool hovered = ImGui::IsItemHovered() || ImGui::IsItemFocused();
     draw_icon(Icon::close, at.x + close / 2, at.y + ImGui::GetFrameHeight() / 2, ImGui::GetFontSize() * 0.3F,
-              packed_color(hovered ? Tone::red : Tone::secondary));
+              packed_color(hovered ? ThemeColor::red : ThemeColor::secondary));
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Remove; a reset or reload restores the scene's own behaviors");
   }
 
@@ -167,7 +169,7 @@ class BehaviorsPanel : public Panel {
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
     ImGui::Text("%s: %d of %d active", entry.type.c_str(), active, count);
     if (!entry.error.empty()) {
-      ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::red));
+      ImGui::PushStyleColor(ImGuiCol_Text, packed_color(ThemeColor::red));
       ImGui::TextUnformatted(entry.error.c_str());
       ImGui::PopStyleColor();
       ImGui::TextDisabled("Activate it again to retry");
@@ -177,13 +179,13 @@ class BehaviorsPanel : public Panel {
     ImGui::EndTooltip();
   }
 
-  static void remove(PanelContext& context, const BehaviorEntry& entry) {
+  static void remove(GuiContext& context, const BehaviorEntry& entry) {
     if (context.selected == entry.pattern) context.selected.clear();
     context.send(entry.pattern + "/remove");
   }
 
   // Adding a behavior is done in Lua, because no OSC address does it.
-  void add_popup(PanelContext& context) {
+  void draw_add_popup(GuiContext& context) {
     if (!ImGui::BeginPopup("add")) return;
     const std::vector<std::string>& types = context.options->behavior_types;
     const float width = ImGui::GetFontSize() * 14;
@@ -207,7 +209,7 @@ class BehaviorsPanel : public Panel {
     context.names.add("behaviors.name");
     ImGui::BeginDisabled(type_.empty() || name_.empty());
     if (ImGui::Button("Add")) {
-      evaluator_.request(context.link, add_text(context));
+      evaluator_.request(context.link, add_behavior_script(context));
       ImGui::CloseCurrentPopup();
     }
     context.names.add("behaviors.add_it");
@@ -215,7 +217,7 @@ class BehaviorsPanel : public Panel {
     ImGui::EndPopup();
   }
 
-  std::string add_text(const PanelContext& context) const {
+  std::string add_behavior_script(const GuiContext& context) const {
     const std::string add = fmt::format(":add_behavior({}, {})", lua_text(type_), lua_text(name_));
     if (body_ != 0) return lua_path(*context.value_snapshot->tree, {body_, nullptr}) + add;
     return fmt::format("for _, body in ipairs(sim.bodies) do body{} end", add);

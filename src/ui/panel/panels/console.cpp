@@ -21,17 +21,17 @@ constexpr std::size_t kConsoleLines = 500;
 
 class ConsolePanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (!initialized_) history_ = context.options->history;
     initialized_ = true;
     for (const LogLine& line : log_since(last_line_)) {
       last_line_ = line.number;
-      if (line.level == LogLevel::print) show(Tone::text, line.text);
+      if (line.level == LogLevel::print) show(ThemeColor::text, line.text);
     }
     for (const Evaluator::Response& response : evaluator_.consume_responses()) handle_response(response);
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const float field = ImGui::GetFrameHeightWithSpacing();
     ImGui::PushFont(context.fonts.code);
     if (ImGui::BeginChild("##output", {0, -field})) draw_output();
@@ -54,15 +54,15 @@ class ConsolePanel : public Panel {
 
  private:
   struct Line {
-    Tone tone;
+    ThemeColor color;
     std::string text;
   };
 
-  void show(Tone tone, const std::string& text) {
+  void show(ThemeColor color, const std::string& text) {
     std::size_t begin = 0;
     while (begin <= text.size()) {
       const std::size_t end = std::min(text.find('\n', begin), text.size());
-      lines_.push_back({tone, text.substr(begin, end - begin)});
+      lines_.push_back({color, text.substr(begin, end - begin)});
       begin = end + 1;
     }
     while (lines_.size() > kConsoleLines) lines_.pop_front();
@@ -75,7 +75,7 @@ class ConsolePanel : public Panel {
     while (clipper.Step()) {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++) {
         const Line& line = lines_[static_cast<std::size_t>(i)];
-        ImGui::PushStyleColor(ImGuiCol_Text, packed_color(line.tone));
+        ImGui::PushStyleColor(ImGuiCol_Text, packed_color(line.color));
         ImGui::TextUnformatted(line.text.c_str(), line.text.c_str() + line.text.size());
         ImGui::PopStyleColor();
       }
@@ -84,17 +84,17 @@ class ConsolePanel : public Panel {
     scroll_to_end_ = false;
   }
 
-  void enter(PanelContext& context) {
+  void enter(GuiContext& context) {
     const std::string line = std::exchange(text_, {});
     history_position_ = history_.size();
     if (line.find_first_not_of(" \t") == std::string::npos && incomplete_.empty()) return;
-    show(Tone::secondary, (incomplete_.empty() ? "> " : "… ") + line);
+    show(ThemeColor::secondary, (incomplete_.empty() ? "> " : "… ") + line);
     if (history_.empty() || history_.back() != line) history_.push_back(line);
     history_position_ = history_.size();
     context.options->store_line(line);
     incomplete_ += (incomplete_.empty() ? "" : "\n") + line;
     run_request_ = evaluator_.request(context.link, incomplete_);
-    if (run_request_ == 0) show(Tone::red, "The simulation's queue is full; try again");
+    if (run_request_ == 0) show(ThemeColor::red, "The simulation's queue is full; try again");
   }
 
   void handle_response(const Evaluator::Response& response) {
@@ -103,8 +103,8 @@ class ConsolePanel : public Panel {
     // an incomplete text waits for its next line
     if (result.kind == Evaluation::Kind::incomplete) return;
     incomplete_.clear();
-    if (result.kind == Evaluation::Kind::value) show(Tone::text, result.text);
-    if (result.kind == Evaluation::Kind::error) show(Tone::red, result.text);
+    if (result.kind == Evaluation::Kind::value) show(ThemeColor::text, result.text);
+    if (result.kind == Evaluation::Kind::error) show(ThemeColor::red, result.text);
   }
 
   // Inserts the common prefix of the names; lists them if there are several.
@@ -126,7 +126,7 @@ class ConsolePanel : public Panel {
     if (names.size() > 1) {
       std::string list;
       for (std::size_t i = 0; i < names.size() && i < 40; i++) list += (i > 0 ? "  " : "") + names[i];
-      show(Tone::blue, list + (names.size() > 40 ? "  …" : ""));
+      show(ThemeColor::blue, list + (names.size() > 40 ? "  …" : ""));
     }
     completion_ = {completed_text_, response.result.word, shared};
   }
@@ -177,7 +177,7 @@ class ConsolePanel : public Panel {
   std::uint64_t completion_request_ = 0;
   std::uint64_t run_request_ = 0;
   Completion completion_;
-  PanelContext* context_ = nullptr;
+  GuiContext* context_ = nullptr;
   std::uint64_t last_line_ = log_newest();
   bool initialized_ = false;
   bool scroll_to_end_ = false;

@@ -5,7 +5,7 @@
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
-#include "ui/panel/widgets/fault_list.h"
+#include "ui/panel/widgets/error_list.h"
 #include "ui/panel/widgets/icons.h"
 
 namespace limber {
@@ -14,9 +14,9 @@ namespace {
 
 class ErrorsPanel : public Panel {
  public:
-  std::string badge(const PanelContext&) const override { return list_.count_text(); }
+  std::string badge(const GuiContext&) const override { return list_.count_text(); }
 
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     for (const LogLine& line : log_since(last_line_)) {
       last_line_ = line.number;
       list_.add(line);
@@ -24,41 +24,42 @@ class ErrorsPanel : public Panel {
     context.errors = list_.error_count();
   }
 
-  void draw(PanelContext& context) override {
-    if (list_.faults().empty()) return ImGui::TextDisabled("No errors");
+  void draw(GuiContext& context) override {
+    if (list_.entries().empty()) return ImGui::TextDisabled("No errors");
     if (ImGui::SmallButton("Clear")) list_.clear();
     context.names.add("errors.clear");
     if (!ImGui::BeginChild("##faults", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     int i = 0;
-    for (auto fault = list_.faults().rbegin(); fault != list_.faults().rend(); ++fault) draw_line(context, *fault, i++);
+    for (auto entry = list_.entries().rbegin(); entry != list_.entries().rend(); ++entry)
+      draw_line(context, *entry, i++);
     ImGui::EndChild();
   }
 
  private:
-  static void draw_line(PanelContext& context, const Fault& fault, int i) {
-    const bool error = fault.line.level == LogLevel::error;
-    const std::uint32_t color = packed_color(error ? Tone::red : Tone::accent);
+  static void draw_line(GuiContext& context, const ErrorEntry& entry, int i) {
+    const bool error = entry.line.level == LogLevel::error;
+    const std::uint32_t color = packed_color(error ? ThemeColor::red : ThemeColor::accent);
     const float sign = ImGui::GetFontSize() * 1.3F;
     ImGui::PushID(i);
     ImGui::PushFont(context.fonts.code);
     const float wrap = ImGui::GetContentRegionAvail().x - sign;
-    const ImVec2 size = ImGui::CalcTextSize(fault.line.text.c_str(), nullptr, false, wrap);
+    const ImVec2 size = ImGui::CalcTextSize(entry.line.text.c_str(), nullptr, false, wrap);
     const ImVec2 from = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##fault", false, 0, {0, size.y}))
-      context.copy_with_notice(fault.location.empty() ? fault.line.text : fault.location);
+      context.copy_with_notice(entry.location.empty() ? entry.line.text : entry.location);
     ImGui::PopFont();
     context.names.add(fmt::format("error.{}", i));
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("Click to copy %s", fault.location.empty() ? "the text" : fault.location.c_str());
+      ImGui::SetTooltip("Click to copy %s", entry.location.empty() ? "the text" : entry.location.c_str());
     ImDrawList& list = *ImGui::GetWindowDrawList();
     draw_icon(error ? Icon::warning : Icon::right, from.x + sign * 0.4F, from.y + ImGui::GetFontSize() * 0.55F,
               ImGui::GetFontSize() * 0.36F, color);
     list.AddText(context.fonts.code, imgui::font_height(*context.fonts.code), {from.x + sign, from.y}, color,
-                 fault.line.text.c_str(), nullptr, wrap);
+                 entry.line.text.c_str(), nullptr, wrap);
     ImGui::PopID();
   }
 
-  FaultList list_;
+  ErrorList list_;
   std::uint64_t last_line_ = 0;
 };
 

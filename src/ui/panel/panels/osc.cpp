@@ -22,7 +22,7 @@ constexpr std::size_t kMonitorAddresses = 4096;
 
 class OscPanel : public Panel {
  public:
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     // messages are logged only while the monitor is visible
     hidden_frames_ = 0;
     if (watch_ == nullptr) {
@@ -46,7 +46,7 @@ class OscPanel : public Panel {
     ImGui::EndChild();
   }
 
-  void update(PanelContext&) override {
+  void update(GuiContext&) override {
     if (hidden_frames_++ > kMonitorHiddenFrames) watch_.reset();
   }
 
@@ -61,15 +61,16 @@ class OscPanel : public Panel {
     std::uint64_t number = 0;  // of its last line
   };
 
-  static void draw_counters(PanelContext& context) {
+  static void draw_counters(GuiContext& context) {
     const Counters& c = context.link.counters;
     const std::uint64_t lost = c.dropped.load() + c.dropped_kernel.load();
     const std::uint64_t rejected = c.malformed.load() + c.denied.load() + c.unknown.load() + c.refused.load();
     const std::string texts[] = {fmt::format("In {}", c.received.load()), fmt::format("Out {}", c.sent.load()),
                                  fmt::format("Rejected {}", rejected), fmt::format("Clamped {}", c.clamped.load()),
                                  fmt::format("Dropped {}", lost)};
-    const Tone tones[] = {Tone::blue, Tone::green, rejected > 0 ? Tone::accent : Tone::secondary, Tone::secondary,
-                          lost > 0 ? Tone::red : Tone::secondary};
+    const ThemeColor tones[] = {ThemeColor::blue, ThemeColor::green,
+                                rejected > 0 ? ThemeColor::accent : ThemeColor::secondary, ThemeColor::secondary,
+                                lost > 0 ? ThemeColor::red : ThemeColor::secondary};
     for (std::size_t i = 0; i < 5; i++) {
       if (i > 0) ImGui::SameLine();
       ImGui::PushStyleColor(ImGuiCol_Text, packed_color(tones[i]));
@@ -102,9 +103,9 @@ class OscPanel : public Panel {
     }
   }
 
-  void draw_line(PanelContext& context, int i) const {
+  void draw_line(GuiContext& context, int i) const {
     const Line& line = lines_[static_cast<std::size_t>(i)];
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(line.in ? Tone::blue : Tone::green));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(line.in ? ThemeColor::blue : ThemeColor::green));
     ImGui::TextUnformatted(line.in ? "<" : ">");
     ImGui::PopStyleColor();
     ImGui::SameLine();

@@ -31,13 +31,13 @@ constexpr std::array kTopSections = {
 
 class ParametersPanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (context.value_snapshot == nullptr) return;
     search_.start(words_);
     search_.advance(context.value_snapshot->tree);
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const float side = ImGui::GetFrameHeight() * 1.15F;
     if (std::exchange(context.requests.focus_search, false)) {
       ImGui::SetWindowFocus();  // Dear ImGui 1.90.1 focuses items of the focused window only
@@ -63,7 +63,7 @@ class ParametersPanel : public Panel {
   }
 
  private:
-  void show_found(PanelContext& context) {
+  void show_found(GuiContext& context) {
     for (const PropertyHandle& handle : search_.found()) {
       if (favorites_only_ && !context.settings.favorites.contains(handle.path)) continue;
       property_line(context, handle, {.star = true, .with_path = true, .name_fraction = 0.36});
@@ -73,7 +73,7 @@ class ParametersPanel : public Panel {
     if (!search_.done()) ImGui::TextDisabled("Searching…");
   }
 
-  void show_favorites(PanelContext& context) {
+  void show_favorites(GuiContext& context) {
     // a copy, because a star may be removed during iteration
     const std::set<std::string> paths = context.settings.favorites;
     for (const std::string& path : paths) {
@@ -84,7 +84,7 @@ class ParametersPanel : public Panel {
   }
 
   // Shows the properties of the selected object. A pattern shows its first match, and setting a value sets all matches.
-  static void show_selected(PanelContext& context) {
+  static void show_selected(GuiContext& context) {
     PatternBudget budget;
     const std::string path = context.selected;
     std::uint32_t node = 0;
@@ -106,7 +106,7 @@ class ParametersPanel : public Panel {
     if (header(context, path, title, true)) draw_properties(context, node, path);
   }
 
-  static void show_object(PanelContext& context, const char* path, const char* title, bool open) {
+  static void show_object(GuiContext& context, const char* path, const char* title, bool open) {
     const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(path);
     if (!ref || ref->property != nullptr ||
         context.value_snapshot->tree->nodes()[ref->node].table->properties().empty())
@@ -114,8 +114,8 @@ class ParametersPanel : public Panel {
     if (header(context, path, title, open)) draw_properties(context, ref->node, path);
   }
 
-  static bool header(PanelContext& context, const std::string& path, const std::string& title, bool open) {
-    ImGui::PushStyleColor(ImGuiCol_Header, packed_color(Tone::header));
+  static bool header(GuiContext& context, const std::string& path, const std::string& title, bool open) {
+    ImGui::PushStyleColor(ImGuiCol_Header, packed_color(ThemeColor::header));
     const bool is_open = ImGui::CollapsingHeader(fmt::format("{}###{}", title, path).c_str(),
                                                  open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
     ImGui::PopStyleColor();
@@ -124,7 +124,7 @@ class ParametersPanel : public Panel {
     return is_open;
   }
 
-  static void draw_properties(PanelContext& context, std::uint32_t node, const std::string& path) {
+  static void draw_properties(GuiContext& context, std::uint32_t node, const std::string& path) {
     for (const Property& property : context.value_snapshot->tree->nodes()[node].table->properties()) {
       // available in the transport and the tree
       if (path == "/physics/sim" && property.kind == PropertyKind::action) continue;

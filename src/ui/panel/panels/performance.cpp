@@ -28,7 +28,7 @@ constexpr std::array kPhases = {Phase{"Commands", &PhaseTimes::commands},   Phas
 
 class PerformancePanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (context.snapshot == nullptr || context.snapshot == last_) return;
     const bool ticked = last_ == nullptr || context.snapshot->tick != last_->tick;
     last_ = context.snapshot;
@@ -44,7 +44,7 @@ class PerformancePanel : public Panel {
     for (std::size_t i = 0; i < kPhases.size(); i++) blend(means_[i], last_->times.*kPhases[i].time * 1e3);
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const double budget = context.number("/physics/sim/timestep", 1.0 / 60) /
                           std::max(context.number("/physics/sim/speed", 1), 0.01) * 1e3;
     if (context.clock - updated_at_ > kGraphUpdateInterval) {
@@ -64,7 +64,7 @@ class PerformancePanel : public Panel {
   }
 
  private:
-  void numbers(PanelContext& context) const {
+  void numbers(GuiContext& context) const {
     const std::uint64_t lost = context.link.counters.dropped.load() + context.link.counters.dropped_kernel.load();
     pair(context, "Tick", shown_[0], "Max", shown_[1]);
     pair(context, "Budget", shown_[2], "Speed", shown_[3]);
@@ -73,7 +73,7 @@ class PerformancePanel : public Panel {
     pair(context, "Dropped", fmt::format("{}", lost), "Queue", fmt::format("{}", context.link.command_queue.dropped()));
   }
 
-  void graph(PanelContext& context, float height, double budget) {
+  void graph(GuiContext& context, float height, double budget) {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x;
     if (ImGui::InvisibleButton("##graph", {width, height})) max_ = 0;
@@ -83,7 +83,7 @@ class PerformancePanel : public Panel {
                         static_cast<int>(kGraphTicks));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
-    list.AddRectFilled(from, to, packed_color(Tone::field), ImGui::GetStyle().FrameRounding);
+    list.AddRectFilled(from, to, packed_color(ThemeColor::field), ImGui::GetStyle().FrameRounding);
     const std::size_t count = ticks_.size();
     const auto tick_time = [&](std::size_t i) { return static_cast<float>(ticks_[i][0]); };
     float high = static_cast<float>(budget) * 0.25F;
@@ -93,16 +93,16 @@ class PerformancePanel : public Panel {
     list.PushClipRect(from, to, true);
     if (budget < static_cast<double>(top))
       list.AddLine({from.x, y(static_cast<float>(budget))}, {to.x, y(static_cast<float>(budget))},
-                   packed_color(Tone::red));
+                   packed_color(ThemeColor::red));
     ImVec2 points[kGraphTicks];
     for (std::size_t i = 0; i < count; i++) {
       points[i] = {from.x + width * static_cast<float>(i) / static_cast<float>(kGraphTicks - 1), y(tick_time(i))};
     }
-    list.AddPolyline(points, static_cast<int>(count), packed_color(Tone::accent), 0, 1.4F);
+    list.AddPolyline(points, static_cast<int>(count), packed_color(ThemeColor::accent), 0, 1.4F);
     list.PopClipRect();
   }
 
-  static void pair(PanelContext& context, const char* name, const std::string& value, const char* other,
+  static void pair(GuiContext& context, const char* name, const std::string& value, const char* other,
                    const std::string& second) {
     const float half = ImGui::GetWindowWidth() / 2;
     const float name_width = half * 0.5F;

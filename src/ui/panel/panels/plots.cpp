@@ -10,7 +10,7 @@
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
-#include "ui/panel/widgets/number_bar.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/samples.h"
 
 namespace limber {
@@ -19,16 +19,16 @@ namespace {
 
 constexpr std::size_t kPlotSamples = 300;
 constexpr std::size_t kMaxComponents = 3;  // maximum number of components of a property
-constexpr std::array kPlotTones = {Tone::red, Tone::green, Tone::blue};
+constexpr std::array kPlotColors = {ThemeColor::red, ThemeColor::green, ThemeColor::blue};
 
 class PlotsPanel : public Panel {
  public:
-  std::string badge(const PanelContext& context) const override {
+  std::string badge(const GuiContext& context) const override {
     return context.plots.empty() ? "" : fmt::format("{}", context.plots.size());
   }
 
   // Adds a sample for each value snapshot of a new tick.
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (context.value_snapshot == nullptr || context.value_snapshot->snapshot->tick == last_tick_) return;
     last_tick_ = context.value_snapshot->snapshot->tick;
     std::erase_if(series_, [&](const auto& s) {
@@ -45,7 +45,7 @@ class PlotsPanel : public Panel {
     }
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     if (context.plots.empty()) return ImGui::TextDisabled("Right click a value and select Plot");
     if (!ImGui::BeginChild("##plots", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     std::string closed;
@@ -64,7 +64,7 @@ class PlotsPanel : public Panel {
   };
 
   // Returns false if the plot was closed.
-  bool plot(PanelContext& context, const std::string& path) {
+  bool plot(GuiContext& context, const std::string& path) {
     const Series& series = series_[path];
     ImGui::PushID(path.c_str());
     const bool closed = icon_button(context.names, ("unplot:" + path).c_str(), Icon::close, "Remove the plot");
@@ -89,7 +89,7 @@ class PlotsPanel : public Panel {
     ImGui::Dummy({width, height});
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
-    list.AddRectFilled(from, to, packed_color(Tone::field), ImGui::GetStyle().FrameRounding);
+    list.AddRectFilled(from, to, packed_color(ThemeColor::field), ImGui::GetStyle().FrameRounding);
     if (series.samples.empty()) return;
     double low = series.samples[0][0];
     double high = low;
@@ -108,10 +108,10 @@ class PlotsPanel : public Panel {
                      to.y - 2 - static_cast<float>(y) * (height - 4)};
       }
       list.AddPolyline(points.data(), static_cast<int>(points.size()),
-                       packed_color(series.width == 1 ? Tone::accent : kPlotTones[i]), 0, 1.4F);
+                       packed_color(series.width == 1 ? ThemeColor::accent : kPlotColors[i]), 0, 1.4F);
     }
-    list.AddText({from.x + 4, from.y + 1}, packed_color(Tone::secondary), number_label(high, false).c_str());
-    list.AddText({from.x + 4, to.y - ImGui::GetFontSize() - 2}, packed_color(Tone::secondary),
+    list.AddText({from.x + 4, from.y + 1}, packed_color(ThemeColor::secondary), number_label(high, false).c_str());
+    list.AddText({from.x + 4, to.y - ImGui::GetFontSize() - 2}, packed_color(ThemeColor::secondary),
                  number_label(low, false).c_str());
   }
 

@@ -6,9 +6,10 @@
 #include <imgui.h>
 
 #include "base/text.h"
+#include "engine/presets/morph.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
-#include "ui/panel/widgets/number_bar.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber {
 
@@ -18,7 +19,7 @@ constexpr std::size_t kPresetSlots = 8;
 
 class PresetsPanel : public Panel {
  public:
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const std::vector<std::string> names = names_of(context);
     const auto s = static_cast<float>(context.scale);
     // its own row in a compact window
@@ -34,7 +35,7 @@ class PresetsPanel : public Panel {
     ImGui::TextDisabled("Morph s");
     ImGui::SameLine(0, 5 * s);
     ImGui::PushFont(context.fonts.code);
-    const BarRange seconds{0, PanelSettings::kMaxMorphSeconds, 1.5, 0, false};
+    const SliderRange seconds{0, GuiSettings::kMaxMorphSeconds, 1.5, 0, false};
     double morph = context.settings.morph_seconds;
     if (time_bar(context, seconds, morph, 72 * s)) context.settings.morph_seconds = morph;
     ImGui::PopFont();
@@ -45,7 +46,7 @@ class PresetsPanel : public Panel {
   }
 
  private:
-  static std::vector<std::string> names_of(const PanelContext& context) {
+  static std::vector<std::string> names_of(const GuiContext& context) {
     std::vector<std::string> names;
     const auto handle = context.find("/preset/names");
     if (!handle) return names;
@@ -62,15 +63,17 @@ class PresetsPanel : public Panel {
     return name;
   }
 
-  void draw_slot(PanelContext& context, const std::vector<std::string>& names, std::size_t i) {
+  void draw_slot(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
     const bool exists = i < names.size();
     const bool active = exists && recalled_ == names[i];
     const float side = ImGui::GetFrameHeight();
     ImGui::PushID(static_cast<int>(i));
-    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(active ? Tone::active : exists ? Tone::field : Tone::header));
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(active   ? Tone::on_active
-                                                      : exists ? Tone::text
-                                                               : Tone::secondary));
+    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(active   ? ThemeColor::active
+                                                        : exists ? ThemeColor::field
+                                                                 : ThemeColor::header));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(active   ? ThemeColor::on_active
+                                                      : exists ? ThemeColor::text
+                                                               : ThemeColor::secondary));
     if (ImGui::Button(fmt::format("{}###slot", i + 1).c_str(), {side * 1.05F, side})) press_slot(context, names, i);
     ImGui::PopStyleColor(2);
     context.names.add(fmt::format("preset.{}", i + 1));
@@ -89,21 +92,21 @@ class PresetsPanel : public Panel {
     ImGui::PopID();
   }
 
-  void press_slot(PanelContext& context, const std::vector<std::string>& names, std::size_t i) {
+  void press_slot(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
     if (i >= names.size()) return store(context, unused_name(names, names.size() + 1));
     if (ImGui::GetIO().KeyCtrl) return store(context, names[i]);
     recalled_ = names[i];
     context.recall(static_cast<double>(i + 1));
   }
 
-  void store(PanelContext& context, const std::string& name) {
+  void store(GuiContext& context, const std::string& name) {
     context.send("/preset/store", {Arg::of(std::string_view(name))});
     context.show_notice(fmt::format("Stored: {}", name));
     recalled_ = name;
   }
 
-  static bool time_bar(PanelContext& context, const BarRange& range, double& seconds, float width) {
-    const bool changed = number_bar("##morph", range, width, seconds);
+  static bool time_bar(GuiContext& context, const SliderRange& range, double& seconds, float width) {
+    const bool changed = number_slider("##morph", range, width, seconds);
     context.names.add("preset.seconds");
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
       ImGui::PushFont(context.fonts.text);
@@ -113,7 +116,7 @@ class PresetsPanel : public Panel {
     return changed;
   }
 
-  static void draw_easing(PanelContext& context, float width) {
+  static void draw_easing(GuiContext& context, float width) {
     const std::vector<std::string> names = easings();
     const auto selected = std::min(static_cast<std::size_t>(std::max(context.settings.easing, 0)), names.size() - 1);
     ImGui::SetNextItemWidth(width);
@@ -131,12 +134,12 @@ class PresetsPanel : public Panel {
   }
 
   // fractional indices interpolate between two presets
-  void draw_index(PanelContext& context, const std::vector<std::string>& names, float width) {
+  void draw_index(GuiContext& context, const std::vector<std::string>& names, float width) {
     const double last = std::max(static_cast<double>(names.size()), 2.0);
     ImGui::BeginDisabled(names.size() < 2);
     ImGui::PushFont(context.fonts.code);
     index_ = std::clamp(index_, 1.0, last);
-    if (number_bar("##index", {1, last, 1, 0, false}, width, index_)) {
+    if (number_slider("##index", {1, last, 1, 0, false}, width, index_)) {
       recalled_.clear();
       context.send("/preset/recall", {Arg::of(index_)});
     }
@@ -150,7 +153,7 @@ class PresetsPanel : public Panel {
       const ImVec2 low = ImGui::GetItemRectMin();
       const ImVec2 high = ImGui::GetItemRectMax();
       const float x = low.x + (high.x - low.x) * static_cast<float>(progress);
-      ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y}, {x, high.y + 3}, packed_color(Tone::accent));
+      ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y}, {x, high.y + 3}, packed_color(ThemeColor::accent));
     }
   }
 

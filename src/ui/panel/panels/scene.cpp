@@ -13,13 +13,13 @@ namespace {
 
 class ScenePanel : public Panel {
  public:
-  std::string badge(const PanelContext& context) const override {
+  std::string badge(const GuiContext& context) const override {
     return context.snapshot == nullptr || context.snapshot->body_list == nullptr
                ? ""
                : fmt::format("{}", context.snapshot->body_list->bodies.size());
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     search_field(context.names, "scene.search", "Filter bodies, parts, joints", words_, -1);
     if (!ImGui::BeginChild("##tree", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     const std::shared_ptr<const TreeSnapshot>& tree = context.value_snapshot->tree;
@@ -52,7 +52,7 @@ class ScenePanel : public Panel {
 
  private:
   // Returns true if the line was expanded or collapsed.
-  bool draw_line(PanelContext& context, const TreeSnapshot& tree, const TreeList::Line& l) {
+  bool draw_line(GuiContext& context, const TreeSnapshot& tree, const TreeList::Line& l) {
     const TreeSnapshot::Node& node = tree.nodes()[l.node];
     const float indent = ImGui::GetFontSize() * 0.85F;
     const float height = ImGui::GetTextLineHeight();
@@ -72,10 +72,10 @@ class ScenePanel : public Panel {
     }
     if (l.expandable)
       draw_icon(l.expanded ? Icon::down : Icon::right, x - indent * 0.62F, from.y + height / 2, height * 0.24F,
-                packed_color(Tone::secondary));
+                packed_color(ThemeColor::secondary));
     const std::string_view title = TreeList::title(tree, l.node);
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddText({x, from.y}, packed_color(group ? Tone::secondary : Tone::text), title.data(),
+    list.AddText({x, from.y}, packed_color(group ? ThemeColor::secondary : ThemeColor::text), title.data(),
                  title.data() + title.size());
     if (group && l.depth <= 3) draw_member_count(tree, l.node, from);
     ImGui::PopID();
@@ -88,10 +88,10 @@ class ScenePanel : public Panel {
     tree.each_child(group, [&](std::uint32_t) { return ++members < 100000; });
     const std::string text = fmt::format("{}", members);
     const float right = from.x + ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(text.c_str()).x;
-    ImGui::GetWindowDrawList()->AddText({right, from.y}, packed_color(Tone::secondary), text.c_str());
+    ImGui::GetWindowDrawList()->AddText({right, from.y}, packed_color(ThemeColor::secondary), text.c_str());
   }
 
-  void reveal(PanelContext& context) {
+  void reveal(GuiContext& context) {
     const Result<TreePropertyRef> ref = context.value_snapshot->tree->find(context.requests.reveal_path);
     context.requests.reveal_path.clear();
     if (!ref) return;

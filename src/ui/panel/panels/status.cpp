@@ -1,5 +1,5 @@
-// Status, at the right end of the top bar: frame rate, number of bodies, lamps for incoming and outgoing messages and
-// errors.
+// Status, at the right end of the top bar: frame rate, number of bodies, indicators for incoming and outgoing messages
+// and errors.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ constexpr double kLampDuration = 0.25;  // s
 
 class StatusPanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     const auto count = [&](const std::atomic<std::uint64_t>& counter, std::uint64_t& last, double& end) {
       const std::uint64_t now = counter.load(std::memory_order_relaxed);
       if (now != last) end = context.clock + kLampDuration;
@@ -35,19 +35,19 @@ class StatusPanel : public Panel {
     frames_ = 0;
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const auto s = static_cast<float>(context.scale);
     const bool wide = ImGui::GetWindowWidth() > 1500 * s;
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
     std::string text = fmt::format("{:3.0f} fps", frame_rate_);
     if (wide) text += counts_text(*context.snapshot);
-    const float lamp = ImGui::GetFontSize() * 0.9F;
+    const float indicator = ImGui::GetFontSize() * 0.9F;
     const bool show_names = wide || compact;
     float width = ImGui::CalcTextSize(text.c_str()).x;
     const std::vector<HealthEntry> losses = context.link.health.entries();
     const std::string lost = losses.empty() ? "" : fmt::format("{}", losses.size());
-    if (!losses.empty()) width += lamp + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
-    for (const char* const name : kNames) width += lamp + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
+    if (!losses.empty()) width += indicator + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
+    for (const char* const name : kNames) width += indicator + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
     if (compact) {
       // beside the transport controls, in the first of two rows
       ImGui::SetCursorPos({0, ImGui::GetStyle().WindowPadding.y});
@@ -57,14 +57,14 @@ class StatusPanel : public Panel {
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), ImGui::GetWindowWidth() - width - 14 * s));
     ImGui::AlignTextToFramePadding();
     if (!losses.empty()) {
-      draw_losses(context, losses, lost, lamp);
+      draw_losses(context, losses, lost, indicator);
       ImGui::SameLine(0, 12 * s);
     }
     ImGui::TextUnformatted(text.c_str());
     context.names.add("status.text");
-    for (const Lamp& each : lamps(context)) {
+    for (const Indicator& each : indicators(context)) {
       ImGui::SameLine(0, 6 * s);
-      draw_lamp(lamp, each, show_names);
+      draw_indicator(indicator, each, show_names);
       context.names.add(fmt::format("status.{}", each.name));
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", each.tip.c_str());
     }
@@ -72,21 +72,24 @@ class StatusPanel : public Panel {
 
  private:
   static constexpr const char* kNames[] = {"IN", "OUT", "LUA"};
-  struct Lamp {
+  struct Indicator {
     const char* name;
-    Tone tone;
+    ThemeColor color;
     bool square;
     std::string tip;
   };
-  std::array<Lamp, 3> lamps(const PanelContext& context) const {
+  std::array<Indicator, 3> indicators(const GuiContext& context) const {
     const bool in = context.clock < in_until_;
     const bool out = context.clock < out_until_;
     const std::uint64_t errors = context.errors;
     // errors are shown as a square, so that color is not the only cue
-    return {Lamp{kNames[0], in ? Tone::blue : Tone::line, false, fmt::format("OSC in: {} messages", received_)},
-            Lamp{kNames[1], out ? Tone::green : Tone::line, false, fmt::format("OSC out: {} datagrams", sent_)},
-            errors > 0 ? Lamp{kNames[2], Tone::red, true, fmt::format("Scripts: {} errors, see Errors", errors)}
-                       : Lamp{kNames[2], Tone::green, false, "Scripts: no errors"}};
+    return {Indicator{kNames[0], in ? ThemeColor::blue : ThemeColor::line, false,
+                      fmt::format("OSC in: {} messages", received_)},
+            Indicator{kNames[1], out ? ThemeColor::green : ThemeColor::line, false,
+                      fmt::format("OSC out: {} datagrams", sent_)},
+            errors > 0
+                ? Indicator{kNames[2], ThemeColor::red, true, fmt::format("Scripts: {} errors, see Errors", errors)}
+                : Indicator{kNames[2], ThemeColor::green, false, "Scripts: no errors"}};
   }
   static std::string counts_text(const Snapshot& snapshot) {
     if (snapshot.body_list == nullptr) return {};
@@ -94,24 +97,25 @@ class StatusPanel : public Panel {
     for (const BodyEntry& body : snapshot.body_list->bodies) parts += body.part_offsets.size();
     return fmt::format("   {} bodies   {} parts", snapshot.body_list->bodies.size(), parts);
   }
-  static void draw_lamp(float size, const Lamp& lamp, bool show_name) {
+  static void draw_indicator(float size, const Indicator& indicator, bool show_name) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float high = ImGui::GetFrameHeight();
     const ImVec2 center{at.x + size / 2, at.y + high / 2};
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const float half = size * 0.28F;
-    if (lamp.square) {
+    if (indicator.square) {
       list.AddRectFilled({center.x - half * 1.2F, center.y - half * 1.2F},
-                         {center.x + half * 1.2F, center.y + half * 1.2F}, packed_color(lamp.tone));
+                         {center.x + half * 1.2F, center.y + half * 1.2F}, packed_color(indicator.color));
     } else {
-      list.AddCircleFilled(center, half, packed_color(lamp.tone), 16);
+      list.AddCircleFilled(center, half, packed_color(indicator.color), 16);
     }
-    ImGui::Dummy({size + (show_name ? ImGui::CalcTextSize(lamp.name).x : 0), high});
+    ImGui::Dummy({size + (show_name ? ImGui::CalcTextSize(indicator.name).x : 0), high});
     if (show_name)
-      list.AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(Tone::secondary), lamp.name);
+      list.AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(ThemeColor::secondary),
+                   indicator.name);
   }
   // A warning sign and the number of kinds of losses; a click copies the list.
-  static void draw_losses(PanelContext& context, const std::vector<HealthEntry>& losses, const std::string& number,
+  static void draw_losses(GuiContext& context, const std::vector<HealthEntry>& losses, const std::string& number,
                           float size) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float high = ImGui::GetFrameHeight();
@@ -126,9 +130,9 @@ class StatusPanel : public Panel {
       ImGui::TextDisabled("Click to copy this list");
       ImGui::EndTooltip();
     }
-    draw_icon(Icon::warning, at.x + size * 0.45F, at.y + high / 2, size * 0.42F, packed_color(Tone::accent));
+    draw_icon(Icon::warning, at.x + size * 0.45F, at.y + high / 2, size * 0.42F, packed_color(ThemeColor::accent));
     ImGui::GetWindowDrawList()->AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y},
-                                        packed_color(Tone::accent), number.c_str());
+                                        packed_color(ThemeColor::accent), number.c_str());
   }
 
   std::uint64_t received_ = 0, sent_ = 0;

@@ -20,17 +20,17 @@ constexpr std::size_t kMaxNameBytes = 20;  // longer names of takes are shortene
 
 class TimePanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (context.value_snapshot == nullptr) return;
     const TakeState take = context.take_state();
     if (!take.recording() && take_.recording())
       context.show_notice(fmt::format("Take '{}' recorded: {}", take_.name, clock_text(take_.seconds)));
-    if (!take.playing && take_.playing)
+    if (!take.in_show && take_.in_show)
       context.show_notice(fmt::format("Take '{}' has ended; live control resumes", take_.name));
     take_ = take;
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const auto s = static_cast<float>(context.scale);
     const ImGuiStyle& style = ImGui::GetStyle();
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
@@ -52,7 +52,7 @@ class TimePanel : public Panel {
   }
 
  private:
-  static void draw_speed(PanelContext& context, float s) {
+  static void draw_speed(GuiContext& context, float s) {
     const auto speed = context.find("/physics/sim/speed");
     if (!speed) return;
     ImGui::PushID("speed");
@@ -70,7 +70,7 @@ class TimePanel : public Panel {
     ImGui::SameLine();
   }
 
-  void draw_history(PanelContext& context, float width) {
+  void draw_history(GuiContext& context, float width) {
     if (icon_button(context.names, "transport.rewind", Icon::rewind,
                     fmt::format("Rewind {} s (Shift+,)", kRewindSeconds).c_str()))
       context.rewind(kRewindSeconds);
@@ -85,16 +85,17 @@ class TimePanel : public Panel {
     ImGui::SameLine();
   }
 
-  static void draw_play_take(PanelContext& context) {
-    if (icon_button(context.names, "take.play", Icon::play, "Play the latest take (Ctrl+Shift+R)")) context.play_take();
+  static void draw_play_take(GuiContext& context) {
+    if (icon_button(context.names, "take.play", Icon::play, "Play the latest take (Ctrl+Shift+R)"))
+      context.toggle_take_playback();
     ImGui::SameLine();
   }
 
   // Draws text and an icon in addition to the color.
-  void draw_recording(PanelContext& context) const {
+  void draw_recording(GuiContext& context) const {
     const float size = ImGui::GetFrameHeight();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    draw_icon(Icon::record, at.x + size * 0.35F, at.y + size / 2, size * 0.26F, packed_color(Tone::red));
+    draw_icon(Icon::record, at.x + size * 0.35F, at.y + size / 2, size * 0.26F, packed_color(ThemeColor::red));
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + size * 0.8F);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(
@@ -105,11 +106,11 @@ class TimePanel : public Panel {
   }
 
   // Draws the position of the replay.
-  void draw_replay(PanelContext& context, bool compact, float s) const {
-    if (take_.playing) {
+  void draw_replay(GuiContext& context, bool compact, float s) const {
+    if (take_.in_show) {
       if (icon_button(context.names, "take.stop", Icon::stop,
                       "Stop the take and continue live from here (Ctrl+Shift+R)"))
-        context.play_take();
+        context.toggle_take_playback();
       ImGui::SameLine();
     }
     const float width = (compact ? 160 : 260) * s;
@@ -121,14 +122,15 @@ class TimePanel : public Panel {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Replaying take '%s'", take_.name.c_str());
     const float rounding = ImGui::GetStyle().FrameRounding;
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddRectFilled(low, end, packed_color(Tone::field), rounding);
+    list.AddRectFilled(low, end, packed_color(ThemeColor::field), rounding);
     const double part = take_.duration > 0 ? std::clamp(take_.seconds / take_.duration, 0.0, 1.0) : 0;
-    list.AddRectFilled(low, {low.x + width * static_cast<float>(part), end.y}, packed_color(Tone::fill), rounding);
+    list.AddRectFilled(low, {low.x + width * static_cast<float>(part), end.y}, packed_color(ThemeColor::fill),
+                       rounding);
     const std::string clock = fmt::format("{} / {}", clock_text(take_.seconds), clock_text(take_.duration));
     ImGui::RenderTextClipped(low, end, clock.c_str(), clock.c_str() + clock.size(), nullptr, {0.5F, 0.5F});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    const char* const input_text = take_.playing ? "input paused" : "input rejected";
+    const char* const input_text = take_.in_show ? "input paused" : "input rejected";
     const std::string text =
         compact ? input_text : fmt::format("Replay of {}: {}", shortened(take_.name, kMaxNameBytes), input_text);
     ImGui::TextUnformatted(text.c_str());
@@ -137,7 +139,7 @@ class TimePanel : public Panel {
   }
 
   // Extends to the end of the row; the tooltip shows the full text.
-  static void draw_rejection(PanelContext& context) {
+  static void draw_rejection(GuiContext& context) {
     if (!context.rejection.visible(context.clock)) return;
     const float high = ImGui::GetFrameHeight();
     const float width = ImGui::GetContentRegionAvail().x;
@@ -146,9 +148,9 @@ class TimePanel : public Panel {
     if (ImGui::InvisibleButton("##rejection", {width, high})) context.copy_with_notice(context.rejection.text);
     context.names.add("rejection");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Rejected: %s", context.rejection.text.c_str());
-    draw_icon(Icon::warning, low.x + high * 0.45F, low.y + high / 2, high * 0.3F, packed_color(Tone::red));
+    draw_icon(Icon::warning, low.x + high * 0.45F, low.y + high / 2, high * 0.3F, packed_color(ThemeColor::red));
     const float top = low.y + ImGui::GetStyle().FramePadding.y;
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::red));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(ThemeColor::red));
     imgui::text_ellipsis({low.x + high, top}, {low.x + width, low.y + high}, context.rejection.text);
     ImGui::PopStyleColor();
   }

@@ -12,14 +12,14 @@ namespace {
 
 class TransportPanel : public Panel {
  public:
-  void update(PanelContext& context) override {
+  void update(GuiContext& context) override {
     if (context.value_snapshot == nullptr) return;
     const bool panicked = context.panicked();
     if (panicked != panicked_) context.show_notice(panicked ? "Panic: all motion is stopped" : "Panic ended");
     panicked_ = panicked;
   }
 
-  void draw(PanelContext& context) override {
+  void draw(GuiContext& context) override {
     const bool paused = context.snapshot->paused;
     if (icon_button(context.names, "transport.reset", Icon::back, "Reset the scene (Ctrl+Backspace)"))
       context.send("/transport/reset");
@@ -46,24 +46,25 @@ class TransportPanel : public Panel {
 
  private:
   // A circle, or a square while recording, so that color is not the only cue.
-  static void draw_record(PanelContext& context) {
+  static void draw_record(GuiContext& context) {
     const bool on = context.take_state().recording();
     const Icon icon = on ? Icon::stop : Icon::record;
     if (icon_button(context.names, "transport.record", icon,
                     on ? "Stop the take (Ctrl+R)" : "Record a take from the start of the scene (Ctrl+R)"))
-      context.record();
+      context.toggle_recording();
     const ImVec2 low = ImGui::GetItemRectMin();
     const ImVec2 high = ImGui::GetItemRectMax();
-    draw_icon(icon, (low.x + high.x) / 2, (low.y + high.y) / 2, (high.y - low.y) * 0.27F, packed_color(Tone::red));
+    draw_icon(icon, (low.x + high.x) / 2, (low.y + high.y) / 2, (high.y - low.y) * 0.27F,
+              packed_color(ThemeColor::red));
   }
 
   // The same width in both states, so that nothing moves.
-  static void draw_panic(PanelContext& context) {
+  static void draw_panic(GuiContext& context) {
     const bool on = context.panicked();
     const float width = ImGui::CalcTextSize("PANIC ON").x + 2 * ImGui::GetStyle().FramePadding.x;
-    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(on ? Tone::active : Tone::field));
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed_color(on ? Tone::active : Tone::hover));
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(on ? Tone::on_active : Tone::text));
+    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(on ? ThemeColor::active : ThemeColor::field));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, packed_color(on ? ThemeColor::active : ThemeColor::hover));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(on ? ThemeColor::on_active : ThemeColor::text));
     if (ImGui::Button(on ? "PANIC ON###panic" : "PANIC###panic", {width, 0})) context.panic();
     ImGui::PopStyleColor(3);
     context.names.add("transport.panic");

@@ -136,7 +136,7 @@ void draw_icon(Icon icon, float x, float y, float half, std::uint32_t color) {
 bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* tooltip, bool on, float width) {
   const float height = ImGui::GetFrameHeight();
   if (width <= 0) width = height * 1.25F;
-  if (on) ImGui::PushStyleColor(ImGuiCol_Button, packed_color(Tone::active));
+  if (on) ImGui::PushStyleColor(ImGuiCol_Button, packed_color(ThemeColor::active));
   ImGui::PushID(name);
   const bool pressed = ImGui::Button("##icon", {width, height});
   ImGui::PopID();
@@ -144,7 +144,7 @@ bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* to
   if (on) ImGui::PopStyleColor();
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(icon, low.x + width / 2, low.y + height / 2, height * 0.27F,
-            packed_color(on && !ImGui::IsItemHovered() ? Tone::on_active : Tone::text));
+            packed_color(on && !ImGui::IsItemHovered() ? ThemeColor::on_active : ThemeColor::text));
   if (ImGui::IsItemHovered() && tooltip != nullptr) ImGui::SetTooltip("%s", tooltip);
   return pressed;
 }
@@ -161,7 +161,7 @@ bool search_field(WidgetNames& names, const char* name, const char* hint, std::s
   names.add(name);
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(Icon::search, low.x + style.FramePadding.x + icon_width * 0.35F, low.y + ImGui::GetFrameHeight() / 2,
-            ImGui::GetFontSize() * 0.36F, packed_color(Tone::secondary));
+            ImGui::GetFontSize() * 0.36F, packed_color(ThemeColor::secondary));
   return changed;
 }
 

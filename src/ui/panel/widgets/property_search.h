@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/panel/panel_context.h"
+#include "ui/panel/gui_context.h"
 
 namespace limber {
 

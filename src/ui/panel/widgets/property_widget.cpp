@@ -14,7 +14,7 @@
 #include "ui/panel/lua_path.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
-#include "ui/panel/widgets/number_bar.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber {
 
@@ -24,7 +24,7 @@ constexpr const char* kAxes[] = {"x", "y", "z", "w"};
 
 bool is_color(const Property& property) { return property.type == PropertyType::vec3 && property.unit == "hsb"; }
 
-BarRange range_of(const Property& property, std::size_t i) {
+SliderRange range_of(const Property& property, std::size_t i) {
   return {property.low(i), property.high(i), property.initial[i], property.step,
           property.type == PropertyType::integer};
 }
@@ -34,7 +34,7 @@ std::string axis_name(const PropertyHandle& handle, std::size_t i) {
 }
 
 // Writable numbers: one bar for each, side by side.
-void numbers(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
+void numbers(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   const Property& property = *handle.ref.property;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x * 0.7F;
   const auto count = static_cast<float>(property.width);
@@ -44,8 +44,8 @@ void numbers(PanelContext& context, const PropertyHandle& handle, PendingValues:
   ImGui::PushFont(context.fonts.code);
   for (std::size_t i = 0; i < property.width; i++) {
     if (i > 0) ImGui::SameLine(0, gap);
-    changed |= number_bar(fmt::format("##{}", i).c_str(), range_of(property, i), each, values[i],
-                          property.width == 3 && !is_color(property) ? static_cast<int>(i) : -1);
+    changed |= number_slider(fmt::format("##{}", i).c_str(), range_of(property, i), each, values[i],
+                             property.width == 3 && !is_color(property) ? static_cast<int>(i) : -1);
     dragging |= ImGui::IsItemActive();
     context.names.add(axis_name(handle, i));
     ImGui::PopFont();
@@ -56,7 +56,7 @@ void numbers(PanelContext& context, const PropertyHandle& handle, PendingValues:
   if (changed) context.set(handle, values, dragging);
 }
 
-void checkboxes(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values) {
+void checkboxes(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values) {
   const Property& property = *handle.ref.property;
   for (std::size_t i = 0; i < property.width; i++) {
     if (i > 0) ImGui::SameLine();
@@ -70,7 +70,7 @@ void checkboxes(PanelContext& context, const PropertyHandle& handle, PendingValu
   }
 }
 
-void choice(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
+void choice(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   const Property& property = *handle.ref.property;
   const auto selected = static_cast<std::size_t>(std::max(values[0], 0.0));
   ImGui::SetNextItemWidth(width);
@@ -91,7 +91,7 @@ void choice(PanelContext& context, const PropertyHandle& handle, PendingValues::
 }
 
 // A color as hue, saturation, brightness: a swatch that opens a picker, and its numbers.
-void color(PanelContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
+void color(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   float hsb[3] = {static_cast<float>(values[0]), static_cast<float>(values[1]), static_cast<float>(values[2])};
   float rgb[3];
   ImGui::ColorConvertHSVtoRGB(hsb[0], hsb[1], hsb[2], rgb[0], rgb[1], rgb[2]);
@@ -118,8 +118,7 @@ void color(PanelContext& context, const PropertyHandle& handle, PendingValues::V
 }
 
 // A read-only value as plain text.
-void readout_text(PanelContext& context, const PropertyHandle& handle, const PendingValues::Values& values,
-                  float width) {
+void readout_text(GuiContext& context, const PropertyHandle& handle, const PendingValues::Values& values, float width) {
   const Property& property = *handle.ref.property;
   std::string text;
   const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
@@ -133,13 +132,13 @@ void readout_text(PanelContext& context, const PropertyHandle& handle, const Pen
                 : number_label(values[i], property.type == PropertyType::integer);
   }
   std::replace(text.begin(), text.end(), '\n', ' ');
-  const bool fault = property.name == "error" && !text.empty();
+  const bool is_error = property.name == "error" && !text.empty();
   ImGui::PushFont(context.fonts.code);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, ImGui::GetFrameHeight()});
   context.names.add(handle.path);
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(fault ? Tone::red : Tone::text));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(is_error ? ThemeColor::red : ThemeColor::text));
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   ImGui::PopFont();
@@ -149,7 +148,7 @@ void readout_text(PanelContext& context, const PropertyHandle& handle, const Pen
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
 
 // The arguments of an action are stored while its line is visible.
-void action(PanelContext& context, const PropertyHandle& handle, float width) {
+void action(GuiContext& context, const PropertyHandle& handle, float width) {
   const Property& property = *handle.ref.property;
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
@@ -169,14 +168,14 @@ void action(PanelContext& context, const PropertyHandle& handle, float width) {
     ImGui::SameLine(0, gap);
     float* const number = storage.GetFloatRef(ImGui::GetID(field_id(i).c_str()) + 1, 0);
     double value = static_cast<double>(*number);
-    const BarRange range{-kUnbounded, kUnbounded, 1, 0, false};
-    if (number_bar(field_id(i).c_str(), range, each, value, -1)) *number = static_cast<float>(value);
+    const SliderRange range{-kUnbounded, kUnbounded, 1, 0, false};
+    if (number_slider(field_id(i).c_str(), range, each, value, -1)) *number = static_cast<float>(value);
     context.names.add(fmt::format("{}/{}", handle.path, i));
   }
   ImGui::PopFont();
 }
 
-void reset_button(PanelContext& context, const PropertyHandle& handle, float side) {
+void reset_button(GuiContext& context, const PropertyHandle& handle, float side) {
   const Property& property = *handle.ref.property;
   if (ImGui::InvisibleButton("##reset", {side, ImGui::GetFrameHeight()})) {
     PendingValues::Values initial{};
@@ -188,10 +187,10 @@ void reset_button(PanelContext& context, const PropertyHandle& handle, float sid
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Reset to the default: %s", initial_text(property).c_str());
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(Icon::undo, low.x + side / 2, low.y + ImGui::GetFrameHeight() / 2, ImGui::GetFontSize() * 0.38F,
-            packed_color(hovered ? Tone::accent : Tone::secondary));
+            packed_color(hovered ? ThemeColor::accent : ThemeColor::secondary));
 }
 
-void star_button(PanelContext& context, const std::string& path, float side) {
+void star_button(GuiContext& context, const std::string& path, float side) {
   const bool starred = context.settings.favorites.contains(path);
   if (ImGui::InvisibleButton("##star", {side, ImGui::GetFrameHeight()})) {
     if (starred) context.settings.favorites.erase(path);
@@ -202,16 +201,16 @@ void star_button(PanelContext& context, const std::string& path, float side) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", starred ? "Remove from favorites" : "Add to favorites");
   const ImVec2 low = ImGui::GetItemRectMin();
   draw_icon(starred ? Icon::star : Icon::star_empty, low.x + side / 2, low.y + ImGui::GetFrameHeight() / 2,
-            ImGui::GetFontSize() * 0.4F, packed_color(starred || hovered ? Tone::accent : Tone::secondary));
+            ImGui::GetFontSize() * 0.4F, packed_color(starred || hovered ? ThemeColor::accent : ThemeColor::secondary));
 }
 
-void name_text(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options, bool bright,
+void name_text(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options, bool bright,
                float width) {
   const std::string text = options.with_path ? handle.path : property_label(*handle.ref.property);
   const ImVec2 from = ImGui::GetCursorScreenPos();
   ImGui::Dummy({width, ImGui::GetFrameHeight()});
   const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(bright ? Tone::text : Tone::secondary));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(bright ? ThemeColor::text : ThemeColor::secondary));
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   context.names.add("name:" + handle.path);
@@ -228,7 +227,7 @@ void property_tooltip(const PropertyHandle& handle) {
   if (!values.empty() && property.type != PropertyType::text)
     ImGui::TextDisabled("%s%s%s", values.c_str(), property.unit.empty() ? "" : "  ", property.unit.c_str());
   if (!initial.empty() && property.kind == PropertyKind::setting) ImGui::TextDisabled("Default %s", initial.c_str());
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(Tone::accent));
+  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(ThemeColor::accent));
   ImGui::TextUnformatted(handle.path.c_str());
   ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
@@ -259,7 +258,7 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
   return false;
 }
 
-void property_hint(PanelContext& context, const PropertyHandle& handle) {
+void property_hint(GuiContext& context, const PropertyHandle& handle) {
   const Property& property = *handle.ref.property;
   if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) property_tooltip(handle);
   if (!ImGui::BeginPopupContextItem("##copy")) return;
@@ -275,7 +274,7 @@ void property_hint(PanelContext& context, const PropertyHandle& handle) {
   ImGui::EndPopup();
 }
 
-void property_widget(PanelContext& context, const PropertyHandle& handle, float width) {
+void property_widget(GuiContext& context, const PropertyHandle& handle, float width) {
   const Property& property = *handle.ref.property;
   if (property.kind == PropertyKind::action) return action(context, handle, width);
   PendingValues::Values values{};
@@ -288,7 +287,7 @@ void property_widget(PanelContext& context, const PropertyHandle& handle, float 
   numbers(context, handle, values, width);
 }
 
-void property_line(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
+void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
   const Property& property = *handle.ref.property;
   const float height = ImGui::GetFrameHeight();
   const float width = ImGui::GetContentRegionAvail().x;

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "ui/panel/panel_context.h"
+#include "ui/panel/gui_context.h"
 
 namespace limber {
 
@@ -18,10 +18,10 @@ struct PropertyLineOptions {
 
 /// Draws a line with star, name, widget and reset button. A line outside the visible area is skipped. Its widgets are
 /// named by the address, with /0, /1, … for vectors, and with the prefixes "star:" and "reset:".
-void property_line(PanelContext& context, const PropertyHandle& handle, const PropertyLineOptions& options = {});
+void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options = {});
 
 /// Draws only the widget with this width in pixels.
-void property_widget(PanelContext& context, const PropertyHandle& handle, float width);
+void property_widget(GuiContext& context, const PropertyHandle& handle, float width);
 
 /// True if a value differs from the default by more than the rounding of 32-bit floats in OSC messages.
 bool differs_from_default(const Property& property, const PendingValues::Values& values);
@@ -30,6 +30,6 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
 std::string property_label(const Property& property);
 
 /// Adds a tooltip to the last item (documentation, unit, range, default, address) and a context menu.
-void property_hint(PanelContext& context, const PropertyHandle& handle);
+void property_hint(GuiContext& context, const PropertyHandle& handle);
 
 }  // namespace limber

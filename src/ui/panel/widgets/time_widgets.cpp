@@ -27,13 +27,13 @@ void draw_history(const HistoryRange& range, double dragged_back, bool highlight
     const double part = range.length > 0 ? std::clamp(back / range.length, 0.0, 1.0) : 0;
     return high.x - (high.x - low.x) * static_cast<float>(part);
   };
-  list.AddRectFilled(low, high, packed_color(highlighted ? Tone::hover : Tone::field), style.FrameRounding);
+  list.AddRectFilled(low, high, packed_color(highlighted ? ThemeColor::hover : ThemeColor::field), style.FrameRounding);
   if (range.rewindable > 0)
-    list.AddRectFilled({at(range.rewindable), low.y}, high, packed_color(Tone::fill), style.FrameRounding);
+    list.AddRectFilled({at(range.rewindable), low.y}, high, packed_color(ThemeColor::fill), style.FrameRounding);
   if (dragged_back > 0) {
     const float mark = std::max(style.GrabMinSize * 0.5F, 1.0F);
     list.AddRectFilled({at(dragged_back) - mark / 2, low.y + 1}, {at(dragged_back) + mark / 2, high.y - 1},
-                       packed_color(Tone::accent));
+                       packed_color(ThemeColor::accent));
   }
   std::string text = fmt::format("{:.1f} s back", range.rewindable);
   if (range.length <= 0) text = "No history";

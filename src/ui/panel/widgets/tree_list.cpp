@@ -25,11 +25,11 @@ std::size_t rank(std::string_view name) {
   return static_cast<std::size_t>(found - kTitles.begin());
 }
 
-bool has_words(std::string_view name, std::string_view words) {
+bool contains_ignoring_case(std::string_view name, std::string_view query) {
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
-  return std::search(name.begin(), name.end(), words.begin(), words.end(), same) != name.end();
+  return std::search(name.begin(), name.end(), query.begin(), query.end(), same) != name.end();
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ std::string_view TreeList::title(const TreeSnapshot& tree, std::uint32_t node) {
   return top && at < kTitles.size() ? kTitles[at].title : name;
 }
 
-// Returns the root's children, with the children of /physics in its place.
+// Returns the root's children, with /physics replaced by its children.
 std::vector<std::uint32_t> TreeList::top() const {
   std::vector<std::uint32_t> nodes;
   const auto add_node = [&](std::uint32_t node) {
@@ -82,7 +82,7 @@ void TreeList::add(std::uint32_t node, std::uint16_t depth) {
 }
 
 // Adds the nodes that match and their ancestors.
-void TreeList::add_matches(std::string_view words) {
+void TreeList::add_matches(std::string_view query) {
   std::vector<std::uint32_t> ancestors;
   std::vector<std::uint32_t> listed;  // the ancestors that are already in the list
   for (const std::uint32_t begin : top()) {
@@ -90,7 +90,7 @@ void TreeList::add_matches(std::string_view words) {
     for (std::uint32_t node = begin; node < tree_->nodes()[begin].subtree_end && lines_.size() < kMaxMatches; node++) {
       const TreeSnapshot::Node& n = tree_->nodes()[node];
       const bool group = n.table->properties().empty();
-      if (group || !has_words(title(*tree_, node), words)) continue;
+      if (group || !contains_ignoring_case(title(*tree_, node), query)) continue;
       ancestors.clear();
       for (std::uint32_t at = node; at != begin; at = tree_->nodes()[at].parent) ancestors.push_back(at);
       ancestors.push_back(begin);
@@ -107,14 +107,14 @@ void TreeList::add_matches(std::string_view words) {
 }
 
 const std::vector<TreeList::Line>& TreeList::lines(const std::shared_ptr<const TreeSnapshot>& tree,
-                                                   std::string_view words) {
-  if (tree == tree_ && words == words_ && !dirty_) return lines_;
+                                                   std::string_view query) {
+  if (tree == tree_ && query == query_ && !dirty_) return lines_;
   tree_ = tree;
-  words_ = words;
+  query_ = query;
   dirty_ = false;
   lines_.clear();
-  if (!words.empty()) {
-    add_matches(words);
+  if (!query.empty()) {
+    add_matches(query);
     return lines_;
   }
   for (const std::uint32_t node : top()) {

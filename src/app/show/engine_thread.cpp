@@ -1,5 +1,5 @@
 // Runs the simulation's thread.
-#include "app/show/show.h"
+#include "app/show/engine_thread.h"
 
 #include <new>
 #include <string>
@@ -11,21 +11,22 @@
 
 namespace limber {
 
-Show::Show(Engine& engine) : engine_(engine), main_thread_(system::this_thread()), thread_([this] { play(); }) {}
+EngineThread::EngineThread(Engine& engine)
+    : engine_(engine), main_thread_(system::this_thread()), thread_([this] { play(); }) {}
 
-void Show::allow_ticks(bool even_if_failed) {
+void EngineThread::allow_ticks(bool even_if_failed) {
   even_if_failed_.store(even_if_failed);
   start_semaphore_.release();
 }
 
-void Show::end() {
+void EngineThread::end() {
   if (!thread_.joinable()) return;
   engine_.stop();
   start_semaphore_.release();
   thread_.join();
 }
 
-void Show::play() {
+void EngineThread::play() {
   system::name_this_thread("limber-sim");
   result_ = start();
   change(State::started);
@@ -34,20 +35,20 @@ void Show::play() {
   change(State::over);
 }
 
-Result<void> Show::start() {
-  std::string why;
+Result<void> EngineThread::start() {
+  std::string reason;
   try {
     return engine_.start();
   } catch (const std::bad_alloc&) {
-    why = "not enough memory for the scene";
+    reason = "not enough memory for the scene";
   } catch (const std::system_error& error) {  // a thread could not be started
-    why = error.code().message();
+    reason = error.code().message();
   }
   exit_code_ = kMachineError;
-  return Error{why + "; end other programs, or raise ulimit -u and ulimit -v"};
+  return Error{reason + "; end other programs, or raise ulimit -u and ulimit -v"};
 }
 
-void Show::change(State state) {
+void EngineThread::change(State state) {
   state_.store(state);
   system::wake_thread(main_thread_);
 }

@@ -1,4 +1,5 @@
-// OutFile: writes a file atomically: into a temporary file in the same folder, renamed at the end.
+// AtomicFile: a file that is replaced atomically: it is written to a temporary file in the same folder, renamed at the
+// end.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +13,22 @@ namespace limber {
 /// The name of the temporary file of `path`; it contains the process id, so that two processes never share one.
 std::string temporary_name(const std::string& path);
 
-class OutFile {
+class AtomicFile {
  public:
   /// Does not touch the disk before open().
-  explicit OutFile(const std::string& path) : OutFile(path, temporary_name(path)) {}
+  explicit AtomicFile(const std::string& path) : AtomicFile(path, temporary_name(path)) {}
   /// `temporary_path`: path of the temporary file.
-  OutFile(std::string path, std::string temporary_path);
+  AtomicFile(std::string path, std::string temporary_path);
   /// Deletes the temporary file if finish() did not succeed.
-  ~OutFile();
-  OutFile(const OutFile&) = delete;
-  OutFile& operator=(const OutFile&) = delete;
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
 
   /// Creates the temporary file.
   Result<void> open();
-  /// Appends bytes, buffered. No file descriptor is open between calls, so thousands of files can be written in
-  /// parallel.
-  Result<void> put(std::string_view bytes);
+  /// Appends bytes, buffered. No file descriptor is open between calls, so thousands of files can be unfinished
+  /// at the same time.
+  Result<void> write(std::string_view bytes);
   /// Overwrites the bytes at offset `at`.
   Result<void> patch(std::uint64_t at, std::string_view bytes);
   /// Writes all buffered bytes to the temporary file.
@@ -35,7 +36,7 @@ class OutFile {
   /// Flushes, syncs to disk and renames the file to its final name.
   Result<void> finish();
 
-  /// Number of bytes put so far.
+  /// Number of bytes written so far.
   std::uint64_t size() const { return size_; }
   const std::string& path() const { return path_; }
   /// Name of the temporary file.

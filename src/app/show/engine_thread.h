@@ -1,4 +1,4 @@
-// Show: runs the engine on its own thread.
+// EngineThread: runs the engine on its own thread.
 #pragma once
 
 #include <atomic>
@@ -14,13 +14,13 @@ namespace limber {
 class Engine;
 
 /// Wakes the main thread (system::wake_thread) when the scene has run, and when the show is over.
-class Show {
+class EngineThread {
  public:
   /// [main]
-  explicit Show(Engine& engine);
-  ~Show() { end(); }
-  Show(const Show&) = delete;
-  Show& operator=(const Show&) = delete;
+  explicit EngineThread(Engine& engine);
+  ~EngineThread() { end(); }
+  EngineThread(const EngineThread&) = delete;
+  EngineThread& operator=(const EngineThread&) = delete;
 
   bool started() const { return state_.load() >= State::started; }
   bool over() const { return state_.load() == State::over; }

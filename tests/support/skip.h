@@ -1,4 +1,4 @@
-// Leaves a test out of the builds in which it would take too long. ./check counts it neither as passed nor as failed;
+// Skips a test in the builds in which it would take too long. ./check counts it neither as passed nor as failed;
 // any other skipped test counts as failed.
 #pragma once
 
@@ -17,7 +17,7 @@ inline bool is_emulated() { return std::getenv("LIMBER_EMULATED") != nullptr; }
 
 /// Ends the test at this line if `condition` (kAddressSanitizer, kThreadSanitizer or is_emulated()) is true. The reason
 /// is a string that says why that loses nothing. .ci/check_steps.sh counts the lines that begin with "left out: ".
-#define LIMBER_LEAVE_OUT_IF(condition, reason)               \
+#define LIMBER_SKIP_IF(condition, reason)                    \
   do {                                                       \
     if (condition) GTEST_SKIP() << "left out: " << (reason); \
   } while (false)

@@ -1,4 +1,4 @@
-// PanelLink: sends the panel's messages to the simulation and requests value snapshots.
+// CommandSender: sends the panel's messages to the simulation and requests value snapshots.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 namespace limber {
 
 /// All times in seconds. [main]
-class PanelLink {
+class CommandSender {
  public:
-  explicit PanelLink(EngineLink& link) : link_(link) {}
+  explicit CommandSender(EngineLink& link) : link_(link) {}
 
   /// Sends a message for the next tick. Returns the number of the request for a value snapshot that follows it.
   std::uint64_t send(Message message, double now);

@@ -1,4 +1,4 @@
-// ConsoleLink: the console's end of the connection to a running program.
+// ConsoleClient: the console's end of the connection to a running program: sends requests and reads lines.
 #pragma once
 
 #include <optional>
@@ -12,9 +12,9 @@
 
 namespace limber {
 
-class ConsoleLink {
+class ConsoleClient {
  public:
-  explicit ConsoleLink(system::Descriptor connection) : connection_(std::move(connection)) {}
+  explicit ConsoleClient(system::Descriptor connection) : connection_(std::move(connection)) {}
 
   int fd() const { return connection_.fd(); }
   /// Sends a request, waiting as long as necessary. Returns false if the connection is closed.
@@ -43,8 +43,14 @@ struct RunningProgram {
 /// Returns this user's running programs from all runtime folders. [main]
 std::vector<RunningProgram> running_programs();
 
-/// Connects to the program with this pid, or with pid 0 to the only one running, and stores its first line in `hello`.
-/// The error lists the running programs. [main]
-Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello);
+/// A connection to a program, and the first line that it has sent.
+struct ConnectedProgram {
+  ConsoleClient client;
+  ConsoleLine hello;
+};
+
+/// Connects to the program with this pid, or with pid 0 to the only one running. The error lists the running programs.
+/// [main]
+Result<ConnectedProgram> connect_to_program(int pid);
 
 }  // namespace limber

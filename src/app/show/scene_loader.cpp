@@ -1,5 +1,5 @@
 // Sleeps until a file changes, a scene or take is requested, or the show ends.
-#include "app/show/scene_watch.h"
+#include "app/show/scene_loader.h"
 
 #include <algorithm>
 #include <array>
@@ -26,14 +26,14 @@ constexpr std::size_t kMaxScenes = 1000;                        // limit of the 
 constexpr std::chrono::milliseconds kReloadRetryInterval{250};  // interval of retries while a take delays a reload
 
 std::string folder_of(const std::string& scene) {
-  std::error_code fault;
-  const std::filesystem::path absolute = std::filesystem::absolute(scene, fault);
-  return (fault ? std::filesystem::path(scene) : absolute).parent_path();
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(scene, error);
+  return (error ? std::filesystem::path(scene) : absolute).parent_path();
 }
 
 }  // namespace
 
-SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Mode mode)
+SceneLoader::SceneLoader(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Mode mode)
     : link_(link),
       engine_(engine),
       folder_(folder_of(scene)),
@@ -42,8 +42,8 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
   link_.on_scene_request = [this](const Message& message, const CommandOrigin& origin) {
     const bool take = message.address.starts_with("/take/");
     const std::uint64_t stops = take ? link_.take_stop_count() : link_.panics.load();
-    if (!requests_.push({{message}, origin, nullptr, stops}))
-      return reject(message, origin, "too many requests for scenes at once");
+    const SceneRequest request{message, origin, stops};
+    if (!requests_.push(request)) return reject(request, "too many requests for scenes at once");
     wake_.notify();
   };
   link_.on_rerun = [this] {
@@ -52,14 +52,14 @@ SceneWatch::SceneWatch(EngineLink& link, Engine& engine, const std::string& scen
   };
 }
 
-void SceneWatch::start() {
+void SceneLoader::start() {
   // watch before the thread starts, so that no save is missed
   const auto files = std::make_shared<FileWatch>(mode_);
   files->watch(engine_.files(), FileWatch::Time::clock::now());
   thread_ = std::thread([this, files] { run(*files); });
 }
 
-void SceneWatch::stop() {
+void SceneLoader::stop() {
   stop_.store(true);
   wake_.notify();
   if (thread_.joinable()) thread_.join();
@@ -68,31 +68,35 @@ void SceneWatch::stop() {
 }
 
 // saved files have priority: requests never delay a reload
-void SceneWatch::run(FileWatch& files) {
+void SceneLoader::run(FileWatch& files) {
   system::name_this_thread("limber-watch");
-  std::deque<Command> waiting;
-  std::vector<Command> requests;
+  std::deque<SceneRequest> waiting;
+  std::vector<SceneRequest> requests;
   while (!stop_.load()) {
     if (waiting.empty()) wait(files);
     const bool saved = !files.poll(FileWatch::Time::clock::now()).empty() || std::exchange(reload_pending_, false);
     const bool rerun = rerun_.exchange(false);
-    if (saved || rerun) reload_pending_ = !engine_.reload(!saved) && saved;
+    if (saved || rerun) {
+      const bool reuse_files = !saved;
+      const bool reloaded = engine_.reload(reuse_files);
+      reload_pending_ = saved && !reloaded;
+    }
     requests_.drain(requests);
     std::ranges::move(requests, std::back_inserter(waiting));
-    bool other = false;
+    bool scene_changed = false;
     if (!waiting.empty() && !stop_.load()) {
-      other = handle(waiting.front());
+      scene_changed = handle(waiting.front());
       waiting.pop_front();
     }
-    if (saved || rerun || other) files.watch(engine_.files(), FileWatch::Time::clock::now());
+    if (saved || rerun || scene_changed) files.watch(engine_.files(), FileWatch::Time::clock::now());
   }
 }
 
 // returns the names of the folder's scenes without .lua, sorted
-std::vector<std::string> SceneWatch::scenes() const {
+std::vector<std::string> SceneLoader::scenes() const {
   std::vector<std::string> names;
-  std::error_code fault;  // a folder that is removed meanwhile ends the list, not the show
-  for (std::filesystem::directory_iterator at(folder_, fault), end; !fault && at != end; at.increment(fault)) {
+  std::error_code error;  // a folder that is removed meanwhile ends the list, not the show
+  for (std::filesystem::directory_iterator at(folder_, error), end; !error && at != end; at.increment(error)) {
     std::error_code ignored;
     const std::filesystem::path& file = at->path();
     if (file.extension() == ".lua" && at->is_regular_file(ignored) && names.size() < kMaxScenes)
@@ -103,14 +107,14 @@ std::vector<std::string> SceneWatch::scenes() const {
 }
 
 // returns the takes of the folder, the latest first
-std::vector<std::string> SceneWatch::takes() const {
+std::vector<std::string> SceneLoader::takes() const {
   std::vector<std::pair<std::filesystem::file_time_type, std::string>> found;
-  std::error_code fault;  // a missing folder has none
-  for (std::filesystem::directory_iterator at(takes_folder_, fault), end; !fault && at != end; at.increment(fault)) {
-    std::error_code error;
+  std::error_code error;  // a missing folder has none
+  for (std::filesystem::directory_iterator at(takes_folder_, error), end; !error && at != end; at.increment(error)) {
+    std::error_code unreadable;
     if (at->path().extension() != ".take") continue;  // no limit: the latest may be found last
-    const auto when = at->last_write_time(error);
-    if (!error) found.emplace_back(when, at->path().stem());
+    const auto when = at->last_write_time(unreadable);
+    if (!unreadable) found.emplace_back(when, at->path().stem());
   }
   std::ranges::sort(found, std::greater());
   std::vector<std::string> names(found.size());
@@ -118,66 +122,62 @@ std::vector<std::string> SceneWatch::takes() const {
   return names;
 }
 
-bool SceneWatch::play_take(const Command& command) {
-  const Message& request = command.messages.front();
-  const CommandOrigin& origin = command.origin;
+bool SceneLoader::play_take(const SceneRequest& request) {
   const std::vector<std::string> names = takes();
-  std::string name = request.args.empty() ? "" : request.args[0].text;
+  std::string name = request.message.args.empty() ? "" : request.message.args[0].text;
   if (name.ends_with(".take")) name.resize(name.size() - 5);
   if (name.empty() && !names.empty()) name = names.front();
   if (std::ranges::find(names, name) == names.end()) {
-    reject(request, origin,
-           names.empty() ? "no take in takes/ of the show's folder; record one with /take/record"
-                         : fmt::format("take '{}' not found in takes/{}", printable(name), name_hint(name, names)));
+    reject(request, names.empty()
+                        ? "no take in takes/ of the show's folder; record one with /take/record"
+                        : fmt::format("take '{}' not found in takes/{}", printable(name), name_hint(name, names)));
     return false;
   }
-  const Result<void> played = engine_.play_take(takes_folder_ + "/" + name + ".take", command.arrival);
+  const Result<void> played = engine_.play_take(takes_folder_ + "/" + name + ".take", request.stops_before);
   if (!played) {
-    reject(request, origin, played.error());
+    reject(request, played.error());
     return false;
   }
-  link_.push_out({Outgoing::Destination::sender, origin, {"/take/playing", {Arg::of(name)}}});
+  link_.push_out({Outgoing::Destination::reply, request.origin, {"/take/playing", {Arg::of(name)}}});
   return true;
 }
 
 // returns true if another scene plays now
-bool SceneWatch::handle(const Command& command) {
-  const Message& request = command.messages.front();
-  const CommandOrigin& origin = command.origin;
-  if (request.address.starts_with("/take/")) return play_take(command);
+bool SceneLoader::handle(const SceneRequest& request) {
+  const std::vector<Arg>& args = request.message.args;
+  if (request.message.address.starts_with("/take/")) return play_take(request);
   const std::vector<std::string> names = scenes();
-  if (request.args.empty()) {
+  if (args.empty()) {
     Message reply{"/list/scenes", {}};
     for (const std::string& name : names) reply.args.push_back(Arg::of(name));
     if (names.empty()) reply.args.push_back(Arg::of(""));
-    link_.push_out({Outgoing::Destination::sender, origin, std::move(reply)});
+    link_.push_out({Outgoing::Destination::reply, request.origin, std::move(reply)});
     return false;
   }
-  std::string name = request.args[0].text;
+  std::string name = args[0].text;
   if (name.ends_with(".lua")) name.resize(name.size() - 4);
   if (std::ranges::find(names, name) == names.end()) {
-    reject(request, origin,
-           fmt::format("scene '{}' not found in {}/{}", printable(name),
-                       std::filesystem::path(folder_).filename().string(), name_hint(name, names)));
+    reject(request, fmt::format("scene '{}' not found in {}/{}", printable(name),
+                                std::filesystem::path(folder_).filename().string(), name_hint(name, names)));
     return false;
   }
   const Result<void> changed =
-      engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string(), command.arrival);
+      engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string(), request.stops_before);
   if (changed.ok()) {
     log_info("{} plays from its start", name);
-    link_.push_out({Outgoing::Destination::sender, origin, {"/transport/playing", {Arg::of(name)}}});
+    link_.push_out({Outgoing::Destination::reply, request.origin, {"/transport/playing", {Arg::of(name)}}});
   } else {
-    reject(request, origin, changed.error());
+    reject(request, changed.error());
   }
   return changed.ok();
 }
 
-void SceneWatch::reject(const Message& request, const CommandOrigin& origin, const std::string& reason) {
+void SceneLoader::reject(const SceneRequest& request, const std::string& reason) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  link_.push_out({Outgoing::Destination::error, origin, error_message(request.address, reason)});
+  link_.push_out({Outgoing::Destination::error, request.origin, error_message(request.message.address, reason)});
 }
 
-void SceneWatch::wait(const FileWatch& files) {
+void SceneLoader::wait(const FileWatch& files) {
   std::optional<std::chrono::nanoseconds> limit;
   if (reload_pending_) limit = kReloadRetryInterval;
   if (const auto due = files.next_poll()) {

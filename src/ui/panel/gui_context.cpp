@@ -1,5 +1,5 @@
 // Reads snapshots and sends messages.
-#include "ui/panel/panel_context.h"
+#include "ui/panel/gui_context.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,17 +17,7 @@ constexpr double kNoticeDuration = 2.5;   // s
 constexpr double kRejectionDuration = 8;  // s; long enough to read the reason
 constexpr const char* kStyle = "/visuals/look/style";
 
-}  // namespace
-
-std::vector<std::string> easings() {
-  std::vector<std::string> names;
-  for (std::string_view name : split(easing_names(), ',')) {
-    if (name.starts_with(' ')) name.remove_prefix(1);
-    names.emplace_back(name);
-  }
-  return names;
-}
-
+// Returns the message that sets a property to these values.
 Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values) {
   Message message{path, {}};
   const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
@@ -36,45 +26,47 @@ Message set_message(const std::string& path, const Property& property, const Pen
   return message;
 }
 
-std::uint64_t PanelContext::send(Message message) { return panel_link_.send(std::move(message), clock); }
+}  // namespace
 
-std::uint64_t PanelContext::send(std::string address, std::vector<Arg> args) {
+std::uint64_t GuiContext::send(Message message) { return commands_.send(std::move(message), clock); }
+
+std::uint64_t GuiContext::send(std::string address, std::vector<Arg> args) {
   return send(Message{std::move(address), std::move(args)});
 }
 
-void PanelContext::set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging) {
-  panel_link_.begin_edit(dragging);
+void GuiContext::set(const PropertyHandle& handle, const PendingValues::Values& values, bool dragging) {
+  commands_.begin_edit(dragging);
   if (handle.path == kStyle) settings.style = handle.ref.property->choices[static_cast<std::size_t>(values[0])];
   pending_.set(handle.path, values, send(set_message(handle.path, *handle.ref.property, values)));
 }
 
-void PanelContext::set_all(const std::string& pattern, double value) {
-  panel_link_.begin_edit();
+void GuiContext::set_all(const std::string& pattern, double value) {
+  commands_.begin_edit();
   pending_.set(pattern, {value}, send(pattern, {Arg::of(value)}));
 }
 
-std::optional<double> PanelContext::pending_value(const std::string& pattern) const {
+std::optional<double> GuiContext::pending_value(const std::string& pattern) const {
   const PendingValues::Values* const values = pending_.find(pattern);
   return values == nullptr ? std::nullopt : std::optional((*values)[0]);
 }
 
-void PanelContext::undo_or_redo(const char* action, const char* description_path, const char* nothing_text) {
-  panel_link_.end_drag();
+void GuiContext::undo_or_redo(const char* action, const char* description_path, const char* nothing_text) {
+  commands_.end_drag();
   const std::optional<PropertyHandle> handle = find(description_path);
   const std::string_view description = handle ? text(handle->ref) : std::string_view();
   show_notice(description.empty() ? std::string(nothing_text) : std::string(description));
   send(action);  // even if the snapshot has nothing to undo: it may be older than the last edit
 }
 
-void PanelContext::toggle_overlay() {
+void GuiContext::toggle_overlay() {
   constexpr const char* kAddress = "/visuals/look/overlay";
   send(kAddress, {Arg::of(number(kAddress) == 0 ? 1.0 : 0.0)});
 }
 
-void PanelContext::undo() { undo_or_redo("/edit/undo", "/edit/undo_of", "Nothing to undo"); }
-void PanelContext::redo() { undo_or_redo("/edit/redo", "/edit/redo_of", "Nothing to redo"); }
+void GuiContext::undo() { undo_or_redo("/edit/undo", "/edit/undo_of", "Nothing to undo"); }
+void GuiContext::redo() { undo_or_redo("/edit/redo", "/edit/redo_of", "Nothing to redo"); }
 
-bool PanelContext::values(const PropertyHandle& handle, PendingValues::Values& values) const {
+bool GuiContext::values(const PropertyHandle& handle, PendingValues::Values& values) const {
   if (const PendingValues::Values* const pending = pending_.find(handle.path)) {
     values = *pending;
     return true;
@@ -85,11 +77,11 @@ bool PanelContext::values(const PropertyHandle& handle, PendingValues::Values& v
   return true;
 }
 
-std::string_view PanelContext::text(const TreePropertyRef& ref) const {
+std::string_view GuiContext::text(const TreePropertyRef& ref) const {
   return value_snapshot->value(value_snapshot->tree->location(ref)).text;
 }
 
-std::optional<PropertyHandle> PanelContext::find(std::string_view path) const {
+std::optional<PropertyHandle> GuiContext::find(std::string_view path) const {
   if (value_snapshot == nullptr) return std::nullopt;
   PatternBudget budget;
   const Result<std::vector<TreePropertyRef>> matches = value_snapshot->tree->match(path, budget, 1);
@@ -97,46 +89,46 @@ std::optional<PropertyHandle> PanelContext::find(std::string_view path) const {
   return PropertyHandle{matches->front(), std::string(path)};
 }
 
-double PanelContext::number(std::string_view path, double fallback) const {
+double GuiContext::number(std::string_view path, double fallback) const {
   const std::optional<PropertyHandle> handle = find(path);
   PendingValues::Values values{};
   return handle && this->values(*handle, values) ? values[0] : fallback;
 }
 
-TakeState PanelContext::take_state() const {
+TakeState GuiContext::take_state() const {
   TakeState state;
   if (const auto name = find("/take/name")) state.name = text(name->ref);
   if (state.name.empty()) return state;
   const double timestep = number("/physics/sim/timestep");
   state.replaying = number("/take/replays") != 0;
-  state.playing = number("/take/plays") != 0;
+  state.in_show = number("/take/plays") != 0;
   state.seconds = timestep * number("/take/ticks");
   state.duration = timestep * number("/take/whole");
   return state;
 }
 
-void PanelContext::select(std::string path) {
+void GuiContext::select(std::string path) {
   selected = std::move(path);
   requests.reveal_path = selected;
 }
 
-void PanelContext::recall(double number) {
+void GuiContext::recall(double number) {
   if (number > this->number("/preset/count")) return show_notice(fmt::format("Preset {} not found", number));
   const std::vector<std::string> names = easings();
   const auto easing = std::min(static_cast<std::size_t>(std::max(settings.easing, 0)), names.size() - 1);
   send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
 }
 
-void PanelContext::show_notice(std::string text) { notice = {std::move(text), clock + kNoticeDuration}; }
+void GuiContext::show_notice(std::string text) { notice = {std::move(text), clock + kNoticeDuration}; }
 
-void PanelContext::copy_with_notice(const std::string& text) {
+void GuiContext::copy_with_notice(const std::string& text) {
   copy(text);
   show_notice(fmt::format("Copied: {}", text));
 }
 
 // Handles replies: rejected messages, and rewinds that went back less than requested.
-void PanelContext::handle_replies() {
-  for (const Outgoing& reply : panel_link_.replies()) {
+void GuiContext::handle_replies() {
+  for (const Outgoing& reply : commands_.replies()) {
     const std::vector<Arg>& args = reply.message.args;
     if (reply.destination == Outgoing::Destination::error && args.size() == 2) {
       rejection = {fmt::format("{}: {}", args[0].text, args[1].text), clock + kRejectionDuration};
@@ -147,7 +139,7 @@ void PanelContext::handle_replies() {
 }
 
 // Restores the style selected in the last session, except in a replay.
-void PanelContext::restore_style() {
+void GuiContext::restore_style() {
   if (settings.style.empty()) return;
   const std::optional<PropertyHandle> style = find(kStyle);
   if (!style || take_state().replaying) return;
@@ -157,7 +149,7 @@ void PanelContext::restore_style() {
   send("/visuals/look/prefer", {Arg::of(static_cast<double>(found - styles.begin()))});
 }
 
-void PanelContext::begin_frame(double clock_now) {
+void GuiContext::begin_frame(double clock_now) {
   clock = clock_now;
   handle_replies();
   snapshot = link.snapshots.read();
@@ -168,7 +160,7 @@ void PanelContext::begin_frame(double clock_now) {
     pending_.remove_confirmed(value_snapshot->request);
     if (first) restore_style();
   }
-  panel_link_.update_request(value_snapshot.get(), clock);
+  commands_.update_request(value_snapshot.get(), clock);
 }
 
 }  // namespace limber

@@ -1,5 +1,5 @@
-// Connecting to a program, sending requests, reading lines.
-#include "net/console/console_link.h"
+// Connects to a program, sends requests and reads lines.
+#include "net/console/console_client.h"
 
 #include <cerrno>
 
@@ -30,21 +30,20 @@ bool wait_readable(int fd, int wait_ms) {
 }
 
 // connects and reads the first line
-Result<ConsoleLink> connect_and_read_hello(const std::string& path, ConsoleLine& hello) {
+Result<ConnectedProgram> connect_and_read_hello(const std::string& path) {
   Result<system::Descriptor> connection = connect_console(path);
   if (!connection) return Error{connection.error()};
-  ConsoleLink link(std::move(*connection));
-  const std::optional<ConsoleLine> first = link.next(kHelloTimeoutMs);
+  ConsoleClient client(std::move(*connection));
+  std::optional<ConsoleLine> first = client.next(kHelloTimeoutMs);
   if (!first) return Error{fmt::format("{}: no answer", path)};
   if (first->kind == ConsoleLine::Kind::rejected) return Error{first->text};
   if (first->kind != ConsoleLine::Kind::hello) return Error{fmt::format("{}: not a Limber program", path)};
-  hello = *first;
-  return link;
+  return ConnectedProgram{std::move(client), std::move(*first)};
 }
 
 }  // namespace
 
-bool ConsoleLink::send(const ConsoleRequest& request) {
+bool ConsoleClient::send(const ConsoleRequest& request) {
   const std::string line = request_line(request);
   for (std::size_t sent = 0; sent < line.size();) {
     const std::ptrdiff_t n = system::send_bytes(fd(), std::string_view(line).substr(sent));
@@ -60,7 +59,7 @@ bool ConsoleLink::send(const ConsoleRequest& request) {
   return true;
 }
 
-std::optional<ConsoleLine> ConsoleLink::next_buffered_line() {
+std::optional<ConsoleLine> ConsoleClient::next_buffered_line() {
   while (true) {
     const std::size_t end = input_.find('\n');
     if (end == std::string::npos) return {};
@@ -72,7 +71,7 @@ std::optional<ConsoleLine> ConsoleLink::next_buffered_line() {
 }
 
 // false: nothing to read at the moment
-bool ConsoleLink::read_some() {
+bool ConsoleClient::read_some() {
   char bytes[16384];
   const std::ptrdiff_t got = system::receive_bytes(fd(), bytes, sizeof bytes);
   if (got > 0) {
@@ -83,7 +82,7 @@ bool ConsoleLink::read_some() {
   return false;
 }
 
-std::optional<ConsoleLine> ConsoleLink::next(int wait_ms) {
+std::optional<ConsoleLine> ConsoleClient::next(int wait_ms) {
   while (true) {
     if (std::optional<ConsoleLine> line = next_buffered_line()) return line;
     if (ended_) return {};
@@ -97,15 +96,14 @@ std::vector<RunningProgram> running_programs() {
   std::vector<RunningProgram> programs;
   for (const std::string& folder : runtime_folders()) {
     for (ConsoleSocket& socket : console_sockets(folder)) {
-      ConsoleLine hello;
-      const Result<ConsoleLink> link = connect_and_read_hello(socket.path, hello);
-      programs.push_back({std::move(socket), link ? hello.text : link.error()});
+      const Result<ConnectedProgram> program = connect_and_read_hello(socket.path);
+      programs.push_back({std::move(socket), program ? program->hello.text : program.error()});
     }
   }
   return programs;
 }
 
-Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello) {
+Result<ConnectedProgram> connect_to_program(int pid) {
   std::vector<RunningProgram> programs = running_programs();
   if (programs.empty()) {
     return Error{"no Limber program of this user is running; start one with `limber play`, without --fast"};
@@ -113,7 +111,7 @@ Result<ConsoleLink> choose_program(int pid, ConsoleLine& hello) {
   if (pid == 0 && programs.size() > 1)
     return Error{fmt::format("{} of your programs are running; choose one:{}", programs.size(), list_text(programs))};
   for (const RunningProgram& each : programs) {
-    if (pid == 0 || each.socket.pid == pid) return connect_and_read_hello(each.socket.path, hello);
+    if (pid == 0 || each.socket.pid == pid) return connect_and_read_hello(each.socket.path);
   }
   return Error{fmt::format("no running Limber program has the process id {}; there are:{}", pid, list_text(programs))};
 }

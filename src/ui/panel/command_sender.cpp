@@ -1,5 +1,5 @@
 // Commands, requests and replies of the panel.
-#include "ui/panel/panel_link.h"
+#include "ui/panel/command_sender.h"
 
 namespace limber {
 
@@ -7,7 +7,7 @@ namespace {
 constexpr double kSnapshotInterval = 1.0 / 20;  // s; the simulation spends at most 1 % of its time on value snapshots
 }
 
-std::uint64_t PanelLink::send(Message message, double now) {
+std::uint64_t CommandSender::send(Message message, double now) {
   Command command;
   command.messages.push_back(std::move(message));
   command.origin = CommandOrigin{CommandSource::panel, 0, edit_number_, false};
@@ -16,17 +16,17 @@ std::uint64_t PanelLink::send(Message message, double now) {
   return last_request_;
 }
 
-void PanelLink::request(double now) {
+void CommandSender::request(double now) {
   last_request_ = link_.request_value_snapshot();
   last_request_time_ = now;
 }
 
-void PanelLink::update_request(const ValueSnapshot* latest, double now) {
+void CommandSender::update_request(const ValueSnapshot* latest, double now) {
   const bool waiting = latest == nullptr || latest->request < last_request_;
   if (last_request_ == 0 || (!waiting && now - last_request_time_ >= kSnapshotInterval)) request(now);
 }
 
-std::span<const Outgoing> PanelLink::replies() {
+std::span<const Outgoing> CommandSender::replies() {
   link_.panel_output_queue.drain(replies_);
   return replies_;
 }

@@ -1,5 +1,5 @@
 // The effects of the properties of joints on each of the six axes, measured in the world.
-#include "sim/row_effects.h"
+#include "sim/property_effects.h"
 #include "sim/stage.h"
 
 namespace limber::test {

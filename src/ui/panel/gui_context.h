@@ -1,4 +1,4 @@
-// PanelContext: the data and functions shared by all panels: the latest value snapshot and physics snapshot, sending
+// GuiContext: the data and functions that all panels share: the latest value snapshot and physics snapshot, sending
 // messages, and the state of the user interface. It holds no simulation state.
 #pragma once
 
@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "engine/output/engine_link.h"
+#include "ui/panel/command_sender.h"
 #include "ui/panel/fonts.h"
-#include "ui/panel/panel_link.h"
 #include "ui/panel/pending_values.h"
 #include "ui/panel/settings.h"
+#include "ui/panel/spring_marker.h"
 #include "ui/panel/widgets/widget_names.h"
 
 namespace limber {
@@ -30,11 +31,11 @@ struct GuiOptions;
 
 /// The take that is being recorded or replayed, from the value snapshot.
 struct TakeState {
-  std::string name;  ///< Empty: no take is active.
-  bool replaying = false;
-  bool playing = false;  ///< Plays instead of the live scene, until /take/stop.
-  double seconds = 0;    ///< Recorded duration, or position of a replay.
-  double duration = 0;   ///< Total duration of a replayed take.
+  std::string name;        ///< Empty: no take is active.
+  bool replaying = false;  ///< A take is replayed; messages are rejected.
+  bool in_show = false;    ///< The take plays in a running show, which continues at /take/stop.
+  double seconds = 0;      ///< Recorded duration, or position of a replay.
+  double duration = 0;     ///< Total duration of a replayed take.
   bool recording() const { return !name.empty() && !replaying; }
 };
 
@@ -56,9 +57,9 @@ struct PanelRequests {
 inline constexpr double kRewindSeconds = 2;
 
 /// [main]
-class PanelContext {
+class GuiContext {
  public:
-  explicit PanelContext(EngineLink& engine_link) : link(engine_link), panel_link_(engine_link) {}
+  explicit GuiContext(EngineLink& engine_link) : link(engine_link), commands_(engine_link) {}
 
   EngineLink& link;
   std::shared_ptr<const ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
@@ -67,7 +68,7 @@ class PanelContext {
   double scale = 1;  ///< Pixels per unit, where a unit is a pixel at text size 16.
   double clock = 0;  ///< Time of the frame in s, for animations.
   WidgetNames names;
-  PanelSettings settings;
+  GuiSettings settings;
   const GuiOptions* options = nullptr;  ///< The application's options.
 
   // State shared by panels
@@ -77,13 +78,8 @@ class PanelContext {
   bool show_help = false;          ///< Shows the help (F2).
   TimedText notice;                ///< For example about copied text.
   TimedText rejection;             ///< The panel's last rejected message, with the reason.
-  /// The mouse spring in the view: the dragged point and its target, in pixels.
-  struct SpringMarker {
-    double x = 0, y = 0, to_x = 0, to_y = 0;
-    std::string name;
-  };
   std::optional<SpringMarker> spring_marker;
-  std::uint64_t errors = 0;  ///< Number of current errors, for the status lamp.
+  std::uint64_t errors = 0;  ///< Number of current errors, for the status indicator.
 
   /// Copies text to the clipboard: the window's, or a test's own.
   std::function<void(const std::string&)> copy = [](const std::string&) {};
@@ -108,7 +104,7 @@ class PanelContext {
   void set_all(const std::string& pattern, double value);
   std::optional<double> pending_value(const std::string& pattern) const;
   /// Ends the current drag: the next set value is a separate undo step.
-  void end_drag() { panel_link_.end_drag(); }
+  void end_drag() { commands_.end_drag(); }
 
   /// Selects the object with this address and reveals it in the tree.
   void select(std::string path);
@@ -124,12 +120,13 @@ class PanelContext {
   void rewind(double seconds) { send("/transport/rewind", {Arg::of(seconds)}); }
   TakeState take_state() const;
   /// Starts or stops recording a take.
-  void record() { send(take_state().recording() ? "/take/stop" : "/take/record"); }
+  void toggle_recording() { send(take_state().recording() ? "/take/stop" : "/take/record"); }
   /// Plays the latest take instead of the live scene, or stops it.
-  void play_take() { send(take_state().playing ? "/take/stop" : "/take/play"); }
+  void toggle_take_playback() { send(take_state().in_show ? "/take/stop" : "/take/play"); }
 
-  /// Undo the latest edit, from any source, and redo it.
+  /// Undoes the latest edit, from any source.
   void undo();
+  /// Redoes it.
   void redo();
   void show_notice(std::string text);
   void copy_with_notice(const std::string& text);
@@ -142,14 +139,8 @@ class PanelContext {
   void restore_style();
   void undo_or_redo(const char* action, const char* description_path, const char* nothing_text);
 
-  PanelLink panel_link_;
+  CommandSender commands_;
   PendingValues pending_;
 };
-
-/// Names of the easing functions for morphs.
-std::vector<std::string> easings();
-
-/// Returns the message that sets a property to these values.
-Message set_message(const std::string& path, const Property& property, const PendingValues::Values& values);
 
 }  // namespace limber

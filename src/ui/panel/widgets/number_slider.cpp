@@ -1,5 +1,5 @@
 // Uses the slider behavior of Dear ImGui with custom drawing.
-#include "ui/panel/widgets/number_bar.h"
+#include "ui/panel/widgets/number_slider.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr double kMaxLinearSpan = 200;    // wider ranges get a nonlinear scale
-constexpr double kTypicalPosition = 0.4;  // position of the usual magnitude on the bar
+constexpr double kDefaultPosition = 0.4;  // position of the default value on the slider
 
 double round_to_digits(double value) {
   if (value == 0 || !std::isfinite(value)) return value;
@@ -24,13 +24,13 @@ double round_to_digits(double value) {
   return std::round(value / unit) * unit;
 }
 
-void draw_bar(const ImRect& box, const BarRange& range, double value, ImGuiID id, int axis) {
+void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGuiID id, int axis) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImGuiStyle& style = ImGui::GetStyle();
   const bool active = ImGui::GetActiveID() == id;
   const bool hovered = ImGui::GetHoveredID() == id;
   ImGui::RenderNavHighlight(box, id);
-  list.AddRectFilled(box.Min, box.Max, packed_color(active || hovered ? Tone::hover : Tone::field),
+  list.AddRectFilled(box.Min, box.Max, packed_color(active || hovered ? ThemeColor::hover : ThemeColor::field),
                      style.FrameRounding);
   if (range.bounded()) {
     const auto at = [&](double v) {
@@ -40,17 +40,17 @@ void draw_bar(const ImRect& box, const BarRange& range, double value, ImGuiID id
     const float zero = at(std::clamp(0.0, range.min, range.max));
     const float end = at(value);
     const float mark = std::max(style.GrabMinSize * 0.5F, 1.0F);
-    const float typical = at(range.typical);
+    const float default_x = at(range.default_value);
     list.PushClipRect(box.Min, box.Max, true);
-    list.AddRectFilled({std::min(zero, end), box.Min.y}, {std::max(zero, end), box.Max.y}, packed_color(Tone::fill),
-                       style.FrameRounding);
-    list.AddLine({typical, box.Max.y - box.GetHeight() * 0.18F}, {typical, box.Max.y}, packed_color(Tone::secondary),
-                 1);
+    list.AddRectFilled({std::min(zero, end), box.Min.y}, {std::max(zero, end), box.Max.y},
+                       packed_color(ThemeColor::fill), style.FrameRounding);
+    list.AddLine({default_x, box.Max.y - box.GetHeight() * 0.18F}, {default_x, box.Max.y},
+                 packed_color(ThemeColor::secondary), 1);
     const float x = std::clamp(end, box.Min.x + mark, box.Max.x - mark);
-    list.AddRectFilled({x - mark / 2, box.Min.y + 1}, {x + mark / 2, box.Max.y - 1}, packed_color(Tone::accent));
+    list.AddRectFilled({x - mark / 2, box.Min.y + 1}, {x + mark / 2, box.Max.y - 1}, packed_color(ThemeColor::accent));
     list.PopClipRect();
   }
-  constexpr Tone kAxes[] = {Tone::red, Tone::green, Tone::blue};
+  constexpr ThemeColor kAxes[] = {ThemeColor::red, ThemeColor::green, ThemeColor::blue};
   if (axis >= 0 && axis < 3) {
     list.AddRectFilled(box.Min, {box.Min.x + std::max(style.GrabMinSize * 0.6F, 2.0F), box.Max.y},
                        packed_color(kAxes[axis]), style.FrameRounding, ImDrawFlags_RoundCornersLeft);
@@ -62,28 +62,28 @@ void draw_bar(const ImRect& box, const BarRange& range, double value, ImGuiID id
 
 }  // namespace
 
-bool BarRange::bounded() const { return std::isfinite(min) && std::isfinite(max) && max > min; }
+bool SliderRange::bounded() const { return std::isfinite(min) && std::isfinite(max) && max > min; }
 
-double BarRange::exponent() const {
+double SliderRange::exponent() const {
   const double bound = std::max(std::abs(min), std::abs(max));
-  const double size = typical == 0 ? 1 : std::abs(typical);
+  const double size = default_value == 0 ? 1 : std::abs(default_value);
   if (max - min <= kMaxLinearSpan || size > bound / 20 || (min < 0 && max < 0)) return 1;
-  // the usual magnitude is at kTypicalPosition from the lower end, or from zero if the range contains it
+  // the default value is at kDefaultPosition from the lower end, or from zero if the range contains it
   const double span = min >= 0 ? max - min : bound;
-  return std::log(std::max(size - std::max(min, 0.0), 1e-12) / span) / std::log(kTypicalPosition);
+  return std::log(std::max(size - std::max(min, 0.0), 1e-12) / span) / std::log(kDefaultPosition);
 }
 
-double BarRange::position_of(double value) const {
+double SliderRange::position_of(double value) const {
   const double p = exponent();
   if (p == 1) return (value - min) / (max - min);
   if (min >= 0) return std::pow(std::max(0.0, (value - min) / (max - min)), 1 / p);
-  // scaled from zero in both directions, each with its share of the bar
+  // negative and positive values are scaled separately from zero; each side is as long as its part of the range
   const double zero = -min / (max - min);
   if (value < 0) return zero * (1 - std::pow(std::min(value / min, 1.0), 1 / p));
   return zero + (1 - zero) * (max > 0 ? std::pow(value / max, 1 / p) : 0);
 }
 
-double BarRange::value_at(double position) const {
+double SliderRange::value_at(double position) const {
   const double p = exponent();
   if (p == 1) return min + position * (max - min);
   if (min >= 0) return min + (max - min) * std::pow(position, p);
@@ -99,7 +99,7 @@ std::string number_label(double value, bool integer) {
   return text == "-0" ? "0" : text;
 }
 
-bool number_bar(const char* id_text, const BarRange& range, float width, double& value, int axis) {
+bool number_slider(const char* id_text, const SliderRange& range, float width, double& value, int axis) {
   ImGuiWindow* const window = ImGui::GetCurrentWindow();
   if (window->SkipItems) return false;
   ImGuiContext& g = *ImGui::GetCurrentContext();
@@ -139,12 +139,13 @@ bool number_bar(const char* id_text, const BarRange& range, float width, double&
     changed = ImGui::SliderBehavior(box, id, ImGuiDataType_Double, &position, &zero, &one, "%.6f", 0, &grab);
     if (changed) value = std::clamp(round_to_digits(range.value_at(position)), low, high);
   } else {
-    const double speed = range.step > 0 ? range.step : std::max({std::abs(value), std::abs(range.typical), 0.1}) * 0.01;
+    const double speed =
+        range.step > 0 ? range.step : std::max({std::abs(value), std::abs(range.default_value), 0.1}) * 0.01;
     changed = ImGui::DragBehavior(id, ImGuiDataType_Double, &value, static_cast<float>(speed), &low, &high, "%.6g", 0);
     if (changed) value = round_to_digits(value);
   }
   if (changed && range.integer) value = std::round(value);
-  draw_bar(box, range, value, id, axis);
+  draw_slider(box, range, value, id, axis);
   return changed;
 }
 

@@ -1,7 +1,7 @@
 // The effects of the properties of parts, measured in the world.
 #include <functional>
 
-#include "sim/row_effects.h"
+#include "sim/property_effects.h"
 #include "sim/stage.h"
 
 namespace limber::test {

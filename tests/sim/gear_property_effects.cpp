@@ -1,5 +1,5 @@
 // Measures the effect of each property of gears.
-#include "sim/row_effects.h"
+#include "sim/property_effects.h"
 #include "sim/stage.h"
 
 namespace limber::test {

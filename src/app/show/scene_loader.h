@@ -1,5 +1,5 @@
-// SceneWatch: a thread that reloads the scene when one of its files is saved or a parameter with `rerun` has changed,
-// and that loads other scenes and takes on request.
+// SceneLoader: a thread that loads other scenes and takes on request, and reloads the scene when one of its files is
+// saved or a parameter with `rerun` has changed.
 #pragma once
 
 #include <atomic>
@@ -15,15 +15,15 @@
 namespace limber {
 
 /// [main], unless noted otherwise
-class SceneWatch {
+class SceneLoader {
  public:
   /// Must be created before the engine starts; `link` and `engine` must outlive it. `scene`: the file that plays; other
   /// scenes are loaded from its folder only.
-  SceneWatch(EngineLink& link, Engine& engine, const std::string& scene,
-             FileWatch::Mode mode = FileWatch::Mode::events);
-  ~SceneWatch() { stop(); }
-  SceneWatch(const SceneWatch&) = delete;
-  SceneWatch& operator=(const SceneWatch&) = delete;
+  SceneLoader(EngineLink& link, Engine& engine, const std::string& scene,
+              FileWatch::Mode mode = FileWatch::Mode::events);
+  ~SceneLoader() { stop(); }
+  SceneLoader(const SceneLoader&) = delete;
+  SceneLoader& operator=(const SceneLoader&) = delete;
 
   /// Starts to watch the files of the scene, which must have run. [main]
   void start();
@@ -31,12 +31,20 @@ class SceneWatch {
   void stop();
 
  private:
+  // A request for a scene or take. A panic after the first `stops_before` ones, or the end of a take, cancels it.
+  struct SceneRequest {
+    Message message;
+    CommandOrigin origin;
+    std::uint64_t stops_before = 0;  // number of panics, or of ended takes, when it arrived
+    friend std::size_t weight_of(const SceneRequest& request) { return sizeof request + weight_of(request.message); }
+  };
+
   void run(FileWatch& files);
-  bool handle(const Command& command);
-  bool play_take(const Command& command);
+  bool handle(const SceneRequest& request);
+  bool play_take(const SceneRequest& request);
   std::vector<std::string> scenes() const;
   std::vector<std::string> takes() const;
-  void reject(const Message& request, const CommandOrigin& origin, const std::string& reason);
+  void reject(const SceneRequest& request, const std::string& reason);
   void wait(const FileWatch& files);
 
   EngineLink& link_;
@@ -44,8 +52,7 @@ class SceneWatch {
   std::string folder_;
   std::string takes_folder_;  // the folder of the show's takes
   FileWatch::Mode mode_;
-  // requests for scenes and takes; `arrival` holds the panic count (or the count of ended takes) when they arrived
-  BoundedQueue<Command> requests_{64, std::size_t{1} << 16};
+  BoundedQueue<SceneRequest> requests_{64, std::size_t{1} << 16};
   system::Wake wake_;
   bool reload_pending_ = false;  // a file was saved while a take played; used by the thread only
   std::atomic<bool> stop_{false};

@@ -1,5 +1,5 @@
 // Parses log lines for script files.
-#include "ui/panel/widgets/fault_list.h"
+#include "ui/panel/widgets/error_list.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,42 +8,42 @@
 
 namespace limber {
 
-Fault parse_fault(const LogLine& line) {
-  Fault fault{line, {}, {}};
+ErrorEntry parse_error_line(const LogLine& line) {
+  ErrorEntry entry{line, {}, {}};
   // "file.lua:12: message"
   const std::size_t colon = line.text.find(".lua:");
-  if (colon == std::string::npos || line.text.find('\n') < colon) return fault;
+  if (colon == std::string::npos || line.text.find('\n') < colon) return entry;
   const std::size_t end = colon + 4;
   std::size_t digits = end + 1;
   while (digits < line.text.size() && std::isdigit(static_cast<unsigned char>(line.text[digits])) != 0) digits++;
-  if (digits == end + 1) return fault;
+  if (digits == end + 1) return entry;
   std::size_t begin = line.text.rfind(' ', colon);
   begin = begin == std::string::npos ? 0 : begin + 1;
-  fault.file = line.text.substr(begin, end - begin);
-  fault.location = line.text.substr(begin, digits - begin);
-  return fault;
+  entry.file = line.text.substr(begin, end - begin);
+  entry.location = line.text.substr(begin, digits - begin);
+  return entry;
 }
 
-void FaultList::add(const LogLine& line) {
+void ErrorList::add(const LogLine& line) {
   if (line.level == LogLevel::info && line.text.ends_with(kResolvedSuffix)) {
     const std::string file = line.text.substr(0, line.text.size() - kResolvedSuffix.size());
-    std::erase_if(faults_, [&](const Fault& f) { return f.line.level == LogLevel::error && f.file == file; });
+    std::erase_if(entries_, [&](const ErrorEntry& f) { return f.line.level == LogLevel::error && f.file == file; });
   }
   if (line.level != LogLevel::warning && line.level != LogLevel::error) return;
-  if (faults_.size() >= kMaxFaults) faults_.pop_front();
-  faults_.push_back(parse_fault(line));
+  if (entries_.size() >= kMaxEntries) entries_.pop_front();
+  entries_.push_back(parse_error_line(line));
 }
 
-std::string FaultList::count_text() const {
-  const std::size_t warnings = faults_.size() - error_count();
+std::string ErrorList::count_text() const {
+  const std::size_t warnings = entries_.size() - error_count();
   std::string text = error_count() == 0 ? "" : fmt::format("{}", error_count());
   if (warnings == 0) return text;
   return text + fmt::format("{}{} warning{}", text.empty() ? "" : " + ", warnings, warnings == 1 ? "" : "s");
 }
 
-std::size_t FaultList::error_count() const {
-  return static_cast<std::size_t>(
-      std::count_if(faults_.begin(), faults_.end(), [](const Fault& f) { return f.line.level == LogLevel::error; }));
+std::size_t ErrorList::error_count() const {
+  return static_cast<std::size_t>(std::count_if(entries_.begin(), entries_.end(),
+                                                [](const ErrorEntry& f) { return f.line.level == LogLevel::error; }));
 }
 
 }  // namespace limber

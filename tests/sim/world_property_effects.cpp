@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "sim/bullet/island_world.h"
-#include "sim/row_effects.h"
+#include "sim/property_effects.h"
 #include "sim/stage.h"
 
 namespace limber::test {

@@ -1,12 +1,12 @@
 // Every property of the physical classes: its effect is measured, and setting it follows the general rules. A new
-// property without an entry in a *_row_effects.cpp fails here.
+// property without an entry in a *_property_effects.cpp fails here.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "sim/row_effects.h"
+#include "sim/property_effects.h"
 #include "sim/stage.h"
 
 namespace limber {
