@@ -29,6 +29,7 @@ inline constexpr std::uint64_t kMaxGltfKeyBytes = std::uint64_t{1800} << 20u;
 /// glTF 2.0: bodies with meshes and one animation, for 3D editors and the web. Y up, meters. A `path` that ends with
 /// .glb gives one file; .gltf a text file and NAME.bin. Keyframes are stored in memory until finish(), 28 bytes per
 /// link and frame; more than `max_bytes` are an error.
-Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path, std::uint64_t max_bytes = kMaxGltfKeyBytes);
+Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path,
+                                                       std::uint64_t max_bytes = kMaxGltfKeyBytes);
 
 }  // namespace limber

@@ -41,7 +41,8 @@ class CallLog {
     stopped_.push_back({count_, std::move(file), line, std::move(text)});
   }
 
-  /// Records a rewind within the pass. The history numbers the pass's calls from its last rewind, a take from its start.
+  /// Records a rewind within the pass. The history numbers the pass's calls from its last rewind, a take from its
+  /// start.
   void record_rewind() {
     rewound_at_ = count_;
     rewound_stops_ = stopped_.size();

@@ -20,7 +20,7 @@ btScalar closing_distance(btScalar distance, btScalar motion) {
 // Tests axes one by one; each function returns true if its axis separates the boxes until the end of the step.
 class AxisTest {
  public:
-  AxisTest(const Box& a, const Box& b, const ContactManifold& points)
+  AxisTest(const Box& a, const Box& b, const ManifoldBuilder& points)
       : a_(a),
         b_(b),
         max_distance_(points.max_rotation_distance()),
@@ -101,7 +101,7 @@ class AxisTest {
 
 }  // namespace
 
-bool SeparatingAxis::separates(const Box& a, const Box& b, const ContactManifold& points) const {
+bool SeparatingAxis::separates(const Box& a, const Box& b, const ManifoldBuilder& points) const {
   if (a_ == kNone && b_ == kNone) return false;
   const btVector3 direction = b_ == kNone ? a.axis(a_) : a_ == kNone ? b.axis(b_) : a.axis(a_).cross(b.axis(b_));
   const btScalar radius = (direction * a.axes).absolute().dot(a.half) + (direction * b.axes).absolute().dot(b.half);
@@ -112,7 +112,7 @@ bool SeparatingAxis::separates(const Box& a, const Box& b, const ContactManifold
          (points.max_rotation_distance() + kMinGain) * length;
 }
 
-BoxAxis SeparatingAxis::find(const Box& a, const Box& b, const ContactManifold& points) {
+BoxAxis SeparatingAxis::find(const Box& a, const Box& b, const ManifoldBuilder& points) {
   AxisTest test(a, b, points);
   const auto separated_along = [this](int first, int second) {
     a_ = first;

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/bullet/bullet.h"
-#include "sim/collision/contact_manifold.h"
+#include "sim/collision/manifold_builder.h"
 
 namespace limber {
 
@@ -34,10 +34,10 @@ class SeparatingAxis {
  public:
   /// True if it separates the boxes until the end of the step by more than rounding errors, so that find() would return
   /// none.
-  bool separates(const Box& a, const Box& b, const ContactManifold& points) const;
+  bool separates(const Box& a, const Box& b, const ManifoldBuilder& points) const;
   /// Returns the axis of least overlap, or none if an axis separates the boxes until the end of the step; remembers
   /// that axis.
-  BoxAxis find(const Box& a, const Box& b, const ContactManifold& points);
+  BoxAxis find(const Box& a, const Box& b, const ManifoldBuilder& points);
 
  private:
   static constexpr int kNone = -1;

@@ -166,7 +166,7 @@ class BoxAlgorithm : public PairAlgorithm {
   }
 
  private:
-  static void add_edges(const Box& a, const Box& b, const BoxAxis& axis, ContactManifold& points) {
+  static void add_edges(const Box& a, const Box& b, const BoxAxis& axis, ManifoldBuilder& points) {
     btVector3 on_a = a.center;
     btVector3 on_b = b.center;
     for (int i = 0; i < 3; ++i) {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/island_world.h"
+#include "sim/bullet/joints/gear_constraint.h"
 #include "sim/gears/gear_list.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"

@@ -30,7 +30,8 @@ void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || clamped
 
 void BodyWarnings::note(const Joint& joint) {
   const JointConstraint& constraint = joint.constraint();
-  has_joint_problem_ = has_joint_problem_ || constraint.drives().spring_limited() || constraint.drives().target_outside();
+  has_joint_problem_ =
+      has_joint_problem_ || constraint.drives().spring_limited() || constraint.drives().target_outside();
 }
 
 void BodyWarnings::warn_clamped() {
