@@ -81,10 +81,10 @@ class RawSimulation {
   virtual RawMeasurements measurements() const = 0;
   virtual RawEnergy energy() const = 0;
   virtual Pose pose(int part) const = 0;
-  /// Of the direct solver: number of island steps by kind, and largest residuals.
+  /// Of the direct solver: number of island steps by kind, and largest residuals (DirectResiduals).
   struct Direct {
     double direct = 0, plain = 0, fallbacks = 0;
-    double locked = 0, bounded = 0, contact = 0;
+    double unbounded = 0, bounded = 0, coupled = 0;
   };
   virtual Direct direct() const { return {}; }
 };
