@@ -10,6 +10,7 @@
 #include "script/api/script_context.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/vm.h"
+#include "sim/behavior/behavior_group.h"
 #include "sim/world/body.h"
 
 namespace limber {

@@ -7,6 +7,9 @@
 #include "base/check.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/gears/gear.h"
+#include "sim/shapes/shape.h"
+#include "sim/world/body.h"
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
