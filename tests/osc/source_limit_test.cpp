@@ -1,4 +1,5 @@
 // Limits per source address: trusted senders and the amount that others get. Addresses are only data here.
+#include "base/sip_hash.h"
 #include "net/osc/amplification_limit.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ std::vector<NeighborMotion> moving_points() {
     for (int a = 0; a < 3; a++) {
       point.position[a] = any(dice);
       point.velocity[a] = dice() % 7 == 0 ? 0.0f : any(dice);
-      point.spin[a] = any(dice);
+      point.angular_velocity[a] = any(dice);
     }
     point.position[3] = 1;
   }
@@ -58,15 +58,15 @@ TEST(NeighborSums, IncludeBothPointsOfEachPair) {
   for (std::uint32_t index = 0; index < kPointCount; index++) {
     EXPECT_EQ(sums[index].offset[3], static_cast<float>(near[index].size()));
     for (int a = 0; a < 3; a++) {
-      double offset = 0, velocity = 0, spin = 0;
+      double offset = 0, velocity = 0, angular_velocity = 0;
       for (const std::uint32_t other : near[index]) {
         offset += double{points[other].position[a]} - points[index].position[a];
         velocity += points[other].velocity[a];
-        spin += points[other].spin[a];
+        angular_velocity += points[other].angular_velocity[a];
       }
       EXPECT_NEAR(sums[index].offset[a], offset, 1e-4);
       EXPECT_NEAR(sums[index].velocity[a], velocity, 1e-4);
-      EXPECT_NEAR(sums[index].spin[a], spin, 1e-4);
+      EXPECT_NEAR(sums[index].angular_velocity[a], angular_velocity, 1e-4);
     }
   }
 }

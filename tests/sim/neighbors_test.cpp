@@ -110,7 +110,7 @@ TEST(Neighbors, MeansAreEqualForAllMethods) {
       for (std::size_t k = 0; k < 3; k++) {
         EXPECT_NEAR(alone[i].offset[k], a.offset[k], 1e-5) << max_distance;
         EXPECT_NEAR(alone[i].velocity[k], a.velocity[k], 1e-5) << max_distance;
-        EXPECT_NEAR(alone[i].spin[k], a.spin[k], 1e-5) << max_distance;
+        EXPECT_NEAR(alone[i].angular_velocity[k], a.angular_velocity[k], 1e-5) << max_distance;
       }
     }
     // expected: the neighbors of low[3] within 2.2 are low[1], [2], [4], [5]
@@ -120,7 +120,7 @@ TEST(Neighbors, MeansAreEqualForAllMethods) {
       EXPECT_NEAR(together[6].velocity[0], 0, 1e-6);
       EXPECT_NEAR(together[0].offset[0], 1.5, 1e-6);    // low[0]: neighbors at distances 1 and 2
       EXPECT_NEAR(together[0].velocity[0], 1.5, 1e-6);  // mean 1.5, own 0
-      EXPECT_NEAR(together[0].spin[1], 1.5, 1e-6);
+      EXPECT_NEAR(together[0].angular_velocity[1], 1.5, 1e-6);
     }
   }
 }
