@@ -111,7 +111,7 @@ void BehaviorList::remove(BehaviorGroup& group) {
 }
 
 void BehaviorList::destroy_last() {
-  const BehaviorEntry& last = entries_.back();
+  const StepEntry& last = entries_.back();
   if (last.group != nullptr) {
     destroy_group(*last.group);
   } else {
@@ -134,13 +134,13 @@ RemovedBehavior BehaviorList::extract(Behavior& behavior) {
   BehaviorGroup* const group = behavior.group();
   RemovedBehavior removed = group != nullptr
                                 ? group->remove_member(behavior)
-                                : extract_last([&](const BehaviorEntry& e) { return e.single.get() == &behavior; });
+                                : extract_last([&](const StepEntry& e) { return e.single.get() == &behavior; });
   removed.index_on_body = behavior.body().behaviors().remove(behavior);
   return removed;
 }
 
 RemovedBehavior BehaviorList::extract(BehaviorGroup& group) {
-  return extract_last([&](const BehaviorEntry& e) { return e.group.get() == &group; });
+  return extract_last([&](const StepEntry& e) { return e.group.get() == &group; });
 }
 
 void BehaviorList::insert(RemovedBehavior removed) {
@@ -149,7 +149,7 @@ void BehaviorList::insert(RemovedBehavior removed) {
     behavior.body().behaviors().insert(removed.index_on_body, behavior);
     if (BehaviorGroup* const group = behavior.group()) return group->insert_member(std::move(removed));
   }
-  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), BehaviorEntry{});
+  if (!stepping_) entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(removed.index), StepEntry{});
   entries_[removed.index] = {std::move(removed.behavior), std::move(removed.group)};
 }
 
@@ -176,7 +176,7 @@ BehaviorGroup* BehaviorList::find_group(std::string_view name) const {
 
 std::vector<BehaviorGroup*> BehaviorList::groups() const {
   std::vector<BehaviorGroup*> list;
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) list.push_back(entry.group.get());
   }
   return list;
@@ -187,7 +187,7 @@ std::size_t BehaviorList::suspended_count() const {
   const auto count_suspended = [&](const std::unique_ptr<Behavior>& behavior) {
     if (behavior != nullptr && !behavior->error().empty()) count++;
   };
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     count_suspended(entry.single);
     if (entry.group != nullptr) std::ranges::for_each(entry.group->members(), count_suspended);
   }
@@ -219,7 +219,7 @@ void BehaviorList::copy(const Body& source, Body& copy) {
 
 void BehaviorList::on_body_destroyed(Body& body) {
   while (!body.behaviors().list().empty()) destroy(*body.behaviors().list().back());
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->remove_body(body);
   }
 }
@@ -242,7 +242,7 @@ void BehaviorList::update_members() {
   if (stepping_) return;
   const std::uint64_t structure = world_.store().structure_version();
   if (std::exchange(structure_version_, structure) == structure) return;
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group == nullptr) continue;
     if (const Result<void> updated = entry.group->update_members(); !updated) {
       log_warning("group behavior '{}': {}", entry.group->name(), updated.error());
@@ -251,7 +251,7 @@ void BehaviorList::update_members() {
   for (const auto& body : world_.bodies()) {
     for (Behavior* behavior : body->behaviors().list()) behavior->update_targets();
   }
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) entry.group->invalidate_layout();
   }
   structure_version_ = world_.store().structure_version();  // includes members that were just added
@@ -283,7 +283,7 @@ void BehaviorList::step(double dt) {
   stepping_ = false;
   if (retired_.empty()) return;
   retired_.clear();
-  std::erase_if(entries_, [](const BehaviorEntry& e) { return e.single == nullptr && e.group == nullptr; });
+  std::erase_if(entries_, [](const StepEntry& e) { return e.single == nullptr && e.group == nullptr; });
 }
 
 void BehaviorList::report_fault(const Behavior& behavior) const {
@@ -294,7 +294,7 @@ void BehaviorList::report_fault(const Behavior& behavior) const {
 void BehaviorList::replace_instances(std::string_view type_name) {
   const std::shared_ptr<const BehaviorType> type = types_.find(type_name);
   if (type == nullptr) return;
-  for (BehaviorEntry& entry : entries_) {
+  for (StepEntry& entry : entries_) {
     if (entry.group != nullptr) {
       entry.group->replace_type(type);
     } else if (entry.single != nullptr && type->replaces(entry.single->type())) {
@@ -304,14 +304,14 @@ void BehaviorList::replace_instances(std::string_view type_name) {
 }
 
 void BehaviorList::serialize(Archive& archive) {
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.single != nullptr) entry.single->serialize_all(archive);
     if (entry.group != nullptr) entry.group->serialize(archive);
   }
 }
 
 std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) hash = entry.group->state_hash(hash);
   }
   return hash;

@@ -107,7 +107,7 @@ class BehaviorList {
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
-  std::vector<BehaviorEntry> entries_;
+  std::vector<StepEntry> entries_;
   BehaviorOrder order_{world_, entries_};
   std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped
   std::vector<std::weak_ptr<NeighborSet>> neighbor_sets_;

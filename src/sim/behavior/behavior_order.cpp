@@ -12,11 +12,11 @@
 
 namespace limber {
 
-std::string BehaviorEntry::key() const {
+std::string StepEntry::key() const {
   return group != nullptr ? "/" + group->name() : single->body().name() + "/" + single->name();
 }
 
-bool BehaviorEntry::acts_on(const Body& body) const {
+bool StepEntry::acts_on(const Body& body) const {
   return group != nullptr ? group->member_of(body) != nullptr : &single->body() == &body;
 }
 
@@ -25,7 +25,7 @@ bool BehaviorEntry::acts_on(const Body& body) const {
 std::vector<std::string_view> BehaviorOrder::names() const {
   std::vector<std::string_view> names;
   std::unordered_set<std::string_view> seen;
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr || seen.insert(entry.name()).second) names.push_back(entry.name());
   }
   return names;
@@ -39,7 +39,7 @@ std::size_t BehaviorOrder::place_of(NodeId id) const {
   std::unordered_map<const Body*, std::uint32_t> on_body;
   std::unordered_set<std::string_view> seen;
   std::uint32_t count = 0;
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) {
       places_[entry.group->id().slot] = ++count;
       for (const auto& member : entry.group->members()) places_[member->id().slot] = ++on_body[&member->body()];
@@ -58,15 +58,15 @@ std::size_t BehaviorOrder::place(const BehaviorGroup& group) const { return plac
 std::vector<std::string> BehaviorOrder::keys() const {
   std::vector<std::string> keys;
   keys.reserve(entries_.size());
-  for (const BehaviorEntry& entry : entries_) keys.push_back(entry.key());
+  for (const StepEntry& entry : entries_) keys.push_back(entry.key());
   return keys;
 }
 
 void BehaviorOrder::sort(const std::vector<std::string>& keys) {
   std::unordered_map<std::string_view, std::size_t> ranks;
   for (std::size_t i = 0; i < keys.size(); i++) ranks[keys[i]] = i;
-  std::vector<std::pair<std::size_t, BehaviorEntry>> ranked;
-  for (BehaviorEntry& entry : entries_) {
+  std::vector<std::pair<std::size_t, StepEntry>> ranked;
+  for (StepEntry& entry : entries_) {
     const auto found = ranks.find(entry.key());
     ranked.emplace_back(found == ranks.end() ? keys.size() : found->second, std::move(entry));
   }
@@ -93,7 +93,7 @@ void BehaviorOrder::move(Behavior& behavior, std::size_t place) {
   std::size_t insert_index = new_index < others.size() ? others[new_index] : others.back() + 1;
   if (this->place(behavior) == new_index + 1) return;
   world_.behaviors().transaction().save_order();
-  BehaviorEntry entry = std::move(entries_[current]);
+  StepEntry entry = std::move(entries_[current]);
   entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(current));
   if (insert_index > current) insert_index--;
   entries_.insert(entries_.begin() + static_cast<std::ptrdiff_t>(insert_index), std::move(entry));
@@ -117,18 +117,18 @@ void BehaviorOrder::move(BehaviorGroup& group, std::size_t place) {
   std::unordered_map<std::string_view, std::size_t> single_ranks;
   std::unordered_map<const BehaviorGroup*, std::size_t> group_ranks;
   std::size_t next = 0;
-  for (const BehaviorEntry& entry : entries_) {
+  for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) {
       group_ranks[entry.group.get()] = new_ranks[next++];
     } else if (single_ranks.try_emplace(entry.name(), next).second) {
       single_ranks[entry.name()] = new_ranks[next++];
     }
   }
-  const auto rank = [&](const BehaviorEntry& e) {
+  const auto rank = [&](const StepEntry& e) {
     return e.group != nullptr ? group_ranks[e.group.get()] : single_ranks[e.name()];
   };
   std::stable_sort(entries_.begin(), entries_.end(),
-                   [&](const BehaviorEntry& a, const BehaviorEntry& b) { return rank(a) < rank(b); });
+                   [&](const StepEntry& a, const StepEntry& b) { return rank(a) < rank(b); });
   world_.store().bump_structure_version();
 }
 

@@ -14,7 +14,7 @@
 namespace limber {
 
 /// A single behavior or a group. Empty if it was removed in the present step.
-struct BehaviorEntry {
+struct StepEntry {
   std::unique_ptr<Behavior> single;
   std::unique_ptr<BehaviorGroup> group;
 
@@ -27,7 +27,7 @@ struct BehaviorEntry {
 class BehaviorOrder {
  public:
   /// `entries`: the entries of the world's BehaviorList.
-  BehaviorOrder(World& world, std::vector<BehaviorEntry>& entries) : world_(world), entries_(entries) {}
+  BehaviorOrder(World& world, std::vector<StepEntry>& entries) : world_(world), entries_(entries) {}
 
   /// Returns its position, from 1, among the behaviors that act on its body, including groups that the body is in.
   std::size_t place(const Behavior& behavior) const;
@@ -48,7 +48,7 @@ class BehaviorOrder {
   std::size_t place_of(NodeId id) const;
 
   World& world_;
-  std::vector<BehaviorEntry>& entries_;
+  std::vector<StepEntry>& entries_;
   mutable std::vector<std::uint32_t> places_;                   // by slot of the node
   mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
 };
