@@ -4,5 +4,5 @@
 
 int main(int argc, char** argv) {
   limber::system::prepare_standard_descriptors();
-  return limber::run_command_line(argc, argv);
+  return limber::app::run_command_line(argc, argv);
 }

@@ -11,7 +11,7 @@
 #include "base/log/output.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 int fail(int code, std::string_view text) {
   write_message(MessageLevel::error, printable(text));
@@ -39,4 +39,4 @@ int finish_command(int code) {
 
 void end_program(int code) { std::_Exit(finish_command(code)); }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace limber {
+namespace limber::app {
 
 inline constexpr int kSuccess = 0;
 inline constexpr int kInputError = 1;    ///< The input is invalid: a scene, a model, an answer.
@@ -19,4 +19,4 @@ int finish_command(int code);
 /// Calls finish_command(), then ends the program without running destructors. [any]
 [[noreturn]] void end_program(int code);
 
-}  // namespace limber
+}  // namespace limber::app

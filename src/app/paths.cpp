@@ -12,7 +12,7 @@
 #include "base/system/file.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace fs = std::filesystem;
 
@@ -93,4 +93,4 @@ std::string scene_not_found(std::string_view name, const std::vector<std::string
                      fmt::join(searched, " and "));
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limber {
+namespace limber::app {
 
 /// Returns the folder that holds scripts/ and urdf/: above the executable (in a checkout), share/limber next to it, or
 /// the installed one; empty if there is none. [any]
@@ -35,4 +35,4 @@ std::string find_scene(std::string_view name, std::vector<std::string>& searched
 /// Returns the error message for a missing scene: the places searched, and how to name a scene.
 std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched);
 
-}  // namespace limber
+}  // namespace limber::app

@@ -11,7 +11,7 @@
 #include "base/log/output.h"
 #include "base/system/clock.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [one thread]
 class Progress {
@@ -41,4 +41,4 @@ class Progress {
   double last_report_ = begin_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

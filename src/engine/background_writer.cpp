@@ -6,7 +6,7 @@
 
 #include "base/system/thread.h"
 
-namespace limber {
+namespace limber::engine {
 
 BackgroundWriter::~BackgroundWriter() {
   {
@@ -89,4 +89,4 @@ void BackgroundWriter::run_task(Entry& entry, std::unique_lock<std::mutex>& lock
   changed_.notify_all();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

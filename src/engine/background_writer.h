@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-namespace limber {
+namespace limber::engine {
 
 class BackgroundWriter {
  public:
@@ -60,4 +60,4 @@ class BackgroundWriter {
   std::thread thread_;  // created by the first request
 };
 
-}  // namespace limber
+}  // namespace limber::engine

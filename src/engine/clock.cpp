@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 using Seconds = std::chrono::duration<double>;
@@ -70,4 +70,4 @@ double Clock::lost_seconds(double suspended) {
 
 bool Clock::consume_late() { return std::exchange(late_, false); }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace limber {
+namespace limber::engine {
 
 class Clock {
  public:
@@ -47,4 +47,4 @@ class Clock {
   bool late_reported_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -8,7 +8,7 @@
 #include "base/system/clock.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 Engine::Engine(EngineLink& link, EngineOptions options) : show_(link, std::move(options)) {
   show_.input = &live_input_;
@@ -66,7 +66,7 @@ void Engine::run() {
 
 bool Engine::finished() const {
   const EngineOptions& options = show_.options;
-  const World& world = show_.session->world;
+  const sim::World& world = show_.session->world;
   if (show_.input->finished()) return true;
   if (options.strict && faults() > 0) return true;
   if (options.ticks && world.tick() >= *options.ticks) return true;
@@ -157,4 +157,4 @@ void Engine::finish_saving() {
   recording_.finish_saving();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

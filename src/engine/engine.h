@@ -15,7 +15,7 @@
 #include "engine/takes/playback.h"
 #include "engine/takes/recording.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Engine {
  public:
@@ -64,9 +64,9 @@ class Engine {
     return playback_.play(file, stops);
   }
   /// The source files to watch: a change of one of them calls for a reload. [any]
-  std::vector<SourceFile> files() const { return scenes_.files(); }
+  std::vector<script::SourceFile> files() const { return scenes_.files(); }
 
-  World& world() { return show_.session->world; }
+  sim::World& world() { return show_.session->world; }
   Store& store() { return show_.session->store; }
   const PhaseTimes& times() const { return times_; }
   const History& history() const { return show_.history; }
@@ -113,4 +113,4 @@ class Engine {
   PhaseTimes times_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -13,11 +13,11 @@
 #include "engine/recovery/recovery_saver.h"
 #include "script/scene/scene_options.h"
 
-namespace limber {
+namespace limber::engine {
 
 struct EngineOptions {
   std::string scene;                   ///< Scene file; empty: an empty world.
-  SceneOptions scene_options;          ///< Seed, package paths, installed data.
+  script::SceneOptions scene_options;  ///< Seed, package paths, installed data.
   bool fast = false;                   ///< Computes ticks without waiting for real time. The result is the same.
   std::optional<std::uint64_t> ticks;  ///< Ends after this number of ticks; else runs until stop().
   std::optional<double> duration;      ///< Ends at this simulated time, s.
@@ -41,4 +41,4 @@ struct EngineOptions {
   std::function<double()> clock = system::clock_seconds;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "base/log/log.h"
 #include "base/system/clock.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 // Longest wait between two checks of the command queue, so that commands take effect even if the next tick is far away.
@@ -62,4 +62,4 @@ void Pacer::wake() {
   wake_.notify_all();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "engine/session.h"
 #include "engine/sim_thread_executor.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Pacer {
  public:
@@ -54,4 +54,4 @@ class Pacer {
   std::condition_variable wake_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -5,10 +5,10 @@
 
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::engine {
 
 void PanicControl::begin_if_requested() {
-  World& world = show_.session->world;
+  sim::World& world = show_.session->world;
   if (world.panic().on() || !std::exchange(world.requests().panic, false)) return;
   show_.presets.stop();
   show_.session->dispatcher.release_mouse_springs();
@@ -23,7 +23,7 @@ void PanicControl::begin_if_requested() {
 }
 
 // A second request for a panic ends it, too, but not in its first second.
-bool PanicControl::end_requested(World& world) {
+bool PanicControl::end_requested(sim::World& world) {
   const bool end = std::exchange(world.requests().panic_end, false);
   if (!world.panic().on()) return false;
   if (end) return true;
@@ -35,7 +35,7 @@ bool PanicControl::end_requested(World& world) {
 }
 
 void PanicControl::end_if_requested() {
-  World& world = show_.session->world;
+  sim::World& world = show_.session->world;
   if (!end_requested(world)) return;
   const std::uint64_t start_tick = world.panic().start_tick();
   world.panic().end();
@@ -46,4 +46,4 @@ void PanicControl::end_if_requested() {
   log_info("panic ended{}", restored ? "; the show continues from the last checkpoint before it" : "");
 }
 
-}  // namespace limber
+}  // namespace limber::engine

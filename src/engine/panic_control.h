@@ -3,7 +3,7 @@
 
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
 class PanicControl {
  public:
@@ -17,10 +17,10 @@ class PanicControl {
   void end_if_requested();
 
  private:
-  bool end_requested(World& world);
+  bool end_requested(sim::World& world);
 
   ShowState& show_;
   bool ignored_request_reported_ = false;  // an ignored panic request was logged
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -17,10 +17,10 @@
 #include "script/scene/scene.h"
 #include "sim/behavior/behavior_list.h"
 
-namespace limber {
+namespace limber::engine {
 
 struct Session {
-  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const WorldSetup& setup)
+  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const sim::WorldSetup& setup)
       : world(store, setup),
         transport(world, link.health),
         counters(store, link.counters),
@@ -33,32 +33,32 @@ struct Session {
   }
 
   /// Runs the scene file. If `file` is empty, the world stays empty.
-  Result<void> run(const std::string& file, ScriptHost& host, const SceneOptions& options) {
+  Result<void> run(const std::string& file, script::ScriptHost& host, const script::SceneOptions& options) {
     report_faults_to(host);
     if (file.empty()) return {};
-    scene = std::make_unique<Scene>(world, host, options);
+    scene = std::make_unique<script::Scene>(world, host, options);
     return scene->run(file);
   }
 
   /// Runs the scene file detached, while another session is live. Call make_live() to make it live. [any]
-  Result<void> run_detached(const std::string& file, ScriptHost& host, const SceneOptions& options) {
-    scene = std::make_unique<Scene>(world, host, options);
-    const RunInputs no_inputs;
+  Result<void> run_detached(const std::string& file, script::ScriptHost& host, const script::SceneOptions& options) {
+    scene = std::make_unique<script::Scene>(world, host, options);
+    const script::RunInputs no_inputs;
     Result<void> ran = scene->run(file, &no_inputs);
     if (ran) scene->prepare();
     return ran;
   }
   /// Makes a scene that has run detached the live one. [sim]
-  void make_live(ScriptHost& host) {
+  void make_live(script::ScriptHost& host) {
     report_faults_to(host);
     scene->become_live(
         world, [](NodeId id) { return id; }, nullptr);
   }
 
   /// Reports faults of behaviors to `host` as script errors.
-  void report_faults_to(ScriptHost& host) {
-    world.behaviors().on_fault([&host](const Behavior& behavior) {
-      const BehaviorFault& fault = behavior.fault();
+  void report_faults_to(script::ScriptHost& host) {
+    world.behaviors().on_fault([&host](const sim::Behavior& behavior) {
+      const sim::BehaviorFault& fault = behavior.fault();
       const std::string path = behavior.store().path(behavior.id());
       if (fault.file.empty()) return host.script_error(path, fault.line, path + ": " + fault.text);
       host.script_error(fault.file, fault.line, fault.text + "\nof " + path);
@@ -67,11 +67,11 @@ struct Session {
 
   /// Returns the first number of a property of the world.
   double world_value(std::string_view property) const {
-    return store.values(world.id(), World::table().at(property))[0];
+    return store.values(world.id(), sim::World::table().at(property))[0];
   }
 
   Store store;
-  World world;
+  sim::World world;
   Transport transport;
   CounterNode counters;
   PresetNode preset_node;
@@ -79,7 +79,7 @@ struct Session {
   TakeNode take_node;
   MessageDispatcher dispatcher;
   Publisher publisher;
-  std::unique_ptr<Scene> scene;  // last member, because it must be destroyed first
+  std::unique_ptr<script::Scene> scene;  // last member, because it must be destroyed first
 };
 
-}  // namespace limber
+}  // namespace limber::engine

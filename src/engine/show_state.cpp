@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
     : link(engine_link),
@@ -12,13 +12,13 @@ ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
       session(new_session()) {}
 
 std::unique_ptr<Session> ShowState::new_session() {
-  WorldSetup setup;
+  sim::WorldSetup setup;
   setup.thread_pool = thread_pool;
   return std::make_unique<Session>(link, presets, undo_stack, setup);
 }
 
-SceneOptions ShowState::scene_options() const {
-  SceneOptions scene_options = options.scene_options;
+script::SceneOptions ShowState::scene_options() const {
+  script::SceneOptions scene_options = options.scene_options;
   if (rules.limits) scene_options.limits = *rules.limits;
   if (!rules.keeps_timers) scene_options.keep_timers = false;
   if (rules.before_first_revision) scene_options.limits.disable_failed_handlers = false;
@@ -53,4 +53,4 @@ std::uint64_t ShowState::state_hash() const {
   return session->scene == nullptr ? hash : session->scene->state_hash(hash);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -19,13 +19,13 @@
 #include "engine/session.h"
 #include "script/vm/call_log.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// The engine's rules that apply: while a take is replayed those of the version that recorded it, else the newest.
 struct ShowRules {
-  bool before_first_revision = false;  ///< See kTakeRules.
-  bool keeps_timers = true;            ///< Reloads keep timers, and console texts set overrides.
-  std::optional<ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
+  bool before_first_revision = false;          ///< See kTakeRules.
+  bool keeps_timers = true;                    ///< Reloads keep timers, and console texts set overrides.
+  std::optional<script::ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
 };
 
 struct ShowState {
@@ -35,7 +35,7 @@ struct ShowState {
   /// Returns an empty session. [any]
   std::unique_ptr<Session> new_session();
   /// Options for runs of the scene, by the rules that apply.
-  SceneOptions scene_options() const;
+  script::SceneOptions scene_options() const;
   Output& output() { return outputs.current(); }
   /// Makes the writes during its lifetime edits of a controller.
   EditScope edit_scope() { return {session->world, presets, undo_stack, output().changes()}; }
@@ -64,10 +64,10 @@ struct ShowState {
   HandlerQueue handler_queue;            ///< Messages that wait for the scene's handlers.
   std::vector<Message> preset_requests;  ///< Preset commands of scripts in this tick.
   History history{overrides, undo_stack, presets, handler_queue};
-  CallLog call_log;
+  script::CallLog call_log;
   std::unique_ptr<Session> session;
   std::uint64_t scene_seed = 0;  ///< The random seed after the scene's run.
   bool was_paused = false;       ///< As last sent by send_transport().
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -1,7 +1,7 @@
 // SimThreadExecutor: one piece of work at a time. The mutex is not held while it runs.
 #include "engine/sim_thread_executor.h"
 
-namespace limber {
+namespace limber::engine {
 
 bool SimThreadExecutor::run_and_wait(const std::function<void()>& work, const std::function<void()>& wake) {
   std::unique_lock lock(mutex_);
@@ -49,4 +49,4 @@ void SimThreadExecutor::close() {
   changed_.notify_all();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

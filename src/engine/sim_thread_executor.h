@@ -7,7 +7,7 @@
 #include <functional>
 #include <mutex>
 
-namespace limber {
+namespace limber::engine {
 
 class SimThreadExecutor {
  public:
@@ -31,4 +31,4 @@ class SimThreadExecutor {
   bool closed_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

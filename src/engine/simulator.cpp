@@ -6,7 +6,7 @@
 #include "sim/world/body.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
   Session& session = *show_.session;
@@ -22,7 +22,7 @@ void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
   times.scripts = watch.lap();
   if (!running) return session.world.flush();
   session.dispatcher.apply_mouse_springs();
-  const TickTimes physics = session.world.step();
+  const sim::TickTimes physics = session.world.step();
   times.behaviors = physics.behaviors;
   times.callbacks = physics.flush;
   times.physics = physics.physics;
@@ -44,7 +44,7 @@ void Simulator::call_handlers(InputSource& input) {
 
 void Simulator::call_handler() {
   const HandlerQueue::Entry entry = show_.handler_queue.pop();
-  Scene* const scene = show_.session->scene.get();
+  script::Scene* const scene = show_.session->scene.get();
   const bool handled = scene != nullptr && scene->handle_message(entry.message, entry.origin);
   if (!handled && entry.unknown) show_.output().report_unknown(entry.message, entry.origin, entry.error);
 }
@@ -66,10 +66,10 @@ void Simulator::execute_preset_requests() {
 
 void Simulator::send_contacts() {
   const Store& store = show_.session->store;
-  for (const ContactEvent& contact : show_.session->world.contacts().events()) {
+  for (const sim::ContactEvent& contact : show_.session->world.contacts().events()) {
     if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
-    const auto* part = static_cast<const Part*>(store.object(contact.part));
-    const auto* other = static_cast<const Part*>(store.object(contact.other));
+    const auto* part = static_cast<const sim::Part*>(store.object(contact.part));
+    const auto* other = static_cast<const sim::Part*>(store.object(contact.other));
     show_.output().push({Outgoing::Destination::event,
                          {},
                          {"/physics/contact",
@@ -79,4 +79,4 @@ void Simulator::send_contacts() {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include "engine/panic_control.h"
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Simulator {
  public:
@@ -24,4 +24,4 @@ class Simulator {
   PanicControl panic_{show_};
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -27,7 +27,7 @@ const PropertyTable& Transport::table() {
           invokes<&Transport::act_rewind_ticks>(action("rewind_ticks", 1, 1, "Rewinds by a number of ticks.")),
           invokes<&Transport::act_reset>(
               action("reset", 0, 0, "Restarts the scene and applies the performer's values again.")),
-          invokes<&Transport::act_panic>(action("panic", 0, 0, Panic::kDoc)),
+          invokes<&Transport::act_panic>(action("panic", 0, 0, sim::Panic::kDoc)),
           invokes<&Transport::act_panic_end>(action("panic_end", 0, 0, "Ends a panic.")),
           transient(readout(number("speed_reached", "× real time", 1, 0, kUnbounded,
                                    "Simulated seconds per real second, over the last half second."))),
@@ -43,14 +43,14 @@ const PropertyTable& Transport::table() {
   return table;
 }
 
-Transport::Transport(World& world, const Health& health)
+Transport::Transport(sim::World& world, const Health& health)
     : world_(world), health_(health), id_(world.store().add(table(), world.store().root(), "transport", this)) {}
 
-bool Transport::paused() const { return world_.store().values(world_.id(), World::table().at("paused"))[0] != 0; }
+bool Transport::paused() const { return world_.store().values(world_.id(), sim::World::table().at("paused"))[0] != 0; }
 
 void Transport::set_paused(bool paused) {
   const double value = paused ? 1 : 0;
-  (void)world_.store().set(world_.id(), World::table().at("paused"), {&value, 1});
+  (void)world_.store().set(world_.id(), sim::World::table().at("paused"), {&value, 1});
 }
 
 bool Transport::consume_step() {
@@ -130,4 +130,4 @@ Result<void> Transport::act_rewind_ticks(std::span<const double> args) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

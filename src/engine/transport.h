@@ -11,13 +11,13 @@
 #include "engine/output/health.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Transport {
  public:
   static const PropertyTable& table();
 
-  Transport(World& world, const Health& health);
+  Transport(sim::World& world, const Health& health);
 
   bool paused() const;
   /// Consumes one of the ticks requested by `step`. False if none is left.
@@ -50,7 +50,7 @@ class Transport {
   void set_paused(bool paused);
   std::string_view read_health() const;
 
-  World& world_;
+  sim::World& world_;
   const Health& health_;
   NodeId id_;
   int steps_ = 0;
@@ -58,4 +58,4 @@ class Transport {
   mutable std::string health_text_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

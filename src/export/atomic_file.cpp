@@ -12,7 +12,7 @@
 #include "base/system/process.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::exporter {
 
 using system::OpenMode;
 
@@ -73,4 +73,4 @@ Result<void> AtomicFile::finish() {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::exporter {
 
 /// The name of the temporary file of `path`; it contains the process id, so that two processes never share one.
 std::string temporary_name(const std::string& path);
@@ -52,4 +52,4 @@ class AtomicFile {
   bool open_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -16,7 +16,7 @@
 #include "export/atomic_file.h"
 #include "export/names.h"
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -263,4 +263,4 @@ Result<std::unique_ptr<MotionWriter>> make_bvh_writer(const std::string& path, d
   return std::unique_ptr<MotionWriter>(std::move(writer));
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -13,7 +13,7 @@
 #include "export/atomic_file.h"
 #include "export/names.h"
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -154,4 +154,4 @@ Result<std::unique_ptr<MotionWriter>> make_csv_writer(const std::string& path) {
   return std::unique_ptr<MotionWriter>(std::move(writer));
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -12,7 +12,7 @@
 #include "export/gltf_model.h"
 #include "export/names.h"
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -113,4 +113,4 @@ Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path, 
   return std::unique_ptr<MotionWriter>(std::move(writer));
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

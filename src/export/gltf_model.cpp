@@ -14,7 +14,7 @@
 
 #include "export/names.h"
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -241,4 +241,4 @@ Result<GltfModel> gltf_model(const GltfTracks& tracks, const std::string& name, 
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -8,7 +8,7 @@
 
 #include "export/gltf_tracks.h"
 
-namespace limber {
+namespace limber::exporter {
 
 /// The JSON text of a glTF file and the contents of its buffer.
 struct GltfModel {
@@ -22,4 +22,4 @@ struct GltfModel {
 /// outlive the result. The error does not name the file.
 Result<GltfModel> gltf_model(const GltfTracks& tracks, const std::string& name, const std::string& uri);
 
-}  // namespace limber
+}  // namespace limber::exporter

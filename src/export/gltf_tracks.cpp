@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -74,4 +74,4 @@ void GltfTracks::add_frame(double time, std::span<const MotionSample> bodies) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

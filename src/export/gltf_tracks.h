@@ -8,7 +8,7 @@
 
 #include "export/motion.h"
 
-namespace limber {
+namespace limber::exporter {
 
 /// The keyframes of one link.
 struct GltfLinkKeys {
@@ -50,4 +50,4 @@ class GltfTracks {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limber {
+namespace limber::exporter {
 
 LinkOrder link_order(const MotionBody& body) {
   std::vector<std::vector<std::size_t>> children(body.links.size());
@@ -28,4 +28,4 @@ LinkOrder link_order(const MotionBody& body) {
   return order;
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

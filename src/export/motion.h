@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::exporter {
 
 /// Triangles of one color, in the frame of their link, meters.
 struct Surface {
@@ -77,4 +77,4 @@ class MotionWriter {
   virtual Result<void> finish() = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::exporter

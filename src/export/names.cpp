@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::exporter {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::string percent_encode(std::string_view name) {
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::exporter

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace limber {
+namespace limber::exporter {
 
 /// Makes names unique: a second "arm" becomes "arm-2", a third "arm-3".
 class UniqueNames {
@@ -23,4 +23,4 @@ std::string sanitize_file_name(std::string_view name);
 /// Percent-encodes one segment of a URI: everything except letters, digits and "-._~".
 std::string percent_encode(std::string_view name);
 
-}  // namespace limber
+}  // namespace limber::exporter

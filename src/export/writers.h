@@ -7,7 +7,7 @@
 
 #include "export/motion.h"
 
-namespace limber {
+namespace limber::exporter {
 
 /// CSV: one line per frame with the pose of every link and the value of every joint. Memory use is independent of the
 /// number of frames: lines are written to disk as they arrive. If a body was added after the first frame, finish()
@@ -32,4 +32,4 @@ inline constexpr std::uint64_t kMaxGltfKeyBytes = std::uint64_t{1800} << 20u;
 Result<std::unique_ptr<MotionWriter>> make_gltf_writer(const std::string& path,
                                                        std::uint64_t max_bytes = kMaxGltfKeyBytes);
 
-}  // namespace limber
+}  // namespace limber::exporter

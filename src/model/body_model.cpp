@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 constexpr std::array<std::string_view, 7> kTypes = {"fixed",  "revolute", "continuous", "prismatic",
@@ -21,4 +21,4 @@ std::optional<JointType> joint_type_named(std::string_view name) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::model

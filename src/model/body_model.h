@@ -13,7 +13,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Mass, center of mass and inertia tensor.
 struct Inertial {
@@ -176,4 +176,4 @@ struct BodyModel {
   std::vector<std::pair<std::string, std::string>> mesh_paths;  ///< Mesh URIs from the URDF and their resolved paths.
 };
 
-}  // namespace limber
+}  // namespace limber::model

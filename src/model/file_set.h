@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace limber {
+namespace limber::model {
 
 struct FileSet {
   std::map<std::string, std::shared_ptr<const std::string>> contents;  ///< By the path that was used to read the file.
@@ -24,4 +24,4 @@ struct FileSet {
   }
 };
 
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 #include "base/system/clock.h"
 #include "base/system/file.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -54,4 +54,4 @@ bool FileStamp::is_current(const std::string& path) {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace limber {
+namespace limber::model {
 
 class FileStamp {
  public:
@@ -40,4 +40,4 @@ class FileStamp {
   bool times_reliable_ = false;  // the file was old enough when it was read that any later change alters its times
 };
 
-}  // namespace limber
+}  // namespace limber::model

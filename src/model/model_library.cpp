@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 std::string model_key(const std::string& path, const ImportOptions& options) {
   std::error_code fault;
@@ -58,4 +58,4 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::stri
   return cached.model;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -14,7 +14,7 @@
 #include "model/mesh/library.h"
 #include "model/urdf/import.h"
 
-namespace limber {
+namespace limber::model {
 
 /// The cache key of an import: canonical path and options. [any]
 std::string model_key(const std::string& path, const ImportOptions& options);
@@ -47,4 +47,4 @@ class ModelLibrary {
   std::map<std::string, Entry> models_;
 };
 
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -340,4 +340,4 @@ OverlapResult find_overlaps(std::span<const OverlapPart> parts,
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Parts of one body that overlap by more than this (m) are excluded from colliding with each other by default.
 inline constexpr double kOverlapTolerance = 1e-4;
@@ -35,4 +35,4 @@ struct OverlapResult {
 OverlapResult find_overlaps(std::span<const OverlapPart> parts,
                             const std::function<bool(std::size_t a, std::size_t b)>& filter);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::vector<std::string> load_messages(const BodyModel& model) {
   return lines;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::model {
 
 class Problems {
  public:
@@ -60,4 +60,4 @@ class Problems {
 /// omitted; `limber inspect` prints them. [any]
 std::vector<std::string> load_messages(const BodyModel& model);
 
-}  // namespace limber
+}  // namespace limber::model

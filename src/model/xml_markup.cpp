@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -219,4 +219,4 @@ int line_of(std::string_view text, std::size_t at) {
 
 bool clean_markup(std::string& text, Problems& problems) { return Scanner(text, problems).run(); }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "base/utf8.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -99,4 +99,4 @@ Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems) 
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::model

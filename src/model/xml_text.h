@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "model/problems.h"
 
-namespace limber {
+namespace limber::model {
 
 inline constexpr std::size_t kMaxUrdfBytes = 32u << 20;
 inline constexpr int kMaxUrdfDepth = 64;
@@ -29,4 +29,4 @@ bool clean_markup(std::string& text, Problems& problems);
 /// or for UTF-16 and too large files. [any]
 Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -22,7 +22,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::script {
 
 /// The files of src/script/annotations, embedded by the build.
 std::span<const EmbeddedFile> annotation_files();
@@ -33,13 +33,14 @@ constexpr std::size_t kMaxLineWidth = 116;  // of a line of names, characters
 
 const PropertyTable& class_table(std::string_view name) {
   const std::array<const PropertyTable*, 10> classes = {
-      &World::table(), &Body::table(),    &Part::table(),   &Joint::table(),      &Motor::table(),
-      &Shape::table(), &Visuals::table(), &Camera::table(), &Appearance::table(), &Gear::table()};
+      &sim::World::table(),      &sim::Body::table(),  &sim::Part::table(),    &sim::Joint::table(),
+      &sim::Motor::table(),      &sim::Shape::table(), &sim::Visuals::table(), &sim::Camera::table(),
+      &sim::Appearance::table(), &sim::Gear::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }
   LIMBER_CHECK(!"a class that scripts see");
-  return World::table();
+  return sim::World::table();
 }
 
 // the LuaCATS type: of the value on reading, plus the other types that may be assigned
@@ -129,4 +130,4 @@ std::string annotations(std::string_view names) {
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace limber {
+namespace limber::script {
 
 /// Returns the definitions as lua-language-server reads them. `names`: the result of Scene::names(). Replaces lines
 /// that begin with "---@properties CLASS" (one field per property of the class), "---@opts CLASS" (the writable ones,
@@ -13,4 +13,4 @@ namespace limber {
 /// [any]
 std::string annotations(std::string_view names);
 
-}  // namespace limber
+}  // namespace limber::script

@@ -3,7 +3,7 @@
 
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Annotate, PrintsOrWritesTheSame) {
@@ -26,4 +26,4 @@ TEST(Annotate, ReportsAnUnwritableFile) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace limber {
+namespace limber::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -45,4 +45,4 @@ TEST(Bench, PrintsATable) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::app

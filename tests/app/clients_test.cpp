@@ -4,7 +4,7 @@
 
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 // an arm with one hanging joint that prints the values it receives
@@ -76,4 +76,4 @@ TEST(Clients, PureDataSendsReadsAndReceivesReplies) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

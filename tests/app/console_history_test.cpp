@@ -5,13 +5,13 @@
 #include "base/random.h"
 #include "console/private_folder.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 using Lines = std::vector<std::string>;
 
 TEST(ConsoleHistory, SavesLinesForLaterConsoles) {
-  const PrivateFolder folder;
+  const console::PrivateFolder folder;
   const std::string file = folder / "state/limber/console_history";
   ConsoleHistory first(file);
   EXPECT_TRUE(first.lines().empty());
@@ -30,7 +30,7 @@ TEST(ConsoleHistory, SavesLinesForLaterConsoles) {
 }
 
 TEST(ConsoleHistory, IsBounded) {
-  const PrivateFolder folder;
+  const console::PrivateFolder folder;
   const std::string file = folder / "h";
   std::string much;
   for (int i = 1; i <= 5000; i++) much += "line " + std::to_string(i) + "\n";
@@ -47,7 +47,7 @@ TEST(ConsoleHistory, IsBounded) {
 }
 
 TEST(ConsoleHistory, ReadsTheValidLinesOfADamagedFile) {
-  const PrivateFolder folder;
+  const console::PrivateFolder folder;
   const std::string file = folder / "h";
   std::ofstream(file, std::ios::binary) << "good\n\xff\xfe\x80\n"
                                         << std::string(3, '\0') << "\n\x1b[2J\nalso good\ncut";
@@ -72,16 +72,16 @@ TEST(ConsoleHistory, WorksWithoutAFile) {
 }
 
 TEST(ConsoleHistory, IsInTheStateFolder) {
-  const Environment home("HOME", "/home/somebody");
+  const console::Environment home("HOME", "/home/somebody");
   {
-    const Environment state("XDG_STATE_HOME", "/somewhere");
+    const console::Environment state("XDG_STATE_HOME", "/somewhere");
     EXPECT_EQ(ConsoleHistory::default_file(), "/somewhere/limber/console_history");
   }
-  const Environment state("XDG_STATE_HOME", nullptr);
+  const console::Environment state("XDG_STATE_HOME", nullptr);
   EXPECT_EQ(ConsoleHistory::default_file(), "/home/somebody/.local/state/limber/console_history");
-  const Environment none("HOME", nullptr);
+  const console::Environment none("HOME", nullptr);
   EXPECT_EQ(ConsoleHistory::default_file(), "");
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -3,7 +3,7 @@
 
 #include "app/playing.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 /// A console on a pseudo terminal.
@@ -203,4 +203,4 @@ TEST(Terminal, CtrlCCancelsTheWaitForAnAnswer) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -1,7 +1,7 @@
 // `limber console` without a terminal: one expression, lines from a pipe, and the choice of the program.
 #include "app/playing.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kApple = "apple = 3\nsim:on_start(function() print('played') end)\n";
@@ -91,7 +91,7 @@ TEST(Console, RemovesTheSocketOfAKilledShow) {
 }
 
 TEST(Console, ShowPlaysWithoutARuntimeFolder) {
-  const PrivateFolder runtime;
+  const console::PrivateFolder runtime;
   std::filesystem::permissions(runtime.path(), std::filesystem::perms::all);
   std::ofstream(runtime / ("limber-" + std::to_string(geteuid()))) << "no folder";
   const TempFolder folder;
@@ -111,4 +111,4 @@ TEST(Console, BatchRunsHaveNoConsole) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

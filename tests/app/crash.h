@@ -16,7 +16,7 @@
 #include "net/osc/packets/encode.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 inline constexpr const char* kCrashScene = R"(
 params { { "mark", 0, max = 1000000 } }
@@ -68,14 +68,14 @@ class CrashRound {
     return true;
   }
   void send(const Message& message) const {
-    PacketBuffer buffer;
-    const std::span<const char> bytes = encode_message(message, buffer);
+    osc::PacketBuffer buffer;
+    const std::span<const char> bytes = osc::encode_message(message, buffer);
     client_.send(endpoint_, {bytes.data(), bytes.size()});
   }
   // returns the first number of the next reply with that address
   double reply(const std::string& address) const {
     while (const auto bytes = client_.receive()) {
-      const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
+      const Result<osc::Decoded> decoded = osc::decode_packet(bytes->data(), bytes->size());
       for (const Message& message : decoded->messages) {
         if (message.address == address) return message.args.empty() ? 0 : message.args[0].number;
       }
@@ -116,12 +116,12 @@ class CrashRound {
   static constexpr double kGravity = 128;  // steps in 1 m/s²
 
   // checks that both values of a preset are of the same step, and returns it
-  static int step_of(const Preset& preset) {
+  static int step_of(const engine::Preset& preset) {
     double step = -1;
     double gravity = -1;
     for (std::uint32_t i = 0; i < preset.schema->nodes().size(); i++) {
-      const PresetSchema::Node& thing = preset.schema->nodes()[i];
-      const PresetLayout* const layout = preset.schema->layout(thing);
+      const engine::PresetSchema::Node& thing = preset.schema->nodes()[i];
+      const engine::PresetLayout* const layout = preset.schema->layout(thing);
       if (layout == nullptr) continue;
       const auto number = [&](const char* name, std::uint32_t index) {
         const int at = layout->find(name);
@@ -135,8 +135,8 @@ class CrashRound {
   }
 
   void check_presets() {
-    PresetFile file(PresetFile::path_for(scene_));
-    const Result<ParsedPresets> read = file.load();
+    engine::PresetFile file(engine::PresetFile::path_for(scene_));
+    const Result<engine::ParsedPresets> read = file.load();
     ASSERT_TRUE(read.ok()) << read.error();
     EXPECT_TRUE(read->problems.empty());
     std::map<std::string, int> found;
@@ -150,7 +150,7 @@ class CrashRound {
     const std::string take = std::filesystem::exists(beside) ? beside : folder_.path() + "/takes/crash.take";
     // a take that was killed before its first tick may be missing
     if (tick_ < 30 && !std::filesystem::exists(take)) return;
-    const RunResult again = app_test::run({"--replay", take, "--fast"});
+    const RunResult again = test::run({"--replay", take, "--fast"});
     EXPECT_EQ(again.code, 0) << again.err;
     const std::size_t at = again.err.find("replayed ");
     ASSERT_NE(at, std::string::npos) << again.err;
@@ -188,8 +188,8 @@ class CrashRound {
   bool records_take_;
   TempFolder folder_;
   std::string scene_;
-  osc_test::Client client_;
-  Endpoint endpoint_{};
+  osc::test::Client client_;
+  system::Endpoint endpoint_{};
   double tick_ = 0;                    // last known
   std::vector<Step> steps_;            // with the last known tick before each
   std::map<std::string, int> stored_;  // sent
@@ -214,4 +214,4 @@ inline void crash(int rounds, int threads_count) {
   for (std::thread& thread : threads) thread.join();
 }
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

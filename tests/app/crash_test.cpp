@@ -1,7 +1,7 @@
 // Killed and stopped shows: saved files are complete, and the next start restores them.
 #include "app/crash.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Crash, KilledShowLosesNoSavedData) { crash(10, 10); }
@@ -9,22 +9,22 @@ TEST(Crash, KilledShowLosesNoSavedData) { crash(10, 10); }
 struct SignalledShow {
   TempFolder folder;
   std::string scene = folder.file("scripts/s.lua", kCrashScene);
-  osc_test::Client client;
+  osc::test::Client client;
 
   std::vector<std::string> words() const {
     return limber_command({scene, "--headless", "--osc-in", "127.0.0.1:0", "--osc-out", "off", "--query", "off"},
                           {"env", "XDG_STATE_HOME=" + folder.path() + "/state"});
   }
   void send(const Process& running, const Message& message) const {
-    PacketBuffer buffer;
-    const std::span<const char> bytes = encode_message(message, buffer);
+    osc::PacketBuffer buffer;
+    const std::span<const char> bytes = osc::encode_message(message, buffer);
     client.send({0x7f000001, static_cast<std::uint16_t>(std::stoi(running.text_after("OSC in 127.0.0.1:")))},
                 {bytes.data(), bytes.size()});
   }
   /// Waits for a reply with that address.
   bool wait_for_reply(const std::string& address) const {
     while (const auto bytes = client.receive()) {
-      const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
+      const Result<osc::Decoded> decoded = osc::decode_packet(bytes->data(), bytes->size());
       for (const Message& message : decoded->messages) {
         if (message.address == address) return true;
       }
@@ -59,7 +59,7 @@ TEST(Crash, SignalsCompleteAllFiles) {
     const RunResult result = running.finish();
     EXPECT_EQ(result.code, 0) << result.err;
     EXPECT_TRUE(std::filesystem::is_empty(show.folder.path() + "/state/limber/recovery"));
-    EXPECT_EQ(PresetFile(PresetFile::path_for(show.scene)).load()->presets.size(), 1u);
+    EXPECT_EQ(engine::PresetFile(engine::PresetFile::path_for(show.scene)).load()->presets.size(), 1u);
     const RunResult info = run({"take", "info", show.folder.path() + "/takes/last.take"});
     EXPECT_NE(info.out.find("end       complete; "), std::string::npos) << info.out << info.err;
   }
@@ -120,4 +120,4 @@ TEST(Crash, StartReportsRecoverableValues) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

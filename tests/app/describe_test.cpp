@@ -11,7 +11,7 @@
 #include "app/program.h"
 #include "engine/engine.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -157,4 +157,4 @@ TEST(Describe, OscReferenceNamesEveryMessage) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

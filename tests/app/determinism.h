@@ -4,7 +4,7 @@
 #include "app/program.h"
 #include "app/taken_port.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 /// Uses math.random and rng, iterates tables with pairs (objects and functions as keys, too), and lets bodies collide.
 inline constexpr const char* kWildScene = R"(
@@ -59,4 +59,4 @@ inline std::string hash_of(const std::string& scene, const std::vector<std::stri
   return result.code == 0 && at != std::string::npos ? result.out.substr(at) : result.out + result.err;
 }
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

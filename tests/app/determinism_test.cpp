@@ -3,7 +3,7 @@
 
 #include "app/determinism.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Determinism, HashIsIndependentOfTheWayToPlay) {
@@ -28,4 +28,4 @@ TEST(Determinism, HashDependsOnSeedAndTick) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

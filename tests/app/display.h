@@ -6,7 +6,7 @@
 #include "app/program.h"
 #include "base/system/process.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 /// An X server without a screen.
 class Display {
@@ -82,4 +82,4 @@ inline std::vector<std::string> quiet(const std::string& scene, std::vector<std:
   return args;
 }
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -11,7 +11,7 @@
 #include "engine/seed_table.h"
 #include "script/luacats.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 std::vector<std::string> cells_of(const std::string& line) {
@@ -61,7 +61,7 @@ struct LegacyPage : testing::Test {
 };
 
 // "body:copy", "sim.gravity", "visuals.camera", "sim"
-bool exists(const luacats::Reader& lua, std::string name) {
+bool exists(const script::luacats::Reader& lua, std::string name) {
   if (name.starts_with("rgb(")) name = "rgb";
   const std::size_t separator = name.find_first_of(".:");
   std::string owner = name.substr(0, separator);
@@ -76,7 +76,7 @@ bool exists(const luacats::Reader& lua, std::string name) {
 TEST_F(LegacyPage, LuaNamesExist) {
   const RunResult result = run({"annotate"});
   ASSERT_EQ(result.code, 0);
-  const luacats::Reader lua{result.out};
+  const script::luacats::Reader lua{result.out};
   for (const char* section : {"Classes", "Messages in"}) {
     for (const auto& cells : in(section)) {
       ASSERT_EQ(cells.size(), 3u) << cells[0];
@@ -96,10 +96,10 @@ TEST_F(LegacyPage, ListsEveryLegacyMessage) {
   std::set<std::string> listed;
   for (const auto& cells : in("Messages in")) listed.insert(names_in(cells[0]).at(0));
   std::set<std::string> seeds;
-  for (const auto& a : engine_test::kElementAddresses) seeds.insert(engine_test::legacy_address(a));
-  for (const auto& a : engine_test::kShapeAddresses) seeds.insert(engine_test::legacy_address(a));
-  seeds.insert(std::begin(engine_test::kSingletonAddresses), std::end(engine_test::kSingletonAddresses));
-  seeds.insert(std::begin(engine_test::kOtherAddresses), std::end(engine_test::kOtherAddresses));
+  for (const auto& a : engine::test::kElementAddresses) seeds.insert(engine::test::legacy_address(a));
+  for (const auto& a : engine::test::kShapeAddresses) seeds.insert(engine::test::legacy_address(a));
+  seeds.insert(std::begin(engine::test::kSingletonAddresses), std::end(engine::test::kSingletonAddresses));
+  seeds.insert(std::begin(engine::test::kOtherAddresses), std::end(engine::test::kOtherAddresses));
   EXPECT_EQ(seeds.size(), 52u);
   EXPECT_EQ(listed, seeds);
   std::set<std::string> out;
@@ -108,7 +108,7 @@ TEST_F(LegacyPage, ListsEveryLegacyMessage) {
 }
 
 TEST_F(LegacyPage, BehaviorsHaveTheirParameters) {
-  const BehaviorTypes types;
+  const sim::BehaviorTypes types;
   std::set<std::string> listed;
   for (const auto& cells : in("Behaviors")) {
     ASSERT_EQ(cells.size(), 3u);
@@ -128,4 +128,4 @@ TEST_F(LegacyPage, BehaviorsHaveTheirParameters) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -13,7 +13,7 @@
 #include "app/program.h"
 #include "engine/engine.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kPageScene = R"(
@@ -38,13 +38,13 @@ std::string text_of(const std::string& file) {
 class LocalEngine {
  public:
   LocalEngine() {
-    EngineOptions options;
+    engine::EngineOptions options;
     options.scene = folder_.file("scene.lua", kPageScene);
     options.scene_options.data_dir = LIMBER_SOURCE_DIR;
     options.fast = true;
     link_.on_scene_request = [](const Message&, const CommandOrigin&) {
     };  // scenes and takes are covered by another test
-    engine_ = std::make_unique<Engine>(link_, options);
+    engine_ = std::make_unique<engine::Engine>(link_, options);
     const Result<void> started = engine_->start();
     EXPECT_TRUE(started.ok()) << started.error();
     outbox();
@@ -54,22 +54,22 @@ class LocalEngine {
   void expect_accepted(const Message& message) {
     link_.command_queue.push({{message}, {CommandSource::osc, 0x7f000001, 4000}});
     engine_->tick();
-    for (const Outgoing& out : outbox())
-      EXPECT_NE(out.destination, Outgoing::Destination::error)
-          << message_text(message) << ": " << message_text(out.message);
-    EXPECT_EQ(link_.counters.clamped.load(), 0u) << message_text(message) << " is out of range";
+    for (const engine::Outgoing& out : outbox())
+      EXPECT_NE(out.destination, engine::Outgoing::Destination::error)
+          << engine::message_text(message) << ": " << engine::message_text(out.message);
+    EXPECT_EQ(link_.counters.clamped.load(), 0u) << engine::message_text(message) << " is out of range";
   }
 
  private:
-  std::vector<Outgoing> outbox() {
-    std::vector<Outgoing> out;
+  std::vector<engine::Outgoing> outbox() {
+    std::vector<engine::Outgoing> out;
     link_.output_queue.drain(out);
     return out;
   }
 
   TempFolder folder_;
-  EngineLink link_;
-  std::unique_ptr<Engine> engine_;
+  engine::EngineLink link_;
+  std::unique_ptr<engine::Engine> engine_;
 };
 
 // splits words like a shell; two spaces end the command on the page, an explanation follows
@@ -246,4 +246,4 @@ TEST(DocsOsc, PdPresetPatchStoresRecallsAndMorphs) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -2,7 +2,7 @@
 #include "app/program.h"
 #include "app/taken_port.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Doctor, PrintsEveryCheck) {
@@ -28,4 +28,4 @@ TEST(Doctor, PortInUseIsExitCode3) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

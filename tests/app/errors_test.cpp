@@ -8,7 +8,7 @@
 #include "app/program.h"
 #include "app/taken_port.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 struct ErrorCase {
@@ -203,4 +203,4 @@ TEST(Errors, SearchFindsAnError) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

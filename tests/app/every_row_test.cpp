@@ -7,10 +7,10 @@
 #include "engine/every_row.h"
 #include "engine/show.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
-using namespace engine_test;
+using namespace engine::test;
 
 std::string expected(const Property& property, const std::vector<double>& value) {
   if (property.type == PropertyType::choice) return property.choices[static_cast<std::size_t>(value[0])];
@@ -63,4 +63,4 @@ TEST(EveryProperty, CanBeSetOnTheCommandLine) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

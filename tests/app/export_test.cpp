@@ -11,11 +11,11 @@
 #include "export/loaded.h"
 #include "support/world_objects.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
-using motion_test::angle_between;
-using motion_test::Loaded;
+using exporter::test::angle_between;
+using exporter::test::Loaded;
 
 // a swinging arm, a ball, and a body that exists from 0.5 s to 1 s; 80 ticks
 constexpr const char* kShow = R"(
@@ -49,11 +49,11 @@ std::vector<std::string> files_in(const std::string& folder) {
 
 // poses of the parts after a number of ticks of the replay
 std::map<std::string, Pose> poses_at(const std::string& take, std::uint64_t tick) {
-  EngineOptions options;
+  engine::EngineOptions options;
   options.replay = take;
   options.fast = true;
-  EngineLink link;
-  Engine engine(link, options);
+  engine::EngineLink link;
+  engine::Engine engine(link, options);
   const Result<void> started = engine.start();
   EXPECT_TRUE(started) << started.error();
   while (engine.world().tick() < tick && !engine.replay_finished()) engine.tick();
@@ -184,15 +184,15 @@ ball.angular_velocity = vec3(0, 0, 2)
 // a ball that moves at 1 m/s, and a message from outside at mid-time
 std::string record_ball(const TempFolder& folder, int before, const Message& message, int after) {
   std::string take = folder.path() + "/show.take";
-  EngineOptions options;
+  engine::EngineOptions options;
   options.scene = folder.file("show.lua", R"(
 sim.gravity = vec3(0, 0, 0)
 sim:add_body("ball"):add_part("p", sim:add_sphere_shape("ball", 0.1)).linear_velocity = vec3(1, 0, 0)
 )");
   options.record = take;
   options.fast = true;
-  EngineLink link;
-  Engine engine(link, options);
+  engine::EngineLink link;
+  engine::Engine engine(link, options);
   EXPECT_TRUE(engine.start());
   for (int i = 0; i < before; i++) engine.tick();
   link.command_queue.push({{message}, {CommandSource::osc, 0x7f000001, 4000}});
@@ -345,4 +345,4 @@ TEST(Export, ErrorsNameTheFix) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

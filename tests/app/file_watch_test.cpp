@@ -10,7 +10,7 @@
 #include "base/random.h"
 #include "base/system/process.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,7 +23,7 @@ struct FileWatchModes : testing::TestWithParam<FileWatch::Mode> {
 
   std::string path(const std::string& name) const { return folder.path() + "/" + name; }
   void follow(const Names& names) {
-    std::vector<SourceFile> files;
+    std::vector<script::SourceFile> files;
     for (const std::string& name : names) files.push_back({path(name), {}});
     watch.watch(files, now);
   }
@@ -312,4 +312,4 @@ TEST(FileWatch, SleepsUntilAnEvent) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -12,7 +12,7 @@
 #include "osc/bad_packets.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 inline constexpr const char* kFloodScene = R"(
 params { { "wind", 0, min = 0, max = 1000000 } }
@@ -38,7 +38,7 @@ class Flood {
                                                   Kind::mutant,   Kind::malformed};
 
   explicit Flood(std::uint64_t seed) : random_(seed) {
-    for (const osc_test::BadPacket& bad : osc_test::bad_packets()) {
+    for (const osc::test::BadPacket& bad : osc::test::bad_packets()) {
       // large ones fill the kernel's buffer, which another test covers
       if (bad.bytes.size() < 2048) bad_.push_back(bad.bytes);
     }
@@ -53,14 +53,14 @@ class Flood {
   }
 
   std::string next() {
-    using osc_test::Bytes;
+    using osc::test::Bytes;
     const std::size_t n = n_++;
     const auto number = static_cast<float>(n % 100) / 100;
     switch (kind(n)) {
       case Kind::hit:
         return Bytes().text("/hit").text(",if").u32(static_cast<std::uint32_t>(n)).f(number).str();
       case Kind::value:
-        if (n % 2 == 0) return osc_test::one_float("/physics/body/*/part/*/friction", number);
+        if (n % 2 == 0) return osc::test::one_float("/physics/body/*/part/*/friction", number);
         return Bytes()
             .text("/physics/motor/angularservoposition")
             .text(",ssf")
@@ -69,7 +69,7 @@ class Flood {
             .f(number)
             .str();
       case Kind::unknown:
-        return osc_test::one_float("/physics/motor/angularservopositoin", number);
+        return osc::test::one_float("/physics/motor/angularservopositoin", number);
       case Kind::rejected:
         return Bytes().text("/physics/part/mass").text(",ssf").text("missing").text("tip").f(number).str();
       case Kind::malformed:
@@ -85,7 +85,7 @@ class Flood {
 
   // a message for the handler with some bytes changed, removed or added; its address never matches a property
   std::string mutant() {
-    std::string bytes = osc_test::Bytes().text("/mut").text(",ifsT").u32(7).f(0.5F).text("word").str();
+    std::string bytes = osc::test::Bytes().text("/mut").text(",ifsT").u32(7).f(0.5F).text("word").str();
     for (std::size_t i = below(4); i > 0; i--) {
       const std::size_t at = below(bytes.size());
       // letters only, also in the padding, so that the address is no pattern
@@ -119,4 +119,4 @@ struct FloodSum {
   }
 };
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

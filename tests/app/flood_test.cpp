@@ -13,11 +13,11 @@
 #include "net/osc/packets/decode.h"
 #include "oscquery/web_client.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
-using namespace osc_test;
-using query_test::WebClient;
+using namespace osc::test;
+using oscquery::test::WebClient;
 
 constexpr int kTicks = 180;           // 3 s of simulated time
 constexpr int kWarmUp = 60;           // ticks before memory is measured
@@ -25,9 +25,9 @@ constexpr int kPerTick = 334;         // 20 040 a second
 constexpr int kBatch = 100;           // datagrams that every kernel buffers
 constexpr double kMaxGrowth = 1.5e6;  // bytes; up to 1 MiB may be queued for a client that doesn't read
 
-OscOptions only_in() {
-  OscOptions options;
-  options.in = *parse_osc_in("0");
+osc::OscOptions only_in() {
+  osc::OscOptions options;
+  options.in = *osc::parse_osc_in("0");
   options.out.emplace();
   return options;
 }
@@ -39,12 +39,12 @@ double heap() {
 
 // the whole program except its window; the test runs the ticks
 struct FloodFixture {
-  engine_test::SceneFile file{kFloodScene};
-  EngineLink link;
-  Engine engine{link, engine_test::fast_options(file.path())};
-  Network network{link, only_in(), transient_offsets()};
-  QueryServer query{link, query_host(network, {})};
-  Endpoint endpoint;
+  engine::test::SceneFile file{kFloodScene};
+  engine::EngineLink link;
+  engine::Engine engine{link, engine::test::fast_options(file.path())};
+  osc::Network network{link, only_in(), engine::transient_offsets()};
+  oscquery::QueryServer query{link, query_host(network, {})};
+  system::Endpoint endpoint;
   int ticks = 0;
 
   FloodFixture() {
@@ -64,7 +64,7 @@ struct FloodFixture {
   }
   // datagrams that the network thread has processed
   std::uint64_t processed() const {
-    const Counters& c = link.counters;
+    const engine::Counters& c = link.counters;
     return c.received + c.malformed + c.denied + c.dropped_kernel;
   }
   bool wait_until_processed(std::uint64_t count) const {
@@ -81,7 +81,7 @@ struct FloodFixture {
     while (std::chrono::steady_clock::now() < late) {
       tick();
       for (auto bytes = client.receive(1); bytes; bytes = client.receive(0)) {
-        const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
+        const Result<osc::Decoded> decoded = osc::decode_packet(bytes->data(), bytes->size());
         if (decoded && decoded->messages.at(0).address == address) return decoded->messages[0];
       }
     }
@@ -90,7 +90,7 @@ struct FloodFixture {
 };
 
 // clients that subscribe and close their socket: packets to them are refused
-std::uint64_t dead_subscribers(const Endpoint& end) {
+std::uint64_t dead_subscribers(const system::Endpoint& end) {
   std::uint64_t sent = 0;
   for (int i = 0; i < 8; i++) {
     const Client closed;
@@ -142,7 +142,7 @@ FloodSum sum_of(FloodFixture& fixture, std::uint64_t sent, std::uint64_t others)
   client.send(fixture.endpoint, Bytes().text("/count").str());
   const std::optional<Message> count = fixture.wait_for_reply(client, "/count");
   EXPECT_TRUE(count);
-  const Counters& c = fixture.link.counters;
+  const engine::Counters& c = fixture.link.counters;
   FloodSum sum;
   sum.sent = sent;
   sum.values = Flood::count_of(Flood::Kind::value, sent);
@@ -205,7 +205,7 @@ TEST(Flood, CountsEveryDatagram) {
   std::string heard;
   for (int tries = 0; tries < kTimeoutMs && heard != newest; tries++) {
     fixture.tick();
-    const query_test::Frame frame = listener.receive(1);
+    const oscquery::test::Frame frame = listener.receive(1);
     if (frame.opcode == 2) heard = frame.payload;
   }
   EXPECT_EQ(heard, newest);
@@ -213,4 +213,4 @@ TEST(Flood, CountsEveryDatagram) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

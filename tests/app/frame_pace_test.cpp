@@ -3,7 +3,7 @@
 
 #include "app/display.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr double kRate = 60;
@@ -72,4 +72,4 @@ sim:after(0.1, function() sim.paused = true print("paused") end)
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

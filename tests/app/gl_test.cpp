@@ -5,7 +5,7 @@
 
 #include "app/display.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 // Emulates the driver of a Raspberry Pi 4: OpenGL 3.1 and OpenGL ES 3 without some extensions of Mesa's software
@@ -209,4 +209,4 @@ TEST(Gl, WindowErrorsNameTheFix) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

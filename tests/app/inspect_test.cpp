@@ -10,7 +10,7 @@
 
 #include "model/urdf/import.h"
 
-namespace limber {
+namespace limber::app {
 namespace {
 
 using nlohmann::json;
@@ -21,9 +21,9 @@ constexpr const char* kRobot = R"(<robot name="r"><link name="base"/>
 <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 2 0"/><limit lower="0.5" upper="1" effort="3" velocity="4"/></joint>
 <joint name="weld" type="fixed"><parent link="arm"/><child link="mark"/><origin xyz="1 0 0"/></joint></robot>)";
 
-BodyModel model() {
-  MeshLibrary meshes;
-  const auto imported = import_urdf_text(kRobot, "r.urdf", {}, meshes);
+model::BodyModel model() {
+  model::MeshLibrary meshes;
+  const auto imported = model::import_urdf_text(kRobot, "r.urdf", {}, meshes);
   EXPECT_TRUE(imported);
   return **imported;
 }
@@ -50,11 +50,11 @@ TEST(Inspect, JsonHasEveryLinkAndJointOfTheFile) {
 }
 
 TEST(Inspect, ListsMimicRelations) {
-  MeshLibrary meshes;
-  const auto imported = import_urdf_text(R"(<robot name="jaw"><link name="post"/><link name="a"/><link name="b"/>
+  model::MeshLibrary meshes;
+  const auto imported = model::import_urdf_text(R"(<robot name="jaw"><link name="post"/><link name="a"/><link name="b"/>
 <joint name="lead" type="continuous"><parent link="post"/><child link="a"/><axis xyz="0 0 1"/></joint>
 <joint name="follow" type="continuous"><parent link="post"/><child link="b"/><axis xyz="0 0 1"/><mimic joint="lead" multiplier="-2" offset="0.5"/></joint></robot>)",
-                                         "jaw.urdf", {}, meshes);
+                                                "jaw.urdf", {}, meshes);
   ASSERT_TRUE(imported);
   const json joints = json::parse(inspect_json(**imported))["joints"];
   EXPECT_FALSE(joints.at(0).contains("mimic"));
@@ -64,7 +64,7 @@ TEST(Inspect, ListsMimicRelations) {
 }
 
 TEST(Inspect, JsonLimitsAreNullWhenFree) {
-  BodyModel m = model();
+  model::BodyModel m = model();
   json j = json::parse(inspect_json(m))["joints"][0];
   EXPECT_EQ(j.at("name"), "turn");
   EXPECT_EQ(j.at("type"), "revolute");
@@ -123,4 +123,4 @@ TEST(Inspect, ExitCodeIsOneOnlyWithoutABody) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::app

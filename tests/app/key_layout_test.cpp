@@ -7,7 +7,7 @@
 #include <map>
 #include <sstream>
 
-namespace limber {
+namespace limber::app {
 namespace {
 
 constexpr const char* kPlaces =
@@ -30,57 +30,59 @@ const char* const kRu = "1 2 3 4 5 6 7 8 9 0 - = й ц у к е н г ш щ з �
 
 TEST(KeyLayout, UsKeysKeepTheirPositions) {
   const KeyLayout us = layout(kUs);
-  for (int i = 0; i < 26; i++) EXPECT_EQ(us.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
+  for (int i = 0; i < 26; i++)
+    EXPECT_EQ(us.key(GLFW_KEY_A + i), static_cast<panel::GuiKey>(static_cast<int>(panel::GuiKey::a) + i));
   for (int i = 0; i < 10; i++)
-    EXPECT_EQ(us.key(GLFW_KEY_0 + i), static_cast<GuiKey>(static_cast<int>(GuiKey::digit_0) + i));
-  EXPECT_EQ(us.key(GLFW_KEY_SLASH), GuiKey::slash);
-  EXPECT_EQ(us.key(GLFW_KEY_SEMICOLON), GuiKey::none);
-  EXPECT_EQ(us.key(GLFW_KEY_F12), GuiKey::f12);
-  EXPECT_EQ(us.key(GLFW_KEY_SPACE), GuiKey::space);
-  EXPECT_EQ(us.key(GLFW_KEY_KP_ADD), GuiKey::equal);
-  EXPECT_EQ(us.key(GLFW_KEY_UNKNOWN), GuiKey::none);
+    EXPECT_EQ(us.key(GLFW_KEY_0 + i), static_cast<panel::GuiKey>(static_cast<int>(panel::GuiKey::digit_0) + i));
+  EXPECT_EQ(us.key(GLFW_KEY_SLASH), panel::GuiKey::slash);
+  EXPECT_EQ(us.key(GLFW_KEY_SEMICOLON), panel::GuiKey::none);
+  EXPECT_EQ(us.key(GLFW_KEY_F12), panel::GuiKey::f12);
+  EXPECT_EQ(us.key(GLFW_KEY_SPACE), panel::GuiKey::space);
+  EXPECT_EQ(us.key(GLFW_KEY_KP_ADD), panel::GuiKey::equal);
+  EXPECT_EQ(us.key(GLFW_KEY_UNKNOWN), panel::GuiKey::none);
   EXPECT_TRUE(us.labels().empty());
 }
 
 TEST(KeyLayout, AzertyFollowsLettersAndKeepsDigits) {
   const KeyLayout fr = layout(kFr);
-  EXPECT_EQ(fr.key(GLFW_KEY_Q), GuiKey::a);
-  EXPECT_EQ(fr.key(GLFW_KEY_W), GuiKey::z);
-  EXPECT_EQ(fr.key(GLFW_KEY_Z), GuiKey::w);
-  EXPECT_EQ(fr.key(GLFW_KEY_SEMICOLON), GuiKey::m);
-  EXPECT_EQ(fr.key(GLFW_KEY_M), GuiKey::comma);
-  EXPECT_EQ(fr.key(GLFW_KEY_COMMA), GuiKey::none) << "it prints ;";
-  EXPECT_EQ(fr.key(GLFW_KEY_6), GuiKey::digit_6) << "although it prints -";
-  EXPECT_EQ(fr.key(GLFW_KEY_MINUS), GuiKey::minus);
-  EXPECT_EQ(fr.key(GLFW_KEY_PERIOD), GuiKey::period);
-  EXPECT_EQ(fr.labels().at(GuiKey::period), ":");
-  EXPECT_EQ(fr.labels().at(GuiKey::minus), ")");
-  EXPECT_FALSE(fr.labels().contains(GuiKey::z));
+  EXPECT_EQ(fr.key(GLFW_KEY_Q), panel::GuiKey::a);
+  EXPECT_EQ(fr.key(GLFW_KEY_W), panel::GuiKey::z);
+  EXPECT_EQ(fr.key(GLFW_KEY_Z), panel::GuiKey::w);
+  EXPECT_EQ(fr.key(GLFW_KEY_SEMICOLON), panel::GuiKey::m);
+  EXPECT_EQ(fr.key(GLFW_KEY_M), panel::GuiKey::comma);
+  EXPECT_EQ(fr.key(GLFW_KEY_COMMA), panel::GuiKey::none) << "it prints ;";
+  EXPECT_EQ(fr.key(GLFW_KEY_6), panel::GuiKey::digit_6) << "although it prints -";
+  EXPECT_EQ(fr.key(GLFW_KEY_MINUS), panel::GuiKey::minus);
+  EXPECT_EQ(fr.key(GLFW_KEY_PERIOD), panel::GuiKey::period);
+  EXPECT_EQ(fr.labels().at(panel::GuiKey::period), ":");
+  EXPECT_EQ(fr.labels().at(panel::GuiKey::minus), ")");
+  EXPECT_FALSE(fr.labels().contains(panel::GuiKey::z));
 }
 
 TEST(KeyLayout, FollowsQwertzAndDvorak) {
   const KeyLayout de = layout(kDe);
-  EXPECT_EQ(de.key(GLFW_KEY_Y), GuiKey::z);
-  EXPECT_EQ(de.key(GLFW_KEY_Z), GuiKey::y);
-  EXPECT_EQ(de.key(GLFW_KEY_SLASH), GuiKey::minus);
-  EXPECT_EQ(de.key(GLFW_KEY_MINUS), GuiKey::none);
-  EXPECT_EQ(de.key(GLFW_KEY_EQUAL), GuiKey::equal) << "a dead key";
+  EXPECT_EQ(de.key(GLFW_KEY_Y), panel::GuiKey::z);
+  EXPECT_EQ(de.key(GLFW_KEY_Z), panel::GuiKey::y);
+  EXPECT_EQ(de.key(GLFW_KEY_SLASH), panel::GuiKey::minus);
+  EXPECT_EQ(de.key(GLFW_KEY_MINUS), panel::GuiKey::none);
+  EXPECT_EQ(de.key(GLFW_KEY_EQUAL), panel::GuiKey::equal) << "a dead key";
   const KeyLayout dvorak = layout(kDvorak);
-  EXPECT_EQ(dvorak.key(GLFW_KEY_E), GuiKey::period);
-  EXPECT_EQ(dvorak.key(GLFW_KEY_W), GuiKey::comma);
-  EXPECT_EQ(dvorak.key(GLFW_KEY_SLASH), GuiKey::z);
-  EXPECT_EQ(dvorak.key(GLFW_KEY_Q), GuiKey::none);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_E), panel::GuiKey::period);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_W), panel::GuiKey::comma);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_SLASH), panel::GuiKey::z);
+  EXPECT_EQ(dvorak.key(GLFW_KEY_Q), panel::GuiKey::none);
 }
 
 TEST(KeyLayout, CyrillicKeysKeepTheirPositions) {
   const KeyLayout ru = layout(kRu);
-  for (int i = 0; i < 26; i++) EXPECT_EQ(ru.key(GLFW_KEY_A + i), static_cast<GuiKey>(static_cast<int>(GuiKey::a) + i));
-  EXPECT_EQ(ru.labels().at(GuiKey::z), "я");
-  EXPECT_EQ(ru.key(GLFW_KEY_SLASH), GuiKey::period) << "it prints one";
-  EXPECT_EQ(ru.key(GLFW_KEY_PERIOD), GuiKey::none);
-  EXPECT_EQ(ru.key(GLFW_KEY_COMMA), GuiKey::comma);
-  EXPECT_EQ(key_text({GuiKey::z, {true, false, false}}, ru.labels()), "Ctrl+я");
+  for (int i = 0; i < 26; i++)
+    EXPECT_EQ(ru.key(GLFW_KEY_A + i), static_cast<panel::GuiKey>(static_cast<int>(panel::GuiKey::a) + i));
+  EXPECT_EQ(ru.labels().at(panel::GuiKey::z), "я");
+  EXPECT_EQ(ru.key(GLFW_KEY_SLASH), panel::GuiKey::period) << "it prints one";
+  EXPECT_EQ(ru.key(GLFW_KEY_PERIOD), panel::GuiKey::none);
+  EXPECT_EQ(ru.key(GLFW_KEY_COMMA), panel::GuiKey::comma);
+  EXPECT_EQ(panel::key_text({panel::GuiKey::z, {true, false, false}}, ru.labels()), "Ctrl+я");
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::app

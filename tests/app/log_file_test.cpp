@@ -3,7 +3,7 @@
 
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kLoggedScene = R"(
@@ -67,4 +67,4 @@ TEST(Log, QuietPrintsOnlyWarningsAndErrors) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

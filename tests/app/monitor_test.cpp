@@ -5,7 +5,7 @@
 #include "app/playing.h"
 #include "app/taken_port.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kWatchedScene = R"(
@@ -46,7 +46,7 @@ struct WatchedShow {
     return limber_command(std::move(words), environment());
   }
   TempFolder folder;
-  PrivateFolder runtime;
+  console::PrivateFolder runtime;
   Process running;
   std::string in;
 };
@@ -166,7 +166,7 @@ TEST(Monitor, PrintsChanges) {
 }
 
 TEST(Monitor, ReportsErrors) {
-  const PrivateFolder empty;
+  const console::PrivateFolder empty;
   const RunResult nobody =
       Process(limber_command({"monitor"}, {"env", "XDG_RUNTIME_DIR=" + empty.path(), "TMPDIR=" + empty.path()}))
           .finish();
@@ -180,4 +180,4 @@ TEST(Monitor, ReportsErrors) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -8,7 +8,7 @@
 #include "app/paths.h"
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -268,4 +268,4 @@ TEST(New, SceneNeedsAShow) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -1,7 +1,7 @@
 // The command line: help, version, and suggestions for mistyped words.
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Options, HelpShowsExamples) {
@@ -59,4 +59,4 @@ TEST(Options, FindsScenesHereAndInTheDataFolder) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

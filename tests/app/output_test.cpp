@@ -8,7 +8,7 @@
 
 #include "app/playing.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 // runs the program with its outputs redirected by a shell: "2>/dev/full"
@@ -103,7 +103,7 @@ class RedirectedShow {
  private:
   std::string to_;
   TempFolder folder_;
-  PrivateFolder runtime_;
+  console::PrivateFolder runtime_;
   std::vector<std::string> environment_;
   Process show_;
 };
@@ -239,4 +239,4 @@ TEST(Output, ClosedOutputsDoNotWriteIntoOtherFiles) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -3,7 +3,7 @@
 
 #include "engine/show.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kBallScene = R"(
@@ -28,16 +28,18 @@ class MouseRig {
     } while (values_ == nullptr || values_->request < ask);
     now_ = show.link.snapshots.read();
   }
-  ViewState view() const { return {*now_, *values_, camera_matrices(camera_of(*now_), 400, 400), 400, 400, clock}; }
+  ViewState view() const {
+    return {*now_, *values_, render::camera_matrices(engine::camera_of(*now_), 400, 400), 400, 400, clock};
+  }
   void move(double x, double y) {
-    InputEvent event;
+    panel::InputEvent event;
     event.x = x;
     event.y = y;
     mouse.event(event, view());
   }
-  void button(bool down, KeyMods mods = {}) {
-    InputEvent event;
-    event.kind = InputEvent::Kind::button;
+  void button(bool down, panel::KeyMods mods = {}) {
+    panel::InputEvent event;
+    event.kind = panel::InputEvent::Kind::button;
     event.down = down;
     event.mods = mods;
     mouse.event(event, view());
@@ -57,12 +59,12 @@ class MouseRig {
   }
 
  private:
-  engine_test::SceneFile file_;
-  std::shared_ptr<const Snapshot> now_;
-  std::shared_ptr<const ValueSnapshot> values_;
+  engine::test::SceneFile file_;
+  std::shared_ptr<const engine::Snapshot> now_;
+  std::shared_ptr<const engine::ValueSnapshot> values_;
 
  public:
-  engine_test::Show show;
+  engine::test::Show show;
   ViewportMouse mouse;
   double clock = 1;
 };
@@ -112,7 +114,7 @@ TEST(ViewportMouse, DragPullsThePartToTheMouse) {
 TEST(ViewportMouse, CtrlPushesAwayFromTheEye) {
   MouseRig fixture;
   fixture.move(200, 200);
-  fixture.button(true, KeyMods{true, false, false});
+  fixture.button(true, panel::KeyMods{true, false, false});
   fixture.button(false);
   fixture.show.ticks(1);
   EXPECT_NEAR(fixture.show.read(kBallPath + "/linear_velocity", 1), ViewportMouse::kPushSpeed, 0.02);
@@ -126,10 +128,10 @@ TEST(ViewportMouse, LeavesOtherInputToTheCamera) {
   EXPECT_FALSE(fixture.mouse.has_grab());
   fixture.button(false);
   fixture.move(200, 200);
-  fixture.button(true, KeyMods{false, true, false});
+  fixture.button(true, panel::KeyMods{false, true, false});
   EXPECT_FALSE(fixture.mouse.has_grab()) << "Shift pans the camera";
   EXPECT_TRUE(fixture.mouse.consume_messages().empty());
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

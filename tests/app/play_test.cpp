@@ -6,7 +6,7 @@
 #include "app/program.h"
 #include "app/taken_port.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kBall = R"(
@@ -155,4 +155,4 @@ TEST(Play, FastOpensNoPortsByDefault) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -7,7 +7,7 @@
 #include "app/program.h"
 #include "console/private_folder.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 class Playing {
  public:
@@ -41,7 +41,7 @@ class Playing {
     return Process(all).finish();
   }
   const std::string& file() const { return file_; }
-  const PrivateFolder& runtime() const { return runtime_; }
+  const console::PrivateFolder& runtime() const { return runtime_; }
   Process& running() { return running_; }
   /// Process id, from the name of the socket.
   std::string pid() const {
@@ -52,9 +52,9 @@ class Playing {
 
  private:
   TempFolder folder_;
-  PrivateFolder runtime_;
+  console::PrivateFolder runtime_;
   std::string file_;
   Process running_;
 };
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 /// Timeout that only failing tests reach.
 inline constexpr int kTimeoutMs = 120000;
@@ -203,4 +203,4 @@ inline std::string install_copy(const TempFolder& folder) {
   return program;
 }
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

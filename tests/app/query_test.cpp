@@ -9,13 +9,13 @@
 #include "osc/osc_test_tools.h"
 #include "oscquery/web_client.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 using nlohmann::json;
-using osc_test::Bytes;
-using osc_test::one_float;
-using query_test::WebClient;
+using osc::test::Bytes;
+using osc::test::one_float;
+using oscquery::test::WebClient;
 
 constexpr const char* kWindyScene = R"(
 params { { "wind", 0, min = 0, max = 10 }, { "style", "calm", choices = { "calm", "wild" } } }
@@ -29,7 +29,7 @@ osc:on("/less", function() sim:body("more"):remove() end)
 struct WebPlayer {
   TempFolder folder;
   Process running;
-  Endpoint osc{0x7f000001, 0};
+  system::Endpoint osc{0x7f000001, 0};
   std::uint16_t web = 0;
 
   explicit WebPlayer(const std::vector<std::string>& more = {}) : running(limber_command(words(more))) {
@@ -74,7 +74,7 @@ TEST(Query, ChangeReachesAllOtherClientsOnce) {
   ASSERT_NE(player.web, 0);
   WebClient one(player.web);
   WebClient two(player.web);
-  const osc_test::Client udp;
+  const osc::test::Client udp;
   for (WebClient* client : {&one, &two}) {
     ASSERT_EQ(client->upgrade().status, 101);
     client->listen("/scene/wind");
@@ -149,7 +149,7 @@ TEST(Query, TreeFollowsTheScene) {
 TEST(Query, PageIsSelfContained) {
   const WebPlayer player;
   WebClient client(player.web);
-  const query_test::Reply page = client.get("/", "Accept: text/html\r\n");
+  const oscquery::test::Reply page = client.get("/", "Accept: text/html\r\n");
   EXPECT_EQ(page.status, 200);
   EXPECT_TRUE(page.has_header("Content-Type: text/html; charset=utf-8"));
   EXPECT_TRUE(page.body.starts_with("<!doctype html>"));
@@ -207,4 +207,4 @@ TEST(Query, RejectsSendersThatAreNotAllowed) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -1,7 +1,7 @@
 // Editing a scene while it plays: reload on save, errors and their fix, and files that are not watched.
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 const std::vector<std::string> kQuietPorts = {"--osc-in", "off", "--osc-out", "off", "--query", "off"};
@@ -55,4 +55,4 @@ TEST(Reload, FastRunsWatchOnlyOnRequest) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -5,7 +5,7 @@
 
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 // a ball that falls past the camera; prints a line at tick 20
@@ -161,4 +161,4 @@ TEST(Render, ErrorsNameTheFix) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -7,7 +7,7 @@
 #include "app/program.h"
 #include "console/private_folder.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 // a folder of several scenes; plays the first, with an OSC port chosen by the system
@@ -24,7 +24,7 @@ struct SceneFolderShow {
     return run(std::move(words));
   }
   TempFolder folder;
-  PrivateFolder runtime;
+  console::PrivateFolder runtime;
   std::string first = folder.file("scripts/first.lua",
                                   "params { { 'wind', 1, max = 9 } }\n"
                                   "sim:add_body('only_here')\n"
@@ -169,4 +169,4 @@ TEST(Scenes, FastRunPlaysOneScene) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

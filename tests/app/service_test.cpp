@@ -9,7 +9,7 @@
 #include "app/playing.h"
 #include "app/service/service_unit.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -284,4 +284,4 @@ TEST(Service, JournalGetsLevelsInsteadOfAPrefix) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -7,7 +7,7 @@
 
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 /// A command with the options listed in its help.
@@ -207,4 +207,4 @@ TEST(ShellFiles, RejectsAnUnknownShell) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -5,12 +5,12 @@
 
 #include "app/view/change_detector.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
-std::shared_ptr<const Snapshot> snapshot_of(std::uint64_t tick, bool paused = false) {
-  static const auto bodies = std::make_shared<const BodyList>();
-  auto snapshot = std::make_shared<Snapshot>();
+std::shared_ptr<const engine::Snapshot> snapshot_of(std::uint64_t tick, bool paused = false) {
+  static const auto bodies = std::make_shared<const engine::BodyList>();
+  auto snapshot = std::make_shared<engine::Snapshot>();
   snapshot->tick = tick;
   snapshot->paused = paused;
   snapshot->body_list = bodies;
@@ -48,4 +48,4 @@ TEST(ChangeDetector, ReportsEachVisibleChangeOnce) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -1,7 +1,7 @@
 // Resource limits of the system: the program plays, or reports the missing resource with exit code 3.
 #include "app/program.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 RunResult play_with(const std::string& limit) {
@@ -36,4 +36,4 @@ TEST(Starved, ReportsATooSmallStack) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

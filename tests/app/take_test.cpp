@@ -4,7 +4,7 @@
 #include "app/program.h"
 #include "base/random.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kTakeScene = R"(
@@ -119,4 +119,4 @@ TEST(TakeApp, FullDiskEndsTheTakeNotTheShow) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

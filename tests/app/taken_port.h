@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace limber::app_test {
+namespace limber::app::test {
 
 class PortInUse {
  public:
@@ -33,4 +33,4 @@ class PortInUse {
   std::uint16_t number_ = 0;
 };
 
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -2,7 +2,7 @@
 
 #include "app/display.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 constexpr const char* kFallingBall = R"(
@@ -260,4 +260,4 @@ TEST(Window, FaultySceneWaitsForAFix) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

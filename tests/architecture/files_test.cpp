@@ -65,6 +65,19 @@ TEST(Files, FoldersOfSourcesAreSmall) {
   for (const auto& [folder, files] : files_of) EXPECT_LE(files, 30) << folder << " has too many files: split it";
 }
 
+TEST(Files, NamespacesFollowTheFolders) {
+  for (const SourceFile& file : source_files("src", {".h", ".cpp"})) {
+    for (const std::string& complaint : namespace_complaints(file.path, file.text)) ADD_FAILURE() << complaint;
+  }
+  EXPECT_EQ(namespace_complaints("src/sim/world/a.h", "namespace limber {\nint x = 1;\n}\n").size(), 1U);
+  EXPECT_EQ(namespace_complaints("src/sim/world/a.h", "namespace limber::script {\nstruct A {\n").size(), 1U);
+  EXPECT_EQ(namespace_complaints("src/base/a.h", "namespace limber::sim {\nint x;\n}\n").size(), 1U);
+  EXPECT_TRUE(namespace_complaints("src/engine/a.h",
+                                   "namespace limber::sim {\nclass World;\n}\n"
+                                   "namespace limber::engine {\nint x;\n}\n")
+                  .empty());
+}
+
 TEST(Files, ReadmeNamesEveryModule) {
   std::ifstream in(LIMBER_SOURCE_DIR "/src/README.md");
   const std::string map{std::istreambuf_iterator<char>(in), {}};

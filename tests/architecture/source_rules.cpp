@@ -42,6 +42,33 @@ constexpr std::array kModules{
 constexpr std::array kInternalFolders{"sim/bullet/",     "sim/collision/",   "sim/solver/",      "script/api/",
                                       "engine/history/", "ui/panel/panels/", "net/oscquery/web/"};
 
+/// The namespace of a folder's code, within `limber`. The first match counts. The vocabulary of all modules, which is
+/// base and properties, is in `limber` itself.
+struct Namespace {
+  std::string_view folder;
+  std::string_view name;
+};
+constexpr std::array kNamespaces{
+    Namespace{"base/", ""},
+    Namespace{"properties/", ""},
+    Namespace{"model/", "model"},
+    Namespace{"sim/bullet/", "sim::bullet"},
+    Namespace{"sim/collision/", "sim::collision"},
+    Namespace{"sim/solver/", "sim::solver"},
+    Namespace{"sim/", "sim"},
+    Namespace{"script/", "script"},
+    Namespace{"engine/", "engine"},
+    Namespace{"net/osc/", "osc"},
+    Namespace{"net/console/", "console"},
+    Namespace{"net/oscquery/", "oscquery"},
+    Namespace{"ui/render/", "render"},
+    Namespace{"ui/panel/", "panel"},
+    Namespace{"export/", "exporter"},
+    Namespace{"app/", "app"},
+};
+/// A nested namespace that every module may extend: the constructors of property definitions.
+constexpr std::string_view kSharedNamespace = "limber::properties";
+
 /// The start of an external library's header names, and the module that may include it ("": all modules).
 struct Library {
   std::string_view header;
@@ -223,6 +250,32 @@ std::vector<std::string> indirect_include_complaints(const std::vector<SourceFil
         if (why.empty()) continue;
         complaints.push_back("src/" + path + ": includes '" + library + "' through '" + header + "', which " + why);
       }
+    }
+  }
+  return complaints;
+}
+
+std::vector<std::string> namespace_complaints(std::string_view path, std::string_view text) {
+  std::vector<std::string> complaints;
+  const std::string_view inside = path.substr(std::string_view("src/").size());
+  const auto* found = std::ranges::find_if(
+      kNamespaces, [&](const Namespace& candidate) { return inside.starts_with(candidate.folder); });
+  if (found == kNamespaces.end()) return complaints;
+  const std::string expected = "limber" + std::string(found->name.empty() ? "" : "::") + std::string(found->name);
+  static const std::regex opening(R"(namespace (limber[\w:]*) \{)");
+  static const std::regex declaration(R"((template <.*> )?(class|struct|enum class|std::span<).*;.*)");
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  while (std::getline(lines, line)) {
+    std::smatch match;
+    if (!std::regex_match(line, match, opening)) continue;
+    const std::string name = match.str(1);
+    if (name == expected || name.starts_with(expected + "::") || name == kSharedNamespace) continue;
+    while (std::getline(lines, line) && !line.starts_with("}")) {
+      if (line.empty() || line.starts_with("//") || std::regex_match(line, declaration)) continue;
+      complaints.push_back(std::string(path) + ": '" + line + "' is in the namespace " + name + "; expected " +
+                           expected);
+      break;
     }
   }
   return complaints;

@@ -21,6 +21,10 @@ struct SourceFile {
 /// Without such includes, a module compiles without the libraries of the others, and fast. `files`: all files of src/.
 std::vector<std::string> indirect_include_complaints(const std::vector<SourceFile>& files);
 
+/// Returns a complaint for each definition that is not in the namespace of the file's folder. Forward declarations of
+/// other modules' classes are allowed.
+std::vector<std::string> namespace_complaints(std::string_view path, std::string_view text);
+
 /// Returns complaints about calls, types and files of the operating system outside src/base/system/, except in
 /// comments.
 std::vector<std::string> system_complaints(std::string_view path, std::string_view text);

@@ -22,7 +22,7 @@
 namespace limber {
 namespace {
 
-using ModelPtr = std::shared_ptr<const BodyModel>;
+using ModelPtr = std::shared_ptr<const model::BodyModel>;
 
 // densities of the construction set, kg/m³; balls are rubber
 const std::map<std::string, double> kDensity = {
@@ -50,12 +50,12 @@ const std::map<std::string, Expected> kModels = {
 std::string folder() { return std::string(LIMBER_SOURCE_DIR) + "/urdf"; }
 
 ModelPtr load(const std::string& name) {
-  auto result = import_urdf(folder() + "/" + name + ".urdf", ImportOptions{});
+  auto result = model::import_urdf(folder() + "/" + name + ".urdf", model::ImportOptions{});
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error());
-  return result.ok() ? result.value() : std::make_shared<const BodyModel>();
+  return result.ok() ? result.value() : std::make_shared<const model::BodyModel>();
 }
 
-int link_index(const BodyModel& model, std::string_view name) {
+int link_index(const model::BodyModel& model, std::string_view name) {
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     if (model.links[i].name == name) return static_cast<int>(i);
   }
@@ -63,12 +63,12 @@ int link_index(const BodyModel& model, std::string_view name) {
   return 0;
 }
 
-const LinkModel& link_named(const BodyModel& model, std::string_view name) {
+const model::LinkModel& link_named(const model::BodyModel& model, std::string_view name) {
   return model.links[static_cast<std::size_t>(link_index(model, name))];
 }
 
-const JointModel& joint_named(const BodyModel& model, std::string_view name) {
-  for (const JointModel& joint : model.joints) {
+const model::JointModel& joint_named(const model::BodyModel& model, std::string_view name) {
+  for (const model::JointModel& joint : model.joints) {
     if (joint.name == name) return joint;
   }
   ADD_FAILURE() << model.name << " has no joint " << name;
@@ -76,16 +76,16 @@ const JointModel& joint_named(const BodyModel& model, std::string_view name) {
 }
 
 // Direction in which a point behind the joint starts to move from the rest pose when the joint's value increases.
-Vec3 motion_of(const BodyModel& model, const std::string& joint_name, const Vec3& point) {
-  const JointModel& joint = joint_named(model, joint_name);
+Vec3 motion_of(const model::BodyModel& model, const std::string& joint_name, const Vec3& point) {
+  const model::JointModel& joint = joint_named(model, joint_name);
   const Pose frame = model.links[static_cast<std::size_t>(joint.parent)].home * joint.frame_in_parent;
   return glm::cross(frame.rotation * Vec3(0, 0, 1), point - frame.position);
 }
 
 // Mass properties of a link's visual shapes, from their geometry and density.
-Moments predicted_moments(const LinkModel& link) {
+Moments predicted_moments(const model::LinkModel& link) {
   Moments sum;
-  for (const PlacedShape& visual : link.visuals) {
+  for (const model::PlacedShape& visual : link.visuals) {
     if (visual.shape.mesh) {
       const auto density = kDensity.find(visual.shape.mesh->name);
       EXPECT_NE(density, kDensity.end()) << link.name << " shows an unknown part " << visual.shape.mesh->name;
@@ -93,7 +93,7 @@ Moments predicted_moments(const LinkModel& link) {
       EXPECT_TRUE(is_closed(*visual.shape.mesh)) << link.name;
       sum.add(moments_of_mesh(*visual.shape.mesh, visual.origin), density->second);
     } else {
-      EXPECT_EQ(visual.shape.kind, ShapeKind::sphere) << link.name;
+      EXPECT_EQ(visual.shape.kind, model::ShapeKind::sphere) << link.name;
       sum.add(moments_of_ball(visual.shape.radius, visual.origin.position), kBallDensity);
     }
   }
@@ -113,21 +113,21 @@ TEST(Models, AreExactlyTheOnesInTheTable) {
 TEST(Models, ImportWithoutWarningsAndWithAllJoints) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
-    for (const Problem& problem : model->problems) {
-      EXPECT_EQ(problem.severity, Severity::note) << name << ":" << problem.line << " " << problem.text;
+    for (const model::Problem& problem : model->problems) {
+      EXPECT_EQ(problem.severity, model::Severity::note) << name << ":" << problem.line << " " << problem.text;
     }
     EXPECT_EQ(model->name, name);
     EXPECT_EQ(model->links.size(), expected.links) << name;
     EXPECT_EQ(model->joints.size(), expected.joints) << name;
     EXPECT_EQ(model->merged.size(), expected.merged) << name;
-    const auto count = [&](JointType type) {
+    const auto count = [&](model::JointType type) {
       return std::count_if(model->joints.begin(), model->joints.end(),
-                           [&](const JointModel& joint) { return joint.type == type; });
+                           [&](const model::JointModel& joint) { return joint.type == type; });
     };
-    EXPECT_EQ(count(JointType::continuous), expected.continuous) << name;
-    EXPECT_EQ(count(JointType::prismatic), expected.prismatic) << name;
-    for (const JointModel& joint : model->joints) {
-      EXPECT_EQ(joint.limited, joint.type != JointType::continuous) << name << " " << joint.name;
+    EXPECT_EQ(count(model::JointType::continuous), expected.continuous) << name;
+    EXPECT_EQ(count(model::JointType::prismatic), expected.prismatic) << name;
+    for (const model::JointModel& joint : model->joints) {
+      EXPECT_EQ(joint.limited, joint.type != model::JointType::continuous) << name << " " << joint.name;
       EXPECT_TRUE(joint.effort >= 5 && joint.effort <= 200) << name << " " << joint.name << " " << joint.effort;
       EXPECT_TRUE(joint.velocity > 0 && joint.velocity <= 12) << name << " " << joint.name << " " << joint.velocity;
       EXPECT_EQ(joint.start, 0) << name << " " << joint.name << ": the limits must include the home position";
@@ -139,7 +139,7 @@ TEST(Models, MassesMatchTheirParts) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
     for (std::size_t i = 0; i < model->links.size(); ++i) {
-      const LinkModel& link = model->links[i];
+      const model::LinkModel& link = model->links[i];
       const std::string where = name + " " + link.name;
       const Moments parts = predicted_moments(link);
       if (i == 0 && expected.fixed_root) {
@@ -164,7 +164,7 @@ TEST(Models, MassesMatchTheirParts) {
 TEST(Models, HavePhysicalInertias) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
-    for (const LinkModel& link : model->links) {
+    for (const model::LinkModel& link : model->links) {
       if (link.inertial.mass == 0) continue;
       const Vec3 moments = principal_moments(link.inertial.tensor);
       EXPECT_GT(moments.x, 0) << name << " " << link.name;
@@ -177,7 +177,7 @@ TEST(Models, HavePhysicalInertias) {
 TEST(Models, NeighborsHaveSimilarMass) {
   for (const auto& [name, expected] : kModels) {
     const ModelPtr model = load(name);
-    for (const JointModel& joint : model->joints) {
+    for (const model::JointModel& joint : model->joints) {
       const double a = model->links[static_cast<std::size_t>(joint.parent)].inertial.mass;
       const double b = model->links[static_cast<std::size_t>(joint.child)].inertial.mass;
       if (a == 0) continue;
@@ -200,7 +200,7 @@ TEST(Models, ArmsStandUpright) {
 
   for (const ModelPtr& arm : {arm6, arm17}) {
     for (std::size_t i = 0; i < arm->joints.size(); ++i) {
-      const JointModel& joint = arm->joints[i];
+      const model::JointModel& joint = arm->joints[i];
       EXPECT_EQ(joint.name, "joint_" + std::to_string(i + 1));
       const Vec3 axis = arm->links[static_cast<std::size_t>(joint.parent)].home.rotation *
                         (joint.frame_in_parent.rotation * Vec3(0, 0, 1));
@@ -215,7 +215,7 @@ TEST(Models, QuadrupedStandsWithItsWeightAboveItsFeet) {
   const ModelPtr dog = load("quadruped");
   double mass = 0;
   Vec3 center(0);
-  for (const LinkModel& link : dog->links) {
+  for (const model::LinkModel& link : dog->links) {
     mass += link.inertial.mass;
     center += link.inertial.mass * (link.home * link.inertial.center);
   }
@@ -223,14 +223,15 @@ TEST(Models, QuadrupedStandsWithItsWeightAboveItsFeet) {
   EXPECT_LT(std::abs(center.x), 0.03) << "the feet are at x = ±0.18 m";
   EXPECT_LT(std::abs(center.y), 1e-6);
   ASSERT_EQ(dog->merged.size(), 4U);
-  for (const MergedLink& foot : dog->merged) {
+  for (const model::MergedLink& foot : dog->merged) {
     const Vec3 at = dog->links[static_cast<std::size_t>(foot.link)].home * foot.offset.position;
     const Vec3 expected(foot.name.starts_with("front") ? 0.18 : -0.18,
                         foot.name.find("left") != std::string::npos ? 0.14 : -0.14, -0.44 * std::cos(0.6));
     EXPECT_LT(glm::length(at - expected), 1e-5) << foot.name;
     const auto& shapes = dog->links[static_cast<std::size_t>(foot.link)].collisions;
-    const auto ball = std::find_if(shapes.begin(), shapes.end(),
-                                   [](const PlacedShape& s) { return s.shape.kind == ShapeKind::sphere; });
+    const auto ball = std::find_if(shapes.begin(), shapes.end(), [](const model::PlacedShape& s) {
+      return s.shape.kind == model::ShapeKind::sphere;
+    });
     ASSERT_NE(ball, shapes.end()) << foot.name;
     EXPECT_NEAR(ball->shape.radius, 0.032, 1e-9);
   }
@@ -238,7 +239,7 @@ TEST(Models, QuadrupedStandsWithItsWeightAboveItsFeet) {
 
 TEST(Models, QuadrupedMovesMirroredForEqualValues) {
   const ModelPtr dog = load("quadruped");
-  for (const MergedLink& foot : dog->merged) {
+  for (const model::MergedLink& foot : dog->merged) {
     const Vec3 at = dog->links[static_cast<std::size_t>(foot.link)].home * foot.offset.position;
     const std::string leg = foot.name.substr(0, foot.name.size() - std::string("foot").size());
     const double outwards = at.y > 0 ? 1 : -1;
@@ -277,12 +278,12 @@ TEST(Models, HandClosesWithPositiveAnglesAndItsLittleFingerFollows) {
   const Vec3 thumb = link_named(*hand, "thumb_tip").home * Vec3(0, 0, 0.05);
   EXPECT_GT(motion_of(*hand, "thumb_1", thumb).x, 0.1);
 
-  const JointModel& follower = joint_named(*hand, "little_3");
+  const model::JointModel& follower = joint_named(*hand, "little_3");
   ASSERT_GE(follower.mimic, 0);
   EXPECT_EQ(hand->joints[static_cast<std::size_t>(follower.mimic)].name, "little_2");
   EXPECT_EQ(follower.mimic_multiplier, 0.8);
-  const auto mimics =
-      std::count_if(hand->joints.begin(), hand->joints.end(), [](const JointModel& joint) { return joint.mimic >= 0; });
+  const auto mimics = std::count_if(hand->joints.begin(), hand->joints.end(),
+                                    [](const model::JointModel& joint) { return joint.mimic >= 0; });
   EXPECT_EQ(mimics, 1);
 }
 
@@ -291,7 +292,7 @@ TEST(Models, HandClosesWithPositiveAnglesAndItsLittleFingerFollows) {
 TEST(Models, SegmentsAndFingersCollideAsCapsules) {
   const ModelPtr worm = load("worm");
   const ModelPtr hand = load("hand");
-  const std::vector<std::tuple<const LinkModel*, double, double>> capsules = {
+  const std::vector<std::tuple<const model::LinkModel*, double, double>> capsules = {
       {&link_named(*worm, "head"), 0.05, 0.05},
       {&link_named(*worm, "tail"), 0.05, 0.05},
       {&link_named(*hand, "middle_base"), 0.022, 0.09},
@@ -299,8 +300,8 @@ TEST(Models, SegmentsAndFingersCollideAsCapsules) {
   };
   for (const auto& [link, radius, height] : capsules) {
     ASSERT_EQ(link->collisions.size(), 1U) << link->name;
-    const ShapeModel& shape = link->collisions.front().shape;
-    EXPECT_EQ(shape.kind, ShapeKind::capsule) << link->name;
+    const model::ShapeModel& shape = link->collisions.front().shape;
+    EXPECT_EQ(shape.kind, model::ShapeKind::capsule) << link->name;
     EXPECT_NEAR(shape.radius, radius, 0.02 * radius) << link->name;
     EXPECT_NEAR(shape.height, height, 0.02 * height) << link->name;
   }

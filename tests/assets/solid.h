@@ -27,7 +27,7 @@ struct Moments {
 
 /// Computes the integrals of a closed mesh: a triangle a b c and the origin form a tetrahedron with the second moment
 /// det/120 (s sᵀ + a aᵀ + b bᵀ + c cᵀ), s = a + b + c.
-inline Moments moments_of_mesh(const MeshModel& mesh, const Pose& origin) {
+inline Moments moments_of_mesh(const model::MeshModel& mesh, const Pose& origin) {
   Moments sum;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     std::array<Vec3, 3> p;
@@ -50,7 +50,7 @@ inline Moments moments_of_ball(double radius, const Vec3& center) {
 }
 
 /// True if each directed edge occurs once and its reverse once, as in a closed, consistently oriented surface.
-inline bool is_closed(const MeshModel& mesh) {
+inline bool is_closed(const model::MeshModel& mesh) {
   std::set<std::pair<unsigned, unsigned>> edges;
   for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -313,7 +313,7 @@ TEST(Udp, ReadsBatches) {
 
 // Linux reports it when the ICMP error arrives, POSIX at the next send to the same target.
 TEST(Udp, ReportsUndeliveredDatagramAndSendsTheNext) {
-  Endpoint closed_port;
+  system::Endpoint closed_port;
   {
     const Result<UdpSocket> closes = open_udp({0x7f000001, 0});
     ASSERT_TRUE(closes.ok());

@@ -2,7 +2,7 @@
 // ω; both are limited to the value that reaches the mean within one tick.
 #include "behaviors/flock_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(Alignment, HugeAmountsKeepLightPartsStable) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

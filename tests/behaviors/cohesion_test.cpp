@@ -2,7 +2,7 @@
 // · s · m̂.
 #include "behaviors/flock_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -115,4 +115,4 @@ TEST(Cohesion, EqualsBruteForceForBodiesOfOnePart) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

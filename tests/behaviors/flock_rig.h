@@ -8,7 +8,7 @@
 
 #include "behaviors/rig.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 /// Means over the neighbors of a part, by a loop over all parts of all other bodies.
 struct BruteForceMeans {
@@ -61,4 +61,4 @@ inline double length_of(const Vec3& v) { return std::sqrt(v.x * v.x + v.y * v.y 
 inline Vec3 unit(const Vec3& v) { return length_of(v) > 0 ? v / length_of(v) : Vec3(0); }
 inline double clamped(double v, double low, double high) { return v < low ? low : v > high ? high : v; }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -1,7 +1,7 @@
 // force: F = d̂ir · clamp(amp, −max_amp, max_amp) on each part.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -77,4 +77,4 @@ TEST(Force, IntervalDoesNotDrift) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -4,7 +4,7 @@
 
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -18,7 +18,7 @@ struct CriticalScene : Rig {
       for (int i = 0; i < 4; i++) {
         Part& part = ball(b, {0.3 * i, 0, 0}, 0.001);
         if (i > 0) {
-          Joint& joint = **b.add_joint("joint" + std::to_string(i), *parts.back(), part, JointType::spherical,
+          Joint& joint = **b.add_joint("joint" + std::to_string(i), *parts.back(), part, model::JointType::spherical,
                                        part.pose().position, Vec3(0, 0, 1));
           Motor& motor = **b.add_motor(joint);
           set(motor.id(), "angular_active", {1, 1, 1});
@@ -106,4 +106,4 @@ TEST(NeverNan, HoldsAtTheEndsOfAllRanges) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -90,4 +90,4 @@ TEST(RandomForce, AmplitudesAreUniform) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

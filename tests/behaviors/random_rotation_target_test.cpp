@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -16,7 +16,7 @@ TEST(RandomRotationTarget, MovesEachMotorTowardsItsRandomTarget) {
   std::vector<Motor*> motors;
   for (int i = 0; i < 2; i++) {
     Part& above = s.part(body, sphere_model(0.1), 1, {{1.0 + i, 0, 0}, quat_identity()});
-    Joint& joint = **body.add_joint("joint" + std::to_string(i), *below, above, JointType::revolute,
+    Joint& joint = **body.add_joint("joint" + std::to_string(i), *below, above, model::JointType::revolute,
                                     above.pose().position, Vec3(0, 0, 1));
     motors.push_back(*body.add_motor(joint));
     below = &above;
@@ -51,4 +51,4 @@ TEST(RandomRotationTarget, MovesEachMotorTowardsItsRandomTarget) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

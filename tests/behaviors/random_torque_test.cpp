@@ -2,7 +2,7 @@
 #include "base/random.h"
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -39,4 +39,4 @@ TEST(RandomTorque, DrawsPerPartAndScalesAtOnce) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,7 +8,7 @@
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/behavior_type.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 TEST(BuiltInBehaviors, HaveOneFileEach) {
@@ -136,4 +136,4 @@ TEST(BuiltInBehaviors, HaveTheDocumentedParameters) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

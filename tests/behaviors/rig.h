@@ -8,7 +8,7 @@
 
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 struct Rig : WorldFixture {
   /// Steps all behaviors once, without physics: forces accumulate until they are read.
@@ -54,4 +54,4 @@ inline void expect_near(const Vec3& actual, const Vec3& expected, double toleran
   for (int i = 0; i < 3; i++) EXPECT_NEAR(actual[i], expected[i], tolerance) << label << " axis " << i;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

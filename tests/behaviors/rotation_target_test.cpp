@@ -2,7 +2,7 @@
 // axes only.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -85,7 +85,7 @@ TEST(RotationTarget, HandlesEachAxisByItsMode) {
   Body& body = s.body("b");
   Part& base = s.part(body, sphere_model(0.1), 0);
   Part& tip = s.part(body, sphere_model(0.1), 1);
-  Joint& joint = **body.add_joint("ball", base, tip, JointType::spherical, Vec3(0), Vec3(0, 0, 1));
+  Joint& joint = **body.add_joint("ball", base, tip, model::JointType::spherical, Vec3(0), Vec3(0, 0, 1));
   Motor& motor = **body.add_motor(joint);
   s.set(motor.id(), "mode", {0});
   s.set(motor.id(), "angular_active", {1, 0, 0});
@@ -106,7 +106,7 @@ TEST(RotationTarget, SelectedJointsMeanTheirMotors) {
   std::vector<Part*> parts = {&s.part(body, sphere_model(0.1), 0)};
   for (const char* name : {"one", "two", "three", "bare"}) {
     parts.push_back(&s.part(body, sphere_model(0.1), 1, {{static_cast<double>(parts.size()), 0, 0}, quat_identity()}));
-    Joint& joint = **body.add_joint(name, *parts[parts.size() - 2], *parts.back(), JointType::revolute,
+    Joint& joint = **body.add_joint(name, *parts[parts.size() - 2], *parts.back(), model::JointType::revolute,
                                     parts.back()->pose().position, Vec3(0, 0, 1));
     if (std::string_view(name) == "bare") continue;
     ASSERT_TRUE(body.add_motor(joint).ok());
@@ -143,4 +143,4 @@ TEST(RotationTarget, JointReachesTheTarget) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

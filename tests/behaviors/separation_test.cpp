@@ -1,7 +1,7 @@
 // separation: F = −amount · mean of r̂_j · (1 − |r_j|/max_dist).
 #include "behaviors/flock_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -47,4 +47,4 @@ TEST(Separation, EqualsBruteForce) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -1,7 +1,7 @@
 // speed: F = amount · (speed − |v|) · v̂, every tick.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -45,4 +45,4 @@ TEST(Speed, ReachesTheSpeedLikeADampedMass) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

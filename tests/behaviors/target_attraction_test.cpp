@@ -1,7 +1,7 @@
 // target_attraction: F = r̂ · (min_amp + (max_amp − min_amp) · d/max_dist) for min_dist ≤ d ≤ max_dist.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -56,8 +56,8 @@ TEST(TargetAttraction, MatchesTheFormulaInRandomCases) {
 
 TEST(TargetAttraction, ActsOnTheCenterOfMass) {
   Rig s;
-  ShapeModel two;
-  two.kind = ShapeKind::compound;
+  model::ShapeModel two;
+  two.kind = model::ShapeKind::compound;
   Shape& compound = s.shape(two);
   Shape& ball = s.shape(sphere_model(0.1));
   ASSERT_TRUE(compound.add_child(ball, {{0, 0, 1}, quat_identity()}).ok());
@@ -70,4 +70,4 @@ TEST(TargetAttraction, ActsOnTheCenterOfMass) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

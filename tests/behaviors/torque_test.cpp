@@ -1,7 +1,7 @@
 // torque: τ = scale · torque, world axes.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -39,4 +39,4 @@ TEST(Torque, AppliesAfterEachInterval) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

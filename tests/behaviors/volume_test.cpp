@@ -1,7 +1,7 @@
 // volume: f = min_amp + (max_amp − min_amp)(1 − d/max_dist) between the two parts of each pair.
 #include "behaviors/rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -70,4 +70,4 @@ TEST(Volume, DoesNotActBeyondMaxDistOrBetweenCoincidentParts) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -12,24 +12,24 @@ namespace {
 // sixteen arms with six joints, as in the default scene
 struct Arms {
   Store store;
-  World world{store};
-  MessageDispatcher dispatch{world};
+  sim::World world{store};
+  engine::MessageDispatcher dispatch{world};
 
   Arms() {
-    ShapeModel ball;
-    ball.kind = ShapeKind::sphere;
+    model::ShapeModel ball;
+    ball.kind = model::ShapeKind::sphere;
     ball.radius = 0.05;
-    Shape& shape = **world.shapes().add("ball", ball);
+    sim::Shape& shape = **world.shapes().add("ball", ball);
     for (int b = 1; b <= 16; b++) {
-      Body& body = **world.add_body("arm" + std::to_string(b));
+      sim::Body& body = **world.add_body("arm" + std::to_string(b));
       (void)body.add_part("base", shape, 0, {{1.0 * b, 0, 0}, quat_identity()});
       for (int p = 1; p <= 6; p++) {
         const std::string name = "link_" + std::to_string(p);
-        Part& part = **body.add_part(name, shape, 1, {{1.0 * b, 0, 0.3 * p}, quat_identity()});
+        sim::Part& part = **body.add_part(name, shape, 1, {{1.0 * b, 0, 0.3 * p}, quat_identity()});
         const std::string joint = "joint_" + std::to_string(p);
-        Part& parent = *body.parts()[static_cast<std::size_t>(p - 1)];
+        sim::Part& parent = *body.parts()[static_cast<std::size_t>(p - 1)];
         (void)body.add_motor(
-            **body.add_joint(joint, parent, part, JointType::revolute, part.pose().position, {0, 1, 0}));
+            **body.add_joint(joint, parent, part, model::JointType::revolute, part.pose().position, {0, 1, 0}));
       }
     }
     world.flush();
@@ -39,9 +39,9 @@ struct Arms {
 void execute_message(benchmark::State& state, const Message& message) {
   Arms arms;
   for (auto _ : state) {
-    Outcome outcome = arms.dispatch.execute(message);
+    engine::Outcome outcome = arms.dispatch.execute(message);
     benchmark::DoNotOptimize(outcome);
-    if (outcome.kind != Outcome::Kind::applied) state.SkipWithError(outcome.error.c_str());
+    if (outcome.kind != engine::Outcome::Kind::applied) state.SkipWithError(outcome.error.c_str());
   }
   state.SetItemsProcessed(state.iterations());
 }

@@ -17,7 +17,7 @@
 namespace limber {
 namespace {
 
-struct SilentHost : ScriptHost {
+struct SilentHost : script::ScriptHost {
   void send(Message) override {}
   void reply(const CommandOrigin&, Message) override {}
   void send_direct(const CommandOrigin&, Message) override {}
@@ -29,11 +29,11 @@ struct SilentHost : ScriptHost {
 
 // runs and starts a scene from a string
 struct Show {
-  explicit Show(const std::string& text, ScriptLimits limits = {}) {
+  explicit Show(const std::string& text, script::ScriptLimits limits = {}) {
     log_to_stderr(false);
-    SceneOptions options;
+    script::SceneOptions options;
     options.limits = limits;
-    scene = std::make_unique<Scene>(world, host, options);
+    scene = std::make_unique<script::Scene>(world, host, options);
     const auto file = std::filesystem::temp_directory_path() / ("limber_bench_" + std::to_string(::getpid()) + ".lua");
     std::ofstream(file) << text;
     if (const Result<void> loaded = scene->run(file.string()); !loaded) log_error("{}", loaded.error());
@@ -42,9 +42,9 @@ struct Show {
     scene->start();
   }
   Store store;
-  World world{store};
+  sim::World world{store};
   SilentHost host;
-  std::unique_ptr<Scene> scene;
+  std::unique_ptr<script::Scene> scene;
 };
 
 double cpu_ms() {
@@ -81,7 +81,7 @@ BENCHMARK(BM_GuardedCallThatWrites);
 
 // CPU time from the start of an endless handler until it was stopped and rolled back
 void stop_latency(benchmark::State& state, const std::string& body, int memory_mb = 64) {
-  ScriptLimits limits;
+  script::ScriptLimits limits;
   limits.memory = static_cast<std::size_t>(memory_mb) << 20u;
   Show show("local s = ('x'):rep(8e6) osc:on('/go', function() " + body + " end)", limits);
   std::vector<double> times;

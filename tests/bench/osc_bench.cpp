@@ -18,13 +18,13 @@
 namespace limber {
 namespace {
 
-using namespace osc_test;
+using namespace osc::test;
 
 std::string mass_message() {
   return Bytes().text("/physics/part/mass").text(",ssf").text("quadruped").text("foot_1").f(0.25f).str();
 }
 
-Snapshot thousand_arms() {
+engine::Snapshot thousand_arms() {
   std::vector<FakeBody> bodies(1000);
   for (std::size_t i = 0; i < bodies.size(); i++) bodies[i] = {"arm" + std::to_string(i), 17};
   return test_world(bodies);
@@ -32,14 +32,14 @@ Snapshot thousand_arms() {
 
 void osc_validate(benchmark::State& state) {
   const std::string bytes = mass_message();
-  for (auto _ : state) benchmark::DoNotOptimize(packet_fault(bytes.data(), bytes.size()));
+  for (auto _ : state) benchmark::DoNotOptimize(osc::packet_fault(bytes.data(), bytes.size()));
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(osc_validate);
 
 void osc_decode(benchmark::State& state) {
   const std::string bytes = mass_message();
-  for (auto _ : state) benchmark::DoNotOptimize(decode_packet(bytes.data(), bytes.size()));
+  for (auto _ : state) benchmark::DoNotOptimize(osc::decode_packet(bytes.data(), bytes.size()));
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(osc_decode);
@@ -47,10 +47,10 @@ BENCHMARK(osc_decode);
 // from the datagram to the engine's queue, without a socket; drained after every thousand
 void osc_receive(benchmark::State& state) {
   auto engine = std::make_unique<FakeEngine>();
-  const NetClock clock;
-  Receiver receiver(engine->link, {}, {}, clock);
+  const osc::NetClock clock;
+  osc::Receiver receiver(engine->link, {}, {}, clock);
   const std::string bytes = mass_message();
-  std::vector<Command> commands;
+  std::vector<engine::Command> commands;
   int count = 0;
   for (auto _ : state) {
     receiver.process(bytes.data(), bytes.size(), {0x7f000001, 5000});
@@ -65,17 +65,17 @@ BENCHMARK(osc_receive);
 void osc_burst(benchmark::State& state) {
   auto engine = std::make_unique<FakeEngine>();
   const Client client;
-  OscOptions options;
-  options.in = *parse_osc_in("0");
-  options.out = *parse_osc_out("off");
-  Network network(engine->link, options, kTestOffsets);
+  osc::OscOptions options;
+  options.in = *osc::parse_osc_in("0");
+  options.out = *osc::parse_osc_out("off");
+  osc::Network network(engine->link, options, kTestOffsets);
   if (!network.start()) return state.SkipWithError("no port");
-  const Endpoint to = network.bound().at(0);
+  const system::Endpoint to = network.bound().at(0);
   const auto count = static_cast<std::uint64_t>(state.range(0));
   const auto per = static_cast<std::size_t>(state.range(1));
   const std::string bytes = per == 1 ? mass_message() : bundle(1, std::vector<std::string>(per, mass_message()));
   const std::string ping = Bytes().text("/ping").str();
-  std::vector<Command> commands;
+  std::vector<engine::Command> commands;
   const std::uint64_t before = engine->link.counters.received;
   for (auto _ : state) {
     for (std::uint64_t i = 0; i < count; i += per) {
@@ -107,8 +107,8 @@ BENCHMARK(osc_burst)
 
 // writes the numbers of a frame of 1000 bodies with 17 joints
 void osc_frame_fill(benchmark::State& state) {
-  const Snapshot s = thousand_arms();
-  StreamFrame frame(kTestOffsets);
+  const engine::Snapshot s = thousand_arms();
+  osc::StreamFrame frame(kTestOffsets);
   frame.lay_out(s.body_list, {});
   for (auto _ : state) {
     frame.fill(s);
@@ -121,9 +121,9 @@ BENCHMARK(osc_frame_fill)->Unit(benchmark::kMicrosecond);
 
 // a new layout, as after a body was added or removed
 void osc_frame_lay_out(benchmark::State& state) {
-  const Snapshot a = thousand_arms();
-  const Snapshot b = thousand_arms();
-  StreamFrame frame(kTestOffsets);
+  const engine::Snapshot a = thousand_arms();
+  const engine::Snapshot b = thousand_arms();
+  osc::StreamFrame frame(kTestOffsets);
   for (auto _ : state) {
     frame.lay_out(a.body_list, {});
     frame.lay_out(b.body_list, {});
@@ -134,10 +134,10 @@ BENCHMARK(osc_frame_lay_out)->Unit(benchmark::kMicrosecond);
 // sends a whole frame over loopback, with a client that reads on its own thread (range(2) = 1) or without a receiver
 // (0); range(0): bundle size in bytes, range(1): whether the kernel may segment
 void osc_frame_send(benchmark::State& state) {
-  const Snapshot s = thousand_arms();
+  const engine::Snapshot s = thousand_arms();
   StreamTarget target;
   target.bundle = static_cast<int>(state.range(0));
-  StreamFrame frame(kTestOffsets);
+  osc::StreamFrame frame(kTestOffsets);
   frame.lay_out(s.body_list, target);
   system::UdpSender sender;
   if (!sender.open()) return state.SkipWithError("no socket");
@@ -150,7 +150,7 @@ void osc_frame_send(benchmark::State& state) {
       while (!stop) got += client.receive(50).has_value() ? 1 : 0;
     });
   }
-  const Endpoint to = state.range(2) == 1 ? client.end() : Endpoint{0x7f000001, 9};
+  const system::Endpoint to = state.range(2) == 1 ? client.end() : system::Endpoint{0x7f000001, 9};
   std::uint64_t sent = 0;
   for (auto _ : state) {
     bool segmentation = state.range(1) != 0;

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-namespace limber {
+namespace limber::console {
 
 class PrivateFolder {
  public:
@@ -59,4 +59,4 @@ class Environment {
   std::string before_;
 };
 
-}  // namespace limber
+}  // namespace limber::console

@@ -5,7 +5,7 @@
 
 #include "base/random.h"
 
-namespace limber {
+namespace limber::console {
 namespace {
 
 using Kind = ConsoleLine::Kind;
@@ -138,4 +138,4 @@ TEST(Protocol, ParsesGarbageWithoutHarm) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::console

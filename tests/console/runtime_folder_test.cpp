@@ -12,7 +12,7 @@
 #include "base/system/net/local_socket.h"
 #include "console/private_folder.h"
 
-namespace limber {
+namespace limber::console {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST(RuntimeFolder, ErrorsHaveAReason) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::console

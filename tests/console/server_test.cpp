@@ -13,12 +13,12 @@
 #include "engine/show.h"
 #include "net/console/console_client.h"
 
-namespace limber {
+namespace limber::console {
 namespace {
 
-using engine_test::fast_options;
-using engine_test::SceneFile;
-using engine_test::Show;
+using engine::test::fast_options;
+using engine::test::SceneFile;
+using engine::test::Show;
 using Kind = ConsoleLine::Kind;
 
 constexpr int kMaxPolls = 60000;  // max. number of polls; reached only by failing tests
@@ -29,8 +29,8 @@ state.n = 0
 sim:on_step(function() state.n = state.n + 1 end)
 )";
 
-EngineOptions quiet(const std::string& scene) {
-  EngineOptions options = fast_options(scene);
+engine::EngineOptions quiet(const std::string& scene) {
+  engine::EngineOptions options = fast_options(scene);
   options.print = false;
   return options;
 }
@@ -330,4 +330,4 @@ TEST_F(ServerTest, InvalidInputDoesNotChangeTheRun) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::console

@@ -3,10 +3,10 @@
 
 #include "engine/show.h"
 
-namespace limber {
+namespace limber::console {
 namespace {
 
-using engine_test::Show;
+using engine::test::Show;
 using RequestKind = ConsoleRequest::Kind;
 
 constexpr const char* kWatchedScene = R"(
@@ -19,7 +19,7 @@ osc:on("/less", function() sim:body("two"):remove() end)
 )";
 
 struct Subscriber {
-  explicit Subscriber(EngineLink& link, RequestKind kind, const std::string& pattern = "") {
+  explicit Subscriber(engine::EngineLink& link, RequestKind kind, const std::string& pattern = "") {
     Result<std::unique_ptr<Subscription>> made = make_subscription(link, {1, kind, pattern});
     EXPECT_TRUE(made.ok());
     if (made) subscription = std::move(*made);
@@ -54,7 +54,7 @@ void wait_for_snapshot(Show& show) {
 }
 
 TEST(Subscription, SendsMatchingMessages) {
-  EngineLink link;
+  engine::EngineLink link;
   link.message_log.add(true, "a:1", {"/before", {}});
   Subscriber all(link, RequestKind::traffic);
   Subscriber parts(link, RequestKind::traffic, "/physics/*/mass");
@@ -70,8 +70,8 @@ TEST(Subscription, SendsMatchingMessages) {
   EXPECT_EQ(lines[1].kind, ConsoleLine::Kind::out);
   EXPECT_TRUE(all.new_lines().empty());
   EXPECT_EQ(parts.texts(), Texts{"/physics/part/mass arm 0.3"});
-  for (std::size_t i = 0; i < MessageLog::kMaxEntries + 7; i++) link.message_log.add(true, "", {"/flood", {}});
-  EXPECT_EQ(all.new_lines().size(), MessageLog::kMaxEntries);
+  for (std::size_t i = 0; i < engine::MessageLog::kMaxEntries + 7; i++) link.message_log.add(true, "", {"/flood", {}});
+  EXPECT_EQ(all.new_lines().size(), engine::MessageLog::kMaxEntries);
   EXPECT_EQ(all.dropped, 7u);
   all.subscription.reset();
   parts.subscription.reset();
@@ -79,7 +79,7 @@ TEST(Subscription, SendsMatchingMessages) {
 }
 
 TEST(Subscription, SendsChangesOfMatchingValues) {
-  const engine_test::SceneFile file(kWatchedScene);
+  const engine::test::SceneFile file(kWatchedScene);
   Show show(file.path());
   Subscriber changes(show.link, RequestKind::changes, "//{wind,gravity,mass}");
   const auto after = [&] {
@@ -104,7 +104,7 @@ TEST(Subscription, SendsChangesOfMatchingValues) {
 }
 
 TEST(Subscription, SendsValuesSetByControllers) {
-  const engine_test::SceneFile file(kWatchedScene);
+  const engine::test::SceneFile file(kWatchedScene);
   Show show(file.path());
   show.send("/scene/wind", 3);
   show.ticks(1);
@@ -121,8 +121,8 @@ TEST(Subscription, SendsValuesSetByControllers) {
   show.send("/scene/wind", 5);
   show.link.command_queue.push({{},
                                 {CommandSource::console},
-                                std::make_shared<const EvaluationRequest>(
-                                    EvaluationRequest{EvaluationRequest::Action::run, "sim.gravity = vec3()"})});
+                                std::make_shared<const engine::EvaluationRequest>(engine::EvaluationRequest{
+                                    engine::EvaluationRequest::Action::run, "sim.gravity = vec3()"})});
   show.send("/later");
   show.ticks(5);  // a timer sets the sun: no controller
   lines = controllers.new_lines();
@@ -133,7 +133,7 @@ TEST(Subscription, SendsValuesSetByControllers) {
 }
 
 TEST(Subscription, SendsTheControllerOfAChange) {
-  const engine_test::SceneFile file(kWatchedScene);
+  const engine::test::SceneFile file(kWatchedScene);
   Show show(file.path());
   Subscriber scene(show.link, RequestKind::changes, "/scene/*");
   // a snapshot may be taken between the ticks, and another one after all changes
@@ -156,7 +156,7 @@ TEST(Subscription, SendsTheControllerOfAChange) {
 }
 
 TEST(Subscription, SendsAllKindsOfMatchingValues) {
-  const engine_test::SceneFile file(kWatchedScene);
+  const engine::test::SceneFile file(kWatchedScene);
   Show show(file.path());
   Subscriber falls(show.link, RequestKind::changes, "/physics/body/one/part/*/linear_velocity");
   falls.new_lines();
@@ -172,4 +172,4 @@ TEST(Subscription, SendsAllKindsOfMatchingValues) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::console

@@ -1,7 +1,7 @@
 // A property that is added to a table gets its path and its legacy message, in every form, without more code.
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Kind = Outcome::Kind;
@@ -10,7 +10,7 @@ using Values = std::vector<double>;
 // the properties of parts and one more
 const PropertyTable& parts_with_a_toy() {
   static const PropertyTable table = [] {
-    const PropertyTable& own = Part::table();
+    const PropertyTable& own = sim::Part::table();
     std::vector<Property> list(own.properties().begin(), own.properties().end());
     list.push_back(properties::number("toy_strength", "N", 2, 0, 10, "A force."));
     return PropertyTable(own.name(), own.path(), own.legacy_prefix(), std::move(list));
@@ -21,13 +21,13 @@ const PropertyTable& parts_with_a_toy() {
 // two bodies with nodes of that table as parts and nothing else: the world never steps
 struct ToyRig {
   Store store;
-  World world{store};
+  sim::World world{store};
   const PropertyTable* classes[1] = {&parts_with_a_toy()};
   MessageDispatcher dispatcher{world, nullptr, classes};
 
   ToyRig() {
     for (const char* name : {"arm", "1"}) {
-      const Body& body = **world.add_body(name);
+      const sim::Body& body = **world.add_body(name);
       const NodeId group = store.child(body.id(), "part");
       for (const char* part : {"base", "tip"}) store.add(parts_with_a_toy(), group, part, nullptr);
     }
@@ -102,4 +102,4 @@ TEST(AddedProperty, ClampsAndRejectsAsItsTableSpecifies) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -35,7 +35,7 @@ std::atomic<std::size_t> allocations{0};
 [[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 [[gnu::noinline]] void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::size_t allocations_during(Show& show, int ticks) {
@@ -113,7 +113,7 @@ TEST(EngineAllocation, NoneWithTheDebugOverlay) {
 TEST(EngineAllocation, NoneForAReceivedValueExceptItsMessage) {
   Show show;
   build_bodies(show.engine.world());
-  World& world = show.engine.world();
+  sim::World& world = show.engine.world();
   MessageDispatcher dispatch(world);
   const Message by_name = message("/physics/motor/angularservoposition", "arm", "elbow", 0.5);
   const Message to_all = message("/physics/part/friction", 0.5);
@@ -129,4 +129,4 @@ TEST(EngineAllocation, NoneForAReceivedValueExceptItsMessage) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -11,7 +11,7 @@
 
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Clock = BackgroundWriter::Clock;
@@ -100,4 +100,4 @@ TEST(BackgroundWriter, TakesHaveTheirEnd) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

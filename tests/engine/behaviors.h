@@ -1,7 +1,7 @@
 // A scene in which every type of behavior is active, for tests of all types.
 #pragma once
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 inline constexpr const char* kEveryBehavior = R"(
 sim.gravity = vec3(0, 0, 0)
@@ -27,4 +27,4 @@ sim:add_group_behavior("alignment", "alignment", { max_dist = 2, angular_amount 
 sim:add_group_behavior("separation", "separation", { bodies = "body[1-4]", parts = "part[12]" })
 )";
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

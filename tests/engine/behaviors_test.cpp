@@ -4,7 +4,7 @@
 #include "base/log/log.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kScene = R"(
@@ -148,8 +148,8 @@ TEST_F(Behaviors, ErrorsListTheExistingNames) {
 }
 
 TEST_F(Behaviors, NamesOfBehaviorsAndBodiesMayBeNumbers) {
-  World& world = show.engine.world();
-  Body& body = **world.add_body("1");
+  sim::World& world = show.engine.world();
+  sim::Body& body = **world.add_body("1");
   ASSERT_TRUE(world.behaviors().add(body, "force", "2").ok());
   EXPECT_EQ(replies_to("/physics/behavior/parameter", 1, "2", "amp", 5), Texts{});
   EXPECT_EQ(value("1/behavior/2/amp"), 5);
@@ -167,7 +167,7 @@ TEST_F(Behaviors, AnOverrideSurvivesAReset) {
 }
 
 /// Raises an error at its second step.
-class FailsInSecondStep : public Behavior {
+class FailsInSecondStep : public sim::Behavior {
  public:
   void step(double) override {
     if (++steps_ == 2) fail({"the string broke", "behaviors_lua/harp.lua", 12});
@@ -178,10 +178,10 @@ class FailsInSecondStep : public Behavior {
 };
 
 TEST_F(Behaviors, AFaultIsReportedOnceAndCounted) {
-  World& world = show.engine.world();
+  sim::World& world = show.engine.world();
   ASSERT_TRUE(world.behaviors()
                   .types()
-                  .add(BehaviorType::create<FailsInSecondStep>("broken", "Breaks.", BehaviorTargets::any, {}))
+                  .add(sim::BehaviorType::create<FailsInSecondStep>("broken", "Breaks.", sim::BehaviorTargets::any, {}))
                   .ok());
   ASSERT_TRUE(world.behaviors().add(*world.find_body("arm1"), "broken", "harp").ok());
   const std::uint64_t faults = show.engine.faults();
@@ -215,4 +215,4 @@ TEST(EngineBehaviors, ComputingTimeIsNotInTheHash) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

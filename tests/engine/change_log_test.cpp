@@ -5,7 +5,7 @@
 
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 struct ChangeRecorderTest : ::testing::Test {
@@ -79,4 +79,4 @@ TEST(ChangeLog, DropsTheOldestLines) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

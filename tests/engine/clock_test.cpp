@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 using namespace std::chrono_literals;
@@ -138,4 +138,4 @@ TEST(Clock, MeasuresSpeedWithoutSchedule) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include "engine/reload/scene_patch.h"
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr std::uint64_t bit(std::uint32_t property) { return std::uint64_t{1} << property; }
@@ -34,17 +34,17 @@ TEST(SceneDiff, ComparesValueAndExplicitlySet) {
 // a world that a test changes a little before its spec is captured
 struct TestWorld {
   Store store;
-  World world;
+  sim::World world;
   TestWorld() : world(store) { build_bodies(world); }
 
-  Body& body(const char* name) { return *world.find_body(name); }
+  sim::Body& body(const char* name) { return *world.find_body(name); }
   template <std::size_t N>
   void set_explicitly(NodeId id, const char* property, const double (&values)[N]) {
     const Store::ExplicitSetScope scope(store, true);
     ASSERT_TRUE(store.set(id, property, values).ok());
   }
   SceneSpec spec() {
-    flush_detached(world);
+    sim::flush_detached(world);
     return describe(world);
   }
 };
@@ -61,20 +61,20 @@ TEST(SceneDiff, IsEmptyForEqualWorlds) {
 TEST(SceneDiff, NamesTheDifferentPropertiesOfEachObject) {
   TestWorld a;
   TestWorld b;
-  Body& arm = b.body("arm");
+  sim::Body& arm = b.body("arm");
   b.set_explicitly(arm.find_part("lower")->id(), "friction", {0.25});
   b.set_explicitly(arm.find_joint("elbow")->id(), "angular_lower_limit", {0, 0, -1});
   b.set_explicitly(arm.find_motor("slide")->id(), "mode", {3});
   b.set_explicitly(b.world.id(), "gravity", {0, 0, -1});
   const SceneDiff d = compare(a.spec(), b.spec());
-  EXPECT_EQ(d.world, bit(World::table().at("gravity").index));
+  EXPECT_EQ(d.world, bit(sim::World::table().at("gravity").index));
   ASSERT_EQ(d.bodies.size(), 1u);
   EXPECT_EQ(b.spec().bodies[d.bodies[0].new_index].name, "arm");
   EXPECT_FALSE(d.bodies[0].rebuild);
-  const std::uint64_t friction = bit(Part::table().at("friction").index);
-  const std::uint64_t limit = bit(Joint::table().at("angular_lower_limit").index);
+  const std::uint64_t friction = bit(sim::Part::table().at("friction").index);
+  const std::uint64_t limit = bit(sim::Joint::table().at("angular_lower_limit").index);
   // a mode is stored as flags
-  const auto flag = [](const char* name) { return bit(Motor::table().at(name).index); };
+  const auto flag = [](const char* name) { return bit(sim::Motor::table().at(name).index); };
   const std::uint64_t mode = flag("linear_active") | flag("linear_servo_active") | flag("linear_spring_active");
   // the body, four parts, three joints, three motors
   EXPECT_EQ(d.bodies[0].changed, (std::vector<std::uint64_t>{0, 0, 0, friction, 0, 0, limit, 0, 0, 0, mode}));
@@ -129,13 +129,13 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
   const SceneSpec last = before.spec();
   candidate.set_explicitly(candidate.body("arm").find_part("tip")->id(), "friction", {0.25});
   candidate.world.remove_body(candidate.body("1"));
-  Body& extra = **candidate.world.add_body("extra");
+  sim::Body& extra = **candidate.world.add_body("extra");
   ASSERT_TRUE(extra.add_part("p", *candidate.world.shapes().find("ball"), 2, {{9, 0, 0}, quat_identity()}).ok());
   const SceneSpec now = candidate.spec();
   const SceneDiff diff = compare(last, now);
   std::vector<std::string> set;
   const NodeId tip = live.body("arm").find_part("tip")->id();
-  const Part::Motion state = live.body("arm").find_part("tip")->capture_motion();
+  const sim::Part::Motion state = live.body("arm").find_part("tip")->capture_motion();
   apply({live.world, candidate.world, last, now, diff,
          [&](NodeId id, const Property& r) { set.push_back(live.store.path(id) + "/" + r.name); }},
         objects);
@@ -155,4 +155,4 @@ TEST(ScenePatch, MakesTheWorldEqualToTheSpec) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -5,7 +5,7 @@
 
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Values = std::vector<double>;
@@ -131,7 +131,7 @@ TEST(MessageDispatcher, AcceptsPathsWithPatterns) {
 
 TEST(MessageDispatcher, UnescapesNamesInPaths) {
   Rig rig;
-  Body& body = **rig.world.add_body("left arm #1/2");
+  sim::Body& body = **rig.world.add_body("left arm #1/2");
   ASSERT_TRUE(body.add_part("50%", *rig.world.shapes().find("ball"), 1, {}).ok());
   EXPECT_EQ(rig.send("/physics/body/left%20arm%20%231%2f2/part/50%25/friction", 0.25).kind, Kind::applied);
   EXPECT_EQ(rig.send("/physics/part/restitution", "left arm #1/2", "50%", 0.75).kind, Kind::applied);
@@ -148,7 +148,7 @@ TEST(MessageDispatcher, FindsAPathAgainAfterItsObjectWasAddedAgain) {
   EXPECT_EQ(rig.send("/physics/body/arm/remove").kind, Kind::applied);
   EXPECT_EQ(rig.world.find_body("arm"), nullptr);
   EXPECT_EQ(rig.send(path, 0.5).kind, Kind::unknown);
-  Body& again = **rig.world.add_body("arm");
+  sim::Body& again = **rig.world.add_body("arm");
   ASSERT_TRUE(again.add_part("tip", *rig.world.shapes().find("ball"), 1, {}).ok());
   EXPECT_EQ(rig.send(path, 0.75).kind, Kind::applied);
   EXPECT_EQ(rig.read(path), (Values{0.75}));
@@ -224,7 +224,7 @@ TEST(MessageDispatcher, ClampsToTheRangeAndReportsIt) {
   Rig rig;
   const Outcome low = rig.send("/physics/part/mass", "arm", "tip", -3);
   EXPECT_EQ(low.kind, Kind::applied);
-  EXPECT_EQ(low.clamped, &Part::table().at("mass"));
+  EXPECT_EQ(low.clamped, &sim::Part::table().at("mass"));
   EXPECT_EQ(rig.read("/physics/body/arm/part/tip/mass"), (Values{0.001}));
   EXPECT_NE(rig.send("/physics/body/arm/part/tip/restitution", 7).clamped, nullptr);
   EXPECT_EQ(rig.read("/physics/body/arm/part/tip/restitution"), (Values{1}));
@@ -255,7 +255,7 @@ TEST(MessageDispatcher, NoAnswerLooksLikeAQuery) {
   Rig full;
   struct {
     Store store;
-    World world{store};
+    sim::World world{store};
     MessageDispatcher dispatch{world};
   } bare;
   ASSERT_TRUE(bare.world.add_body("floor").ok());
@@ -326,4 +326,4 @@ TEST(MessageDispatcher, LimitsHintsPerTick) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

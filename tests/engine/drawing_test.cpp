@@ -4,7 +4,7 @@
 #include "engine/show.h"
 #include "model/urdf/import.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 TEST(RenderScene, HasAnInstanceForEachGeometryOfEachPart) {
@@ -17,8 +17,8 @@ TEST(RenderScene, HasAnInstanceForEachGeometryOfEachPart) {
   // four parts of arm, two of 1, one floor; two shapes
   ASSERT_EQ(render_scene.instances.size(), 7u);
   EXPECT_EQ(render_scene.shapes.size(), 2u);
-  EXPECT_EQ(render_scene.shapes[render_scene.instances[0].shape].geometry.kind, ShapeKind::sphere);
-  EXPECT_EQ(render_scene.shapes[render_scene.instances[6].shape].geometry.kind, ShapeKind::plane);
+  EXPECT_EQ(render_scene.shapes[render_scene.instances[0].shape].geometry.kind, model::ShapeKind::sphere);
+  EXPECT_EQ(render_scene.shapes[render_scene.instances[6].shape].geometry.kind, model::ShapeKind::plane);
   EXPECT_EQ(render_scene.instances[3].part_offset, now->body_list->bodies[0].part_offsets[3]);
   EXPECT_EQ(render_scene.instances[4].enabled_offset, now->body_list->bodies[1].enabled_offset);
 }
@@ -85,12 +85,12 @@ TEST(RenderScene, ReadsMaterialsCameraAndAppearanceFromProperties) {
 
 TEST(RenderScene, DrawsCompoundsChildByChildInTheirMaterial) {
   Rig rig;
-  ShapeModel model;
-  model.kind = ShapeKind::compound;
-  Shape& whole = **rig.world.shapes().add("whole", model);
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::compound;
+  sim::Shape& whole = **rig.world.shapes().add("whole", model);
   ASSERT_TRUE(whole.add_child(*rig.world.shapes().find("ball"), {{0, 0, 1}, quat_identity()}).ok());
   ASSERT_TRUE(whole.add_child(*rig.world.shapes().find("ball"), {{0, 0, 2}, quat_identity()}).ok());
-  Body& body = **rig.world.add_body("compound");
+  sim::Body& body = **rig.world.add_body("compound");
   ASSERT_TRUE(body.add_part("a", whole, 0, {}).ok());
   ASSERT_TRUE(body.add_part("b", whole, 0, {}).ok());
   const RenderScene render_scene(rig.world);
@@ -102,9 +102,9 @@ TEST(RenderScene, DrawsCompoundsChildByChildInTheirMaterial) {
 
 TEST(RenderScene, DrawsVisualsOfAFileInTheirOwnColors) {
   Rig rig;
-  const auto imported = import_urdf(std::string(LIMBER_SOURCE_DIR) + "/urdf/arm6.urdf", {});
+  const auto imported = model::import_urdf(std::string(LIMBER_SOURCE_DIR) + "/urdf/arm6.urdf", {});
   ASSERT_TRUE(imported.ok());
-  const std::shared_ptr<const BodyModel>& model = *imported;
+  const std::shared_ptr<const model::BodyModel>& model = *imported;
   ASSERT_TRUE(rig.world.add_body(model, "one", {}).ok());
   const std::size_t before = RenderScene(rig.world).shapes.size();
   ASSERT_TRUE(rig.world.add_body(model, "two", {}).ok());
@@ -114,14 +114,14 @@ TEST(RenderScene, DrawsVisualsOfAFileInTheirOwnColors) {
   const auto now = latest.read();
   EXPECT_EQ(now->render_scene->shapes.size(), before) << "bodies of one model share their render shapes";
   std::size_t visuals = 0;
-  for (const LinkModel& link : model->links) visuals += link.visuals.size();
+  for (const model::LinkModel& link : model->links) visuals += link.visuals.size();
   ASSERT_EQ(now->render_scene->instances.size(), 7 + 2 * visuals);
   const RenderShape& render_shape = now->render_scene->shapes[now->render_scene->instances[7].shape];
   EXPECT_EQ(render_shape.geometry.mesh, model->links[0].visuals[0].shape.mesh) << "the mesh itself, not a copy";
-  const Shape& shape = *rig.world.shapes().find(visual_shape_name(*model, model->links[0], 0));
+  const sim::Shape& shape = *rig.world.shapes().find(sim::visual_shape_name(*model, model->links[0], 0));
   EXPECT_EQ(material_of(*now, render_shape.material).diffuse_color,
-            vec3_at(rig.store.values(shape.id(), Shape::table().at("diffuse_color"))));
+            vec3_at(rig.store.values(shape.id(), sim::Shape::table().at("diffuse_color"))));
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -9,7 +9,7 @@
 #include "engine/show.h"
 #include "support/world_objects.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 /// A folder with scripts/ that is removed at the end of the test.
 class ShowFolder {
@@ -54,9 +54,9 @@ struct EditedShow {
   }
 
   Show& show() { return *playing; }
-  World& world() { return show().engine.world(); }
-  Body& body(const std::string& name) { return *world().find_body(name); }
-  Part& part(const std::string& body_name, const std::string& name) { return *body(body_name).find_part(name); }
+  sim::World& world() { return show().engine.world(); }
+  sim::Body& body(const std::string& name) { return *world().find_body(name); }
+  sim::Part& part(const std::string& body_name, const std::string& name) { return *body(body_name).find_part(name); }
 
   SceneReloader::ApplyResult save(const std::string& scene) {
     text = scene;
@@ -73,8 +73,8 @@ struct EditedShow {
 };
 
 /// Pose and velocity of a part, as bits.
-inline std::vector<double> motion_of(const Part& part) {
-  const Part::Motion s = part.capture_motion();
+inline std::vector<double> motion_of(const sim::Part& part) {
+  const sim::Part::Motion s = part.capture_motion();
   std::vector<double> all;
   for (int i = 0; i < 3; i++) {
     for (const double v : {s.pose.position[i], s.linear_velocity[i], s.angular_velocity[i]}) all.push_back(v);
@@ -83,4 +83,4 @@ inline std::vector<double> motion_of(const Part& part) {
   return all;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -5,7 +5,7 @@
 #include "engine/edited.h"
 #include "engine/everything.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kEditScene = R"(
@@ -292,10 +292,10 @@ TEST(UndoStack, DropsTheOldestSteps) {
 
 // one controller sets the same property of objects that are added and removed: one step that is extended forever
 TEST(UndoStack, PurgesRemovedObjectsOfAnEndlessStep) {
-  static const Property& gravity = World::table().at("gravity");
-  static const Property& collides = Body::table().at("self_collision");
+  static const Property& gravity = sim::World::table().at("gravity");
+  static const Property& collides = sim::Body::table().at("self_collision");
   Store store;
-  World world(store);
+  sim::World world(store);
   Overrides overrides;
   UndoStack undo_stack(overrides);
   const auto set = [&](NodeId id, const Property& property, std::vector<double> values) {
@@ -303,10 +303,10 @@ TEST(UndoStack, PurgesRemovedObjectsOfAnEndlessStep) {
     ASSERT_TRUE(store.set(id, property, values));
     undo_stack.on_write(store, id, property, false, before.data());
   };
-  Body* const lasting = *world.add_body("stays");
+  sim::Body* const lasting = *world.add_body("stays");
   std::size_t max_size = 0;
   for (int round = 0; round < 5000; round++) {
-    Body* const temporary = *world.add_body("guest");
+    sim::Body* const temporary = *world.add_body("guest");
     undo_stack.begin({CommandSource::osc, 0x7f000001, 4000}, world);
     set(world.id(), gravity, {0, 0, -1.0 - round % 7});
     if (round == 2500) set(lasting->id(), collides, {0});
@@ -326,4 +326,4 @@ TEST(UndoStack, PurgesRemovedObjectsOfAnEndlessStep) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -6,7 +6,7 @@
 #include "base/log/log.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -315,7 +315,7 @@ TEST(Engine, StopsAndReportsAnEndlessCallback) {
   // the ball falls as it would alone: after n steps of 0.1 s at 10 m/s² by 0.05 · n · (n + 1)
   const SceneFile scene(std::string(kBall) + "sim:on_step(function() sim.gravity = vec3() while true do end end)\n");
   EngineOptions options = fast_options(scene.path());
-  options.scene_options.limits.call_ms = 5 * kBudgetScale;
+  options.scene_options.limits.call_ms = 5 * script::kBudgetScale;
   Show show(options);
   show.ticks(10);
   EXPECT_NEAR(show.read("/physics/body/ball/position", 2), 100 - 0.05 * 10 * 11, 1e-3);
@@ -444,4 +444,4 @@ ball:add_part("ball", sim:add_sphere_shape("ball", 0.5), { position = vec3(0, 0,
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -6,7 +6,7 @@
 #include "base/log/log.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using ResultKind = Evaluation::Kind;
@@ -163,4 +163,4 @@ TEST_F(EvaluateTest, ALongTextCountsWithItsSize) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -13,7 +13,7 @@
 #include "sim/world/world.h"
 #include "support/world_objects.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 /// An object of a class: its path, its names in the legacy message, its expression in Lua.
 struct Sample {
@@ -26,11 +26,14 @@ struct Sample {
 inline std::vector<Sample> samples(const Store& store) {
   const std::string arm = "/physics/body/arm";
   return {
-      {&World::table(), "/physics/sim", {}, "sim"},
-      {&Body::table(), "/physics/body/free", {}, "sim:body('free')"},
-      {&Part::table(), arm + "/part/part_revolute", {"arm", "part_revolute"}, "sim:body('arm'):part('part_revolute')"},
-      {&Joint::table(), arm + "/joint/revolute", {"arm", "revolute"}, "sim:body('arm'):joint('revolute')"},
-      {&Motor::table(), arm + "/motor/revolute", {"arm", "revolute"}, "sim:body('arm'):motor('revolute')"},
+      {&sim::World::table(), "/physics/sim", {}, "sim"},
+      {&sim::Body::table(), "/physics/body/free", {}, "sim:body('free')"},
+      {&sim::Part::table(),
+       arm + "/part/part_revolute",
+       {"arm", "part_revolute"},
+       "sim:body('arm'):part('part_revolute')"},
+      {&sim::Joint::table(), arm + "/joint/revolute", {"arm", "revolute"}, "sim:body('arm'):joint('revolute')"},
+      {&sim::Motor::table(), arm + "/motor/revolute", {"arm", "revolute"}, "sim:body('arm'):motor('revolute')"},
       {&store.table(find_property(store, arm + "/behavior/wind").value().node),
        arm + "/behavior/wind",
        {},
@@ -39,7 +42,7 @@ inline std::vector<Sample> samples(const Store& store) {
        "/physics/group/swarm",
        {},
        "sim:group_behavior('swarm')"},
-      {&Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
+      {&sim::Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
       {&store.table(find_property(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }
@@ -100,4 +103,4 @@ inline bool is_measure(const Property& property) {
          property.type == PropertyType::vec3;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

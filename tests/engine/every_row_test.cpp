@@ -7,7 +7,7 @@
 #include "base/log/log.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 struct Interface {
@@ -150,4 +150,4 @@ TEST(EveryProperty, ReadoutsAreReadOnlyInEveryInterface) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

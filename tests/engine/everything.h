@@ -1,7 +1,7 @@
 // A scene with every class of object, every type of joint and every kind of parameter.
 #pragma once
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 inline constexpr const char* kEverything = R"(
 sim.gravity = vec3(0, 0, -9.81)
@@ -30,4 +30,4 @@ params {
 }
 )";
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -9,7 +9,7 @@
 #include "engine/image_of.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using SentMessages = std::vector<std::string>;
@@ -161,7 +161,7 @@ TEST(Feed, PatternsFollowAddedAndRemovedObjects) {
   TwoSubscribers clients;
   clients.a.feed.add("/physics/body/*/part/free/friction");
   EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/free/part/free/friction 0.5"});
-  World& world = clients.show.engine.world();
+  sim::World& world = clients.show.engine.world();
   ASSERT_TRUE(world.copy_body(*world.find_body("free"), "other").ok());
   EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/other/part/free/friction 0.5"});
   world.remove_body(*world.find_body("other"));
@@ -177,7 +177,7 @@ TEST(Feed, PathsWithoutAMatchWait) {
   clients.a.feed.add("/transport/step");
   clients.a.feed.add("nonsense");
   EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{});
-  World& world = clients.show.engine.world();
+  sim::World& world = clients.show.engine.world();
   ASSERT_TRUE(world.copy_body(*world.find_body("free"), "late").ok());
   EXPECT_EQ(clients.a.update_and_get_changes(clients.show), SentMessages{"/physics/body/late/part/free/friction 0.5"});
 }
@@ -214,4 +214,4 @@ TEST(Feed, LimitsTheNumberOfPaths) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -3,7 +3,7 @@
 
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kBallScene = R"(
@@ -93,4 +93,4 @@ TEST(MouseSprings, RejectInvalidMessages) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -3,7 +3,7 @@
 
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::vector<std::string> texts(const Overrides& overrides) {
@@ -91,4 +91,4 @@ TEST(Overrides, LimitAFloodOfAddresses) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -6,15 +6,15 @@
 #include "engine/everything.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // writable values belong to the state, except pause, speed and appearance; readouts are derived from it
 bool is_hashed(const PropertyTable& table, const Property& property) {
   if (!property.stored() || !property.writable() || &table == &Transport::table() || &table == &CounterNode::table())
     return false;
-  if (&table == &Appearance::table() && property.name == "overlay") return false;
-  return !(&table == &World::table() &&
+  if (&table == &sim::Appearance::table() && property.name == "overlay") return false;
+  return !(&table == &sim::World::table() &&
            (property.name == "paused" || property.name == "speed" || property.name == "history"));
 }
 
@@ -126,4 +126,4 @@ sim:at(0.2, function() arm:part("tip"):apply_impulse(rng:direction()) end)
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -10,7 +10,7 @@
 #include "engine/recovery/recovery_saver.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::int64_t now_at = 0;
@@ -123,7 +123,7 @@ TEST(Health, CountsDisabledHandlersUntilTheyAreFixed) {
 }
 
 /// Fails at each step.
-class FailingBehavior : public Behavior {
+class FailingBehavior : public sim::Behavior {
  public:
   void step(double) override { fail({"on purpose", "", 0}); }
 };
@@ -138,14 +138,15 @@ end
 TEST(Health, CountsSuspendedBehaviorsIncludingGroups) {
   const SceneFile file(kTwoBodies);
   Show show(file.path());
-  World& world = show.engine.world();
-  BehaviorTypes& types = world.behaviors().types();
-  ASSERT_TRUE(types.add(BehaviorType::create<FailingBehavior>("fails", "Fails.", BehaviorTargets::any, {})).ok());
-  ASSERT_TRUE(types.add(BehaviorType::create_group<FailingBehavior>("all_fail", "Fail.", {})).ok());
+  sim::World& world = show.engine.world();
+  sim::BehaviorTypes& types = world.behaviors().types();
+  ASSERT_TRUE(
+      types.add(sim::BehaviorType::create<FailingBehavior>("fails", "Fails.", sim::BehaviorTargets::any, {})).ok());
+  ASSERT_TRUE(types.add(sim::BehaviorType::create_group<FailingBehavior>("all_fail", "Fail.", {})).ok());
   ASSERT_TRUE(world.behaviors().add(*world.find_body("b1"), "fails", "one").ok());
-  GroupSetup all;
-  all.bodies = Selection(std::vector<std::string>{"*"});
-  const Result<BehaviorGroup*> group = world.behaviors().add_group("all_fail", "all", all);
+  sim::GroupSetup all;
+  all.bodies = sim::Selection(std::vector<std::string>{"*"});
+  const Result<sim::BehaviorGroup*> group = world.behaviors().add_group("all_fail", "all", all);
   ASSERT_TRUE(group.ok()) << group.error();
   EXPECT_EQ(losses(show)["behaviors"], 3);
   world.behaviors().remove(*world.behaviors().find_group("all"));
@@ -218,4 +219,4 @@ TEST(Health, LateCountsSkippedDelays) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -11,7 +11,7 @@
 #include "engine/taken.h"
 #include "support/skip.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // Compares a run with many random rewinds, tick by tick, with one without rewinds.
@@ -312,7 +312,7 @@ TEST(History, StoppedCallsStayStopped) {
   write_rewind_scene(folder);
   log_to_stderr(false);
   EngineOptions options = rewind_options(folder);
-  options.scene_options.limits.call_ms = 8 * kBudgetScale;
+  options.scene_options.limits.call_ms = 8 * script::kBudgetScale;
   const auto inputs = [](Show& show, std::uint64_t tick) {
     random_inputs(show, tick);
     if (tick % 50 == 20) show.send("/loop", static_cast<double>(tick));
@@ -431,4 +431,4 @@ TEST(History, RestoresTheCheckpointBeforeATick) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

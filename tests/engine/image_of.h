@@ -5,7 +5,7 @@
 
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 /// Ticks until there is a snapshot newer than this call: they take at most 1 % of the time, so it may be some hundred
 /// ticks.
@@ -21,4 +21,4 @@ inline std::shared_ptr<const ValueSnapshot> make_value_snapshot(Show& show) {
   return snapshot;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -9,7 +9,7 @@
 #include "engine/output/value_snapshotter.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 TEST(ValueSnapshot, ContainsEveryValueOfTheStore) {
@@ -228,4 +228,4 @@ TEST(ValueSnapshot, ContainsWritesOfSubscribersOnly) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -7,7 +7,7 @@
 #include "base/log/log_throttle.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 struct RepeatedFault {
@@ -75,4 +75,4 @@ TEST(LogLimit, AppliesToEachKindOfRepeatedFault) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

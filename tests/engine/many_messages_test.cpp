@@ -1,7 +1,7 @@
 // More messages than the budget of a tick: they are spread over the next ticks in order, and no datagram is split.
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr int kFloodSize = 10000;
@@ -77,4 +77,4 @@ TEST(ManyMessages, AreExecutedWhilePaused) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

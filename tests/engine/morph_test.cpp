@@ -7,7 +7,7 @@
 #include "engine/edited.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr double kTick = 1.0 / 60;
@@ -239,4 +239,4 @@ TEST(Morph, AResetJumpsToItsEnd) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

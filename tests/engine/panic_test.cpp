@@ -7,11 +7,11 @@
 #include "engine/taken.h"
 #include "support/skip.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // kinetic energy in J
-double energy(World& world) {
+double energy(sim::World& world) {
   double sum = 0;
   for (const auto& body : world.bodies()) {
     for (const auto& part : body->parts()) {
@@ -61,7 +61,7 @@ TEST_F(PanicButton, EveryShowComesToRest) {
   for (const char* scene : {"arms", "hello", "live", "quadruped", "swarm"}) {
     for (const double motors : {0.0, 1.0}) {
       Show show(std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene + ".lua");
-      World& world = show.engine.world();
+      sim::World& world = show.engine.world();
       show.ticks(60);
       Random random(1, "blows");
       for (const auto& body : world.bodies()) {
@@ -179,7 +179,7 @@ TEST_F(PanicButton, IsNeitherAnEditNorAnOverride) {
 // Requests a panic twice, a second and `ticks_pressed` ticks apart, and expects the checkpoint before the first.
 void expect_restored(Show& show, std::uint64_t ticks_pressed, std::vector<std::uint64_t>& hashes,
                      TickInputs send_messages) {
-  World& world = show.engine.world();
+  sim::World& world = show.engine.world();
   const std::uint64_t panic_tick = world.tick();
   show.send("/transport/panic");
   show.ticks(static_cast<int>(ticks_pressed) + kGuardTicks);
@@ -261,4 +261,4 @@ TEST_F(PanicButton, ATakeWithPanicsReplaysToItsHash) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

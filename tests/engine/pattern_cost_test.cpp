@@ -1,7 +1,7 @@
 // No message delays a tick: patterns that need too much work are rejected as a whole, in any kind of message.
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Kind = Outcome::Kind;
@@ -9,10 +9,10 @@ using Kind = Outcome::Kind;
 // six hundred bodies with names that make patterns backtrack
 struct ManyBodies : Rig {
   ManyBodies() {
-    const Shape& shape = *world.shapes().find("ball");
+    const sim::Shape& shape = *world.shapes().find("ball");
     for (int i = 0; i < 600; i++) {
-      Body& body = **world.add_body(fmt::format("{}{}", std::string(60, 'a'), i));
-      EXPECT_TRUE(body.add_part("tip", const_cast<Shape&>(shape), 1, Pose{{1.0 * i, 5, 5}, quat_identity()}).ok());
+      sim::Body& body = **world.add_body(fmt::format("{}{}", std::string(60, 'a'), i));
+      EXPECT_TRUE(body.add_part("tip", const_cast<sim::Shape&>(shape), 1, Pose{{1.0 * i, 5, 5}, quat_identity()}).ok());
     }
   }
 };
@@ -72,4 +72,4 @@ TEST(PatternCost, OnePatternMatchesAThousandBodies) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

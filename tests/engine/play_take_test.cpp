@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kLiveScene = R"(
@@ -73,7 +73,7 @@ TEST_F(PlayTake, LiveInputResumesAtItsEnd) {
   EXPECT_EQ(show.read("/physics/body/ball2/part/p/linear_damping"), 0.25);
   EXPECT_EQ(show.read("/physics/sim/tick"), tick + 3) << "no tick is skipped or repeated";
   const std::string reply = evaluate_reply(show, "while true do end");
-  EXPECT_NE(reply.find(fmt::format("stopped after {:g} ms", ScriptLimits().call_ms)), std::string::npos)
+  EXPECT_NE(reply.find(fmt::format("stopped after {:g} ms", script::ScriptLimits().call_ms)), std::string::npos)
       << "scripts have the limits of a live session again: " << reply;
   show.send("/transport/reset");
   show.ticks(2);
@@ -175,4 +175,4 @@ TEST_F(PlayTake, RejectsReloadsUntilItEnds) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -17,7 +17,7 @@
 
 #include "base/random.h"
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -257,4 +257,4 @@ TEST_F(PresetFileTest, IsCompleteAfterAKillAtAnyTime) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 
 #include "engine/presets/text.h"
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 // the presets in Limber's own format
@@ -73,4 +73,4 @@ TEST(PresetImport, RejectsOtherFiles) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

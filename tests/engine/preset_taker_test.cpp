@@ -11,7 +11,7 @@
 #include "properties/catalog.h"
 #include "sim/world/part.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::size_t node_count(const Store& store) {
@@ -35,9 +35,9 @@ void expect_same(const Preset& a, const Preset& b) {
 struct PresetCapturerTest : testing::Test {
   Rig rig;
   void add_bodies(int count) {
-    Shape& shape = **rig.world.shapes().add(fmt::format("shape{}", bodies_added), ball());
+    sim::Shape& shape = **rig.world.shapes().add(fmt::format("shape{}", bodies_added), ball());
     for (int i = 0; i < count; i++) {
-      Body& body = **rig.world.add_body(fmt::format("more{}", bodies_added++));
+      sim::Body& body = **rig.world.add_body(fmt::format("more{}", bodies_added++));
       ASSERT_TRUE(body.add_part("tip", shape, i % 2, Pose{}).ok());
     }
     rig.world.flush();
@@ -140,7 +140,7 @@ std::set<std::string> properties_of(const Preset& preset) {
 std::set<std::string> properties_of(const Store& store, const PresetSelection& selection) {
   std::set<std::string> texts;
   const auto add = [&](NodeId id, const Property& property) {
-    const bool state = property.kind == PropertyKind::state && &store.table(id) == &Part::table();
+    const bool state = property.kind == PropertyKind::state && &store.table(id) == &sim::Part::table();
     const bool pose = property.name == "position" || property.name == "rotation";
     if (property.kind != PropertyKind::setting && !(state && (pose ? selection.poses : selection.velocities))) return;
     if (!property.stored() ||
@@ -160,18 +160,18 @@ std::set<std::string> properties_of(const Store& store, const PresetSelection& s
           add(id, *ref.property);
         else
           for (const Property& property : store.table(id).properties()) add(id, property);
-        if (&store.table(id) == &Part::table()) parts.push_back(id);
+        if (&store.table(id) == &sim::Part::table()) parts.push_back(id);
       });
     }
   }
   // state of parts: of the selected parts, or of all if no part was selected
   if (parts.empty()) {
     store.walk(store.root(), [&](NodeId id) {
-      if (&store.table(id) == &Part::table()) parts.push_back(id);
+      if (&store.table(id) == &sim::Part::table()) parts.push_back(id);
     });
   }
   for (const NodeId part : parts) {
-    for (const Property& property : Part::table().properties()) {
+    for (const Property& property : sim::Part::table().properties()) {
       if (property.kind == PropertyKind::state) add(part, property);
     }
   }
@@ -268,4 +268,4 @@ TEST_F(PresetCapturerTest, ReusesUnchangedSubtrees) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -11,7 +11,7 @@
 #include "base/random.h"
 #include "support/skip.h"
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 // a preset with properties of every type
@@ -182,4 +182,4 @@ TEST_F(PresetText, ReadsAHundredMegabytes) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,7 +6,7 @@
 #include "engine/everything.h"
 #include "engine/random_values.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::vector<double> persistent_values(Show& show) {
@@ -409,4 +409,4 @@ TEST(Presets, StoresGroupsAndMembersSeparately) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

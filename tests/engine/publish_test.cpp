@@ -3,7 +3,7 @@
 
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 void expect_numbers(const Snapshot& snapshot, std::uint32_t at, const std::vector<double>& values,
@@ -30,7 +30,7 @@ TEST(Publisher, ASnapshotContainsTheValuesOfTheStore) {
   const char* const names[] = {"arm", "1", "floor"};
   for (std::size_t b = 0; b < 3; b++) {
     const BodyEntry& body = snapshot->body_list->bodies[b];
-    const Body& live_body = *rig.world.bodies()[b];
+    const sim::Body& live_body = *rig.world.bodies()[b];
     EXPECT_EQ(body.name, names[b]);
     EXPECT_EQ(snapshot->transient.at(body.enabled_offset), 1);
     ASSERT_EQ(body.joint_offsets.size(), live_body.joints().size());
@@ -123,4 +123,4 @@ TEST(Publisher, ADisabledBodyIsMarked) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "properties/store.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 /// Uses the setter; values that an object rejects stay. Returns the number of values set.
 inline int set_random_values(Store& store, Random& random) {
@@ -25,4 +25,4 @@ inline int set_random_values(Store& store, Random& random) {
   return count;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 namespace fs = std::filesystem;
@@ -165,4 +165,4 @@ TEST_F(RecoveryFileTest, ReportsAFolderThatCannotBeCreated) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

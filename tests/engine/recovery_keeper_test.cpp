@@ -8,7 +8,7 @@
 #include "engine/edited.h"
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kRecoverScene = R"(
@@ -207,4 +207,4 @@ TEST(Recovery, DoesNotChangeTheSimulation) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -2,7 +2,7 @@
 #include "engine/edited.h"
 #include "sim/behavior/behavior_list.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kBehaviorShow = R"(
@@ -28,18 +28,18 @@ constexpr const char* kCount = R"(return behavior {
 EditedShow make_show() { return EditedShow(kBehaviorShow, {{"behaviors_lua/count.lua", kCount}}); }
 
 double value(EditedShow& edited, const std::string& body, const std::string& behavior, const std::string& property) {
-  const Behavior& b = *edited.body(body).behaviors().find(behavior);
+  const sim::Behavior& b = *edited.body(body).behaviors().find(behavior);
   double out[4] = {};
   b.store().get(b.id(), b.store().table(b.id()).at(property), out);
   return out[0];
 }
 void override_value(EditedShow& edited, const std::string& body, const std::string& behavior,
                     const std::string& property, double value) {
-  const Behavior& b = *edited.body(body).behaviors().find(behavior);
+  const sim::Behavior& b = *edited.body(body).behaviors().find(behavior);
   ASSERT_TRUE(b.store().set(b.id(), property, {&value, 1}).ok());
 }
 double step_count(EditedShow& edited) {
-  return 1000 * edited.world().store().values(edited.part("b1", "p").id(), Part::table().at("friction"))[0];
+  return 1000 * edited.world().store().values(edited.part("b1", "p").id(), sim::Part::table().at("friction"))[0];
 }
 
 TEST(ReloadBehaviors, UnchangedDeclarationsKeepOverrides) {
@@ -198,4 +198,4 @@ TEST(ReloadBehaviors, ABrokenFileChangesNothingAndAFixedOneIsApplied) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

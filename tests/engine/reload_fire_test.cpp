@@ -4,7 +4,7 @@
 #include "base/random.h"
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // `stone` and `arm` are the same in every good version; everything else is added, removed and changed
@@ -142,4 +142,4 @@ TEST(ReloadUnderLoad, SurvivesResetsDuringSaves) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -3,7 +3,7 @@
 
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kGearShow = R"(
@@ -20,7 +20,7 @@ local gear = sim:add_gear(body:joint("j1"), body:joint("j2"), 2, { name = "gear"
 --MORE
 )";
 
-Gear* gear_of(EditedShow& edited, const char* name = "gear") { return edited.world().gears().find(name); }
+sim::Gear* gear_of(EditedShow& edited, const char* name = "gear") { return edited.world().gears().find(name); }
 double angle(EditedShow& edited, const char* joint) { return edited.body("train").find_joint(joint)->value(); }
 
 TEST(ReloadGears, AnEditThatChangesNothingChangesNoBit) {
@@ -87,4 +87,4 @@ TEST(ReloadGears, ARemovedOneIsAddedAgain) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -4,7 +4,7 @@
 #include "engine/edited.h"
 #include "sim/bullet/collision_filter.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kPairsShow = R"(
@@ -18,9 +18,9 @@ osc:on("/include", function() three:include_pair("a", "b") end)
 osc:on("/exclude", function() three:exclude_pair("a", "c") end)
 )";
 
-std::string pairs_of(const Body& body) {
+std::string pairs_of(const sim::Body& body) {
   std::string text;
-  for (const PartPair& pair : body.pairs().list()) {
+  for (const sim::PartPair& pair : body.pairs().list()) {
     if (pair.excluded()) text += body.parts()[pair.a]->name() + body.parts()[pair.b]->name() + " ";
   }
   return text;
@@ -77,11 +77,11 @@ TEST(ReloadPairs, GroupsAreProperties) {
       edited.edit("--EDIT", "sim.collision_groups = { 'one', 'two' }\nthree:part('a').collision_group = 'two'\n--EDIT"),
       SceneReloader::ApplyResult::applied);
   edited.show().ticks(1);
-  EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 2);
+  EXPECT_EQ(sim::bullet::CollisionFilter::of(edited.part("three", "a").rigid()).group, 2);
   EXPECT_EQ(edited.edit("{ 'one', 'two' }", "{ 'one', 'more', 'two' }"), SceneReloader::ApplyResult::applied);
   edited.show().ticks(1);
-  EXPECT_EQ(CollisionFilter::of(edited.part("three", "a").rigid()).group, 4);
+  EXPECT_EQ(sim::bullet::CollisionFilter::of(edited.part("three", "a").rigid()).group, 4);
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

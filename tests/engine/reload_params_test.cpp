@@ -1,7 +1,7 @@
 // A scene's own parameters in a reload, and those that run the scene again.
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -163,4 +163,4 @@ TEST(Rerun, IsDeterministic) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

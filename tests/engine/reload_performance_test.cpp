@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kHeavyShow = R"(
@@ -190,7 +190,7 @@ TEST(ReloadModels, FilesOfTheRunAreListed) {
                      {"scripts/lib/dance.lua", "require 'dance.steps'"},
                      {"scripts/lib/dance/steps.lua", ""}});
   const auto has = [&](const std::string& name) {
-    for (const SourceFile& file : edited.show().engine.files()) {
+    for (const script::SourceFile& file : edited.show().engine.files()) {
       if (file.path == edited.folder.path(name)) return true;
     }
     return false;
@@ -225,7 +225,7 @@ TEST(ReloadModels, ListedFilesHaveTheContentsThatWereRead) {
             "endfacet\nendsolid s\n")};
   const auto hashes_of_files = [&](const Engine& engine) {
     std::map<std::string, std::uint64_t> all;
-    for (const SourceFile& file : engine.files()) {
+    for (const script::SourceFile& file : engine.files()) {
       if (file.content) all[file.path] = *file.content;
     }
     return all;
@@ -251,4 +251,4 @@ sim:load_urdf('urdf/crane.urdf')
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

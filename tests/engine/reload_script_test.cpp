@@ -1,7 +1,7 @@
 // Callbacks, timers and handlers are removed with their run; handles and `state` persist; a failed run has no effect.
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -259,4 +259,4 @@ TEST(ReloadScript, TimeIsLiveAtTheTopLevel) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

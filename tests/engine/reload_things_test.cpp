@@ -3,7 +3,7 @@
 
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kThingsShow = R"(
@@ -52,7 +52,7 @@ more:add_part("more", sim:add_box_shape("box", vec3(1, 1, 1)), { position = vec3
   EXPECT_EQ(edited.body("arm").find_joint("elbow")->id(), elbow);
   for (const char* name : {"base", "upper", "tip"})
     EXPECT_EQ(motion_of(edited.part("arm", name)), motion_of(control.part("arm", name))) << name;
-  EXPECT_EQ(body_hash(edited.body("arm"), 1), body_hash(control.body("arm"), 1));
+  EXPECT_EQ(sim::body_hash(edited.body("arm"), 1), sim::body_hash(control.body("arm"), 1));
 }
 
 TEST(ReloadObjects, AreAddedAndRemoved) {
@@ -177,7 +177,7 @@ TEST(ReloadObjects, AnotherShapeRebuildsTheBodyInPlace) {
 TEST(ReloadObjects, AnotherFrameKeepsAnglesAndSpeeds) {
   EditedShow edited(kThingsShow);
   edited.show().ticks(25);
-  const auto joint = [&](const char* name) -> Joint& { return *edited.body("arm").find_joint(name); };
+  const auto joint = [&](const char* name) -> sim::Joint& { return *edited.body("arm").find_joint(name); };
   const double shoulder = joint("shoulder").value();
   const double elbow = joint("elbow").value();
   const double rate = edited.show().read("/physics/body/arm/joint/elbow/speed");
@@ -201,7 +201,7 @@ TEST(ReloadObjects, AnotherJointTypeStartsAtItsStartPose) {
   const Pose upper = edited.part("arm", "upper").pose();
   edited.edit(R"("tip", { position = vec3(0.4, 0, 1), axis = kAxis })",
               R"("tip", { position = vec3(0.4, 0, 1), axis = kAxis, type = "prismatic" })");
-  EXPECT_EQ(edited.body("arm").find_joint("elbow")->type(), JointType::prismatic);
+  EXPECT_EQ(edited.body("arm").find_joint("elbow")->type(), model::JointType::prismatic);
   EXPECT_EQ(edited.part("arm", "upper").pose().position, upper.position);
   // at its start pose: 0.4 m along the upper arm's own x
   const Vec3 tip = edited.part("arm", "tip").pose().position;
@@ -250,4 +250,4 @@ heap:part("p2").position = vec3(2, 0, 1)
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

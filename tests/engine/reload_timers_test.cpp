@@ -3,7 +3,7 @@
 #include "engine/taken.h"
 #include "script/scene/earlier_runs.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Texts = std::vector<std::string>;
@@ -309,7 +309,7 @@ TEST(ReloadTimers, TheNumberOfEarlierRunsIsLimited) {
   const std::string scene = "osc:on('/go', function(n) sim:every(0.01, function() osc:send('/beat', n) end) end)";
   EditedShow edited(scene);
   constexpr int kExtraRuns = 3;
-  constexpr auto kMaxEarlierRuns = static_cast<int>(EarlierRuns::kMaxRuns);
+  constexpr auto kMaxEarlierRuns = static_cast<int>(script::EarlierRuns::kMaxRuns);
   const std::uint64_t seen = log_newest();
   for (int i = 0; i < kMaxEarlierRuns + kExtraRuns; i++) {
     edited.show().send("/go", i);
@@ -392,4 +392,4 @@ TEST(ReloadTimers, ParametersSetByAConsoleSurviveAReset) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

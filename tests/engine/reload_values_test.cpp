@@ -3,7 +3,7 @@
 #include "engine/edited.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kArm = R"(
@@ -156,4 +156,4 @@ TEST(ReloadValues, AResetUsesTheCurrentFileAndOverrides) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

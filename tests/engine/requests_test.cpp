@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 TEST(SimThreadExecutor, RunsWorkOnTheServingThread) {
@@ -57,4 +57,4 @@ TEST(SimThreadExecutor, ReleasesWaitingCallersAtTheEnd) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

@@ -8,7 +8,7 @@
 #include "base/random.h"
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 // Uses Lua state, timers, coroutines, contacts and generators, and makes them visible by impulses on bodies.
 inline constexpr const char* kRewindScene = R"(
@@ -147,4 +147,4 @@ inline bool replays_identically(Show& show, std::uint64_t tick, TickInputs input
   return true;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

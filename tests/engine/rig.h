@@ -15,7 +15,7 @@
 #include "properties/catalog.h"
 #include "support/world_objects.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 inline Arg arg(double v) { return Arg::of(v); }
 inline Arg arg(int v) { return Arg::of(static_cast<double>(v)); }
@@ -29,40 +29,41 @@ Message message(std::string address, A&&... args) {
   return {std::move(address), {arg(std::forward<A>(args))...}};
 }
 
-inline ShapeModel ball() {
-  ShapeModel model;
-  model.kind = ShapeKind::sphere;
+inline model::ShapeModel ball() {
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::sphere;
   model.radius = 0.05;
   return model;
 }
 
 /// "arm": base (static), upper, lower, tip with the revolute joints shoulder and elbow and the prismatic slide.
 /// "1": base (static) and tip with the revolute joint shoulder. "floor": one static part of that name.
-inline void build_bodies(World& world) {
-  ShapeModel ground;
-  ground.kind = ShapeKind::plane;
-  Shape& sphere = **world.shapes().add("ball", ball());
-  Shape& plane = **world.shapes().add("ground", ground);
+inline void build_bodies(sim::World& world) {
+  model::ShapeModel ground;
+  ground.kind = model::ShapeKind::plane;
+  sim::Shape& sphere = **world.shapes().add("ball", ball());
+  sim::Shape& plane = **world.shapes().add("ground", ground);
   const auto pose = [](double x, double z) { return Pose{{x, 0, z}, quat_identity()}; };
-  const auto add_joint = [](Body& body, const char* name, const char* from, const char* to, JointType type) {
-    Part& child = *body.find_part(to);
-    const Vec3 axis = type == JointType::prismatic ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
-    Joint& joint = **body.add_joint(name, *body.find_part(from), child, type, child.pose().position, axis);
+  const auto add_joint = [](sim::Body& body, const char* name, const char* from, const char* to,
+                            model::JointType type) {
+    sim::Part& child = *body.find_part(to);
+    const Vec3 axis = type == model::JointType::prismatic ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    sim::Joint& joint = **body.add_joint(name, *body.find_part(from), child, type, child.pose().position, axis);
     ASSERT_TRUE(body.add_motor(joint).ok());
   };
-  Body& arm = **world.add_body("arm");
+  sim::Body& arm = **world.add_body("arm");
   ASSERT_TRUE(arm.add_part("base", sphere, 0, pose(0, 1)).ok());
   ASSERT_TRUE(arm.add_part("upper", sphere, 1, pose(0, 1.5)).ok());
   ASSERT_TRUE(arm.add_part("lower", sphere, 1, pose(0, 2)).ok());
   ASSERT_TRUE(arm.add_part("tip", sphere, 1, pose(0, 2.5)).ok());
-  add_joint(arm, "shoulder", "base", "upper", JointType::revolute);
-  add_joint(arm, "elbow", "upper", "lower", JointType::revolute);
-  add_joint(arm, "slide", "lower", "tip", JointType::prismatic);
-  Body& one = **world.add_body("1");
+  add_joint(arm, "shoulder", "base", "upper", model::JointType::revolute);
+  add_joint(arm, "elbow", "upper", "lower", model::JointType::revolute);
+  add_joint(arm, "slide", "lower", "tip", model::JointType::prismatic);
+  sim::Body& one = **world.add_body("1");
   ASSERT_TRUE(one.add_part("base", sphere, 0, pose(3, 1)).ok());
   ASSERT_TRUE(one.add_part("tip", sphere, 1, pose(3, 1.5)).ok());
-  add_joint(one, "shoulder", "base", "tip", JointType::revolute);
-  Body& floor = **world.add_body("floor");
+  add_joint(one, "shoulder", "base", "tip", model::JointType::revolute);
+  sim::Body& floor = **world.add_body("floor");
   ASSERT_TRUE(floor.add_part("floor", plane, 0, pose(0, 0)).ok());
   world.flush();
 }
@@ -70,7 +71,7 @@ inline void build_bodies(World& world) {
 /// Store, world and dispatcher as in the engine, with the bodies above.
 struct Rig {
   Store store;
-  World world{store};
+  sim::World world{store};
   MessageDispatcher dispatcher{world};
 
   Rig() { build_bodies(world); }
@@ -101,4 +102,4 @@ struct Rig {
   }
 };
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -7,7 +7,7 @@
 #include "engine/rig.h"
 #include "engine/seed_table.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Values = std::vector<double>;
@@ -149,8 +149,8 @@ TEST(LegacyMessages, ForceActsForOneTick) {
   Rig rig;
   rig.send("/physics/sim/gravity", 0);
   ASSERT_EQ(rig.send("/physics/motor/mode", "off").kind, Kind::applied);
-  ShapeModel shape = ball();
-  Body& free = **rig.world.add_body("free");
+  model::ShapeModel shape = ball();
+  sim::Body& free = **rig.world.add_body("free");
   ASSERT_TRUE(free.add_part("free", **rig.world.shapes().add("ball 2", shape), 1, {{10, 0, 5}, quat_identity()}).ok());
   EXPECT_EQ(rig.send("/physics/part/force", "free", 0, 6, 0).kind, Kind::applied);
   rig.world.step();
@@ -224,7 +224,7 @@ constexpr LegacyParameter kParameters[] = {
 TEST(LegacyMessages, SetsBehaviorParametersInBothForms) {
   for (const LegacyParameter& p : kParameters) {
     Rig rig;
-    BehaviorList& list = rig.world.behaviors();
+    sim::BehaviorList& list = rig.world.behaviors();
     const bool grouped = list.types().find(p.type)->is_group;
     if (grouped) {
       ASSERT_TRUE(list.add_group(p.type, "it").ok());
@@ -233,7 +233,7 @@ TEST(LegacyMessages, SetsBehaviorParametersInBothForms) {
       ASSERT_TRUE(list.add(*rig.world.find_body("1"), p.type, "it").ok());
     }
     const auto value = [&](const char* body) {
-      const Behavior& behavior = *rig.world.find_body(body)->behaviors().find("it");
+      const sim::Behavior& behavior = *rig.world.find_body(body)->behaviors().find("it");
       std::vector<double> out(3);
       rig.store.get(behavior.id(), *behavior.type().table->find(p.name), out.data());
       return out[p.numbers - 1];
@@ -256,8 +256,9 @@ TEST(LegacyMessages, EveryWritablePropertyHasAMessage) {
   // derived: a property added to a table works at once, without more code
   Rig rig;
   std::set<std::string> listed;
-  for (const PropertyTable* table : {&World::table(), &Part::table(), &Joint::table(), &Motor::table()}) {
-    const std::string element = table == &Part::table() ? "tip" : "elbow";
+  for (const PropertyTable* table :
+       {&sim::World::table(), &sim::Part::table(), &sim::Joint::table(), &sim::Motor::table()}) {
+    const std::string element = table == &sim::Part::table() ? "tip" : "elbow";
     for (const Property& property : table->properties()) {
       const std::string address = MessageDispatcher::legacy_address(*table, property);
       EXPECT_EQ(address.empty(), property.kind == PropertyKind::readout) << property.name;
@@ -266,7 +267,7 @@ TEST(LegacyMessages, EveryWritablePropertyHasAMessage) {
       EXPECT_NE(rig.send(address).kind, Kind::unknown) << address;
       if (!property.writable()) continue;
       Message m{address, {}};
-      if (table != &World::table()) m.args = {arg("arm"), arg(element)};
+      if (table != &sim::World::table()) m.args = {arg("arm"), arg(element)};
       for (std::uint32_t i = 0; i < property.width; i++) m.args.push_back(arg(property.initial[i]));
       const Outcome outcome = rig.dispatcher.execute(m);
       EXPECT_EQ(outcome.kind, Kind::applied) << address << ": " << outcome.error;
@@ -278,4 +279,4 @@ TEST(LegacyMessages, EveryWritablePropertyHasAMessage) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

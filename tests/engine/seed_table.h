@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 struct Address {
   const char* class_name;  // class
@@ -81,4 +81,4 @@ inline std::string legacy_address(const Address& a) {
   return fmt::format("{}/{}/{}", shape ? "/visuals" : "/physics", a.class_name, a.address);
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

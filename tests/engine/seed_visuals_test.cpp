@@ -4,7 +4,7 @@
 #include "engine/rig.h"
 #include "engine/seed_table.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 using Values = std::vector<double>;
@@ -116,4 +116,4 @@ TEST(LegacyVisuals, SuggestsSimilarAddressesAndShapes) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

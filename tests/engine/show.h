@@ -14,7 +14,7 @@
 #include "engine/engine.h"
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 /// A file that is removed at the end of the test.
 class SceneFile {
@@ -121,4 +121,4 @@ inline Result<void> play_take(Show& show, const std::string& take) {
   return played;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -3,7 +3,7 @@
 
 #include "show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // arms that sway, some of them in contact, and heaps of boxes on the same floor
@@ -61,4 +61,4 @@ TEST(ParallelIslands, ManyAddedAndRemovedBodiesGiveTheSameState) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

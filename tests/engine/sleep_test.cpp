@@ -5,7 +5,7 @@
 #include "engine/rewound.h"
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // Two stacks, a hinged beam and a moving ball; a behavior that pushes only when it is switched on.
@@ -106,4 +106,4 @@ TEST(SleepInAShow, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

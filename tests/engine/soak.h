@@ -11,7 +11,7 @@
 
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 struct SoakAction {
   int tick = 0;
@@ -228,4 +228,4 @@ inline void expect_soaks(int ticks, std::uint64_t seed) {
                 << text_of(reduced) << soak(reduced, ticks).fault;
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

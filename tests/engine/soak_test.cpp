@@ -1,7 +1,7 @@
 // A short soak test (the long ones are in tests/long), and reduced lists of actions that have failed once.
 #include "engine/soak.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 TEST(TakeSoak, AFewSecondsReplayExactly) { expect_soaks(200, 1); }
@@ -28,4 +28,4 @@ TEST(TakeSoak, MinimizingFindsTheFailingActions) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

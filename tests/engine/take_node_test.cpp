@@ -1,7 +1,7 @@
 // The node /take while recording, while replaying, and without a take.
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kFalling = R"(
@@ -94,4 +94,4 @@ TEST(TakeNode, CountsCompleteTicksOfATruncatedTake) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -1,7 +1,7 @@
 // Stopped script calls in takes and rewinds: they are not executed again, and every replay terminates.
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // trap() loops forever when it is called for the first time: a stopped call leaves `hits` at 1
@@ -25,8 +25,8 @@ struct TrapFixture {
     log_to_stderr(false);
     folder.write("scripts/scene.lua", kTrap);
     options = fast_options(folder.path("scripts/scene.lua"));
-    options.scene_options.limits.call_ms = 5 * kBudgetScale;
-    options.scene_options.limits.replay_ms = 20 * kBudgetScale;
+    options.scene_options.limits.call_ms = 5 * script::kBudgetScale;
+    options.scene_options.limits.replay_ms = 20 * script::kBudgetScale;
     options.record = folder.path("takes/trap.take");
     std::filesystem::create_directories(folder.path("takes"));
   }
@@ -104,4 +104,4 @@ TEST(TakeStops, PlaybackWithDifferentCallsEnds) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -5,7 +5,7 @@
 #include "engine/takes/writer.h"
 #include "support/skip.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 // without behavior files and models: the take is small enough to test every byte
@@ -369,4 +369,4 @@ TEST(Take, RecordingDoesNotChangeTheSimulation) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -7,7 +7,7 @@
 
 #include "engine/rig.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 bool same_arg(const Arg& a, const Arg& b) {
@@ -181,4 +181,4 @@ TEST(TakeText, RejectsNewerVersions) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

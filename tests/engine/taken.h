@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "engine/edited.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 
 inline constexpr const char* kTakeScene = R"(
 params { { "count", 2, min = 1, max = 3, rerun = true }, { "wind", 0.5, min = 0, max = 2 } }
@@ -76,7 +76,7 @@ inline void write_take_scene(const ShowFolder& folder) {
 
 inline EngineOptions take_options(const ShowFolder& folder) {
   EngineOptions options = fast_options(folder.path("scripts/scene.lua"));
-  options.scene_options.limits.call_ms = 8 * kBudgetScale;
+  options.scene_options.limits.call_ms = 8 * script::kBudgetScale;
   options.scene_options.seed = 7;
   return options;
 }
@@ -184,4 +184,4 @@ inline std::string file_bytes(const std::string& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -6,7 +6,7 @@
 #include "engine/everything.h"
 #include "engine/show.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr int kWriters = 4;
@@ -95,4 +95,4 @@ TEST(Threads, StoppingIsSafeAtAnyMoment) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace limber {
+namespace limber::engine {
 namespace {
 
 TEST(MessageLog, IsEnabledByAWatcher) {
@@ -60,4 +60,4 @@ TEST(MessageLog, FormatsMessages) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::engine

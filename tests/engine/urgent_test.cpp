@@ -1,7 +1,7 @@
 // Urgent requests overtake all waiting commands and act in the next tick; the first second of a panic.
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 constexpr const char* kPanicked = "/physics/sim/panicked";
@@ -364,4 +364,4 @@ TEST(StepAndGet, AQueryAfterAStepIsAnsweredAfterItsTicks) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

@@ -8,7 +8,7 @@
 #include "export/loaded.h"
 #include "export/rig.h"
 
-namespace limber::motion_test {
+namespace limber::exporter::test {
 namespace {
 
 using BvhTest = MotionTest;
@@ -230,4 +230,4 @@ TEST_F(BvhTest, RejectsASecondBodyInOneFile) {
 }
 
 }  // namespace
-}  // namespace limber::motion_test
+}  // namespace limber::exporter::test

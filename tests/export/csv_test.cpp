@@ -3,7 +3,7 @@
 
 #include "export/rig.h"
 
-namespace limber::motion_test {
+namespace limber::exporter::test {
 namespace {
 
 using CsvTest = MotionTest;
@@ -151,4 +151,4 @@ TEST_F(CsvTest, ReportsAFullDiskAndLeavesNoFile) {
 }
 
 }  // namespace
-}  // namespace limber::motion_test
+}  // namespace limber::exporter::test

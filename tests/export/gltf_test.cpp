@@ -9,7 +9,7 @@
 #include "export/loaded.h"
 #include "export/rig.h"
 
-namespace limber::motion_test {
+namespace limber::exporter::test {
 namespace {
 
 using GltfTest = MotionTest;
@@ -207,4 +207,4 @@ TEST_F(GltfTest, ReportsAFullDiskAndLeavesNoFile) {
 }
 
 }  // namespace
-}  // namespace limber::motion_test
+}  // namespace limber::exporter::test

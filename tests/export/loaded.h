@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 
-namespace limber::motion_test {
+namespace limber::exporter::test {
 
 class Loaded {
  public:
@@ -79,4 +79,4 @@ inline double angle_between(const Quat& a, const Quat& b) {
   return 2 * std::acos(std::min(1.0, std::abs(glm::dot(glm::normalize(a), glm::normalize(b)))));
 }
 
-}  // namespace limber::motion_test
+}  // namespace limber::exporter::test

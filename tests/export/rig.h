@@ -18,7 +18,7 @@
 
 #include "export/motion.h"
 
-namespace limber::motion_test {
+namespace limber::exporter::test {
 
 class MotionTest : public ::testing::Test {
  protected:
@@ -104,4 +104,4 @@ inline std::unique_ptr<MotionWriter> opened(Result<std::unique_ptr<MotionWriter>
 
 inline std::string error_text(const Result<void>& result) { return result ? "" : result.error(); }
 
-}  // namespace limber::motion_test
+}  // namespace limber::exporter::test

@@ -20,19 +20,19 @@ namespace {
 using namespace limber;
 
 // a paused world, because requests change nothing
-std::shared_ptr<const ValueSnapshot> make_snapshot() {
+std::shared_ptr<const engine::ValueSnapshot> make_snapshot() {
   log_to_stderr(false);
-  const engine_test::SceneFile file(std::string(engine_test::kEverything) +
-                                    "sim:add_body('a b')\nsim:add_body('c/d%')\n");
-  engine_test::Show show(file.path());
-  return engine_test::make_value_snapshot(show);
+  const engine::test::SceneFile file(std::string(engine::test::kEverything) +
+                                     "sim:add_body('a b')\nsim:add_body('c/d%')\n");
+  engine::test::Show show(file.path());
+  return engine::test::make_value_snapshot(show);
 }
 
 std::optional<std::string> header(std::string_view line) {
   return line == "-" ? std::nullopt : std::optional(std::string(line));
 }
 
-void check(const HttpResponse& answer) {
+void check(const oscquery::HttpResponse& answer) {
   const int s = answer.status;
   must(s == 200 || s == 204 || s == 400 || s == 403 || s == 404 || s == 405);
   if (s == 204) must(answer.body.empty());
@@ -46,24 +46,24 @@ void check(const HttpResponse& answer) {
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::shared_ptr<const ValueSnapshot>& snapshot =
-      *new std::shared_ptr<const ValueSnapshot>(make_snapshot());
-  static const HostInfo info{{"stage", "stage.local"}, 9003};
+  static const std::shared_ptr<const engine::ValueSnapshot>& snapshot =
+      *new std::shared_ptr<const engine::ValueSnapshot>(make_snapshot());
+  static const oscquery::HostInfo info{{"stage", "stage.local"}, 9003};
   std::vector<std::string_view> lines = split({reinterpret_cast<const char*>(data), size}, '\n');
   lines.resize(5, "-");
-  HttpRequest request;
+  oscquery::HttpRequest request;
   request.target = lines[0];
   request.host = header(lines[1]);
   request.origin = header(lines[2]);
   request.accept = lines[3];
   request.method = lines[4];
-  const std::optional<HttpResponse> rejected = reject_unknown_origin(request, info);
-  const std::optional<HttpResponse> direct = respond_without_tree(request, info);
+  const std::optional<oscquery::HttpResponse> rejected = oscquery::reject_unknown_origin(request, info);
+  const std::optional<oscquery::HttpResponse> direct = oscquery::respond_without_tree(request, info);
   if (rejected) must(direct && direct->status == rejected->status && rejected->status >= 400);
   if (direct) {
     check(*direct);
   } else {
-    check(respond_from_tree(request, *snapshot));
+    check(oscquery::respond_from_tree(request, *snapshot));
   }
   return 0;
 }

@@ -11,15 +11,16 @@
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  constexpr std::array kFormats{limber::MeshFormat::stl, limber::MeshFormat::obj, limber::MeshFormat::dae};
+  constexpr std::array kFormats{limber::model::MeshFormat::stl, limber::model::MeshFormat::obj,
+                                limber::model::MeshFormat::dae};
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const limber::Vec3 scale = data[0] % 2 == 0 ? limber::Vec3(1) : limber::Vec3(0.5, -2, 3);
-  const auto mesh = limber::mesh_from_bytes(bytes, kFormats[data[0] / 2 % 3], scale, "fuzz");
+  const auto mesh = limber::model::mesh_from_bytes(bytes, kFormats[data[0] / 2 % 3], scale, "fuzz");
   if (!mesh) {
     limber::must(!mesh.error().empty());
     return 0;
   }
-  const limber::MeshModel& m = **mesh;
+  const limber::model::MeshModel& m = **mesh;
   for (const limber::Vec3& v : m.vertices) limber::must(limber::is_finite(v));
   for (const unsigned t : m.triangles) limber::must(t < m.vertices.size());
   limber::must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);

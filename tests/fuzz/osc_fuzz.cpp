@@ -35,10 +35,10 @@ constexpr std::string_view kHandlers = R"(
 osc:on("/fuzz/*", function(...) osc:send("/heard", select("#", ...)) end)
 osc:on("//mass", function() osc:reply("/heaviest", 1) end)
 )";
-constexpr Endpoint kFrom{0x7f000001, 5000};
+constexpr system::Endpoint kFrom{0x7f000001, 5000};
 constexpr std::uint64_t kPlayEvery = 16;   // inputs between two ticks of the engine
 constexpr std::uint64_t kStepEvery = 128;  // inputs between two steps of physics
-constexpr int kUrgentKinds = static_cast<int>(UrgentKind::take_stop) + 1;
+constexpr int kUrgentKinds = static_cast<int>(engine::UrgentKind::take_stop) + 1;
 constexpr std::uint64_t kRenewEvery = 16384;  // inputs per world
 
 std::uint32_t u32_at(const char* data) {
@@ -63,7 +63,7 @@ std::uint64_t messages_in(const char* data, std::size_t size) {
 std::string scene_file() {
   static const int file = [] {
     const int made = memfd_create("scene", 0);
-    for (const std::string_view text : {std::string_view(engine_test::kEverything), kHandlers}) {
+    for (const std::string_view text : {std::string_view(engine::test::kEverything), kHandlers}) {
       must(write(made, text.data(), text.size()) == static_cast<ssize_t>(text.size()));
     }
     return made;
@@ -71,8 +71,8 @@ std::string scene_file() {
   return "/proc/self/fd/" + std::to_string(file);
 }
 
-EngineOptions options() {
-  EngineOptions options;
+engine::EngineOptions options() {
+  engine::EngineOptions options;
   options.scene = scene_file();
   options.fast = true;
   options.print = false;
@@ -106,10 +106,10 @@ class OscFixture {
 
  private:
   void process_and_check(const char* data, std::size_t size) {
-    const Counters& counters = link_.counters;
+    const engine::Counters& counters = link_.counters;
     const std::uint64_t malformed = counters.malformed;
     const std::uint64_t received = counters.received;
-    const bool valid = packet_fault(data, size) == nullptr;
+    const bool valid = osc::packet_fault(data, size) == nullptr;
     check_codec(data, size, valid);
     receiver_.process(data, size, kFrom);
     // the codec accepts all packets that the validator accepts; rejected packets have no effect
@@ -119,14 +119,14 @@ class OscFixture {
 
   // decodes every input, and valid inputs with oscpack, too: both must agree in both directions
   void check_codec(const char* data, std::size_t size, bool valid) {
-    const Result<Decoded> decoded = decode_packet(data, size);
+    const Result<osc::Decoded> decoded = osc::decode_packet(data, size);
     must(decoded.ok() == valid);
 #if LIMBER_OSCPACK
     if (!valid) return;
-    const Result<Decoded> reference = osc_test::oscpack_reference::decode_packet(data, size);
-    must(reference.ok() && osc_test::same(*decoded, *reference));
+    const Result<osc::Decoded> reference = osc::test::oscpack_reference::decode_packet(data, size);
+    must(reference.ok() && osc::test::same(*decoded, *reference));
     for (const Message& message : decoded->messages)
-      must(std::ranges::equal(encode_message(message, buffer_), oscpack_.message(message)));
+      must(std::ranges::equal(osc::encode_message(message, buffer_), oscpack_.message(message)));
 #endif
   }
 
@@ -149,7 +149,7 @@ class OscFixture {
     engine_.tick();
 
     const Store& store = engine_.store();
-    must(store.values(engine_.world().id(), World::table().at("gravity"))[2] == gravity);
+    must(store.values(engine_.world().id(), sim::World::table().at("gravity"))[2] == gravity);
     if (step) {
       // a reset restarts the tick count
       must(engine_.world().tick() == tick + 1 || engine_.world().tick() <= 1);
@@ -159,7 +159,7 @@ class OscFixture {
   }
 
   void send(const Message& message) {
-    const std::span<const char> packet = encode_message(message, buffer_);
+    const std::span<const char> packet = osc::encode_message(message, buffer_);
     process_and_check(packet.data(), packet.size());
   }
 
@@ -167,12 +167,12 @@ class OscFixture {
   void check_queued_commands() {
     // urgent requests are not in the queue; several are merged into one, and they discard the messages they overtake
     for (int kind = 0; kind < kUrgentKinds; kind++)
-      urgent_ |= link_.command_queue.has_urgent(static_cast<UrgentKind>(kind));
+      urgent_ |= link_.command_queue.has_urgent(static_cast<engine::UrgentKind>(kind));
     link_.command_queue.drain(commands_);
-    for (Command& command : commands_) {
+    for (engine::Command& command : commands_) {
       for (const Message& message : command.messages) {
         must(!message.address.empty() && message.address[0] == '/');
-        must(message.args.size() <= OscLimits::kMessageArguments);
+        must(message.args.size() <= osc::OscLimits::kMessageArguments);
         check_packet(message);
         executed_++;
       }
@@ -182,19 +182,19 @@ class OscFixture {
 
   // checks that a message can be encoded as valid OSC
   void check_packet(const Message& message) {
-    const std::span<const char> packet = encode_message(message, buffer_);
-    must(packet.empty() || packet_fault(packet.data(), packet.size()) == nullptr);
+    const std::span<const char> packet = osc::encode_message(message, buffer_);
+    must(packet.empty() || osc::packet_fault(packet.data(), packet.size()) == nullptr);
   }
 
   void drain_output() { link_.output_queue.drain(outgoing_); }
 
   void check_counters(bool nothing_pending) {
     drain_output();
-    for (const Outgoing& out : outgoing_) {
-      if (out.destination == Outgoing::Destination::error) errors_++;
+    for (const engine::Outgoing& out : outgoing_) {
+      if (out.destination == engine::Outgoing::Destination::error) errors_++;
       check_packet(out.message);
     }
-    const Counters& counters = link_.counters;
+    const engine::Counters& counters = link_.counters;
     // each message is counted exactly once, and each rejection was reported to its sender
     const std::uint64_t accounted =
         executed_ + pongs_ + subscribed_ + tokens_ + rejected_by_receiver_ + counters.dropped;
@@ -204,36 +204,37 @@ class OscFixture {
     must(link_.output_queue.dropped() > 0 || counters.refused + counters.unknown == errors_);
   }
 
-  EngineLink link_;
-  Engine engine_{link_, options()};
+  engine::EngineLink link_;
+  engine::Engine engine_{link_, options()};
   std::int64_t steady_ = 0;
-  NetClock clock_{[this] { return steady_; }, [] { return std::uint64_t{1} << 63; }};
-  Receiver receiver_{link_,
-                     {},
-                     {[this](const Outgoing& out) {
-                        rejected_by_receiver_++;
-                        errors_++;
-                        check_packet(out.message);
-                      },
-                      [this](const CommandOrigin&) { pongs_++; },
-                      [this](const Message& message, const CommandOrigin& origin) {
-                        Result<void> done = subscribers_.handle(message, origin);
-                        subscribed_ += done ? 1 : 0;
-                        return done;
-                      },
-                      [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
-                      [](const Endpoint&, std::size_t) {}, [this](const Message&, const CommandOrigin&) { tokens_++; }},
-                     clock_};
-  Subscribers subscribers_{link_, clock_, [this](const Outgoing& out) {
-                             check_packet(out.message);
-                             return true;
-                           }};
-  PacketBuffer buffer_;
+  osc::NetClock clock_{[this] { return steady_; }, [] { return std::uint64_t{1} << 63; }};
+  osc::Receiver receiver_{
+      link_,
+      {},
+      {[this](const engine::Outgoing& out) {
+         rejected_by_receiver_++;
+         errors_++;
+         check_packet(out.message);
+       },
+       [this](const CommandOrigin&) { pongs_++; },
+       [this](const Message& message, const CommandOrigin& origin) {
+         Result<void> done = subscribers_.handle(message, origin);
+         subscribed_ += done ? 1 : 0;
+         return done;
+       },
+       [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
+       [](const system::Endpoint&, std::size_t) {}, [this](const Message&, const CommandOrigin&) { tokens_++; }},
+      clock_};
+  osc::Subscribers subscribers_{link_, clock_, [this](const engine::Outgoing& out) {
+                                  check_packet(out.message);
+                                  return true;
+                                }};
+  osc::PacketBuffer buffer_;
 #if LIMBER_OSCPACK
-  osc_test::oscpack_reference::Encoder oscpack_;
+  osc::test::oscpack_reference::Encoder oscpack_;
 #endif
-  std::vector<Command> commands_;
-  std::vector<Outgoing> outgoing_;
+  std::vector<engine::Command> commands_;
+  std::vector<engine::Outgoing> outgoing_;
   std::size_t bodies_ = 0;
   std::uint64_t inputs_ = 0;
   std::uint64_t executed_ = 0;

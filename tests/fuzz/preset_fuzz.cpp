@@ -10,12 +10,12 @@ namespace {
 
 using limber::must;
 
-void check_consistent(const limber::Preset& preset) {
+void check_consistent(const limber::engine::Preset& preset) {
   must(preset.values.size() == preset.schema->value_count());
   const auto& nodes = preset.schema->nodes();
   for (std::uint32_t i = 1; i < nodes.size(); i++) {
     must(nodes[i].parent < i);
-    const limber::PresetLayout* const layout = preset.schema->layout(nodes[i]);
+    const limber::engine::PresetLayout* const layout = preset.schema->layout(nodes[i]);
     if (layout == nullptr) continue;
     must(nodes[i].offset + layout->value_count <= preset.values.size());
     for (std::size_t k = 0; k < layout->properties.size(); k++) {
@@ -26,18 +26,18 @@ void check_consistent(const limber::Preset& preset) {
   }
 }
 
-void check_parsed(const limber::Result<limber::ParsedPresets>& read) {
+void check_parsed(const limber::Result<limber::engine::ParsedPresets>& read) {
   if (!read) return must(!read.error().empty());
   for (const auto& preset : read->presets) check_consistent(*preset);
   if (read->presets.size() > 1) {
-    const limber::Blend blend = limber::align(read->presets[0], read->presets[1]);
+    const limber::engine::Blend blend = limber::engine::align(read->presets[0], read->presets[1]);
     check_consistent(*blend.a);
     check_consistent(*blend.b);
     must(blend.a->schema == blend.b->schema);
   }
-  const std::string text = limber::text_of(read->presets);
-  const auto again = limber::parse_presets(text);
-  must(again.ok() && again->problems.empty() && limber::text_of(again->presets) == text);
+  const std::string text = limber::engine::text_of(read->presets);
+  const auto again = limber::engine::parse_presets(text);
+  must(again.ok() && again->problems.empty() && limber::engine::text_of(again->presets) == text);
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void check_parsed(const limber::Result<limber::ParsedPresets>& read) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  check_parsed(limber::parse_presets(bytes));
-  check_parsed(limber::import_pattrstorage(bytes));
+  check_parsed(limber::engine::parse_presets(bytes));
+  check_parsed(limber::engine::import_pattrstorage(bytes));
   return 0;
 }

@@ -19,14 +19,14 @@
 namespace limber {
 
 /// The connection to a client: checks that each frame is valid, and counts values of the seed.
-struct CheckedSink : ClientSink {
+struct CheckedSink : oscquery::ClientSink {
   std::size_t bytes = 0;
   std::uint64_t values = 0;
 
   void send(bool text, std::string frame) override {
     bytes += frame.size();
     if (text) must(nlohmann::json::accept(frame));
-    if (!text) must(packet_fault(frame.data(), frame.size()) == nullptr);
+    if (!text) must(osc::packet_fault(frame.data(), frame.size()) == nullptr);
     if (!text && frame.starts_with("/physics/sim/seed")) values++;
   }
   std::size_t queued_bytes() const override { return bytes; }
@@ -48,14 +48,14 @@ class QueryFixture {
   QueryFixture(const QueryFixture&) = delete;
   QueryFixture& operator=(const QueryFixture&) = delete;
 
-  Client& client() { return client_; }
+  oscquery::QueryClient& client() { return client_; }
   /// Executes pending commands; checks that the other client is notified of a changed value.
   void publish_snapshot() {
     const double seed = static_cast<double>(++seed_);
     show_.link.command_queue.push(
         {{{"/physics/sim/seed", {Arg::of(seed)}}, {"/physics/sim/paused", {Arg::of(true)}}}, {}});
     hub_.request_values();
-    (void)engine_test::make_value_snapshot(show_);
+    (void)engine::test::make_value_snapshot(show_);
     sink_.bytes = other_sink_.bytes = 0;
     const std::uint64_t before = other_sink_.values;
     hub_.on_link_event();
@@ -70,10 +70,11 @@ class QueryFixture {
  private:
   static constexpr std::uint64_t kRenewEvery = 2048;  // inputs per world
 
-  QueryHost host() {
-    QueryHost host;
+  oscquery::QueryHost host() {
+    oscquery::QueryHost host;
     host.encode = [this](const Message& message, std::string_view tags) {
-      const auto packet = tags.empty() ? encode_message(message, buffer_) : encode_tagged(message, tags, buffer_);
+      const auto packet =
+          tags.empty() ? osc::encode_message(message, buffer_) : osc::encode_tagged(message, tags, buffer_);
       return std::string(packet.begin(), packet.end());
     };
     host.process = [this](const CommandOrigin& origin, const std::string& packet) {
@@ -83,16 +84,16 @@ class QueryFixture {
     return host;
   }
 
-  engine_test::SceneFile file_{engine_test::kEverything};
-  engine_test::Show show_{file_.path()};
-  NetClock clock_{[] { return std::int64_t{0}; }, [] { return std::uint64_t{1} << 63; }};
-  Receiver receiver_{show_.link, {}, {[this](const Outgoing& out) { show_.link.push_out(out); }}, clock_};
-  PacketBuffer buffer_;
-  QueryHub hub_{show_.link, host(), {}};
+  engine::test::SceneFile file_{engine::test::kEverything};
+  engine::test::Show show_{file_.path()};
+  osc::NetClock clock_{[] { return std::int64_t{0}; }, [] { return std::uint64_t{1} << 63; }};
+  osc::Receiver receiver_{show_.link, {}, {[this](const engine::Outgoing& out) { show_.link.push_out(out); }}, clock_};
+  osc::PacketBuffer buffer_;
+  oscquery::QueryHub hub_{show_.link, host(), {}};
   CheckedSink sink_;
   CheckedSink other_sink_;
-  Client client_{{CommandSource::oscquery, 1, 1}, sink_, hub_.host()};
-  Client other_{{CommandSource::oscquery, 1, 2}, other_sink_, hub_.host()};
+  oscquery::QueryClient client_{{CommandSource::oscquery, 1, 1}, sink_, hub_.host()};
+  oscquery::QueryClient other_{{CommandSource::oscquery, 1, 2}, other_sink_, hub_.host()};
   std::uint64_t inputs_ = 0;
   std::uint64_t seed_ = 1000;
 };

@@ -20,7 +20,7 @@
 namespace limber {
 namespace {
 
-struct SilentHost : ScriptHost {
+struct SilentHost : script::ScriptHost {
   void send(Message) override {}
   void reply(const CommandOrigin&, Message) override {}
   void send_direct(const CommandOrigin&, Message) override {}
@@ -218,7 +218,7 @@ class Writer {
 };
 
 // checks that the VM still runs valid scripts
-void check_vm_works(Vm& vm) {
+void check_vm_works(script::Vm& vm) {
   constexpr std::string_view kGood = "local n = 0 for i = 1, 100 do n = n + i end return n";
   for (int attempt = 0; attempt < 100; attempt++) {
     must(luaL_loadbuffer(vm.state(), kGood.data(), kGood.size(), "@good") == 0);
@@ -235,25 +235,25 @@ void check_vm_works(Vm& vm) {
 
 void play(std::span<const std::uint8_t> bytes) {
   static Store store;
-  static World world(store);
+  static sim::World world(store);
   world.clear();
   world.restart_time();
   Writer writer(bytes);
-  SceneOptions options;
+  script::SceneOptions options;
   options.limits.call_ms = 0.05 * (1 + writer.byte());
   options.limits.run_ms = 0.2 * (1 + writer.byte());
   options.limits.memory = (std::size_t{3} << 20u) + (std::size_t{writer.byte()} << 15u);
   const bool all_fail = writer.byte() % 4 != 1;
   SilentHost host;
-  ScriptContext context(world, host, options);
+  script::ScriptContext context(world, host, options);
   context.random.set_name("fuzz");
-  Vm vm(context, writer.byte() % 8 == 1 ? VmMode::interpreted : VmMode::compiled);
+  script::Vm vm(context, writer.byte() % 8 == 1 ? script::VmMode::interpreted : script::VmMode::compiled);
   const std::string before =
       "local ball = sim:add_sphere_shape('ball', 0.1) "
       "for i, name in ipairs { 'one', 'two' } do "
       "sim:add_body(name):add_part('p', ball, { position = { i, 0, 1 }, report_contacts = true }) end ";
   context.answer.top_level = 1;
-  ScriptPlace fault;
+  script::ScriptPlace fault;
   (void)vm.run(before + writer.scene(all_fail), "fuzz.lua", fault);
   context.answer.top_level = 0;
   world.flush();

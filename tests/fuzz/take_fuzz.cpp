@@ -14,15 +14,15 @@ namespace {
 
 using limber::must;
 
-void check_round_trip(const limber::RecordedPass& tick) {
-  limber::InputLog log;
-  for (const limber::InputRecord& recorded : tick.messages)
+void check_round_trip(const limber::engine::RecordedPass& tick) {
+  limber::engine::InputLog log;
+  for (const limber::engine::InputRecord& recorded : tick.messages)
     log.record(recorded.message, recorded.origin, recorded.evaluate);
   std::string text;
   log.append_pass(text, tick);
-  limber::InputCodec read;
-  limber::RecordedPass again;
-  must(limber::read_pass(text, read, again));
+  limber::engine::InputCodec read;
+  limber::engine::RecordedPass again;
+  must(limber::engine::read_pass(text, read, again));
   must(again.messages.size() == tick.messages.size() && again.runs.size() == tick.runs.size());
   must(again.motion_hash == tick.motion_hash && again.body_hashes == tick.body_hashes &&
        again.state_hash == tick.state_hash);
@@ -33,15 +33,15 @@ void check_round_trip(const limber::RecordedPass& tick) {
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  auto opened = limber::TakeReader::from_stream(std::make_unique<std::istringstream>(bytes), "fuzz");
+  auto opened = limber::engine::TakeReader::from_stream(std::make_unique<std::istringstream>(bytes), "fuzz");
   if (!opened) {
     must(!opened.error().empty());
     return 0;
   }
-  limber::TakeReader& reader = **opened;
-  for (limber::RecordedPass tick; reader.next(tick);) {
+  limber::engine::TakeReader& reader = **opened;
+  for (limber::engine::RecordedPass tick; reader.next(tick);) {
     check_round_trip(tick);
-    for (const limber::TakeSceneRun& run : tick.runs) {
+    for (const limber::engine::TakeSceneRun& run : tick.runs) {
       must(run.files == 0 || reader.sources(run.files) != nullptr);
       (void)reader.presets(run.files);
     }

@@ -83,8 +83,8 @@ class ScratchShow {
   fs::path scene_;
 };
 
-inline EngineOptions golden_options(int threads) {
-  EngineOptions options;
+inline engine::EngineOptions golden_options(int threads) {
+  engine::EngineOptions options;
   options.scene_options.data_dir = LIMBER_SOURCE_DIR;
   // a time limit for calls would depend on the machine
   options.scene_options.limits.call_ms = 600000;
@@ -108,10 +108,10 @@ class ScenePlay {
 
   Outcome play() {
     log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
-    EngineOptions options = golden_options(threads_);
+    engine::EngineOptions options = golden_options(threads_);
     options.scene = show_.scene();
     if (score_.records_take) options.record = show_.take_path();
-    Engine engine(link_, options);
+    engine::Engine engine(link_, options);
     engine_ = &engine;
     const Result<void> started = engine.start();
     EXPECT_TRUE(started.ok()) << started.error();
@@ -140,9 +140,9 @@ class ScenePlay {
   /// Texts of the /error messages, which answer rejected messages.
   std::string rejections() {
     std::string text;
-    std::vector<Outgoing> out;
+    std::vector<engine::Outgoing> out;
     link_.output_queue.drain(out);
-    for (const Outgoing& each : out) {
+    for (const engine::Outgoing& each : out) {
       if (each.message.address != "/error") continue;
       for (const Arg& arg : each.message.args) text += "\n" + arg.text;
     }
@@ -157,7 +157,7 @@ class ScenePlay {
     if (line.verb == "send" || line.verb == "flood") {
       for (int i = 0; i < line.count; i++) send(line.message);
     } else if (line.verb == "eval") {
-      auto request = std::make_shared<EvaluationRequest>();
+      auto request = std::make_shared<engine::EvaluationRequest>();
       request->text = line.text;
       request->on_result = [](const Evaluation&) {};
       link_.command_queue.push({{}, {CommandSource::console}, std::move(request)});
@@ -176,7 +176,7 @@ class ScenePlay {
       text_.replace(at, line.text.size(), line.replacement);
     }
     show_.write(text_);
-    EXPECT_EQ(engine_->reload_now(), SceneReloader::ApplyResult::applied);
+    EXPECT_EQ(engine_->reload_now(), engine::SceneReloader::ApplyResult::applied);
   }
 
   void check_repeated_hash() {
@@ -188,8 +188,8 @@ class ScenePlay {
   Score score_;
   ScratchShow show_;
   int threads_;
-  EngineLink link_;
-  Engine* engine_ = nullptr;
+  engine::EngineLink link_;
+  engine::Engine* engine_ = nullptr;
   int pass_ = 0;
   std::optional<std::pair<int, std::uint64_t>> expected_hash_;  // a pass and the hash that is expected in it
 };
@@ -197,17 +197,17 @@ class ScenePlay {
 /// Replays a take to its end and compares all its hashes.
 inline Outcome replay(const std::string& take, int threads) {
   log_to_stderr(std::getenv("LIMBER_GOLDEN_LOG") != nullptr);
-  EngineLink link;
-  EngineOptions options = golden_options(threads);
+  engine::EngineLink link;
+  engine::EngineOptions options = golden_options(threads);
   options.replay = take;
-  Engine engine(link, options);
+  engine::Engine engine(link, options);
   const Result<void> started = engine.start();
   EXPECT_TRUE(started.ok()) << started.error();
   if (!started) return {};
   engine.run();
-  const ReplayResult result = engine.replay_result();
-  EXPECT_FALSE(result.diverged_at.has_value()) << limber::text_of(result);
-  EXPECT_TRUE(result.compared && !result.truncated && result.damage.empty()) << limber::text_of(result);
+  const engine::ReplayResult result = engine.replay_result();
+  EXPECT_FALSE(result.diverged_at.has_value()) << limber::engine::text_of(result);
+  EXPECT_TRUE(result.compared && !result.truncated && result.damage.empty()) << limber::engine::text_of(result);
   return {engine.world().tick(), engine.state_hash()};
 }
 

@@ -1,10 +1,10 @@
 // Kills two hundred shows.
 #include "app/crash.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(LongCrash, RecoversTwoHundredKilledShows) { crash(200, 8); }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

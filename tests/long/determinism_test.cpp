@@ -3,7 +3,7 @@
 
 #include "app/determinism.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(LongDeterminism, TwentyProcessesHaveOneHash) {
@@ -24,4 +24,4 @@ TEST(LongDeterminism, TwentyProcessesHaveOneHash) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

@@ -11,23 +11,23 @@
 #include "engine/output/engine_link.h"
 #include "oscquery/web_client.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
-using namespace osc_test;
-using query_test::WebClient;
+using namespace osc::test;
+using oscquery::test::WebClient;
 using Seconds = std::chrono::duration<double>;
 
 constexpr int kSenders = 3;
 constexpr double kDuration = 20;           // s
 constexpr std::size_t kDatagrams = 10000;  // different datagrams, sent repeatedly
 // bytes: the maximum size of the queue, and as much again for commands being carried out
-constexpr double kMaxGrowth = 2.0 * EngineLink::kMaxBytes + 32e6;
+constexpr double kMaxGrowth = 2.0 * engine::EngineLink::kMaxBytes + 32e6;
 
 struct Program {
   TempFolder folder;
   Process running{limber_command({folder.file("s.lua", kFloodScene), "--osc-in", "127.0.0.1:0", "--osc-out", "off"})};
-  Endpoint osc{0x7f000001, 0};
+  system::Endpoint osc{0x7f000001, 0};
   std::uint16_t web = 0;
   int pid = 0;
 
@@ -58,7 +58,7 @@ struct Program {
   }
 };
 
-std::uint64_t send_for(double seconds, const Endpoint& to, std::uint64_t seed) {
+std::uint64_t send_for(double seconds, const system::Endpoint& to, std::uint64_t seed) {
   Flood generator(seed);
   std::vector<std::string> datagrams;
   for (std::size_t i = 0; i < kDatagrams; i++) datagrams.push_back(generator.next());
@@ -78,7 +78,7 @@ std::uint64_t request_counts(const Program& program, FloodSum& sum) {
   for (std::uint64_t request_count = 1; request_count <= 200; request_count++) {
     client.send(program.osc, Bytes().text("/count").str());
     for (auto bytes = client.receive(100); bytes; bytes = client.receive(0)) {
-      const Result<Decoded> decoded = decode_packet(bytes->data(), bytes->size());
+      const Result<osc::Decoded> decoded = osc::decode_packet(bytes->data(), bytes->size());
       if (!decoded || decoded->messages.at(0).address != "/count") continue;
       sum.hits = static_cast<std::uint64_t>(decoded->messages[0].args.at(0).number);
       sum.mutants = static_cast<std::uint64_t>(decoded->messages[0].args.at(1).number);
@@ -141,4 +141,4 @@ TEST(Flood, CountsAndSurvivesThreeSendersForTwentySeconds) {
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

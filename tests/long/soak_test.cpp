@@ -10,7 +10,7 @@
 namespace limber {
 namespace {
 
-using engine_test::Show;
+using engine::test::Show;
 
 constexpr int kMinute = 3600;  // ticks
 constexpr int kHour = 60 * kMinute;
@@ -53,7 +53,7 @@ double resident() {
 }
 
 TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
-  const engine_test::SceneFile scene(busy_scene());
+  const engine::test::SceneFile scene(busy_scene());
   Show show(scene.path());
   double heap_then = 0;
   double resident_then = 0;
@@ -74,7 +74,7 @@ TEST(Soak, MemoryIsFlatFromTheTenthMinuteOfAnHour) {
 }
 
 TEST(Soak, QueriesAndErrorsDoNotChangeTheMotion) {
-  const engine_test::SceneFile scene(busy_scene());
+  const engine::test::SceneFile scene(busy_scene());
   Show quiet(scene.path());
   Show loud(scene.path());
   for (int tick = 0; tick < 10 * kMinute; tick++) {

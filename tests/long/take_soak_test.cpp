@@ -4,7 +4,7 @@
 
 #include "engine/soak.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
@@ -27,4 +27,4 @@ TEST(LongTakeSoak, TenMinutesReplayExactly) {
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

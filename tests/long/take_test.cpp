@@ -1,7 +1,7 @@
 // Ten minutes of floods, reloads, spawned bodies, stopped scripts and morphs, recorded and replayed repeatedly.
 #include "engine/taken.h"
 
-namespace limber::engine_test {
+namespace limber::engine::test {
 namespace {
 
 TEST(LongTake, TenMinutesReplayExactly) {
@@ -12,7 +12,7 @@ TEST(LongTake, TenMinutesReplayExactly) {
   for (int i = 0; i < 10; i++) {
     const ReplayOutcome again = replay_take(take);
     ASSERT_EQ(again.error, "");
-    EXPECT_FALSE(again.result.diverged_at.has_value()) << text_of(again.result);
+    EXPECT_FALSE(again.result.diverged_at.has_value()) << engine::text_of(again.result);
     EXPECT_EQ(again.hash, hash);
   }
 }
@@ -25,10 +25,10 @@ TEST(LongTake, ShowsOfManySeedsReplay) {
     const std::uint64_t hash = record_take(folder, take, 400, seed);
     const ReplayOutcome again = replay_take(take);
     ASSERT_EQ(again.error, "") << seed;
-    EXPECT_FALSE(again.result.diverged_at.has_value()) << seed << ": " << text_of(again.result);
+    EXPECT_FALSE(again.result.diverged_at.has_value()) << seed << ": " << engine::text_of(again.result);
     EXPECT_EQ(again.hash, hash) << seed;
   }
 }
 
 }  // namespace
-}  // namespace limber::engine_test
+}  // namespace limber::engine::test

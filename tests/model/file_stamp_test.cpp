@@ -10,7 +10,7 @@
 #include <fstream>
 #include <string>
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ TEST_F(FileStampTest, HashesARecentFileEvenIfItsTimesAreUnchanged) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

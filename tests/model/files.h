@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-namespace limber::test {
+namespace limber::model::test {
 
 class Files {
  public:
@@ -36,4 +36,4 @@ class Files {
   std::filesystem::path folder_;
 };
 
-}  // namespace limber::test
+}  // namespace limber::model::test

@@ -9,7 +9,7 @@
 #include "model/mesh/mass_properties.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 double uniform(Random& random) { return static_cast<double>(random.next() >> 11) * 0x1p-53; }
@@ -196,4 +196,4 @@ TEST(TriangleDistance, MeasuresToCornersEdgesAndInterior) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 
 #include "model/urdf/import.h"
 
-namespace limber::test {
+namespace limber::model::test {
 
 inline Result<std::shared_ptr<const BodyModel>> try_import(std::string_view text, const ImportOptions& options = {}) {
   static MeshLibrary meshes;
@@ -51,4 +51,4 @@ inline double angle_between(const Quat& a, const Quat& b) {
   return 2 * std::atan2(std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z), std::abs(d.w));
 }
 
-}  // namespace limber::test
+}  // namespace limber::model::test

@@ -6,7 +6,7 @@
 #include "import_text.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 void expect_tensor(const Mat3& a, const Mat3& b, double tolerance) {
@@ -161,4 +161,4 @@ TEST(MassProperties, RaisesSmallMoments) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 #include "model/mesh/triangles.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 std::string read_collada(const std::string& text, MeshSoup* into = nullptr) {
@@ -314,4 +314,4 @@ TEST(MeshCollada, RejectsTooManyInstancedTriangles) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -6,7 +6,7 @@
 #include "files.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 std::string found(const std::string& uri, const std::string& folder, const std::vector<std::string>& packages = {}) {
@@ -78,4 +78,4 @@ TEST(MeshLibrary, ReloadsAChangedFile) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -6,7 +6,7 @@
 #include "import_text.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using MeshResult = Result<std::shared_ptr<const MeshModel>>;
@@ -197,4 +197,4 @@ TEST(MeshLoad, ErrorsNameTheFile) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

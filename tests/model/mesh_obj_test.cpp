@@ -5,7 +5,7 @@
 #include "model/mesh/triangles.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 std::string read_obj(const std::string& text, MeshSoup* into = nullptr) {
@@ -101,4 +101,4 @@ TEST(MeshObj, ErrorsHaveALineAndAFix) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 MeshSoup triangulate(const std::vector<Vec3>& outline) {
@@ -111,4 +111,4 @@ TEST(MeshSoup, IntegersMustFillTheWord) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -10,7 +10,7 @@
 #include "model/mesh/triangles.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 const MeshSoup kTriangle{{0, 0, 0}, {1, 0, 0}, {0, 0.5, -2}};
@@ -123,4 +123,4 @@ TEST(MeshStl, ErrorsHaveALineAndAFix) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

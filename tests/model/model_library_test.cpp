@@ -9,7 +9,7 @@
 #include "files.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 constexpr const char* kRobot =
@@ -103,4 +103,4 @@ TEST(ModelLibrary, ReportsAMissingFileEachTime) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 
 #include "import_text.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 PlacedShape placed_at(ShapeModel shape, const Vec3& position, const Quat& rotation = quat_identity()) {
@@ -231,4 +231,4 @@ TEST(Overlap, BoundsTheWorkForLargeModels) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

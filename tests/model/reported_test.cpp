@@ -9,7 +9,7 @@
 #include "model/problems.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using test::all_problems;
@@ -173,4 +173,4 @@ TEST(Reported, GroupsMessagesByKind) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

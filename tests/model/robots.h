@@ -1,7 +1,7 @@
 // Robots used by several tests of the importer.
 #pragma once
 
-namespace limber::test {
+namespace limber::model::test {
 
 // an upright arm: hinge about z at 1 m, hinge about -y at 2 m, slide along a slanted axis
 inline constexpr const char* kArm = R"(<?xml version="1.0"?>
@@ -31,4 +31,4 @@ inline constexpr const char* kFixed = R"(<robot name="r"><link name="base"/>
 <joint name="weld" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0.4 0 0" rpy="0 0 1.5707963267948966"/></joint>
 <joint name="mark_weld" type="fixed"><parent link="b"/><child link="mark"/><origin xyz="0 0 1"/></joint></robot>)";
 
-}  // namespace limber::test
+}  // namespace limber::model::test

@@ -9,7 +9,7 @@
 #include "import_text.h"
 #include "solids.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 std::optional<PlacedShape> recognize(const test::Solid& s) { return recognize_primitive(convex_hull(s.vertices)); }
@@ -93,4 +93,4 @@ TEST(ShapeRecognition, RejectsOtherSolids) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -12,7 +12,7 @@
 
 #include "import_text.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST(SharedData, NothingAfterABadItemIsLost) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 
-namespace limber::test {
+namespace limber::model::test {
 
 struct Solid {
   std::vector<Vec3> vertices;
@@ -151,4 +151,4 @@ inline std::string dae(const Solid& s, double meter, const std::string& up, cons
                      meter, up, s.vertices.size() * 3, points, s.vertices.size(), s.triangles.size() / 3, faces, node);
 }
 
-}  // namespace limber::test
+}  // namespace limber::model::test

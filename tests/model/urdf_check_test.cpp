@@ -8,7 +8,7 @@
 
 #include "import_text.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using test::all_problems;
@@ -292,4 +292,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

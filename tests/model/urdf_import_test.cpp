@@ -7,7 +7,7 @@
 #include "import_text.h"
 #include "robots.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using test::has_problem;
@@ -181,4 +181,4 @@ TEST(UrdfImport, SameTextGivesTheSameModel) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 #include "import_text.h"
 #include "robots.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using test::has_problem;
@@ -126,4 +126,4 @@ TEST(UrdfMass, RaisesTinyMomentsForTheSolver) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

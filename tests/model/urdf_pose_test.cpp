@@ -9,7 +9,7 @@
 #include "import_text.h"
 #include "robots.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 using test::has_problem;
@@ -136,4 +136,4 @@ TEST(UrdfPose, DropsInvalidMimics) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 
 #include "import_text.h"
 
-namespace limber {
+namespace limber::model {
 namespace {
 
 struct Cleaned {
@@ -120,4 +120,4 @@ TEST(UrdfText, RejectsUnreadableFilesByName) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 #include <urdf_model/model.h>
 #include <urdf_parser/urdf_parser.h>
 
-namespace limber::test {
+namespace limber::model::test {
 
 namespace {
 
@@ -134,4 +134,4 @@ std::vector<std::string> urdfdom_differences(const UrdfFile& file, const std::ve
   return differences;
 }
 
-}  // namespace limber::test
+}  // namespace limber::model::test

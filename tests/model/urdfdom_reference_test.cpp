@@ -11,7 +11,7 @@
 #include "model/urdf/check.h"
 #include "model/xml_text.h"
 
-namespace limber::test {
+namespace limber::model::test {
 namespace {
 
 /// Two links and a joint that use all kinds of elements.
@@ -90,4 +90,4 @@ TEST(UrdfdomReference, FindsDifferences) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::model::test

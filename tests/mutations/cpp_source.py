@@ -105,6 +105,10 @@ def _is_member_initializer(head):
     return colon and re.fullmatch(r"\w+|>", head[-1]) is not None
 
 
+# The namespaces of the modules are not part of a function's name.
+NAMESPACES = re.compile(r"^limber::(sim::(bullet|collision|solver)::|(model|sim|script|engine|osc|oscquery|console|panel|render|exporter|app)::)?")
+
+
 def functions_of(tokens):
     """All functions with a body, in the file's order. Lambdas belong to the function that they are in."""
     found = []
@@ -147,7 +151,7 @@ def functions_of(tokens):
                     i = closing  # the declaration continues
                 elif name is not None:
                     parts = [scope for scope in scopes if scope] + [name]
-                    found.append(Function("::".join(parts).removeprefix("limber::"), begin, i, closing))
+                    found.append(Function(NAMESPACES.sub("", "::".join(parts)), begin, i, closing))
                     i = closing
                     begin = i + 1
                 else:

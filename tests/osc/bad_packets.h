@@ -7,7 +7,7 @@
 
 #include "osc/osc_test_tools.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 
 struct BadPacket {
   const char* description;
@@ -81,4 +81,4 @@ inline std::vector<BadPacket> bad_packets() {
   return list;
 }
 
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 
 inline std::string text_of(std::span<const char> packet) { return {packet.begin(), packet.end()}; }
 
@@ -54,4 +54,4 @@ inline std::string one_float(std::string_view address, float value) {
   return Bytes().text(address).text(",f").f(value).str();
 }
 
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

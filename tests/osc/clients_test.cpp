@@ -14,10 +14,10 @@
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 // A child process with readable output; it is killed by the destructor.
 class Child {
@@ -123,7 +123,7 @@ TEST(Clients, OscdumpReceivesTheStreams) {
   const std::uint16_t port = Client().end().port;
   Child dump({"stdbuf", "-oL", "oscdump", "-L", std::to_string(port)});
   FakeEngine engine;
-  Snapshot world = test_world({{"arm", 1}});
+  engine::Snapshot world = test_world({{"arm", 1}});
   for (std::size_t i = 0; i < world.transient.size(); i++) world.transient[i] = static_cast<double>(i) / 4;
   const auto spare = engine.link.snapshots.acquire_buffer();
   *spare = world;
@@ -141,4 +141,4 @@ TEST(Clients, OscdumpReceivesTheStreams) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -6,10 +6,10 @@
 #include "osc/bad_packets.h"
 #include "osc/same_decoded.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 TEST(Codec, DecodesEveryTypeThatAddressesAccept) {
   const std::string bytes = Bytes()
@@ -85,4 +85,4 @@ TEST(Codec, LimitsDatagramSize) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -11,10 +11,10 @@
 #include "net/osc/packets/validate.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 Decoded decoded(const std::string& bytes) {
   EXPECT_EQ(packet_fault(bytes.data(), bytes.size()), nullptr);
@@ -171,4 +171,4 @@ TEST(Encode, RoundTrips) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

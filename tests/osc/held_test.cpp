@@ -5,15 +5,15 @@
 
 #include "osc/osc_test_tools.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 using Handling = ScheduledCommands::ScheduleResult;
 
 constexpr std::uint64_t kSecond = std::uint64_t{1} << 32;
 
-Command command(double number) { return {{{"/n", {Arg::of(number)}}}, {}}; }
+engine::Command command(double number) { return {{{"/n", {Arg::of(number)}}}, {}}; }
 
 std::vector<double> consume_due(ScheduledCommands& scheduled) {
   std::vector<double> numbers;
@@ -25,7 +25,7 @@ TEST(ScheduledCommands, AcceptsOnlyNearFuture) {
   ManualClock manual_clock;
   const NetClock clock = manual_clock.clock();
   ScheduledCommands scheduled(clock);
-  Command c = command(1);
+  engine::Command c = command(1);
   EXPECT_EQ(scheduled.schedule(1, c), Handling::now);
   EXPECT_EQ(scheduled.schedule(manual_clock.ntp, c), Handling::now);
   EXPECT_EQ(scheduled.schedule(manual_clock.ntp - kSecond, c), Handling::now);
@@ -42,7 +42,7 @@ TEST(ScheduledCommands, LimitsBytes) {
   ScheduledCommands scheduled(clock);
   const std::string large(ScheduledCommands::kMaxBytes / 2, 'x');
   const auto offer = [&] {
-    Command c{{{"/n", {Arg::of(std::string_view(large))}}}, {}};
+    engine::Command c{{{"/n", {Arg::of(std::string_view(large))}}}, {}};
     return scheduled.schedule(manual_clock.ntp + kSecond, c);
   };
   EXPECT_EQ(offer(), Handling::scheduled);
@@ -58,7 +58,7 @@ TEST(ScheduledCommands, OrdersByTagThenArrival) {
   ScheduledCommands scheduled(clock);
   const std::pair<double, double> given[] = {{3, 0.75}, {1, 0.25}, {4, 0.75}, {2, 0.5}};
   for (const auto& [number, seconds] : given) {
-    Command c = command(number);
+    engine::Command c = command(number);
     EXPECT_EQ(scheduled.schedule(manual_clock.ntp + static_cast<std::uint64_t>(seconds * 4294967296.0), c),
               Handling::scheduled);
   }
@@ -78,10 +78,10 @@ TEST(ScheduledCommands, ReportsFullSchedule) {
   const NetClock clock = manual_clock.clock();
   ScheduledCommands scheduled(clock);
   for (std::size_t i = 0; i < 1024; i++) {
-    Command c = command(0);
+    engine::Command c = command(0);
     ASSERT_EQ(scheduled.schedule(manual_clock.ntp + kSecond, c), Handling::scheduled);
   }
-  Command c = command(0);
+  engine::Command c = command(0);
   EXPECT_EQ(scheduled.schedule(manual_clock.ntp + kSecond, c), Handling::full);
   EXPECT_EQ(scheduled.size(), 1024u);
 }
@@ -91,7 +91,7 @@ TEST(ScheduledCommands, SurvivesClockSetBack) {
   ManualClock manual_clock;
   const NetClock clock = manual_clock.clock();
   ScheduledCommands scheduled(clock);
-  Command c = command(1);
+  engine::Command c = command(1);
   ASSERT_EQ(scheduled.schedule(manual_clock.ntp + kSecond, c), Handling::scheduled);
   manual_clock.ntp -= 3600 * kSecond;
   EXPECT_EQ(scheduled.timeout(), 10'000'000'000);
@@ -106,10 +106,10 @@ TEST(ScheduledCommands, LongestTimeoutDoesNotOverflow) {
   ManualClock manual_clock;
   const NetClock clock = manual_clock.clock();
   ScheduledCommands scheduled(clock);
-  Command c = command(1);
+  engine::Command c = command(1);
   ASSERT_EQ(scheduled.schedule(manual_clock.ntp + 10 * kSecond, c), Handling::scheduled);
   EXPECT_EQ(scheduled.timeout(), 10'000'000'000);
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

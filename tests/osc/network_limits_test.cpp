@@ -12,10 +12,10 @@
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 // A Network with a client that appears to be in another network.
 struct RemoteClientFixture {
@@ -64,7 +64,7 @@ TEST(NetworkLimits, LimitsRemoteSenderUntilTokenReturns) {
   }
   fixture.send(Bytes().text("/token").text(",s").text(token.args.at(0).text).str());
   while (fixture.received < 6 * fixture.sent) ASSERT_NE(fixture.next().address, "no reply");
-  EXPECT_GT(fixture.engine.link.health.count(HealthItem::limited), 0u);
+  EXPECT_GT(fixture.engine.link.health.count(engine::HealthItem::limited), 0u);
   log_to_stderr(true);
 }
 
@@ -98,7 +98,7 @@ struct LocalClientFixture {
   }
   CommandOrigin origin() const { return {CommandSource::osc, client.end().ip, client.end().port}; }
   // Sends a marker after all earlier messages of the engine.
-  void send_mark() { engine.push_out({Outgoing::Destination::direct, origin(), {"/mark", {}}}); }
+  void send_mark() { engine.push_out({engine::Outgoing::Destination::direct, origin(), {"/mark", {}}}); }
   std::string next() const {
     const std::optional<std::string> bytes = client.receive();
     return bytes ? std::string(bytes->c_str()) : "nothing";
@@ -116,8 +116,9 @@ TEST(NetworkLimits, NeverSendsToOwnInput) {
   LocalClientFixture fixture;
   const CommandOrigin self{CommandSource::osc, fixture.end.ip, fixture.end.port};
   for (int i = 0; i < 5; i++) {
-    fixture.engine.push_out({Outgoing::Destination::direct, self, {"/loop", {}}});
-    fixture.engine.push_out({Outgoing::Destination::error, self, {"/error", {Arg::of("/loop"), Arg::of("unknown")}}});
+    fixture.engine.push_out({engine::Outgoing::Destination::direct, self, {"/loop", {}}});
+    fixture.engine.push_out(
+        {engine::Outgoing::Destination::error, self, {"/error", {Arg::of("/loop"), Arg::of("unknown")}}});
   }
   fixture.send_mark();
   EXPECT_EQ(fixture.next(), "/mark");
@@ -125,7 +126,7 @@ TEST(NetworkLimits, NeverSendsToOwnInput) {
   ASSERT_TRUE(fixture.engine.wait_for(1));
   EXPECT_EQ(fixture.engine.commands.at(0).messages.at(0).address, "/after");
   EXPECT_EQ(fixture.engine.link.counters.received, 1u);
-  EXPECT_EQ(fixture.engine.link.health.count(HealthItem::loops), 1u);
+  EXPECT_EQ(fixture.engine.link.health.count(engine::HealthItem::loops), 1u);
   EXPECT_EQ(log_count(LogLevel::warning), warnings + 1) << "reported once";
   log_to_stderr(true);
 }
@@ -159,20 +160,20 @@ TEST(NetworkLimits, StopsErrorLoop) {
   log_to_stderr(false);
   const std::uint64_t warnings = log_count(LogLevel::warning);
   LocalClientFixture fixture;
-  const Outgoing error{
-      Outgoing::Destination::error, fixture.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
+  const engine::Outgoing error{
+      engine::Outgoing::Destination::error, fixture.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
   for (const char* answer : {"/Error/", "/failed"}) {
     LocalClientFixture other;
-    const Outgoing fault{
-        Outgoing::Destination::error, other.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
+    const engine::Outgoing fault{
+        engine::Outgoing::Destination::error, other.origin(), {"/error", {Arg::of("/wrong"), Arg::of("unknown")}}};
     other.engine.push_out(fault);
     ASSERT_EQ(other.next(), "/error");
     other.client.send(other.end, Bytes().text(answer).text(",ss").text("/error").text("no such address").str());
     ASSERT_TRUE(other.engine.wait_for(1)) << "it reaches the scene";
     for (int i = 0; i < 3; i++) other.engine.push_out(fault);
-    other.engine.push_out({Outgoing::Destination::direct, other.origin(), {"/mark", {}}});
+    other.engine.push_out({engine::Outgoing::Destination::direct, other.origin(), {"/mark", {}}});
     EXPECT_EQ(other.next(), "/mark") << answer;
-    EXPECT_EQ(other.engine.link.health.count(HealthItem::loops), 1u);
+    EXPECT_EQ(other.engine.link.health.count(engine::HealthItem::loops), 1u);
   }
   EXPECT_EQ(log_count(LogLevel::warning), warnings + 2) << "once each";
   // an /error is no answer if none was sent before, and other faulty messages are always answered
@@ -183,21 +184,21 @@ TEST(NetworkLimits, StopsErrorLoop) {
     EXPECT_EQ(fixture.next(), "/error");
     fixture.client.send(fixture.end, Bytes().text("/wrong").text(",").str());
   }
-  EXPECT_EQ(fixture.engine.link.health.count(HealthItem::loops), 0u);
+  EXPECT_EQ(fixture.engine.link.health.count(engine::HealthItem::loops), 0u);
   log_to_stderr(true);
 }
 
 // docs/osc.md, "Clients": --osc-in 0.0.0.0:9003, --osc-out TABLET:PORT, faders, buttons, /subscribe every 20 s
 TEST(NetworkLimits, DocumentedTouchOscSetupWorks) {
   log_to_stderr(false);
-  const engine_test::SceneFile file(engine_test::kEverything);
-  engine_test::Show show(file.path());
+  const engine::test::SceneFile file(engine::test::kEverything);
+  engine::test::Show show(file.path());
   Client tablet;
   Client receiver;  // the tablet's port for incoming messages
   OscOptions options;
   options.in = *parse_osc_in("0.0.0.0:0");
   options.out = *parse_osc_out("127.0.0.1:" + std::to_string(receiver.end().port));
-  Network network(show.link, options, transient_offsets());
+  Network network(show.link, options, engine::transient_offsets());
   ASSERT_TRUE(network.start().ok());
   const Endpoint end{0x7f000001, network.bound().at(0).port};
   // runs ticks until the client has received such a message
@@ -233,9 +234,9 @@ TEST(NetworkLimits, DocumentedTouchOscSetupWorks) {
   EXPECT_EQ(show.read("/physics/sim/paused"), 1) << "a button that is released";
   show.send("/scene/wind", 5);
   EXPECT_TRUE(comes(tablet, "/scene/wind")) << "set by another controller";
-  EXPECT_EQ(show.link.health.count(HealthItem::limited), 0u);
+  EXPECT_EQ(show.link.health.count(engine::HealthItem::limited), 0u);
   log_to_stderr(true);
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

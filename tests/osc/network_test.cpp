@@ -14,10 +14,10 @@
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 OscOptions options_to(const Client& client, const std::string& more = ",streams=none") {
   OscOptions options;
@@ -26,7 +26,7 @@ OscOptions options_to(const Client& client, const std::string& more = ",streams=
   return options;
 }
 
-void publish(EngineLink& link, Snapshot snapshot) {
+void publish(engine::EngineLink& link, engine::Snapshot snapshot) {
   const auto spare = link.snapshots.acquire_buffer();
   *spare = std::move(snapshot);
   link.snapshots.publish(spare);
@@ -61,7 +61,7 @@ TEST(Network, DeliversMessageWithSender) {
   fixture.client.send(fixture.end,
                       Bytes().text("/physics/part/mass").text(",ssf").text("arm").text("tip").f(0.25f).str());
   ASSERT_TRUE(fixture.engine.wait_for(1));
-  const Command& c = fixture.engine.commands.at(0);
+  const engine::Command& c = fixture.engine.commands.at(0);
   EXPECT_EQ(c.origin.ip, 0x7f000001u);
   EXPECT_EQ(c.origin.port, fixture.client.end().port);
   EXPECT_EQ(c.messages.at(0).address, "/physics/part/mass");
@@ -81,7 +81,7 @@ TEST(Network, ReceivesBurstWithoutLoss) {
   }
   ASSERT_TRUE(fixture.engine.wait_for(count));
   std::uint32_t expected = 0;
-  for (const Command& c : fixture.engine.commands) {
+  for (const engine::Command& c : fixture.engine.commands) {
     for (const Message& m : c.messages) EXPECT_EQ(m.args.at(0).number, static_cast<double>(expected++));
   }
   EXPECT_EQ(fixture.engine.link.counters.received, count);
@@ -111,7 +111,7 @@ TEST(Network, AnswersPingFromLatestSnapshot) {
   fixture.client.send(fixture.end, ping);
   EXPECT_EQ(fixture.client.receive(kTimeoutMs, &from), Bytes().text("/pong").text(",if").u32(0).f(0).str());
   EXPECT_EQ(from, fixture.end);
-  Snapshot s;
+  engine::Snapshot s;
   s.tick = 77;
   s.time = 1.25;
   publish(fixture.engine.link, s);
@@ -124,12 +124,13 @@ TEST(Network, SendsEngineReplies) {
   fixture.client.send(fixture.end, numbered(1));
   ASSERT_TRUE(fixture.engine.wait_for(1));
   const CommandOrigin origin = fixture.engine.commands[0].origin;
-  fixture.engine.push_out({Outgoing::Destination::error, origin, {"/error", {Arg::of("/n"), Arg::of("unknown")}}});
+  fixture.engine.push_out(
+      {engine::Outgoing::Destination::error, origin, {"/error", {Arg::of("/n"), Arg::of("unknown")}}});
   Endpoint from;
   EXPECT_EQ(fixture.client.receive(kTimeoutMs, &from),
             Bytes().text("/error").text(",ss").text("/n").text("unknown").str());
   EXPECT_EQ(from, fixture.end) << "the answer comes from where the question went";
-  fixture.engine.push_out({Outgoing::Destination::targets, {}, {"/pulse", {Arg::of(1.0)}}});
+  fixture.engine.push_out({engine::Outgoing::Destination::targets, {}, {"/pulse", {Arg::of(1.0)}}});
   EXPECT_EQ(fixture.target.receive(), Bytes().text("/pulse").text(",f").f(1).str());
 }
 
@@ -148,7 +149,7 @@ TEST(Network, DeliversScheduledBundle) {
 
 TEST(Network, StreamsFrames) {
   NetworkFixture fixture(",rate=1000,streams=pos");
-  const Snapshot s = test_world({{"arm", 2}});
+  const engine::Snapshot s = test_world({{"arm", 2}});
   publish(fixture.engine.link, s);
   for (int i = 0; i < 20; i++) {
     const auto frame = fixture.target.receive();
@@ -271,7 +272,7 @@ TEST(Network, RetriesFailedLookUp) {
   const std::uint64_t newest = log_newest();
   known = true;
   for (int i = 0; i < kMaxPasses && network.status_lines().at(1) == "OSC out off"; i++) pass();
-  engine.push_out({Outgoing::Destination::targets, {}, {"/there", {}}});
+  engine.push_out({engine::Outgoing::Destination::targets, {}, {"/there", {}}});
   EXPECT_EQ(client.receive(), Bytes().text("/there").text(",").str());
   network.stop();
   int warnings = 0;
@@ -312,7 +313,7 @@ TEST(Network, PortInUseIsErrorUnlessOptional) {
   Network network(engine.link, options, kTestOffsets);
   ASSERT_TRUE(network.start().ok());
   EXPECT_TRUE(network.bound().empty());
-  engine.push_out({Outgoing::Destination::targets, {}, {"/still", {}}});
+  engine.push_out({engine::Outgoing::Destination::targets, {}, {"/still", {}}});
   EXPECT_EQ(holder.receive(), Bytes().text("/still").text(",").str());
   log_to_stderr(true);
 }
@@ -338,7 +339,7 @@ TEST(Network, StartsAndStopsRepeatedly) {
     Network network(engine.link, options, kTestOffsets);
     ASSERT_TRUE(network.start().ok());
     port = network.bound().at(0).port;
-    engine.push_out({Outgoing::Destination::targets, {}, {"/last", {Arg::of(static_cast<double>(i))}}});
+    engine.push_out({engine::Outgoing::Destination::targets, {}, {"/last", {Arg::of(static_cast<double>(i))}}});
     network.stop();
     network.stop();
     EXPECT_EQ(client.receive(), Bytes().text("/last").text(",f").f(static_cast<float>(i)).str());
@@ -347,4 +348,4 @@ TEST(Network, StartsAndStopsRepeatedly) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
 TEST(OscIn, ParsesValues) {
@@ -130,4 +130,4 @@ TEST(OscConfigs, FormatsTarget) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -19,7 +19,7 @@
 #include "net/osc/endpoint.h"
 #include "osc/bytes.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 
 /// Timeout of all waits; reached only by failing tests.
 inline constexpr int kTimeoutMs = 20000;
@@ -96,22 +96,22 @@ class FakeEngine {
     }
   }
   void collect() {
-    std::vector<Command> batch;
+    std::vector<engine::Command> batch;
     link.command_queue.drain(batch);
-    for (Command& c : batch) commands.push_back(std::move(c));
+    for (engine::Command& c : batch) commands.push_back(std::move(c));
   }
   std::size_t count() const {
     std::size_t n = 0;
-    for (const Command& c : commands) n += c.messages.size();
+    for (const engine::Command& c : commands) n += c.messages.size();
     return n;
   }
-  void push_out(Outgoing out) {
+  void push_out(engine::Outgoing out) {
     link.output_queue.push(std::move(out));
     link.wake_network();
   }
 
-  EngineLink link;
-  std::vector<Command> commands;
+  engine::EngineLink link;
+  std::vector<engine::Command> commands;
 
  private:
   std::mutex mutex_;
@@ -119,4 +119,4 @@ class FakeEngine {
   bool notified_ = false;
 };
 
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

@@ -19,31 +19,31 @@
 #include "net/osc/packets/wire.h"
 #include "osc/bad_packets.h"
 
-namespace limber::osc_test::oscpack_reference {
+namespace limber::osc::test::oscpack_reference {
 
 // Its int32 is `long` on all processors except x86, so that it writes and reads wrong packets on 64-bit ones.
-static_assert(sizeof(osc::int32) == 4 && sizeof(osc::int64) == 8);
+static_assert(sizeof(::osc::int32) == 4 && sizeof(::osc::int64) == 8);
 
-inline Arg argument_of(const osc::ReceivedMessageArgument& a) {
+inline Arg argument_of(const ::osc::ReceivedMessageArgument& a) {
   switch (a.TypeTag()) {
-    case osc::INT32_TYPE_TAG:
+    case ::osc::INT32_TYPE_TAG:
       return Arg::of(static_cast<double>(a.AsInt32Unchecked()));
-    case osc::INT64_TYPE_TAG:
+    case ::osc::INT64_TYPE_TAG:
       return Arg::of(static_cast<double>(a.AsInt64Unchecked()));
-    case osc::FLOAT_TYPE_TAG:
+    case ::osc::FLOAT_TYPE_TAG:
       return Arg::of(static_cast<double>(a.AsFloatUnchecked()));
-    case osc::DOUBLE_TYPE_TAG:
+    case ::osc::DOUBLE_TYPE_TAG:
       return Arg::of(a.AsDoubleUnchecked());
-    case osc::TRUE_TYPE_TAG:
-    case osc::INFINITUM_TYPE_TAG:
+    case ::osc::TRUE_TYPE_TAG:
+    case ::osc::INFINITUM_TYPE_TAG:
       return Arg::of(true);
-    case osc::FALSE_TYPE_TAG:
+    case ::osc::FALSE_TYPE_TAG:
       return Arg::of(false);
-    case osc::STRING_TYPE_TAG:
+    case ::osc::STRING_TYPE_TAG:
       return Arg::of(a.AsStringUnchecked());
-    case osc::SYMBOL_TYPE_TAG:
+    case ::osc::SYMBOL_TYPE_TAG:
       return Arg::of(a.AsSymbolUnchecked());
-    case osc::CHAR_TYPE_TAG: {
+    case ::osc::CHAR_TYPE_TAG: {
       const char c = a.AsCharUnchecked();
       return Arg::of(std::string_view(&c, 1));
     }
@@ -52,7 +52,7 @@ inline Arg argument_of(const osc::ReceivedMessageArgument& a) {
   }
 }
 
-inline void add_message(const osc::ReceivedMessage& received, Decoded& out) {
+inline void add_message(const ::osc::ReceivedMessage& received, Decoded& out) {
   Message message{received.AddressPattern(), {}};
   bool rejected = false;
   int level = 0;
@@ -68,12 +68,12 @@ inline void add_message(const osc::ReceivedMessage& received, Decoded& out) {
   }
 }
 
-inline void add_bundle(const osc::ReceivedBundle& bundle, Decoded& out) {
+inline void add_bundle(const ::osc::ReceivedBundle& bundle, Decoded& out) {
   for (auto element = bundle.ElementsBegin(); element != bundle.ElementsEnd(); ++element) {
     if (element->IsBundle()) {
-      add_bundle(osc::ReceivedBundle(*element), out);
+      add_bundle(::osc::ReceivedBundle(*element), out);
     } else {
-      add_message(osc::ReceivedMessage(*element), out);
+      add_message(::osc::ReceivedMessage(*element), out);
     }
   }
 }
@@ -83,13 +83,13 @@ inline void add_bundle(const osc::ReceivedBundle& bundle, Decoded& out) {
 inline Result<Decoded> decode_packet(const char* data, std::size_t size) {
   try {
     Decoded decoded;
-    const osc::ReceivedPacket packet(data, static_cast<osc::osc_bundle_element_size_t>(size));
+    const ::osc::ReceivedPacket packet(data, static_cast<::osc::osc_bundle_element_size_t>(size));
     if (packet.IsBundle()) {
-      const osc::ReceivedBundle bundle(packet);
+      const ::osc::ReceivedBundle bundle(packet);
       decoded.time_tag = std::max<std::uint64_t>(bundle.TimeTag(), 1);  // 0 is undefined, and treated as now
       add_bundle(bundle, decoded);
     } else {
-      add_message(osc::ReceivedMessage(packet), decoded);
+      add_message(::osc::ReceivedMessage(packet), decoded);
     }
     return decoded;
   } catch (const std::exception& e) {
@@ -102,32 +102,32 @@ class Writer {
  public:
   Writer(char* buffer, std::size_t size) : out_(buffer, size) {}
 
-  void begin_bundle(std::uint64_t time_tag) { out_ << osc::BeginBundle(time_tag); }
-  void end_bundle() { out_ << osc::EndBundle; }
-  void begin_message(const char* address, std::size_t /*tags*/) { out_ << osc::BeginMessage(address); }
-  void end_message() { out_ << osc::EndMessage; }
-  void int32(std::int32_t value) { out_ << osc::int32{value}; }
-  void int64(std::int64_t value) { out_ << osc::int64{value}; }
+  void begin_bundle(std::uint64_t time_tag) { out_ << ::osc::BeginBundle(time_tag); }
+  void end_bundle() { out_ << ::osc::EndBundle; }
+  void begin_message(const char* address, std::size_t /*tags*/) { out_ << ::osc::BeginMessage(address); }
+  void end_message() { out_ << ::osc::EndMessage; }
+  void int32(std::int32_t value) { out_ << ::osc::int32{value}; }
+  void int64(std::int64_t value) { out_ << ::osc::int64{value}; }
   void float32(float value) { out_ << value; }
   void float64(double value) { out_ << value; }
   void boolean(bool value) { out_ << value; }
-  void nil() { out_ << osc::OscNil; }
-  void infinitum() { out_ << osc::Infinitum; }
+  void nil() { out_ << ::osc::OscNil; }
+  void infinitum() { out_ << ::osc::Infinitum; }
   void string(const char* text) { out_ << text; }
-  void symbol(const char* text) { out_ << osc::Symbol(text); }
+  void symbol(const char* text) { out_ << ::osc::Symbol(text); }
   void character(char value) { out_ << value; }
-  void color(std::uint32_t rgba) { out_ << osc::RgbaColor(rgba); }
-  void midi(std::uint32_t message) { out_ << osc::MidiMessage(message); }
-  void time_tag(std::uint64_t ntp) { out_ << osc::TimeTag(ntp); }
+  void color(std::uint32_t rgba) { out_ << ::osc::RgbaColor(rgba); }
+  void midi(std::uint32_t message) { out_ << ::osc::MidiMessage(message); }
+  void time_tag(std::uint64_t ntp) { out_ << ::osc::TimeTag(ntp); }
   void blob(std::string_view bytes) {
-    out_ << osc::Blob(bytes.data(), static_cast<osc::osc_bundle_element_size_t>(bytes.size()));
+    out_ << ::osc::Blob(bytes.data(), static_cast<::osc::osc_bundle_element_size_t>(bytes.size()));
   }
-  void begin_array() { out_ << osc::BeginArray; }
-  void end_array() { out_ << osc::EndArray; }
+  void begin_array() { out_ << ::osc::BeginArray; }
+  void end_array() { out_ << ::osc::EndArray; }
   std::span<const char> packet() const { return {out_.Data(), out_.Size()}; }
 
  private:
-  osc::OutboundPacketStream out_;
+  ::osc::OutboundPacketStream out_;
 };
 
 /// Encodes messages into a buffer that each call overwrites.
@@ -224,4 +224,4 @@ class Encoder {
   std::array<char, 2 * kMaxPacketSize> buffer_;
 };
 
-}  // namespace limber::osc_test::oscpack_reference
+}  // namespace limber::osc::test::oscpack_reference

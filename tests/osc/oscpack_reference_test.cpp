@@ -14,10 +14,10 @@
 #include "osc/oscpack_reference.h"
 #include "osc/same_decoded.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 // Writes the same random packet with both writers.
 class RandomPacket {
@@ -251,4 +251,4 @@ TEST(OscpackReference, EncodesTheSameMessages) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -48,10 +48,10 @@ extern "C" int sendmmsg(int fd, mmsghdr* messages, unsigned count, int flags) {
   return static_cast<int>(syscall(SYS_sendmmsg, fd, messages, count, flags));
 }
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 OscOptions options_to_ports(std::vector<std::uint16_t> ports, const std::string& more) {
   OscOptions options;
@@ -71,7 +71,7 @@ bool wait_until(const std::function<bool()>& condition) {
   return true;
 }
 
-void publish_world(EngineLink& link) {
+void publish_world(engine::EngineLink& link) {
   const auto spare = link.snapshots.acquire_buffer();
   *spare = test_world({{"arm", 2}});
   link.snapshots.publish(spare);
@@ -96,7 +96,7 @@ TEST(Outage, RecoversFromNetworkOutage) {
   EXPECT_EQ(engine.link.counters.unsent, 0u);
 
   unreachable_port = port;
-  engine.push_out({Outgoing::Destination::targets, {}, {"/lost", {}}});
+  engine.push_out({engine::Outgoing::Destination::targets, {}, {"/lost", {}}});
   ASSERT_TRUE(wait_until([&] { return engine.link.counters.unsent >= 20; }));
   while (target.receive(0)) continue;
   EXPECT_EQ(log_count_of(before, "Network is unreachable"), 2) << "once for the stream, once for the message";
@@ -105,7 +105,7 @@ TEST(Outage, RecoversFromNetworkOutage) {
 
   unreachable_port = 0;
   EXPECT_TRUE(target.receive()) << "frames come again by themselves";
-  engine.push_out({Outgoing::Destination::targets, {}, {"/found", {}}});
+  engine.push_out({engine::Outgoing::Destination::targets, {}, {"/found", {}}});
   const std::string found = Bytes().text("/found").text(",").str();
   std::optional<std::string> got = target.receive();
   while (got && *got != found) got = target.receive();
@@ -136,7 +136,7 @@ TEST(Outage, ReportsUnreachableTargetOnceAndKeepsSending) {
 
   // all messages sent between failed datagrams arrive
   for (int i = 0; i < 200; i++)
-    engine.push_out({Outgoing::Destination::targets, {}, {"/n", {Arg::of(static_cast<double>(i))}}});
+    engine.push_out({engine::Outgoing::Destination::targets, {}, {"/n", {Arg::of(static_cast<double>(i))}}});
   double expected = 0;
   const auto late = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTimeoutMs);
   while (expected < 200 && std::chrono::steady_clock::now() < late) {
@@ -260,4 +260,4 @@ TEST(Outage, ToleratesWrongClocks) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

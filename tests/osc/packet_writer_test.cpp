@@ -11,10 +11,10 @@
 #include "net/osc/packets/validate.h"
 #include "osc/bytes.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 std::string written(std::size_t size, const std::function<void(PacketWriter&)>& write) {
   // an allocation of exact size, so that the address sanitizer reports writes past the end
@@ -156,4 +156,4 @@ TEST(PacketWriter, RejectsCallsInTheWrongOrder) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

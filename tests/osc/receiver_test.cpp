@@ -13,10 +13,10 @@
 #include "base/system/process.h"
 #include "osc/bad_packets.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 constexpr Endpoint kFrom{0xc0a80107u, 5000};  // 192.168.1.7
 
@@ -24,7 +24,7 @@ constexpr Endpoint kFrom{0xc0a80107u, 5000};  // 192.168.1.7
 struct ReceiverFixture {
   explicit ReceiverFixture(std::vector<Cidr> allow = {})
       : receiver(engine.link, std::move(allow),
-                 {[this](const Outgoing& out) { errors.push_back(out); },
+                 {[this](const engine::Outgoing& out) { errors.push_back(out); },
                   [this](const CommandOrigin& o) { pongs.push_back(o); }},
                  clock) {}
 
@@ -37,7 +37,7 @@ struct ReceiverFixture {
   std::vector<double> numbers() {
     engine.collect();
     std::vector<double> list;
-    for (const Command& c : engine.commands) {
+    for (const engine::Command& c : engine.commands) {
       for (const Message& m : c.messages) list.push_back(m.args.at(0).number);
     }
     return list;
@@ -46,7 +46,7 @@ struct ReceiverFixture {
   FakeEngine engine;
   ManualClock manual_clock;
   NetClock clock = manual_clock.clock();
-  std::vector<Outgoing> errors;
+  std::vector<engine::Outgoing> errors;
   std::vector<CommandOrigin> pongs;
   Receiver receiver;
 };
@@ -131,7 +131,7 @@ TEST(Receiver, AnswersUnsupportedTags) {
   ReceiverFixture fixture;
   fixture.process(bundle(1, {numbered(1), Bytes().text("/b").text(",b").u32(0).str()}));
   ASSERT_EQ(fixture.errors.size(), 1u);
-  EXPECT_EQ(fixture.errors[0].destination, Outgoing::Destination::error);
+  EXPECT_EQ(fixture.errors[0].destination, engine::Outgoing::Destination::error);
   EXPECT_EQ(fixture.errors[0].origin.port, kFrom.port);
   EXPECT_EQ(fixture.errors[0].message.address, "/error");
   EXPECT_EQ(fixture.errors[0].message.args.at(0).text, "/b");
@@ -180,11 +180,11 @@ TEST(Receiver, DeliversInOrderOfTimeTags) {
 TEST(Receiver, CountsMessagesDroppedByFullInbox) {
   log_to_stderr(false);
   ReceiverFixture fixture;
-  for (std::size_t i = 0; i < EngineLink::kMaxCommands; i++) fixture.process(numbered(1));
+  for (std::size_t i = 0; i < engine::EngineLink::kMaxCommands; i++) fixture.process(numbered(1));
   EXPECT_EQ(fixture.engine.link.counters.dropped, 0u);
   fixture.process(bundle(1, {numbered(2), numbered(2), numbered(2)}));
   EXPECT_EQ(fixture.engine.link.counters.dropped, 3u);
-  EXPECT_EQ(fixture.numbers().size(), EngineLink::kMaxCommands);
+  EXPECT_EQ(fixture.numbers().size(), engine::EngineLink::kMaxCommands);
   fixture.process(numbered(7));
   EXPECT_EQ(fixture.numbers().back(), 7);
   log_to_stderr(true);
@@ -265,4 +265,4 @@ TEST(Receiver, CountsKernelDrops) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -11,7 +11,7 @@
 #include "net/osc/receiver.h"
 #include "osc/bad_packets.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 namespace {
 
 const std::filesystem::path kTests = std::filesystem::path(LIMBER_SOURCE_DIR) / "tests";
@@ -34,8 +34,8 @@ Recording read_recording(const std::filesystem::path& path) {
   return recording;
 }
 
-EngineOptions options() {
-  EngineOptions options = engine_test::fast_options((kTests / "clients" / "score.lua").string());
+engine::EngineOptions options() {
+  engine::EngineOptions options = engine::test::fast_options((kTests / "clients" / "score.lua").string());
   options.print = false;
   return options;
 }
@@ -46,10 +46,10 @@ TEST_P(Recorded, ReplaysTheScore) {
   log_to_stderr(false);
   const Recording recording = read_recording(kTests / "osc" / "recorded" / (std::string(GetParam()) + ".hex"));
   ASSERT_GE(recording.datagrams.size(), 9u);
-  engine_test::Show show(options());
+  engine::test::Show show(options());
   const NetClock clock;
-  std::vector<Outgoing> errors;
-  Receiver receiver(show.link, {}, {.error = [&](const Outgoing& out) { errors.push_back(out); }}, clock);
+  std::vector<engine::Outgoing> errors;
+  Receiver receiver(show.link, {}, {.error = [&](const engine::Outgoing& out) { errors.push_back(out); }}, clock);
   const std::uint64_t before = log_newest();
   for (const std::string& datagram : recording.datagrams) {
     receiver.process(datagram.data(), datagram.size(), {0x7f000001, 5000});
@@ -77,4 +77,4 @@ INSTANTIATE_TEST_SUITE_P(All, Recorded,
                          });
 
 }  // namespace
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

@@ -9,7 +9,7 @@
 
 #include "net/osc/packets/decode.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 
 /// Decodes from an allocation of exact size, so that the address sanitizer reports reads past the end.
 inline Result<Decoded> exact_decoded(const std::string& bytes) {
@@ -36,4 +36,4 @@ inline bool same(const Decoded& a, const Decoded& b) {
          std::ranges::equal(a.rejected, b.rejected, rejected);
 }
 
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

@@ -11,16 +11,16 @@
 #include "osc/bytes.h"
 #include "support/skip.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 namespace {
 
-using engine_test::Address;
-using engine_test::kElementAddresses;
-using engine_test::kShapeAddresses;
-using engine_test::legacy_address;
-using engine_test::Rig;
-using engine_test::Show;
-using Kind = Outcome::Kind;
+using engine::test::Address;
+using engine::test::kElementAddresses;
+using engine::test::kShapeAddresses;
+using engine::test::legacy_address;
+using engine::test::Rig;
+using engine::test::Show;
+using Kind = engine::Outcome::Kind;
 
 const std::vector<std::string> kNoNames;
 constexpr char kTags[] = {'i', 'h', 'f', 'd', 'T', 'F'};
@@ -50,7 +50,7 @@ std::vector<Message> messages_of(const std::string& packet) {
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
 }
 
-Outcome play(Rig& fixture, const std::string& packet) {
+engine::Outcome play(Rig& fixture, const std::string& packet) {
   const std::vector<Message> messages = messages_of(packet);
   EXPECT_EQ(messages.size(), 1u);
   fixture.dispatcher.begin_pass();
@@ -81,7 +81,7 @@ void check_form(const Address& a, const std::string& element, char tag, const Fo
   };
   const auto fixture = std::make_unique<Rig>();
   const std::vector<double> other = fixture->read(path("1"));
-  const Outcome outcome = play(*fixture, packet_of(legacy_address(a), form.names, tag, a.width));
+  const engine::Outcome outcome = play(*fixture, packet_of(legacy_address(a), form.names, tag, a.width));
   EXPECT_EQ(outcome.kind, Kind::applied) << outcome.error;
   const std::vector<double> wanted = expected_value(*fixture, path("arm"), value_of_tag(tag), a.width);
   EXPECT_EQ(fixture->read(path("arm")), wanted);
@@ -163,7 +163,7 @@ arm:add_motor(arm:add_joint("tip", "base", "tip", { position = vec3(0, 0, 2), ax
 
 // Wrong names, argument counts and types: nothing is applied, each message is counted once and answered once.
 TEST(LegacyWire, RejectsInvalidMessages) {
-  const engine_test::SceneFile file(kScene);
+  const engine::test::SceneFile file(kScene);
   Show show(file.path());
   show.ticks(1);
   show.sent_texts();
@@ -204,4 +204,4 @@ TEST(LegacyWire, RejectsInvalidMessages) {
 }
 
 }  // namespace
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

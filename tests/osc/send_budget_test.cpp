@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 namespace {
 
 constexpr SendLimits kEachTest{10'000, 1000};
@@ -119,4 +119,4 @@ TEST(SendBudget, ReportsReductions) {
 }
 
 }  // namespace
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

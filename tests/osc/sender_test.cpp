@@ -7,10 +7,10 @@
 #include "base/log/log.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 CommandOrigin origin_of(const Client& client) { return {CommandSource::osc, client.end().ip, client.end().port}; }
 
@@ -35,21 +35,21 @@ struct SenderFixture {
   Client requester, target, error_target, listener;
   ManualClock manual_clock;
   NetClock clock = manual_clock.clock();
-  Counters counters;
-  MessageLog traffic;
+  engine::Counters counters;
+  engine::MessageLog traffic;
   int reply_fd = -1;
   Sender sender{counters, traffic, [this](const Endpoint&) { return reply_fd; }, clock};
 };
 
 TEST(Sender, RepliesToSender) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::reply,
+  fixture.sender.send({engine::Outgoing::Destination::reply,
                        origin_of(fixture.requester),
                        {"/list/bodies", {Arg::of("arm1"), Arg::of("arm2")}}});
   EXPECT_EQ(fixture.requester.receive(), Bytes().text("/list/bodies").text(",ss").text("arm1").text("arm2").str());
   fixture.sender.pong(origin_of(fixture.requester), 12, 0.5);
   EXPECT_EQ(fixture.requester.receive(), Bytes().text("/pong").text(",if").u32(12).f(0.5f).str());
-  fixture.sender.send({Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
+  fixture.sender.send({engine::Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
   EXPECT_EQ(fixture.requester.receive(), Bytes().text("/hello").text(",").str());
   EXPECT_EQ(count_waiting(fixture.target), 0);
   EXPECT_EQ(fixture.counters.sent, 3u);
@@ -64,25 +64,26 @@ TEST(Sender, RepliesFromReceivingSocket) {
   fixture.sender.pong(origin_of(fixture.requester), 1, 1);
   ASSERT_TRUE(fixture.requester.receive(kTimeoutMs, &from));
   EXPECT_EQ(from, listening->local());
-  fixture.sender.send({Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
+  fixture.sender.send({engine::Outgoing::Destination::direct, origin_of(fixture.requester), {"/hello", {}}});
   ASSERT_TRUE(fixture.requester.receive(kTimeoutMs, &from));
   EXPECT_NE(from, listening->local());
 }
 
 TEST(Sender, SendsSceneMessagesToAllTargets) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::targets, {}, {"/pulse", {Arg::of(2.0), Arg::of(true)}}});
+  fixture.sender.send({engine::Outgoing::Destination::targets, {}, {"/pulse", {Arg::of(2.0), Arg::of(true)}}});
   const std::string expected = Bytes().text("/pulse").text(",fi").f(2).u32(1).str();
   EXPECT_EQ(fixture.target.receive(), expected);
   EXPECT_EQ(fixture.error_target.receive(), expected);
-  fixture.sender.send({Outgoing::Destination::event, {}, {"/transport/state", {}}});
+  fixture.sender.send({engine::Outgoing::Destination::event, {}, {"/transport/state", {}}});
   EXPECT_EQ(count_waiting(fixture.target), 1);
   EXPECT_EQ(count_waiting(fixture.error_target), 1);
 }
 
 TEST(Sender, SendsErrorsToSenderAndErrorTargets) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::error, origin_of(fixture.requester), error_about("/physics/part/mas")});
+  fixture.sender.send(
+      {engine::Outgoing::Destination::error, origin_of(fixture.requester), error_about("/physics/part/mas")});
   const std::string expected = Bytes().text("/error").text(",ss").text("/physics/part/mas").text("wrong").str();
   EXPECT_EQ(fixture.requester.receive(), expected);
   EXPECT_EQ(fixture.error_target.receive(), expected);
@@ -93,7 +94,7 @@ TEST(Sender, LimitsErrorsToTenPerSecond) {
   SenderFixture fixture;
   const auto err = [&](const Client& client) {
     for (int i = 0; i < 100; i++)
-      fixture.sender.send({Outgoing::Destination::error, origin_of(client), error_about("/x")});
+      fixture.sender.send({engine::Outgoing::Destination::error, origin_of(client), error_about("/x")});
   };
   err(fixture.requester);
   EXPECT_EQ(count_waiting(fixture.requester), 10);
@@ -113,7 +114,7 @@ TEST(Sender, NeverAnswersRepliesAndStreams) {
   for (const char* address :
        {"/error", "/pong", "/physics/joint/pos", "/physics/joint/rot", "/physics/joint/relrot", "/physics/joint/relpos",
         "/physics/contact", "/transport/state", "/script/error", "/script/ok"}) {
-    fixture.sender.send({Outgoing::Destination::error, origin_of(fixture.requester), error_about(address)});
+    fixture.sender.send({engine::Outgoing::Destination::error, origin_of(fixture.requester), error_about(address)});
   }
   EXPECT_EQ(count_waiting(fixture.requester), 0);
   EXPECT_EQ(count_waiting(fixture.error_target), 0);
@@ -126,7 +127,7 @@ TEST(Sender, CountsFailedSends) {
   // datagrams can't be sent to port 0
   StreamTarget target;
   fixture.sender.set_targets({{target, {0x7f000001, 0}}});
-  for (int i = 0; i < 3; i++) fixture.sender.send({Outgoing::Destination::targets, {}, {"/a", {}}});
+  for (int i = 0; i < 3; i++) fixture.sender.send({engine::Outgoing::Destination::targets, {}, {"/a", {}}});
   EXPECT_EQ(fixture.counters.unsent, 3u);
   EXPECT_EQ(fixture.counters.sent, 0u);
   log_to_stderr(true);
@@ -134,7 +135,7 @@ TEST(Sender, CountsFailedSends) {
 
 TEST(Sender, SkipsReplyWithoutAddress) {
   SenderFixture fixture;
-  fixture.sender.send({Outgoing::Destination::reply, {CommandSource::panel, 0, 0}, {"/a", {}}});
+  fixture.sender.send({engine::Outgoing::Destination::reply, {CommandSource::panel, 0, 0}, {"/a", {}}});
   EXPECT_EQ(fixture.counters.sent, 0u);
 }
 
@@ -143,8 +144,8 @@ TEST(Sender, ReportsTooLargeMessage) {
   SenderFixture fixture;
   const std::uint64_t before = log_count(LogLevel::warning);
   Message m{"/large", std::vector<Arg>(20000, Arg::of(1.0))};
-  fixture.sender.send({Outgoing::Destination::targets, {}, m});
-  fixture.sender.send({Outgoing::Destination::targets, {}, m});
+  fixture.sender.send({engine::Outgoing::Destination::targets, {}, m});
+  fixture.sender.send({engine::Outgoing::Destination::targets, {}, m});
   EXPECT_EQ(fixture.counters.sent, 0u);
   EXPECT_EQ(log_count(LogLevel::warning), before + 1);
   log_to_stderr(true);
@@ -163,4 +164,4 @@ TEST(ErrorRateLimit, HandlesManySenders) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -6,7 +6,7 @@
 
 #include "base/system/net/socket.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 namespace {
 
 std::uint32_t ip(const char* text) { return system::parse_ipv4(text).value(); }
@@ -143,4 +143,4 @@ TEST(ConnectedSubnets, IncludeLoopback) {
 }
 
 }  // namespace
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

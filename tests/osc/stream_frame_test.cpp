@@ -8,10 +8,10 @@
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 std::vector<std::string> datagrams(const StreamFrame& frame) {
   std::vector<std::string> list;
@@ -24,7 +24,7 @@ std::vector<std::string> datagrams(const StreamFrame& frame) {
   return list;
 }
 
-std::vector<std::string> framed(const Snapshot& snapshot, const StreamTarget& target) {
+std::vector<std::string> framed(const engine::Snapshot& snapshot, const StreamTarget& target) {
   StreamFrame frame(kTestOffsets);
   frame.lay_out(snapshot.body_list, target);
   frame.fill(snapshot);
@@ -32,8 +32,8 @@ std::vector<std::string> framed(const Snapshot& snapshot, const StreamTarget& ta
 }
 
 // Returns the expected message of one stream and body, computed from the rule for the numbers.
-std::string message(const char* stream, const Snapshot& s, std::size_t body) {
-  const BodyEntry& b = s.body_list->bodies[body];
+std::string message(const char* stream, const engine::Snapshot& s, std::size_t body) {
+  const engine::BodyEntry& b = s.body_list->bodies[body];
   const std::string name = stream;
   const std::uint32_t offset = name == "pos" ? 1 : name == "rot" ? 4 : name == "relrot" ? 9 : 13;
   const std::uint32_t width = name == "rot" ? 4 : 3;
@@ -46,7 +46,7 @@ std::string message(const char* stream, const Snapshot& s, std::size_t body) {
 }
 
 TEST(StreamFrame, SendsOneMessagePerDatagram) {
-  const Snapshot s = test_world({{"arm", 2}, {"leg", 1}});
+  const engine::Snapshot s = test_world({{"arm", 2}, {"leg", 1}});
   EXPECT_EQ(framed(s, {}),
             (std::vector<std::string>{message("pos", s, 0), message("pos", s, 1), message("rot", s, 0),
                                       message("rot", s, 1), message("relrot", s, 0), message("relrot", s, 1)}));
@@ -54,7 +54,7 @@ TEST(StreamFrame, SendsOneMessagePerDatagram) {
 
 // The expected bytes written out: one joint at (1, 2, 3).
 TEST(StreamFrame, WritesExactBytes) {
-  Snapshot s = test_world({{"a", 1}});
+  engine::Snapshot s = test_world({{"a", 1}});
   s.transient.assign(s.transient.size(), 0);
   s.transient[s.body_list->bodies[0].joint_offsets[0] + kTestOffsets.joint_position] = 1;
   s.transient[s.body_list->bodies[0].joint_offsets[0] + kTestOffsets.joint_position + 1] = 2;
@@ -66,7 +66,7 @@ TEST(StreamFrame, WritesExactBytes) {
 }
 
 TEST(StreamFrame, ContainsConfiguredStreams) {
-  const Snapshot s = test_world({{"arm", 3}});
+  const engine::Snapshot s = test_world({{"arm", 3}});
   StreamTarget target;
   target.pos = target.rot = target.relrot = false;
   EXPECT_TRUE(framed(s, target).empty());
@@ -77,7 +77,7 @@ TEST(StreamFrame, ContainsConfiguredStreams) {
 }
 
 TEST(StreamFrame, SelectsBodiesByPattern) {
-  const Snapshot s = test_world({{"arm1", 1}, {"box", 0}, {"leg", 2}, {"arm2", 1}});
+  const engine::Snapshot s = test_world({{"arm1", 1}, {"box", 0}, {"leg", 2}, {"arm2", 1}});
   StreamTarget target;
   target.rot = target.relrot = false;
   EXPECT_EQ(framed(s, target),
@@ -95,7 +95,7 @@ TEST(StreamFrame, SelectsBodiesByPattern) {
 TEST(StreamFrame, BundlesContainWholeMessages) {
   std::vector<FakeBody> bodies(9);
   for (std::size_t i = 0; i < bodies.size(); i++) bodies[i] = {"body_" + std::to_string(i), 17};
-  const Snapshot s = test_world(bodies);
+  const engine::Snapshot s = test_world(bodies);
   StreamTarget target;
   target.bundle = 1472;
   std::vector<std::string> pos, rot, relrot;
@@ -138,7 +138,7 @@ TEST(StreamFrame, BundlesMoreThanTwentyBodies) {
 
 // A message larger than the bundle limit is sent alone and without a bundle header.
 TEST(StreamFrame, SendsLargeBodiesAlone) {
-  const Snapshot s = test_world({{"a", 3}, {"worm", 200}, {"b", 3}});
+  const engine::Snapshot s = test_world({{"a", 3}, {"worm", 200}, {"b", 3}});
   StreamTarget target;
   target.bundle = 1472;
   target.rot = target.relrot = false;
@@ -148,7 +148,7 @@ TEST(StreamFrame, SendsLargeBodiesAlone) {
 
 // pos of n joints: 20 + padded(3 + 3 n) + 8 + 12 n bytes with this name; a datagram holds at most 4364.
 TEST(StreamFrame, ReportsTooLargeBodies) {
-  const Snapshot s = test_world({{"huge", 4400}, {"a", 1}});
+  const engine::Snapshot s = test_world({{"huge", 4400}, {"a", 1}});
   StreamFrame frame(kTestOffsets);
   StreamTarget target;
   target.rot = target.relrot = false;
@@ -156,7 +156,7 @@ TEST(StreamFrame, ReportsTooLargeBodies) {
   frame.fill(s);
   EXPECT_EQ(datagrams(frame), std::vector<std::string>{message("pos", s, 1)});
   EXPECT_EQ(frame.too_large(), std::vector<std::string>{"huge"});
-  const Snapshot fits = test_world({{"huge", 4364}});
+  const engine::Snapshot fits = test_world({{"huge", 4364}});
   frame.lay_out(fits.body_list, target);
   frame.fill(fits);
   ASSERT_EQ(datagrams(frame).size(), 1u);
@@ -166,7 +166,7 @@ TEST(StreamFrame, ReportsTooLargeBodies) {
 
 // The same layout is filled with the numbers of the next snapshot.
 TEST(StreamFrame, UpdatesNumbersPerFrame) {
-  Snapshot s = test_world({{"arm", 2}});
+  engine::Snapshot s = test_world({{"arm", 2}});
   StreamFrame frame(kTestOffsets);
   frame.lay_out(s.body_list, {});
   frame.fill(s);
@@ -187,4 +187,4 @@ TEST(StreamFrame, IsEmptyWithoutBodies) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -9,10 +9,10 @@
 
 #include "engine/output/snapshot.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 
 /// With gaps between the groups, so that wrong offsets are detected.
-inline constexpr TransientOffsets kTestOffsets = {1, 4, 9, 13, 0, 3};
+inline constexpr engine::TransientOffsets kTestOffsets = {1, 4, 9, 13, 0, 3};
 inline constexpr std::uint32_t kTestBlock = 17;  ///< Numbers per joint.
 
 /// Returns the number at `index` of the hand-made Snapshot::transient; exact as a float.
@@ -23,14 +23,14 @@ struct FakeBody {
   std::uint32_t joints;
 };
 
-inline Snapshot test_world(const std::vector<FakeBody>& bodies) {
-  auto list = std::make_shared<BodyList>();
+inline engine::Snapshot test_world(const std::vector<FakeBody>& bodies) {
+  auto list = std::make_shared<engine::BodyList>();
   std::uint32_t total = 0;
   for (const FakeBody& b : bodies) total += b.joints;
   // the first body's first joint has the last block
   std::uint32_t block = total;
   for (const FakeBody& b : bodies) {
-    BodyEntry body;
+    engine::BodyEntry body;
     body.name = b.name;
     for (std::uint32_t j = 0; j < b.joints; j++) {
       body.joint_names.push_back("j" + std::to_string(j));
@@ -38,10 +38,10 @@ inline Snapshot test_world(const std::vector<FakeBody>& bodies) {
     }
     list->bodies.push_back(std::move(body));
   }
-  Snapshot snapshot;
+  engine::Snapshot snapshot;
   snapshot.body_list = list;
   for (std::size_t i = 0; i < std::size_t{total} * kTestBlock; i++) snapshot.transient.push_back(test_number(i));
   return snapshot;
 }
 
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

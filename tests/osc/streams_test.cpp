@@ -9,10 +9,10 @@
 #include "osc/osc_test_tools.h"
 #include "osc/stream_test_world.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 system::UdpSender open_sender() {
   system::UdpSender sender;
@@ -226,4 +226,4 @@ TEST(UdpBatch, ReportsErrors) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

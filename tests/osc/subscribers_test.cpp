@@ -10,20 +10,21 @@
 #include "engine/image_of.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber::osc_test {
+namespace limber::osc::test {
 namespace {
 
-using engine_test::message;
+using engine::test::message;
 using SentMessages = std::vector<std::string>;
 
 struct SubscribersFixture {
-  engine_test::SceneFile file{engine_test::kEverything};
-  engine_test::Show show{file.path()};
+  engine::test::SceneFile file{engine::test::kEverything};
+  engine::test::Show show{file.path()};
   ManualClock manual_clock;
   NetClock clock = manual_clock.clock();
-  std::vector<Outgoing> sent;
+  std::vector<engine::Outgoing> sent;
   SendLimits per_sender = SendBudget::kPerSender, total = SendBudget::kTotal;
-  Subscribers subscribers{show.link, clock, [this](const Outgoing& out) { return send(out); }, per_sender, total};
+  Subscribers subscribers{show.link, clock, [this](const engine::Outgoing& out) { return send(out); }, per_sender,
+                          total};
   int slices = 0;
   CommandOrigin first{CommandSource::osc, 0x7f000001, 5001};
   CommandOrigin second{CommandSource::osc, 0x7f000001, 5002};
@@ -31,8 +32,8 @@ struct SubscribersFixture {
   SubscribersFixture() { show.send("/transport/pause"); }
   /// Limits per sender and in total, values per second.
   SubscribersFixture(double values_each, double values_all) : per_sender{1e9, values_each}, total{1e9, values_all} {}
-  bool send(const Outgoing& out) {
-    const bool value = out.destination == Outgoing::Destination::reply;
+  bool send(const engine::Outgoing& out) {
+    const bool value = out.destination == engine::Outgoing::Destination::reply;
     if (value && !subscribers.try_consume({out.origin.ip, out.origin.port}, 40, 1)) return false;
     sent.push_back(out);
     return true;
@@ -55,12 +56,12 @@ struct SubscribersFixture {
     for (double t = 0; t < seconds - 1e-9; t += step) {
       manual_clock.advance(step);
       work();
-      engine_test::make_value_snapshot(show);
+      engine::test::make_value_snapshot(show);
       work();
     }
     SentMessages lines;
-    for (const Outgoing& out : sent)
-      lines.push_back(std::to_string(out.origin.port) + " " + engine_test::text_of(out.message));
+    for (const engine::Outgoing& out : sent)
+      lines.push_back(std::to_string(out.origin.port) + " " + engine::test::text_of(out.message));
     return lines;
   }
 };
@@ -240,12 +241,12 @@ TEST(Subscribers, ReportReductions) {
   ASSERT_EQ(std::sscanf(line.c_str(), "5001 /subscription/reduced %lf %lf", &values, &bytes), 2) << line;
   EXPECT_NEAR(values, 315, 10) << "the limit and the burst, over two seconds";
   EXPECT_NEAR(bytes, 40 * values, 100);
-  EXPECT_EQ(fixture.show.link.health.count(HealthItem::reduced), 1u);
+  EXPECT_EQ(fixture.show.link.health.count(engine::HealthItem::reduced), 1u);
   ASSERT_TRUE(fixture.subscribers.handle(message("/unsubscribe"), fixture.first).ok());
   fixture.subscribe(fixture.first, "/scene/wind", 200);
   const SentMessages after = fixture.messages_after(4.5, 0.05);
   EXPECT_EQ(std::ranges::count_if(after, report), 0) << "it has begun again, and is not reduced";
-  EXPECT_EQ(fixture.show.link.health.count(HealthItem::reduced), 0u);
+  EXPECT_EQ(fixture.show.link.health.count(engine::HealthItem::reduced), 0u);
 }
 
 TEST(Subscribers, WorkInSlices) {
@@ -256,7 +257,7 @@ TEST(Subscribers, WorkInSlices) {
   for (int i = 0; i < 4; i++) {
     fixture.manual_clock.advance(0.02);
     fixture.subscribers.work();
-    engine_test::make_value_snapshot(fixture.show);
+    engine::test::make_value_snapshot(fixture.show);
     do {
       const std::size_t before = fixture.sent.size();
       fixture.subscribers.work();
@@ -270,29 +271,29 @@ TEST(Subscribers, WorkInSlices) {
 
 TEST(Subscribers, ReportTooManyValues) {
   SubscribersFixture fixture;
-  const engine_test::SceneFile file(R"(
+  const engine::test::SceneFile file(R"(
     for i = 1, 200 do sim:add_body("b" .. i):add_part("p", sim:add_sphere_shape("s" .. i, 0.1), { mass = 1 }) end)");
-  engine_test::Show show(file.path());
-  std::vector<Outgoing> sent;
-  Subscribers subscribers(show.link, fixture.clock, [&](const Outgoing& out) {
+  engine::test::Show show(file.path());
+  std::vector<engine::Outgoing> sent;
+  Subscribers subscribers(show.link, fixture.clock, [&](const engine::Outgoing& out) {
     sent.push_back(out);
     return true;
   });
   ASSERT_TRUE(subscribers.handle(message("/subscribe", "//*", 1), fixture.first).ok());
   subscribers.work();
-  engine_test::make_value_snapshot(show);
+  engine::test::make_value_snapshot(show);
   do subscribers.work();
   while (subscribers.timeout() == 0);
   std::size_t values = 0;
   SentMessages errors;
-  for (const Outgoing& out : sent) {
-    if (out.destination == Outgoing::Destination::error) errors.push_back(engine_test::text_of(out.message));
-    values += out.destination == Outgoing::Destination::reply ? 1 : 0;
+  for (const engine::Outgoing& out : sent) {
+    if (out.destination == engine::Outgoing::Destination::error) errors.push_back(engine::test::text_of(out.message));
+    values += out.destination == engine::Outgoing::Destination::reply ? 1 : 0;
   }
   EXPECT_EQ(errors, SentMessages{"/error /subscribe matches more than 4096 values; the others are not sent"});
-  EXPECT_LE(values, Feed::kMaxValues);
-  EXPECT_GE(values, Feed::kMaxValues / 2);
+  EXPECT_LE(values, engine::Feed::kMaxValues);
+  EXPECT_GE(values, engine::Feed::kMaxValues / 2);
 }
 
 }  // namespace
-}  // namespace limber::osc_test
+}  // namespace limber::osc::test

@@ -5,26 +5,26 @@
 #include "osc/bad_packets.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 struct UrgentFixture {
   explicit UrgentFixture(std::vector<Cidr> allow = {}) : receiver(link, std::move(allow), {}, clock) {}
 
-  std::vector<UrgentRequest> lane() {
-    std::vector<UrgentRequest> requests;
+  std::vector<engine::UrgentRequest> lane() {
+    std::vector<engine::UrgentRequest> requests;
     link.command_queue.drain_urgent(requests);
     return requests;
   }
-  std::vector<Command> commands() {
-    std::vector<Command> list;
+  std::vector<engine::Command> commands() {
+    std::vector<engine::Command> list;
     link.command_queue.drain(list);
     return list;
   }
 
-  EngineLink link;
+  engine::EngineLink link;
   ManualClock manual_clock;
   NetClock clock = manual_clock.clock();
   Receiver receiver;
@@ -41,12 +41,12 @@ TEST(UrgentLane, PanicOvertakesDecoding) {
   client.send(fixture.receiver.bound().front(), panic());
   fixture.receiver.receive(fixture.receiver.descriptors().front());
   EXPECT_TRUE(fixture.commands().empty());
-  const std::vector<UrgentRequest> lane = fixture.lane();
+  const std::vector<engine::UrgentRequest> lane = fixture.lane();
   ASSERT_EQ(lane.size(), 1u);
-  EXPECT_EQ(lane[0].kind, UrgentKind::panic);
+  EXPECT_EQ(lane[0].kind, engine::UrgentKind::panic);
   EXPECT_EQ(lane[0].origin.port, client.end().port);
   while (fixture.receiver.timeout() == 0) fixture.receiver.process_pending();
-  const std::vector<Command> commands = fixture.commands();
+  const std::vector<engine::Command> commands = fixture.commands();
   EXPECT_EQ(commands.size(), 50u);
   EXPECT_LT(commands.back().arrival, lane[0].arrival);
   EXPECT_TRUE(fixture.lane().empty()) << "once";
@@ -85,11 +85,11 @@ TEST(UrgentLane, ExecutesScannedBundleOnce) {
   EXPECT_TRUE(scanned.urgent);
   fixture.receiver.process(bytes.data(), bytes.size(), CommandOrigin{CommandSource::oscquery, 1, 2}, scanned);
   EXPECT_EQ(fixture.lane().size(), 1u);
-  const std::vector<Command> commands = fixture.commands();
+  const std::vector<engine::Command> commands = fixture.commands();
   ASSERT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands[0].messages.size(), 2u) << "the play before the panic is discarded";
   EXPECT_EQ(fixture.link.command_queue.fetch_discarded(), 1u);
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -13,10 +13,10 @@
 #include "net/osc/packets/decode.h"
 #include "osc/bad_packets.h"
 
-namespace limber {
+namespace limber::osc {
 namespace {
 
-using namespace osc_test;
+using namespace test;
 
 // Copies the bytes to an allocation of exact size, so that the sanitizer detects reads past the end.
 const char* fault_of(const std::string& bytes) {
@@ -112,4 +112,4 @@ TEST(Validate, RejectsKnownBadPackets) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::osc

@@ -11,11 +11,11 @@
 #include "net/oscquery/tree_json.h"
 #include "oscquery/fake_doors.h"
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 namespace {
 
 using Frames = std::vector<std::string>;
-using engine_test::make_value_snapshot;
+using engine::test::make_value_snapshot;
 using nlohmann::json;
 
 constexpr const char* kScene = R"(
@@ -49,7 +49,7 @@ struct BehaviorScene {
     std::filesystem::create_directories(folder + "/behaviors_lua");
     std::ofstream(folder + "/behaviors_lua/wobble.lua") << kWobble;
     std::ofstream(scene) << kScene;
-    show = std::make_unique<engine_test::Show>(scene);
+    show = std::make_unique<engine::test::Show>(scene);
   }
   ~BehaviorScene() {
     show.reset();
@@ -64,7 +64,7 @@ struct BehaviorScene {
   }
   std::string folder = std::filesystem::path(::testing::TempDir()) / fmt::format("limber_query_{}", ::getpid());
   std::string scene = folder + "/scene.lua";
-  std::unique_ptr<engine_test::Show> show;
+  std::unique_ptr<engine::test::Show> show;
 };
 
 TEST(BehaviorsInTheTree, HaveAttributesOfProperties) {
@@ -94,7 +94,7 @@ struct SortingSink : ClientSink {
 
 TEST(BehaviorsInTheTree, SendPathEventsAndValues) {
   const BehaviorScene fixture;
-  engine_test::Show& show = *fixture.show;
+  engine::test::Show& show = *fixture.show;
   const QueryHost host = fake_query_host();
   QueryHub hub(show.link, host, {});
   SortingSink line;
@@ -146,4 +146,4 @@ TEST(BehaviorsInTheTree, SendPathEventsAndValues) {
 }
 
 }  // namespace
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

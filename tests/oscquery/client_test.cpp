@@ -10,10 +10,10 @@
 #include "engine/image_of.h"
 #include "oscquery/fake_doors.h"
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 namespace {
 
-using engine_test::make_value_snapshot;
+using engine::test::make_value_snapshot;
 using nlohmann::json;
 using Frames = std::vector<std::string>;
 
@@ -27,8 +27,8 @@ struct FillingSink : ClientSink {
 };
 
 struct ClientFixture {
-  engine_test::SceneFile file{engine_test::kEverything};
-  engine_test::Show show{file.path()};
+  engine::test::SceneFile file{engine::test::kEverything};
+  engine::test::Show show{file.path()};
   std::vector<std::pair<CommandOrigin, std::string>> packets;
   QueryHost host = fake_query_host(&packets);
   FillingSink sink;
@@ -117,10 +117,10 @@ TEST(QueryClient, DoesNotEchoOwnValues) {
   fixture.client.on_text(command("LISTEN", "/scene/wind"));
   fixture.new_frames();
   CommandOrigin self = fixture.client.origin();
-  fixture.show.link.command_queue.push({{engine_test::message("/scene/wind", 5)}, self});
+  fixture.show.link.command_queue.push({{engine::test::message("/scene/wind", 5)}, self});
   EXPECT_EQ(fixture.new_frames(), Frames{});
   self.port = 78;
-  fixture.show.link.command_queue.push({{engine_test::message("/scene/wind", 6)}, self});
+  fixture.show.link.command_queue.push({{engine::test::message("/scene/wind", 6)}, self});
   EXPECT_EQ(fixture.new_frames(), Frames{"b /scene/wind f 6"});
 }
 
@@ -142,13 +142,13 @@ TEST(QueryClient, SendsPathEventsAndReplies) {
   const Frames notices = {R"({"COMMAND":"PATH_ADDED","DATA":"/x"})"};
   fixture.client.on_snapshot(make_value_snapshot(fixture.show), notices);
   EXPECT_EQ(fixture.sink.consume_frames(), Frames{"t " + notices[0]});
-  fixture.client.send_reply({Outgoing::Destination::reply, {}, engine_test::message("/scene/wind", 0.5)}, 0);
+  fixture.client.send_reply({engine::Outgoing::Destination::reply, {}, engine::test::message("/scene/wind", 0.5)}, 0);
   EXPECT_EQ(fixture.sink.consume_frames(), Frames{"b /scene/wind  0.5"});
 }
 
 TEST(QueryClient, LimitsErrorsToTenPerSecond) {
   ClientFixture fixture;
-  const Outgoing error{Outgoing::Destination::error, {}, error_message("/a", "b")};
+  const engine::Outgoing error{engine::Outgoing::Destination::error, {}, engine::error_message("/a", "b")};
   for (int i = 0; i < 30; i++) fixture.client.send_reply(error, 5.0 + 0.01 * i);
   EXPECT_EQ(fixture.sink.consume_frames().size(), 10u);
   fixture.client.send_reply(error, 6.01);
@@ -184,4 +184,4 @@ TEST(QueryClient, SendsLogOnRequest) {
 }
 
 }  // namespace
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

@@ -8,7 +8,7 @@
 #include "engine/show.h"
 #include "net/oscquery/host.h"
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 
 /// Encodes messages as "address tags argument argument"; processed packets are appended to `packets`.
 inline QueryHost fake_query_host(std::vector<std::pair<CommandOrigin, std::string>>* packets = nullptr) {
@@ -24,4 +24,4 @@ inline QueryHost fake_query_host(std::vector<std::pair<CommandOrigin, std::strin
   return host;
 }
 
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

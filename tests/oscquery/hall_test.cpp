@@ -7,7 +7,7 @@
 #include "engine/image_of.h"
 #include "oscquery/fake_doors.h"
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 namespace {
 
 using Frames = std::vector<std::string>;
@@ -23,8 +23,8 @@ struct FrameSink : ClientSink {
 };
 
 struct QueryHubFixture {
-  engine_test::SceneFile file{engine_test::kEverything};
-  engine_test::Show show{file.path()};
+  engine::test::SceneFile file{engine::test::kEverything};
+  engine::test::Show show{file.path()};
   QueryHost host = fake_query_host();
   QueryHub hub{show.link, host, {}, &fake_time};
   std::vector<HttpResponse> responses;
@@ -51,7 +51,7 @@ struct QueryHubFixture {
 
 TEST(QueryHub, RequestWaitsForNewerSnapshot) {
   QueryHubFixture fixture;
-  engine_test::make_value_snapshot(fixture.show);
+  engine::test::make_value_snapshot(fixture.show);
   fixture.show.send("/scene/wind", 7);
   fixture.request("/scene/wind?VALUE");
   fixture.hub.on_link_event();
@@ -84,7 +84,7 @@ TEST(QueryHub, RequestTimesOut) {
   ASSERT_EQ(fixture.responses.size(), 1u);
   EXPECT_EQ(fixture.responses[0].status, 503);
   // an older snapshot is better than no response
-  engine_test::make_value_snapshot(fixture.show);
+  engine::test::make_value_snapshot(fixture.show);
   fixture.request("/scene/wind?VALUE");
   current_time += QueryHub::kRequestTimeout + 0.01;
   fixture.hub.tick();
@@ -113,7 +113,7 @@ TEST(QueryHub, UpdatesClientsOncePerTick) {
   EXPECT_EQ(line.consume_frames(), Frames{"/scene/wind f 0"});
   // snapshots requested by others are not sent to clients
   fixture.show.send("/scene/wind", 1);
-  engine_test::make_value_snapshot(fixture.show);
+  engine::test::make_value_snapshot(fixture.show);
   fixture.hub.on_link_event();
   EXPECT_EQ(line.consume_frames(), Frames{});
   const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
@@ -174,10 +174,10 @@ TEST(QueryHub, SendsRepliesToOrigin) {
   QueryClient second({CommandSource::oscquery, 1, 2}, two, fixture.hub.host());
   fixture.hub.add_client(first);
   fixture.hub.add_client(second);
-  fixture.show.link.command_queue.push({{engine_test::message("/get", "/scene/wind")}, second.origin()});
-  fixture.show.link.command_queue.push({{engine_test::message("/scene/wind", "much")}, first.origin()});
+  fixture.show.link.command_queue.push({{engine::test::message("/get", "/scene/wind")}, second.origin()});
+  fixture.show.link.command_queue.push({{engine::test::message("/scene/wind", "much")}, first.origin()});
   fixture.show.link.command_queue.push(
-      {{engine_test::message("/get", "/scene/wind")}, {CommandSource::oscquery, 1, 3}});
+      {{engine::test::message("/get", "/scene/wind")}, {CommandSource::oscquery, 1, 3}});
   fixture.show.ticks(1);
   fixture.hub.on_link_event();
   EXPECT_EQ(two.consume_frames(), Frames{"/scene/wind  0"});
@@ -187,4 +187,4 @@ TEST(QueryHub, SendsRepliesToOrigin) {
 }
 
 }  // namespace
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

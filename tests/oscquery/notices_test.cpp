@@ -5,7 +5,7 @@
 
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::oscquery {
 namespace {
 
 using namespace properties;
@@ -78,4 +78,4 @@ TEST(PathEvents, MergeTooMany) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -8,7 +8,7 @@
 #include "engine/everything.h"
 #include "engine/image_of.h"
 
-namespace limber {
+namespace limber::oscquery {
 namespace {
 
 using nlohmann::json;
@@ -25,9 +25,9 @@ HttpRequest request_for(std::string target, std::string accept = "*/*") {
 }
 
 struct RequestFixture {
-  engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('a b')\nsim:add_body('c/d')\n"};
-  engine_test::Show show{file.path()};
-  std::shared_ptr<const ValueSnapshot> snapshot = engine_test::make_value_snapshot(show);
+  engine::test::SceneFile file{std::string(engine::test::kEverything) + "sim:add_body('a b')\nsim:add_body('c/d')\n"};
+  engine::test::Show show{file.path()};
+  std::shared_ptr<const engine::ValueSnapshot> snapshot = engine::test::make_value_snapshot(show);
 
   HttpResponse get(const std::string& target, const std::string& accept = "*/*") const {
     const HttpRequest request = request_for(target, accept);
@@ -201,4 +201,4 @@ TEST(Request, RejectsUnknownOrigins) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::oscquery

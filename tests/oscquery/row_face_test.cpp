@@ -11,7 +11,7 @@
 #include "engine/engine.h"
 #include "support/world_objects.h"
 
-namespace limber {
+namespace limber::oscquery {
 namespace {
 
 using nlohmann::json;
@@ -109,8 +109,9 @@ TEST(OscQueryAttributes, ValuesMatchMessages) {
 // The properties of Limber must satisfy the assumptions of clients.
 TEST(OscQueryAttributes, CoverEveryProperty) {
   int count = 0;
-  for (const PropertyTable* table : {&World::table(), &Body::table(), &Part::table(), &Joint::table(), &Motor::table(),
-                                     &Transport::table(), &CounterNode::table()}) {
+  for (const PropertyTable* table :
+       {&sim::World::table(), &sim::Body::table(), &sim::Part::table(), &sim::Joint::table(), &sim::Motor::table(),
+        &engine::Transport::table(), &engine::CounterNode::table()}) {
     for (const Property& property : table->properties()) {
       const json found = attributes(property);
       const std::string tags = found["TYPE"];
@@ -134,4 +135,4 @@ TEST(OscQueryAttributes, CoverEveryProperty) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::oscquery

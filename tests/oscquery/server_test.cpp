@@ -16,16 +16,16 @@
 #include "oscquery/fake_doors.h"
 #include "oscquery/web_client.h"
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 namespace {
 
 using nlohmann::json;
 
 // A running engine with the server in front of it. Packets of clients are "address number" and set that value.
 struct ServerFixture {
-  engine_test::SceneFile file{engine_test::kEverything};
-  EngineLink link;
-  Engine engine{link, options(file.path())};
+  engine::test::SceneFile file{engine::test::kEverything};
+  engine::EngineLink link;
+  engine::Engine engine{link, options(file.path())};
   QueryServer server{link, host()};
   std::thread sim;
 
@@ -40,8 +40,8 @@ struct ServerFixture {
     if (sim.joinable()) sim.join();
     server.stop();
   }
-  static EngineOptions options(const std::string& scene) {
-    EngineOptions options;
+  static engine::EngineOptions options(const std::string& scene) {
+    engine::EngineOptions options;
     options.scene = scene;
     return options;
   }
@@ -50,7 +50,7 @@ struct ServerFixture {
     fake.process = [this](const CommandOrigin& origin, const std::string& packet) {
       const std::size_t space = packet.find(' ');
       link.command_queue.push(
-          {{engine_test::message(packet.substr(0, space), std::atof(packet.c_str() + space))}, origin});
+          {{engine::test::message(packet.substr(0, space), std::atof(packet.c_str() + space))}, origin});
       link.wake_engine();
     };
     return fake;
@@ -113,7 +113,7 @@ TEST(QueryServer, WebSocketListensAndSets) {
 // Runs the engine's ticks during its lifetime.
 class EngineTicks {
  public:
-  explicit EngineTicks(Engine& engine)
+  explicit EngineTicks(engine::Engine& engine)
       : thread_([this, &engine] {
           while (!stop_) engine.tick();
         }) {}
@@ -131,7 +131,7 @@ class EngineTicks {
 
 TEST(QueryServer, ReportsAddedAndRemovedBodies) {
   ServerFixture fixture(false);
-  World& world = fixture.engine.world();
+  sim::World& world = fixture.engine.world();
   WebClient client = fixture.web_socket();
   client.listen("/scene/wind");
   {
@@ -296,7 +296,7 @@ TEST(QueryServer, RespondsWithoutRunningEngine) {
 
 TEST(QueryServer, ReportsPortInUseWithCorrection) {
   const ServerFixture fixture;
-  EngineLink link;
+  engine::EngineLink link;
   QueryServer second(link, fake_query_host());
   const std::uint16_t port = fixture.server.port();
   const Result<void> second_start = second.start({"127.0.0.1", port});
@@ -312,7 +312,7 @@ TEST(QueryServer, ReportsPortInUseWithCorrection) {
 }
 
 TEST(QueryServer, StopsWithClientsAndRestarts) {
-  EngineLink link;
+  engine::EngineLink link;
   QueryServer server(link, fake_query_host());
   for (int i = 0; i < 3; i++) {
     ASSERT_TRUE(server.start({"127.0.0.1", 0}).ok());
@@ -336,7 +336,7 @@ TEST(QueryServer, StopsWithClientsAndRestarts) {
 
 TEST(QueryServer, WarnsIfOpenToTheNetwork) {
   log_to_stderr(false);
-  EngineLink link;
+  engine::EngineLink link;
   QueryServer server(link, fake_query_host());
   const std::uint64_t before = log_count(LogLevel::warning);
   ASSERT_TRUE(server.start({"0.0.0.0", 0}).ok());
@@ -345,7 +345,7 @@ TEST(QueryServer, WarnsIfOpenToTheNetwork) {
 }
 
 TEST(QueryServer, AcceptsAllowedAddressesOnly) {
-  EngineLink link;
+  engine::EngineLink link;
   QueryHost fake = fake_query_host();
   fake.is_allowed = [](std::uint32_t ip) { return ip != 0x7f000001; };
   QueryServer server(link, fake);
@@ -357,4 +357,4 @@ TEST(QueryServer, AcceptsAllowedAddressesOnly) {
 }
 
 }  // namespace
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

@@ -11,17 +11,17 @@
 #include "engine/image_of.h"
 #include "net/oscquery/attributes.h"
 
-namespace limber {
+namespace limber::oscquery {
 namespace {
 
-using engine_test::make_value_snapshot;
-using engine_test::Show;
+using engine::test::make_value_snapshot;
+using engine::test::Show;
 using nlohmann::json;
 
 struct TreeFixture {
-  engine_test::SceneFile file{std::string(engine_test::kEverything) + "sim:add_body('my body')\n"};
+  engine::test::SceneFile file{std::string(engine::test::kEverything) + "sim:add_body('my body')\n"};
   Show show{file.path()};
-  std::shared_ptr<const ValueSnapshot> snapshot;
+  std::shared_ptr<const engine::ValueSnapshot> snapshot;
 
   TreeFixture() {
     show.ticks(3);
@@ -122,9 +122,9 @@ TEST(TreeJson, OmitsDeepestLevelsOfHugeTree) {
     const NodeId one = store.add(table, group, "n" + std::to_string(i), nullptr);
     store.add(table, store.add_group(one, "in"), "x", nullptr);
   }
-  ValueSnapshot values;
+  engine::ValueSnapshot values;
   values.tree = std::make_shared<const TreeSnapshot>(store);
-  values.snapshot = std::make_shared<const Snapshot>();
+  values.snapshot = std::make_shared<const engine::Snapshot>();
   values.persistent.assign(store.persistent_values().begin(), store.persistent_values().end());
   const json cut = json::parse(node_json(values, {}));
   EXPECT_EQ(cut["CONTENTS"]["crowd"]["CONTENTS"].size(), kMaxProperties / 16);
@@ -165,4 +165,4 @@ TEST(TreeJson, WritesSingleValue) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -18,7 +18,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber::query_test {
+namespace limber::oscquery::test {
 
 /// Timeout of all waits; reached only by failing tests.
 inline constexpr int kTimeoutMs = 20000;
@@ -205,4 +205,4 @@ class WebClient {
   bool ended_ = false;
 };
 
-}  // namespace limber::query_test
+}  // namespace limber::oscquery::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(ClockText, FormatsMinutesSecondsHundredths) {
@@ -17,4 +17,4 @@ TEST(ClockText, FormatsMinutesSecondsHundredths) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // GuiContext: undo and redo, messages and snapshot requests.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(GuiContext, UndoesWholeDrag) {
@@ -41,10 +41,10 @@ TEST(GuiContext, UndoesEditsOfAnyController) {
 }
 
 TEST(GuiContext, MessagesHaveThePanelAsSource) {
-  EngineLink link;
+  engine::EngineLink link;
   GuiContext context(link);
   context.send("/transport/play");
-  std::vector<Command> commands;
+  std::vector<engine::Command> commands;
   link.command_queue.drain(commands);
   ASSERT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands[0].origin.source, CommandSource::panel);
@@ -52,11 +52,11 @@ TEST(GuiContext, MessagesHaveThePanelAsSource) {
 }
 
 TEST(GuiContext, LimitsSnapshotRequests) {
-  EngineLink link;
+  engine::EngineLink link;
   GuiContext context(link);
   for (int i = 0; i < 240; i++) {
     context.begin_frame(i / 240.0);
-    const std::shared_ptr<ValueSnapshot> snapshot = link.value_snapshots.acquire_buffer();
+    const std::shared_ptr<engine::ValueSnapshot> snapshot = link.value_snapshots.acquire_buffer();
     snapshot->request = link.value_snapshot_requests.load();
     link.value_snapshots.publish(snapshot);
   }
@@ -65,4 +65,4 @@ TEST(GuiContext, LimitsSnapshotRequests) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

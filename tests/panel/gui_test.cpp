@@ -9,7 +9,7 @@
 
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(Gui, EveryPanelFileRegistersItself) {
@@ -96,7 +96,7 @@ TEST(Gui, ClickInHelpRebindsKey) {
 TEST(Gui, UsesKeysOfSettings) {
   GuiOptions options = PanelFixture::headless();
   options.settings.keys = {{"help", "Ctrl+H"}, {"nothing", "F9"}};
-  EngineLink link;
+  engine::EngineLink link;
   const std::uint64_t before = log_newest();
   Gui gui(link, options);
   EXPECT_TRUE(std::ranges::any_of(log_since(before), [](const LogLine& line) {
@@ -261,7 +261,7 @@ TEST(Gui, ReportsMissingFonts) {
   ASSERT_EQ(none.warnings.size(), 2u);
   EXPECT_NE(none.warnings[0].find("apt-get install fonts-inter"), std::string::npos);
   EXPECT_NE(none.warnings[1].find("apt-get install fonts-jetbrains-mono"), std::string::npos);
-  EngineLink link;
+  engine::EngineLink link;
   GuiOptions options = PanelFixture::headless();
   options.font_root = "/nowhere";
   Gui gui(link, std::move(options));
@@ -279,4 +279,4 @@ TEST(Gui, SupportsSeveralInstances) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

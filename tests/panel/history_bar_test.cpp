@@ -1,7 +1,7 @@
 // The history bar rewinds to the time at which the mouse is released, and not before.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 class HistoryBar : public ::testing::Test {
@@ -55,4 +55,4 @@ TEST_F(HistoryBar, CancelsAtThePresent) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace limber {
+namespace limber::panel {
 namespace {
 
 TEST(Hotkeys, HaveUniqueNamesAndKeys) {
@@ -58,4 +58,4 @@ TEST(Hotkeys, ReportInvalidBindings) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

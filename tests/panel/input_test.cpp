@@ -2,13 +2,13 @@
 // had.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(Input, KeepsPressesShorterThanAFrame) {
   PanelFixture fixture;
   ASSERT_FALSE(fixture.show.engine.world().store().values(fixture.show.engine.world().id(),
-                                                          World::table().at("paused"))[0] != 0);
+                                                          sim::World::table().at("paused"))[0] != 0);
   for (int i = 1; i <= 5; i++) {
     // press and release before the next frame
     InputEvent event;
@@ -107,4 +107,4 @@ TEST(Input, LimitsQueuedEvents) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -6,7 +6,7 @@
 
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 bool overlap(const PanelRect& a, const PanelRect& b) {
@@ -117,4 +117,4 @@ INSTANTIATE_TEST_SUITE_P(Sizes, WidgetLayout,
                                            WindowSize{3200, 1800, 2}));
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

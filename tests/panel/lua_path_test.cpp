@@ -4,7 +4,7 @@
 #include "panel/rig.h"
 #include "properties/tree_snapshot.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(LuaPath, IsValidInTheConsole) {
@@ -20,7 +20,7 @@ TEST(LuaPath, IsValidInTheConsole) {
   ASSERT_GT(paths.size(), 150u);
   for (const std::string& path : paths) {
     Evaluation result;
-    auto request = std::make_shared<EvaluationRequest>();
+    auto request = std::make_shared<engine::EvaluationRequest>();
     request->text = path;
     request->on_result = [&](const Evaluation& e) { result = e; };
     fixture.show.link.command_queue.push({{}, CommandOrigin{CommandSource::console, 0, 0, false}, request});
@@ -43,4 +43,4 @@ TEST(LuaPath, MatchesScripts) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // Behaviors: activated for all bodies or one, reordered, added, removed.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 const std::string kAll = "/physics/body/*/behavior/push";
@@ -109,4 +109,4 @@ TEST(PanelBehaviors, MovesBehaviorOfSelectedBodyOnly) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // The console: expressions, output, completion, history.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 void enter(PanelFixture& fixture, const std::string& line) {
@@ -52,4 +52,4 @@ TEST(PanelConsole, UpRecallsLastLine) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -2,7 +2,7 @@
 #include "panel/rig.h"
 #include "ui/panel/widgets/error_list.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelErrors, ParsesLocations) {
@@ -55,4 +55,4 @@ sim:on_step(function() n = n + 1; if n == 2 then local x = nil; x.y = 1 end end)
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // The OSC monitor logs messages only while it is visible, and shows frequent addresses less often.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelOsc, LogsOnlyWhileVisible) {
@@ -32,4 +32,4 @@ TEST(PanelOsc, ThinsOutFrequentAddresses) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

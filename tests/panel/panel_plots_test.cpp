@@ -6,7 +6,7 @@
 #include "panel/rig.h"
 #include "ui/panel/theme.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelPlots, PlotsSelectedProperty) {
@@ -63,4 +63,4 @@ TEST(PanelPlots, DiscardSamplesAfterRewind) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // Preset slots: store, recall, morph, and the interpolating index.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 void at_once(PanelFixture& fixture) { fixture.gui->context().settings.morph_seconds = 0; }
@@ -63,4 +63,4 @@ TEST(PanelPresets, KeyOfEmptySlotDoesNothing) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -4,7 +4,7 @@
 #include "panel/rig.h"
 #include "ui/panel/widgets/tree_list.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelScene, ExpandsAndSelects) {
@@ -65,4 +65,4 @@ TEST(PanelScene, CostDependsOnVisibleLines) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -1,7 +1,7 @@
 // The status at the right end of the top bar: the warning sign for losses.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelStatus, HidesWarningWithoutLosses) {
@@ -14,7 +14,7 @@ TEST(PanelStatus, ClickOnWarningCopiesLosses) {
   for (const double width : {1600.0, 1250.0, 1000.0}) {
     PanelFixture fixture(kScene, width);
     const PanelRect lua = fixture.rect_of("status.LUA");
-    fixture.show.link.health.add(HealthItem::loops, 17);
+    fixture.show.link.health.add(engine::HealthItem::loops, 17);
     fixture.frames(2);
     ASSERT_TRUE(fixture.is_visible("status.health")) << width;
     const PanelRect sign = fixture.rect_of("status.health");
@@ -22,11 +22,11 @@ TEST(PanelStatus, ClickOnWarningCopiesLosses) {
     EXPECT_NEAR(fixture.rect_of("status.LUA").x, lua.x, 0.01) << width << ": lamps stay where they are";
     fixture.click("status.health");
     EXPECT_TRUE(fixture.clipboard.starts_with("loops 17 since ")) << fixture.clipboard;
-    fixture.show.link.health.set(HealthItem::loops, 0);
+    fixture.show.link.health.set(engine::HealthItem::loops, 0);
     fixture.frames(2);
     EXPECT_FALSE(fixture.is_visible("status.health")) << width;
   }
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -5,7 +5,7 @@
 #include "engine/takes/reader.h"
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 std::vector<std::string> saved_takes(const std::filesystem::path& folder) {
@@ -35,7 +35,7 @@ TEST(PanelTime, RecordsTake) {
   fixture.show.engine.finish_saving();
   const std::vector<std::string> files = saved_takes(fixture.folder());
   ASSERT_EQ(files.size(), 1u);
-  auto reader = TakeReader::open(files[0]);
+  auto reader = engine::TakeReader::open(files[0]);
   ASSERT_TRUE(reader) << reader.error();
   EXPECT_EQ((*reader)->count_ticks(), 45u);
 }
@@ -70,16 +70,16 @@ TEST(PanelTime, HidesRejectedMessagesOfOthers) {
 }
 
 TEST(PanelTime, ShowsReplayPosition) {
-  const engine_test::SceneFile scene(kScene);
-  EngineOptions options = engine_test::fast_options(scene.path());
+  const engine::test::SceneFile scene(kScene);
+  engine::EngineOptions options = engine::test::fast_options(scene.path());
   options.record = scene.path() + ".take";
   {
-    engine_test::Show show(options);
+    engine::test::Show show(options);
     show.ticks(300);
     show.engine.end_take();
     show.engine.finish_saving();
   }
-  EngineOptions replay = engine_test::fast_options();
+  engine::EngineOptions replay = engine::test::fast_options();
   replay.replay = options.record;
   PanelFixture fixture(replay);
   fixture.key(GuiKey::space);
@@ -114,7 +114,7 @@ TEST(PanelTime, PlaysLatestTake) {
   fixture.click("transport.record");
   fixture.show.engine.finish_saving();
   ASSERT_EQ(saved_takes(fixture.folder()).size(), 1u);
-  ASSERT_TRUE(engine_test::play_take(fixture.show, saved_takes(fixture.folder())[0]).ok());
+  ASSERT_TRUE(engine::test::play_take(fixture.show, saved_takes(fixture.folder())[0]).ok());
   fixture.sync();
   EXPECT_TRUE(fixture.gui->context().take_state().in_show);
   fixture.click("take.stop");
@@ -126,4 +126,4 @@ TEST(PanelTime, PlaysLatestTake) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

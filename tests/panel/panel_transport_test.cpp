@@ -1,7 +1,7 @@
 // The buttons and keys of the transport.
 #include "panel/rig.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(PanelTransport, PlaysStepsAndResets) {
@@ -100,4 +100,4 @@ TEST(PanelTransport, RewindsByKeysAndButtons) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -9,7 +9,7 @@
 #include "properties/property_table.h"
 #include "ui/panel/widgets/number_slider.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 const std::string kTip = "/physics/body/arm/part/tip";
@@ -219,4 +219,4 @@ TEST(PropertyWidget, WideRangesHaveNonlinearScale) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

@@ -12,7 +12,7 @@
 #include "engine/show.h"
 #include "ui/panel/gui.h"
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 
 inline constexpr KeyMods kCtrl{true, false, false};
 inline constexpr KeyMods kShift{false, true, false};
@@ -49,7 +49,8 @@ class PanelFixture {
   }
 
   /// The same on an engine with these options, for example for a replay.
-  explicit PanelFixture(EngineOptions options) : file_(kScene), show(std::move(options)), width_(1600), height_(900) {
+  explicit PanelFixture(engine::EngineOptions options)
+      : file_(kScene), show(std::move(options)), width_(1600), height_(900) {
     gui = std::make_unique<Gui>(show.link, headless());
     sync();
   }
@@ -76,7 +77,7 @@ class PanelFixture {
     for (int i = 0; i < kMaxFrames; i++) {
       frame();
       if (gui->has_events()) continue;
-      const std::shared_ptr<const ValueSnapshot> snapshot = show.link.value_snapshots.read();
+      const std::shared_ptr<const engine::ValueSnapshot> snapshot = show.link.value_snapshots.read();
       if (snapshot != nullptr && snapshot->request >= ask && gui->context().value_snapshot == snapshot) return frame();
     }
     ADD_FAILURE() << "the simulation made no value snapshot";
@@ -179,10 +180,10 @@ class PanelFixture {
 
  private:
   static constexpr int kMaxFrames = 100000;
-  engine_test::SceneFile file_;
+  engine::test::SceneFile file_;
 
  public:
-  engine_test::Show show;
+  engine::test::Show show;
   std::unique_ptr<Gui> gui;
   std::string clipboard;
   double scale = 1;
@@ -198,4 +199,4 @@ class PanelFixture {
   double clock_ = 0;
 };
 
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

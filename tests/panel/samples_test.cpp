@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber::gui_test {
+namespace limber::panel::test {
 namespace {
 
 TEST(Samples, KeepLatest) {
@@ -26,4 +26,4 @@ TEST(Samples, DiscardLaterOnesAfterRewind) {
 }
 
 }  // namespace
-}  // namespace limber::gui_test
+}  // namespace limber::panel::test

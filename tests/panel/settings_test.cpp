@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::panel {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,4 +65,4 @@ TEST(Settings, RenamesDamagedFile) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

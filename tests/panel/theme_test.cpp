@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::panel {
 namespace {
 
 TEST(Theme, ContrastMatchesWcag) {
@@ -32,4 +32,4 @@ TEST(Theme, CoversAllCombinationsOfColors) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -5,7 +5,7 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 const DrawCamera kEye{{0, -10, 0}, {0, 1, 0}, 1000, 0};
@@ -17,7 +17,7 @@ Vec3 position_of(const DrawList& list, std::size_t i) {
 
 TEST(DrawList, InterpolatesBetweenSnapshots) {
   TestScene scene;
-  Part& part = scene.add("box", box(Vec3(1)), {0, 0, 0});
+  sim::Part& part = scene.add("box", box(Vec3(1)), {0, 0, 0});
   const auto before = scene.snapshot();
   part.set_pose({{1, 2, 4}, quat_axis({0, 0, 1}, 1.0)});
   const auto now = scene.snapshot();
@@ -54,7 +54,7 @@ TEST(DrawList, BatchesByShapeAndDetail) {
   TestScene scene;
   for (int i = 0; i < 10; i++) {
     scene.add(fmt::format("box{}", i), box(Vec3(0.1 * (i + 1))), {0.2 * i, 0, 0});
-    scene.add(fmt::format("ball{}", i), round(ShapeKind::sphere, 0.5), {0.2 * i, 0, 3});
+    scene.add(fmt::format("ball{}", i), round(model::ShapeKind::sphere, 0.5), {0.2 * i, 0, 3});
   }
   const auto now = scene.snapshot();
   DrawList list;
@@ -72,7 +72,7 @@ TEST(DrawList, SortsGlassFarthestFirstWithoutShadow) {
   TestScene scene;
   for (const int i : {2, 0, 3, 1}) {
     const std::string name = fmt::format("glass{}", i);
-    scene.add(name, i % 2 == 0 ? box(Vec3(1)) : round(ShapeKind::sphere, 0.5), {0, 2.0 * i, 0});
+    scene.add(name, i % 2 == 0 ? box(Vec3(1)) : round(model::ShapeKind::sphere, 0.5), {0, 2.0 * i, 0});
     scene.set("/visuals/shape/" + name + "/transparency", {i == 3 ? 0.2 : 0.8});
   }
   const auto now = scene.snapshot();
@@ -119,8 +119,8 @@ TEST(DrawList, PlanesAreInfinite) {
 TEST(DrawList, SkipsNonFinitePoses) {
   TestScene scene;
   scene.add("box", box(Vec3(1)));
-  Snapshot now = *scene.snapshot();
-  now.transient[now.render_scene->instances[0].part_offset + transient_offsets().part_position] =
+  engine::Snapshot now = *scene.snapshot();
+  now.transient[now.render_scene->instances[0].part_offset + engine::transient_offsets().part_position] =
       std::numeric_limits<double>::quiet_NaN();
   DrawList list;
   list.update(now, now, 1, kEye);
@@ -128,4 +128,4 @@ TEST(DrawList, SkipsNonFinitePoses) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

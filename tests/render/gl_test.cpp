@@ -6,7 +6,7 @@
 #include <epoxy/gl.h>
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 constexpr std::array<GlApi, 3> kAll = {GlApi::core, GlApi::es, GlApi::gl31};
@@ -28,11 +28,12 @@ class AllThings {
   explicit AllThings(double style) {
     scene_.set("/visuals/look/style", {style});
     scene_.add("box", box({0.4, 0.4, 1.4}), {-1.2, 0, 0.45});  // from 0.25 m below the floor
-    scene_.add("ball", round(ShapeKind::sphere, 0.3), {-0.5, -0.6, 0.3});
-    scene_.add("capsule", round(ShapeKind::capsule, 0.15, 0.6), {0.2, 0, 0.45}, quat_axis({1, 0, 0}, 0.5));
-    scene_.add("cylinder", round(ShapeKind::cylinder, 0.2, 0.5), {0.8, -0.4, 0.25});
-    scene_.add("cone", round(ShapeKind::cone, 0.25, 0.5), {1.3, 0.2, 0.25});
-    scene_.add("buried", round(ShapeKind::sphere, 0.25), {-0.4, 0.6, -0.5});  // must not appear in the reflection
+    scene_.add("ball", round(model::ShapeKind::sphere, 0.3), {-0.5, -0.6, 0.3});
+    scene_.add("capsule", round(model::ShapeKind::capsule, 0.15, 0.6), {0.2, 0, 0.45}, quat_axis({1, 0, 0}, 0.5));
+    scene_.add("cylinder", round(model::ShapeKind::cylinder, 0.2, 0.5), {0.8, -0.4, 0.25});
+    scene_.add("cone", round(model::ShapeKind::cone, 0.25, 0.5), {1.3, 0.2, 0.25});
+    scene_.add("buried", round(model::ShapeKind::sphere, 0.25),
+               {-0.4, 0.6, -0.5});  // must not appear in the reflection
     scene_.add("glass", box({0.5, 0.1, 0.6}), {0.4, -1, 0.4});
     scene_.add("slope", plane(), {0, 3, 0}, quat_axis({1, 0, 0}, 0.6));
     scene_.paint("box", {0, 0.9, 0.9});
@@ -41,17 +42,17 @@ class AllThings {
     scene_.set("/visuals/shape/glass/transparency", {0.6});
     scene_.look_from({0.5, -4, 1.6}, {0, 0, 0.4});
     now_ = *scene_.snapshot();
-    OverlayMark mark;
-    mark.kind = OverlayMark::Kind::rotation_axis;
+    sim::OverlayMark mark;
+    mark.kind = sim::OverlayMark::Kind::rotation_axis;
     mark.size = 0.4;
     mark.position = {0.2, 0, 0.5};
     now_.overlay = {mark};
   }
-  const Snapshot& now() const { return now_; }
+  const engine::Snapshot& now() const { return now_; }
 
  private:
   TestScene scene_;
-  Snapshot now_;
+  engine::Snapshot now_;
 };
 
 struct Differences {
@@ -134,4 +135,4 @@ TEST(Gl, ErrorsNameTheRequirementTheDriverAndTheFix) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

@@ -3,7 +3,7 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 Vec3 seen(const CameraMatrices& view_camera, const Vec3& point) {
@@ -17,7 +17,7 @@ TEST(CameraMatrices, FollowsTheCameraProperties) {
                                     {Vec3(-2, 3, 0.5), Vec3(1, 1, 1)},
                                     {Vec3(0, 0, 9), Vec3(0, 0, 0)}}) {
     scene.look_from(eye, target);
-    const CameraMatrices view_camera = camera_matrices(camera_of(*scene.snapshot()), 160, 90);
+    const CameraMatrices view_camera = camera_matrices(engine::camera_of(*scene.snapshot()), 160, 90);
     EXPECT_LT(glm::length(view_camera.eye - eye), 1e-9);
     EXPECT_LT(glm::length(view_camera.target - target), 1e-9);
     EXPECT_LT(glm::length(view_camera.forward - normalized(target - eye)), 1e-9);
@@ -31,7 +31,7 @@ TEST(CameraMatrices, FollowsTheCameraProperties) {
 }
 
 TEST(CameraMatrices, FocalLengthIsInPixels) {
-  CameraSettings camera;
+  engine::CameraSettings camera;
   camera.fovy = 90;  // the view is 2 m high at a distance of 1 m
   EXPECT_NEAR(camera_matrices(camera, 400, 100).focal_pixels, 50, 1e-9);
   camera.aspect = 1;
@@ -41,7 +41,7 @@ TEST(CameraMatrices, FocalLengthIsInPixels) {
 }
 
 TEST(CameraMatrices, FitsTheViewIntoTheFreeArea) {
-  CameraSettings camera;
+  engine::CameraSettings camera;
   camera.fovy = 90;
   camera.position = {0, 0, -2};  // looks down from 2 m: the view is 4 m high there
   camera.distance = 2;
@@ -86,4 +86,4 @@ TEST(Orbit, ZoomNeverReachesTheTarget) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

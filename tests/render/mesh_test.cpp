@@ -7,7 +7,7 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 struct Solid {
@@ -48,16 +48,16 @@ Solid solid(const MeshVertices& vertices, const MeshSize& size) {
 TEST(Mesh, PrimitivesAreClosedAndHaveTheirSize) {
   const double pi = std::numbers::pi;
   struct Case {
-    ShapeModel shape;
+    model::ShapeModel shape;
     Vec3 half;
     double volume;
   };
   const Case cases[] = {
       {box({0.2, 0.4, 1}), {0.1, 0.2, 0.5}, 0.08},
-      {round(ShapeKind::sphere, 0.5), Vec3(0.5), pi / 6},
-      {round(ShapeKind::capsule, 0.2, 1), {0.2, 0.2, 0.7}, pi * 0.04 + 4 * pi / 3 * 0.008},
-      {round(ShapeKind::cylinder, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04},
-      {round(ShapeKind::cone, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04 / 3},
+      {round(model::ShapeKind::sphere, 0.5), Vec3(0.5), pi / 6},
+      {round(model::ShapeKind::capsule, 0.2, 1), {0.2, 0.2, 0.7}, pi * 0.04 + 4 * pi / 3 * 0.008},
+      {round(model::ShapeKind::cylinder, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04},
+      {round(model::ShapeKind::cone, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04 / 3},
   };
   for (const Case& c : cases) {
     for (int detail = 0; detail < kDetailLevels; detail++) {
@@ -77,11 +77,11 @@ TEST(Mesh, PrimitivesAreClosedAndHaveTheirSize) {
     }
     EXPECT_GT(primitive_mesh(c.shape.kind, 0).size(), 2 * primitive_mesh(c.shape.kind, 2).size());
   }
-  EXPECT_TRUE(primitive_mesh(ShapeKind::plane, 0).empty());
+  EXPECT_TRUE(primitive_mesh(model::ShapeKind::plane, 0).empty());
 }
 
-MeshModel cube() {
-  MeshModel m;
+model::MeshModel cube() {
+  model::MeshModel m;
   for (int i = 0; i < 8; i++) m.vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2);
   m.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                  2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
@@ -89,15 +89,15 @@ MeshModel cube() {
 }
 
 TEST(Mesh, SharpEdgesStaySharp) {
-  const MeshModel model = cube();
+  const model::MeshModel model = cube();
   const Solid mesh = solid(model_mesh(model, 0), {});
   EXPECT_NEAR(mesh.volume(), 1, 1e-6);
   for (const Vec3& n : mesh.normals) EXPECT_NEAR(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), 1, 1e-6);
 }
 
 // a sphere of triangles with shared vertices
-MeshModel ball(unsigned around) {
-  MeshModel m;
+model::MeshModel ball(unsigned around) {
+  model::MeshModel m;
   for (unsigned i = 0; i <= around; i++) {
     for (unsigned k = 0; k < around; k++) {
       const double up = std::numbers::pi * i / around;
@@ -125,7 +125,7 @@ TEST(Mesh, RoundMeshesAreSmooth) {
 }
 
 TEST(Mesh, CoarserDetailKeepsTheShape) {
-  const MeshModel model = ball(80);  // 12 800 triangles
+  const model::MeshModel model = ball(80);  // 12 800 triangles
   std::size_t before = model_mesh(model, 0).size();
   for (const int detail : {1, 2}) {
     const MeshVertices vertices = model_mesh(model, detail);
@@ -136,14 +136,15 @@ TEST(Mesh, CoarserDetailKeepsTheShape) {
 }
 
 TEST(Mesh, IgnoresBadIndices) {
-  MeshModel model = cube();
+  model::MeshModel model = cube();
   model.triangles.insert(model.triangles.end(), {0, 1, 8, 7});
   EXPECT_EQ(model_mesh(model, 0).size(), 36u);
-  EXPECT_TRUE(model_mesh(MeshModel{}, 2).empty());
+  EXPECT_TRUE(model_mesh(model::MeshModel{}, 2).empty());
 }
 
 TEST(Mesh, SharesVertices) {
-  for (const ShapeKind kind : {ShapeKind::box, ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder}) {
+  for (const model::ShapeKind kind :
+       {model::ShapeKind::box, model::ShapeKind::sphere, model::ShapeKind::capsule, model::ShapeKind::cylinder}) {
     for (int detail = 0; detail < kDetailLevels; detail++) {
       const MeshVertices triangles = primitive_mesh(kind, detail);
       const IndexedMesh mesh = with_shared_vertices(triangles);
@@ -161,10 +162,10 @@ TEST(Mesh, SharesVertices) {
       EXPECT_EQ(at, again.size());
     }
   }
-  EXPECT_EQ(with_shared_vertices(primitive_mesh(ShapeKind::box, kDetailLevels - 1)).vertices.size(), 24U);
-  EXPECT_EQ(with_shared_vertices(primitive_mesh(ShapeKind::box, kDetailLevels - 1)).indices.size(), 3U * 44);
+  EXPECT_EQ(with_shared_vertices(primitive_mesh(model::ShapeKind::box, kDetailLevels - 1)).vertices.size(), 24U);
+  EXPECT_EQ(with_shared_vertices(primitive_mesh(model::ShapeKind::box, kDetailLevels - 1)).indices.size(), 3U * 44);
   EXPECT_TRUE(with_shared_vertices({}).indices.empty());
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

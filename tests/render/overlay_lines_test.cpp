@@ -3,13 +3,13 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
-using Kind = OverlayMark::Kind;
+using Kind = sim::OverlayMark::Kind;
 
-OverlayMark mark(Kind kind, const Vec3& at, const Vec3& vector = {0, 0, 0}) {
-  OverlayMark made;
+sim::OverlayMark mark(Kind kind, const Vec3& at, const Vec3& vector = {0, 0, 0}) {
+  sim::OverlayMark made;
   made.kind = kind;
   made.size = 0.5;
   made.position = at;
@@ -21,7 +21,7 @@ Vec3 from(const OverlayLine& line) { return {line.from[0], line.from[1], line.fr
 Vec3 to(const OverlayLine& line) { return {line.to[0], line.to[1], line.to[2]}; }
 
 TEST(OverlayLines, ArrowLengthIsProportionalToForce) {
-  Snapshot now;
+  engine::Snapshot now;
   now.overlay = {mark(Kind::force, {1, 2, 3}, {0, 0, 2}), mark(Kind::force, {0, 0, 0}, {100, 0, 0}),
                  mark(Kind::force, {0, 0, 0}, {0.001, 0, 0})};
   OverlayLines lines;
@@ -33,8 +33,8 @@ TEST(OverlayLines, ArrowLengthIsProportionalToForce) {
 }
 
 TEST(OverlayLines, InterpolateBetweenTicks) {
-  Snapshot before;
-  Snapshot now;
+  engine::Snapshot before;
+  engine::Snapshot now;
   before.overlay = {mark(Kind::force, {0, 0, 0}, {0, 0, 2}), mark(Kind::contact, {0, 0, 0}, {0, 0, 2})};
   now.overlay = {mark(Kind::force, {4, 0, 0}, {0, 0, 4}), mark(Kind::contact, {4, 0, 0}, {0, 0, 4})};
   OverlayLines lines;
@@ -48,7 +48,7 @@ TEST(OverlayLines, InterpolateBetweenTicks) {
 }
 
 TEST(OverlayLines, HingesShowAnArcOrACircle) {
-  Snapshot now;
+  engine::Snapshot now;
   now.overlay = {mark(Kind::rotation_axis, {0, 0, 0})};
   now.overlay[0].axis = 2;
   now.overlay[0].limited = true;
@@ -72,10 +72,10 @@ bool is_red_line(const Vec3& c) { return c.x > 120 && c.x > 2.5 * c.y && c.x > 2
 
 TEST(OverlayLines, AreVisibleWhileEnabled) {
   TestScene scene;
-  Shape& ball = **scene.world.shapes().add("ball", round(ShapeKind::sphere, 0.3));
+  sim::Shape& ball = **scene.world.shapes().add("ball", round(model::ShapeKind::sphere, 0.3));
   scene.set("/visuals/shape/ball/diffuse_color", {0, 0, 0.1});
-  Body& body = **scene.world.add_body("ball");
-  Part& part = **body.add_part("part", ball, 1, {{0, 0, 1}, quat_identity()});
+  sim::Body& body = **scene.world.add_body("ball");
+  sim::Part& part = **body.add_part("part", ball, 1, {{0, 0, 1}, quat_identity()});
   scene.set("/physics/sim/gravity", {0, 0, 0});
   scene.look_from({0, -4, 1}, {0, 0, 1});
   const auto red_at = [&](Quality quality, bool on) {
@@ -104,11 +104,11 @@ TEST(OverlayLines, ClipsLinesBehindTheEye) {
   TestScene scene;
   scene.set("/visuals/look/floor", {0});
   scene.look_from({0, -4, 1}, {0, 0, 1});
-  Snapshot now = *scene.snapshot();
+  engine::Snapshot now = *scene.snapshot();
   const Pixels without = draw(now, 64, 36);
   now.overlay = {mark(Kind::force, {0, -9, 1}, {0.5, 0.5, 0.5}), mark(Kind::center, {3, -9, 2})};
   EXPECT_EQ(draw(now, 64, 36).bytes, without.bytes);
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

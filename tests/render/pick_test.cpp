@@ -3,27 +3,27 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
-ShapeModel ball_of(double radius) {
-  ShapeModel model;
-  model.kind = ShapeKind::sphere;
+model::ShapeModel ball_of(double radius) {
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::sphere;
   model.radius = radius;
   return model;
 }
 
 TEST(Pick, ReturnsTheNearestPart) {
   TestScene scene;
-  Part& near = scene.add("near", ball_of(0.5), {0, 0, 0});
+  sim::Part& near = scene.add("near", ball_of(0.5), {0, 0, 0});
   scene.add("far", ball_of(0.5), {0, 5, 0});
-  ShapeModel box;
+  model::ShapeModel box;
   box.size = {0.4, 0.4, 2};
-  Part& side = scene.add("side", box, {3, 0, 0});
+  sim::Part& side = scene.add("side", box, {3, 0, 0});
   scene.look_from({0, -10, 0}, {0, 0, 0});
   const auto now = scene.snapshot();
-  const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100);
-  const auto at = [&](Part& part) { return scene.store.view()->slots[part.id().slot].transient; };
+  const CameraMatrices view_camera = camera_matrices(engine::camera_of(*now), 200, 100);
+  const auto at = [&](sim::Part& part) { return scene.store.view()->slots[part.id().slot].transient; };
   const auto middle = pick(*now, view_camera, 0, 0);
   ASSERT_TRUE(middle.has_value());
   EXPECT_EQ(middle->part_offset, at(near));
@@ -41,28 +41,28 @@ TEST(Pick, UsesTheFreeArea) {
   scene.add("ball", ball_of(0.5), {0, 0, 0});
   scene.look_from({0, -10, 0}, {0, 0, 0});
   const auto now = scene.snapshot();
-  const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
+  const CameraMatrices view_camera = camera_matrices(engine::camera_of(*now), 200, 100, {0, 0, 0.5, 0.5});
   EXPECT_FALSE(pick(*now, view_camera, 0, 0).has_value());
   EXPECT_TRUE(pick(*now, view_camera, -0.5, 0.5).has_value()) << "the middle of the upper left quarter";
 }
 
 // points inside the bounding box but outside the shape: beside a capsule's end or a cone's tip, at a mesh's corner
 TEST(Pick, TestsTheExactShape) {
-  auto mesh = std::make_shared<MeshModel>();
+  auto mesh = std::make_shared<model::MeshModel>();
   mesh->vertices = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}};
   mesh->triangles = {0, 1, 2};
-  ShapeModel triangle;
-  triangle.kind = ShapeKind::mesh;
+  model::ShapeModel triangle;
+  triangle.kind = model::ShapeKind::mesh;
   triangle.mesh = mesh;
   mesh->hull = {{-1, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {-1, 0.1, -1}};
   struct Case {
     const char* name;
-    ShapeModel model;
+    model::ShapeModel model;
     Vec3 on, beside;
   };
-  const Case cases[] = {{"cylinder", round(ShapeKind::cylinder, 0.5, 2), {0.45, 0, 0.95}, {0.55, 0, 0.95}},
-                        {"capsule", round(ShapeKind::capsule, 0.5, 1), {0.3, 0, 0.85}, {0.45, 0, 0.95}},
-                        {"cone", round(ShapeKind::cone, 0.5, 2), {0.2, 0, 0}, {0.4, 0, 0.6}},
+  const Case cases[] = {{"cylinder", round(model::ShapeKind::cylinder, 0.5, 2), {0.45, 0, 0.95}, {0.55, 0, 0.95}},
+                        {"capsule", round(model::ShapeKind::capsule, 0.5, 1), {0.3, 0, 0.85}, {0.45, 0, 0.95}},
+                        {"cone", round(model::ShapeKind::cone, 0.5, 2), {0.2, 0, 0}, {0.4, 0, 0.6}},
                         {"mesh", triangle, {-0.5, 0, -0.5}, {0.5, 0, 0.5}}};
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
@@ -71,7 +71,7 @@ TEST(Pick, TestsTheExactShape) {
     alone.look_from({0, -1000, 0}, {0, 0, 0});  // so far away that rays are almost parallel
     alone.set("/visuals/camera/fovy", {1});
     const auto now = alone.snapshot();
-    const CameraMatrices view_camera = camera_matrices(camera_of(*now), 200, 100);
+    const CameraMatrices view_camera = camera_matrices(engine::camera_of(*now), 200, 100);
     const auto at = [&](const Vec3& point) {
       const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
       return pick(*now, view_camera, static_cast<double>(clip.x / clip.w), static_cast<double>(clip.y / clip.w));
@@ -87,8 +87,8 @@ TEST(Pick, IgnoresDisabledParts) {
   scene.look_from({0, -10, 0}, {0, 0, 0});
   scene.set("/physics/body/ball/enabled", {0});
   const auto now = scene.snapshot();
-  EXPECT_FALSE(pick(*now, camera_matrices(camera_of(*now), 200, 100), 0, 0).has_value());
+  EXPECT_FALSE(pick(*now, camera_matrices(engine::camera_of(*now), 200, 100), 0, 0).has_value());
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

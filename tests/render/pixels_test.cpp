@@ -8,7 +8,7 @@
 
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 TEST(Pixels, PngContainsTheImage) {
@@ -37,4 +37,4 @@ TEST(Pixels, ErrorNamesAMissingFolder) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

@@ -7,7 +7,7 @@
 #include "base/color.h"
 #include "render/stage.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 const Vec3 kRed{0, 1, 1};
@@ -112,9 +112,9 @@ TEST(Renderer, HorizonHasNoEdge) {
 }
 
 // the center of a ball's shadow on the floor
-Vec3 shadow_of(const Snapshot& now, const Vec3& ball, double radius) {
-  const CameraMatrices view_camera = camera_matrices(camera_of(now), 160, 90);
-  const Lighting lighting = compute_lighting(appearance_of(now), view_camera, camera_of(now).far,
+Vec3 shadow_of(const engine::Snapshot& now, const Vec3& ball, double radius) {
+  const CameraMatrices view_camera = camera_matrices(engine::camera_of(now), 160, 90);
+  const Lighting lighting = compute_lighting(engine::appearance_of(now), view_camera, engine::camera_of(now).far,
                                              {glm::vec3(ball), static_cast<float>(radius), 0, 1024});
   const Vec3 light(lighting.frame.light_position);
   const Vec3 direction = lighting.frame.light_position.w > 0.5 ? normalized(light - ball) : normalized(light);
@@ -126,7 +126,7 @@ TEST(Renderer, ShadowFollowsTheLampAndItsStrength) {
     for (const Quality quality : {Quality::low, Quality::high}) {
       TestScene scene;
       const Vec3 at{0, 0, 0.6};
-      scene.add("ball", round(ShapeKind::sphere, 0.3), at);
+      scene.add("ball", round(model::ShapeKind::sphere, 0.3), at);
       scene.set("/visuals/look/style", {style});
       scene.set("/visuals/look/grid", {0});
       scene.set("/visuals/look/mirror", {0});
@@ -146,7 +146,7 @@ TEST(Renderer, ShadowFollowsTheLampAndItsStrength) {
 
 TEST(Renderer, ContactShadowsDarkenTheFloor) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 0.3), {0, 0, 0.3});
+  scene.add("ball", round(model::ShapeKind::sphere, 0.3), {0, 0, 0.3});
   scene.set("/visuals/look/style", {1});
   scene.set("/visuals/look/lamp", {0});  // ambient light only
   scene.look_from({0, -3, 2}, {0, 0, 0});
@@ -224,7 +224,7 @@ TEST(Renderer, NearerGlassContributesMore) {
 
 TEST(Renderer, MaterialsAreProperties) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 1});
+  scene.add("ball", round(model::ShapeKind::sphere, 0.5), {0, 0, 1});
   scene.look_from({0, -3, 1}, {0, 0, 1});
   for (const double h : {0.0, 0.25, 0.5, 0.75}) {
     scene.paint("ball", {h, 1, 1});
@@ -246,7 +246,7 @@ TEST(Renderer, MaterialsAreProperties) {
 
 TEST(Renderer, ExposureIncreasesBrightness) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 0.5});
+  scene.add("ball", round(model::ShapeKind::sphere, 0.5), {0, 0, 0.5});
   scene.set("/visuals/look/style", {1});
   double before = -1;
   for (const double exposure : {0.0, 0.3, 1.0, 4.0}) {
@@ -259,7 +259,7 @@ TEST(Renderer, ExposureIncreasesBrightness) {
 
 TEST(Renderer, RenderingIsDeterministic) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 0.5), {0, 0, 0.5});
+  scene.add("ball", round(model::ShapeKind::sphere, 0.5), {0, 0, 0.5});
   const auto now = scene.snapshot();
   const Pixels first = draw(*now, 160, 90, Quality::high);
   (void)draw(*now, 31, 17, Quality::high);
@@ -288,10 +288,10 @@ TEST(Renderer, RejectsATooLargeImage) {
 
 TEST(Renderer, HandlesExtremeValues) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 1e4), {3e4, 0, 0});
+  scene.add("ball", round(model::ShapeKind::sphere, 1e4), {3e4, 0, 0});
   scene.add("dust", box(Vec3(1e-4)), {0, 0, 1});
-  scene.add("disc", round(ShapeKind::cylinder, 5, 1e-4), {0, 0, 2});
-  scene.add("cone", round(ShapeKind::cone, 1e-4, 10), {0, 1, 2});
+  scene.add("disc", round(model::ShapeKind::cylinder, 5, 1e-4), {0, 0, 2});
+  scene.add("cone", round(model::ShapeKind::cone, 1e-4, 10), {0, 1, 2});
   scene.add("plane", plane());
   for (const char* name : {"ball", "dust", "disc", "cone", "plane"}) {
     for (const char* property : {"ambient_scale", "diffuse_scale", "specular_scale"})
@@ -314,7 +314,7 @@ TEST(Renderer, HandlesExtremeValues) {
 
 TEST(Renderer, ObjectsBelowGroundAreVisibleWithoutAFloor) {
   TestScene scene;
-  scene.add("ball", round(ShapeKind::sphere, 1));
+  scene.add("ball", round(model::ShapeKind::sphere, 1));
   scene.paint("ball", kGreen);
   scene.look_from({0, -3, 1}, {0, 0, 0});
   for (const double studio : {0.0, 1.0}) {
@@ -332,7 +332,7 @@ TEST(Renderer, ObjectsBelowGroundAreVisibleWithoutAFloor) {
 // rings of triangles, about as many as in a 3D scan
 TEST(Renderer, DrawsALargeMeshInEachQuality) {
   constexpr unsigned kAround = 224;
-  auto mesh = std::make_shared<MeshModel>();
+  auto mesh = std::make_shared<model::MeshModel>();
   for (unsigned i = 0; i <= kAround; i++) {
     for (unsigned k = 0; k < kAround; k++) {
       const double up = kPi * i / kAround;
@@ -349,8 +349,8 @@ TEST(Renderer, DrawsALargeMeshInEachQuality) {
   }
   ASSERT_GT(mesh->triangles.size(), 300000u);
   mesh->hull = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
-  ShapeModel model;
-  model.kind = ShapeKind::mesh;
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::mesh;
   model.mesh = mesh;
   TestScene scene;
   scene.set("/visuals/look/floor", {0});
@@ -368,12 +368,13 @@ TEST(Renderer, DrawsALargeMeshInEachQuality) {
 
 TEST(Renderer, DrawsManyPartsOfEveryKind) {
   TestScene scene;
-  const ShapeModel models[] = {box(Vec3(0.1)), round(ShapeKind::sphere, 0.05), round(ShapeKind::capsule, 0.03, 0.1),
-                               round(ShapeKind::cylinder, 0.05, 0.1), round(ShapeKind::cone, 0.05, 0.1)};
-  std::vector<Shape*> shapes;
-  for (const ShapeModel& model : models)
+  const model::ShapeModel models[] = {
+      box(Vec3(0.1)), round(model::ShapeKind::sphere, 0.05), round(model::ShapeKind::capsule, 0.03, 0.1),
+      round(model::ShapeKind::cylinder, 0.05, 0.1), round(model::ShapeKind::cone, 0.05, 0.1)};
+  std::vector<sim::Shape*> shapes;
+  for (const model::ShapeModel& model : models)
     shapes.push_back(*scene.world.shapes().add(fmt::format("s{}", shapes.size()), model));
-  Body& body = **scene.world.add_body("many");
+  sim::Body& body = **scene.world.add_body("many");
   for (int i = 0; i < 3000; i++) {
     const int property = i / 60;
     const Vec3 at(0.2 * (i % 60) - 6, 0.2 * property - 5, 0.1);
@@ -388,4 +389,4 @@ TEST(Renderer, DrawsManyPartsOfEveryKind) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

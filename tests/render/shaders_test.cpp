@@ -10,11 +10,11 @@
 #include "base/embedded.h"
 #include "render/stage.h"
 
-namespace limber {
+namespace limber::render {
 std::span<const EmbeddedFile> shader_files();
 }
 
-namespace limber::view_test {
+namespace limber::render::test {
 namespace {
 
 // a temporary copy of shaders/
@@ -103,4 +103,4 @@ TEST(Shaders, FallsBackToEmbeddedShaders) {
 }
 
 }  // namespace
-}  // namespace limber::view_test
+}  // namespace limber::render::test

@@ -17,37 +17,37 @@
 #include "ui/render/offscreen.h"
 #include "ui/render/renderer.h"
 
-namespace limber::view_test {
+namespace limber::render::test {
 
-inline ShapeModel box(const Vec3& size) {
-  ShapeModel m;
-  m.kind = ShapeKind::box;
+inline model::ShapeModel box(const Vec3& size) {
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::box;
   m.size = size;
   return m;
 }
-inline ShapeModel round(ShapeKind kind, double radius, double height = 1) {
-  ShapeModel m;
+inline model::ShapeModel round(model::ShapeKind kind, double radius, double height = 1) {
+  model::ShapeModel m;
   m.kind = kind;
   m.radius = radius;
   m.height = height;
   return m;
 }
-inline ShapeModel plane() {
-  ShapeModel m;
-  m.kind = ShapeKind::plane;
+inline model::ShapeModel plane() {
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::plane;
   return m;
 }
 
 class TestScene {
  public:
   Store store;
-  World world{store};
+  sim::World world{store};
 
   /// Adds a body with one static part.
-  Part& add(const std::string& name, const ShapeModel& model, const Vec3& at = {0, 0, 0},
-            const Quat& rotation = quat_identity()) {
-    Shape& shape = **world.shapes().add(name, model);
-    Body& body = **world.add_body(name);
+  sim::Part& add(const std::string& name, const model::ShapeModel& model, const Vec3& at = {0, 0, 0},
+                 const Quat& rotation = quat_identity()) {
+    sim::Shape& shape = **world.shapes().add(name, model);
+    sim::Body& body = **world.add_body(name);
     return **body.add_part("part", shape, 0, {at, rotation});
   }
   void set(const std::string& path, const std::vector<double>& values) {
@@ -62,15 +62,15 @@ class TestScene {
   }
   void look_from(const Vec3& eye, const Vec3& target) { world.visuals().camera().look_at(eye, target); }
 
-  std::shared_ptr<const Snapshot> snapshot() {
+  std::shared_ptr<const engine::Snapshot> snapshot() {
     world.flush();
     publisher_.publish(false, 1);
     return latest_.read();
   }
 
  private:
-  Latest<Snapshot> latest_;
-  Publisher publisher_{world, latest_};
+  Latest<engine::Snapshot> latest_;
+  engine::Publisher publisher_{world, latest_};
 };
 
 /// The context of an OpenGL version, one for the whole program; makes it current.
@@ -114,9 +114,9 @@ inline Renderer& renderer(Quality quality, GlApi api = GlApi::core) {
   return *one.renderer;
 }
 
-inline Pixels draw(const Snapshot& now, int width = 160, int height = 90, Quality quality = Quality::low,
+inline Pixels draw(const engine::Snapshot& now, int width = 160, int height = 90, Quality quality = Quality::low,
                    GlApi api = GlApi::core) {
-  Renderer& renderer = view_test::renderer(quality, api);
+  Renderer& renderer = test::renderer(quality, api);
   const Result<void> drawn = renderer.draw(now, width, height);
   EXPECT_TRUE(drawn.ok()) << drawn.error();
   return renderer.read();
@@ -148,11 +148,11 @@ struct Spot {
   int x = 0;
   int y = 0;
 };
-inline Spot spot_of(const Snapshot& now, const Vec3& point, int width, int height) {
-  const CameraMatrices view_camera = camera_matrices(camera_of(now), width, height);
+inline Spot spot_of(const engine::Snapshot& now, const Vec3& point, int width, int height) {
+  const CameraMatrices view_camera = camera_matrices(engine::camera_of(now), width, height);
   const glm::vec4 clip = view_camera.projection * view_camera.view * glm::vec4(glm::vec3(point), 1);
   return {static_cast<int>((0.5 + 0.5 * clip.x / clip.w) * width),
           static_cast<int>((0.5 - 0.5 * clip.y / clip.w) * height)};
 }
 
-}  // namespace limber::view_test
+}  // namespace limber::render::test

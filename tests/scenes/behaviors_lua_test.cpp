@@ -26,7 +26,7 @@ local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 arm:add_behavior("breathe", "breath", { rate = 0.3, depth = 0.4, lag = 0.7, offset = 0.2 })
 )");
   Player& player = lua_scene.player;
-  const Body& arm = player.body("arm");
+  const sim::Body& arm = player.body("arm");
   for (int tick = 1; tick <= 240; tick++) {
     player.engine->tick();
     for (std::size_t i = 0; i < arm.motors().size(); i++) {
@@ -51,7 +51,7 @@ local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 arm:add_behavior("breathe", "breath", { rate = 0.4, depth = 0.35, motors = "joint_2" })
 )");
   Player& player = lua_scene.player;
-  const Joint& joint = *player.body("arm").find_joint("joint_2");
+  const sim::Joint& joint = *player.body("arm").find_joint("joint_2");
   player.play(2.5);
   double max_angle = 0, before = joint.value();
   std::vector<double> rises;  // times of its upward crossings of the middle, s
@@ -83,7 +83,7 @@ local arm = sim:load_urdf("urdf/arm17.urdf", { name = "arm" })
 arm:add_behavior("wave", "crawl", { rate = 0.5, length = 8, depth = 0.2 })
 )");
   Player& player = lua_scene.player;
-  const Body& arm = player.body("arm");
+  const sim::Body& arm = player.body("arm");
   player.play(4);  // until it swings evenly
   std::vector<std::vector<double>> angles(arm.joints().size());
   for (int i = 0; i < 480; i++) {  // four swings
@@ -129,8 +129,8 @@ ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { mass = 0.5, position 
 ball:add_behavior("follow", "ball")
 )");
   Player& player = lua_scene.player;
-  const Part& tip = *player.body("arm").find_part("tip");
-  const Part& ball = *player.body("ball").root();
+  const sim::Part& tip = *player.body("arm").find_part("tip");
+  const sim::Part& ball = *player.body("ball").root();
   player.play(2);
   const Vec3 ball_offset(0, 2, 0);  // to avoid collisions
   for (const Vec3 target : {Vec3(0.5, 0.3, 0.9), Vec3(-0.6, 0.2, 1.1)}) {
@@ -169,7 +169,7 @@ end
   for (int tick = 0; tick < 240; tick++) {
     player.engine->tick();
     for (const char* name : {"moon1", "moon2", "moon3"}) {
-      const Part& moon = *player.body(name).root();
+      const sim::Part& moon = *player.body(name).root();
       const Vec3 from = moon.center() - Vec3(0, 0, 1);
       const double height = glm::dot(from, axis);
       const Vec3 flat = from - axis * height;
@@ -192,7 +192,7 @@ osc:on("/push", function(angle)
 end)
 )");
   Player& player = lua_scene.player;
-  const Part& pole = *player.body("pole").root();
+  const sim::Part& pole = *player.body("pole").root();
   const auto off_upright = [&] {
     return std::acos(std::clamp((pole.pose().rotation * Vec3(0, 0, 1)).z, -1.0, 1.0)) * 180 / kPi;
   };

@@ -84,13 +84,13 @@ TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/scripting.md"
 // ---- docs/bodies.md
 
 TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
-  const app_test::TempFolder folder;
+  const app::test::TempFolder folder;
   const std::vector<DocBlock> blocks = blocks_of_page("docs/bodies.md");
   const auto body = std::find_if(blocks.begin(), blocks.end(), [](const DocBlock& b) { return b.language == "xml"; });
   ASSERT_NE(body, blocks.end());
   ASSERT_EQ(body->output.size(), 2u) << "the output of inspect, and its error for a comma";
   folder.file(body->file, body->text);
-  const app_test::RunResult result = app_test::run({"inspect", body->file}, folder.path());
+  const app::test::RunResult result = app::test::run({"inspect", body->file}, folder.path());
   EXPECT_EQ(result.code, 0);
   EXPECT_EQ(result.out + result.err, body->output[0]);
   const std::string mass = "mass value=\"0.5\"";
@@ -98,7 +98,7 @@ TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
   ASSERT_NE(mistyped.find(mass), std::string::npos);
   mistyped.replace(mistyped.find(mass), mass.size(), "mass value=\"0,5\"");
   folder.file(body->file, mistyped);
-  const app_test::RunResult wrong = app_test::run({"inspect", body->file}, folder.path());
+  const app::test::RunResult wrong = app::test::run({"inspect", body->file}, folder.path());
   EXPECT_NE((wrong.out + wrong.err).find(body->output[1]), std::string::npos) << wrong.out << wrong.err;
 }
 
@@ -157,7 +157,7 @@ TEST(Docs, EveryExampleOfABehaviorWorks) {
     player.play(0.1);
     EXPECT_EQ(error_messages(player).size(), 1u);
   }
-  EXPECT_EQ(examples, BehaviorTypes().all().size()) << "one for each built-in type";
+  EXPECT_EQ(examples, sim::BehaviorTypes().all().size()) << "one for each built-in type";
 }
 
 TEST(Docs, TheFirstMessagesToBehaviorsAreAccepted) {
@@ -187,7 +187,7 @@ TEST(Docs, TheFirstMessagesToBehaviorsAreAccepted) {
 
 Evaluation evaluate(Player& player, const std::string& text) {
   Evaluation answer;
-  auto request = std::make_shared<EvaluationRequest>();
+  auto request = std::make_shared<engine::EvaluationRequest>();
   request->text = text;
   request->on_result = [&](const Evaluation& evaluation) { answer = evaluation; };
   player.link.command_queue.push({{}, {CommandSource::console}, request});

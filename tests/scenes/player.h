@@ -31,8 +31,8 @@ struct Player {
     const double end = engine->world().time() + seconds - 1e-9;
     while (engine->world().time() < end) engine->tick();
   }
-  World& world() const { return engine->world(); }
-  Body& body(const std::string& name) const { return *world().find_body(name); }
+  sim::World& world() const { return engine->world(); }
+  sim::Body& body(const std::string& name) const { return *world().find_body(name); }
 
   void send(const std::string& address, std::vector<Arg> args) {
     link.command_queue.push({{{address, std::move(args)}}, {}});
@@ -49,27 +49,27 @@ struct Player {
   }
   /// Returns the messages sent since the last call.
   std::vector<Message> sent() {
-    std::vector<Outgoing> out;
+    std::vector<engine::Outgoing> out;
     link.output_queue.drain(out);
     std::vector<Message> messages;
     messages.reserve(out.size());
-    for (Outgoing& each : out) messages.push_back(std::move(each.message));
+    for (engine::Outgoing& each : out) messages.push_back(std::move(each.message));
     return messages;
   }
 
-  EngineLink link;
-  std::unique_ptr<Engine> engine;
+  engine::EngineLink link;
+  std::unique_ptr<engine::Engine> engine;
   Result<void> started;
 
  private:
   Result<void> begin(const std::string& scene) {
     log_to_stderr(false);
-    EngineOptions options;
+    engine::EngineOptions options;
     options.scene = scene.starts_with('/') ? scene : std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene;
     options.scene_options.data_dir = LIMBER_SOURCE_DIR;
     options.fast = true;
     options.print = false;
-    engine = std::make_unique<Engine>(link, options);
+    engine = std::make_unique<engine::Engine>(link, options);
     return engine->start();
   }
 };

@@ -15,7 +15,7 @@
 namespace limber {
 namespace {
 
-using app_test::RunResult;
+using app::test::RunResult;
 
 /// An SVG file split into its numbers and the text between them, in which each number is replaced by 0.
 struct Plot {
@@ -48,7 +48,7 @@ Plot read_plot(const std::string& svg) {
 
 // Draws all plots. Returns SVG texts by file name; the output has a line "<!-- name.svg -->" before each plot.
 std::map<std::string, std::string> draw_plots() {
-  const auto result = app_test::run({"docs/plots/behaviors.lua", "--fast", "--ticks", "200", "--strict"});
+  const auto result = app::test::run({"docs/plots/behaviors.lua", "--fast", "--ticks", "200", "--strict"});
   EXPECT_EQ(result.code, 0) << result.err;
   std::map<std::string, std::string> plots;
   std::string* plot = nullptr;
@@ -66,11 +66,11 @@ std::map<std::string, std::string> draw_plots() {
 TEST(Plots, AreUpToDate) {
   LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   const std::map<std::string, std::string> plots = draw_plots();
-  EXPECT_EQ(plots.size(), BehaviorTypes().all().size());
+  EXPECT_EQ(plots.size(), sim::BehaviorTypes().all().size());
   for (const auto& [name, svg] : plots) {
     SCOPED_TRACE("docs/plots/" + name + "; docs/plots/make updates it");
     const Plot now = read_plot(svg);
-    const Plot committed = read_plot(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + name));
+    const Plot committed = read_plot(app::test::content(LIMBER_SOURCE_DIR "/docs/plots/" + name));
     EXPECT_EQ(now.words, committed.words);
     ASSERT_EQ(now.numbers.size(), committed.numbers.size());
     ASSERT_GT(now.numbers.size(), 100u);
@@ -85,9 +85,9 @@ TEST(Plots, AreUpToDate) {
 TEST(Plots, EveryBuiltInTypeHasAPlotOnThePage) {
   std::string page;
   for (const std::string& line : lines_of_page("docs/behaviors.md")) page += line + "\n";
-  const BehaviorTypes built_in;
+  const sim::BehaviorTypes built_in;
   for (const auto& type : built_in.all()) {
-    EXPECT_FALSE(app_test::content(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;
+    EXPECT_FALSE(app::test::content(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;
     EXPECT_NE(page.find("![" + type->name + "](plots/" + type->name + ".svg)"), std::string::npos) << type->name;
   }
 }

@@ -14,7 +14,7 @@ namespace {
 
 TEST(Scenes, TheQuadrupedStandsThenTrotsAtTheSpeedOfItsStride) {
   Player player("quadruped.lua");
-  const Part& trunk = *player.engine->world().find_body("dog")->root();
+  const sim::Part& trunk = *player.engine->world().find_body("dog")->root();
   // it stays upright in the first second, its trunk 0.35 m and the foot's radius of 0.032 m above the ground
   player.play(1);
   EXPECT_NEAR(trunk.pose().position.z, 0.382, 0.01);
@@ -43,7 +43,7 @@ TEST(Scenes, TheQuadrupedStandsThenTrotsAtTheSpeedOfItsStride) {
 TEST(Scenes, TheQuadrupedTurnsAtTheCommandedRate) {
   for (const auto& [turn, stride] : {std::pair(0.6, 0.12), std::pair(-1.0, 0.12), std::pair(1.0, 0.0)}) {
     Player player("quadruped.lua");
-    const Part& trunk = *player.engine->world().find_body("dog")->root();
+    const sim::Part& trunk = *player.engine->world().find_body("dog")->root();
     player.send("/scene/stride", {Arg::of(stride)});
     player.play(2);
     player.send("/scene/turn", {Arg::of(turn)});
@@ -63,10 +63,10 @@ TEST(Scenes, TheQuadrupedTurnsAtTheCommandedRate) {
 
 TEST(Scenes, SixteenArmsStandInTwoRingsAndSway) {
   Player player("arms.lua");
-  World& world = player.engine->world();
+  sim::World& world = player.engine->world();
   ASSERT_EQ(world.bodies().size(), 16u);
   for (int i = 1; i <= 16; i++) {
-    const Body* body = world.find_body("arm" + std::to_string(i));
+    const sim::Body* body = world.find_body("arm" + std::to_string(i));
     ASSERT_NE(body, nullptr) << i;
     const Vec3 at = body->pose().position;
     EXPECT_NEAR(std::hypot(at.x, at.y), 2.5, 1e-5);
@@ -122,7 +122,7 @@ TEST(Scenes, EachArmHasTwentyOneInactiveBehaviors) {
   ASSERT_EQ(kArmBehaviors.size(), 21u);
   for (const auto& body : player.world().bodies()) {
     for (const auto& [name, type] : kArmBehaviors) {
-      const Behavior* behavior = body->behaviors().find(name);
+      const sim::Behavior* behavior = body->behaviors().find(name);
       ASSERT_NE(behavior, nullptr) << body->name() << " " << name;
       EXPECT_EQ(behavior->type().name, type) << name;
       EXPECT_FALSE(behavior->active()) << name;
@@ -202,7 +202,7 @@ TEST(Scenes, AGustBendsTheArmsAndDiesDown) {
 TEST(Scenes, TheSwarmAlignsAndStaysInItsArena) {
   LIMBER_SKIP_IF(kAddressSanitizer, "shorter tests execute the same code");
   Player player("swarm.lua");
-  std::vector<const Part*> heads;
+  std::vector<const sim::Part*> heads;
   for (const auto& body : player.world().bodies()) {
     if (body->name().starts_with("bug")) heads.push_back(body->root());
   }
@@ -210,10 +210,10 @@ TEST(Scenes, TheSwarmAlignsAndStaysInItsArena) {
   // mean over the neighborhoods of all heads, because a swarm that turns back at the edge has no common heading
   const auto local_polarization = [&] {
     double sum = 0;
-    for (const Part* a : heads) {
+    for (const sim::Part* a : heads) {
       Vec3 distance(0);
       double near = 0;
-      for (const Part* b : heads) {
+      for (const sim::Part* b : heads) {
         if (glm::distance(a->center(), b->center()) > 1) continue;
         distance += normalized(b->linear_velocity());
         near++;
@@ -228,7 +228,7 @@ TEST(Scenes, TheSwarmAlignsAndStaysInItsArena) {
   for (int second = 0; second < 30; second++) {
     player.play(1);
     if (second >= 15) later += local_polarization() / 15;
-    for (const Part* head : heads) {
+    for (const sim::Part* head : heads) {
       ASSERT_LT(std::hypot(head->center().x, head->center().y), 7) << "after " << second << " s";
       ASSERT_GT((head->pose().rotation * Vec3(0, 0, 1)).z, 0.7) << "after " << second << " s";
     }

@@ -14,7 +14,7 @@
 #include "properties/property_text.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 std::string names_of_scenes() {
@@ -165,8 +165,8 @@ TEST_F(Annotate, BehaviorsHaveTheDocumentedMembers) {
 
 TEST_F(Annotate, EveryPropertyHasTypeUnitRangeDefaultAndDescription) {
   const std::pair<const char*, const PropertyTable*> kClasses[] = {
-      {"sim", &World::table()},   {"body", &Body::table()},   {"part", &Part::table()},
-      {"joint", &Joint::table()}, {"motor", &Motor::table()}, {"shape", &Shape::table()}};
+      {"sim", &sim::World::table()},   {"body", &sim::Body::table()},   {"part", &sim::Part::table()},
+      {"joint", &sim::Joint::table()}, {"motor", &sim::Motor::table()}, {"shape", &sim::Shape::table()}};
   std::size_t seen = 0;
   for (const auto& [name, table] : kClasses) {
     const luacats::Class& documented = read.classes[name];
@@ -222,4 +222,4 @@ TEST(LuaCats, ReaderReportsMalformedLines) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -3,7 +3,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // bodies with one ball each at x = 1, 2, 3 … m; a group of the type "test" on all of them
@@ -23,7 +23,7 @@ std::vector<std::string> output_of_step(const std::string& step, const std::stri
   fixture.write("behaviors_lua/test.lua", group(step));
   EXPECT_EQ(fixture.play(row_of_balls(4, opts), 1), "");
   for (const auto& body : fixture.world.bodies()) {
-    for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
+    for (const sim::Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
   }
   return fixture.host.printed;
 }
@@ -161,7 +161,7 @@ sim:add_group_behavior('test', 'eyes', { parts = 'ball', neighbor_parts = 'eye' 
                          2),
             "");
   for (const auto& body : fixture.world.bodies()) {
-    for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
+    for (const sim::Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
   }
   return fixture.host.printed;
 }
@@ -225,4 +225,4 @@ TEST(BehaviorNeighbors, MistakesAreExplained) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -3,7 +3,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // plays a scene with a behavior, then reloads the behavior's file with a second scene in the same world
@@ -143,4 +143,4 @@ TEST(BehaviorLifetime, OutlivesTheScene) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

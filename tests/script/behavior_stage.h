@@ -7,7 +7,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 
 inline constexpr const char* kBall = R"(
 sim.gravity = vec3()
@@ -29,7 +29,7 @@ class BehaviorFixture : public ScriptFixture {
     write("behaviors_lua/test.lua", file);
     return play(std::string(kBall) + "ball:add_behavior('test', 'it', " + opts + ")", ticks);
   }
-  Behavior& it() const { return *world.find_body("ball")->behaviors().find("it"); }
+  sim::Behavior& it() const { return *world.find_body("ball")->behaviors().find("it"); }
   const Property& property_at(std::string_view name) const { return it().type().table->at(name); }
   double value(std::string_view name) const { return store.values(it().id(), property_at(name))[0]; }
   void set(std::string_view name, double v) const { (void)store.set(it().id(), name, {&v, 1}); }
@@ -58,4 +58,4 @@ inline std::string load_error(const std::string& file) {
   return fault.empty() ? "no error" : first_line(fault);
 }
 
-}  // namespace limber
+}  // namespace limber::script

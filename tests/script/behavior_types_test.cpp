@@ -7,7 +7,7 @@
 #include "properties/catalog.h"
 #include "script/scene/sources.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // a type with a step that prints a word
@@ -85,7 +85,7 @@ return behavior {
 )",
                              0, "{ rate = 9, mood = 'wild' }"),
             "");
-  const BehaviorType& type = fixture.it().type();
+  const sim::BehaviorType& type = fixture.it().type();
   EXPECT_EQ(type.name, "test");
   EXPECT_EQ(type.doc, "Hums.");
   EXPECT_FALSE(type.is_built_in);
@@ -248,4 +248,4 @@ print(require "words")
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

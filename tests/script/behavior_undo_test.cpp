@@ -6,7 +6,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr double kUndoCallMs = 5 * kBudgetScale;
@@ -65,7 +65,7 @@ struct RunResult {
 RunResult play(const std::string& more, const std::string& guest, std::size_t faults) {
   ScriptFixture fixture(undo_limits());
   std::size_t fault_count = 0;
-  fixture.world.behaviors().on_fault([&](const Behavior&) { fault_count++; });
+  fixture.world.behaviors().on_fault([&](const sim::Behavior&) { fault_count++; });
   fixture.write("behaviors_lua/drawing.lua", kDrawing);
   fixture.write("behaviors_lua/near.lua", kNear);
   fixture.write("behaviors_lua/guest.lua", "return behavior { step = function(self)\n" + guest + "\nend }");
@@ -154,4 +154,4 @@ sim:at(0.1, function() ball:behavior('it').active = true error('x') end)
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

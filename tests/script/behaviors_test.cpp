@@ -3,7 +3,7 @@
 
 #include "script/stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kBehavingArm = R"(
@@ -156,4 +156,4 @@ TEST(LuaBehaviors, ACopyHasTheBehaviorsAndPairsVisitsThemInOrder) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

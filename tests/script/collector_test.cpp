@@ -10,7 +10,7 @@
 
 #include "script/vm/lua_memory.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20u;
@@ -108,4 +108,4 @@ TEST_F(CollectorTest, RunsFullCyclesInSlices) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -6,7 +6,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kPair = R"(
@@ -100,4 +100,4 @@ TEST(SelfCollide, IsAPropertyOfALoadedBody) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

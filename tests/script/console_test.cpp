@@ -5,7 +5,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Kind = Evaluation::Kind;
@@ -267,4 +267,4 @@ TEST_F(Console, CompletionAcceptsAnyText) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

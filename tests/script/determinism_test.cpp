@@ -5,7 +5,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kRepeatedScene = R"(
@@ -115,4 +115,4 @@ return string.format("%.17g ", sum) .. table.concat(out, " "))";
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -6,7 +6,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 TEST(Errors, ARunReportsPlaceSourceLineAndTraceback) {
@@ -150,4 +150,4 @@ TEST(Errors, BytecodeIsRejected) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -5,7 +5,7 @@
 #include "script/scene/sources.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 TEST(Files, TheShowFolderIsTheNearestWithScripts) {
@@ -56,4 +56,4 @@ TEST(Files, AScriptHasAtMostAMegabyte) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

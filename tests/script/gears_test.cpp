@@ -3,7 +3,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kGearTrain = R"(
@@ -128,4 +128,4 @@ sim:at(2, function() print(math.abs(jaw:joint("lead").value) < 0.01) end)
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -14,7 +14,7 @@
 #include "script/vm/vm.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -226,4 +226,4 @@ TEST(Guard, OnlyOneStateIsLive) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

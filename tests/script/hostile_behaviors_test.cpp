@@ -4,7 +4,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 struct HostileCase {
@@ -87,7 +87,7 @@ std::string file(const HostileCase& hostile) {
 }
 
 std::uint64_t hash_of(const ScriptFixture& fixture, const char* body) {
-  return body_hash(*fixture.world.find_body(body), hash_bytes("test"));
+  return sim::body_hash(*fixture.world.find_body(body), hash_bytes("test"));
 }
 
 class HostileBehaviors : public ::testing::TestWithParam<HostileCase> {};
@@ -102,7 +102,7 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
     BehaviorFixture fixture(options, true);
     fixture.write("behaviors_lua/test.lua", file(hostile));
     ASSERT_EQ(fixture.play(scene(), 30), "");
-    Behavior& bad = *fixture.world.find_body("bad")->behaviors().find("bad");
+    sim::Behavior& bad = *fixture.world.find_body("bad")->behaviors().find("bad");
     EXPECT_EQ(bad.error(), "");
     if (!acts) {
       const double off = 0;
@@ -126,9 +126,9 @@ TEST_P(HostileBehaviors, AreSuspendedAloneAndLeaveNoTrace) {
     hashes.push_back(hash_bytes("before", hash_of(fixture, "before") ^ hash_of(fixture, "behind")));
     const auto& words = bad.random().state();
     hashes.push_back(hash_bytes({reinterpret_cast<const char*>(words.data()), sizeof words}));
-    const Part& part = *fixture.world.find_body("bad")->root();
+    const sim::Part& part = *fixture.world.find_body("bad")->root();
     hashes.push_back(hash_bytes({reinterpret_cast<const char*>(fixture.store.transient_block(part.id())),
-                                 Part::table().transient_width() * sizeof(double)}));
+                                 sim::Part::table().transient_width() * sizeof(double)}));
   }
   EXPECT_EQ(hashes[0], hashes[4]) << "the healthy body";
   EXPECT_EQ(hashes[1], hashes[5]) << "the other members";
@@ -159,7 +159,7 @@ TEST_P(HostileBehaviors, ContinueAfterTheFileIsFixed) {
   BehaviorFixture fixture(options, true);
   fixture.write("behaviors_lua/test.lua", file(hostile));
   ASSERT_EQ(fixture.play(scene(), 32), "");
-  const auto bad = [&]() -> const Behavior& { return *fixture.world.find_body("bad")->behaviors().find("bad"); };
+  const auto bad = [&]() -> const sim::Behavior& { return *fixture.world.find_body("bad")->behaviors().find("bad"); };
   ASSERT_NE(bad().error(), "");
   RecordingHost host;
   std::unique_ptr<Scene> detached_scene;
@@ -189,7 +189,7 @@ TEST(HostileBehaviorsInMigrate, AreSuspendedAloneAndRetainTheirState) {
     fix_file(fixture, host, detached_scene,
              good + "migrate = function(self, old)\n  if self.hostile then " + migrate + " end\nreturn old end }");
     fixture.tick(2);
-    const Behavior* bad = fixture.world.find_body("bad")->behaviors().find("bad");
+    const sim::Behavior* bad = fixture.world.find_body("bad")->behaviors().find("bad");
     EXPECT_EQ(bad->fault().line, 5) << bad->error();
     EXPECT_EQ(bad->fault().file, "behaviors_lua/test.lua");
     EXPECT_EQ(fixture.world.find_body("behind")->behaviors().find("bad")->error(), "");
@@ -229,4 +229,4 @@ TEST(HostileBehaviorsAtLoad, RejectTheScene) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

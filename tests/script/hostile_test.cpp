@@ -14,7 +14,7 @@
 #include "base/text.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,10 +107,10 @@ MotionTrack play(const std::string& guest, const FileHeader& header) {
   for (int tick = 0; tick < 600; tick++) {
     if (tick % 100 == 50 && tick / 100 < header.messages) fixture.scene.handle_message({"/hit", {}}, {});
     fixture.tick();
-    const Body* const healthy = fixture.world.find_body("healthy");
+    const sim::Body* const healthy = fixture.world.find_body("healthy");
     EXPECT_NE(healthy, nullptr) << "tick " << tick;
     if (healthy == nullptr) break;
-    trajectory.hashes.push_back(body_hash(*healthy, 0));
+    trajectory.hashes.push_back(sim::body_hash(*healthy, 0));
   }
   trajectory.faults = fixture.host.faults;
   trajectory.sent = fixture.host.sent.size() + fixture.host.replies.size();
@@ -184,4 +184,4 @@ TEST(HostileSuite, TheHealthyBodyMoves) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -13,7 +13,7 @@
 #include "base/math/fixed_math.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -189,4 +189,4 @@ end
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -5,7 +5,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 TEST(LuaBehavior, StartsOnceThenStepsWhileActive) {
@@ -204,8 +204,8 @@ TEST(LuaBehavior, InstancesShareNoState) {
 
 TEST(LuaBehavior, AFaultSuspendsOnlyTheInstance) {
   BehaviorFixture fixture;
-  std::vector<BehaviorFault> faults;
-  fixture.world.behaviors().on_fault([&](const Behavior& b) { faults.push_back(b.fault()); });
+  std::vector<sim::BehaviorFault> faults;
+  fixture.world.behaviors().on_fault([&](const sim::Behavior& b) { faults.push_back(b.fault()); });
   fixture.write("behaviors_lua/test.lua",
                 "return behavior { params = { { 'bad', true } },\n"
                 "start = function(self) print('start') end,\n"
@@ -256,7 +256,7 @@ sim:add_group_behavior("test", "all")
   EXPECT_EQ(fixture.host.printed, (std::vector<std::string>{"a", "c", "e", "g"}));
   fixture.host.printed.clear();
   const double on = 1;
-  const Behavior& b = *fixture.world.find_body("b")->behaviors().find("all");
+  const sim::Behavior& b = *fixture.world.find_body("b")->behaviors().find("all");
   ASSERT_TRUE(fixture.store.set(b.id(), "active", {&on, 1}).ok());
   fixture.world.find_body("d")->set_enabled(true);
   fixture.tick();
@@ -278,4 +278,4 @@ TEST(LuaBehavior, AFailedStartIsRetried) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

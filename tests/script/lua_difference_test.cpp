@@ -17,12 +17,12 @@
 #include "lua_program.h"
 #include "lua_runs.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
-using script_test::LuaProgram;
-using script_test::make_program;
-using script_test::run_texts;
+using test::LuaProgram;
+using test::make_program;
+using test::run_texts;
 
 using Results = std::vector<std::string>;
 
@@ -46,7 +46,7 @@ std::string report(std::uint64_t seed, const std::string& compiled, const std::s
   if (!differs(program)) {
     return "only after the preceding programs, " + fmt::format(kFormat, seed, program.text(), compiled, interpreted);
   }
-  program = script_test::shrink(program, differs, 400);
+  program = test::shrink(program, differs, 400);
   const std::vector<std::string> texts{program.text()};
   return fmt::format(kFormat, seed, texts[0], results_of(texts, true)[0], results_of(texts, false)[0]);
 }
@@ -70,7 +70,7 @@ TEST(LuaDifference, CompiledProgramsMatchTheInterpreter) {
   const std::uint64_t end = first + number_of("LIMBER_LUA_PROGRAMS", kSanitized ? 20 : 800);
   const std::uint64_t max_reports = number_of("LIMBER_LUA_REPORTS", 1);
   const char* const progress = std::getenv("LIMBER_LUA_PROGRESS");
-  constexpr std::uint64_t kBatch = script_test::kSeriesLength;
+  constexpr std::uint64_t kBatch = test::kSeriesLength;
   std::uint64_t found = 0;
   for (std::uint64_t seed = first; seed < end && found < max_reports;) {
     const std::uint64_t count = std::min(kBatch, end - seed);
@@ -96,4 +96,4 @@ TEST(LuaDifference, MostProgramsRunToTheirEnd) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

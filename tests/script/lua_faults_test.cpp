@@ -17,12 +17,12 @@
 #include "lua_runs.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
-using script_test::LuaRun;
-using script_test::run_plainly;
-using script_test::run_texts;
+using test::LuaRun;
+using test::run_plainly;
+using test::run_texts;
 
 std::string content(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -115,4 +115,4 @@ TEST(LuaFaults, TheInstalledVersionHasTheFaultsOfItsColumn) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace limber::script_test {
+namespace limber::script::test {
 
 namespace {
 
@@ -457,4 +457,4 @@ LuaProgram shrink(LuaProgram program, const std::function<bool(const LuaProgram&
   return program;
 }
 
-}  // namespace limber::script_test
+}  // namespace limber::script::test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace limber::script_test {
+namespace limber::script::test {
 
 /// A statement: lines around a block of statements.
 struct LuaNode {
@@ -31,4 +31,4 @@ LuaProgram make_program(std::uint64_t seed);
 /// Removes statements as long as `differs` holds. At most `tries` calls.
 LuaProgram shrink(LuaProgram program, const std::function<bool(const LuaProgram&)>& differs, int tries);
 
-}  // namespace limber::script_test
+}  // namespace limber::script::test

@@ -16,7 +16,7 @@
 
 #include "stage.h"
 
-namespace limber::script_test {
+namespace limber::script::test {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::string run_plainly(const std::string& text, const LuaRun& run) {
   return end.empty() ? sent : end;
 }
 
-}  // namespace limber::script_test
+}  // namespace limber::script::test

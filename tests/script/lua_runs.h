@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace limber::script_test {
+namespace limber::script::test {
 
 struct LuaRun {
   bool compiled = true;
@@ -19,4 +19,4 @@ std::vector<std::string> run_texts(const std::vector<std::string>& texts, const 
 /// The same in a plain Lua state, without Limber's prelude; the text receives `out` only.
 std::string run_plainly(const std::string& text, const LuaRun& run);
 
-}  // namespace limber::script_test
+}  // namespace limber::script::test

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limber::luacats {
+namespace limber::script::luacats {
 
 struct Function {
   std::vector<std::string> params;  ///< As annotated.
@@ -257,4 +257,4 @@ class Reader {
   bool returns_ = false;
 };
 
-}  // namespace limber::luacats
+}  // namespace limber::script::luacats

@@ -11,7 +11,7 @@
 #include "base/random.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -213,4 +213,4 @@ TEST(Match, FindsPlainTextInALongText) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -7,7 +7,7 @@
 
 #include <lua.hpp>
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr std::size_t kMiB = std::size_t{1} << 20u;
@@ -103,4 +103,4 @@ TEST_F(MemoryTest, LargeRequestsStopAndHugeOnesAreRejected) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -3,7 +3,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -153,4 +153,4 @@ TEST(Osc, AMessageWithTooManyArgumentsIsNotHandled) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -4,7 +4,7 @@
 #include "properties/catalog.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kParams = R"(
@@ -104,7 +104,7 @@ TEST(Params, StoresTheStep) {
 
 TEST(Params, TheNodeIsRemovedWithTheScene) {
   Store store;
-  World world(store);
+  sim::World world(store);
   RecordingHost host;
   ScriptFixture files;
   files.write("scripts/scene.lua", kParams);
@@ -154,4 +154,4 @@ TEST(Params, ReportsMistakes) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

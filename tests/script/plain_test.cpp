@@ -3,7 +3,7 @@
 
 #include "behavior_stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // the state, as text or the error, of a behavior with this text as its start
@@ -62,4 +62,4 @@ TEST(PlainData, SurvivesARoundTrip) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

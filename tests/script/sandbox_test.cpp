@@ -10,7 +10,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -344,4 +344,4 @@ TEST(Sandbox, LoopsThatAreNotCompiledAreReportedOnce) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -11,14 +11,14 @@
 #include "sim/state/world_checkpoint.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // a checkpoint of a world and its scene
 struct Saved {
   PageStore pages;
   Archive scratch;
-  WorldCheckpoint world;
+  sim::WorldCheckpoint world;
   SceneCheckpoint scene;
 
   void capture(ScriptFixture& fixture) {
@@ -210,4 +210,4 @@ TEST(SceneCheckpoint, CheckpointsShareUnchangedPages) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -6,7 +6,7 @@
 #include "base/random.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -310,4 +310,4 @@ TEST(Scene, SimHasTimeAndTick) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -15,7 +15,7 @@
 #include "script/scene/scene.h"
 #include "support/world_objects.h"
 
-namespace limber {
+namespace limber::script {
 
 /// Records the requests of a scene to its host.
 struct RecordingHost : ScriptHost {
@@ -105,16 +105,16 @@ class ScriptFixture {
  private:
   struct SharedWorld {
     Store store;
-    World world{store};
+    sim::World world{store};
   };
   SharedWorld& shared_world() {
     static SharedWorld shared;
     return own_world_ != nullptr ? *own_world_ : shared;
   }
-  static World& clear_world(World& world) {
+  static sim::World& clear_world(sim::World& world) {
     world.clear();
     world.restart_time();
-    for (const Property& property : World::table().properties()) {
+    for (const Property& property : sim::World::table().properties()) {
       if (property.writable())
         (void)world.store().set(world.id(), property, std::span(property.initial.data(), property.width));
     }
@@ -125,7 +125,7 @@ class ScriptFixture {
  public:
   std::filesystem::path folder;
   Store& store;
-  World& world;
+  sim::World& world;
   RecordingHost host;
   Scene scene;
 
@@ -158,4 +158,4 @@ inline std::string callback_error_of(const std::string& before, const std::strin
   return fixture.host.faults.empty() ? "no error" : first_line(fixture.host.faults.back().text);
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -5,7 +5,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 int line_of(const std::string& text) {
@@ -64,4 +64,4 @@ TEST(TextCheck, LoopsOverOtherThingsCompile) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

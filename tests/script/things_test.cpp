@@ -7,7 +7,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr const char* kArm = R"(
@@ -85,12 +85,13 @@ struct Class {
 };
 
 std::vector<Class> classes() {
-  return {{World::table(), "sim"}, {Body::table(), "arm"}, {Part::table(), "link"}, {Joint::table(), "j1"},
-          {Joint::table(), "j2"},  {Motor::table(), "m1"}, {Motor::table(), "m2"}};
+  return {{sim::World::table(), "sim"}, {sim::Body::table(), "arm"}, {sim::Part::table(), "link"},
+          {sim::Joint::table(), "j1"},  {sim::Joint::table(), "j2"}, {sim::Motor::table(), "m1"},
+          {sim::Motor::table(), "m2"}};
 }
 
 NodeId node_of(const ScriptFixture& fixture, const std::string& expression) {
-  const Body& arm = *fixture.world.find_body("arm");
+  const sim::Body& arm = *fixture.world.find_body("arm");
   if (expression == "sim") return fixture.world.id();
   if (expression == "arm") return arm.id();
   if (expression == "link") return arm.find_part("link")->id();
@@ -182,7 +183,8 @@ TEST(Things, EveryNumberRejectsNonFiniteValuesAndIsClamped) {
                 "");
       double value[4] = {};
       fixture.store.get(node_of(fixture, c.expression), property, value);
-      const bool part_of_a_whole = property.name.find("velocity") != std::string::npos && &c.table == &Body::table();
+      const bool part_of_a_whole =
+          property.name.find("velocity") != std::string::npos && &c.table == &sim::Body::table();
       if (!part_of_a_whole) {
         EXPECT_EQ(value[0], property.max) << property.name;
       }
@@ -273,9 +275,9 @@ sim:on_start(show)
 )"),
             "");
   const auto values_of_world = [&] {
-    const Part& part = *fixture.world.find_body("a")->root();
+    const sim::Part& part = *fixture.world.find_body("a")->root();
     double inertia[3];
-    fixture.store.get(part.id(), Part::table().at("inertia"), inertia);
+    fixture.store.get(part.id(), sim::Part::table().at("inertia"), inertia);
     const Vec3 c = part.center();
     return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g} ", c.x, c.y, c.z, inertia[0], inertia[1],
                        inertia[2]);
@@ -433,4 +435,4 @@ end)
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -12,7 +12,7 @@
 #include "behavior_stage.h"
 #include "support/skip.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 // non-default settings for each type; `group`: attached to all bodies
@@ -120,7 +120,7 @@ Trajectory played(const std::string& type, const std::string& opts, bool group) 
   for (int i = 0; fault.empty() && i < 60; i++) {
     fixture.tick(10);
     for (const auto& body : fixture.world.bodies()) {
-      for (const Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
+      for (const sim::Behavior* behavior : body->behaviors().list()) EXPECT_EQ(behavior->error(), "");
       for (const auto& part : body->parts()) {
         places.push_back(part->center());
         places.push_back(part->center() + part->pose().rotation * Vec3(0.3, 0.2, 0.1));
@@ -183,7 +183,7 @@ TEST_P(Twins, HaveTheSameProperties) {
   ASSERT_NE(lua, nullptr);
   EXPECT_EQ(built_in->is_group, lua->is_group);
   ASSERT_EQ(built_in->table->property_names(), lua->table->property_names());
-  for (std::uint32_t i = kCommonBehaviorProperties; i < built_in->table->properties().size(); i++) {
+  for (std::uint32_t i = sim::kCommonBehaviorProperties; i < built_in->table->properties().size(); i++) {
     const Property& a = built_in->table->property(i);
     const Property& b = lua->table->property(i);
     SCOPED_TRACE(a.name);
@@ -214,4 +214,4 @@ INSTANTIATE_TEST_SUITE_P(, Twins, ::testing::ValuesIn(twins()), [](const auto& i
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -3,7 +3,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 using Lines = std::vector<std::string>;
@@ -123,4 +123,4 @@ TEST_F(Crane, ReportsMistakes) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

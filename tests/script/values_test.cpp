@@ -5,7 +5,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 struct Case {
@@ -147,4 +147,4 @@ TEST(Values, MistakesAreExplained) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

@@ -4,7 +4,7 @@
 #include "properties/catalog.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 struct VisualsTest : testing::Test {
@@ -105,4 +105,4 @@ TEST_F(VisualsTest, RejectsInvalidArguments) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

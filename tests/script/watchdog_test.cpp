@@ -7,7 +7,7 @@
 #include <ctime>
 #include <thread>
 
-namespace limber {
+namespace limber::script {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
@@ -139,4 +139,4 @@ TEST(Watchdog, ExistsOnceUntilItsLastReference) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::script

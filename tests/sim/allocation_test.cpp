@@ -7,7 +7,7 @@
 #include "sim/counted_new.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -74,4 +74,4 @@ TEST(Allocation, MemoryPerPartIsBounded) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

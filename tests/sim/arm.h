@@ -6,7 +6,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 struct ArmSpec {
   int links = 5;
@@ -33,9 +33,9 @@ inline Body& make_arm(WorldFixture& s, const std::string& name, const ArmSpec& s
     // an axis is a pseudovector: the mirror image at y = 0 keeps y and negates x and z
     const Vec3 axis = i % 2 == 0 ? normalized({1, 0.2, 0}) : Vec3(0, 1, 0);
     const Vec3 mirrored(spec.mirror * axis.x, axis.y, spec.mirror * axis.z);
-    Joint* joint =
-        arm.add_joint("joint" + std::to_string(i), *below, *link, JointType::revolute, at - Vec3(0, 0, 0.125), mirrored)
-            .value();
+    Joint* joint = arm.add_joint("joint" + std::to_string(i), *below, *link, model::JointType::revolute,
+                                 at - Vec3(0, 0, 0.125), mirrored)
+                       .value();
     (void)arm.add_motor(*joint).value();
     below = link;
   }
@@ -63,4 +63,4 @@ inline std::vector<float> motion_values(const Body& body) {
   return out;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

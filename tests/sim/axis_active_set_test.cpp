@@ -3,24 +3,24 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // A body of 1 kg and 1 kg·m² on a hinge about z through its center, with a motor of 0.1 N·m·s and 0.05 rad/s.
 struct Hinge {
-  explicit Hinge(const ActiveSetMemory& before) {
+  explicit Hinge(const solver::ActiveSetMemory& before) {
     rows.clear();
-    TreeNode& n = rows.forest.add(-1);
-    Sym3 one;
+    solver::TreeNode& n = rows.forest.add(-1);
+    solver::Sym3 one;
     one.xx = one.yy = one.zz = 1;
-    n.inertia = SpatialInertia(1, one);
+    n.inertia = solver::SpatialInertia(1, one);
     for (int i = 0; i < 3; ++i) {
       n.axis[i].linear[i] = 1;
       n.axis[3 + i].angular[i] = 1;
     }
     for (int axis = 0; axis < 5; ++axis)
-      rows.add(axis, 0, 0, -2 * AxisRow::kInfinity, 2 * AxisRow::kInfinity, AxisRow::other);
-    rows.add(5, 0.05, 0, -0.1, 0.1, AxisRow::motor);
+      rows.add(axis, 0, 0, -2 * solver::AxisRow::kInfinity, 2 * solver::AxisRow::kInfinity, solver::AxisRow::other);
+    rows.add(5, 0.05, 0, -0.1, 0.1, solver::AxisRow::motor);
     rows.end_node({}, before);
     EXPECT_TRUE(rows.solve(0, 1, 8));
   }
@@ -29,9 +29,9 @@ struct Hinge {
     rows.forest.node(0).load.angular.z = impulse;
     rows.solve_once(0, 1);
   }
-  const AxisRow& motor() { return rows.rows().back(); }
-  WorkBudget budget;
-  AxisActiveSet rows{budget};
+  const solver::AxisRow& motor() { return rows.rows().back(); }
+  solver::WorkBudget budget;
+  solver::AxisActiveSet rows{budget};
 };
 
 // The motor reaches its speed until a larger impulse acts against it. It is deferred then, and the next step defers it
@@ -47,10 +47,10 @@ TEST(AxisActiveSet, RemembersAxesChangedByContacts) {
   EXPECT_NEAR(first.motor().impulse, 0.1, 1e-12);
 
   Hinge second{first.rows.active_set(0)};
-  EXPECT_EQ(second.motor().initial_status, AxisRow::at_upper);
+  EXPECT_EQ(second.motor().initial_status, solver::AxisRow::at_upper);
   EXPECT_EQ(second.rows.defer_as_before(0, 1), 1);
   EXPECT_EQ(second.rows.defer_as_before(0, 1), 0) << "only once";
-  EXPECT_EQ(second.motor().status, AxisRow::deferred);
+  EXPECT_EQ(second.motor().status, solver::AxisRow::deferred);
 
   // no impulse this time: the active set is again that of the tree alone
   Hinge third{second.rows.active_set(0)};
@@ -58,4 +58,4 @@ TEST(AxisActiveSet, RemembersAxesChangedByContacts) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

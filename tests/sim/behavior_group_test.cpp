@@ -3,7 +3,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(BehaviorGroup, HashCoversItsValues) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

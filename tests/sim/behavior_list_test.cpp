@@ -3,7 +3,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -175,4 +175,4 @@ TEST(BehaviorList, RunsAreRepeatableBitForBit) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -1,7 +1,7 @@
 // Behavior places: moving behaviors in the step order.
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(BehaviorPlaces, ChangedOrderRestartsTheHistory) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

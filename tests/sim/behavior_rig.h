@@ -8,7 +8,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 /// Logs its calls to `calls`: "start b/name", "step b/name"; fails if its parameter `broken` is set.
 class Probe : public Behavior {
@@ -56,7 +56,7 @@ struct BehaviorRig : WorldFixture {
       Part& part = **b.add_part(parts[i], *ball_, i == 0 ? first_mass : 1, {{x, 0, 0}, quat_identity()});
       if (i == 0) continue;
       Joint& joint =
-          **b.add_joint("to_" + parts[i], *b.parts()[i - 1], part, JointType::revolute, {x, 0, 0}, {0, 1, 0});
+          **b.add_joint("to_" + parts[i], *b.parts()[i - 1], part, model::JointType::revolute, {x, 0, 0}, {0, 1, 0});
       EXPECT_TRUE(b.add_motor(joint).ok());
     }
     return b;
@@ -107,4 +107,4 @@ Words names_in(const List& objects) {
   return names;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

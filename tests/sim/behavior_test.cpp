@@ -5,7 +5,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -177,4 +177,4 @@ TEST(Behavior, PublishesItsStepTime) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -117,4 +117,4 @@ TEST(BehaviorTypes, GroupsAreReplacedWithTheirMembers) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

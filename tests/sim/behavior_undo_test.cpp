@@ -6,7 +6,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -255,4 +255,4 @@ TEST(BehaviorTransaction, RejectedGroupLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -66,8 +66,8 @@ TEST(BodyTest, CopyHasAllValues) {
     EXPECT_EQ(twin.parts()[i]->shape(), arm.parts()[i]->shape());
   }
   for (std::size_t i = 0; i < arm.joints().size(); i++) {
-    const JointConstraint& a = arm.joints()[i]->constraint();
-    const JointConstraint& b = twin.joints()[i]->constraint();
+    const bullet::JointConstraint& a = arm.joints()[i]->constraint();
+    const bullet::JointConstraint& b = twin.joints()[i]->constraint();
     EXPECT_EQ(twin.joints()[i]->type(), arm.joints()[i]->type());
     for (int axis = 0; axis < 6; axis++) {
       EXPECT_EQ(a.axis(axis).drive, b.axis(axis).drive);
@@ -78,20 +78,20 @@ TEST(BodyTest, CopyHasAllValues) {
 }
 
 TEST(BodyTest, CopyOfAnImportedBodyKeepsItsModelAndMimicJoints) {
-  auto model = std::make_shared<BodyModel>();
+  auto model = std::make_shared<model::BodyModel>();
   model->name = "pair";
   for (const char* name : {"base", "a", "b"}) {
-    LinkModel link;
+    model::LinkModel link;
     link.name = name;
     link.inertial = {std::string_view(name) == "base" ? 0.0 : 1.0, Vec3(0), Mat3(0.01)};
-    PlacedShape box;
+    model::PlacedShape box;
     box.shape = box_model(Vec3(0.1));
     link.collisions = {box};
     link.start.position = link.home.position = {model->links.empty() ? 0 : model->links.size() == 1 ? 1. : -1., 0, 0};
     model->links.push_back(link);
   }
   for (int i = 0; i < 2; i++) {
-    JointModel joint;
+    model::JointModel joint;
     joint.name = i == 0 ? "lead" : "follow";
     joint.parent = 0;
     joint.child = i + 1;
@@ -267,7 +267,7 @@ TEST(BodyTest, NamesAreUniqueAndPrintable) {
   EXPECT_EQ(text(arm.add_part("link1", ball, 1, {})), "there is a part 'link1' already; names are unique");
   Part& a = *arm.parts()[1];
   Part& b = *arm.parts()[3];
-  EXPECT_EQ(text(arm.add_joint("joint1", a, b, JointType::revolute, Vec3(0), {0, 0, 1})),
+  EXPECT_EQ(text(arm.add_joint("joint1", a, b, model::JointType::revolute, Vec3(0), {0, 0, 1})),
             "there is a joint 'joint1' already; names are unique");
   EXPECT_EQ(text(s.world.shapes().add("arm link", sphere_model(1))),
             "there is a shape 'arm link' already; names are unique");
@@ -286,7 +286,7 @@ TEST(BodyTest, RejectsInvalidPartsAndJoints) {
   Part& stone = s.part(arm, sphere_model(0.1), 0);
   Part& foreign = s.part(other, sphere_model(0.1), 1);
   const auto joint = [&](Part& p, Part& c, const Vec3& axis) {
-    const auto r = arm.add_joint("new", p, c, JointType::revolute, Vec3(0), axis);
+    const auto r = arm.add_joint("new", p, c, model::JointType::revolute, Vec3(0), axis);
     return r ? std::string("none") : r.error();
   };
   EXPECT_EQ(joint(link, link, {0, 0, 1}), "joint 'arm/new': parent and child must be different parts");
@@ -297,8 +297,8 @@ TEST(BodyTest, RejectsInvalidPartsAndJoints) {
   EXPECT_EQ(other.add_motor(*arm.joints()[0]).error(), "joint 'arm/joint1' belongs to another body");
   EXPECT_EQ(other.add_part("floor", s.shape(plane_model()), 1, {}).error(),
             "part 'other/floor' is a plane: its mass must be 0, not 1 kg");
-  ShapeModel compound;
-  compound.kind = ShapeKind::compound;
+  model::ShapeModel compound;
+  compound.kind = model::ShapeKind::compound;
   Shape& empty = *s.world.shapes().add("empty", compound).value();
   EXPECT_EQ(other.add_part("x", empty, 1, {}).error(),
             "compound 'empty' is empty; add its children before a part is made of it");
@@ -371,4 +371,4 @@ TEST(BodyTest, SupportsHundredsOfBodies) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

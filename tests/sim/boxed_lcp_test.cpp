@@ -9,16 +9,16 @@
 #include <random>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // Returns the largest violation, recalculated from the whole matrix. If `converged`, all impulses must be within their
 // bounds; otherwise an impulse outside of its bounds counts as a violation.
-double largest_violation(BoxedLcp& box, const std::vector<double>& residuals, const std::vector<double>& start_impulses,
-                         bool converged = true) {
+double largest_violation(solver::BoxedLcp& box, const std::vector<double>& residuals,
+                         const std::vector<double>& start_impulses, bool converged = true) {
   double largest = 0;
   for (int i = 0; i < box.size(); ++i) {
-    const BoxedLcp::Row& r = box.row(i);
+    const solver::BoxedLcp::Row& r = box.row(i);
     double residual = residuals[static_cast<std::size_t>(i)];
     for (int k = 0; k < box.size(); ++k) {
       residual -= box.response(i, k) * (box.row(k).impulse - start_impulses[static_cast<std::size_t>(k)]);
@@ -53,8 +53,8 @@ TEST(BoxedLcp, SolvesRandomProblems) {
       const double unit = std::pow(10, draw(-1, 1));
       for (double& x : line) x = unit * draw(-1, 1);
     }
-    WorkBudget budget;
-    BoxedLcp box(budget);
+    solver::WorkBudget budget;
+    solver::BoxedLcp box(budget);
     box.reset(n);
     std::vector<double> residuals;
     std::vector<double> start_impulses;
@@ -67,7 +67,7 @@ TEST(BoxedLcp, SolvesRandomProblems) {
         }
         box.response(i, k) = sum;
       }
-      BoxedLcp::Row& r = box.row(i);
+      solver::BoxedLcp::Row& r = box.row(i);
       r.residual = draw(-2, 2);
       const int kind = i % 4;
       r.lower = kind == 0 ? 0 : (kind == 1 ? -1e18 : draw(-1, 0));
@@ -82,7 +82,7 @@ TEST(BoxedLcp, SolvesRandomProblems) {
     for (int i = 0; i < n; ++i) {
       box.row(i).impulse = start_impulses[static_cast<std::size_t>(i)];
       box.row(i).initial_change = draw(-3, 3);
-      box.row(i).initial_status = i % 2 == 0 ? BoxedLcp::at_lower : BoxedLcp::free;
+      box.row(i).initial_status = i % 2 == 0 ? solver::BoxedLcp::at_lower : solver::BoxedLcp::free;
     }
     EXPECT_LE(box.solve(1e-7), 1e-5) << seed;
     EXPECT_LT(largest_violation(box, residuals, start_impulses), 1e-5) << seed;
@@ -93,8 +93,8 @@ TEST(BoxedLcp, SolvesRandomProblems) {
 // up to 0.5·2 N·s to 3 m/s - 0.5·2/2 m/s, or to 0 if the coefficient is large enough.
 TEST(BoxedLcp, BoundsFrictionByItsNormal) {
   for (const double friction : {0.5, 2.0}) {
-    WorkBudget budget;
-    BoxedLcp box(budget);
+    solver::WorkBudget budget;
+    solver::BoxedLcp box(budget);
     box.reset(2);
     box.response(0, 0) = box.response(1, 1) = 0.5;
     box.row(0) = {1, 0, 0, 1e18, -1, 0};
@@ -107,8 +107,8 @@ TEST(BoxedLcp, BoundsFrictionByItsNormal) {
 
 // Four points that bear one load: any distribution is a solution, and the sum is the load.
 TEST(BoxedLcp, SolvesDependentRows) {
-  WorkBudget budget;
-  BoxedLcp box(budget);
+  solver::WorkBudget budget;
+  solver::BoxedLcp box(budget);
   box.reset(4);
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 4; ++k) box.response(i, k) = 0.25;
@@ -121,7 +121,7 @@ TEST(BoxedLcp, SolvesDependentRows) {
 }
 
 // Sets up eight contacts with friction of a machine with six axes. Returns the residuals.
-std::vector<double> set_up_contacts(BoxedLcp& box, unsigned seed) {
+std::vector<double> set_up_contacts(solver::BoxedLcp& box, unsigned seed) {
   constexpr int kContacts = 8;
   constexpr int kAxes = 6;
   std::mt19937 generator(seed);
@@ -139,7 +139,7 @@ std::vector<double> set_up_contacts(BoxedLcp& box, unsigned seed) {
       box.response(i, k) = i == k ? 1e-3 : 0;
       for (int m = 0; m < kAxes; ++m) box.response(i, k) += jacobian[i][m] * jacobian[k][m];
     }
-    BoxedLcp::Row& r = box.row(i);
+    solver::BoxedLcp::Row& r = box.row(i);
     for (int m = 0; m < kAxes; ++m) r.residual -= jacobian[i][m] * rates[m];
     residuals.push_back(r.residual);
     if (i < kContacts) {
@@ -156,8 +156,8 @@ std::vector<double> set_up_contacts(BoxedLcp& box, unsigned seed) {
 // (Anitescu and Potra 1997).
 TEST(BoxedLcp, FrictionConverges) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    WorkBudget budget;
-    BoxedLcp box(budget);
+    solver::WorkBudget budget;
+    solver::BoxedLcp box(budget);
     const std::vector<double> residuals = set_up_contacts(box, seed);
     EXPECT_LE(box.solve(1e-7), 1e-7) << seed;
     EXPECT_TRUE(box.friction_converged()) << seed;
@@ -171,8 +171,8 @@ TEST(BoxedLcp, ApproximatesBeyondTheBudget) {
   int unconverged = 0;
   int accurate = 0;
   for (unsigned seed = 1; seed <= 200; ++seed) {
-    WorkBudget budget;
-    BoxedLcp box(budget);
+    solver::WorkBudget budget;
+    solver::BoxedLcp box(budget);
     const std::vector<double> residuals = set_up_contacts(box, seed);
     const std::vector<double> start_impulses(residuals.size(), 0);
     budget.set_limit(0);
@@ -203,8 +203,8 @@ TEST(BoxedLcp, ApproximatesBeyondTheBudget) {
 // Three of five rows existed before: the responses between them are preserved, and the outer products of two vectors
 // are added to all.
 TEST(BoxedLcp, AddsRowsAndOuterProducts) {
-  WorkBudget budget;
-  BoxedLcp box(budget);
+  solver::WorkBudget budget;
+  solver::BoxedLcp box(budget);
   box.reset(3);
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) box.response(i, k) = 10 * (i + 1) * (k + 1);
@@ -226,4 +226,4 @@ TEST(BoxedLcp, AddsRowsAndOuterProducts) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

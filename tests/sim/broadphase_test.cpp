@@ -16,7 +16,7 @@
 
 #include "joint_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr double kFatMargin = 0.01;         // margin of fattened boxes
@@ -48,13 +48,13 @@ struct Cloud {
   Cloud& operator=(const Cloud&) = delete;
 
   btScalar uniform(double low, double high) {
-    return to_scalar(std::uniform_real_distribution<double>(low, high)(random));
+    return bullet::to_scalar(std::uniform_real_distribution<double>(low, high)(random));
   }
-  btScalar size() { return to_scalar(std::exp(static_cast<double>(uniform(std::log(0.01), std::log(0.6))))); }
+  btScalar size() { return bullet::to_scalar(std::exp(static_cast<double>(uniform(std::log(0.01), std::log(0.6))))); }
   int random_index() { return std::uniform_int_distribution<int>(0, kBodies - 1)(random); }
 
   void add(double mass, btCollisionShape& shape) {
-    bodies.push_back(std::make_unique<btRigidBody>(to_scalar(mass), nullptr, &shape, btVector3(1, 1, 1)));
+    bodies.push_back(std::make_unique<btRigidBody>(bullet::to_scalar(mass), nullptr, &shape, btVector3(1, 1, 1)));
     bodies.back()->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(bodies.back().get());
   }
@@ -86,7 +86,7 @@ struct Cloud {
   }
   void record_steps(int round) {
     for (std::size_t i = 0; i < kBodies; ++i) {
-      const Vec3 at = from_bt(bodies[i]->getWorldTransform().getOrigin());
+      const Vec3 at = bullet::from_bt(bodies[i]->getWorldTransform().getOrigin());
       const Vec3 step = glm::abs(at - std::exchange(positions[i], at));
       steps[i][static_cast<std::size_t>(round) % kLeaveRounds] = std::max({step.x, step.y, step.z});
     }
@@ -124,7 +124,7 @@ struct Cloud {
       joints.erase(joints.begin());
     } else if (&a != &b && !joints.contains(pair) && a.isInWorld() && b.isInWorld()) {
       auto& joint = joints[pair];
-      joint = std::make_unique<JointConstraint>(a, b, btTransform::getIdentity(), btTransform::getIdentity());
+      joint = std::make_unique<bullet::JointConstraint>(a, b, btTransform::getIdentity(), btTransform::getIdentity());
       world.addConstraint(joint.get());
     }
   }
@@ -134,8 +134,8 @@ struct Cloud {
     const btRigidBody& b = *bodies[k];
     if (!a.isInWorld() || !b.isInWorld()) return false;
     if (a.isStaticObject() && b.isStaticObject()) return false;
-    const CollisionFilter of_a = CollisionFilter::of(a);
-    const CollisionFilter of_b = CollisionFilter::of(b);
+    const bullet::CollisionFilter of_a = bullet::CollisionFilter::of(a);
+    const bullet::CollisionFilter of_b = bullet::CollisionFilter::of(b);
     if ((of_a.group & of_b.mask) == 0 || (of_b.group & of_a.mask) == 0) return false;
     if (of_a.body >= 0 && of_a.body == of_b.body && !(of_a.self_collision && of_b.self_collision)) return false;
     return !joints.contains({static_cast<int>(i), static_cast<int>(k)});
@@ -146,13 +146,13 @@ struct Cloud {
     box(i, low[0], high[0]);
     if (k >= kBodies) {
       const auto& plane = static_cast<const btStaticPlaneShape&>(*bodies[k]->getCollisionShape());
-      const Vec3 normal = from_bt(bodies[k]->getWorldTransform().getBasis() * plane.getPlaneNormal());
+      const Vec3 normal = bullet::from_bt(bodies[k]->getWorldTransform().getBasis() * plane.getPlaneNormal());
       double min_distance = 1e9;
       for (int corner = 0; corner < 8; ++corner) {
         const Vec3 at((corner & 1) ? low[0].x : high[0].x, (corner & 2) ? low[0].y : high[0].y,
                       (corner & 4) ? low[0].z : high[0].z);
         min_distance =
-            std::min(min_distance, glm::dot(normal, at - from_bt(bodies[k]->getWorldTransform().getOrigin())));
+            std::min(min_distance, glm::dot(normal, at - bullet::from_bt(bodies[k]->getWorldTransform().getOrigin())));
       }
       return min_distance;
     }
@@ -165,8 +165,8 @@ struct Cloud {
   void box(std::size_t i, Vec3& low, Vec3& high) const {
     btVector3 a, b;
     bodies[i]->getCollisionShape()->getAabb(bodies[i]->getWorldTransform(), a, b);
-    low = from_bt(a);
-    high = from_bt(b);
+    low = bullet::from_bt(a);
+    high = bullet::from_bt(b);
   }
 
   std::mt19937 random;
@@ -174,10 +174,10 @@ struct Cloud {
   btStaticPlaneShape floor{btVector3(0, 0, 1), 0};
   btStaticPlaneShape wall{btVector3(1, 0, 0), 0};
   std::vector<std::unique_ptr<btRigidBody>> bodies;
-  std::map<std::pair<int, int>, std::unique_ptr<JointConstraint>> joints;
+  std::map<std::pair<int, int>, std::unique_ptr<bullet::JointConstraint>> joints;
   std::array<Vec3, kBodies> positions{};
   std::array<std::array<double, kLeaveRounds>, kBodies> steps{};
-  IslandWorld world;
+  bullet::IslandWorld world;
 };
 
 void compare_with_brute_force(Cloud& cloud) {
@@ -245,7 +245,7 @@ TEST(Broadphase, PlanePairsWithinContactDistance) {
   rig.world.addRigidBody(&box);
   const auto has_pair_at = [&](double gap) {
     for (const double height : {50.0, 1 + gap}) {  // teleported from far away, so that its box is new
-      box.getWorldTransform().setOrigin({0, 0, to_scalar(height)});
+      box.getWorldTransform().setOrigin({0, 0, bullet::to_scalar(height)});
       rig.world.performDiscreteCollisionDetection();
     }
     return rig.world.getPairCache()->findPair(box.getBroadphaseHandle(), ground.getBroadphaseHandle()) != nullptr;
@@ -266,7 +266,7 @@ TEST(Broadphase, BoxQueryFindsOverlappingObjects) {
     std::set<const btCollisionObject*> objects;
   } inside;
   const Vec3 low(-1, -1, -1), high(0.5, 1, 1);
-  cloud.world.getBroadphase()->aabbTest(to_bt(low), to_bt(high), inside);
+  cloud.world.getBroadphase()->aabbTest(bullet::to_bt(low), bullet::to_bt(high), inside);
   int counted = 0;
   for (std::size_t i = 0; i < kBodies; ++i) {
     Vec3 a, b;
@@ -293,11 +293,11 @@ TEST(Broadphase, ExtendsBoxesAlongTheMotion) {
   // True if the pair exists after the box moved by `step` m to a distance of `gap` m from the wall.
   const auto has_pair_at = [&](double step, double gap) {
     for (const double from : {0.0, 50.0}) {  // teleported to the start, without motion
-      box.getWorldTransform().setOrigin({to_scalar(from), 0, 0});
+      box.getWorldTransform().setOrigin({bullet::to_scalar(from), 0, 0});
       rig.world.performDiscreteCollisionDetection();
     }
-    wall.getWorldTransform().setOrigin({to_scalar(50.0 + step + 0.4 + gap), 0, 0});
-    box.getWorldTransform().setOrigin({to_scalar(50.0 + step), 0, 0});
+    wall.getWorldTransform().setOrigin({bullet::to_scalar(50.0 + step + 0.4 + gap), 0, 0});
+    box.getWorldTransform().setOrigin({bullet::to_scalar(50.0 + step), 0, 0});
     rig.world.performDiscreteCollisionDetection();
     return rig.world.getPairCache()->findPair(box.getBroadphaseHandle(), wall.getBroadphaseHandle()) != nullptr;
   };
@@ -312,4 +312,4 @@ TEST(Broadphase, ExtendsBoxesAlongTheMotion) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

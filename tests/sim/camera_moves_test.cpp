@@ -7,7 +7,7 @@
 
 #include "stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -110,4 +110,4 @@ TEST(CameraMoves, FailedCallRestoresTheCamera) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -11,7 +11,7 @@
 #include "model/urdf/import.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,22 +20,23 @@ using nlohmann::json;
 const fs::path kRepo = LIMBER_SOURCE_DIR;
 const fs::path kData = kRepo / "../shared/data";
 
-bool is_movable(const JointModel& joint) {
-  return joint.type == JointType::revolute || joint.type == JointType::continuous || joint.type == JointType::prismatic;
+bool is_movable(const model::JointModel& joint) {
+  return joint.type == model::JointType::revolute || joint.type == model::JointType::continuous ||
+         joint.type == model::JointType::prismatic;
 }
 
-double clamped_to_limits(const JointModel& joint, double q) {
+double clamped_to_limits(const model::JointModel& joint, double q) {
   return joint.limited ? std::clamp(q, joint.lower, joint.upper) : q;
 }
 
 // Computes the links' poses in the root's frame, joint by joint.
-std::vector<Pose> forward_kinematics(const BodyModel& model, const std::vector<double>& q) {
+std::vector<Pose> forward_kinematics(const model::BodyModel& model, const std::vector<double>& q) {
   std::vector<Pose> pose(model.links.size());
   for (std::size_t i = 0; i < model.joints.size(); i++) {
-    const JointModel& joint = model.joints[i];
+    const model::JointModel& joint = model.joints[i];
     Pose motion;
-    if (joint.type == JointType::prismatic) motion.position = {0, 0, q[i]};
-    if (joint.type == JointType::revolute || joint.type == JointType::continuous) {
+    if (joint.type == model::JointType::prismatic) motion.position = {0, 0, q[i]};
+    if (joint.type == model::JointType::revolute || joint.type == model::JointType::continuous) {
       motion.rotation = quat_axis({0, 0, 1}, q[i]);
     }
     pose[static_cast<std::size_t>(joint.child)] =
@@ -47,7 +48,7 @@ std::vector<Pose> forward_kinematics(const BodyModel& model, const std::vector<d
 double angle_of(const Quat& q) { return 2 * std::atan2(glm::length(Vec3(q.x, q.y, q.z)), std::fabs(q.w)); }
 
 // True if all links are within half the tested tolerance; half, so that a link that is still moving doesn't count.
-bool has_arrived(const Body& body, const BodyModel& model, const std::vector<Pose>& expected) {
+bool has_arrived(const Body& body, const model::BodyModel& model, const std::vector<Pose>& expected) {
   for (std::size_t i = 0; i < model.links.size(); i++) {
     const Part* part = body.find_part(model.links[i].name);
     const Pose actual = body.pose().inverse() * part->pose();
@@ -58,7 +59,7 @@ bool has_arrived(const Body& body, const BodyModel& model, const std::vector<Pos
 }
 
 // Checks that every link is within 1e-4 m and rad of the pose given by its joint positions.
-void expect_arrival(const std::shared_ptr<const BodyModel>& model, std::vector<double> targets,
+void expect_arrival(const std::shared_ptr<const model::BodyModel>& model, std::vector<double> targets,
                     const json* reference = nullptr) {
   WorldFixture s;
   s.gravity({0, 0, 0});
@@ -69,7 +70,7 @@ void expect_arrival(const std::shared_ptr<const BodyModel>& model, std::vector<d
   // only the final pose is tested; on the way, some of these robots would collide with themselves
   s.set(body.id(), "self_collision", {0});
   for (std::size_t i = 0; i < model->joints.size(); i++) {
-    const JointModel& joint = model->joints[i];
+    const model::JointModel& joint = model->joints[i];
     if (!is_movable(joint)) continue;
     targets[i] = clamped_to_limits(joint, targets[i]);
     Joint* joint_of_body = body.find_joint(joint.name);
@@ -101,10 +102,10 @@ void expect_arrival(const std::shared_ptr<const BodyModel>& model, std::vector<d
   }
 }
 
-std::shared_ptr<const BodyModel> import_fixed(const fs::path& file) {
-  ImportOptions options;
+std::shared_ptr<const model::BodyModel> import_fixed(const fs::path& file) {
+  model::ImportOptions options;
   options.fixed_base = true;
-  auto model = import_urdf(file.string(), options);
+  auto model = model::import_urdf(file.string(), options);
   EXPECT_TRUE(model.ok()) << file;
   return *model;
 }
@@ -128,7 +129,7 @@ TEST(CommandedPose, ExternalRobotsReachThePoseOfAnotherReader) {
       const json expected = json::parse(std::ifstream(entry.path()));
       std::vector<double> targets;
       bool all_within = true;
-      for (const JointModel& joint : model->joints) {
+      for (const model::JointModel& joint : model->joints) {
         const json& posed_q = expected.at("posed_q");
         const double q = posed_q.contains(joint.name) ? posed_q.at(joint.name).get<double>() : 0;
         targets.push_back(q);
@@ -140,4 +141,4 @@ TEST(CommandedPose, ExternalRobotsReachThePoseOfAnotherReader) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

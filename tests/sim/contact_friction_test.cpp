@@ -7,7 +7,7 @@
 
 #include "sim/stage.h"
 
-namespace limber::friction_test {
+namespace limber::sim::friction_test {
 namespace {
 
 using namespace test;
@@ -31,7 +31,7 @@ struct SlidingBlock : WorldFixture {
     set(block->id(), "friction", {mu});
     if (kind != Kind::joined) return;
     Part& attached = part(body_of_block, box_model({0.1, 0.1, 0.02}), 1, {{0, 0, 0.06}, quat_identity()});
-    (void)body_of_block.add_joint("lock", *block, attached, JointType::fixed, {0, 0, 0.05}, {0, 0, 1}).value();
+    (void)body_of_block.add_joint("lock", *block, attached, model::JointType::fixed, {0, 0, 0.05}, {0, 0, 1}).value();
   }
   Part* block;
 };
@@ -191,4 +191,4 @@ TEST(ContactFriction, AnisotropicFrictionIsAnEllipse) {
 }
 
 }  // namespace
-}  // namespace limber::friction_test
+}  // namespace limber::sim::friction_test

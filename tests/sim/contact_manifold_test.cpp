@@ -7,33 +7,33 @@
 
 #include "sim/stage.h"
 
-namespace limber::manifold_test {
+namespace limber::sim::manifold_test {
 namespace {
 
 using namespace test;
 
 constexpr double kG = 9.81;
 
-ShapeModel hull_model(const std::vector<Vec3>& points, const Vec3& box) {
-  auto mesh = std::make_shared<MeshModel>();
+model::ShapeModel hull_model(const std::vector<Vec3>& points, const Vec3& box) {
+  auto mesh = std::make_shared<model::MeshModel>();
   mesh->hull = mesh->vertices = points;
   mesh->unit_inertial = {1, Vec3(0), Mat3(0)};
   const Vec3 moments = box_inertia(1, box);
   for (int i = 0; i < 3; i++) mesh->unit_inertial.tensor[i][i] = moments[i];
   mesh->closed = true;
-  ShapeModel m;
-  m.kind = ShapeKind::mesh;
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::mesh;
   m.mesh = mesh;
   return m;
 }
 
-ShapeModel hull_box(const Vec3& size) {
+model::ShapeModel hull_box(const Vec3& size) {
   std::vector<Vec3> points;
   for (int i = 0; i < 8; i++) points.push_back(size * Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5));
   return hull_model(points, size);
 }
 
-ShapeModel hull_prism(double radius, double height, int corners) {
+model::ShapeModel hull_prism(double radius, double height, int corners) {
   std::vector<Vec3> points;
   for (int i = 0; i < corners; i++) {
     const double angle = 2 * kPi * i / corners;
@@ -46,7 +46,7 @@ ShapeModel hull_prism(double radius, double height, int corners) {
 
 struct Solid {
   const char* name;
-  ShapeModel model;
+  model::ShapeModel model;
   double half;  // height of its center above the surface
 };
 
@@ -54,7 +54,7 @@ std::vector<Solid> standing_solids() {
   return {{"box", box_model({0.4, 0.4, 0.1}), 0.05},
           {"hull", hull_box({0.4, 0.4, 0.1}), 0.051},  // hulls are larger by a margin of 1 mm
           {"prism of 24 sides", hull_prism(0.2, 0.1, 24), 0.051},
-          {"cylinder", round_model(ShapeKind::cylinder, 0.2, 0.1), 0.05}};
+          {"cylinder", round_model(model::ShapeKind::cylinder, 0.2, 0.1), 0.05}};
 }
 
 enum class Floor { plane, box, hull };
@@ -164,7 +164,7 @@ TEST(ContactManifold, CylindersRollStraight) {
       s.gravity({0, 0, -kG});
       add_floor(s, floor, 1);
       const Quat turn = quat_axis({0, 0, 1}, heading);
-      Part& part = s.add_single_part(round_model(ShapeKind::cylinder, 0.1, 0.3), 1,
+      Part& part = s.add_single_part(round_model(model::ShapeKind::cylinder, 0.1, 0.3), 1,
                                      {{0, 0, 0.1}, turn * quat_axis({1, 0, 0}, kPi / 2)});
       s.set(part.id(), "friction", {1});
       const Vec3 ahead = turn * Vec3(1, 0, 0);
@@ -183,7 +183,7 @@ TEST(ContactManifold, SelectsTheDeepestAndTheWidestPoints) {
   btRigidBody a(1, nullptr, &shape, btVector3(1, 1, 1));
   btRigidBody b(0, nullptr, &shape);
   btPersistentManifold manifold(&a, &b, 0, 0.02F, BT_LARGE_FLOAT);
-  ManifoldBuilder points(manifold, 0.01F);
+  collision::ManifoldBuilder points(manifold, 0.01F);
   const btVector3 up(0, 0, 1);
   for (int i = 0; i < 16; i++) {
     const auto angle = static_cast<float>(2 * kPi * i / 16);
@@ -212,7 +212,7 @@ TEST(ContactManifold, TransfersImpulsesOfMatchingPoints) {
   btPersistentManifold manifold(&a, &b, 0, 0.02F, BT_LARGE_FLOAT);
   const btVector3 up(0, 0, 1);
   const auto add_all = [&](float x) {
-    ManifoldBuilder points(manifold, 0.01F);
+    collision::ManifoldBuilder points(manifold, 0.01F);
     for (int i = 0; i < 4; i++) points.add({x + static_cast<float>(i % 2), static_cast<float>(i / 2), 0}, up, 0);
     points.write();
   };
@@ -234,4 +234,4 @@ TEST(ContactManifold, TransfersImpulsesOfMatchingPoints) {
 }
 
 }  // namespace
-}  // namespace limber::manifold_test
+}  // namespace limber::sim::manifold_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr int kBodyCount = 12;  // the first one is static
@@ -130,7 +130,7 @@ TEST(ContactSweep, MatchesBulletsNormalImpulses) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     BulletSolver ours(seed);
     BulletSolver theirs(seed);
-    ContactSweep contacts;
+    bullet::ContactSweep contacts;
     contacts.begin(ours.bodies(), ours.contacts(), ours.friction());
     for (int i = 0; i < 10; ++i) {
       EXPECT_GT(contacts.sweep_split_impulse(), 0);
@@ -146,7 +146,7 @@ TEST(ContactSweep, MatchesBulletsNormalImpulses) {
 TEST(ContactSweep, FrictionStaysWithinTheDisc) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     BulletSolver rows(seed, 0.4F);
-    ContactSweep contacts;
+    bullet::ContactSweep contacts;
     contacts.begin(rows.bodies(), rows.contacts(), rows.friction());
     for (int i = 0; i < 5; ++i) contacts.sweep();
     contacts.finish();
@@ -188,7 +188,7 @@ TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
       row.m_friction = 0.1F;
       (along.z() > 0 ? contacts : friction).push_back(row);
     }
-    ContactSweep sweep;
+    bullet::ContactSweep sweep;
     sweep.begin(bodies, contacts, friction);
     for (int i = 0; i < 60; ++i) sweep.sweep();
     sweep.finish();
@@ -221,7 +221,7 @@ TEST(ContactSweep, ConvergesInOneSweepForABall) {
     row.m_friction = 0.4F;
     (along.z() > 0 ? contacts : friction).push_back(row);
   }
-  ContactSweep sweep;
+  bullet::ContactSweep sweep;
   sweep.begin(bodies, contacts, friction);
   EXPECT_FLOAT_EQ(sweep.sweep(), 36);
   EXPECT_FLOAT_EQ(sweep.impulse(0), 6);
@@ -235,4 +235,4 @@ TEST(ContactSweep, ConvergesInOneSweepForABall) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

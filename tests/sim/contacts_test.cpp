@@ -6,7 +6,7 @@
 #include "sim/arm.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -134,7 +134,7 @@ TEST(Contacts, JoinedPartsDoNotReport) {
   Body& body = s.body("body");
   Part& a = s.enable_reports(s.part(body, box_model(Vec3(0.2)), 1));
   Part& b = s.enable_reports(s.part(body, box_model(Vec3(0.2)), 1, {{0.1, 0, 0}, quat_identity()}));
-  (void)body.add_joint("j", a, b, JointType::revolute, {0.05, 0, 0}, {0, 1, 0}).value();
+  (void)body.add_joint("j", a, b, model::JointType::revolute, {0.05, 0, 0}, {0, 1, 0}).value();
   EXPECT_TRUE(s.events(10).empty());
   s.part(body, box_model(Vec3(0.2)), 1, {{-0.2, 0, 0}, quat_identity()});
   EXPECT_EQ(s.events(10).size(), 1u);
@@ -182,4 +182,4 @@ TEST(Contacts, OrderOfEventsIsDeterministic) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

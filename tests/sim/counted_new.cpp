@@ -9,7 +9,7 @@ namespace {
 std::atomic<std::size_t> count{0};
 }
 
-std::size_t limber::test::allocations() { return count.load(); }
+std::size_t limber::sim::test::allocations() { return count.load(); }
 
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   count.fetch_add(1, std::memory_order_relaxed);

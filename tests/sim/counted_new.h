@@ -3,8 +3,8 @@
 
 #include <cstddef>
 
-namespace limber::test {
+namespace limber::sim::test {
 
 std::size_t allocations();
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr int kMaxCount = 45;  // more than two vectors of sixteen, with every remainder
@@ -15,7 +15,7 @@ constexpr int kStride = 50;    // distance of consecutive vectors
 
 struct Case {
   std::string name;
-  const DenseKernels& kernels;
+  const solver::DenseKernels& kernels;
 };
 
 class Dense : public testing::TestWithParam<Case> {
@@ -25,7 +25,7 @@ class Dense : public testing::TestWithParam<Case> {
     for (double& number : out) number = std::uniform_real_distribution(-1.0, 1.0)(random_);
     return out;
   }
-  const DenseKernels& kernels = GetParam().kernels;
+  const solver::DenseKernels& kernels = GetParam().kernels;
 
  private:
   std::mt19937_64 random_{7};
@@ -47,7 +47,7 @@ TEST_P(Dense, SubtractsScaledVectors) {
     for (int count = 0; count <= kMaxCount; count += 2) {
       const std::vector<double> y = numbers(kMaxCount + 1), scales = numbers(vectors);
       std::vector<std::vector<double>> all(static_cast<std::size_t>(vectors));
-      std::vector<ScaledVector> scaled(all.size());
+      std::vector<solver::ScaledVector> scaled(all.size());
       for (std::size_t k = 0; k < all.size(); ++k) {
         all[k] = numbers(kMaxCount);
         scaled[k] = {all[k].data(), scales[k]};
@@ -89,13 +89,14 @@ TEST_P(Dense, DotProductAddsFourPartialSums) {
     double expected = (parts[0] + parts[2]) + (parts[1] + parts[3]);
     for (int i = whole; i < count; ++i) expected += a[i] * b[i];
     EXPECT_EQ(kernels.dot_product(a.data(), b.data(), count), expected) << count;
-    EXPECT_EQ(dot_product(a.data(), b.data(), count), expected) << count;
+    EXPECT_EQ(solver::dot_product(a.data(), b.data(), count), expected) << count;
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Widths, Dense,
-                         testing::Values(Case{"two", DenseKernels::width_2()}, Case{"widest", DenseKernels::widest()}),
+                         testing::Values(Case{"two", solver::DenseKernels::width_2()},
+                                         Case{"widest", solver::DenseKernels::widest()}),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

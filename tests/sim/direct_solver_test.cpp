@@ -11,7 +11,7 @@
 #include "joint_rig.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // An arm of boxes, x and y alternating, on a base at the floor's height, without a floor.
@@ -90,7 +90,7 @@ TEST(DirectSolver, ServoAppliesTheLoadOrItsLimit) {
     btRigidBody& beam = rig.part(2, Vec3(0.1, 0.1, 0.1), {{0.5, 0, 0}, quat_identity()});
     // the own axis, z of the frames, is along the world's y
     const Pose frame{{0, 0, 0}, quat_axis({1, 0, 0}, -kPi / 2)};
-    JointConstraint& hinge = rig.joint(base, beam, frame, {{-0.5, 0, 0}, frame.rotation});
+    bullet::JointConstraint& hinge = rig.joint(base, beam, frame, {{-0.5, 0, 0}, frame.rotation});
     hinge.set_axis(5, servo_axis(free_axis(), 0, 1, force));
     rig.steps(force > kLoad ? 240 : 4);
     EXPECT_NEAR(std::fabs(hinge.drives().applied_torque().z), std::min(force, kLoad), 0.01 * kLoad) << force;
@@ -206,23 +206,25 @@ struct SpinningPair {
   // with a floating parent, both also move at (1, 2, 0) m/s and rotate at 3 rad/s about their common center
   void move(btRigidBody& body, double arm, double spin, double along = 0) {
     const double all = along == 0 ? 1 : 0;
-    body.setLinearVelocity(to_bt(all * Vec3(1, 2 + 3 * arm, 0) + Vec3(0, along, 0)));
-    body.setAngularVelocity(to_bt(Vec3(0, 0, all * 3 + spin)));
+    body.setLinearVelocity(bullet::to_bt(all * Vec3(1, 2 + 3 * arm, 0) + Vec3(0, along, 0)));
+    body.setAngularVelocity(bullet::to_bt(Vec3(0, 0, all * 3 + spin)));
   }
-  Vec3 momentum() const { return from_bt(parent.getLinearVelocity() + child.getLinearVelocity()); }
+  Vec3 momentum() const { return bullet::from_bt(parent.getLinearVelocity() + child.getLinearVelocity()); }
   Vec3 common_center() const {
-    return from_bt(parent.getCenterOfMassPosition() + child.getCenterOfMassPosition()) / 2.0;
+    return bullet::from_bt(parent.getCenterOfMassPosition() + child.getCenterOfMassPosition()) / 2.0;
   }
   // about the initial common center, where the impulses of the first step act
   Vec3 spin() const {
-    return from_bt(btVector3(to_scalar(0.1), 0, 0).cross(child.getLinearVelocity() - parent.getLinearVelocity()) +
-                   (parent.getAngularVelocity() + child.getAngularVelocity()) * to_scalar(0.01));
+    return bullet::from_bt(
+        btVector3(bullet::to_scalar(0.1), 0, 0).cross(child.getLinearVelocity() - parent.getLinearVelocity()) +
+        (parent.getAngularVelocity() + child.getAngularVelocity()) * bullet::to_scalar(0.01));
   }
-  double relative_spin() const { return from_bt(parent.getAngularVelocity() - child.getAngularVelocity()).z; }
+  double relative_spin() const { return bullet::from_bt(parent.getAngularVelocity() - child.getAngularVelocity()).z; }
   Rig rig;
   btRigidBody& parent;
   btRigidBody& child = rig.part(1, Vec3(0.01), {{0.2, 0, 0}, quat_identity()});
-  JointConstraint& joint = rig.joint(parent, child, {{0.1, 0, 0}, quat_identity()}, {{-0.1, 0, 0}, quat_identity()});
+  bullet::JointConstraint& joint =
+      rig.joint(parent, child, {{0.1, 0, 0}, quat_identity()}, {{-0.1, 0, 0}, quat_identity()});
 };
 
 // Bullet clamps rotations beyond a quarter of pi per step. Beyond it the solver scales down the inner motion only; the
@@ -259,7 +261,7 @@ TEST(DirectSolver, ClosesJointsOfClampedBodies) {
     SCOPED_TRACE(spin);
     SpinningPair pair(spin, false);
     const auto middle = [&] {
-      return from_bt(pair.parent.getCenterOfMassPosition() + pair.child.getCenterOfMassPosition()) * 0.5;
+      return bullet::from_bt(pair.parent.getCenterOfMassPosition() + pair.child.getCenterOfMassPosition()) * 0.5;
     };
     const Vec3 before = middle();
     pair.rig.steps(1, kStep);
@@ -367,4 +369,4 @@ TEST(DirectSolver, LeavesPilesToTheIterativeSolver) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -2,7 +2,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 namespace {
 
@@ -18,7 +18,7 @@ struct GearedBoxes : WorldFixture {
   Joint& hinge(const std::string& name, double x) {
     const Vec3 at(x, 0, 0);
     Part& box = part(robot, box_model(kGearSize), kGearMass, {at, quat_identity()});
-    Joint& joint = *robot.add_joint(name, base, box, JointType::revolute, at, {0, 0, 1}).value();
+    Joint& joint = *robot.add_joint(name, base, box, model::JointType::revolute, at, {0, 0, 1}).value();
     (void)robot.add_motor(joint).value();
     return joint;
   }
@@ -81,4 +81,4 @@ void add_gear_effects(PropertyEffects& effects) {
   effects[{"Gear", "max_force"}] = measure_gear_max_force;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

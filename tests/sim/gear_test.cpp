@@ -14,7 +14,7 @@
 #include "sim/stage.h"
 #include "sim/state/world_checkpoint.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -32,20 +32,20 @@ std::string gear_log_since(std::uint64_t seen) {
 
 // Two boxes on a static ball, each on a joint through its center; motors off.
 struct GearedPair : WorldFixture {
-  explicit GearedPair(bool direct = true, JointType type_a = JointType::revolute,
-                      JointType type_b = JointType::revolute)
+  explicit GearedPair(bool direct = true, model::JointType type_a = model::JointType::revolute,
+                      model::JointType type_b = model::JointType::revolute)
       : robot(body("robot")), base(part(robot, sphere_model(0.05), 0)) {
     set(world.id(), "solver", {direct ? 1.0 : 0.0});
     a = &add("a", {-1, 0, 0}, kGearSizeA, kGearMassA, type_a);
     b = &add("b", {1, 0, 0}, kGearSizeB, kGearMassB, type_b);
   }
 
-  Joint& add(const std::string& name, const Vec3& at, const Vec3& size, double mass, JointType type) {
+  Joint& add(const std::string& name, const Vec3& at, const Vec3& size, double mass, model::JointType type) {
     Part& box = part(robot, box_model(size), mass, {at, quat_identity()});
     Joint& joint = *robot.add_joint(name, base, box, type, at, {0, 0, 1}).value();
     set(robot.add_motor(joint).value()->id(), "mode", {0});
-    set_one(joint.id(), "linear_lower_limit", 2, type == JointType::prismatic ? 1 : 0);
-    set_one(joint.id(), "linear_upper_limit", 2, type == JointType::prismatic ? -1 : 0);
+    set_one(joint.id(), "linear_lower_limit", 2, type == model::JointType::prismatic ? 1 : 0);
+    set_one(joint.id(), "linear_upper_limit", 2, type == model::JointType::prismatic ? -1 : 0);
     return joint;
   }
   Gear& gear(double ratio, std::optional<double> offset = {}) {
@@ -61,7 +61,7 @@ struct GearedPair : WorldFixture {
   void loaded_ticks(int n, double on_a, double on_b) {
     const auto load = [](Joint& joint, double value) {
       const Vec3 z(0, 0, value);
-      joint.type() == JointType::prismatic ? joint.child().apply_force(z) : joint.child().apply_torque(z);
+      joint.type() == model::JointType::prismatic ? joint.child().apply_force(z) : joint.child().apply_torque(z);
     };
     for (int i = 0; i < n; i++) {
       load(*a, on_a);
@@ -126,7 +126,7 @@ TEST_P(GearSolvers, OutputIsBackdrivable) {
 }
 
 TEST_P(GearSolvers, RackFollowsItsPinion) {
-  GearedPair s(direct(), JointType::revolute, JointType::prismatic);
+  GearedPair s(direct(), model::JointType::revolute, model::JointType::prismatic);
   const double radius = 0.05;
   s.gear(radius);
   s.loaded_ticks(30, 0.1, 0);
@@ -192,7 +192,7 @@ TEST_P(GearSolvers, ConservesMomentumOfAFloatingBody) {
   for (std::size_t i = 0; i < 2; i++) {
     const Vec3 at(i == 0 ? -0.4 : 0.4, 0, 0);
     Part& wheel = s.part(robot, box_model({0.2, 0.3, 0.1}), 1, {at, quat_identity()});
-    joints[i] = robot.add_joint(i == 0 ? "a" : "b", base, wheel, JointType::revolute, at, {0, 0, 1}).value();
+    joints[i] = robot.add_joint(i == 0 ? "a" : "b", base, wheel, model::JointType::revolute, at, {0, 0, 1}).value();
     s.set(robot.add_motor(*joints[i]).value()->id(), "mode", {0});
   }
   (void)s.world.gears().add("g", *joints[0], *joints[1], 2.0).value();
@@ -204,11 +204,11 @@ TEST_P(GearSolvers, ConservesMomentumOfAFloatingBody) {
   double spin = 0;
   for (const auto& part : robot.parts()) {
     const btRigidBody& r = part->rigid();
-    const Vec3 v = from_bt(r.getLinearVelocity());
+    const Vec3 v = bullet::from_bt(r.getLinearVelocity());
     const double mass = 1 / static_cast<double>(r.getInvMass());
     momentum += mass * v;
     spin += static_cast<double>(r.getAngularVelocity().z()) / static_cast<double>(r.getInvInertiaDiagLocal().z()) +
-            mass * glm::cross(from_bt(r.getCenterOfMassPosition()), v).z;
+            mass * glm::cross(bullet::from_bt(r.getCenterOfMassPosition()), v).z;
   }
   EXPECT_NEAR(joints[1]->value(), 2 * joints[0]->value(), 1e-3);
   EXPECT_GT(joints[0]->value(), 0.5);
@@ -337,7 +337,8 @@ TEST(Gear, IsInactiveWhileItOrItsBodyIsDisabled) {
 TEST(Gear, RejectsUnsuitableJoints) {
   GearedPair s;
   Part& ball = s.part(s.robot, sphere_model(0.1), 1, {{0, 0, 3}, quat_identity()});
-  Joint& spherical = *s.robot.add_joint("ball", s.base, ball, JointType::spherical, {0, 0, 3}, {0, 0, 1}).value();
+  Joint& spherical =
+      *s.robot.add_joint("ball", s.base, ball, model::JointType::spherical, {0, 0, 3}, {0, 0, 1}).value();
   EXPECT_EQ(s.world.gears().add("g", *s.a, spherical, 1).error(),
             "gear 'g': joint 'robot/ball' is spherical; a gear needs a revolute, continuous or prismatic joint");
   EXPECT_EQ(s.world.gears().add("g", *s.a, *s.a, 1).error(), "gear 'g': needs two different joints");
@@ -392,4 +393,4 @@ TEST(Gear, IsRolledBackByAFailedCall) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

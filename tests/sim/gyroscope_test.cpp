@@ -7,7 +7,7 @@
 
 #include "stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 // Euler's equations in small steps of the fourth-order Runge-Kutta method
@@ -30,7 +30,7 @@ TEST(Gyroscope, FollowsEulersEquations) {
     const Vec3 inertia = box_inertia(mass, size);
     Vec3 spin(2, 6, 1);
     const Vec3 exact = euler_equations(inertia, spin, 1);
-    for (int i = 0; i < 1000; i++) spin += gyroscopic_change(inertia, spin, 1e-3);
+    for (int i = 0; i < 1000; i++) spin += solver::gyroscopic_change(inertia, spin, 1e-3);
     EXPECT_LT(glm::length(spin - exact), 1e-4 * glm::length(exact)) << mass;
   }
 }
@@ -41,7 +41,7 @@ TEST(Gyroscope, ConservesEnergyAndMomentumAtAnyStep) {
       for (const Vec3& start : {Vec3(3, 0.1, 0), Vec3(0.01, 4, 0.01), Vec3(-50, 20, 70)}) {
         Vec3 spin = start;
         for (int i = 0; i < 200; i++) {
-          spin += gyroscopic_change(inertia, spin, h);
+          spin += solver::gyroscopic_change(inertia, spin, h);
           ASSERT_LE(glm::dot(inertia * spin, spin), glm::dot(inertia * start, start) * (1 + 1e-12));
         }
         if (h > 0.01 || glm::length(start) > 10) continue;
@@ -53,9 +53,9 @@ TEST(Gyroscope, ConservesEnergyAndMomentumAtAnyStep) {
 }
 
 TEST(Gyroscope, RotationAboutAPrincipalAxisIsSteady) {
-  EXPECT_EQ(gyroscopic_change({1, 2, 3}, {5, 0, 0}, 0.1), Vec3(0));
-  EXPECT_EQ(gyroscopic_change({2, 2, 2}, {5, 1, 3}, 0.1), Vec3(0));
-  EXPECT_EQ(gyroscopic_change({1, 2, 3}, Vec3(0), 0.1), Vec3(0));
+  EXPECT_EQ(solver::gyroscopic_change({1, 2, 3}, {5, 0, 0}, 0.1), Vec3(0));
+  EXPECT_EQ(solver::gyroscopic_change({2, 2, 2}, {5, 1, 3}, 0.1), Vec3(0));
+  EXPECT_EQ(solver::gyroscopic_change({1, 2, 3}, Vec3(0), 0.1), Vec3(0));
 }
 
 // A light box thrown about its middle axis turns over repeatedly, at the times given by the equations.
@@ -83,4 +83,4 @@ TEST(Gyroscope, ThrownBoxTurnsOver) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

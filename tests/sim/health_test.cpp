@@ -12,7 +12,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -99,7 +99,7 @@ TEST(Health, EachLimitIsAsDocumented) {
       s.ticks(1);
       const Vec3 value = c.direction * v;
       if (std::string_view(c.property) == "angular_velocity") {
-        box.rigid().setAngularVelocity(to_bt(value));
+        box.rigid().setAngularVelocity(bullet::to_bt(value));
       } else {
         s.set(box.id(), c.property, {value.x, value.y, value.z});
       }
@@ -119,7 +119,7 @@ TEST(Health, ReportsASeparatedJointWithItsCause) {
   Part* above = &s.part(chain, box_model(Vec3(0.1)), 0);
   const auto add_link = [&](const char* name, double z, double mass) {
     Part& part = s.part(chain, box_model(Vec3(0.05, 0.05, 0.09)), mass, {{0, 0, z}, quat_identity()});
-    (void)chain.add_joint(name, *above, part, JointType::spherical, Vec3(0, 0, z + 0.05), Vec3(0, 0, 1)).value();
+    (void)chain.add_joint(name, *above, part, model::JointType::spherical, Vec3(0, 0, z + 0.05), Vec3(0, 0, 1)).value();
     above = &part;
   };
   for (int i = 0; i < 8; i++) add_link(("link" + std::to_string(i)).c_str(), -0.1 * (i + 1), 0.01);
@@ -138,7 +138,7 @@ TEST(Health, PartsThatAreMovedApartRecoverWithoutAnEvent) {
   Body& pair = s.body("pair");
   Part& a = s.part(pair, box_model(Vec3(0.1)), 1);
   Part& b = s.part(pair, box_model(Vec3(0.1)), 1, {{0.1, 0, 0}, quat_identity()});
-  Joint& joint = *pair.add_joint("joint", a, b, JointType::spherical, Vec3(0.05, 0, 0), Vec3(0, 0, 1)).value();
+  Joint& joint = *pair.add_joint("joint", a, b, model::JointType::spherical, Vec3(0.05, 0, 0), Vec3(0, 0, 1)).value();
   s.ticks(1);
   s.set(b.id(), "position", {1.1, 0, 0});
   s.ticks(60);
@@ -341,4 +341,4 @@ TEST(Health, SurvivesExtremeValuesOfAllProperties) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

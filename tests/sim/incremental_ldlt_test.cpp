@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // Returns G·G' + a small diagonal, with one row and its column set to zero.
@@ -37,8 +37,8 @@ TEST(IncrementalLdlt, SolvesForAnySelection) {
   constexpr int kZeroRow = 7;
   std::mt19937 generator(3);
   const std::vector<double> matrix = positive_matrix(kRows, kStride, generator, kZeroRow);
-  WorkBudget budget;
-  IncrementalLdlt factor(budget);
+  solver::WorkBudget budget;
+  solver::IncrementalLdlt factor(budget);
   factor.reset(matrix, kStride);
   std::vector<unsigned char> free(kRows, 0);
   int rejected = 0;
@@ -69,8 +69,8 @@ TEST(IncrementalLdlt, SolvesForAnySelection) {
 
 TEST(IncrementalLdlt, RejectsTooManyRows) {
   const std::vector<double> matrix{2, 1, 1, 2};
-  WorkBudget budget;
-  IncrementalLdlt factor(budget);
+  solver::WorkBudget budget;
+  solver::IncrementalLdlt factor(budget);
   factor.reset(matrix, 2);
   EXPECT_FALSE(factor.select(std::vector<unsigned char>{1, 1}, 1));
   ASSERT_TRUE(factor.select(std::vector<unsigned char>{0, 1}, 1));
@@ -80,4 +80,4 @@ TEST(IncrementalLdlt, RejectsTooManyRows) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 
 #include "joint_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr double kTick = 1.0 / 60.0;
@@ -31,9 +31,9 @@ struct IslandFixture {
 
   btRigidBody& add(double mass, btCollisionShape& shape, const Pose& pose) {
     btVector3 inertia(0, 0, 0);
-    if (mass > 0) shape.calculateLocalInertia(to_scalar(mass), inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(to_scalar(mass), nullptr, &shape, inertia);
-    info.m_startWorldTransform = to_bt(pose);
+    if (mass > 0) shape.calculateLocalInertia(bullet::to_scalar(mass), inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(bullet::to_scalar(mass), nullptr, &shape, inertia);
+    info.m_startWorldTransform = bullet::to_bt(pose);
     bodies.push_back(std::make_unique<btRigidBody>(info));
     bodies.back()->setActivationState(DISABLE_DEACTIVATION);
     bodies.back()->setFriction(0.5f);
@@ -47,9 +47,9 @@ struct IslandFixture {
       all.push_back(&add(1, box, {at + Vec3(0, 0, 0.3 + 0.21 * i), quat_identity()}));
       if (i == 0) continue;
       const Quat y = quat_axis({1, 0, 0}, -kPi / 2);
-      joints.push_back(std::make_unique<JointConstraint>(*all[static_cast<std::size_t>(i - 1)], *all.back(),
-                                                         to_bt(Pose{{0, 0, 0.105}, y}),
-                                                         to_bt(Pose{{0, 0, -0.105}, y})));
+      joints.push_back(std::make_unique<bullet::JointConstraint>(*all[static_cast<std::size_t>(i - 1)], *all.back(),
+                                                                 bullet::to_bt(Pose{{0, 0, 0.105}, y}),
+                                                                 bullet::to_bt(Pose{{0, 0, -0.105}, y})));
       joints.back()->set_axis(5, servo_axis(limited_axis(-2, 2), 0.3 * (i % 3), 2, 20));
       world.addConstraint(joints.back().get());
     }
@@ -61,8 +61,8 @@ struct IslandFixture {
   btStaticPlaneShape plane{btVector3(0, 0, 1), 0};
   btBoxShape box{btVector3(0.05f, 0.05f, 0.1f)};
   std::deque<std::unique_ptr<btRigidBody>> bodies;
-  std::deque<std::unique_ptr<JointConstraint>> joints;
-  IslandWorld world{WorldSetup{0.01, 20}};
+  std::deque<std::unique_ptr<bullet::JointConstraint>> joints;
+  bullet::IslandWorld world{WorldSetup{0.01, 20}};
 };
 
 bool same_bits(const btRigidBody& a, const btRigidBody& b) {
@@ -93,7 +93,7 @@ TEST(IslandWorld, IslandsAreIndependent) {
       ASSERT_TRUE(same_bits(*single[i], *in_crowd[i])) << tick << ' ' << i;
   }
   // the arm moved and had contacts
-  EXPECT_GT(glm::length(from_bt(single[5]->getCenterOfMassPosition()) - (at + Vec3(0, 0, 1.35))), 0.1);
+  EXPECT_GT(glm::length(bullet::from_bt(single[5]->getCenterOfMassPosition()) - (at + Vec3(0, 0, 1.35))), 0.1);
 }
 
 TEST(IslandWorld, ResultDoesNotDependOnBatches) {
@@ -157,9 +157,9 @@ TEST(IslandWorld, AppliedForceIsTheMeanOfTheTick) {
   // a brake of 1 N stops 1 kg at 1/240 m/s within the first of four steps
   Rig rig;
   btRigidBody& part = rig.part(1, Vec3(0.1));
-  JointConstraint& joint = rig.joint(rig.ground(), part);
+  bullet::JointConstraint& joint = rig.joint(rig.ground(), part);
   joint.set_axis(0, spin_axis(free_axis(), 0, 1));
-  part.setLinearVelocity(btVector3(to_scalar(kRigStep), 0, 0));
+  part.setLinearVelocity(btVector3(bullet::to_scalar(kRigStep), 0, 0));
   rig.steps(4);
   EXPECT_NEAR(joint.drives().applied_force().x, -0.25, 1e-5);
   EXPECT_NEAR(joint.rate(0), 0, 1e-6);
@@ -193,15 +193,15 @@ TEST(IslandWorld, SupportsBulletsOwnConstraints) {
   Rig rig;
   btRigidBody& first = rig.part(1, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
   btRigidBody& second = rig.part(1, Vec3(0.1), {{1.5, 0, 0}, quat_identity()});
-  JointConstraint& hinge = rig.joint(rig.ground(), first, {}, {{-0.5, 0, 0}, quat_identity()});
+  bullet::JointConstraint& hinge = rig.joint(rig.ground(), first, {}, {{-0.5, 0, 0}, quat_identity()});
   hinge.set_axis(5, spin_axis(free_axis(), 1, 1000));
-  btFixedConstraint weld(first, second, to_bt(Pose{{0.5, 0, 0}, quat_identity()}),
-                         to_bt(Pose{{-0.5, 0, 0}, quat_identity()}));
+  btFixedConstraint weld(first, second, bullet::to_bt(Pose{{0.5, 0, 0}, quat_identity()}),
+                         bullet::to_bt(Pose{{-0.5, 0, 0}, quat_identity()}));
   rig.world.addConstraint(&weld);
   rig.steps(240);
   EXPECT_NEAR(hinge.value(5), 1, 0.01);
   const Vec3 expected(1.5 * std::cos(hinge.value(5)), 1.5 * std::sin(hinge.value(5)), 0);
-  EXPECT_LT(glm::length(from_bt(second.getCenterOfMassPosition()) - expected), 5e-3);
+  EXPECT_LT(glm::length(bullet::from_bt(second.getCenterOfMassPosition()) - expected), 5e-3);
   rig.world.removeConstraint(&weld);
 }
 
@@ -223,8 +223,8 @@ double separation_after_a_second(IslandFixture& fixture, btRigidBody& a, btRigid
     body->setLinearVelocity(btVector3(0, 0, 0));
     body->setAngularVelocity(btVector3(0, 0, 0));
   }
-  a.setWorldTransform(to_bt(Pose{{0, 0, 1}, quat_identity()}));
-  b.setWorldTransform(to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
+  a.setWorldTransform(bullet::to_bt(Pose{{0, 0, 1}, quat_identity()}));
+  b.setWorldTransform(bullet::to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
   for (int i = 0; i < 60; ++i) fixture.world.step(kTick, 1);
   return static_cast<double>((b.getCenterOfMassPosition() - a.getCenterOfMassPosition()).x()) - 0.08;
 }
@@ -237,11 +237,11 @@ TEST(IslandWorld, JoinedPartsCollideOnlyWithoutJoints) {
   EXPECT_GT(separation_after_a_second(fixture, a, b), 0.01);
 
   // joints of six free axes affect collision only; the boxes overlap and have contacts when they are joined
-  a.setWorldTransform(to_bt(Pose{{0, 0, 1}, quat_identity()}));
-  b.setWorldTransform(to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
+  a.setWorldTransform(bullet::to_bt(Pose{{0, 0, 1}, quat_identity()}));
+  b.setWorldTransform(bullet::to_bt(Pose{{0.08, 0, 1}, quat_identity()}));
   fixture.world.step(1e-4, 1);
-  JointConstraint first(a, b, btTransform::getIdentity(), btTransform::getIdentity());
-  JointConstraint second(b, a, btTransform::getIdentity(), btTransform::getIdentity());
+  bullet::JointConstraint first(a, b, btTransform::getIdentity(), btTransform::getIdentity());
+  bullet::JointConstraint second(b, a, btTransform::getIdentity(), btTransform::getIdentity());
   for (int i = 0; i < 6; ++i) {
     first.set_axis(i, free_axis());
     second.set_axis(i, free_axis());
@@ -297,4 +297,4 @@ TEST(IslandWorld, StepsDoNotAllocate) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 /// Legs of two links hang from a base, in a circle; their servos push them across each other.
@@ -13,7 +13,7 @@ class Legs : public WorldFixture {
   Legs(int count, double base_mass) : robot_(body("legs")) {
     gravity({0, 0, -9.81});
     Part& base = part(robot_, box_model({0.5, 0.5, 0.1}), base_mass, {{0, 0, 1}, quat_identity()});
-    const ShapeModel link = box_model({0.06, 0.06, 0.2});
+    const model::ShapeModel link = box_model({0.06, 0.06, 0.2});
     for (int i = 0; i < count; i++) {
       const double angle = 2 * kPi * i / count;
       const Vec3 out(std::cos(angle), std::sin(angle), 0);
@@ -22,7 +22,8 @@ class Legs : public WorldFixture {
       for (int k = 0; k < 2; k++) {
         const Vec3 hip = out * 0.2 + Vec3(0, 0, 0.94 - 0.21 * k);
         Part& next = part(robot_, link, 0.5, {hip - Vec3(0, 0, 0.1), quat_identity()});
-        Joint& joint = *robot_.add_joint("j" + next.name(), *above, next, JointType::revolute, hip, axis).value();
+        Joint& joint =
+            *robot_.add_joint("j" + next.name(), *above, next, model::JointType::revolute, hip, axis).value();
         Motor& motor = *robot_.add_motor(joint).value();
         set(motor.id(), "max_angular_force", {200, 200, 200});
         set(motor.id(), "target", {k == 0 ? kHip : -0.3});
@@ -68,4 +69,4 @@ TEST_P(JammedLimbs, KeepTheirJointsClosed) {
 INSTANTIATE_TEST_SUITE_P(Of, JammedLimbs, ::testing::Values(2, 4, 6));
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -5,7 +5,7 @@
 
 #include "joint_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 const Pose kOblique{{0.1, -0.2, 0.3}, quat_euler(0.4, -0.7, 1.1)};
@@ -14,8 +14,8 @@ const Pose kParent{{1, 2, 3}, quat_euler(0.3, 0.2, -0.9)};
 
 // Moves the child so that the joint's frames differ by `motion`.
 void place(btRigidBody& parent, btRigidBody& child, const Pose& motion) {
-  const Pose pose = from_bt(parent.getWorldTransform()) * kOblique * motion * kChildFrame.inverse();
-  child.setWorldTransform(to_bt(pose));
+  const Pose pose = bullet::from_bt(parent.getWorldTransform()) * kOblique * motion * kChildFrame.inverse();
+  child.setWorldTransform(bullet::to_bt(pose));
 }
 
 Quat rotation_about(int axis, double angle) { return quat_axis(unit(axis), angle); }
@@ -23,7 +23,7 @@ Quat rotation_about(int axis, double angle) { return quat_axis(unit(axis), angle
 struct Pair : Rig {
   btRigidBody& parent = part(2, Vec3(0.5), kParent);
   btRigidBody& child = part(1, Vec3(0.2, 0.3, 0.4));
-  JointConstraint& hinge = joint(parent, child, kOblique, kChildFrame);
+  bullet::JointConstraint& hinge = joint(parent, child, kOblique, kChildFrame);
 };
 
 TEST(JointConstraint, MiddleAxisIsALockedOne) {
@@ -157,10 +157,11 @@ TEST(JointConstraint, RatesAreTheDerivativesOfAnglesAndOffsets) {
     }
     const double dt = 2e-3;
     for (btRigidBody* body : {&rig.parent, &rig.child}) {
-      const Pose now = from_bt(body->getWorldTransform());
-      const Vec3 spin = from_bt(body->getAngularVelocity());
+      const Pose now = bullet::from_bt(body->getWorldTransform());
+      const Vec3 spin = bullet::from_bt(body->getAngularVelocity());
       const Quat turned = quat_axis(normalized(spin), glm::length(spin) * dt) * now.rotation;
-      body->setWorldTransform(to_bt(Pose{now.position + from_bt(body->getLinearVelocity()) * dt, turned}));
+      body->setWorldTransform(
+          bullet::to_bt(Pose{now.position + bullet::from_bt(body->getLinearVelocity()) * dt, turned}));
     }
     rig.hinge.refresh();
     for (int i = 0; i < 6; ++i) EXPECT_NEAR((rig.hinge.value(i) - before[i]) / dt, rates[i], 5e-3) << locked << i;
@@ -171,7 +172,7 @@ TEST(JointConstraint, ComputesTheEffectiveInertiaOfAHinge) {
   // I_zz + m r² about the hinge, r = 0.5 across the axis
   Rig rig;
   btRigidBody& child = rig.part(2, {0.1, 0.2, 0.3}, {{0.5, 0, 0.7}, quat_identity()});
-  JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.5, 0, -0.7}, quat_identity()});
+  bullet::JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.5, 0, -0.7}, quat_identity()});
   hinge.set_axis(5, free_axis());
   EXPECT_NEAR(hinge.pose().effective_inertia(5), 0.3 + 2 * 0.25, 1e-5);
 }
@@ -179,12 +180,12 @@ TEST(JointConstraint, ComputesTheEffectiveInertiaOfAHinge) {
 TEST(JointConstraint, ComputesTheEffectiveInertiaOfASliderAndOfFreeParts) {
   Rig rig;
   btRigidBody& child = rig.part(2, Vec3(0.1), {{0.5, 0, 0}, quat_identity()});
-  JointConstraint& slider = rig.joint(rig.ground(), child, {{0.5, 0, 0}, quat_identity()});
+  bullet::JointConstraint& slider = rig.joint(rig.ground(), child, {{0.5, 0, 0}, quat_identity()});
   slider.set_axis(2, free_axis());
   EXPECT_NEAR(slider.pose().effective_inertia(2), 2, 1e-5);
 
   btRigidBody& other = rig.part(3, Vec3(0.1));
-  JointConstraint& loose = rig.joint(other, child, {{0.5, 0, 0}, quat_identity()});
+  bullet::JointConstraint& loose = rig.joint(other, child, {{0.5, 0, 0}, quat_identity()});
   for (int i = 0; i < 6; ++i) loose.set_axis(i, free_axis());
   EXPECT_NEAR(loose.pose().effective_inertia(0), 2.0 * 3.0 / 5.0, 1e-5);
   EXPECT_NEAR(loose.pose().effective_inertia(3), 0.05, 1e-6);
@@ -202,4 +203,4 @@ TEST(JointConstraint, LimitingAnAxisDoesNotUnwindIt) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "joint_rig.h"
 #include "stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr double kGoalTick = 1.0 / 60;
@@ -18,7 +18,7 @@ constexpr double kGoalInertia = 0.5;
 
 // One part attached to the ground with one free axis; records the axis's speed after each substep.
 struct Follower : Rig {
-  Follower(int axis, const AxisSettings& settings, bool direct = true) : axis(axis), settings(settings) {
+  Follower(int axis, const bullet::AxisSettings& settings, bool direct = true) : axis(axis), settings(settings) {
     world.set_direct(direct);
     hinge.set_axis(axis, settings);
     world.setInternalTickCallback(&Follower::record_speed, this, false);
@@ -40,9 +40,9 @@ struct Follower : Rig {
   double x() const { return hinge.value(axis); }
 
   int axis;
-  AxisSettings settings;
+  bullet::AxisSettings settings;
   btRigidBody& child = part(kGoalMass, Vec3(kGoalInertia));
-  JointConstraint& hinge = joint(ground(), child);
+  bullet::JointConstraint& hinge = joint(ground(), child);
   std::vector<double> speeds;
 };
 
@@ -171,8 +171,8 @@ TEST(JointGoals, StiffSpringFollowsARampWithoutRipple) {
 TEST(JointGoals, EnablingAServoAtItsTargetDoesNotMoveTheJoint) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
   f.tick(0);
-  AxisSettings off = f.settings;
-  off.drive = AxisDrive::off;
+  bullet::AxisSettings off = f.settings;
+  off.drive = bullet::AxisDrive::off;
   f.hinge.set_axis(5, off);
   set_axis_rate(f.child, 5, 2);
   for (int i = 0; i < 60; ++i) f.tick(0);
@@ -275,8 +275,9 @@ TEST(JointGoals, MotorPressesAgainstItsLimitWithItsForce) {
       for (const double sign : {1.0, -1.0}) {
         for (const double force : {10.0, 10000.0}) {
           SCOPED_TRACE(testing::Message() << direct << ' ' << axis << ' ' << sign << ' ' << force);
-          const AxisSettings limits = limited_axis(-0.3, 0.3);
-          for (const AxisSettings& s : {spin_axis(limits, sign * 5, force), servo_axis(limits, sign * 2, 0, force)}) {
+          const bullet::AxisSettings limits = limited_axis(-0.3, 0.3);
+          for (const bullet::AxisSettings& s :
+               {spin_axis(limits, sign * 5, force), servo_axis(limits, sign * 2, 0, force)}) {
             Follower f(axis, s, direct);
             double farthest = 0;
             for (int i = 0; i < 120; ++i) {
@@ -304,9 +305,9 @@ TEST(JointGoals, ServoWithTargetAtItsLimitAppliesItsLoadOnly) {
 
 TEST(JointGoals, MotorDeflectsACompliantLimit) {
   for (const bool direct : {true, false}) {
-    AxisSettings limits = limited_axis(-0.3, 0.3);
+    bullet::AxisSettings limits = limited_axis(-0.3, 0.3);
     limits.stop_cfm = 0.01f;
-    for (const AxisSettings& s : {spin_axis(limits, 5, 10), servo_axis(limits, 2, 0, 10)}) {
+    for (const bullet::AxisSettings& s : {spin_axis(limits, 5, 10), servo_axis(limits, 2, 0, 10)}) {
       Follower f(5, s, direct);
       for (int i = 0; i < 240; ++i) f.tick(s.target);
       EXPECT_NEAR(f.x(), 0.4, 2e-3);
@@ -325,7 +326,8 @@ TEST(JointGoals, BoxTravelsWithItsPlatform) {
     Part& platform = s.part(rig, test::box_model({4, 1, 0.2}), 20, {{0, 0, 1}, quat_identity()});
     Part& box = s.add_single_part(test::box_model({0.2, 0.2, 0.2}), 1, {{0, 0, 1.2}, quat_identity()});
     for (const Part* p : {&platform, &box}) s.set(p->id(), "friction", {0.8});
-    Joint& joint = *rig.add_joint("j", rail, platform, JointType::prismatic, Vec3(0, 0, 1), Vec3(1, 0, 0)).value();
+    Joint& joint =
+        *rig.add_joint("j", rail, platform, model::JointType::prismatic, Vec3(0, 0, 1), Vec3(1, 0, 0)).value();
     Motor& motor = *rig.add_motor(joint).value();
     s.set(motor.id(), "speed", {limit});
     s.ticks(30);
@@ -344,7 +346,7 @@ TEST(JointGoals, JointSleepsOnceItsSmoothedTargetIsReached) {
   Body& robot = s.body("robot");
   Part& base = s.part(robot, test::sphere_model(0.05), 0);
   Part& child = s.part(robot, test::box_model({0.2, 0.3, 0.4}), 1);
-  Joint& joint = *robot.add_joint("elbow", base, child, JointType::revolute, Vec3(0), Vec3(0, 0, 1)).value();
+  Joint& joint = *robot.add_joint("elbow", base, child, model::JointType::revolute, Vec3(0), Vec3(0, 0, 1)).value();
   Motor& motor = *robot.add_motor(joint).value();
   s.set(motor.id(), "target_smoothing", {2});
   motor.set_target(0.02);
@@ -363,7 +365,7 @@ TEST(JointGoals, ReportsATargetOutsideTheLimitsOnce) {
   Body& robot = s.body("robot");
   Part& base = s.part(robot, test::sphere_model(0.05), 0);
   Part& child = s.part(robot, test::box_model({0.2, 0.3, 0.4}), 1);
-  Joint& joint = *robot.add_joint("elbow", base, child, JointType::revolute, Vec3(0), Vec3(0, 0, 1)).value();
+  Joint& joint = *robot.add_joint("elbow", base, child, model::JointType::revolute, Vec3(0), Vec3(0, 0, 1)).value();
   s.set_one(joint.id(), "angular_lower_limit", 2, -1.57);
   s.set_one(joint.id(), "angular_upper_limit", 2, 1.57);
   Motor& motor = *robot.add_motor(joint).value();
@@ -381,4 +383,4 @@ TEST(JointGoals, ReportsATargetOutsideTheLimitsOnce) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

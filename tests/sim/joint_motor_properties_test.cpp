@@ -6,7 +6,7 @@
 
 #include "joint_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr double kMass = 2;
@@ -16,7 +16,7 @@ double inertia_of(int axis) { return axis < 3 ? kMass : kInertia; }
 
 // One part attached to the ground with one free axis.
 struct Drive : Rig {
-  Drive(int axis, const AxisSettings& settings) : axis(axis) { hinge.set_axis(axis, settings); }
+  Drive(int axis, const bullet::AxisSettings& settings) : axis(axis) { hinge.set_axis(axis, settings); }
   double x() const { return hinge.value(axis); }
   double v() const { return hinge.rate(axis); }
   double applied() const {
@@ -25,14 +25,14 @@ struct Drive : Rig {
   }
   void push(double load) {
     if (axis < 3) {
-      child.applyCentralForce(to_bt(unit(axis) * load));
+      child.applyCentralForce(bullet::to_bt(unit(axis) * load));
     } else {
-      child.applyTorque(to_bt(unit(axis) * load));
+      child.applyTorque(bullet::to_bt(unit(axis) * load));
     }
   }
   int axis;
   btRigidBody& child = part(kMass, Vec3(kInertia));
-  JointConstraint& hinge = joint(ground(), child);
+  bullet::JointConstraint& hinge = joint(ground(), child);
 };
 
 TEST(JointMotorRows, SpinAcceleratesByForceOverInertia) {
@@ -143,7 +143,7 @@ TEST(JointMotorRows, ServoEstimatesItsInertia) {
     Rig rig;
     btRigidBody& first = rig.part(0.5, Vec3(0.005));
     btRigidBody& load = rig.part(1, Vec3(0.05), {{1, 0, 0}, quat_identity()});
-    JointConstraint& servo = rig.joint(rig.ground(), first);
+    bullet::JointConstraint& servo = rig.joint(rig.ground(), first);
     rig.joint(first, load, {{0.5, 0, 0}, quat_identity()}, {{-0.5, 0, 0}, quat_identity()});
     servo.set_axis(5, servo_axis(limited_axis(-3, 3), 1, 0, force));
     double farthest = 0;
@@ -217,7 +217,7 @@ TEST(JointMotorRows, HingeSpringOscillatesWithItsPeriod) {
   // a rod's end on a hinge: J = 0.5 + 2·0.3²; the pivot is not the center of mass
   Rig rig;
   btRigidBody& child = rig.part(kMass, Vec3(kInertia), {{0.3, 0, 0}, quat_identity()});
-  JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.3, 0, 0}, quat_identity()});
+  bullet::JointConstraint& hinge = rig.joint(rig.ground(), child, {}, {{-0.3, 0, 0}, quat_identity()});
   const double j = kInertia + kMass * 0.09;
   const double k = j * std::pow(2 * kPi, 2);  // 1 s
   hinge.set_axis(5, spring_axis(free_axis(), 0.3, k));
@@ -279,7 +279,7 @@ TEST(JointMotorRows, PendulumSwingsWithItsPeriod) {
   const Pose frame{{0, 0, 0}, quat_axis({1, 0, 0}, -kPi / 2)};  // hinge axis along y
   const Pose start{{-r * std::sin(a), 0, -r * std::cos(a)}, quat_axis({0, 1, 0}, a)};
   btRigidBody& bob = rig.part(1, Vec3(0.02), start);
-  JointConstraint& hinge = rig.joint(rig.ground(), bob, frame, Pose{{0, 0, r}, quat_identity()} * frame);
+  bullet::JointConstraint& hinge = rig.joint(rig.ground(), bob, frame, Pose{{0, 0, r}, quat_identity()} * frame);
   hinge.set_axis(5, free_axis());
   const double period = 2 * kPi * std::sqrt((0.02 + r * r) / (9.81 * r)) * (1 + a * a / 16);
   EXPECT_NEAR(hinge.value(5), a, 1e-5);
@@ -309,12 +309,12 @@ TEST(JointMotorRows, OneJointConvergesInOneIteration) {
       rig.world.getSolverInfo().m_numIterations = many ? 300 : 1;
       btRigidBody& base = rig.part(3, {0.3, 0.2, 0.1});
       btRigidBody& child = rig.part(1, {0.02, 0.05, 0.03}, {{0.4, 0.3, 0.2}, quat_identity()});
-      JointConstraint& hinge = rig.joint(base, child, {{0.2, 0.1, 0}, quat_euler(0.3, 0.2, 0.1)},
-                                         {{-0.2, -0.2, -0.2}, quat_euler(0.3, 0.2, 0.1)});
+      bullet::JointConstraint& hinge = rig.joint(base, child, {{0.2, 0.1, 0}, quat_euler(0.3, 0.2, 0.1)},
+                                                 {{-0.2, -0.2, -0.2}, quat_euler(0.3, 0.2, 0.1)});
       hinge.set_axis(5, spin_axis(free_axis(), 3, force));
       base.setAngularVelocity(btVector3(1, -2, 0.5f));
       rig.steps(30);
-      place[many] = from_bt(child.getCenterOfMassPosition());
+      place[many] = bullet::from_bt(child.getCenterOfMassPosition());
     }
     EXPECT_LT(glm::length(place[0] - place[1]), 5e-6) << force;
   }
@@ -324,7 +324,7 @@ TEST(JointMotorRows, MirroredRobotMovesMirrored) {
   // mirrored in the plane x z: y and rotations about x and z change sign
   Rig rig;
   rig.world.setGravity(btVector3(0, 0, -9.81f));
-  JointConstraint* hinges[2][4];
+  bullet::JointConstraint* hinges[2][4];
   btRigidBody* tips[2];
   for (int side = 0; side < 2; ++side) {
     const double m = side ? -1 : 1;
@@ -335,7 +335,7 @@ TEST(JointMotorRows, MirroredRobotMovesMirrored) {
       const Quat axis = i == 1   ? quat_identity()
                         : i == 2 ? quat_axis({1, 0, 0}, -kPi / 2)
                                  : quat_axis({0, 1, 0}, kPi / 2);
-      JointConstraint& hinge =
+      bullet::JointConstraint& hinge =
           rig.joint(*parent, child, {{0, m * (i ? 0.15 : 0.15), 0}, axis}, {{0, -m * 0.15, 0}, axis});
       const double sense = i == 2 ? 1 : m;
       hinge.set_axis(5, servo_axis(limited_axis(-1, 1), sense * (0.2 + 0.2 * i), 1, 20));
@@ -349,8 +349,8 @@ TEST(JointMotorRows, MirroredRobotMovesMirrored) {
     for (int k = 0; k < 4; ++k) {
       EXPECT_NEAR(hinges[0][k]->value(5), hinges[1][k]->value(5) * (k == 2 ? 1 : -1), 2e-5) << i << ' ' << k;
     }
-    const Vec3 a = from_bt(tips[0]->getCenterOfMassPosition());
-    const Vec3 b = from_bt(tips[1]->getCenterOfMassPosition());
+    const Vec3 a = bullet::from_bt(tips[0]->getCenterOfMassPosition());
+    const Vec3 b = bullet::from_bt(tips[1]->getCenterOfMassPosition());
     EXPECT_LT(glm::length(a - Vec3(b.x, -b.y, b.z)), 2e-5) << i;
   }
 }
@@ -366,14 +366,14 @@ TEST(JointMotorRows, NoFiniteInputMakesNaN) {
     Rig rig;
     btRigidBody& a = rig.part(1, Vec3(0.1));
     btRigidBody& b = rig.part(0.5, Vec3(0.05), {{0.3, 0, 0}, quat_identity()});
-    JointConstraint& joint = rig.joint(a, b, {{0.15, 0, 0}, quat_identity()}, {{-0.15, 0, 0}, quat_identity()});
+    bullet::JointConstraint& joint = rig.joint(a, b, {{0.15, 0, 0}, quat_identity()}, {{-0.15, 0, 0}, quat_identity()});
     for (int axis = 0; axis < 6; ++axis) {
-      AxisSettings s;
+      bullet::AxisSettings s;
       s.lower = draw();
       s.upper = draw();
       s.stop_erp = std::clamp(draw(), 0.0f, 1.0f);
       s.stop_cfm = std::fabs(draw());
-      s.drive = static_cast<AxisDrive>((state >> 20) % 4);
+      s.drive = static_cast<bullet::AxisDrive>((state >> 20) % 4);
       s.velocity = draw();
       s.max_force = std::fabs(draw());
       s.target = draw();
@@ -394,4 +394,4 @@ TEST(JointMotorRows, NoFiniteInputMakesNaN) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

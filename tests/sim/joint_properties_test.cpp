@@ -7,26 +7,28 @@
 
 #include "support/skip.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // A part of 2 kg and 0.5 kg·m² about every axis, attached to the ground with one free axis.
 struct Slider : Rig {
-  explicit Slider(int axis, AxisSettings settings = free_axis()) : axis(axis) { hinge.set_axis(axis, settings); }
+  explicit Slider(int axis, bullet::AxisSettings settings = free_axis()) : axis(axis) {
+    hinge.set_axis(axis, settings);
+  }
   double inertia() const { return axis < 3 ? 2.0 : 0.5; }
   double x() const { return hinge.value(axis); }
   double v() const { return hinge.rate(axis); }
   // Applies a force or torque along the axis during the next tick.
   void push(double load) {
     if (axis < 3) {
-      child.applyCentralForce(to_bt(unit(axis) * load));
+      child.applyCentralForce(bullet::to_bt(unit(axis) * load));
     } else {
-      child.applyTorque(to_bt(unit(axis) * load));
+      child.applyTorque(bullet::to_bt(unit(axis) * load));
     }
   }
   int axis;
   btRigidBody& child = part(2, Vec3(0.5));
-  JointConstraint& hinge = joint(ground(), child);
+  bullet::JointConstraint& hinge = joint(ground(), child);
 };
 
 TEST(JointRows, FreeAxisKeepsItsSpeed) {
@@ -75,7 +77,7 @@ TEST(JointRows, LimitsHoldBeyondFullTurns) {
 
 TEST(JointRows, LimitFarFromZeroHolds) {
   Slider s(5, limited_axis(2.5, 4.5));
-  s.child.setWorldTransform(to_bt(Pose{Vec3(0), quat_axis({0, 0, 1}, 3.5)}));
+  s.child.setWorldTransform(bullet::to_bt(Pose{Vec3(0), quat_axis({0, 0, 1}, 3.5)}));
   s.hinge.reset({0, 0, 3.5});
   set_axis_rate(s.child, 5, 3);
   s.steps(240);
@@ -116,7 +118,7 @@ TEST(JointRows, StopErpRepairsItsPartOfTheErrorPerStep) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const float erp : {0.1f, 0.2f, 0.8f}) {
       // a limit, started 0.01 beyond it; and a lock, started 0.01 off
-      for (AxisSettings settings : {limited_axis(0.01, 1), limited_axis(0.01, 0.01)}) {
+      for (bullet::AxisSettings settings : {limited_axis(0.01, 1), limited_axis(0.01, 0.01)}) {
         settings.stop_erp = erp;
         Slider s(axis, settings);
         double expected = 0.01;
@@ -145,7 +147,7 @@ TEST(JointRows, StopCfmIsTheComplianceOfLimitsAndLocks) {
   for (int axis = 0; axis < 6; ++axis) {
     for (const double cfm : {1e-4, 0.02, 1.0}) {
       for (const float erp : {0.2f, 0.9f}) {
-        for (AxisSettings settings : {limited_axis(-1, 0), limited_axis(0, 0)}) {
+        for (bullet::AxisSettings settings : {limited_axis(-1, 0), limited_axis(0, 0)}) {
           settings.stop_erp = erp;
           settings.stop_cfm = static_cast<float>(cfm);
           Slider s(axis, settings);
@@ -165,7 +167,7 @@ TEST(JointRows, StopCfmIsTheComplianceOfLimitsAndLocks) {
 TEST(JointRows, PassiveDampingIsImplicit) {
   // v(n+1) = v(n) / (1 + d h / J)
   for (int axis = 0; axis < 6; ++axis) {
-    for (const AxisSettings& settings : {free_axis(), limited_axis(-100, 100)}) {
+    for (const bullet::AxisSettings& settings : {free_axis(), limited_axis(-100, 100)}) {
       for (const double damping : {0.1, 3.0, 500.0}) {
         Slider s(axis, settings);
         s.hinge.set_damping(damping);
@@ -181,7 +183,7 @@ TEST(JointRows, PassiveDampingIsImplicit) {
 TEST(JointRows, PassiveDampingActsWithEveryDrive) {
   const double damping = 2;
   for (int axis = 0; axis < 6; ++axis) {
-    for (const AxisSettings& settings :
+    for (const bullet::AxisSettings& settings :
          {spin_axis(free_axis(), 3, 0), servo_axis(free_axis(), 1, 1, 0), spring_axis(free_axis(), 0, 0)}) {
       Slider s(axis, settings);
       s.hinge.set_damping(damping);
@@ -198,7 +200,7 @@ TEST(JointRows, AnyDampingIsStableInAChain) {
     btRigidBody* parent = &rig.ground();
     for (int i = 0; i < 6; ++i) {
       btRigidBody& child = rig.part(i == 3 ? 0.05 : 1, Vec3(i == 3 ? 1e-4 : 0.02), {{0.2 * i, 0, 0}, quat_identity()});
-      JointConstraint& hinge =
+      bullet::JointConstraint& hinge =
           rig.joint(*parent, child, {{i == 0 ? -0.1 : 0.1, 0, 0}, quat_identity()}, {{-0.1, 0, 0}, quat_identity()});
       hinge.set_axis(5, free_axis());
       hinge.set_damping(damping);
@@ -212,7 +214,7 @@ TEST(JointRows, AnyDampingIsStableInAChain) {
 
 TEST(JointRows, CoulombFrictionDeceleratesByItsTorque) {
   for (int axis = 0; axis < 6; ++axis) {
-    AxisSettings settings = free_axis();
+    bullet::AxisSettings settings = free_axis();
     settings.friction = 0.4f;
     Slider s(axis, settings);
     set_axis_rate(s.child, axis, 2);
@@ -250,16 +252,20 @@ TEST(JointRows, ConservesMomentumOfAFreePair) {
     Rig rig;
     btRigidBody& a = rig.part(3, Vec3(0.2), {{-0.4, 0.1, 0}, quat_identity()});
     btRigidBody& b = rig.part(1, Vec3(0.1), {{0.4, -0.1, 0.2}, quat_identity()});
-    JointConstraint& joint = rig.joint(a, b, {{0.4, 0, 0}, quat_identity()}, {{-0.4, 0.2, -0.2}, quat_identity()});
+    bullet::JointConstraint& joint =
+        rig.joint(a, b, {{0.4, 0, 0}, quat_identity()}, {{-0.4, 0.2, -0.2}, quat_identity()});
     joint.set_axis(axis, servo_axis(limited_axis(-0.8, 0.9), 0.7, 1, 50));
     a.setLinearVelocity(btVector3(0.2f, -0.1f, 0.3f));
     b.setAngularVelocity(btVector3(0.5f, 0.4f, -0.3f));
-    const auto momentum = [&] { return 3.0 * from_bt(a.getLinearVelocity()) + 1.0 * from_bt(b.getLinearVelocity()); };
+    const auto momentum = [&] {
+      return 3.0 * bullet::from_bt(a.getLinearVelocity()) + 1.0 * bullet::from_bt(b.getLinearVelocity());
+    };
     const auto spin = [&] {
-      const Vec3 ca = from_bt(a.getCenterOfMassPosition());
-      const Vec3 cb = from_bt(b.getCenterOfMassPosition());
-      return glm::cross(ca, 3.0 * from_bt(a.getLinearVelocity())) + glm::cross(cb, from_bt(b.getLinearVelocity())) +
-             0.2 * from_bt(a.getAngularVelocity()) + 0.1 * from_bt(b.getAngularVelocity());
+      const Vec3 ca = bullet::from_bt(a.getCenterOfMassPosition());
+      const Vec3 cb = bullet::from_bt(b.getCenterOfMassPosition());
+      return glm::cross(ca, 3.0 * bullet::from_bt(a.getLinearVelocity())) +
+             glm::cross(cb, bullet::from_bt(b.getLinearVelocity())) + 0.2 * bullet::from_bt(a.getAngularVelocity()) +
+             0.1 * bullet::from_bt(b.getAngularVelocity());
     };
     const Vec3 p = momentum();
     const Vec3 l = spin();
@@ -273,7 +279,7 @@ TEST(JointRows, ConservesMomentumOfAFreePair) {
 TEST(JointRows, PlanarJointMovesInItsPlaneOnly) {
   Rig rig;
   btRigidBody& child = rig.part(1, Vec3(0.3));
-  JointConstraint& planar = rig.joint(rig.ground(), child);
+  bullet::JointConstraint& planar = rig.joint(rig.ground(), child);
   planar.set_axis(0, free_axis());
   planar.set_axis(1, free_axis());
   planar.set_axis(5, free_axis());
@@ -289,4 +295,4 @@ TEST(JointRows, PlanarJointMovesInItsPlaneOnly) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

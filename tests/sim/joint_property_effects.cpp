@@ -2,7 +2,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 namespace {
 
@@ -72,4 +72,4 @@ void add_joint_effects(PropertyEffects& effects) {
   }
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -8,7 +8,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/joints/joint_constraint.h"
 
-namespace limber {
+namespace limber::sim {
 
 inline constexpr double kRigStep = 1.0 / 240.0;
 
@@ -24,8 +24,8 @@ struct Rig {
 
   /// Mass 0: static. `inertia` is the principal tensor, kg·m².
   btRigidBody& part(double mass, const Vec3& inertia, const Pose& pose = {}) {
-    btRigidBody::btRigidBodyConstructionInfo info(to_scalar(mass), nullptr, &ball, to_bt(inertia));
-    info.m_startWorldTransform = to_bt(pose);
+    btRigidBody::btRigidBodyConstructionInfo info(bullet::to_scalar(mass), nullptr, &ball, bullet::to_bt(inertia));
+    info.m_startWorldTransform = bullet::to_bt(pose);
     parts.push_back(std::make_unique<btRigidBody>(info));
     parts.back()->setActivationState(DISABLE_DEACTIVATION);
     world.addRigidBody(parts.back().get(), 0, 0);
@@ -34,9 +34,10 @@ struct Rig {
   btRigidBody& ground() { return part(0, Vec3(0)); }
 
   /// Frames relative to the parts' centers of mass. Every axis is locked at 0.
-  JointConstraint& joint(btRigidBody& parent, btRigidBody& child, const Pose& in_parent = {},
-                         const Pose& in_child = {}) {
-    joints.push_back(std::make_unique<JointConstraint>(parent, child, to_bt(in_parent), to_bt(in_child)));
+  bullet::JointConstraint& joint(btRigidBody& parent, btRigidBody& child, const Pose& in_parent = {},
+                                 const Pose& in_child = {}) {
+    joints.push_back(
+        std::make_unique<bullet::JointConstraint>(parent, child, bullet::to_bt(in_parent), bullet::to_bt(in_child)));
     world.addConstraint(joints.back().get());
     return *joints.back();
   }
@@ -45,37 +46,37 @@ struct Rig {
 
   btSphereShape ball{0.05f};
   std::deque<std::unique_ptr<btRigidBody>> parts;
-  std::deque<std::unique_ptr<JointConstraint>> joints;
-  IslandWorld world{WorldSetup{}};
+  std::deque<std::unique_ptr<bullet::JointConstraint>> joints;
+  bullet::IslandWorld world{WorldSetup{}};
 };
 
-inline AxisSettings free_axis() {
-  AxisSettings s;
+inline bullet::AxisSettings free_axis() {
+  bullet::AxisSettings s;
   s.lower = 1;
   s.upper = -1;
   return s;
 }
-inline AxisSettings limited_axis(double lower, double upper) {
-  AxisSettings s;
+inline bullet::AxisSettings limited_axis(double lower, double upper) {
+  bullet::AxisSettings s;
   s.lower = static_cast<float>(lower);
   s.upper = static_cast<float>(upper);
   return s;
 }
-inline AxisSettings servo_axis(AxisSettings s, double target, double speed, double force) {
-  s.drive = AxisDrive::servo;
+inline bullet::AxisSettings servo_axis(bullet::AxisSettings s, double target, double speed, double force) {
+  s.drive = bullet::AxisDrive::servo;
   s.target = target;
   s.velocity = static_cast<float>(speed);
   s.max_force = static_cast<float>(force);
   return s;
 }
-inline AxisSettings spin_axis(AxisSettings s, double speed, double force) {
-  s.drive = AxisDrive::spin;
+inline bullet::AxisSettings spin_axis(bullet::AxisSettings s, double speed, double force) {
+  s.drive = bullet::AxisDrive::spin;
   s.velocity = static_cast<float>(speed);
   s.max_force = static_cast<float>(force);
   return s;
 }
-inline AxisSettings spring_axis(AxisSettings s, double rest, double stiffness, double damping = 0) {
-  s.drive = AxisDrive::spring;
+inline bullet::AxisSettings spring_axis(bullet::AxisSettings s, double rest, double stiffness, double damping = 0) {
+  s.drive = bullet::AxisDrive::spring;
   s.rest = rest;
   s.stiffness = static_cast<float>(stiffness);
   s.spring_damping = static_cast<float>(damping);
@@ -88,10 +89,10 @@ inline Vec3 unit(int axis) { return {axis % 3 == 0 ? 1.0 : 0.0, axis % 3 == 1 ? 
 /// Sets the velocity of a joint's child so that one axis has this rate; the parent must be at rest.
 inline void set_axis_rate(btRigidBody& child, int axis, double rate) {
   if (axis < 3) {
-    child.setLinearVelocity(to_bt(unit(axis) * rate));
+    child.setLinearVelocity(bullet::to_bt(unit(axis) * rate));
   } else {
-    child.setAngularVelocity(to_bt(unit(axis) * rate));
+    child.setAngularVelocity(bullet::to_bt(unit(axis) * rate));
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim

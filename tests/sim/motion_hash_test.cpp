@@ -8,7 +8,7 @@
 #include "sim/arm.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -89,4 +89,4 @@ TEST(MotionHash, EqualMotionHasEqualHash) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

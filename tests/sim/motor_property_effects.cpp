@@ -2,7 +2,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 namespace {
 
@@ -175,7 +175,8 @@ void bounce() {
 
 // The own axis of a revolute and of a prismatic joint.
 struct OwnAxis : WorldFixture {
-  explicit OwnAxis(JointType type) : joint(*robot.add_joint("joint", base, child, type, Vec3(0), {0, 0, 1}).value()) {}
+  explicit OwnAxis(model::JointType type)
+      : joint(*robot.add_joint("joint", base, child, type, Vec3(0), {0, 0, 1}).value()) {}
   double x() const { return joint.value(); }
   double v() const { return number(joint.id(), "speed"); }
   Body& robot = body("robot");
@@ -186,7 +187,7 @@ struct OwnAxis : WorldFixture {
 };
 
 void mode() {
-  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+  for (const model::JointType type : {model::JointType::revolute, model::JointType::prismatic}) {
     OwnAxis o(type);
     EXPECT_EQ(o.number(o.motor.id(), "mode"), 2);  // created as a servo that holds
     o.set(o.motor.id(), "target", {0.4});
@@ -200,7 +201,7 @@ void mode() {
     o.set(o.motor.id(), "speed", {-3});
     o.ticks(30);
     EXPECT_NEAR(o.v(), 3, 1e-3);  // off: it coasts
-    const char* stiffness = type == JointType::revolute ? "angular_spring_stiffness" : "linear_spring_stiffness";
+    const char* stiffness = type == model::JointType::revolute ? "angular_spring_stiffness" : "linear_spring_stiffness";
     o.set_one(o.motor.id(), stiffness, 2, 0.5);
     const double before = o.x();
     o.set(o.motor.id(), "target", {before});
@@ -215,8 +216,8 @@ void mode() {
 }
 
 void target() {
-  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
-    const std::string side = type == JointType::revolute ? "angular_" : "linear_";
+  for (const model::JointType type : {model::JointType::revolute, model::JointType::prismatic}) {
+    const std::string side = type == model::JointType::revolute ? "angular_" : "linear_";
     OwnAxis o(type);
     o.set(o.motor.id(), "target", {0.7});
     EXPECT_EQ(o.get(o.motor.id(), side + "servo_position")[2], 0.7);
@@ -227,7 +228,7 @@ void target() {
 }
 
 void speed() {
-  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+  for (const model::JointType type : {model::JointType::revolute, model::JointType::prismatic}) {
     OwnAxis o(type);
     o.set(o.motor.id(), "speed", {0.5});
     o.set(o.motor.id(), "target", {2});
@@ -243,7 +244,7 @@ void speed() {
 
 // A ramp of targets results in the same ramp, delayed by 1.5 times the smoothing plus three ticks.
 void target_smoothing() {
-  for (const JointType type : {JointType::revolute, JointType::prismatic}) {
+  for (const model::JointType type : {model::JointType::revolute, model::JointType::prismatic}) {
     OwnAxis o(type);
     o.set(o.motor.id(), "target_smoothing", {0.1});
     for (int i = 1; i <= 120; i++) {
@@ -281,4 +282,4 @@ void add_motor_effects(PropertyEffects& effects) {
   effects[{"Motor", "target_smoothing"}] = target_smoothing;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

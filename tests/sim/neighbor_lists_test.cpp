@@ -8,7 +8,7 @@
 
 #include "base/random.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr std::size_t kPoints = 400;
@@ -84,4 +84,4 @@ TEST(NeighborLists, AreSeparateForEachRadius) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr std::uint32_t kPointCount = 60;
@@ -84,4 +84,4 @@ TEST(NeighborSums, AreEqualForAllVectorWidths) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 
 #include "sim/behavior_rig.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(Neighbors, SetDetectsPartsAtReusedAddresses) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 
 #include "stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 // Kinetic energy of a part, J.
@@ -29,7 +29,7 @@ struct Siblings : WorldFixture {
       Part& arm = part(robot, box_model(size), 0.1 * std::exp(uniform(-2, 2)), {Vec3(0.25, y, uniform(-0.02, 0.02))});
       const Vec3 axis = uniform(0, 1) < 0.5 ? Vec3(0, 0, side) : normalized(Vec3(uniform(-1, 1), 0, side));
       Joint& joint =
-          *robot.add_joint(side > 0 ? "l" : "r", hub, arm, JointType::revolute, Vec3(0.15, y, 0), axis).value();
+          *robot.add_joint(side > 0 ? "l" : "r", hub, arm, model::JointType::revolute, Vec3(0.15, y, 0), axis).value();
       Motor& motor = *robot.add_motor(joint).value();
       set(motor.id(), "max_angular_force", {torque, torque, torque});
     }
@@ -52,7 +52,7 @@ struct Siblings : WorldFixture {
   double work(const std::vector<double>& rates_before) const {
     double sum = 0;
     for (std::size_t i = 0; i < robot.joints().size(); i++) {
-      const JointConstraint& c = robot.joints()[i]->constraint();
+      const bullet::JointConstraint& c = robot.joints()[i]->constraint();
       sum += c.drives().applied_torque().z * h() * (rates_before[i] + c.rate(5)) / 2;
     }
     return sum;
@@ -87,4 +87,4 @@ TEST(OverlapEnergy, OverlappingSiblingsGainNoEnergy) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

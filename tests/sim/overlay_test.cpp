@@ -3,7 +3,7 @@
 
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 using Kind = OverlayMark::Kind;
@@ -66,7 +66,7 @@ TEST(Overlay, ShowsOpenJointAxesWithLimits) {
   Shape& ball = s.shape(sphere_model(0.1));
   Part& base = **body.add_part("base", ball, 0, {{0, 0, 1}, quat_identity()});
   Part& tip = **body.add_part("tip", ball, 1, {{1, 0, 1}, quat_identity()});
-  Joint& hinge = **body.add_joint("hinge", base, tip, JointType::revolute, {0.5, 0, 1}, {0, 1, 0});
+  Joint& hinge = **body.add_joint("hinge", base, tip, model::JointType::revolute, {0.5, 0, 1}, {0, 1, 0});
   s.set_one(hinge.id(), "angular_lower_limit", 2, -0.5);
   s.set_one(hinge.id(), "angular_upper_limit", 2, 1.5);
   s.world.flush();
@@ -103,4 +103,4 @@ TEST(Overlay, StyleOfTheSceneHasPriorityOverPrefer) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

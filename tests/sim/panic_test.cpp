@@ -7,7 +7,7 @@
 #include "sim/arm.h"
 #include "sim/behavior_rig.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 constexpr double kTick = 1.0 / 60;
@@ -192,4 +192,4 @@ TEST(Panic, BehaviorsPauseAndContinue) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -3,7 +3,7 @@
 
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -63,4 +63,4 @@ TEST(ForceAccumulators, ReusesReleasedElements) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

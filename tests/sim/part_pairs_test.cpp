@@ -14,7 +14,7 @@
 #include "sim/stage.h"
 #include "sim/state/world_checkpoint.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -137,7 +137,7 @@ TEST(PartPairs, RejectsForeignParts) {
 // a joint and an exclusion are independent: neither cancels the other
 TEST(PartPairs, JointsAndExclusionsAreIndependent) {
   TwoBoxes s(0.05);
-  (void)s.pair.add_joint("j", s.a, s.b, JointType::floating, {0.1, 0, 0}, {0, 0, 1}).value();
+  (void)s.pair.add_joint("j", s.a, s.b, model::JointType::floating, {0.1, 0, 0}, {0, 0, 1}).value();
   s.ticks(1);
   ASSERT_TRUE(s.pair.pairs().edit(s.a, s.b, PairEdit::excluded).ok());
   EXPECT_TRUE(s.throw_at_each_other());
@@ -152,7 +152,7 @@ TEST(PartPairs, JointsAndExclusionsAreIndependent) {
 
 TEST(PartPairs, JointedPartsAreNotListed) {
   TwoBoxes s(-0.1);
-  (void)s.pair.add_joint("j", s.a, s.b, JointType::revolute, {0.1, 0, 0}, {0, 0, 1}).value();
+  (void)s.pair.add_joint("j", s.a, s.b, model::JointType::revolute, {0.1, 0, 0}, {0, 0, 1}).value();
   s.ticks(1);
   EXPECT_TRUE(s.pair.pairs().list().empty());
 }
@@ -307,4 +307,4 @@ TEST(StaticParts, ReportAVelocity) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

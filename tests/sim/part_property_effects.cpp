@@ -4,7 +4,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 namespace {
 
@@ -289,4 +289,4 @@ void add_part_effects(PropertyEffects& effects) {
   effects[{"Part", "angular_velocity"}] = angular_velocity;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -3,7 +3,7 @@
 
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -32,4 +32,4 @@ TEST(MassTable, ContainsTheValuesOfEachPart) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

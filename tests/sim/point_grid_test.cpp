@@ -11,7 +11,7 @@
 
 #include "support/skip.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 /// A distribution of points.
@@ -166,4 +166,4 @@ TEST(PointGrid, CanBeRebuilt) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,18 +6,18 @@
 #include "sim/arm.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
 
 // A link with a full tensor and its center away from the link's origin.
-std::shared_ptr<const BodyModel> model_with_tensor(const Mat3& tensor, double mass, const Vec3& center) {
-  auto model = std::make_shared<BodyModel>();
-  LinkModel link;
+std::shared_ptr<const model::BodyModel> model_with_tensor(const Mat3& tensor, double mass, const Vec3& center) {
+  auto model = std::make_shared<model::BodyModel>();
+  model::LinkModel link;
   link.name = "link";
   link.inertial = {mass, center, tensor};
-  PlacedShape ball;
+  model::PlacedShape ball;
   ball.shape = sphere_model(0.05);
   link.collisions = {ball};
   model->links = {link};
@@ -109,7 +109,7 @@ struct Pendulum : WorldFixture {
   Body& robot = body("robot");
   Part& base = part(robot, sphere_model(0.05), 0, {{0, 0, 1}, quat_identity()});
   Part& bob = part(robot, box_model(kBox), kMass, {{0, 0, 1 - kLength}, quat_identity()});
-  Joint& hinge = *robot.add_joint("hinge", base, bob, JointType::revolute, {0, 0, 1}, {0, 1, 0}).value();
+  Joint& hinge = *robot.add_joint("hinge", base, bob, model::JointType::revolute, {0, 0, 1}, {0, 1, 0}).value();
   double inertia = kMass * kLength * kLength + box_inertia(kMass, kBox).y;
 
   void swing_out(double angle) {
@@ -284,4 +284,4 @@ TEST(Prediction, MirroredRobotsMoveMirrored) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

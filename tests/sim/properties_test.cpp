@@ -9,7 +9,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -65,10 +65,10 @@ struct AllClasses : WorldFixture {
     Part& base = part(robot, box_model(Vec3(0.2)), 1, {{0, 0, 1}, quat_identity()});
     Part& arm = part(robot, box_model(Vec3(0.2)), 1, {{0, 0, 2}, quat_identity()});
     Part& kite = part(robot, box_model(Vec3(0.2)), 1, {{0, 0, 3}, quat_identity()});
-    Joint& hinge = *robot.add_joint("hinge", base, arm, JointType::revolute, {0, 0, 1.5}, {0, 1, 0}).value();
-    Joint& string = *robot.add_joint("string", arm, kite, JointType::floating, {0, 0, 2.5}, {0, 0, 1}).value();
+    Joint& hinge = *robot.add_joint("hinge", base, arm, model::JointType::revolute, {0, 0, 1.5}, {0, 1, 0}).value();
+    Joint& string = *robot.add_joint("string", arm, kite, model::JointType::floating, {0, 0, 2.5}, {0, 0, 1}).value();
     Part& wing = part(robot, box_model(Vec3(0.2)), 1, {{0, 1, 1}, quat_identity()});
-    Joint& side = *robot.add_joint("side", base, wing, JointType::revolute, {0, 0.5, 1}, {1, 0, 0}).value();
+    Joint& side = *robot.add_joint("side", base, wing, model::JointType::revolute, {0, 0.5, 1}, {1, 0, 0}).value();
     nodes = {world.id(),
              robot.id(),
              base.id(),
@@ -188,4 +188,4 @@ TEST(Properties, HaveUnitsAndDescriptions) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace limber::test {
+namespace limber::sim::test {
 
 /// Maps class and property to a function that sets the property and measures its effect in the world.
 using PropertyEffects = std::map<std::pair<std::string, std::string>, std::function<void()>>;
@@ -33,4 +33,4 @@ inline const PropertyEffects& all_property_effects() {
   return all;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

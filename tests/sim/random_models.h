@@ -15,7 +15,7 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 /// Random generator seeded with the number of a scene.
 class SceneRandom {
@@ -45,7 +45,7 @@ class SceneRandom {
 /// Kinetic energy of a part at its present velocity, J.
 inline double kinetic_energy(const btRigidBody& r) {
   if (r.getInvMass() == 0) return 0;
-  const Vec3 v = from_bt(r.getLinearVelocity());
+  const Vec3 v = bullet::from_bt(r.getLinearVelocity());
   const btVector3 spin = r.getAngularVelocity() * r.getWorldTransform().getBasis();
   const btVector3 local = r.getInvInertiaDiagLocal();
   double sum = glm::dot(v, v) / static_cast<double>(r.getInvMass());
@@ -78,10 +78,10 @@ class EnergyAccount {
     for (const auto& body : fixture_.world.bodies()) {
       for (const auto& motor : body->motors()) {
         const Joint& joint = motor->joint();
-        const JointConstraint& c = joint.constraint();
+        const bullet::JointConstraint& c = joint.constraint();
         for (int axis = 0; axis < 6; axis++) {
           if (motor->mode(axis) == MotorMode::off) continue;
-          const AxisJacobian j = c.pose().jacobian(axis);
+          const bullet::AxisJacobian j = c.pose().jacobian(axis);
           axes_.push_back({&c, axis, &joint.parent().rigid(), &joint.child().rigid(), j, 0, false, false});
           set_stops(axes_.back());
           axes_.back().rate = rate(axes_.back());
@@ -101,7 +101,7 @@ class EnergyAccount {
       kinetic += now;
       change += now - m.kinetic;
       if (m.part->getInvMass() == 0) continue;
-      const Vec3 v = glm::mix(from_bt(m.part->getLinearVelocity()), from_bt(m.linear), before_share_);
+      const Vec3 v = glm::mix(bullet::from_bt(m.part->getLinearVelocity()), bullet::from_bt(m.linear), before_share_);
       change -= glm::dot(gravity, v) * h / static_cast<double>(m.part->getInvMass());
     }
     for (const Axis& a : axes_) {
@@ -144,17 +144,17 @@ class EnergyAccount {
     double kinetic;
   };
   struct Axis {
-    const JointConstraint* joint;
+    const bullet::JointConstraint* joint;
     int axis;
     const btRigidBody* parent;
     const btRigidBody* child;
-    AxisJacobian j;
+    bullet::AxisJacobian j;
     double rate;
     bool at_lower, at_upper;
   };
   static void set_stops(Axis& a) {
     constexpr double kNear = 1e-2;
-    const AxisSettings& s = a.joint->axis(a.axis);
+    const bullet::AxisSettings& s = a.joint->axis(a.axis);
     a.at_lower = s.limited() && a.joint->value(a.axis) < static_cast<double>(s.lower) + kNear;
     a.at_upper = s.limited() && a.joint->value(a.axis) > static_cast<double>(s.upper) - kNear;
   }
@@ -235,38 +235,38 @@ class RandomScene : public WorldFixture {
   }
 
  private:
-  ShapeModel random_hull() {
+  model::ShapeModel random_hull() {
     std::vector<Vec3> points;
     for (int i = 0; i < 8 + random_.below(12); i++) points.push_back(random_.direction() * random_.uniform(0.06, 0.12));
     for (const double sign : {-1.0, 1.0}) {
       for (int i = 0; i < 3; i++)
         points.push_back(Vec3(i == 0 ? sign : 0, i == 1 ? sign : 0, i == 2 ? sign : 0) * 0.07);
     }
-    const Hull made = convex_hull(points);
-    auto mesh = std::make_shared<MeshModel>();
+    const model::Hull made = model::convex_hull(points);
+    auto mesh = std::make_shared<model::MeshModel>();
     mesh->vertices = mesh->hull = made.vertices;
     mesh->triangles = made.triangles;
     mesh->closed = true;
-    mesh->unit_inertial = unit_inertial_of(made.vertices, made.triangles);
-    ShapeModel m;
-    m.kind = ShapeKind::mesh;
+    mesh->unit_inertial = model::unit_inertial_of(made.vertices, made.triangles);
+    model::ShapeModel m;
+    m.kind = model::ShapeKind::mesh;
     m.mesh = mesh;
     return m;
   }
 
-  ShapeModel random_simple_shape() {
-    ShapeModel m;
+  model::ShapeModel random_simple_shape() {
+    model::ShapeModel m;
     switch (random_.below(6)) {
       case 0:
         return sphere_model(random_.uniform(0.03, 0.12));
       case 1:
-        m.kind = ShapeKind::cylinder;
+        m.kind = model::ShapeKind::cylinder;
         break;
       case 2:
-        m.kind = ShapeKind::capsule;
+        m.kind = model::ShapeKind::capsule;
         break;
       case 3:
-        m.kind = ShapeKind::cone;
+        m.kind = model::ShapeKind::cone;
         break;
       case 4:
         return random_hull();
@@ -280,8 +280,8 @@ class RandomScene : public WorldFixture {
 
   Shape& random_shape() {
     if (!random_.chance(0.1)) return shape(random_simple_shape());
-    ShapeModel m;
-    m.kind = ShapeKind::compound;
+    model::ShapeModel m;
+    m.kind = model::ShapeKind::compound;
     Shape& whole = shape(m);
     for (int i = 0; i < 2; i++) {
       EXPECT_TRUE(whole.add_child(shape(random_simple_shape()), {random_.in_cube(0.08), random_.rotation()}));
@@ -333,10 +333,11 @@ class RandomScene : public WorldFixture {
   }
 
   void add_joint(Body& robot, Part& parent, Part& child) {
-    constexpr std::array kTypes{JointType::revolute,  JointType::revolute, JointType::revolute, JointType::continuous,
-                                JointType::prismatic, JointType::planar,   JointType::floating, JointType::spherical,
-                                JointType::spherical, JointType::fixed};
-    const JointType type = kTypes[static_cast<std::size_t>(random_.below(static_cast<int>(kTypes.size())))];
+    constexpr std::array kTypes{model::JointType::revolute,   model::JointType::revolute,  model::JointType::revolute,
+                                model::JointType::continuous, model::JointType::prismatic, model::JointType::planar,
+                                model::JointType::floating,   model::JointType::spherical, model::JointType::spherical,
+                                model::JointType::fixed};
+    const model::JointType type = kTypes[static_cast<std::size_t>(random_.below(static_cast<int>(kTypes.size())))];
     const Vec3 place = (parent.pose().position + child.pose().position) / 2.0 + random_.in_cube(0.05);
     Joint& joint =
         *robot.add_joint("j" + std::to_string(robot.joints().size()), parent, child, type, place, random_.direction())
@@ -345,19 +346,20 @@ class RandomScene : public WorldFixture {
       const std::string prefix = axis < 3 ? "linear_" : "angular_";
       const auto i = static_cast<std::size_t>(axis % 3);
       const bool locked = get(joint.id(), prefix + "lower_limit")[i] == get(joint.id(), prefix + "upper_limit")[i];
-      if (type == JointType::continuous || (locked && axis != joint.own_axis())) continue;
+      if (type == model::JointType::continuous || (locked && axis != joint.own_axis())) continue;
       // a free planar slider is soon meters away
-      if (!random_.chance(0.5) && !(type == JointType::planar && axis < 3)) continue;
-      const double range = axis < 3 ? 0.2 : type == JointType::spherical ? 0.8 : 1.5;
+      if (!random_.chance(0.5) && !(type == model::JointType::planar && axis < 3)) continue;
+      const double range = axis < 3 ? 0.2 : type == model::JointType::spherical ? 0.8 : 1.5;
       set_one(joint.id(), prefix + "lower_limit", axis % 3, -random_.uniform(0.05, range));
       set_one(joint.id(), prefix + "upper_limit", axis % 3, random_.uniform(0.05, range));
     }
-    if (type == JointType::fixed) return;
+    if (type == model::JointType::fixed) return;
     Motor& motor = *robot.add_motor(joint).value();
     const int mode = options_.motors ? random_.below(5) : 0;  // off, spin, servo, servo, spring
-    const bool angular = type != JointType::prismatic;
+    const bool angular = type != model::JointType::prismatic;
     const std::string prefix = angular ? "angular_" : "linear_";
-    if (type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic) {
+    if (type == model::JointType::revolute || type == model::JointType::continuous ||
+        type == model::JointType::prismatic) {
       set(motor.id(), "mode", {static_cast<double>(std::array{0, 1, 2, 2, 3}[static_cast<std::size_t>(mode)])});
     } else {
       // all open axes alike; angular ones only, because a floating child's servo target would have to be its position
@@ -471,4 +473,4 @@ inline RandomOutcome play_random_scene(std::uint64_t number, unsigned char fill,
   return out;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -12,7 +12,7 @@
 
 #include "support/skip.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 std::uint64_t from_environment(const char* name, std::uint64_t fallback) {
@@ -106,7 +106,7 @@ TEST(RandomModels, AccountFindsUnexplainedEnergy) {
   Body& robot = s.body("robot");
   Part& base = s.part(robot, sphere_model(0.05), 0);
   Part& link = s.part(robot, box_model({0.4, 0.1, 0.1}), 1, {{0.3, 0, 0}, quat_identity()});
-  Joint& joint = *robot.add_joint("joint", base, link, JointType::revolute, Vec3(0), Vec3(0, 1, 0)).value();
+  Joint& joint = *robot.add_joint("joint", base, link, model::JointType::revolute, Vec3(0), Vec3(0, 1, 0)).value();
   Motor& motor = *robot.add_motor(joint).value();
   s.set(motor.id(), "max_angular_force", {10, 10, 10});
   s.set(motor.id(), "target", {-1});
@@ -133,4 +133,4 @@ TEST(RandomModels, AccountFindsUnexplainedEnergy) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -19,7 +19,7 @@ class Rope : public WorldFixture {
     gravity({0, 0, -kGravity});
     Body& rope = body("rope");
     Part* above = &part(rope, box_model({0.1, 0.1, 0.1}), 0);
-    const ShapeModel link = round_model(ShapeKind::capsule, 0.01, kLink - 0.02);
+    const model::ShapeModel link = round_model(model::ShapeKind::capsule, 0.01, kLink - 0.02);
     for (int i = 0; i < kLinks; i++) {
       Part& next = part(rope, link, 0.01, {{0, 0, -kLink * (i + 0.5)}, quat_identity()});
       join(rope, *above, next, -kLink * i);
@@ -38,7 +38,8 @@ class Rope : public WorldFixture {
   static constexpr int kLinks = 100;
 
   void join(Body& rope, Part& above, Part& next, double z) {
-    ASSERT_TRUE(rope.add_joint("j" + next.name(), above, next, JointType::spherical, Vec3(0, 0, z), Vec3(0, 0, 1)));
+    ASSERT_TRUE(
+        rope.add_joint("j" + next.name(), above, next, model::JointType::spherical, Vec3(0, 0, z), Vec3(0, 0, 1)));
   }
 
   Part* weight_ = nullptr;
@@ -74,4 +75,4 @@ TEST(Rope, SwingsAHeavyWeight) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using Words = std::vector<std::string>;
@@ -50,4 +50,4 @@ TEST(Selection, ReportsTheMissingName) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,14 +9,14 @@
 #include "sim/shapes/geometry.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
 
 // A cuboid as a mesh of points.
-ShapeModel hull_model(const Vec3& size) {
-  auto mesh = std::make_shared<MeshModel>();
+model::ShapeModel hull_model(const Vec3& size) {
+  auto mesh = std::make_shared<model::MeshModel>();
   for (int i = 0; i < 8; i++) {
     mesh->hull.push_back(size * Vec3(i & 1 ? 0.5 : -0.5, i & 2 ? 0.5 : -0.5, i & 4 ? 0.5 : -0.5));
   }
@@ -25,15 +25,15 @@ ShapeModel hull_model(const Vec3& size) {
   const Vec3 moments = box_inertia(mesh->unit_inertial.mass, size);
   for (int i = 0; i < 3; i++) mesh->unit_inertial.tensor[i][i] = moments[i];
   mesh->closed = true;
-  ShapeModel m;
-  m.kind = ShapeKind::mesh;
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::mesh;
   m.mesh = mesh;
   return m;
 }
 
 struct Solid {
   const char* name;
-  ShapeModel model;
+  model::ShapeModel model;
   double volume;
   Vec3 moments;   // of 1 kg, about the center of mass
   double center;  // height of the center of mass in the shape's frame
@@ -54,10 +54,15 @@ std::vector<Solid> solids() {
   return {
       {"sphere", sphere_model(r), ball, Vec3(0.4 * r * r), 0, r},
       {"box", box_model({0.2, 0.4, 0.6}), 0.048, box_inertia(1, {0.2, 0.4, 0.6}), 0, 0.3},
-      {"cylinder", round_model(ShapeKind::cylinder, r, h), cyl,
+      {"cylinder", round_model(model::ShapeKind::cylinder, r, h), cyl,
        Vec3((3 * r * r + h * h) / 12, (3 * r * r + h * h) / 12, r * r / 2), 0, h / 2},
-      {"capsule", round_model(ShapeKind::capsule, r, h), cyl + ball, {across, across, along}, 0, h / 2 + r},
-      {"cone", round_model(ShapeKind::cone, r, h), cyl / 3, {cone_across, cone_across, 0.3 * r * r}, -h / 4, h / 2},
+      {"capsule", round_model(model::ShapeKind::capsule, r, h), cyl + ball, {across, across, along}, 0, h / 2 + r},
+      {"cone",
+       round_model(model::ShapeKind::cone, r, h),
+       cyl / 3,
+       {cone_across, cone_across, 0.3 * r * r},
+       -h / 4,
+       h / 2},
       {"hull", hull_model({0.2, 0.4, 0.6}), 0.048, box_inertia(1, {0.2, 0.4, 0.6}), 0, 0.3},
   };
 }
@@ -96,8 +101,8 @@ TEST(ShapeTest, EachKindRestsOnItsLowestPoint) {
 TEST(ShapeTest, CompoundIsTheSumOfItsChildren) {
   // two cubes of 0.2 m, centers 0.6 m apart along x: parallel axis theorem
   WorldFixture s;
-  ShapeModel compound;
-  compound.kind = ShapeKind::compound;
+  model::ShapeModel compound;
+  compound.kind = model::ShapeKind::compound;
   Shape& dumbbell = *s.world.shapes().add("dumbbell", compound).value();
   Shape& cube = s.shape(box_model(Vec3(0.2)));
   for (const double x : {-0.3, 0.3}) ASSERT_TRUE(dumbbell.add_child(cube, {{x, 0, 0.1}, quat_identity()}));
@@ -133,7 +138,7 @@ TEST(ShapeTest, PlanePassesThroughItsPart) {
 
 TEST(ShapeTest, RejectsInvalidShapes) {
   const double nan = std::nan("");
-  const auto text = [](const ShapeModel& m) {
+  const auto text = [](const model::ShapeModel& m) {
     const Result<void> r = check_shape(m);
     return r ? std::string("none") : r.error();
   };
@@ -141,13 +146,14 @@ TEST(ShapeTest, RejectsInvalidShapes) {
   EXPECT_EQ(text(sphere_model(nan)), "a sphere needs a radius of 0.0001 .. 10000 m, not nan");
   EXPECT_EQ(text(box_model({1, 0, 1})), "a box needs a size of 0.0001 .. 10000 m, not 0");
   EXPECT_EQ(text(box_model({1, 1, 1e5})), "a box needs a size of 0.0001 .. 10000 m, not 100000");
-  EXPECT_EQ(text(round_model(ShapeKind::cylinder, 0, 1)), "a cylinder needs a radius of 0.0001 .. 10000 m, not 0");
-  EXPECT_EQ(text(round_model(ShapeKind::capsule, 1, 0)), "a capsule needs a height of 0.0001 .. 10000 m, not 0");
-  EXPECT_EQ(text(round_model(ShapeKind::cone, 1, nan)), "a cone needs a height of 0.0001 .. 10000 m, not nan");
+  EXPECT_EQ(text(round_model(model::ShapeKind::cylinder, 0, 1)),
+            "a cylinder needs a radius of 0.0001 .. 10000 m, not 0");
+  EXPECT_EQ(text(round_model(model::ShapeKind::capsule, 1, 0)), "a capsule needs a height of 0.0001 .. 10000 m, not 0");
+  EXPECT_EQ(text(round_model(model::ShapeKind::cone, 1, nan)), "a cone needs a height of 0.0001 .. 10000 m, not nan");
   EXPECT_EQ(text(plane_model(Vec3(0))), "a plane needs a normal that is not zero");
   EXPECT_EQ(text(plane_model({0, nan, 1})), "a plane needs a normal that is not zero");
-  ShapeModel mesh;
-  mesh.kind = ShapeKind::mesh;
+  model::ShapeModel mesh;
+  mesh.kind = model::ShapeKind::mesh;
   EXPECT_EQ(text(mesh), "a convex mesh needs at least 4 points");
   for (const Solid& solid : solids()) EXPECT_EQ(text(solid.model), "none") << solid.name;
   WorldFixture s;
@@ -158,8 +164,8 @@ TEST(ShapeTest, RejectsInvalidShapes) {
 
 TEST(ShapeTest, OnlyCompoundsHaveChildren) {
   WorldFixture s;
-  ShapeModel compound;
-  compound.kind = ShapeKind::compound;
+  model::ShapeModel compound;
+  compound.kind = model::ShapeKind::compound;
   Shape& both = *s.world.shapes().add("both", compound).value();
   Shape& ball = *s.world.shapes().add("ball", sphere_model(0.1)).value();
   Shape& plane = *s.world.shapes().add("plane", plane_model()).value();
@@ -175,4 +181,4 @@ TEST(ShapeTest, OnlyCompoundsHaveChildren) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -12,7 +12,7 @@
 #include "sim/collision/dispatcher.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -73,7 +73,7 @@ TEST(Sleep, ServoKeepsItsAppliedTorque) {
   Body& body = s.body("beam");
   Part& base = s.part(body, sphere_model(0.05), 0);
   Part& beam = s.part(body, box_model({0.8, 0.1, 0.1}), 2, {{0.5, 0, 0}, quat_identity()});
-  Joint& hinge = *body.add_joint("hinge", base, beam, JointType::revolute, Vec3(0), {0, 1, 0}).value();
+  Joint& hinge = *body.add_joint("hinge", base, beam, model::JointType::revolute, Vec3(0), {0, 1, 0}).value();
   Motor& motor = *body.add_motor(hinge).value();
   s.ticks(150);
   ASSERT_EQ(asleep(s), 1);
@@ -84,7 +84,7 @@ TEST(Sleep, ServoKeepsItsAppliedTorque) {
 
 TEST(Sleep, SleepingPairsAreSkipped) {
   Resting s;
-  const auto& dispatcher = static_cast<const Dispatcher&>(*s.world.bullet().getDispatcher());
+  const auto& dispatcher = static_cast<const collision::Dispatcher&>(*s.world.bullet().getDispatcher());
   std::uint64_t before = dispatcher.processed_pairs();
   s.ticks(10);
   EXPECT_EQ(dispatcher.processed_pairs() - before, 0u);
@@ -197,7 +197,7 @@ const std::vector<Influence>& influences() {
       {"joint",
        [](Resting& s) {
          Part& part = s.part(s.high.body(), sphere_model(0.05), 1, {{0.5, 0, 0.3}, quat_identity()});
-         (void)s.high.body().add_joint("new", s.high, part, JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
+         (void)s.high.body().add_joint("new", s.high, part, model::JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
        }},
       {"target", of_motor("target", {0.1}), true},
       {"mode", of_motor("mode", {0}), true},
@@ -356,7 +356,7 @@ TEST(SlowMotion, PendulumSwingsThroughItsTurningPoint) {
   Part& pivot = s.part(body, sphere_model(0.1), 0);
   const double angle = 5e-4 / 20;
   Part& bob = s.part(body, sphere_model(0.1), 1, {{20 * std::sin(angle), 0, -20 * std::cos(angle)}, quat_identity()});
-  (void)body.add_joint("hinge", pivot, bob, JointType::revolute, Vec3(0), {0, 1, 0});
+  (void)body.add_joint("hinge", pivot, bob, model::JointType::revolute, Vec3(0), {0, 1, 0});
   const double period = 2 * kPi * std::sqrt(20 / 9.81);
   s.ticks(static_cast<int>(period / 2 / kTick));
   EXPECT_NEAR(bob.center().x, -5e-4, 1e-4);
@@ -390,7 +390,7 @@ TEST(SlowMotion, DiscRollsAMillimeterPerSecond) {
   WorldFixture s;
   s.floor();
   s.gravity({0, 0, -9.81});
-  const ShapeModel coin = round_model(ShapeKind::cylinder, 0.05, 0.04);
+  const model::ShapeModel coin = round_model(model::ShapeKind::cylinder, 0.05, 0.04);
   Part& disc = s.add_single_part(coin, 0.1, {{0, 0, 0.05}, quat_axis({1, 0, 0}, kPi / 2)});
   s.set(disc.id(), "friction", {0.1});
   s.ticks(5);
@@ -468,7 +468,7 @@ TEST(Sleep, FailedCallWakesNothing) {
   Resting s;
   s.world.transaction().begin();
   Part& part = s.part(s.high.body(), sphere_model(0.05), 1, {{0.5, 0, 0.3}, quat_identity()});
-  (void)s.high.body().add_joint("new", s.high, part, JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
+  (void)s.high.body().add_joint("new", s.high, part, model::JointType::fixed, {0.2, 0, 0.3}, {0, 0, 1});
   s.low.apply_force({1, 0, 0});
   s.set(s.motor.id(), "target", {1});
   s.set(s.low.id(), "position", {0, 0, 1});
@@ -478,4 +478,4 @@ TEST(Sleep, FailedCallWakesNothing) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

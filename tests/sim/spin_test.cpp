@@ -13,18 +13,18 @@
 #include "base/threads/thread_pool.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 namespace {
 
 constexpr double kStandardGravity = 9.81;
 
 /// A part on a revolute joint to another one, driven by a spin motor.
 struct Rotor : WorldFixture {
-  Rotor(double speed, double solver, const ShapeModel& model, double mass, const Vec3& at = Vec3(0))
+  Rotor(double speed, double solver, const model::ShapeModel& model, double mass, const Vec3& at = Vec3(0))
       : robot(body("robot")),
         base(part(robot, box_model(Vec3(0.1)), 0, {{0, 0, -0.3}, quat_identity()})),
         rotor(part(robot, model, mass, {at, quat_identity()})),
-        joint(*robot.add_joint("joint", base, rotor, JointType::continuous, Vec3(0), Vec3(0, 0, 1)).value()),
+        joint(*robot.add_joint("joint", base, rotor, model::JointType::continuous, Vec3(0), Vec3(0, 0, 1)).value()),
         motor(*robot.add_motor(joint).value()) {
     set(world.id(), "solver", {solver});
     set(motor.id(), "mode", {1});
@@ -43,7 +43,7 @@ TEST(Spin, DrivenRotorReachesItsSpeed) {
   for (const double solver : {0.0, 1.0}) {
     for (const int substeps : {1, 4}) {
       for (const double speed : {50.0, 150.0, -188.0, 200.0, 300.0, -500.0, 1000.0}) {
-        Rotor s(speed, solver, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2);
+        Rotor s(speed, solver, round_model(model::ShapeKind::cylinder, 0.05, 0.02), 0.2);
         s.substeps(substeps);
         s.ticks(2);
         const double begin = s.value();
@@ -68,9 +68,9 @@ struct Top : WorldFixture {
       : robot(body("top")),
         base(part(robot, box_model(Vec3(0.02)), 0)),
         axis(std::cos(tilt), 0, std::sin(tilt)),
-        disc(part(robot, round_model(ShapeKind::cylinder, kRadius, kHeight), 1,
+        disc(part(robot, round_model(model::ShapeKind::cylinder, kRadius, kHeight), 1,
                   {axis * kArm, quat_axis(Vec3(0, 1, 0), kPi / 2 - tilt)})),
-        joint(*robot.add_joint("joint", base, disc, JointType::spherical, Vec3(0), Vec3(0, 0, 1)).value()) {
+        joint(*robot.add_joint("joint", base, disc, model::JointType::spherical, Vec3(0), Vec3(0, 0, 1)).value()) {
     set(world.id(), "solver", {solver});
     gravity({0, 0, -kStandardGravity});
     const Vec3 inertia = vec(disc.id(), "inertia");
@@ -174,7 +174,8 @@ TEST(Spin, NutatingTopFollowsRungeKutta) {
 }
 
 struct FreeBody : WorldFixture {
-  FreeBody(const ShapeModel& model, const Vec3& w) : part(add_single_part(model, 1, {{0, 0, 1}, quat_identity()})) {
+  FreeBody(const model::ShapeModel& model, const Vec3& w)
+      : part(add_single_part(model, 1, {{0, 0, 1}, quat_identity()})) {
     set(part.id(), "angular_velocity", {w.x, w.y, w.z});
   }
   Vec3 local() const { return glm::conjugate(part.principal_axes()) * part.angular_velocity(); }
@@ -225,9 +226,11 @@ TEST(Spin, PlatformWithARotorPrecesses) {
     WorldFixture s;
     Body& robot = s.body("robot");
     Part& platform = s.part(robot, box_model(Vec3(0.2)), 2);
-    Part& rotor = s.part(robot, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2, {{0, 0, 0.2}, quat_identity()});
+    Part& rotor =
+        s.part(robot, round_model(model::ShapeKind::cylinder, 0.05, 0.02), 0.2, {{0, 0, 0.2}, quat_identity()});
     Joint& joint =
-        *robot.add_joint("joint", platform, rotor, JointType::continuous, Vec3(0, 0, 0.2), Vec3(0, 0, 1)).value();
+        *robot.add_joint("joint", platform, rotor, model::JointType::continuous, Vec3(0, 0, 0.2), Vec3(0, 0, 1))
+             .value();
     Motor& motor = *robot.add_motor(joint).value();
     s.set(motor.id(), "mode", {1});
     s.set(motor.id(), "speed", {w});
@@ -292,7 +295,7 @@ TEST(Spin, UnbalancedBladeReachesItsSpeed) {
 }
 
 TEST(Spin, LimitsAndServosHoldAtSpeed) {
-  Rotor s(1000, 1, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2);
+  Rotor s(1000, 1, round_model(model::ShapeKind::cylinder, 0.05, 0.02), 0.2);
   s.set(s.joint.id(), "angular_lower_limit", {0, 0, -200});
   s.set(s.joint.id(), "angular_upper_limit", {0, 0, 200});
   double max_value = 0;
@@ -318,7 +321,7 @@ TEST(Spin, ReportsTheClamp) {
   Body& chain = s.body("chain");
   Part& a = s.part(chain, box_model({0.2, 0.05, 0.05}), 1);
   Part& b = s.part(chain, box_model({0.2, 0.05, 0.05}), 1, {{0.2, 0, 0}, quat_identity()});
-  Joint& joint = *chain.add_joint("joint", a, b, JointType::continuous, Vec3(0.1, 0, 0), Vec3(0, 0, 1)).value();
+  Joint& joint = *chain.add_joint("joint", a, b, model::JointType::continuous, Vec3(0.1, 0, 0), Vec3(0, 0, 1)).value();
   s.set(a.id(), "angular_velocity", {0, 0, -400});
   s.set(b.id(), "angular_velocity", {0, 0, 400});
   s.set(a.id(), "linear_velocity", {0, 40, 0});
@@ -346,8 +349,8 @@ TEST(Spin, RotorOnALightBaseKeepsItsJointClosed) {
     Body& robot = s.body("robot");
     Part& base = s.part(robot, box_model(Vec3(0.15)), 1);
     const Pose at{Vec3(0.3, 0, 0), quat_axis(Vec3(0, 1, 0), kPi / 2)};
-    Part& rotor = s.part(robot, round_model(ShapeKind::cylinder, 0.05, 0.02), 0.2, at);
-    Joint& joint = *robot.add_joint("joint", base, rotor, JointType::continuous, Vec3(0), Vec3(1, 0, 0)).value();
+    Part& rotor = s.part(robot, round_model(model::ShapeKind::cylinder, 0.05, 0.02), 0.2, at);
+    Joint& joint = *robot.add_joint("joint", base, rotor, model::JointType::continuous, Vec3(0), Vec3(1, 0, 0)).value();
     Motor& motor = *robot.add_motor(joint).value();
     motor.set_mode(MotorMode::spin);
     s.set(motor.id(), "speed", {speed});
@@ -369,7 +372,7 @@ TEST(Spin, DoesNotDependOnThreads) {
     WorldSetup setup;
     if (threads > 1) setup.thread_pool = std::make_shared<ThreadPool>(threads);
     World world(store, setup);
-    Shape& disc = *world.shapes().add("disc", round_model(ShapeKind::cylinder, 0.05, 0.02)).value();
+    Shape& disc = *world.shapes().add("disc", round_model(model::ShapeKind::cylinder, 0.05, 0.02)).value();
     Shape& box = *world.shapes().add("box", box_model({0.1, 0.2, 0.05})).value();
     for (int i = 0; i < 40; i++) {
       const Vec3 at(i, 0, 0);
@@ -377,9 +380,9 @@ TEST(Spin, DoesNotDependOnThreads) {
       Part& base = *body.add_part("base", box, i % 2 == 0 ? 0 : 1, {at, quat_identity()}).value();
       Part& rotor =
           *body.add_part("rotor", disc, 0.2, {at + Vec3(0.3, 0, 0), quat_axis(Vec3(0, 1, 0), kPi / 2)}).value();
-      const JointType type = i % 4 < 2 ? JointType::spherical : JointType::continuous;
+      const model::JointType type = i % 4 < 2 ? model::JointType::spherical : model::JointType::continuous;
       Joint& joint = *body.add_joint("joint", base, rotor, type, at, Vec3(1, 0, 0)).value();
-      if (type == JointType::continuous) {
+      if (type == model::JointType::continuous) {
         Motor& motor = *body.add_motor(joint).value();
         motor.set_mode(MotorMode::spin);
         (void)store.set(motor.id(), Motor::table().at("speed"), std::vector<double>{40.0 * i});
@@ -403,7 +406,7 @@ TEST(FreeMotion, SupportsAnySpeed) {
   for (const double speed : {1e3, 1e9, 1e18, 1e30}) {
     Quat rotation = quat_identity();
     Vec3 w = Vec3(1, 0.5, -0.2) * speed;
-    integrate_free_rotation(Vec3(1, 2, 3), rotation, w, 1.0 / 240);
+    bullet::integrate_free_rotation(Vec3(1, 2, 3), rotation, w, 1.0 / 240);
     EXPECT_TRUE(is_finite(rotation)) << speed;
     EXPECT_NEAR(glm::length(rotation), 1, 1e-12) << speed;
     EXPECT_TRUE(is_finite(w)) << speed;
@@ -411,4 +414,4 @@ TEST(FreeMotion, SupportsAnySpeed) {
 }
 
 }  // namespace
-}  // namespace limber::test
+}  // namespace limber::sim::test

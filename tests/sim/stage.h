@@ -13,31 +13,31 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "support/world_objects.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
-inline ShapeModel sphere_model(double radius) {
-  ShapeModel m;
-  m.kind = ShapeKind::sphere;
+inline model::ShapeModel sphere_model(double radius) {
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::sphere;
   m.radius = radius;
   return m;
 }
-inline ShapeModel box_model(const Vec3& size) {
-  ShapeModel m;
-  m.kind = ShapeKind::box;
+inline model::ShapeModel box_model(const Vec3& size) {
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::box;
   m.size = size;
   return m;
 }
 /// A cylinder, capsule or cone along z.
-inline ShapeModel round_model(ShapeKind kind, double radius, double height) {
-  ShapeModel m;
+inline model::ShapeModel round_model(model::ShapeKind kind, double radius, double height) {
+  model::ShapeModel m;
   m.kind = kind;
   m.radius = radius;
   m.height = height;
   return m;
 }
-inline ShapeModel plane_model(const Vec3& normal = {0, 0, 1}) {
-  ShapeModel m;
-  m.kind = ShapeKind::plane;
+inline model::ShapeModel plane_model(const Vec3& normal = {0, 0, 1}) {
+  model::ShapeModel m;
+  m.kind = model::ShapeKind::plane;
   m.normal = normal;
   return m;
 }
@@ -94,15 +94,15 @@ struct WorldFixture {
   /// Length of a substep, s.
   double h() const { return number(world.id(), "timestep") / number(world.id(), "substeps"); }
 
-  Shape& shape(const ShapeModel& model) {
+  Shape& shape(const model::ShapeModel& model) {
     return *world.shapes().add("shape" + std::to_string(count_++), model).value();
   }
   Body& body(const std::string& name) { return *world.add_body(name).value(); }
-  Part& part(Body& body, const ShapeModel& model, double mass, const Pose& pose = {}) {
+  Part& part(Body& body, const model::ShapeModel& model, double mass, const Pose& pose = {}) {
     return *body.add_part("part" + std::to_string(count_++), shape(model), mass, pose).value();
   }
   /// A body of a single part.
-  Part& add_single_part(const ShapeModel& model, double mass, const Pose& pose = {}) {
+  Part& add_single_part(const model::ShapeModel& model, double mass, const Pose& pose = {}) {
     return part(body("body" + std::to_string(count_++)), model, mass, pose);
   }
   Part& floor() { return add_single_part(plane_model(), 0); }
@@ -125,7 +125,7 @@ struct OneAxisFixture : WorldFixture {
         robot(body("robot")),
         base(part(robot, sphere_model(0.05), 0)),
         child(part(robot, box_model(kSize), kMass)),
-        joint(*robot.add_joint("joint", base, child, JointType::floating, Vec3(0), Vec3(0, 0, 1)).value()),
+        joint(*robot.add_joint("joint", base, child, model::JointType::floating, Vec3(0), Vec3(0, 0, 1)).value()),
         motor(*robot.add_motor(joint).value()) {
     for (const char* property :
          {"linear_lower_limit", "linear_upper_limit", "angular_lower_limit", "angular_upper_limit"}) {
@@ -180,4 +180,4 @@ struct OneAxisFixture : WorldFixture {
   Motor& motor;
 };
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

@@ -10,7 +10,7 @@
 #include "sim/world/world.h"
 #include "support/world_objects.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 struct VisualsTest : testing::Test {
@@ -90,8 +90,8 @@ TEST_F(VisualsTest, ShapesOfARobotHaveTheColorsOfItsFile) {
     <visual><geometry><sphere radius="0.2"/></geometry><material name="m"><color rgba="0 1 0 0.75"/></material></visual>
     <visual><geometry><box size="1 1 1"/></geometry></visual>
   </link></robot>)";
-  MeshLibrary meshes;
-  const auto model = *import_urdf_text(urdf, "rob.urdf", {}, meshes);
+  model::MeshLibrary meshes;
+  const auto model = *model::import_urdf_text(urdf, "rob.urdf", {}, meshes);
   ASSERT_NE(model, nullptr);
   ASSERT_TRUE(world.add_body(model, "one", {}).ok());
   ASSERT_TRUE(world.add_body(model, "two", {}).ok());
@@ -99,7 +99,7 @@ TEST_F(VisualsTest, ShapesOfARobotHaveTheColorsOfItsFile) {
   const Shape* const green = world.shapes().find("rob.a");
   const Shape* const plain = world.shapes().find("rob.a.2");
   ASSERT_TRUE(green != nullptr && plain != nullptr);
-  EXPECT_EQ(green->model().kind, ShapeKind::sphere);
+  EXPECT_EQ(green->model().kind, model::ShapeKind::sphere);
   EXPECT_EQ(get(green->id(), "diffuse_color"), (std::vector<double>{2.0 / 6, 1, 1}));
   EXPECT_EQ(get(green->id(), "transparency"), std::vector<double>{0.25});
   EXPECT_EQ(store.explicitly_set(green->id()), 0u) << "a color from a file does not count as set by a script";
@@ -121,4 +121,4 @@ TEST_F(VisualsTest, ClearingTheWorldRestoresDefaults) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-using namespace limber;
+using namespace limber::sim;
 
 namespace {
 
 // A vector operation costs its elements plus eight.
 TEST(WorkBudget, IsExceededBeyondItsLimit) {
-  WorkBudget budget;
+  solver::WorkBudget budget;
   EXPECT_FALSE(budget.exceeded(1e12)) << "there is no limit before set_limit()";
   budget.reset();
   budget.set_limit(1000);

@@ -11,7 +11,7 @@
 #include "sim/behavior_rig.h"
 #include "sim/counted_new.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -40,8 +40,8 @@ struct ScriptedScene : BehaviorRig {
 void heap(ScriptedScene& s, int count) {
   s.gravity({0, 0, -9.81});
   s.floor();
-  ShapeModel two;
-  two.kind = ShapeKind::compound;
+  model::ShapeModel two;
+  two.kind = model::ShapeKind::compound;
   Shape& pair = s.shape(two);
   ASSERT_TRUE(pair.add_child(s.shape(box_model({0.3, 0.1, 0.1})), {{-0.1, 0, 0}, quat_identity()}).ok());
   ASSERT_TRUE(pair.add_child(s.shape(sphere_model(0.1)), {{0.15, 0, 0}, quat_identity()}).ok());
@@ -243,4 +243,4 @@ TEST(WorldCheckpoint, DoesNotAllocateOnceWarm) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -5,7 +5,7 @@
 #include "sim/property_effects.h"
 #include "sim/stage.h"
 
-namespace limber::test {
+namespace limber::sim::test {
 
 namespace {
 
@@ -77,9 +77,10 @@ double gap_of_chain(int iterations, double solver) {
   std::vector<Joint*> joints;
   for (int i = 1; i <= 10; i++) {
     Part& link = s.part(chain, box_model({0.2, 0.1, 0.1}), i == 10 ? 20 : 1, {{0.2 * i, 0, 0}, quat_identity()});
-    joints.push_back(
-        chain.add_joint("j" + std::to_string(i), *last, link, JointType::revolute, {0.2 * i - 0.1, 0, 0}, {0, 1, 0})
-            .value());
+    joints.push_back(chain
+                         .add_joint("j" + std::to_string(i), *last, link, model::JointType::revolute,
+                                    {0.2 * i - 0.1, 0, 0}, {0, 1, 0})
+                         .value());
     last = &link;
   }
   for (int i = 0; i < 60; i++) {
@@ -140,7 +141,7 @@ struct Pair : WorldFixture {
   Body& robot = body("robot");
   Part& a = part(robot, box_model(Vec3(0.2)), 2, {{1, 0, 0}, quat_identity()});
   Part& b = part(robot, box_model({0.2, 0.3, 0.1}), 1, {{1.5, 0, 0}, quat_identity()});
-  Joint& hinge = *robot.add_joint("hinge", a, b, JointType::revolute, {1.25, 0, 0}, {0, 1, 0}).value();
+  Joint& hinge = *robot.add_joint("hinge", a, b, model::JointType::revolute, {1.25, 0, 0}, {0, 1, 0}).value();
   Pair() {
     const Pose pivot{{1.25, 0, 0}, quat_axis({0, 1, 0}, 0.7)};
     b.set_pose(pivot * Pose{{0.25, 0, 0}, quat_identity()});
@@ -156,7 +157,7 @@ void body_position() {
   p.world.flush();
   expect_near(p.a.pose().position, {-3, 4, 5}, 1e-12);
   expect_near(p.b.pose().position, before + Vec3(-4, 4, 5), 1e-12);
-  expect_near(from_bt(p.b.rigid().getWorldTransform().getOrigin()), before + Vec3(-4, 4, 5), 1e-6);
+  expect_near(bullet::from_bt(p.b.rigid().getWorldTransform().getOrigin()), before + Vec3(-4, 4, 5), 1e-6);
   EXPECT_NEAR(p.number(p.hinge.id(), "value"), 0.7, 1e-6);
   expect_near(p.b.linear_velocity(), {0.1, 0, 0}, 0);
 }
@@ -277,4 +278,4 @@ void add_body_effects(PropertyEffects& effects) {
   effects[{"Body", "can_sleep"}] = body_can_sleep;
 }
 
-}  // namespace limber::test
+}  // namespace limber::sim::test

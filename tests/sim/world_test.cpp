@@ -9,7 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -181,7 +181,7 @@ TEST(WorldTest, JointReadoutsAreRightHanded) {
   Body& robot = s.body("robot");
   Part& base = s.part(robot, sphere_model(0.05), 0, {{1, 0, 0}, quat_identity()});
   Part& arm = s.part(robot, box_model({0.4, 0.1, 0.1}), 1, {{1.3, 0, 0}, quat_identity()});
-  Joint& joint = *robot.add_joint("joint", base, arm, JointType::revolute, {1.1, 0, 0}, {0, 0, 1}).value();
+  Joint& joint = *robot.add_joint("joint", base, arm, model::JointType::revolute, {1.1, 0, 0}, {0, 0, 1}).value();
   const Pose pivot{{1.1, 0, 0}, quat_axis({0, 0, 1}, 0.6)};
   arm.set_pose(pivot * Pose{{0.2, 0, 0}, quat_identity()});
   s.set(arm.id(), "angular_velocity", {0, 0, 2});
@@ -207,7 +207,7 @@ TEST(WorldTest, CountsStepsLeftToTheIterativeSolver) {
   Body& robot = s.body("robot");
   Part& a = s.part(robot, box_model(Vec3(0.2)), 1);
   Part& b = s.part(robot, box_model(Vec3(0.2)), 1, {{0.3, 0, 0}, quat_identity()});
-  (void)robot.add_joint("hinge", a, b, JointType::revolute, {0.15, 0, 0}, {0, 1, 0}).value();
+  (void)robot.add_joint("hinge", a, b, model::JointType::revolute, {0.15, 0, 0}, {0, 1, 0}).value();
   s.ticks(2);
   EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), 0);
   b.rigid().setAngularFactor(btVector3(0, 0, 0));
@@ -226,11 +226,11 @@ TEST(WorldTest, ASingularJointFallsBackToTheIterativeSolver) {
     Body& robot = s.body("robot");
     Part& a = s.part(robot, box_model(Vec3(0.2)), 1);
     Part& b = s.part(robot, box_model(Vec3(0.2)), 1, {{0.3, 0, 0}, quat_identity()});
-    (void)robot.add_joint("weld", a, b, JointType::fixed, {0.15, 0, 0}, {0, 1, 0}).value();
+    (void)robot.add_joint("weld", a, b, model::JointType::fixed, {0.15, 0, 0}, {0, 1, 0}).value();
     Body& other = s.body("other");
     Part& c = s.part(other, box_model(Vec3(0.2)), 1, {{0, 0, 0.19}, quat_identity()});
     Part& d = s.part(other, box_model(Vec3(0.2)), 1, {{0.3, 0, 0.6}, quat_identity()});
-    (void)other.add_joint("hinge", c, d, JointType::revolute, {0.15, 0, 0.4}, {0, 1, 0}).value();
+    (void)other.add_joint("hinge", c, d, model::JointType::revolute, {0.15, 0, 0.4}, {0, 1, 0}).value();
     b.set_pose({{0.3, 0, 0}, quat_axis({0, 0, 1}, kPi / 2)});
     s.ticks(1);
     EXPECT_EQ(s.number(s.world.id(), "solver_fallbacks"), solver);
@@ -243,4 +243,4 @@ TEST(WorldTest, ASingularJointFallsBackToTheIterativeSolver) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/counted_new.h"
 #include "sim/stage.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace test;
@@ -81,7 +81,7 @@ const std::vector<WorldChange>& world_changes() {
          Part& part = **ball.body().add_part("more", shape, 1, {{0, 0, 4}, quat_identity()});
          ball.set_pose({{0, 0, 5}, quat_identity()});
          ball.set_velocity({1, 1, 1}, {1, 1, 1});
-         Joint& joint = **ball.body().add_joint("j", ball, part, JointType::revolute, {0, 0, 4.5}, {0, 0, 1});
+         Joint& joint = **ball.body().add_joint("j", ball, part, model::JointType::revolute, {0, 0, 4.5}, {0, 0, 1});
          ASSERT_TRUE(ball.body().add_motor(joint));
        }},
   };
@@ -161,7 +161,7 @@ TEST(WorldTransaction, RemovesAddedObjectsNewestFirst) {
   Body& body = **s.world.add_body("body");
   Part& a = **body.add_part("a", shape, 1, {{0, 0, 0}, quat_identity()});
   Part& b = **body.add_part("b", shape, 1, {{0, 0, 1}, quat_identity()});
-  ASSERT_TRUE(body.add_motor(**body.add_joint("j", a, b, JointType::revolute, {0, 0, 0.5}, {0, 0, 1})));
+  ASSERT_TRUE(body.add_motor(**body.add_joint("j", a, b, model::JointType::revolute, {0, 0, 0.5}, {0, 0, 1})));
   b.apply_force({1, 0, 0});
   s.world.transaction().rollback();
   EXPECT_TRUE(s.world.bodies().empty());
@@ -171,8 +171,8 @@ TEST(WorldTransaction, RemovesAddedObjectsNewestFirst) {
 
 TEST(WorldTransaction, RemovesAddedChildrenOfACompound) {
   WorldFixture s;
-  ShapeModel model;
-  model.kind = ShapeKind::compound;
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::compound;
   Shape& both = **s.world.shapes().add("both", model);
   Shape& ball = **s.world.shapes().add("ball", sphere_model(0.1));
   ASSERT_TRUE(both.add_child(ball, {}));
@@ -222,4 +222,4 @@ TEST(WorldTransaction, DoesNotAllocateOnceWarm) {
 }
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,7 +10,7 @@
 #include "app/taken_port.h"
 #include "osc/osc_test_tools.h"
 
-namespace limber::app_test {
+namespace limber::app::test {
 namespace {
 
 TEST(Show, HandlesFloodReloadsAndInputTogether) {
@@ -32,15 +32,16 @@ sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.t
   ASSERT_TRUE(running.wait_for("limber: window 640 × 480")) << running.err();
   ASSERT_TRUE(running.wait_for("OSC in 127.0.0.1:"));
   ASSERT_TRUE(running.wait_for("run 1 tick 60", true)) << "by then its files are watched";
-  const Endpoint in{0x7f000001, static_cast<std::uint16_t>(std::atoi(running.text_after("OSC in 127.0.0.1:").c_str()))};
+  const system::Endpoint in{0x7f000001,
+                            static_cast<std::uint16_t>(std::atoi(running.text_after("OSC in 127.0.0.1:").c_str()))};
   ASSERT_NE(in.port, 0);
-  const osc_test::Client client;
+  const osc::test::Client client;
   std::atomic<bool> floods{true};
   std::thread flood([&] {
     for (int i = 0; floods; i++) {
-      client.send(in, osc_test::one_float("/physics/body/ball/behavior/wind/max_amp", static_cast<float>(i % 7)));
-      client.send(in, osc_test::one_float("/visuals/look/overlay", static_cast<float>(i % 2)));
-      client.send(in, osc_test::one_float("/visuals/shape/ball/transparency", 0.01F * static_cast<float>(i % 90)));
+      client.send(in, osc::test::one_float("/physics/body/ball/behavior/wind/max_amp", static_cast<float>(i % 7)));
+      client.send(in, osc::test::one_float("/visuals/look/overlay", static_cast<float>(i % 2)));
+      client.send(in, osc::test::one_float("/visuals/shape/ball/transparency", 0.01F * static_cast<float>(i % 90)));
       if (i % 50 == 0) std::this_thread::yield();
     }
   });
@@ -59,4 +60,4 @@ sim:on_step(function() if sim.tick % 10 == 0 then print("run {0} tick " .. sim.t
 }
 
 }  // namespace
-}  // namespace limber::app_test
+}  // namespace limber::app::test

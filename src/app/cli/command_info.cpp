@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::string file_extension(const OptionInfo& option) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -9,7 +9,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
-namespace limber {
+namespace limber::app {
 
 /// One option, flag or positional argument.
 struct OptionInfo {
@@ -48,4 +48,4 @@ std::string bash_completion(const CommandInfo& program);
 /// Returns a function for zsh's completion system, to be saved as `_limber` in `fpath`. [any]
 std::string zsh_completion(const CommandInfo& program);
 
-}  // namespace limber
+}  // namespace limber::app

@@ -5,7 +5,7 @@
 
 #include "app/cli/command_info.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::string bash_completion(const CommandInfo& program) {
          std::string(kBashReader);
 }
 
-}  // namespace limber
+}  // namespace limber::app

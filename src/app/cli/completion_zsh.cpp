@@ -5,7 +5,7 @@
 
 #include "app/cli/command_info.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -119,4 +119,4 @@ std::string zsh_completion(const CommandInfo& program) {
   return text + "\n_limber \"$@\"\n";
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -8,7 +8,7 @@
 #include "base/build_info.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -172,4 +172,4 @@ std::string man_page(const CommandInfo& program) {
   return page;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -27,7 +27,7 @@
 #include "base/log/output.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -438,4 +438,4 @@ int run_command_line(int argc, char** argv) {
   return kMachineError;
 }
 
-}  // namespace limber
+}  // namespace limber::app

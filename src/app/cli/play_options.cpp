@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "base/threads/thread_pool.h"
 
-namespace limber {
+namespace limber::app {
 
 std::string whole_number_fault(const std::string& text) {
   const bool digits = !text.empty() && text.size() <= 16 && text.find_first_not_of("0123456789") == text.npos;
@@ -139,4 +139,4 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   add_log(*play, o.log);
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -9,7 +9,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
-namespace limber {
+namespace limber::app {
 
 /// Declares the options in `play`. `options` must outlive the command.
 void add_play_options(CLI::App& play, PlayOptions& options);
@@ -17,4 +17,4 @@ void add_play_options(CLI::App& play, PlayOptions& options);
 /// Returns the error if `text` is not a whole number from 0 to 2^53; else an empty string.
 std::string whole_number_fault(const std::string& text);
 
-}  // namespace limber
+}  // namespace limber::app

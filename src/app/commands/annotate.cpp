@@ -12,12 +12,12 @@
 #include "engine/engine.h"
 #include "script/annotate.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 // A host that discards all output; no script runs here.
-struct NullHost : ScriptHost {
+struct NullHost : script::ScriptHost {
   void send(Message) override {}
   void reply(const CommandOrigin&, Message) override {}
   void send_direct(const CommandOrigin&, Message) override {}
@@ -30,10 +30,10 @@ struct NullHost : ScriptHost {
 
 std::string annotations_text() {
   Store store;
-  World world(store);
+  sim::World world(store);
   NullHost host;
-  Scene scene(world, host, {});
-  return annotations(scene.names());
+  script::Scene scene(world, host, {});
+  return script::annotations(scene.names());
 }
 
 int annotate_command(const std::string& file) {
@@ -52,4 +52,4 @@ int annotate_command(const std::string& file) {
   return fail(kMachineError, fmt::format("{} can't be written; check the folder's permissions", file));
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -27,7 +27,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -45,24 +45,24 @@ struct Setting {
   int threads;
 };
 
-using Model = std::shared_ptr<const BodyModel>;
+using Model = std::shared_ptr<const model::BodyModel>;
 
 // Arms on a floor, two meters apart. All servos follow a wave.
 class PlayedArms {
  public:
   PlayedArms(const Model& model, int count, const Setting& setting) : engine_(link_, engine_options(setting)) {
     LIMBER_CHECK(engine_.start().ok());
-    World& world = engine_.world();
+    sim::World& world = engine_.world();
     const double direct = std::string_view(setting.solver) == "direct" ? 1 : 0;
     LIMBER_CHECK(world.store().set(world.id(), "solver", {&direct, 1}).ok());
-    ShapeModel plane;
-    plane.kind = ShapeKind::plane;
-    Shape& ground = **world.shapes().add("ground", plane);
+    model::ShapeModel plane;
+    plane.kind = model::ShapeKind::plane;
+    sim::Shape& ground = **world.shapes().add("ground", plane);
     LIMBER_CHECK((*world.add_body("floor"))->add_part("ground", ground, 0, Pose{}).ok());
-    Body& first = **world.add_body(model, "arm1", BuildOptions{});
+    sim::Body& first = **world.add_body(model, "arm1", sim::BuildOptions{});
     const int side = static_cast<int>(std::ceil(std::sqrt(count)));
     for (int i = 1; i < count; i++) {
-      Body& copy = **world.copy_body(first, fmt::format("arm{}", i + 1));
+      sim::Body& copy = **world.copy_body(first, fmt::format("arm{}", i + 1));
       const int row = i / side;
       Pose pose = copy.pose();
       pose.position += Vec3(2.0 * (i % side), 2.0 * row, 0);
@@ -86,14 +86,14 @@ class PlayedArms {
   }
 
  private:
-  static EngineOptions engine_options(const Setting& setting) {
-    EngineOptions options;
+  static engine::EngineOptions engine_options(const Setting& setting) {
+    engine::EngineOptions options;
     options.threads = setting.threads;
     return options;
   }
 
-  EngineLink link_;
-  Engine engine_;
+  engine::EngineLink link_;
+  engine::Engine engine_;
 };
 
 struct Measurement {
@@ -146,7 +146,7 @@ std::vector<Setting> settings(int cores) {
 }  // namespace
 
 int bench_command(const BenchOptions& options) {
-  ModelLibrary library;
+  model::ModelLibrary library;
   const auto model = library.load_urdf(data_dir() + "/urdf/arm17.urdf");
   if (!model) return fail(kMachineError, model.error());
   const int ticks = options.ticks > 0 ? options.ticks : 60;
@@ -174,4 +174,4 @@ int bench_command(const BenchOptions& options) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

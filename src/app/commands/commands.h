@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
-namespace limber {
-
+namespace limber::model {
 struct BodyModel;
+}  // namespace limber::model
+
+namespace limber::app {
 
 /// `limber annotate`: writes the LuaCATS definitions of everything that scripts can use, for editors, to `file`, or to
 /// stdout if its name is empty.
@@ -68,8 +70,8 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
 /// to stderr. Returns 0 if there is a body, even with problems, else 1.
 int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths);
 /// Return the same as text: indented JSON, or a table for people.
-std::string inspect_json(const BodyModel& model);
-std::string inspect_table(const BodyModel& model);
+std::string inspect_json(const model::BodyModel& model);
+std::string inspect_table(const model::BodyModel& model);
 
 struct MonitorCommand {
   std::string pattern;  ///< Pattern of addresses; empty: all.
@@ -116,4 +118,4 @@ int send_command(const SendCommand& command);
 /// take is valid.
 int take_command(const std::string& file);
 
-}  // namespace limber
+}  // namespace limber::app

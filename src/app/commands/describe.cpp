@@ -23,13 +23,13 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 void add_line(std::string& out, const std::string& path, const PropertyTable& table, const Property& property) {
   out += fmt::format("{}/{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}\n", path, property.name,
-                     MessageDispatcher::legacy_address(table, property), kind_name(property.kind),
+                     engine::MessageDispatcher::legacy_address(table, property), kind_name(property.kind),
                      type_name(property.type), property.unit, range_or_choices_text(property), initial_text(property),
                      property.doc);
 }
@@ -48,7 +48,7 @@ nlohmann::json as_json(const std::string& path, const PropertyTable& table, cons
                    {"kind", kind_name(property.kind)},
                    {"type", type_name(property.type)},
                    {"doc", property.doc}};
-  if (const std::string legacy = MessageDispatcher::legacy_address(table, property); !legacy.empty())
+  if (const std::string legacy = engine::MessageDispatcher::legacy_address(table, property); !legacy.empty())
     j["seed"] = legacy;
   if (!property.unit.empty()) j["unit"] = property.unit;
   if (!property.choices.empty()) j["choices"] = property.choices;
@@ -67,23 +67,23 @@ constexpr const char* kHeader = "address\tlegacy address\tkind\ttype\tunit\trang
 }  // namespace
 
 std::vector<const PropertyTable*> described_classes() {
-  std::vector<const PropertyTable*> all = {&World::table(), &Body::table(),  &Part::table(),
-                                           &Joint::table(), &Motor::table(), &Gear::table()};
-  const BehaviorTypes types;
+  std::vector<const PropertyTable*> all = {&sim::World::table(), &sim::Body::table(),  &sim::Part::table(),
+                                           &sim::Joint::table(), &sim::Motor::table(), &sim::Gear::table()};
+  const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
-  all.insert(all.end(),
-             {&Visuals::table(), &Camera::table(), &Appearance::table(), &Shape::table(), &Transport::table(),
-              &PresetNode::table(), &EditNode::table(), &TakeNode::table(), &CounterNode::table()});
+  all.insert(all.end(), {&sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(), &sim::Shape::table(),
+                         &engine::Transport::table(), &engine::PresetNode::table(), &engine::EditNode::table(),
+                         &engine::TakeNode::table(), &engine::CounterNode::table()});
   return all;
 }
 
 // those of the dispatcher, and those that the network answers itself
-std::vector<SpecialAddress> described_messages() {
-  const auto list = MessageDispatcher::special_addresses();
-  std::vector<SpecialAddress> all(list.begin(), list.end());
+std::vector<engine::SpecialAddress> described_messages() {
+  const auto list = engine::MessageDispatcher::special_addresses();
+  std::vector<engine::SpecialAddress> all(list.begin(), list.end());
   all.push_back({"/ping", "", "Replies immediately with /pong, the tick and the time."});
   all.push_back({"/token", "token", "Confirms that the sender receives messages at its address; requested by /token."});
   all.push_back({"/subscribe", "path|stream [rate]", "Sends changes or a stream to the sender for 30 s."});
@@ -104,13 +104,13 @@ void each_class(const AddProperty& add) {
 // calls `add` for each property of all objects of a scene
 Result<void> each_object(const std::string& scene, const AddProperty& add) {
   std::vector<std::string> searched;
-  EngineOptions options;
+  engine::EngineOptions options;
   options.scene = find_scene(scene, searched);
   options.scene_options.data_dir = data_dir();
   options.print = false;  // stdout is reserved for the result
   if (options.scene.empty()) return Error{scene_not_found(scene, searched)};
-  EngineLink link;
-  Engine engine(link, options);
+  engine::EngineLink link;
+  engine::Engine engine(link, options);
   if (Result<void> started = engine.start(); !started) return started;
   const Store& store = engine.store();
   store.walk(store.root(), [&](NodeId id) {
@@ -124,7 +124,7 @@ std::string as_text(const std::function<void(const AddProperty&)>& each) {
   each([&](const std::string& path, const PropertyTable& table, const Property& property) {
     add_line(out, path, table, property);
   });
-  for (const SpecialAddress& m : described_messages())
+  for (const engine::SpecialAddress& m : described_messages())
     out += fmt::format("{}\t\tmessage\t{}\t\t\t\t{}\n", m.address, m.args, m.doc);
   return out;
 }
@@ -148,7 +148,7 @@ int describe_command(const std::string& scene, bool json) {
     each_property([&](const std::string& path, const PropertyTable& table, const Property& property) {
       list.push_back(as_json(path, table, property));
     });
-    for (const SpecialAddress& m : described_messages())
+    for (const engine::SpecialAddress& m : described_messages())
       list.push_back({{"path", m.address}, {"kind", "message"}, {"takes", m.args}, {"doc", m.doc}});
     out = list.dump(2) + "\n";
   } else {
@@ -159,4 +159,4 @@ int describe_command(const std::string& scene, bool json) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -6,11 +6,11 @@
 
 #include "engine/commands/message_dispatcher.h"
 
-namespace limber {
+namespace limber::app {
 
 /// The classes that have properties, and the messages that belong to no property. [any]
 std::vector<const PropertyTable*> described_classes();
-std::vector<SpecialAddress> described_messages();
+std::vector<engine::SpecialAddress> described_messages();
 
 /// Returns the text that `limber describe` prints without a scene; a golden file holds it. [any]
 std::string describe_classes();
@@ -19,4 +19,4 @@ std::string describe_classes();
 /// messages that belong to no property. [any]
 std::string describe_page();
 
-}  // namespace limber
+}  // namespace limber::app

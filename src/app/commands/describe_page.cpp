@@ -9,7 +9,7 @@
 #include "engine/commands/message_dispatcher.h"
 #include "properties/property_text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -38,7 +38,7 @@ void add_class(std::string& out, const std::string& title, const PropertyTable& 
   out += fmt::format("\n### {}\n\n| property | {}kind | value | default | meaning |\n|---|{}---|---|---|---|\n", title,
                      has_legacy ? "legacy address | " : "", has_legacy ? "---|" : "");
   for (const Property& property : table.properties()) {
-    const std::string legacy = MessageDispatcher::legacy_address(table, property);
+    const std::string legacy = engine::MessageDispatcher::legacy_address(table, property);
     const std::string message = !has_legacy ? "" : legacy.empty() ? "| " : fmt::format("| `{}` ", legacy);
     out += fmt::format("| `{}` {}| {} | {} | {} | {} |\n", property.name, message, kind_name(property.kind),
                        cell(value_cell(property)), property.kind == PropertyKind::action ? "" : initial_text(property),
@@ -63,9 +63,9 @@ std::string describe_page() {
     add_class(out, fmt::format("`/physics/body/<body>/behavior/<behavior>` of the type `{}`", type), *table);
   }
   out += "\n### Other messages\n\n| message | arguments | meaning |\n|---|---|---|\n";
-  for (const SpecialAddress& m : described_messages())
+  for (const engine::SpecialAddress& m : described_messages())
     out += fmt::format("| `{}` | {} | {} |\n", m.address, cell(std::string(m.args)), cell(std::string(m.doc)));
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -29,7 +29,7 @@
 #include "ui/render/gl.h"
 #include "ui/render/offscreen.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -47,8 +47,9 @@ std::string system_name() {
 }
 
 bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<ListenAddress>& query_at) {
-  EngineLink link;
-  Network network(link, OscOptions{.in = osc_in, .out = std::vector<StreamTarget>(), .allow = {}}, transient_offsets());
+  engine::EngineLink link;
+  osc::Network network(link, osc::OscOptions{.in = osc_in, .out = std::vector<StreamTarget>(), .allow = {}},
+                       engine::transient_offsets());
   const Result<void> open = network.start();
   network.stop();
   if (open) {
@@ -58,7 +59,7 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
     print_check("fail", "ports", open.error());
   }
   if (!query_at) return open.ok();
-  QueryServer query(link, {});
+  oscquery::QueryServer query(link, {});
   const Result<void> panel = query.start(*query_at);
   query.stop();
   if (panel) {
@@ -71,16 +72,17 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
 }
 
 void check_drawing(const std::string& gl) {
-  const auto context = OffscreenContext::make(gl);
+  const auto context = render::OffscreenContext::make(gl);
   if (context) {
     print_check(
-        gl_is_software() ? "warn" : "ok", "OpenGL",
-        fmt::format("{} with {}{}", gl_driver(), gl_api_info((*context)->api()).name,
-                    gl_is_software() ? ": software rendering, slow; windows use --quality low by default" : ""));
+        render::gl_is_software() ? "warn" : "ok", "OpenGL",
+        fmt::format(
+            "{} with {}{}", render::gl_driver(), render::gl_api_info((*context)->api()).name,
+            render::gl_is_software() ? ": software rendering, slow; windows use --quality low by default" : ""));
   } else {
     print_check("warn", "OpenGL", context.error());
   }
-  const FontFiles fonts = find_fonts();
+  const panel::FontFiles fonts = panel::find_fonts();
   for (const std::string& line : fonts.warnings) print_check("warn", "fonts", line);
   if (fonts.warnings.empty()) print_check("ok", "fonts", "Inter and JetBrains Mono, for the panel");
   const bool video = !find_in_path("ffmpeg").empty();
@@ -92,7 +94,7 @@ void check_drawing(const std::string& gl) {
 }  // namespace
 
 int doctor_command(const DoctorCommand& command) {
-  const Result<std::vector<ListenAddress>> osc_in = parse_osc_in(command.osc_in);
+  const Result<std::vector<ListenAddress>> osc_in = osc::parse_osc_in(command.osc_in);
   if (!osc_in) return fail(kUsageError, osc_in.error());
   const Result<std::optional<std::vector<ListenAddress>>> query = parse_query(command.query);
   if (!query) return fail(kUsageError, query.error());
@@ -139,4 +141,4 @@ int doctor_command(const DoctorCommand& command) {
   return data.empty() || !ports ? kMachineError : kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -21,7 +21,7 @@
 #include "export/writers.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -93,23 +93,23 @@ Result<void> check_not_existing(const Plan& plan, bool overwrite) {
   return {};
 }
 
-Result<std::unique_ptr<MotionWriter>> open_writer(const Plan& plan, double rate) {
-  if (plan.format == Format::csv) return make_csv_writer(plan.output);
-  if (plan.format == Format::bvh) return make_bvh_writer(plan.output, rate);
-  return make_gltf_writer(plan.output);
+Result<std::unique_ptr<exporter::MotionWriter>> open_writer(const Plan& plan, double rate) {
+  if (plan.format == Format::csv) return exporter::make_csv_writer(plan.output);
+  if (plan.format == Format::bvh) return exporter::make_bvh_writer(plan.output, rate);
+  return exporter::make_gltf_writer(plan.output);
 }
 
 // number of ticks that advance time
 Result<std::uint64_t> ticks_of(const std::string& take) {
-  auto opened = TakeReader::open(take);
+  auto opened = engine::TakeReader::open(take);
   if (!opened) return Error{opened.error()};
   std::uint64_t ticks = 0;
-  for (RecordedPass tick; (*opened)->next(tick);) ticks += tick.running ? 1 : 0;
+  for (engine::RecordedPass tick; (*opened)->next(tick);) ticks += tick.running ? 1 : 0;
   return ticks;
 }
 
-EngineOptions engine_options(const ExportCommand& command) {
-  EngineOptions options;
+engine::EngineOptions engine_options(const ExportCommand& command) {
+  engine::EngineOptions options;
   options.scene_options.data_dir = data_dir();
   options.fast = true;
   options.print = false;
@@ -124,8 +124,8 @@ struct ExportResult {
 };
 
 // writes all frames up to the end of the take or the requested time
-ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, Engine& engine, OfflineClock& clock,
-                          MotionSource& source, MotionWriter& writer) {
+ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, engine::Engine& engine,
+                          OfflineClock& clock, MotionSource& source, exporter::MotionWriter& writer) {
   const auto wanted = command.to ? std::llround(std::floor((*command.to - command.from) * command.rate + 1e-6)) + 1 : 0;
   Progress progress(command.to ? "frame" : "tick", command.to ? static_cast<std::uint64_t>(wanted) : ticks);
   ExportResult end;
@@ -148,11 +148,11 @@ ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, Eng
 }
 
 int report_result(const Plan& plan, const ExportCommand& command, const ExportResult& end, const MotionSource& source,
-                  const Engine& engine) {
+                  const engine::Engine& engine) {
   print_notice("{}: {} frames of {} bod{}, {} a second", printable(plan.output), end.frames, source.bodies(),
                source.bodies() == 1 ? "y" : "ies", number_text(command.rate));
-  const ReplayResult result = engine.replay_result();
-  print_notice("{}", text_of(result));
+  const engine::ReplayResult result = engine.replay_result();
+  print_notice("{}", engine::text_of(result));
   return result.diverged_at || !result.damage.empty() ? kInputError : kSuccess;
 }
 
@@ -168,10 +168,10 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
     return fail(kInputError, can_write.error());
   const Result<std::uint64_t> ticks = ticks_of(command.take);
   if (!ticks) return fail(kInputError, ticks.error());
-  EngineLink link;
-  Engine engine(link, engine_options(command));
+  engine::EngineLink link;
+  engine::Engine engine(link, engine_options(command));
   if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
-  Result<std::unique_ptr<MotionWriter>> writer = open_writer(*plan, command.rate);
+  Result<std::unique_ptr<exporter::MotionWriter>> writer = open_writer(*plan, command.rate);
   if (!writer) return fail(kInputError, writer.error());
   OfflineClock clock(engine, link, cancel);
   MotionSource source(command.bodies);
@@ -197,4 +197,4 @@ int export_command(const ExportCommand& command) {
   return export_take(command, system::signal_arrived);
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -14,19 +14,19 @@
 #include "base/text.h"
 #include "model/urdf/import.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* severity_name(Severity severity) {
+const char* severity_name(model::Severity severity) {
   switch (severity) {
-    case Severity::note:
+    case model::Severity::note:
       return "note";
-    case Severity::warning:
+    case model::Severity::warning:
       return "warning";
-    case Severity::error:
+    case model::Severity::error:
       return "error";
   }
   return "";
@@ -38,7 +38,7 @@ Json json_of(const Pose& p) {
   return {{"position", json_of(p.position)}, {"rotation", Json::array({q.x, q.y, q.z, q.w})}};
 }
 
-Json json_of(const FileLink& link) {
+Json json_of(const model::FileLink& link) {
   const Mat3& t = link.tensor;
   return {{"name", link.name},
           {"mass", link.mass},
@@ -50,7 +50,7 @@ Json json_of(const FileLink& link) {
           {"start", json_of(link.start)}};
 }
 
-Json json_of(const FileJoint& joint) {
+Json json_of(const model::FileJoint& joint) {
   Json j = {{"name", joint.name},
             {"type", joint.type},
             {"parent", joint.parent},
@@ -67,23 +67,23 @@ Json json_of(const FileJoint& joint) {
   return j;
 }
 
-const char* kind_name(ShapeKind kind) {
+const char* kind_name(model::ShapeKind kind) {
   switch (kind) {
-    case ShapeKind::plane:
+    case model::ShapeKind::plane:
       return "plane";
-    case ShapeKind::sphere:
+    case model::ShapeKind::sphere:
       return "sphere";
-    case ShapeKind::box:
+    case model::ShapeKind::box:
       return "box";
-    case ShapeKind::cylinder:
+    case model::ShapeKind::cylinder:
       return "cylinder";
-    case ShapeKind::capsule:
+    case model::ShapeKind::capsule:
       return "capsule";
-    case ShapeKind::cone:
+    case model::ShapeKind::cone:
       return "cone";
-    case ShapeKind::mesh:
+    case model::ShapeKind::mesh:
       return "hull";
-    case ShapeKind::compound:
+    case model::ShapeKind::compound:
       return "compound";
   }
   return "";
@@ -91,23 +91,23 @@ const char* kind_name(ShapeKind kind) {
 
 std::string vec_text(const Vec3& v) { return fmt::format("{:9.4f} {:9.4f} {:9.4f}", v.x, v.y, v.z); }
 
-void add_links(const BodyModel& model, std::string& out) {
+void add_links(const model::BodyModel& model, std::string& out) {
   std::size_t width = 4;
-  for (const FileLink& l : model.file_links) width = std::max(width, printable(l.name).size());
+  for (const model::FileLink& l : model.file_links) width = std::max(width, printable(l.name).size());
   out +=
       fmt::format("\n{:<{}}  {:>10}  {:>4}  {:>4}  {}\n", "link", width, "mass kg", "coll", "vis", "home position m");
-  for (const FileLink& l : model.file_links) {
+  for (const model::FileLink& l : model.file_links) {
     out += fmt::format("{:<{}}  {:>10.6g}  {:>4}  {:>4}  {}\n", printable(l.name), width, l.mass, l.collisions,
                        l.visuals, vec_text(l.home.position));
   }
 }
 
-void add_joints(const BodyModel& model, std::string& out) {
+void add_joints(const model::BodyModel& model, std::string& out) {
   std::size_t width = 5;
-  for (const FileJoint& j : model.file_joints) width = std::max(width, printable(j.name).size());
+  for (const model::FileJoint& j : model.file_joints) width = std::max(width, printable(j.name).size());
   out += fmt::format("\n{:<{}}  {:<10}  {:<26}  {:<22}  {:>8}  {}\n", "joint", width, "type", "axis", "limits",
                      "effort", "parent -> child");
-  for (const FileJoint& j : model.file_joints) {
+  for (const model::FileJoint& j : model.file_joints) {
     const std::string limits = j.free ? "free" : fmt::format("{:.5g} .. {:.5g}", j.lower, j.upper);
     out += fmt::format("{:<{}}  {:<10}  {:<26}  {:<22}  {:>8.5g}  {} -> {}\n", printable(j.name), width, j.type,
                        fmt::format("{:.5g} {:.5g} {:.5g}", j.axis.x, j.axis.y, j.axis.z), limits, j.effort,
@@ -115,9 +115,9 @@ void add_joints(const BodyModel& model, std::string& out) {
   }
 }
 
-void add_mimics(const BodyModel& model, std::string& out) {
+void add_mimics(const model::BodyModel& model, std::string& out) {
   bool first = true;
-  for (const FileJoint& j : model.file_joints) {
+  for (const model::FileJoint& j : model.file_joints) {
     if (j.mimic.empty()) continue;
     if (std::exchange(first, false)) out += "\nmimic\n";
     out += fmt::format("  {} = {:.6g} * {} {} {:.6g}\n", printable(j.name), j.mimic_multiplier, printable(j.mimic),
@@ -125,33 +125,33 @@ void add_mimics(const BodyModel& model, std::string& out) {
   }
 }
 
-void add_body(const BodyModel& model, std::string& out) {
+void add_body(const model::BodyModel& model, std::string& out) {
   out += "\nresulting body (mass 0: fixed to the world)\n";
-  for (const LinkModel& link : model.links) {
+  for (const model::LinkModel& link : model.links) {
     out += fmt::format("  {}: {:.6g} kg", printable(link.name), link.inertial.mass);
-    for (const PlacedShape& s : link.collisions) {
+    for (const model::PlacedShape& s : link.collisions) {
       out += fmt::format(", {}", kind_name(s.shape.kind));
-      if (s.shape.kind != ShapeKind::mesh || !s.shape.mesh) continue;
+      if (s.shape.kind != model::ShapeKind::mesh || !s.shape.mesh) continue;
       out += fmt::format(" of {} points (farthest vertex {:.2g} m outside)", s.shape.mesh->hull.size(),
                          s.shape.mesh->hull_error);
     }
     if (!link.self_collision) out += ", does not collide with its own body (selfCollide)";
     out += '\n';
   }
-  for (const MergedLink& m : model.merged) {
+  for (const model::MergedLink& m : model.merged) {
     out += fmt::format("  {}: merged into {}\n", printable(m.name),
                        printable(model.links[static_cast<std::size_t>(m.link)].name));
   }
 }
 
-const std::string& link_name(const BodyModel& model, int link) {
+const std::string& link_name(const model::BodyModel& model, int link) {
   return model.links[static_cast<std::size_t>(link)].name;
 }
 
-void add_overlaps(const BodyModel& model, std::string& out) {
+void add_overlaps(const model::BodyModel& model, std::string& out) {
   if (model.overlaps.empty()) return;
   out += "\npairs excluded from collision (they overlap with all joints at 0)\n";
-  for (const Overlap& overlap : model.overlaps) {
+  for (const model::Overlap& overlap : model.overlaps) {
     out += fmt::format("  {} and {}: {:.3g} mm\n", printable(link_name(model, overlap.a)),
                        printable(link_name(model, overlap.b)), overlap.depth * 1000);
   }
@@ -159,18 +159,18 @@ void add_overlaps(const BodyModel& model, std::string& out) {
 
 }  // namespace
 
-std::string inspect_json(const BodyModel& model) {
+std::string inspect_json(const model::BodyModel& model) {
   Json links = Json::array(), joints = Json::array(), problems = Json::array();
-  for (const FileLink& link : model.file_links) links.push_back(json_of(link));
-  for (const FileJoint& joint : model.file_joints) joints.push_back(json_of(joint));
-  for (const Problem& p : model.problems) {
+  for (const model::FileLink& link : model.file_links) links.push_back(json_of(link));
+  for (const model::FileJoint& joint : model.file_joints) joints.push_back(json_of(joint));
+  for (const model::Problem& p : model.problems) {
     problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.fix}});
   }
   Json pairs = Json::array(), no_self_collision = Json::array();
-  for (const Overlap& overlap : model.overlaps) {
+  for (const model::Overlap& overlap : model.overlaps) {
     pairs.push_back({{"a", link_name(model, overlap.a)}, {"b", link_name(model, overlap.b)}, {"depth", overlap.depth}});
   }
-  for (const LinkModel& link : model.links) {
+  for (const model::LinkModel& link : model.links) {
     if (!link.self_collision) no_self_collision.push_back(link.name);
   }
   const Json all{{"robot", model.name},
@@ -182,9 +182,9 @@ std::string inspect_json(const BodyModel& model) {
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string inspect_table(const BodyModel& model) {
+std::string inspect_table(const model::BodyModel& model) {
   double mass = 0;
-  for (const FileLink& link : model.file_links) mass += link.mass;
+  for (const model::FileLink& link : model.file_links) mass += link.mass;
   std::string out = fmt::format("{}: {} links, {} joints, {:.6g} kg\n", printable(model.name), model.file_links.size(),
                                 model.file_joints.size(), mass);
   add_links(model, out);
@@ -193,16 +193,16 @@ std::string inspect_table(const BodyModel& model) {
   add_body(model, out);
   add_overlaps(model, out);
   out += model.problems.empty() ? "\nno problems\n" : "\n";
-  for (const Problem& p : model.problems) {
+  for (const model::Problem& p : model.problems) {
     out += fmt::format("{}:{}: {}: {}. {}\n", printable(model.file), p.line, severity_name(p.severity), p.text, p.fix);
   }
   return out;
 }
 
 int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths) {
-  ImportOptions options;
+  model::ImportOptions options;
   options.package_paths = package_paths;
-  const Result<std::shared_ptr<const BodyModel>> model = import_urdf(path, options);
+  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_urdf(path, options);
   if (!model) {
     write_line(OutputTo::error, model.error());
     return kInputError;
@@ -212,4 +212,4 @@ int inspect_command(const std::string& path, bool json, const std::vector<std::s
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

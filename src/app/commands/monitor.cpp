@@ -10,11 +10,11 @@
 #include "base/system/signals.h"
 #include "net/console/console_client.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
-using Kind = ConsoleLine::Kind;
+using Kind = console::ConsoleLine::Kind;
 
 volatile std::sig_atomic_t end_requested = 0;
 
@@ -28,7 +28,7 @@ class MessagePrinter {
   explicit MessagePrinter(const MonitorCommand& command) : command_(command) {}
 
   /// Returns false after the last line (--count).
-  bool show(const ConsoleLine& line) {
+  bool show(const console::ConsoleLine& line) {
     if (line.kind == Kind::missed)
       write_line(OutputTo::error, fmt::format("({} lines dropped: too many messages)", line.count));
     const bool message = line.kind == Kind::in || line.kind == Kind::out;
@@ -50,15 +50,15 @@ class MessagePrinter {
 }  // namespace
 
 int monitor_command(const MonitorCommand& command) {
-  Result<ConnectedProgram> program = connect_to_program(command.pid);
+  Result<console::ConnectedProgram> program = console::connect_to_program(command.pid);
   if (!program) return fail(kInputError, "monitor: " + program.error());
   auto& [client, hello] = *program;
   handle_end_signals();
-  const auto kind = command.changes ? ConsoleRequest::Kind::changes : ConsoleRequest::Kind::traffic;
+  const auto kind = command.changes ? console::ConsoleRequest::Kind::changes : console::ConsoleRequest::Kind::traffic;
   if (!client.send({1, kind, command.pattern})) return fail(kInputError, "monitor: limber ended");
   MessagePrinter printer(command);
   while (end_requested == 0) {
-    const std::optional<ConsoleLine> line = client.next(-1);
+    const std::optional<console::ConsoleLine> line = client.next(-1);
     if (!line) {
       if (client.ended() || result_error() != 0) return kSuccess;
       continue;
@@ -72,4 +72,4 @@ int monitor_command(const MonitorCommand& command) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

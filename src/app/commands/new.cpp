@@ -22,7 +22,7 @@
 #include "script/scene/script_files.h"
 #include "sim/behavior/behavior_type.h"
 
-namespace limber {
+namespace limber::app {
 
 /// The files of src/app/templates, embedded by the build.
 std::span<const EmbeddedFile> template_files();
@@ -124,18 +124,19 @@ int new_show(const std::string& folder) {
 fs::path show_folder() {
   std::error_code error;
   const fs::path here = fs::current_path(error);
-  const fs::path show = ScriptFiles((here / "scene.lua").string(), "").show_folder();
+  const fs::path show = script::ScriptFiles((here / "scene.lua").string(), "").show_folder();
   return !error && fs::is_directory(show / "scripts", error) ? show : fs::path();
 }
 
 // returns why a behavior can't have this name in a show: the name (normalized as in scenes) belongs to an existing type
 std::string name_conflict(const fs::path& show, std::string_view name) {
-  const BehaviorTypes built_in;
+  const sim::BehaviorTypes built_in;
   const auto is = [&](std::string_view type) {
     return type == name ? fmt::format("'{}' is", name) : fmt::format("'{}' means '{}', which is", name, type);
   };
   if (const auto type = built_in.find(name)) return is(type->name) + " a built-in behavior type";
-  const std::string found = ScriptFiles((show / "scripts" / "scene.lua").string(), data_dir()).find_behavior(name);
+  const std::string found =
+      script::ScriptFiles((show / "scripts" / "scene.lua").string(), data_dir()).find_behavior(name);
   if (found.empty()) return {};
   const std::string type = fs::path(found).stem().string();
   std::error_code error;
@@ -191,4 +192,4 @@ int new_command(const NewCommand& command) {
   return command.kind == NewCommand::Kind::show ? new_show(command.name) : new_file(command);
 }
 
-}  // namespace limber
+}  // namespace limber::app

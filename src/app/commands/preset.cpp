@@ -14,21 +14,22 @@
 #include "base/text.h"
 #include "engine/presets/file.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20u;  // limit for preset files of other programs
 
 // appends presets under names that are not in use
-void append(PresetList& list, const PresetList& more) {
+void append(engine::PresetList& list, const engine::PresetList& more) {
   for (const auto& preset : more) {
     std::string name = preset->name;
     const auto in_use = [&] {
       return std::any_of(list.begin(), list.end(), [&](const auto& p) { return p->name == name; });
     };
     for (int n = 2; in_use(); n++) name = fmt::format("{} {}", shortened(preset->name, 100), n);
-    list.push_back(std::make_shared<const Preset>(Preset{name, preset->selection, preset->schema, preset->values}));
+    list.push_back(std::make_shared<const engine::Preset>(
+        engine::Preset{name, preset->selection, preset->schema, preset->values}));
   }
 }
 
@@ -39,15 +40,16 @@ int preset_command(const PresetCommand& command) {
   if (!text)
     return fail(kInputError, fmt::format("{}: {}; in Max, pattrstorage writes one by the message writejson",
                                          printable(command.file), text.error()));
-  const Result<ParsedPresets> imported = import_pattrstorage(*text);
+  const Result<engine::ParsedPresets> imported = engine::import_pattrstorage(*text);
   if (!imported) return fail(kInputError, fmt::format("{}: {}", command.file, imported.error()));
   std::vector<std::string> searched;
   const std::string scene = find_scene(command.scene, searched);
   if (scene.empty()) return fail(kInputError, scene_not_found(command.scene, searched));
   const std::string state = state_dir();
   const std::string locks = state.empty() ? "" : state + "/locks";
-  PresetFile file(PresetFile::path_for(scene), PresetFile::write_access_for(scene, locks, true));
-  Result<ParsedPresets> before = file.load();
+  engine::PresetFile file(engine::PresetFile::path_for(scene),
+                          engine::PresetFile::write_access_for(scene, locks, true));
+  Result<engine::ParsedPresets> before = file.load();
   if (!before) return fail(kInputError, before.error());
   append(before->presets, imported->presets);
   std::string notice;
@@ -60,4 +62,4 @@ int preset_command(const PresetCommand& command) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -22,7 +22,7 @@
 #include "net/osc/packets/decode.h"
 #include "net/osc/packets/encode.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -30,13 +30,13 @@ namespace {
 constexpr const char* kDelayedReplies[] = {"/transport/scene", "/list/scenes", "/take/play"};
 constexpr const char* kProbeAddress = "/physics/sim/tick";  // queried after the message
 
-Result<Endpoint> endpoint_named(const std::string& text) {
+Result<system::Endpoint> endpoint_named(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   const std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
   const std::optional<double> port = parse_number(text.substr(colon + 1));
   if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
     return Error{fmt::format("--to '{}' is not an address; write --to [HOST:]PORT", printable(text))};
-  Result<Endpoint> at = resolve(host, static_cast<std::uint16_t>(*port));
+  Result<system::Endpoint> at = system::resolve(host, static_cast<std::uint16_t>(*port));
   if (!at) return Error{fmt::format("--to '{}': {}", printable(text), at.error())};
   return at;
 }
@@ -49,7 +49,7 @@ std::vector<Message> receive(int fd, double seconds) {
   std::vector<char> bytes(65536);
   const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
   if (got <= 0) return {};
-  Result<Decoded> decoded = decode_packet(bytes.data(), static_cast<std::size_t>(got));
+  Result<osc::Decoded> decoded = osc::decode_packet(bytes.data(), static_cast<std::size_t>(got));
   return decoded ? std::move(decoded->messages) : std::vector<Message>();
 }
 
@@ -78,7 +78,7 @@ Replies show_replies(int fd, double wait, bool delayed, const std::function<void
         replies.rejected = true;
         print_notice("{}: {}", printable(message.args[0].text), printable(message.args[1].text));
       } else {
-        print_result("{}\n", message_text(message));
+        print_result("{}\n", engine::message_text(message));
       }
     }
     replies.complete = replies.queries_answered && reply_seen;
@@ -87,10 +87,10 @@ Replies show_replies(int fd, double wait, bool delayed, const std::function<void
 }
 
 // `tags`: as in SendCommand
-bool send_message(int fd, const Endpoint& to, const Message& message, std::string_view tags) {
-  PacketBuffer buffer;
+bool send_message(int fd, const system::Endpoint& to, const Message& message, std::string_view tags) {
+  osc::PacketBuffer buffer;
   const std::span<const char> packet =
-      tags.empty() ? encode_message(message, buffer) : encode_tagged(message, tags, buffer);
+      tags.empty() ? osc::encode_message(message, buffer) : osc::encode_tagged(message, tags, buffer);
   return !packet.empty() && system::send_datagram(fd, to, packet) == 0;
 }
 
@@ -107,7 +107,7 @@ int send_command(const SendCommand& command) {
     if (!tagged) return fail(kUsageError, "send: " + tagged.error());
     message = std::move(*tagged);
   }
-  const Result<Endpoint> to = endpoint_named(command.to);
+  const Result<system::Endpoint> to = endpoint_named(command.to);
   if (!to) return fail(kUsageError, "send: " + to.error());
   const Result<system::UdpSocket> socket = system::open_udp({});
   if (!socket) return fail(kMachineError, "send: " + socket.error());
@@ -129,4 +129,4 @@ int send_command(const SendCommand& command) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

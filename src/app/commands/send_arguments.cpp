@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -100,4 +100,4 @@ Result<Message> tagged_message(const std::string& address, std::string_view tags
   return message;
 }
 
-}  // namespace limber
+}  // namespace limber::app

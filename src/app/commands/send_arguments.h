@@ -8,7 +8,7 @@
 #include "base/message.h"
 #include "base/result.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Converts a word to an argument: a number, true or false, else text. A word in its own quotes ("'1'") is always text.
 Arg parse_arg(const std::string& word);
@@ -19,4 +19,4 @@ Arg parse_arg(const std::string& word);
 Result<Message> tagged_message(const std::string& address, std::string_view tags,
                                const std::vector<std::string>& words);
 
-}  // namespace limber
+}  // namespace limber::app

@@ -11,21 +11,21 @@
 #include "base/text.h"
 #include "engine/takes/reader.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 struct Count {
   std::uint64_t ticks = 0, messages = 0, texts = 0, stopped = 0, last = 0;
-  std::map<TakeSceneRun::Kind, std::uint64_t> runs;
+  std::map<engine::TakeSceneRun::Kind, std::uint64_t> runs;
 };
 
-Count count_all(TakeReader& reader) {
+Count count_all(engine::TakeReader& reader) {
   Count count;
-  for (RecordedPass tick; reader.next(tick);) {
+  for (engine::RecordedPass tick; reader.next(tick);) {
     if (tick.running) count.ticks++;
-    for (const InputRecord& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
-    for (const TakeSceneRun& run : tick.runs) {
+    for (const engine::InputRecord& message : tick.messages) (message.evaluate ? count.texts : count.messages)++;
+    for (const engine::TakeSceneRun& run : tick.runs) {
       if (run.succeeded) count.runs[run.kind]++;
     }
     count.stopped += tick.stopped_calls.size();
@@ -35,10 +35,10 @@ Count count_all(TakeReader& reader) {
 }
 
 // prints each file once, with the size of its first version
-void print_files(const TakeReader& reader) {
+void print_files(const engine::TakeReader& reader) {
   std::map<std::string, std::pair<std::size_t, std::size_t>> files;  // number of versions, bytes of the first
   std::map<std::string, std::uint32_t> newest;
-  for (const TakeFileList& list : reader.file_lists()) {
+  for (const engine::TakeFileList& list : reader.file_lists()) {
     for (const auto& [path, content] : list.files) {
       const auto [at, fresh] = files.try_emplace(path, 1, reader.content_size(content));
       if (!fresh && newest[path] != content) at->second.first++;
@@ -54,11 +54,11 @@ void print_files(const TakeReader& reader) {
 }  // namespace
 
 int take_command(const std::string& file) {
-  auto opened = TakeReader::open(file);
+  auto opened = engine::TakeReader::open(file);
   if (!opened) return fail(kInputError, opened.error());
-  TakeReader& reader = **opened;
+  engine::TakeReader& reader = **opened;
   const Count count = count_all(reader);
-  const auto runs = [&](TakeSceneRun::Kind kind) {
+  const auto runs = [&](engine::TakeSceneRun::Kind kind) {
     const auto at = count.runs.find(kind);
     return at == count.runs.end() ? std::uint64_t{0} : at->second;
   };
@@ -66,10 +66,10 @@ int take_command(const std::string& file) {
   print_result("recorded  {} by limber {}\n", printable(reader.header().recorded), printable(reader.header().limber));
   print_result("ticks     {}\n", count.ticks);
   print_result("messages  {}, console inputs {}\n", count.messages, count.texts);
-  print_result(
-      "runs      {} reloads, {} resets, {} other scenes\n",
-      runs(TakeSceneRun::Kind::reload_finished) + runs(TakeSceneRun::Kind::reload) + runs(TakeSceneRun::Kind::rerun),
-      runs(TakeSceneRun::Kind::reset), runs(TakeSceneRun::Kind::scene));
+  print_result("runs      {} reloads, {} resets, {} other scenes\n",
+               runs(engine::TakeSceneRun::Kind::reload_finished) + runs(engine::TakeSceneRun::Kind::reload) +
+                   runs(engine::TakeSceneRun::Kind::rerun),
+               runs(engine::TakeSceneRun::Kind::reset), runs(engine::TakeSceneRun::Kind::scene));
   print_result("stopped   {} script calls\n", count.stopped);
   print_result("bytes     {}\n", reader.size());
   if (reader.end()) {
@@ -83,4 +83,4 @@ int take_command(const std::string& file) {
   return kSuccess;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -14,7 +14,7 @@
 #include "base/system/wait.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -99,7 +99,7 @@ int evaluate_lines(ConsoleSession& session) {
 }  // namespace
 
 int console_command(const ConsoleCommand& command) {
-  Result<ConnectedProgram> program = connect_to_program(command.pid);
+  Result<console::ConnectedProgram> program = console::connect_to_program(command.pid);
   if (!program) return fail(kInputError, "console: " + program.error());
   const bool typed = system::at_terminal();
   if (!command.expression && typed) return console_terminal(std::move(*program));
@@ -107,4 +107,4 @@ int console_command(const ConsoleCommand& command) {
   return command.expression ? evaluate_once(session, *command.expression) : evaluate_lines(session);
 }
 
-}  // namespace limber
+}  // namespace limber::app

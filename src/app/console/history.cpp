@@ -10,7 +10,7 @@
 #include "base/system/file.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace fs = std::filesystem;
 
@@ -71,4 +71,4 @@ void ConsoleHistory::rewrite() const {
   if (!complete || std::rename(temporary.c_str(), file_.c_str()) != 0) std::remove(temporary.c_str());
 }
 
-}  // namespace limber
+}  // namespace limber::app

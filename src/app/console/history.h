@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class ConsoleHistory {
@@ -33,4 +33,4 @@ class ConsoleHistory {
   std::vector<std::string> lines_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

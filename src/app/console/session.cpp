@@ -7,22 +7,22 @@
 
 #include "base/log/output.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
-using Kind = ConsoleLine::Kind;
+using Kind = console::ConsoleLine::Kind;
 
 bool is_reply(Kind kind) { return kind >= Kind::done && kind <= Kind::names; }
 
 }  // namespace
 
 // Returns the reply; nullopt if the user canceled or the program has ended.
-std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) {
+std::optional<console::ConsoleLine> ConsoleSession::send_request(console::ConsoleRequest request) {
   request.id = ++last_request_;
   if (!client_.send(request)) return {};
   while (true) {
-    std::optional<ConsoleLine> line = client_.next(-1);
+    std::optional<console::ConsoleLine> line = client_.next(-1);
     if (line && line->id == last_request_ && is_reply(line->kind)) return line;
     if (line) {
       show(*line);
@@ -33,7 +33,7 @@ std::optional<ConsoleLine> ConsoleSession::send_request(ConsoleRequest request) 
 }
 
 ConsoleSession::EvaluationStatus ConsoleSession::evaluate(const std::string& text) {
-  const std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::evaluate, text});
+  const std::optional<console::ConsoleLine> reply = send_request({0, console::ConsoleRequest::Kind::evaluate, text});
   if (!reply) return client_.ended() ? EvaluationStatus::program_ended : EvaluationStatus::canceled;
   if (reply->kind == Kind::incomplete) return EvaluationStatus::incomplete;
   show(*reply);
@@ -41,23 +41,23 @@ ConsoleSession::EvaluationStatus ConsoleSession::evaluate(const std::string& tex
 }
 
 std::vector<std::string> ConsoleSession::complete(const std::string& text, std::size_t& word) {
-  std::optional<ConsoleLine> reply = send_request({0, ConsoleRequest::Kind::complete, text});
+  std::optional<console::ConsoleLine> reply = send_request({0, console::ConsoleRequest::Kind::complete, text});
   if (!reply || reply->word > text.size()) return {};
   word = reply->word;
   return std::move(reply->names);
 }
 
 bool ConsoleSession::has_messages() {
-  while (std::optional<ConsoleLine> line = client_.next(0)) messages_.push_back(std::move(*line));
+  while (std::optional<console::ConsoleLine> line = client_.next(0)) messages_.push_back(std::move(*line));
   return !messages_.empty();
 }
 
 void ConsoleSession::show_messages() {
-  for (const ConsoleLine& line : messages_) show(line);
+  for (const console::ConsoleLine& line : messages_) show(line);
   messages_.clear();
 }
 
-void ConsoleSession::show(const ConsoleLine& line) const {
+void ConsoleSession::show(const console::ConsoleLine& line) const {
   switch (line.kind) {
     case Kind::value:
       print_result("{}\n", line.text);
@@ -87,4 +87,4 @@ void ConsoleSession::show(const ConsoleLine& line) const {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -9,7 +9,7 @@
 
 #include "net/console/console_client.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class ConsoleSession {
@@ -25,7 +25,7 @@ class ConsoleSession {
 
   /// `is_canceled` is called after a signal; it returns true if the user no longer waits for the answer.
   explicit ConsoleSession(
-      ConsoleClient client, std::function<bool()> is_canceled = [] { return false; })
+      console::ConsoleClient client, std::function<bool()> is_canceled = [] { return false; })
       : client_(std::move(client)), is_canceled_(std::move(is_canceled)) {}
 
   int fd() const { return client_.fd(); }
@@ -39,13 +39,13 @@ class ConsoleSession {
   void show_messages();
 
  private:
-  std::optional<ConsoleLine> send_request(ConsoleRequest request);
-  void show(const ConsoleLine& line) const;
+  std::optional<console::ConsoleLine> send_request(console::ConsoleRequest request);
+  void show(const console::ConsoleLine& line) const;
 
-  ConsoleClient client_;
+  console::ConsoleClient client_;
   std::function<bool()> is_canceled_;
   std::uint64_t last_request_ = 0;
-  std::vector<ConsoleLine> messages_;
+  std::vector<console::ConsoleLine> messages_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

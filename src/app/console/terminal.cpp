@@ -22,7 +22,7 @@
 #include "base/system/signals.h"
 #include "base/system/wait.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -41,7 +41,7 @@ bool consume_interrupt() {
 
 class Terminal {
  public:
-  explicit Terminal(ConsoleClient client);
+  explicit Terminal(console::ConsoleClient client);
   ~Terminal();
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
@@ -70,7 +70,7 @@ class Terminal {
   std::mbstate_t bytes_{};  // state of an incomplete multibyte character
 };
 
-Terminal::Terminal(ConsoleClient client) : session_(std::move(client), consume_interrupt) {
+Terminal::Terminal(console::ConsoleClient client) : session_(std::move(client), consume_interrupt) {
   // only the character encoding; numbers keep the decimal point
   if (std::setlocale(LC_CTYPE, "") == nullptr || MB_CUR_MAX < 2) std::setlocale(LC_CTYPE, "C.UTF-8");
   history_ = history_init();
@@ -229,10 +229,10 @@ int Terminal::run() {
 
 }  // namespace
 
-int console_terminal(ConnectedProgram program) {
+int console_terminal(console::ConnectedProgram program) {
   print_result("limber {}, process {}, plays {}. Lua console: Tab completes, Ctrl+C cancels a line, Ctrl+D exits.\n",
                program.hello.version, program.hello.pid, program.hello.text);
   return Terminal(std::move(program.client)).run();
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -3,9 +3,9 @@
 
 #include "net/console/console_client.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Runs until the user leaves (Ctrl+D) or the program ends. Returns the exit code. [main]
-int console_terminal(ConnectedProgram program);
+int console_terminal(console::ConnectedProgram program);
 
-}  // namespace limber
+}  // namespace limber::app

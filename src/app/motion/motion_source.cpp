@@ -11,7 +11,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -20,7 +20,7 @@ struct JointOffsets {
 };
 
 const JointOffsets& joint_offsets() {
-  static const auto at = [](const char* name) { return Joint::table().at(name).offset; };
+  static const auto at = [](const char* name) { return sim::Joint::table().at(name).offset; };
   static const JointOffsets layout{at("value"), at("angles"), at("offsets"), at("relrot")};
   return layout;
 }
@@ -32,7 +32,7 @@ struct NamedValue {
 };
 
 // the exported values of a joint
-std::vector<NamedValue> exported_values(JointType type) {
+std::vector<NamedValue> exported_values(model::JointType type) {
   const JointOffsets& layout = joint_offsets();
   const std::vector<NamedValue> turned = {
       {"angle_x", layout.relrot, true}, {"angle_y", layout.relrot + 1, true}, {"angle_z", layout.relrot + 2, true}};
@@ -40,41 +40,42 @@ std::vector<NamedValue> exported_values(JointType type) {
                                      {"shift_y", layout.offsets + 1, false},
                                      {"shift_z", layout.offsets + 2, false}};
   switch (type) {
-    case JointType::revolute:
-    case JointType::continuous:
+    case model::JointType::revolute:
+    case model::JointType::continuous:
       return {{"angle", layout.value, false}};
-    case JointType::prismatic:
+    case model::JointType::prismatic:
       return {{"shift", layout.value, false}};
-    case JointType::planar:
+    case model::JointType::planar:
       return {shifted[0], shifted[1], {"angle", layout.angles + 2, false}};
-    case JointType::spherical:
+    case model::JointType::spherical:
       return turned;
-    case JointType::floating:
+    case model::JointType::floating:
       shifted.insert(shifted.end(), turned.begin(), turned.end());
       return shifted;
-    case JointType::fixed:
+    case model::JointType::fixed:
       break;
   }
   return {};
 }
 
-std::vector<std::string> value_names(JointType type) {
+std::vector<std::string> value_names(model::JointType type) {
   std::vector<std::string> names;
   for (const NamedValue& value : exported_values(type)) names.emplace_back(value.name);
   return names;
 }
 
-std::uint64_t content_of(const Body& body) { return body.model() == nullptr ? 0 : body.model()->content_hash; }
+std::uint64_t content_of(const sim::Body& body) { return body.model() == nullptr ? 0 : body.model()->content_hash; }
 
-bool same_parts(const MotionBody& known, const Body& body) {
+bool same_parts(const exporter::MotionBody& known, const sim::Body& body) {
   const auto parts = body.parts();
   const auto joints = body.joints();
   return known.links.size() == parts.size() && known.joints.size() == joints.size() &&
          std::equal(parts.begin(), parts.end(), known.links.begin(),
-                    [](const auto& part, const MotionLink& link) { return part->name() == link.name; }) &&
-         std::equal(joints.begin(), joints.end(), known.joints.begin(), [](const auto& joint, const MotionJoint& as) {
-           return joint->name() == as.name && value_names(joint->type()) == as.values;
-         });
+                    [](const auto& part, const exporter::MotionLink& link) { return part->name() == link.name; }) &&
+         std::equal(joints.begin(), joints.end(), known.joints.begin(),
+                    [](const auto& joint, const exporter::MotionJoint& as) {
+                      return joint->name() == as.name && value_names(joint->type()) == as.values;
+                    });
 }
 
 Pose interpolate(const Pose& a, const Pose& b, double mix) {
@@ -83,26 +84,26 @@ Pose interpolate(const Pose& a, const Pose& b, double mix) {
 
 // sets the parent of each link by the first joint that leads to it and closes no loop, and the rest poses along these
 // joints
-void set_parents(MotionBody& motion, const Body& body, const std::vector<Pose>& current) {
-  std::map<const Part*, int> number;
+void set_parents(exporter::MotionBody& motion, const sim::Body& body, const std::vector<Pose>& current) {
+  std::map<const sim::Part*, int> number;
   for (std::size_t i = 0; i < body.parts().size(); i++) number[body.parts()[i].get()] = static_cast<int>(i);
-  std::vector<const Joint*> by(motion.links.size(), nullptr);
+  std::vector<const sim::Joint*> by(motion.links.size(), nullptr);
   for (const auto& joint : body.joints()) {
     const int parent = number[&joint->parent()];
     const int child = number[&joint->child()];
     int top = parent;
     while (top >= 0 && top != child) top = motion.links[static_cast<std::size_t>(top)].parent;
-    MotionLink& link = motion.links[static_cast<std::size_t>(child)];
+    exporter::MotionLink& link = motion.links[static_cast<std::size_t>(child)];
     if (top == child || link.parent >= 0) continue;
     link.parent = parent;
     by[static_cast<std::size_t>(child)] = joint.get();
   }
-  for (const std::size_t i : link_order(motion).links) {
-    MotionLink& link = motion.links[i];
+  for (const std::size_t i : exporter::link_order(motion).links) {
+    exporter::MotionLink& link = motion.links[i];
     if (link.parent < 0) {
       link.rest = current.front().inverse() * current[i];
     } else {
-      const JointSpec& spec = by[i]->spec();
+      const sim::JointSpec& spec = by[i]->spec();
       link.rest = motion.links[static_cast<std::size_t>(link.parent)].rest * spec.frame_in_parent *
                   spec.frame_in_child.inverse();
     }
@@ -117,23 +118,24 @@ bool MotionSource::is_selected(const std::string& name) const {
          });
 }
 
-MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& entry, const Snapshot& current) {
+MotionSource::Track MotionSource::make_track(const sim::Body& body, const engine::BodyEntry& entry,
+                                             const engine::Snapshot& current) {
   Track track;
   track.content = content_of(body);
   track.body.name = body.name();
-  std::map<std::uint32_t, std::vector<RenderInstance>> instances;
-  for (const RenderInstance& instance : current.render_scene->instances) {
+  std::map<std::uint32_t, std::vector<engine::RenderInstance>> instances;
+  for (const engine::RenderInstance& instance : current.render_scene->instances) {
     if (instance.enabled_offset == entry.enabled_offset) instances[instance.part_offset].push_back(instance);
   }
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < body.parts().size(); i++) {
-    poses.push_back(part_pose(current, entry.part_offsets[i]));
+    poses.push_back(engine::part_pose(current, entry.part_offsets[i]));
     track.body.links.push_back(
         {body.parts()[i]->name(), -1, {}, surfaces_.surfaces_of(current, instances[entry.part_offsets[i]])});
   }
   set_parents(track.body, body, poses);
   for (std::size_t i = 0; i < body.joints().size(); i++) {
-    const Joint& joint = *body.joints()[i];
+    const sim::Joint& joint = *body.joints()[i];
     track.body.joints.push_back({joint.name(), value_names(joint.type())});
     for (const NamedValue& value : exported_values(joint.type()))
       track.values.push_back({i, value.offset, value.is_angle});
@@ -141,7 +143,8 @@ MotionSource::Track MotionSource::make_track(const Body& body, const BodyEntry& 
   return track;
 }
 
-int MotionSource::find_or_add_track(const Body& body, const BodyEntry& entry, const Snapshot& current) {
+int MotionSource::find_or_add_track(const sim::Body& body, const engine::BodyEntry& entry,
+                                    const engine::Snapshot& current) {
   if (body.parts().empty() || !is_selected(body.name())) return -1;
   for (std::size_t i = 0; i < tracks_.size(); i++) {
     const Track& track = tracks_[i];
@@ -152,14 +155,14 @@ int MotionSource::find_or_add_track(const Body& body, const BodyEntry& entry, co
   return static_cast<int>(tracks_.size()) - 1;
 }
 
-void MotionSource::update(const World& world, const Snapshot& current) {
+void MotionSource::update(const sim::World& world, const engine::Snapshot& current) {
   if (recent_[0].body_list == current.body_list) return;
   std::swap(recent_[0], recent_[1]);
   BodyListTracks& tracks = recent_[0];
   tracks.body_list = current.body_list;
   tracks.track_of.clear();
   for (std::size_t i = 0; i < current.body_list->bodies.size(); i++) {
-    const Body& body = *world.bodies()[i];
+    const sim::Body& body = *world.bodies()[i];
     if (std::find(names_.begin(), names_.end(), body.name()) == names_.end()) names_.push_back(body.name());
     tracks.track_of.push_back(find_or_add_track(body, current.body_list->bodies[i], current));
   }
@@ -169,19 +172,19 @@ void MotionSource::update(const World& world, const Snapshot& current) {
   }
 }
 
-const MotionSource::BodyListTracks& MotionSource::tracks_of(const BodyList* body_list) const {
+const MotionSource::BodyListTracks& MotionSource::tracks_of(const engine::BodyList* body_list) const {
   return recent_[0].body_list.get() == body_list ? recent_[0] : recent_[1];
 }
 
-Result<void> MotionSource::add_frame(double time, const Snapshot& previous, const Snapshot& current, double mix,
-                                     MotionWriter& writer) {
-  const Snapshot& snapshot = mix >= 1 ? current : previous;
+Result<void> MotionSource::add_frame(double time, const engine::Snapshot& previous, const engine::Snapshot& current,
+                                     double mix, exporter::MotionWriter& writer) {
+  const engine::Snapshot& snapshot = mix >= 1 ? current : previous;
   const BodyListTracks& here = tracks_of(snapshot.body_list.get());
   const BodyListTracks& next = tracks_of(current.body_list.get());
   const bool interpolates = mix < 1 && current.time >= previous.time;
-  for (MotionSample& sample : samples_) sample.present = false;
+  for (exporter::MotionSample& sample : samples_) sample.present = false;
   for (std::size_t i = 0; i < here.track_of.size(); i++) {
-    const BodyEntry& a = snapshot.body_list->bodies[i];
+    const engine::BodyEntry& a = snapshot.body_list->bodies[i];
     if (here.track_of[i] < 0 || snapshot.transient[a.enabled_offset] < 0.5) continue;
     const auto number = static_cast<std::size_t>(here.track_of[i]);
     Track& track = tracks_[number];
@@ -191,20 +194,21 @@ Result<void> MotionSource::add_frame(double time, const Snapshot& previous, cons
       if (Result<void> added = writer.add_body(track.body); !added) return added;
     }
     const bool continues = interpolates && number < next.body_of.size() && next.body_of[number] >= 0;
-    const BodyEntry& b = continues ? current.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
+    const engine::BodyEntry& b =
+        continues ? current.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
     fill_sample(track, {snapshot, a}, {continues ? current : snapshot, b}, continues ? mix : 0);
   }
   return writer.add_frame(time, samples_);
 }
 
 void MotionSource::fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix) {
-  MotionSample& sample = samples_[*track.writer_number];
+  exporter::MotionSample& sample = samples_[*track.writer_number];
   sample.present = true;
   sample.links.resize(from.body.part_offsets.size());
   sample.values.resize(track.values.size());
   for (std::size_t k = 0; k < sample.links.size(); k++)
-    sample.links[k] = interpolate(part_pose(from.snapshot, from.body.part_offsets[k]),
-                                  part_pose(to.snapshot, to.body.part_offsets[k]), mix);
+    sample.links[k] = interpolate(engine::part_pose(from.snapshot, from.body.part_offsets[k]),
+                                  engine::part_pose(to.snapshot, to.body.part_offsets[k]), mix);
   for (std::size_t k = 0; k < track.values.size(); k++) {
     const Value& value = track.values[k];
     const double start = from.snapshot.transient[from.body.joint_offsets[value.joint] + value.offset];
@@ -214,4 +218,4 @@ void MotionSource::fill_sample(const Track& track, const BodyAt& from, const Bod
   }
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -15,7 +15,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Tracks the bodies of a running engine.
 class MotionSource {
@@ -25,12 +25,12 @@ class MotionSource {
 
   /// Updates the list of bodies; called before the first tick and after each. A body that is created again with the
   /// same name, parts and joints (after a reset, for example) continues the same track. [sim]
-  void update(const World& world, const Snapshot& current);
+  void update(const sim::World& world, const engine::Snapshot& current);
   /// Adds a frame that is interpolated between the two snapshots by `mix`, 0 .. 1: positions linearly, rotations along
   /// the shortest arc. A body that is only in one of the snapshots appears or disappears at `mix` 1. There is no
   /// interpolation across a reset.
-  Result<void> add_frame(double time, const Snapshot& previous, const Snapshot& current, double mix,
-                         MotionWriter& writer);
+  Result<void> add_frame(double time, const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                         exporter::MotionWriter& writer);
 
   /// Number of bodies that were in a frame.
   std::size_t bodies() const { return samples_.size(); }
@@ -46,36 +46,36 @@ class MotionSource {
   };
   // the motion of one body
   struct Track {
-    MotionBody body;
+    exporter::MotionBody body;
     std::uint64_t content = 0;  // hash of the body's model
     std::vector<Value> values;
     std::optional<std::size_t> writer_number;  // the writer's number of the body
   };
   // maps the bodies of a body list to tracks and back; -1: none
   struct BodyListTracks {
-    std::shared_ptr<const BodyList> body_list;
+    std::shared_ptr<const engine::BodyList> body_list;
     std::vector<int> track_of;
     std::vector<int> body_of;
   };
 
   // a body in a snapshot
   struct BodyAt {
-    const Snapshot& snapshot;
-    const BodyEntry& body;
+    const engine::Snapshot& snapshot;
+    const engine::BodyEntry& body;
   };
   void fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix);
 
-  int find_or_add_track(const Body& body, const BodyEntry& entry, const Snapshot& current);
-  Track make_track(const Body& body, const BodyEntry& entry, const Snapshot& current);
+  int find_or_add_track(const sim::Body& body, const engine::BodyEntry& entry, const engine::Snapshot& current);
+  Track make_track(const sim::Body& body, const engine::BodyEntry& entry, const engine::Snapshot& current);
   bool is_selected(const std::string& name) const;
-  const BodyListTracks& tracks_of(const BodyList* body_list) const;
+  const BodyListTracks& tracks_of(const engine::BodyList* body_list) const;
 
   std::vector<std::string> patterns_;
   std::vector<std::string> names_;
   std::vector<Track> tracks_;
   std::array<BodyListTracks, 2> recent_;  // the latest first
   MotionSurfaces surfaces_;
-  std::vector<MotionSample> samples_;  // indexed by the writer's number
+  std::vector<exporter::MotionSample> samples_;  // indexed by the writer's number
 };
 
-}  // namespace limber
+}  // namespace limber::app

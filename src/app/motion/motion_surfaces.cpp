@@ -8,7 +8,7 @@
 #include "base/color.h"
 #include "ui/render/mesh.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -20,7 +20,7 @@ struct Paint {
 };
 
 // the factor 2 is for ofxDabPhysics: its scale is 0.5 for a surface of full brightness
-Paint paint_of(const Material& material) {
+Paint paint_of(const engine::Material& material) {
   const Vec3 rgb = rgb_of(material.diffuse_color);
   Paint paint;
   for (int i = 0; i < 3; i++)
@@ -38,8 +38,8 @@ void add_pose(std::string& key, const Pose& pose) {
   for (int i = 0; i < 4; i++) add_number(key, pose.rotation[i]);
 }
 
-void add_piece(std::string& key, const ShapeModel& shape, const Pose& origin, const Paint& paint) {
-  const MeshModel* const mesh = shape.mesh.get();
+void add_piece(std::string& key, const model::ShapeModel& shape, const Pose& origin, const Paint& paint) {
+  const model::MeshModel* const mesh = shape.mesh.get();
   key.append(reinterpret_cast<const char*>(&mesh), sizeof mesh);
   add_number(key, static_cast<double>(shape.kind));
   add_vec(key, shape.normal);
@@ -55,7 +55,7 @@ void add_piece(std::string& key, const ShapeModel& shape, const Pose& origin, co
 // appends to a surface and merges equal vertices
 class Builder {
  public:
-  explicit Builder(Surface& surface) : surface_(surface) {}
+  explicit Builder(exporter::Surface& surface) : surface_(surface) {}
 
   void add(const Pose& at, const Vec3& point, const Vec3& normal) {
     const Vec3 p = at * point;
@@ -71,7 +71,7 @@ class Builder {
   }
 
  private:
-  Surface& surface_;
+  exporter::Surface& surface_;
   std::map<std::array<float, 6>, std::uint32_t> indices_;
 };
 
@@ -82,13 +82,14 @@ void add_plane(Builder& builder, const Pose& at, const Vec3& up) {
   for (const Vec3& corner : {-u - v, u - v, u + v, -u - v, u + v, v - u}) builder.add(at, corner, n);
 }
 
-void add_shape(Builder& builder, const ShapeModel& shape, const Pose& origin) {
-  if (shape.mesh == nullptr && shape.kind == ShapeKind::plane) return add_plane(builder, origin, shape.normal);
+void add_shape(Builder& builder, const model::ShapeModel& shape, const Pose& origin) {
+  if (shape.mesh == nullptr && shape.kind == model::ShapeKind::plane) return add_plane(builder, origin, shape.normal);
   const bool of_file = shape.mesh != nullptr;
-  const MeshVertices vertices = of_file ? model_mesh(*shape.mesh, 0) : primitive_mesh(shape.kind, 1);
-  const MeshSize size = of_file ? MeshSize{} : mesh_size(shape);
+  const render::MeshVertices vertices =
+      of_file ? render::model_mesh(*shape.mesh, 0) : render::primitive_mesh(shape.kind, 1);
+  const render::MeshSize size = of_file ? render::MeshSize{} : render::mesh_size(shape);
   const Pose at = of_file ? origin * shape.mesh_pose : origin;
-  for (const MeshVertex& vertex : vertices) {
+  for (const render::MeshVertex& vertex : vertices) {
     const Vec3 corner(vertex.corner[0], vertex.corner[1], vertex.corner[2]);
     const Vec3 normal(vertex.normal[0], vertex.normal[1], vertex.normal[2]);
     // shapes without a round part are scaled, their normals inversely
@@ -99,18 +100,18 @@ void add_shape(Builder& builder, const ShapeModel& shape, const Pose& origin) {
 
 }  // namespace
 
-std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snapshot,
-                                                            std::span<const RenderInstance> instances) {
+std::shared_ptr<const exporter::Surfaces> MotionSurfaces::surfaces_of(
+    const engine::Snapshot& snapshot, std::span<const engine::RenderInstance> instances) {
   std::string key;
   std::vector<Paint> paints;
-  for (const RenderInstance& instance : instances) {
-    const RenderShape& form = snapshot.render_scene->shapes[instance.shape];
-    paints.push_back(paint_of(material_of(snapshot, form.material)));
+  for (const engine::RenderInstance& instance : instances) {
+    const engine::RenderShape& form = snapshot.render_scene->shapes[instance.shape];
+    paints.push_back(paint_of(engine::material_of(snapshot, form.material)));
     add_piece(key, form.geometry, instance.origin, paints.back());
   }
   const auto [at, fresh] = cache_.try_emplace(key);
   if (!fresh) return at->second.surfaces;
-  Surfaces surfaces;
+  exporter::Surfaces surfaces;
   std::vector<Builder> builders;
   surfaces.reserve(instances.size());  // builders keep references to its elements
   for (std::size_t i = 0; i < instances.size(); i++) {
@@ -122,13 +123,13 @@ std::shared_ptr<const Surfaces> MotionSurfaces::surfaces_of(const Snapshot& snap
       surfaces[n].color = paints[i].color;
       surfaces[n].alpha = paints[i].alpha;
     }
-    const ShapeModel& shape = snapshot.render_scene->shapes[instances[i].shape].geometry;
+    const model::ShapeModel& shape = snapshot.render_scene->shapes[instances[i].shape].geometry;
     add_shape(builders[n], shape, instances[i].origin);
     at->second.meshes.push_back(shape.mesh);
   }
-  std::erase_if(surfaces, [](const Surface& surface) { return surface.triangles.empty(); });
-  if (!surfaces.empty()) at->second.surfaces = std::make_shared<const Surfaces>(std::move(surfaces));
+  std::erase_if(surfaces, [](const exporter::Surface& surface) { return surface.triangles.empty(); });
+  if (!surfaces.empty()) at->second.surfaces = std::make_shared<const exporter::Surfaces>(std::move(surfaces));
   return at->second.surfaces;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -11,7 +11,7 @@
 #include "engine/output/snapshot.h"
 #include "export/motion.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Edge of the square that represents an infinite plane, m.
 inline constexpr double kPlaneEdge = 20;
@@ -21,15 +21,16 @@ class MotionSurfaces {
  public:
   /// Returns the surfaces of the instances of one part, with their current colors. Parts that look alike share them.
   /// Null if nothing is visible.
-  std::shared_ptr<const Surfaces> surfaces_of(const Snapshot& snapshot, std::span<const RenderInstance> instances);
+  std::shared_ptr<const exporter::Surfaces> surfaces_of(const engine::Snapshot& snapshot,
+                                                        std::span<const engine::RenderInstance> instances);
 
  private:
   struct CacheEntry {
-    std::shared_ptr<const Surfaces> surfaces;
+    std::shared_ptr<const exporter::Surfaces> surfaces;
     // keeps the meshes alive: their addresses are part of the key
-    std::vector<std::shared_ptr<const MeshModel>> meshes;
+    std::vector<std::shared_ptr<const model::MeshModel>> meshes;
   };
   std::map<std::string, CacheEntry> cache_;  // by everything that determines them
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -21,7 +21,7 @@
 #include "base/system/process.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace fs = std::filesystem;
 
@@ -182,4 +182,4 @@ int service_command(const ServiceCommand& command) {
   return command.action == ServiceCommand::Action::install ? install(command) : remove(command);
 }
 
-}  // namespace limber
+}  // namespace limber::app

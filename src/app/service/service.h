@@ -6,7 +6,7 @@
 
 #include "app/show/play.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Arguments of `service`.
 struct ServiceCommand {
@@ -24,4 +24,4 @@ std::string service_folder();
 /// Writes or removes a unit. Returns the exit code. [main]
 int service_command(const ServiceCommand& command);
 
-}  // namespace limber
+}  // namespace limber::app

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -84,4 +84,4 @@ Result<std::string> service_unit_text(const ServiceUnit& unit) {
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::app

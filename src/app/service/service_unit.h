@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::app {
 
 /// First line of each unit that this program writes. Only files with this line are replaced or removed.
 inline constexpr std::string_view kServiceHeader =
@@ -32,4 +32,4 @@ std::string unit_word(std::string_view text);
 /// Returns the name of a show's unit without "limber-": the scene's file name reduced to letters, digits, _ and -.
 std::string service_name(std::string_view scene);
 
-}  // namespace limber
+}  // namespace limber::app

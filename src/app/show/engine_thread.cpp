@@ -9,9 +9,9 @@
 #include "base/system/thread.h"
 #include "engine/engine.h"
 
-namespace limber {
+namespace limber::app {
 
-EngineThread::EngineThread(Engine& engine)
+EngineThread::EngineThread(engine::Engine& engine)
     : engine_(engine), main_thread_(system::this_thread()), thread_([this] { play(); }) {}
 
 void EngineThread::allow_ticks(bool even_if_failed) {
@@ -53,4 +53,4 @@ void EngineThread::change(State state) {
   system::wake_thread(main_thread_);
 }
 
-}  // namespace limber
+}  // namespace limber::app

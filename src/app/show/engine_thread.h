@@ -9,15 +9,17 @@
 #include "app/exit_code.h"
 #include "base/result.h"
 
-namespace limber {
-
+namespace limber::engine {
 class Engine;
+}  // namespace limber::engine
+
+namespace limber::app {
 
 /// Wakes the main thread (system::wake_thread) when the scene has run, and when the show is over.
 class EngineThread {
  public:
   /// [main]
-  explicit EngineThread(Engine& engine);
+  explicit EngineThread(engine::Engine& engine);
   ~EngineThread() { end(); }
   EngineThread(const EngineThread&) = delete;
   EngineThread& operator=(const EngineThread&) = delete;
@@ -41,7 +43,7 @@ class EngineThread {
   Result<void> start();
   void change(State state);
 
-  Engine& engine_;
+  engine::Engine& engine_;
   Result<void> result_;
   int exit_code_ = kInputError;
   std::atomic<State> state_{State::starting};
@@ -51,4 +53,4 @@ class EngineThread {
   std::thread thread_;  // must be the last member: it uses the others
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -22,18 +22,18 @@ FileWatch::FileWatch(Mode mode) : mode_(mode) {
   if (!events_) mode_ = Mode::polling;
 }
 
-void FileWatch::watch(const std::vector<SourceFile>& files, Time now) {
-  const std::map<std::string, FileStamp> before = std::exchange(files_, {});
-  for (const SourceFile& file : files) files_[file.path];
+void FileWatch::watch(const std::vector<script::SourceFile>& files, Time now) {
+  const std::map<std::string, model::FileStamp> before = std::exchange(files_, {});
+  for (const script::SourceFile& file : files) files_[file.path];
   update_watches();  // before reading the files, so that no save is missed in between
   bool differs = false;
-  for (const SourceFile& file : files) {
-    FileStamp& stamp = files_[file.path];
+  for (const script::SourceFile& file : files) {
+    model::FileStamp& stamp = files_[file.path];
     const auto known = before.find(file.path);
-    stamp = known != before.end() ? known->second : FileStamp(file.path);
+    stamp = known != before.end() ? known->second : model::FileStamp(file.path);
     if (known != before.end() || !file.content || stamp.content_hash() == *file.content) continue;
     // changed since it was read: treated as unknown
-    stamp = FileStamp();
+    stamp = model::FileStamp();
     differs = true;
   }
   if (differs) quiet_at_ = now + kQuietPeriod;
@@ -116,8 +116,8 @@ void FileWatch::compare_files(Time now) {
 
 // without close events: true while a file still changes
 bool FileWatch::still_changing(Time now) {
-  std::map<std::string, FileStamp> stamps;
-  for (const auto& [path, stamp] : files_) stamps.emplace(path, FileStamp(path));
+  std::map<std::string, model::FileStamp> stamps;
+  for (const auto& [path, stamp] : files_) stamps.emplace(path, model::FileStamp(path));
   const bool moving = stamps != last_stamps_;
   last_stamps_ = std::move(stamps);
   if (moving) quiet_at_ = now + kQuietPeriod;
@@ -127,11 +127,11 @@ bool FileWatch::still_changing(Time now) {
 std::vector<std::string> FileWatch::collect_changed() {
   std::vector<std::string> changed;
   for (auto& [path, stamp] : files_) {
-    if (!stamp.is_current(path) && FileStamp(path).readable()) changed.push_back(path);
+    if (!stamp.is_current(path) && model::FileStamp(path).readable()) changed.push_back(path);
   }
   if (changed.empty()) return changed;
   // the caller reads all files now, so later changes count from here
-  for (auto& [path, stamp] : files_) stamp = FileStamp(path);
+  for (auto& [path, stamp] : files_) stamp = model::FileStamp(path);
   return changed;
 }
 
@@ -146,4 +146,4 @@ std::vector<std::string> FileWatch::poll(Time now) {
   return collect_changed();
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -16,7 +16,7 @@
 #include "model/file_stamp.h"
 #include "script/scene/sources.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Watches a set of files.
 class FileWatch {
@@ -37,7 +37,7 @@ class FileWatch {
 
   /// Replaces the set of watched files, whether they exist or not. A file with content other than the given one
   /// counts as changed.
-  void watch(const std::vector<SourceFile>& files, Time now);
+  void watch(const std::vector<script::SourceFile>& files, Time now);
   /// File descriptor that becomes readable when something has changed; -1: none.
   int fd() const { return events_ ? events_->fd() : -1; }
   Mode mode() const { return mode_; }
@@ -63,11 +63,11 @@ class FileWatch {
 
   Mode mode_;
   std::optional<system::FolderEvents> events_;
-  std::map<std::string, FileStamp> files_;
+  std::map<std::string, model::FileStamp> files_;
   std::map<int, Folder> folders_;  // by the number that system::FolderEvents gives them
   std::optional<Time> quiet_at_;
   std::optional<Time> next_poll_;
-  std::map<std::string, FileStamp> last_stamps_;
+  std::map<std::string, model::FileStamp> last_stamps_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -29,7 +29,7 @@
 #include "net/console/server.h"
 #include "net/osc/network.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -62,33 +62,33 @@ Result<Message> parse_set(const std::string& text) {
   return message;
 }
 
-Result<OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
-  OscOptions osc;
+Result<osc::OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
+  osc::OscOptions osc;
   osc.optional = options.osc_optional;
   if (!options.osc_in.empty()) {
-    auto in = parse_osc_in(options.osc_in);
+    auto in = osc::parse_osc_in(options.osc_in);
     if (!in) return Error{in.error()};
     osc.in = std::move(*in);
   } else if (fast) {
     osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
   }
   for (const std::string& text : options.osc_out) {
-    auto out = parse_osc_out(text);
+    auto out = osc::parse_osc_out(text);
     if (!out) return Error{out.error()};
     if (!osc.out) osc.out.emplace();
     osc.out->insert(osc.out->end(), out->begin(), out->end());
   }
   if (fast && !osc.out) osc.out.emplace();
   if (!options.osc_allow.empty()) {
-    auto allow = parse_osc_allow(options.osc_allow);
+    auto allow = osc::parse_osc_allow(options.osc_allow);
     if (!allow) return Error{allow.error()};
     osc.allow = std::move(*allow);
   }
   return osc;
 }
 
-Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string& scene) {
-  EngineOptions engine;
+Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std::string& scene) {
+  engine::EngineOptions engine;
   engine.scene = scene;
   engine.scene_options.data_dir = data_dir();
   engine.scene_options.package_paths = options.package_paths;
@@ -116,12 +116,12 @@ Result<EngineOptions> parse_engine(const PlayOptions& options, const std::string
   return engine;
 }
 
-int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
+int finish(const PlayOptions& options, engine::Engine& engine, bool interrupted) {
   if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
   if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
   if (!options.take.replay.empty()) {
-    const ReplayResult result = engine.replay_result();
-    print_notice("{}", text_of(result));
+    const engine::ReplayResult result = engine.replay_result();
+    print_notice("{}", engine::text_of(result));
     if ((result.diverged_at && !options.take.current_scripts) || !result.damage.empty()) return kInputError;
   }
   if (options.strict && engine.faults() > 0)
@@ -131,7 +131,7 @@ int finish(const PlayOptions& options, Engine& engine, bool interrupted) {
 
 // a console that can't be opened doesn't stop the show; batch runs have none, like ports. `retry`: a failure was
 // already reported
-void open_console(ConsoleServer& console, bool retry = false) {
+void open_console(console::ConsoleServer& console, bool retry = false) {
   if (!console.path().empty()) return;
   if (const Result<void> open = console.start(); !open) {
     if (!retry) log_warning("console not available, retrying: {}", open.error());
@@ -141,15 +141,15 @@ void open_console(ConsoleServer& console, bool retry = false) {
 }
 
 // retries a port that was in use
-void retry_query(const std::optional<ListenAddress>& at, QueryServer& query) {
+void retry_query(const std::optional<ListenAddress>& at, oscquery::QueryServer& query) {
   if (at && query.port() == 0 && query.start(*at)) print_notice("{}", query_line(at, query));
 }
 
 using QueryAddresses = std::optional<std::vector<ListenAddress>>;
 
 // opens the ports of OSC and OSCQuery and prints them
-Result<void> open_ports(const OscOptions& osc, const std::optional<ListenAddress>& at, Network& network,
-                        QueryServer& query) {
+Result<void> open_ports(const osc::OscOptions& osc, const std::optional<ListenAddress>& at, osc::Network& network,
+                        oscquery::QueryServer& query) {
   if (Result<void> open = network.start(); !open) return open;
   Result<void> open = at ? query.start(*at) : Result<void>();
   if (!open && !osc.optional) return open;
@@ -162,10 +162,10 @@ Result<void> open_ports(const OscOptions& osc, const std::optional<ListenAddress
 // SIGUSR2 triggers a panic, whatever the main thread is doing
 class PanicSignal {
  public:
-  explicit PanicSignal(EngineLink& link) {
+  explicit PanicSignal(engine::EngineLink& link) {
     active_link.store(&link);
     system::on_user_signal([](int) {
-      if (EngineLink* const here = active_link.load()) here->panic_signal.store(true);
+      if (engine::EngineLink* const here = active_link.load()) here->panic_signal.store(true);
     });
   }
   ~PanicSignal() { active_link.store(nullptr); }
@@ -173,20 +173,20 @@ class PanicSignal {
   PanicSignal& operator=(const PanicSignal&) = delete;
 
  private:
-  static inline std::atomic<EngineLink*> active_link{nullptr};
+  static inline std::atomic<engine::EngineLink*> active_link{nullptr};
 };
 
 // Owns the engine, the network and the other services of a running show.
 class Playing {
  public:
-  Playing(const PlayOptions& options, EngineOptions engine_options, const OscOptions& osc,
+  Playing(const PlayOptions& options, engine::EngineOptions engine_options, const osc::OscOptions& osc,
           const QueryAddresses& query_addresses)
       : options_(options),
         osc_(osc),
         query_addresses_(query_addresses),
         scene_file_(engine_options.scene),
         engine_(link_, with_notifier(std::move(engine_options))),
-        network_(link_, osc, transient_offsets()),
+        network_(link_, osc, engine::transient_offsets()),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc.allow, options.network.query_names)) {
     if ((!options.fast || options.watch) && options.take.replay.empty())
@@ -227,7 +227,7 @@ class Playing {
   }
 
  private:
-  EngineOptions with_notifier(EngineOptions options) {
+  engine::EngineOptions with_notifier(engine::EngineOptions options) {
     options.on_iteration = [this] { notifier_.on_iteration(); };
     return options;
   }
@@ -237,7 +237,7 @@ class Playing {
     if (!engine_thread.result() && !loop.may_wait_for_fix())
       return fail_start(engine_thread.exit_code(), engine_thread.result().error());
     const std::optional<ListenAddress> at =
-        query_address(query_addresses_, effective_config(osc_, link_.osc_config.read().get()));
+        query_address(query_addresses_, osc::effective_config(osc_, link_.osc_config.read().get()));
     if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
       return fail_start(kMachineError, open.error());
     if (!options_.fast) open_console(console_);
@@ -267,17 +267,17 @@ class Playing {
   }
 
   const PlayOptions& options_;
-  const OscOptions& osc_;
+  const osc::OscOptions& osc_;
   const QueryAddresses& query_addresses_;
   const std::string scene_file_;
-  EngineLink link_;
+  engine::EngineLink link_;
   const PanicSignal panic_signal_{link_};
   ServiceNotifier notifier_;
-  Engine engine_;
-  Network network_;
-  ConsoleServer console_;
+  engine::Engine engine_;
+  osc::Network network_;
+  console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
-  QueryServer query_;
+  oscquery::QueryServer query_;
 };
 
 // the given options that have no meaning for still images and films
@@ -294,13 +294,13 @@ std::string ignored_options(const PlayOptions& options) {
 }
 
 // renders a still image or a film offline, without network
-int render_scene(const PlayOptions& options, EngineOptions engine_options) {
-  EngineLink link;
+int render_scene(const PlayOptions& options, engine::EngineOptions engine_options) {
+  engine::EngineLink link;
   if (const std::string ignored = ignored_options(options); !ignored.empty())
     print_notice("rendering doesn't use the network: {} {} ignored", ignored,
                  ignored.find(',') == std::string::npos ? "is" : "are");
   const std::optional<double> duration = engine_options.duration;
-  Engine engine(link, std::move(engine_options));
+  engine::Engine engine(link, std::move(engine_options));
   if (const Result<void> started = engine.start(); !started) return fail(kInputError, started.error());
   const RenderResult rendered = render(options.display, engine, link, duration, system::signal_arrived);
   return rendered.code != kSuccess ? rendered.code : finish(options, engine, rendered.canceled);
@@ -343,7 +343,7 @@ int play_command(const PlayOptions& options) {
       fmt::format("limber {} ({}): {}", version(), commit(), printable(replays ? options.take.replay : options.scene)),
       "");
   if (const Result<void> fits = check_options(options); !fits) return fail(kUsageError, fits.error());
-  Result<OscOptions> osc = parse_osc(options.network, options.fast);
+  Result<osc::OscOptions> osc = parse_osc(options.network, options.fast);
   if (!osc) return fail(kUsageError, osc.error());
   Result<QueryAddresses> query = parse_query(options.network.query);
   if (!query) return fail(kUsageError, query.error());
@@ -353,11 +353,12 @@ int play_command(const PlayOptions& options) {
   // absolute, because the current folder may be replaced while the show plays
   std::error_code error;
   const std::filesystem::path scene_path = std::filesystem::absolute(scene, error);
-  Result<EngineOptions> engine_options = parse_engine(options, error || scene.empty() ? scene : scene_path.string());
+  Result<engine::EngineOptions> engine_options =
+      parse_engine(options, error || scene.empty() ? scene : scene_path.string());
   if (!engine_options) return fail(kUsageError, engine_options.error());
   if (scene.empty()) return fail(kInputError, scene_not_found(options.scene, searched));
   if (options.display.offline()) return render_scene(options, std::move(*engine_options));
   return std::make_unique<Playing>(options, std::move(*engine_options), *osc, *query)->play();
 }
 
-}  // namespace limber
+}  // namespace limber::app

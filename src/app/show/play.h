@@ -8,7 +8,7 @@
 
 #include "app/view/display_options.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Options of log messages.
 struct LogOptions {
@@ -59,4 +59,4 @@ struct PlayOptions {
 /// Plays. Returns the exit code: 0 success, 1 invalid input, 2 usage, 3 the machine. [main]
 int play_command(const PlayOptions& options);
 
-}  // namespace limber
+}  // namespace limber::app

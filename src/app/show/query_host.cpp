@@ -11,11 +11,11 @@
 #include "base/text.h"
 #include "net/osc/packets/encode.h"
 
-namespace limber {
+namespace limber::app {
 
 Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string& text) {
   if (text.empty()) return std::optional<std::vector<ListenAddress>>();
-  Result<std::vector<ListenAddress>> list = parse_listen("--query", text);
+  Result<std::vector<ListenAddress>> list = osc::parse_listen("--query", text);
   if (!list) return Error{list.error()};
   if (list->size() > 1)
     return Error{fmt::format("--query '{}': one address is enough; write --query [ADDR:]PORT", printable(text))};
@@ -30,22 +30,22 @@ std::string host_name_fault(const std::string& name) {
                : fmt::format("'{}' is not a host name; write it without http:// and port, such as vm.example", name);
 }
 
-QueryHost query_host(Network& network, std::vector<Cidr> allow, std::vector<std::string> names) {
-  QueryHost host;
+oscquery::QueryHost query_host(osc::Network& network, std::vector<osc::Cidr> allow, std::vector<std::string> names) {
+  oscquery::QueryHost host;
   host.names = std::move(names);
-  host.encode = [buffer = std::make_shared<PacketBuffer>()](const Message& message, std::string_view tags) {
+  host.encode = [buffer = std::make_shared<osc::PacketBuffer>()](const Message& message, std::string_view tags) {
     const std::span<const char> packet =
-        tags.empty() ? encode_message(message, *buffer) : encode_tagged(message, tags, *buffer);
+        tags.empty() ? osc::encode_message(message, *buffer) : osc::encode_tagged(message, tags, *buffer);
     return std::string(packet.begin(), packet.end());
   };
   host.process = [&network](const CommandOrigin& origin, std::string packet) {
     network.enqueue(origin, std::move(packet));
   };
   host.osc_port = [&network]() -> std::optional<std::uint16_t> {
-    const std::vector<Endpoint> bound = network.bound();
+    const std::vector<system::Endpoint> bound = network.bound();
     return bound.empty() ? std::nullopt : std::optional(bound.front().port);
   };
-  host.is_allowed = [allow = std::move(allow)](std::uint32_t ip) { return is_allowed(allow, ip); };
+  host.is_allowed = [allow = std::move(allow)](std::uint32_t ip) { return osc::is_allowed(allow, ip); };
   return host;
 }
 
@@ -57,11 +57,11 @@ std::optional<ListenAddress> query_address(const std::optional<std::vector<Liste
   return usual;
 }
 
-std::string query_line(const std::optional<ListenAddress>& at, const QueryServer& server) {
+std::string query_line(const std::optional<ListenAddress>& at, const oscquery::QueryServer& server) {
   std::string line = "OSCQuery off";
   if (at && server.port() != 0)
     line = fmt::format("OSCQuery and remote panel http://{}:{}/", at->address, server.port());
   return line;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -8,13 +8,14 @@
 #include "net/osc/network.h"
 #include "net/oscquery/server.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Parses `--query [ADDR:]PORT|off`. nullopt: not given (empty text); an empty list: off.
 Result<std::optional<std::vector<ListenAddress>>> parse_query(const std::string& text);
 
 /// Returns the callbacks that the OSCQuery server uses. `network` must outlive it.
-QueryHost query_host(Network& network, std::vector<Cidr> allow, std::vector<std::string> names = {});
+oscquery::QueryHost query_host(osc::Network& network, std::vector<osc::Cidr> allow,
+                               std::vector<std::string> names = {});
 
 /// Returns the error of an invalid name in `--query-name`, else an empty string.
 std::string host_name_fault(const std::string& name);
@@ -25,6 +26,6 @@ std::optional<ListenAddress> query_address(const std::optional<std::vector<Liste
                                            const OscConfig& osc);
 
 /// Returns a line for the start, "OSCQuery and remote panel http://127.0.0.1:9003/".
-std::string query_line(const std::optional<ListenAddress>& at, const QueryServer& server);
+std::string query_line(const std::optional<ListenAddress>& at, const oscquery::QueryServer& server);
 
-}  // namespace limber
+}  // namespace limber::app

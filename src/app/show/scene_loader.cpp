@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "script/scene/script_files.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -33,11 +33,12 @@ std::string folder_of(const std::string& scene) {
 
 }  // namespace
 
-SceneLoader::SceneLoader(EngineLink& link, Engine& engine, const std::string& scene, FileWatch::Mode mode)
+SceneLoader::SceneLoader(engine::EngineLink& link, engine::Engine& engine, const std::string& scene,
+                         FileWatch::Mode mode)
     : link_(link),
       engine_(engine),
       folder_(folder_of(scene)),
-      takes_folder_(ScriptFiles(scene, {}).show_folder() + "/takes"),
+      takes_folder_(script::ScriptFiles(scene, {}).show_folder() + "/takes"),
       mode_(mode) {
   link_.on_scene_request = [this](const Message& message, const CommandOrigin& origin) {
     const bool take = message.address.starts_with("/take/");
@@ -138,7 +139,7 @@ bool SceneLoader::play_take(const SceneRequest& request) {
     reject(request, played.error());
     return false;
   }
-  link_.push_out({Outgoing::Destination::reply, request.origin, {"/take/playing", {Arg::of(name)}}});
+  link_.push_out({engine::Outgoing::Destination::reply, request.origin, {"/take/playing", {Arg::of(name)}}});
   return true;
 }
 
@@ -151,7 +152,7 @@ bool SceneLoader::handle(const SceneRequest& request) {
     Message reply{"/list/scenes", {}};
     for (const std::string& name : names) reply.args.push_back(Arg::of(name));
     if (names.empty()) reply.args.push_back(Arg::of(""));
-    link_.push_out({Outgoing::Destination::reply, request.origin, std::move(reply)});
+    link_.push_out({engine::Outgoing::Destination::reply, request.origin, std::move(reply)});
     return false;
   }
   std::string name = args[0].text;
@@ -165,7 +166,7 @@ bool SceneLoader::handle(const SceneRequest& request) {
       engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string(), request.stops_before);
   if (changed.ok()) {
     log_info("{} plays from its start", name);
-    link_.push_out({Outgoing::Destination::reply, request.origin, {"/transport/playing", {Arg::of(name)}}});
+    link_.push_out({engine::Outgoing::Destination::reply, request.origin, {"/transport/playing", {Arg::of(name)}}});
   } else {
     reject(request, changed.error());
   }
@@ -174,7 +175,8 @@ bool SceneLoader::handle(const SceneRequest& request) {
 
 void SceneLoader::reject(const SceneRequest& request, const std::string& reason) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  link_.push_out({Outgoing::Destination::error, request.origin, error_message(request.message.address, reason)});
+  link_.push_out(
+      {engine::Outgoing::Destination::error, request.origin, engine::error_message(request.message.address, reason)});
 }
 
 void SceneLoader::wait(const FileWatch& files) {
@@ -190,4 +192,4 @@ void SceneLoader::wait(const FileWatch& files) {
   wake_.clear();
 }
 
-}  // namespace limber
+}  // namespace limber::app

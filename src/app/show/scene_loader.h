@@ -12,14 +12,14 @@
 #include "base/threads/bounded_queue.h"
 #include "engine/engine.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main], unless noted otherwise
 class SceneLoader {
  public:
   /// Must be created before the engine starts; `link` and `engine` must outlive it. `scene`: the file that plays; other
   /// scenes are loaded from its folder only.
-  SceneLoader(EngineLink& link, Engine& engine, const std::string& scene,
+  SceneLoader(engine::EngineLink& link, engine::Engine& engine, const std::string& scene,
               FileWatch::Mode mode = FileWatch::Mode::events);
   ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
@@ -36,7 +36,9 @@ class SceneLoader {
     Message message;
     CommandOrigin origin;
     std::uint64_t stops_before = 0;  // number of panics, or of ended takes, when it arrived
-    friend std::size_t weight_of(const SceneRequest& request) { return sizeof request + weight_of(request.message); }
+    friend std::size_t weight_of(const SceneRequest& request) {
+      return sizeof request + engine::weight_of(request.message);
+    }
   };
 
   void run(FileWatch& files);
@@ -47,8 +49,8 @@ class SceneLoader {
   void reject(const SceneRequest& request, const std::string& reason);
   void wait(const FileWatch& files);
 
-  EngineLink& link_;
-  Engine& engine_;
+  engine::EngineLink& link_;
+  engine::Engine& engine_;
   std::string folder_;
   std::string takes_folder_;  // the folder of the show's takes
   FileWatch::Mode mode_;
@@ -60,4 +62,4 @@ class SceneLoader {
   std::thread thread_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

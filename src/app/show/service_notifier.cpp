@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -49,4 +49,4 @@ void ServiceNotifier::status(const std::string& line) const {
   if (present()) (void)manager_.notify("STATUS=" + printable(line));
 }
 
-}  // namespace limber
+}  // namespace limber::app

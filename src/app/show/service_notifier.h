@@ -6,7 +6,7 @@
 
 #include "base/system/service_manager.h"
 
-namespace limber {
+namespace limber::app {
 
 /// The connection to systemd's service manager, if the program runs as a service.
 class ServiceNotifier {
@@ -39,4 +39,4 @@ class ServiceNotifier {
   Clock::time_point last_fed_;  // [sim]
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -16,7 +16,7 @@
 #include "base/text.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -34,8 +34,8 @@ constexpr std::chrono::milliseconds kStatusInterval = 1s;
 
 }  // namespace
 
-ShowLoop::ShowLoop(const EngineThread& engine_thread, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
-                   DisplayWatchdog& display_watchdog, const PlayOptions& options)
+ShowLoop::ShowLoop(const EngineThread& engine_thread, engine::Engine& engine, engine::EngineLink& link,
+                   ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options)
     : engine_thread_(engine_thread),
       engine_(engine),
       link_(link),
@@ -84,10 +84,10 @@ Result<void> ShowLoop::try_window() {
 }
 
 void ShowLoop::print_status() const {
-  const std::shared_ptr<const Snapshot> now = link_.snapshots.read();
+  const std::shared_ptr<const engine::Snapshot> now = link_.snapshots.read();
   if (now == nullptr) return;
   std::size_t joints = 0;
-  for (const BodyEntry& body : now->body_list->bodies) joints += body.joint_offsets.size();
+  for (const engine::BodyEntry& body : now->body_list->bodies) joints += body.joint_offsets.size();
   const std::string line =
       fmt::format("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
                   now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
@@ -155,4 +155,4 @@ void ShowLoop::end_show() {
   if (!engine_thread_.over()) leave("interrupted during a long tick. Reduce substeps or solver_iterations");
 }
 
-}  // namespace limber
+}  // namespace limber::app

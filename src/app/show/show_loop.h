@@ -14,14 +14,14 @@
 #include "engine/engine.h"
 #include "engine/output/engine_link.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class ShowLoop {
  public:
   /// All arguments must outlive the loop.
-  ShowLoop(const EngineThread& engine_thread, Engine& engine, EngineLink& link, ServiceNotifier& notifier,
-           DisplayWatchdog& display_watchdog, const PlayOptions& options);
+  ShowLoop(const EngineThread& engine_thread, engine::Engine& engine, engine::EngineLink& link,
+           ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options);
 
   /// Waits until the scene has run. A signal ends the program.
   void wait_for_scene();
@@ -49,8 +49,8 @@ class ShowLoop {
   void end_show();
 
   const EngineThread& engine_thread_;
-  Engine& engine_;
-  EngineLink& link_;
+  engine::Engine& engine_;
+  engine::EngineLink& link_;
   ServiceNotifier& notifier_;
   DisplayWatchdog& display_watchdog_;
   const PlayOptions& options_;
@@ -61,4 +61,4 @@ class ShowLoop {
   std::chrono::steady_clock::time_point last_retry_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -7,7 +7,7 @@
 #include "base/log/output.h"
 #include "base/system/signals.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 constexpr auto kPollInterval = std::chrono::milliseconds(20);
@@ -41,4 +41,4 @@ void ShutdownGuard::watch() {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -6,7 +6,7 @@
 #include <functional>
 #include <thread>
 
-namespace limber {
+namespace limber::app {
 
 /// Watches the shutdown from its constructor to its destructor.
 class ShutdownGuard {
@@ -31,4 +31,4 @@ class ShutdownGuard {
   std::thread thread_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

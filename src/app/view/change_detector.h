@@ -5,19 +5,19 @@
 
 #include "engine/output/snapshot.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class ChangeDetector {
  public:
   /// Returns true if the snapshot (may be null) or the window's size differs visibly from those of the last change, or
   /// `input` is set.
-  bool changed(const std::shared_ptr<const Snapshot>& newest, int width, int height, bool input);
+  bool changed(const std::shared_ptr<const engine::Snapshot>& newest, int width, int height, bool input);
 
  private:
-  std::shared_ptr<const Snapshot> last_;  // at the last change
+  std::shared_ptr<const engine::Snapshot> last_;  // at the last change
   int width_ = 0;
   int height_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::app

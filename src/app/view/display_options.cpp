@@ -9,7 +9,7 @@
 #include "app/view/film_file.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr const char* kGlVariable = "LIMBER_GL";
 
 // returns the error of an invalid value of --gl; empty: valid
 std::string gl_choice_error(const std::string& text) {
-  if (text == "auto" || gl_apis(text).size() == 1) return {};
+  if (text == "auto" || render::gl_apis(text).size() == 1) return {};
   return fmt::format("'{}' must be auto, core, es or 3.1 ({} sets it, too)", text, kGlVariable);
 }
 
@@ -94,10 +94,10 @@ Result<ImageSize> image_size(const DisplayOptions& options) {
                            printable(options.size), kMaxSize)};
 }
 
-Quality render_quality(const DisplayOptions& options, Quality fallback) {
-  if (options.quality == "low") return Quality::low;
-  if (options.quality == "medium") return Quality::medium;
-  return options.quality == "high" ? Quality::high : fallback;
+render::Quality render_quality(const DisplayOptions& options, render::Quality fallback) {
+  if (options.quality == "low") return render::Quality::low;
+  if (options.quality == "medium") return render::Quality::medium;
+  return options.quality == "high" ? render::Quality::high : fallback;
 }
 
 Result<void> check_display_options(const DisplayOptions& o, const std::optional<double>& duration) {
@@ -114,4 +114,4 @@ Result<void> check_display_options(const DisplayOptions& o, const std::optional<
   return check_film_file(o.render, size->width, size->height);
 }
 
-}  // namespace limber
+}  // namespace limber::app

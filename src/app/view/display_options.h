@@ -11,7 +11,7 @@ namespace CLI {  // NOLINT(readability-identifier-naming): of CLI11
 class App;
 }
 
-namespace limber {
+namespace limber::app {
 
 /// The options as typed.
 struct DisplayOptions {
@@ -47,6 +47,6 @@ Result<void> check_display_options(const DisplayOptions& options, const std::opt
 /// Parses "1280x720".
 Result<ImageSize> image_size(const DisplayOptions& options);
 /// Returns the requested quality, else `fallback`.
-Quality render_quality(const DisplayOptions& options, Quality fallback);
+render::Quality render_quality(const DisplayOptions& options, render::Quality fallback);
 
-}  // namespace limber
+}  // namespace limber::app

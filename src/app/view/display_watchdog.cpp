@@ -7,7 +7,7 @@
 #include "base/system/standard_output.h"
 #include "base/system/thread.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 constexpr auto kFramePollInterval = std::chrono::milliseconds(50);
@@ -37,4 +37,4 @@ void DisplayWatchdog::watch() {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <thread>
 
-namespace limber {
+namespace limber::app {
 
 /// A call into the display server may block the main thread, which handles the signals. A watchdog thread takes over if
 /// a signal is pending for longer than a second during such a call.
@@ -47,4 +47,4 @@ class DisplayWatchdog {
   std::thread thread_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -111,8 +111,8 @@ std::string FilmFile::still_name(std::uint64_t number) const {
   return fmt::format("{}{:0{}}{}", p.before, number, p.digits, p.after);
 }
 
-Result<void> FilmFile::add(const Pixels& frame) {
-  if (!ffmpeg_.started()) return write_png(frame, still_name(frames_++));
+Result<void> FilmFile::add(const render::Pixels& frame) {
+  if (!ffmpeg_.started()) return render::write_png(frame, still_name(frames_++));
   if (!ffmpeg_.write({reinterpret_cast<const char*>(frame.bytes.data()), frame.bytes.size()}))
     return Error{fmt::format("ffmpeg stopped reading '{}'; see its messages above", printable(name_))};
   frames_++;
@@ -128,4 +128,4 @@ Result<void> FilmFile::finish() {
   return Error{fmt::format("ffmpeg failed to write '{}'; see its messages above", printable(name_))};
 }
 
-}  // namespace limber
+}  // namespace limber::app

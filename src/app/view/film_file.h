@@ -9,7 +9,7 @@
 #include "base/system/child_process.h"
 #include "ui/render/pixels.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Checks the file name and size: a video extension, or a pattern with one %d or %05d; videos need an even size.
 Result<void> check_film_file(const std::string& name, int width, int height);
@@ -25,7 +25,7 @@ class FilmFile {
   FilmFile& operator=(const FilmFile&) = delete;
 
   /// Appends a frame. [main]
-  Result<void> add(const Pixels& frame);
+  Result<void> add(const render::Pixels& frame);
   /// Completes the film and renames it to its final name. Writes nothing if there was no frame. [main]
   Result<void> finish();
 
@@ -40,4 +40,4 @@ class FilmFile {
   system::ChildProcess ffmpeg_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

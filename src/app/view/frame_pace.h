@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace limber {
+namespace limber::app {
 
 /// All times in seconds. [main]
 class FramePace {
@@ -52,4 +52,4 @@ class FrameCounter {
   int frames_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -8,64 +8,66 @@
 #include <set>
 #include <string_view>
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
 struct KeyName {
   int glfw;
-  GuiKey key;
+  panel::GuiKey key;
 };
-constexpr KeyName kKeys[] = {{GLFW_KEY_TAB, GuiKey::tab},
-                             {GLFW_KEY_LEFT, GuiKey::left},
-                             {GLFW_KEY_RIGHT, GuiKey::right},
-                             {GLFW_KEY_UP, GuiKey::up},
-                             {GLFW_KEY_DOWN, GuiKey::down},
-                             {GLFW_KEY_PAGE_UP, GuiKey::page_up},
-                             {GLFW_KEY_PAGE_DOWN, GuiKey::page_down},
-                             {GLFW_KEY_HOME, GuiKey::home},
-                             {GLFW_KEY_END, GuiKey::end},
-                             {GLFW_KEY_INSERT, GuiKey::insert},
-                             {GLFW_KEY_DELETE, GuiKey::erase},
-                             {GLFW_KEY_BACKSPACE, GuiKey::backspace},
-                             {GLFW_KEY_SPACE, GuiKey::space},
-                             {GLFW_KEY_ENTER, GuiKey::enter},
-                             {GLFW_KEY_KP_ENTER, GuiKey::enter},
-                             {GLFW_KEY_ESCAPE, GuiKey::escape},
-                             {GLFW_KEY_PERIOD, GuiKey::period},
-                             {GLFW_KEY_COMMA, GuiKey::comma},
-                             {GLFW_KEY_MINUS, GuiKey::minus},
-                             {GLFW_KEY_KP_SUBTRACT, GuiKey::minus},
-                             {GLFW_KEY_EQUAL, GuiKey::equal},
-                             {GLFW_KEY_KP_ADD, GuiKey::equal},
-                             {GLFW_KEY_SLASH, GuiKey::slash}};
+constexpr KeyName kKeys[] = {{GLFW_KEY_TAB, panel::GuiKey::tab},
+                             {GLFW_KEY_LEFT, panel::GuiKey::left},
+                             {GLFW_KEY_RIGHT, panel::GuiKey::right},
+                             {GLFW_KEY_UP, panel::GuiKey::up},
+                             {GLFW_KEY_DOWN, panel::GuiKey::down},
+                             {GLFW_KEY_PAGE_UP, panel::GuiKey::page_up},
+                             {GLFW_KEY_PAGE_DOWN, panel::GuiKey::page_down},
+                             {GLFW_KEY_HOME, panel::GuiKey::home},
+                             {GLFW_KEY_END, panel::GuiKey::end},
+                             {GLFW_KEY_INSERT, panel::GuiKey::insert},
+                             {GLFW_KEY_DELETE, panel::GuiKey::erase},
+                             {GLFW_KEY_BACKSPACE, panel::GuiKey::backspace},
+                             {GLFW_KEY_SPACE, panel::GuiKey::space},
+                             {GLFW_KEY_ENTER, panel::GuiKey::enter},
+                             {GLFW_KEY_KP_ENTER, panel::GuiKey::enter},
+                             {GLFW_KEY_ESCAPE, panel::GuiKey::escape},
+                             {GLFW_KEY_PERIOD, panel::GuiKey::period},
+                             {GLFW_KEY_COMMA, panel::GuiKey::comma},
+                             {GLFW_KEY_MINUS, panel::GuiKey::minus},
+                             {GLFW_KEY_KP_SUBTRACT, panel::GuiKey::minus},
+                             {GLFW_KEY_EQUAL, panel::GuiKey::equal},
+                             {GLFW_KEY_KP_ADD, panel::GuiKey::equal},
+                             {GLFW_KEY_SLASH, panel::GuiKey::slash}};
 
 // GuiKey has the order of GLFW within letters, digits and function keys
-GuiKey key_at_position(int key) {
-  const auto run = [&](int first, int last, GuiKey begin) {
-    return key >= first && key <= last ? static_cast<GuiKey>(static_cast<int>(begin) + key - first) : GuiKey::none;
+panel::GuiKey key_at_position(int key) {
+  const auto run = [&](int first, int last, panel::GuiKey begin) {
+    return key >= first && key <= last ? static_cast<panel::GuiKey>(static_cast<int>(begin) + key - first)
+                                       : panel::GuiKey::none;
   };
-  for (const GuiKey found : {run(GLFW_KEY_A, GLFW_KEY_Z, GuiKey::a), run(GLFW_KEY_0, GLFW_KEY_9, GuiKey::digit_0),
-                             run(GLFW_KEY_F1, GLFW_KEY_F12, GuiKey::f1)}) {
-    if (found != GuiKey::none) return found;
+  for (const panel::GuiKey found :
+       {run(GLFW_KEY_A, GLFW_KEY_Z, panel::GuiKey::a), run(GLFW_KEY_0, GLFW_KEY_9, panel::GuiKey::digit_0),
+        run(GLFW_KEY_F1, GLFW_KEY_F12, panel::GuiKey::f1)}) {
+    if (found != panel::GuiKey::none) return found;
   }
   const auto* const named =
       std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeyName& k) { return k.glfw == key; });
-  return named == std::end(kKeys) ? GuiKey::none : named->key;
+  return named == std::end(kKeys) ? panel::GuiKey::none : named->key;
 }
 
 // the key of a letter, digit or sign
-GuiKey key_of_letter(const std::string& printed) {
-  if (printed.size() != 1) return GuiKey::none;
+panel::GuiKey key_of_letter(const std::string& printed) {
+  if (printed.size() != 1) return panel::GuiKey::none;
   const char c = printed[0];
   if (c >= 'a' && c <= 'z') return key_at_position(GLFW_KEY_A + c - 'a');
   const std::string_view others = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.,-=/";  // GLFW's key codes are ASCII
-  return others.find(c) == std::string_view::npos ? GuiKey::none : key_at_position(c);
+  return others.find(c) == std::string_view::npos ? panel::GuiKey::none : key_at_position(c);
 }
 
 // true for printable keys that exist; GLFW reports an error for others
 bool is_printing_key(int key) {
-  return key_at_position(key) != GuiKey::none ||
+  return key_at_position(key) != panel::GuiKey::none ||
          std::string_view("';[\\]`").find(static_cast<char>(key)) != std::string_view::npos;
 }
 
@@ -82,24 +84,24 @@ KeyLayout::KeyLayout(const PrintedText& printed) {
     if (is_printing_key(key)) names[i] = printed(key);
     digits |= names[i].size() == 1 && is_digit(names[i][0]);
   }
-  std::set<GuiKey> used;
+  std::set<panel::GuiKey> used;
   for (std::size_t i = 0; i < kPrinting; i++) {
     const int position = GLFW_KEY_APOSTROPHE + static_cast<int>(i);
-    const GuiKey key = is_digit(position) && !digits ? key_at_position(position) : key_of_letter(names[i]);
-    if (key != GuiKey::none && used.insert(key).second) keys_[i] = key;
+    const panel::GuiKey key = is_digit(position) && !digits ? key_at_position(position) : key_of_letter(names[i]);
+    if (key != panel::GuiKey::none && used.insert(key).second) keys_[i] = key;
   }
   for (std::size_t i = 0; i < kPrinting; i++) {
-    const GuiKey key = key_at_position(GLFW_KEY_APOSTROPHE + static_cast<int>(i));
-    if (keys_[i] != GuiKey::none || key == GuiKey::none || !used.insert(key).second) continue;
+    const panel::GuiKey key = key_at_position(GLFW_KEY_APOSTROPHE + static_cast<int>(i));
+    if (keys_[i] != panel::GuiKey::none || key == panel::GuiKey::none || !used.insert(key).second) continue;
     keys_[i] = key;
     if (!names[i].empty()) labels_[key] = names[i];
   }
 }
 
-GuiKey KeyLayout::key(int key) const {
+panel::GuiKey KeyLayout::key(int key) const {
   const int position = key - GLFW_KEY_APOSTROPHE;
   if (position < 0 || position >= static_cast<int>(kPrinting)) return key_at_position(key);
   return keys_[static_cast<std::size_t>(position)];
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -8,7 +8,7 @@
 
 #include "ui/panel/hotkeys.h"
 
-namespace limber {
+namespace limber::app {
 
 /// The current layout of the keyboard.
 class KeyLayout {
@@ -20,14 +20,14 @@ class KeyLayout {
 
   /// Returns the key for the letter, digit or sign printed on `key` (GLFW's code). A letter that the layout doesn't
   /// have (Cyrillic) stays at its position on a US keyboard; so do digits if all of them need Shift (AZERTY).
-  GuiKey key(int key) const;
+  panel::GuiKey key(int key) const;
   /// Printed text of the keys that stay at their US position.
-  const KeyLabels& labels() const { return labels_; }
+  const panel::KeyLabels& labels() const { return labels_; }
 
  private:
   static constexpr std::size_t kPrinting = 96 - 39 + 1;  // from GLFW_KEY_APOSTROPHE to GLFW_KEY_GRAVE_ACCENT
-  std::array<GuiKey, kPrinting> keys_{};
-  KeyLabels labels_;
+  std::array<panel::GuiKey, kPrinting> keys_{};
+  panel::KeyLabels labels_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -11,7 +11,7 @@ constexpr int kMaxIdleTicks = 1000;
 
 }  // namespace
 
-OfflineClock::OfflineClock(Engine& engine, EngineLink& link, const std::function<bool()>& cancel)
+OfflineClock::OfflineClock(engine::Engine& engine, engine::EngineLink& link, const std::function<bool()>& cancel)
     : engine_(engine), link_(link), cancel_(cancel) {
   before_ = now_ = link.snapshots.read();
 }
@@ -45,4 +45,4 @@ double OfflineClock::mix(double seconds) const {
   return step <= 0 || elapsed_ - seconds < 1e-9 ? 1 : (seconds - elapsed_before_) / step;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -7,7 +7,7 @@
 
 #include "base/log/output.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 constexpr int kWidth = 960;
@@ -27,7 +27,7 @@ OutputWindow::OutputWindow(Window& first, std::unique_ptr<Window> window) : firs
   first_.set_vsync(false);
   window_->make_current();
   window_->set_vsync(true);
-  framebuffer_ = GlFramebuffer::make();
+  framebuffer_ = render::GlFramebuffer::make();
   first_.make_current();
 }
 
@@ -39,19 +39,20 @@ OutputWindow::~OutputWindow() {
   first_.set_vsync(true);
 }
 
-std::vector<InputEvent> OutputWindow::consume_keys() {
-  std::vector<InputEvent> events = window_->consume_events();
+std::vector<panel::InputEvent> OutputWindow::consume_keys() {
+  std::vector<panel::InputEvent> events = window_->consume_events();
   (void)window_->consume_mouse();
-  std::erase_if(events, [](const InputEvent& event) { return event.kind != InputEvent::Kind::key; });
+  std::erase_if(events, [](const panel::InputEvent& event) { return event.kind != panel::InputEvent::Kind::key; });
   return events;
 }
 
-Result<void> OutputWindow::draw(Renderer& renderer, const Snapshot& before, const Snapshot& now, double mix) {
+Result<void> OutputWindow::draw(render::Renderer& renderer, const engine::Snapshot& before, const engine::Snapshot& now,
+                                double mix) {
   const int width = window_->width();
   const int height = window_->height();
   if (width == 0 || height == 0) return {};
   if (Result<void> drawn = renderer.draw_output(before, now, mix, width, height); !drawn) return drawn;
-  Renderer::flush();  // otherwise the other context may see an older frame
+  render::Renderer::flush();  // otherwise the other context may see an older frame
   window_->make_current();
   renderer.present_output(framebuffer_, width, height);
   window_->swap();
@@ -59,4 +60,4 @@ Result<void> OutputWindow::draw(Renderer& renderer, const Snapshot& before, cons
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::app

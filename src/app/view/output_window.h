@@ -9,7 +9,7 @@
 #include "app/view/window.h"
 #include "ui/render/renderer.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class OutputWindow {
@@ -26,17 +26,18 @@ class OutputWindow {
   void toggle_full_screen() { window_->toggle_full_screen(); }
   bool has_events() const { return window_->has_events(); }
   /// Returns the key events since the last call. [main]
-  std::vector<InputEvent> consume_keys();
+  std::vector<panel::InputEvent> consume_keys();
   /// Draws the scene interpolated between two snapshots. The context of the first window is current before and after.
   /// [main]
-  Result<void> draw(Renderer& renderer, const Snapshot& before, const Snapshot& now, double mix);
+  Result<void> draw(render::Renderer& renderer, const engine::Snapshot& before, const engine::Snapshot& now,
+                    double mix);
 
  private:
   OutputWindow(Window& first, std::unique_ptr<Window> window);
 
   Window& first_;
   std::unique_ptr<Window> window_;
-  GlFramebuffer framebuffer_;  // belongs to the context of this window
+  render::GlFramebuffer framebuffer_;  // belongs to the context of this window
 };
 
-}  // namespace limber
+}  // namespace limber::app

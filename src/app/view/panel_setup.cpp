@@ -10,7 +10,7 @@
 #include "app/view/window.h"
 #include "sim/behavior/behavior_type.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 // the built-in types and those in behaviors_lua
 std::vector<std::string> behavior_types() {
   std::vector<std::string> names;
-  const BehaviorTypes built_in;
+  const sim::BehaviorTypes built_in;
   for (const auto& type : built_in.all()) names.push_back(type->name);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(fs::path(data_dir()) / "behaviors_lua", error)) {
@@ -32,15 +32,15 @@ std::vector<std::string> behavior_types() {
 
 }  // namespace
 
-FreeArea free_part(const Gui& gui, int width, int height) {
-  const PanelRect& free = gui.layout().view;
+render::FreeArea free_part(const panel::Gui& gui, int width, int height) {
+  const panel::PanelRect& free = gui.layout().view;
   if (gui.settings().hidden || free.empty()) return {};
   return {free.x / width, free.y / height, free.width / width, free.height / height};
 }
 
-GuiOptions panel_options(Window* window, GlApi api) {
-  GuiOptions options;
-  options.glsl = gl_api_info(api).glsl;
+panel::GuiOptions panel_options(Window* window, render::GlApi api) {
+  panel::GuiOptions options;
+  options.glsl = render::gl_api_info(api).glsl;
   options.behavior_types = behavior_types();
   const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
   options.history = history->lines();
@@ -51,4 +51,4 @@ GuiOptions panel_options(Window* window, GlApi api) {
   return options;
 }
 
-}  // namespace limber
+}  // namespace limber::app

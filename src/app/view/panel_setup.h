@@ -5,15 +5,15 @@
 #include "ui/render/camera.h"
 #include "ui/render/gl.h"
 
-namespace limber {
+namespace limber::app {
 
 class Window;
 
 /// Returns the part of a view of this size that the panel doesn't cover. [main]
-FreeArea free_part(const Gui& gui, int width, int height);
+render::FreeArea free_part(const panel::Gui& gui, int width, int height);
 
 /// Returns the options of the panel. `window`: provides the clipboard and must outlive the panel; null: no clipboard.
 /// `api`: OpenGL kind of the context that draws the panel. [main]
-GuiOptions panel_options(Window* window, GlApi api);
+panel::GuiOptions panel_options(Window* window, render::GlApi api);
 
-}  // namespace limber
+}  // namespace limber::app

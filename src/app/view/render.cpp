@@ -16,7 +16,7 @@
 #include "base/text.h"
 #include "ui/render/offscreen.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -25,7 +25,8 @@ RenderResult failure(int code, const std::string& text) { return {fail(code, tex
 // the panel over a still image: it processes all ticks before, so that its graphs are filled
 class StillPanel {
  public:
-  StillPanel(const DisplayOptions& options, GlApi api, const ImageSize& size, Engine& engine, EngineLink& link)
+  StillPanel(const DisplayOptions& options, render::GlApi api, const ImageSize& size, engine::Engine& engine,
+             engine::EngineLink& link)
       : engine_(engine), link_(link), gui_(link, panel_options(nullptr, api)) {
     frame_ = {static_cast<double>(size.width), static_cast<double>(size.height), options.panel_scale.value_or(1), 0};
   }
@@ -33,11 +34,13 @@ class StillPanel {
     frame_.clock += 1.0 / 60;
     gui_.frame(frame_);
   }
-  FreeArea free() const { return free_part(gui_, static_cast<int>(frame_.width), static_cast<int>(frame_.height)); }
-  void draw_over(const Renderer& renderer) {
+  render::FreeArea free() const {
+    return free_part(gui_, static_cast<int>(frame_.width), static_cast<int>(frame_.height));
+  }
+  void draw_over(const render::Renderer& renderer) {
     const std::uint64_t request = link_.request_value_snapshot();
     const auto outdated = [&] {
-      const std::shared_ptr<const ValueSnapshot> image = link_.value_snapshots.read();
+      const std::shared_ptr<const engine::ValueSnapshot> image = link_.value_snapshots.read();
       return image == nullptr || image->request < request;
     };
     while (outdated()) engine_.idle();
@@ -47,14 +50,14 @@ class StillPanel {
 
  private:
   static constexpr int kLayoutFrames = 3;  // frames until the layout is stable
-  Engine& engine_;
-  EngineLink& link_;
-  Gui gui_;
-  GuiFrame frame_;
+  engine::Engine& engine_;
+  engine::EngineLink& link_;
+  panel::Gui gui_;
+  panel::GuiFrame frame_;
 };
 
-RenderResult draw_still(const DisplayOptions& options, const ImageSize& size, Renderer& renderer, OfflineClock& clock,
-                        Engine& engine, EngineLink& link) {
+RenderResult draw_still(const DisplayOptions& options, const ImageSize& size, render::Renderer& renderer,
+                        OfflineClock& clock, engine::Engine& engine, engine::EngineLink& link) {
   const double at = options.at.value_or(0);
   std::optional<StillPanel> panel;
   if (options.panel) {
@@ -66,19 +69,19 @@ RenderResult draw_still(const DisplayOptions& options, const ImageSize& size, Re
   if (outcome == OfflineClock::Outcome::stuck)
     return failure(kInputError, "the simulation is paused before the time of --at");
   if (panel) panel->frame();
-  const FreeArea free = panel ? panel->free() : FreeArea{};
+  const render::FreeArea free = panel ? panel->free() : render::FreeArea{};
   if (const auto drawn = renderer.draw(clock.before(), clock.now(), clock.mix(at), size.width, size.height, free);
       !drawn)
     return failure(kMachineError, drawn.error());
   if (panel) panel->draw_over(renderer);
-  if (const auto written = write_png(renderer.read(), options.screenshot); !written)
+  if (const auto written = render::write_png(renderer.read(), options.screenshot); !written)
     return failure(kInputError, written.error());
   print_notice("{}: {} × {}, at {} s", printable(options.screenshot), size.width, size.height, number_text(at));
   return {};
 }
 
-RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, Renderer& renderer, OfflineClock& clock,
-                       double duration, const std::function<bool()>& cancel) {
+RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, render::Renderer& renderer,
+                       OfflineClock& clock, double duration, const std::function<bool()>& cancel) {
   const double fps = options.fps.value_or(60);
   const auto frames = static_cast<std::uint64_t>(std::max(std::llround(duration * fps), 1LL));
   Result<std::unique_ptr<FilmFile>> film = FilmFile::open(options.render, size.width, size.height, fps);
@@ -116,21 +119,22 @@ RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, Ren
 
 }  // namespace
 
-RenderResult render(const DisplayOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
-                    const std::function<bool()>& cancel) {
+RenderResult render(const DisplayOptions& options, engine::Engine& engine, engine::EngineLink& link,
+                    std::optional<double> duration, const std::function<bool()>& cancel) {
   const Result<ImageSize> size = image_size(options);
   if (!size) return failure(kUsageError, size.error());
-  const Result<std::unique_ptr<OffscreenContext>> context = OffscreenContext::make(options.gl);
+  const Result<std::unique_ptr<render::OffscreenContext>> context = render::OffscreenContext::make(options.gl);
   if (!context) return failure(kMachineError, context.error());
-  const Quality quality = render_quality(options, Quality::high);
-  const Result<std::unique_ptr<Renderer>> renderer = Renderer::make((*context)->api(), shader_dir(), quality);
+  const render::Quality quality = render_quality(options, render::Quality::high);
+  const Result<std::unique_ptr<render::Renderer>> renderer =
+      render::Renderer::make((*context)->api(), shader_dir(), quality);
   if (!renderer) return failure(kMachineError, renderer.error());
-  print_notice("drawn by {} with {}", gl_driver(), gl_api_info((*context)->api()).name);
-  if (gl_is_software() && quality != Quality::low && !options.render.empty())
+  print_notice("drawn by {} with {}", render::gl_driver(), render::gl_api_info((*context)->api()).name);
+  if (render::gl_is_software() && quality != render::Quality::low && !options.render.empty())
     print_notice("software rendering is slow; --quality low is several times faster");
   OfflineClock clock(engine, link, cancel);
   if (options.render.empty()) return draw_still(options, *size, **renderer, clock, engine, link);
   return draw_film(options, *size, **renderer, clock, duration.value_or(0), cancel);
 }
 
-}  // namespace limber
+}  // namespace limber::app

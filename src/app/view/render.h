@@ -6,7 +6,7 @@
 #include "app/view/display_options.h"
 #include "engine/engine.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Result of a rendering.
 struct RenderResult {
@@ -16,7 +16,7 @@ struct RenderResult {
 
 /// Renders as the options say. The engine must be started and not running elsewhere: it ticks on this thread. `cancel`
 /// is called before each frame and tick, and returns true to stop.
-RenderResult render(const DisplayOptions& options, Engine& engine, EngineLink& link, std::optional<double> duration,
-                    const std::function<bool()>& cancel);
+RenderResult render(const DisplayOptions& options, engine::Engine& engine, engine::EngineLink& link,
+                    std::optional<double> duration, const std::function<bool()>& cancel);
 
-}  // namespace limber
+}  // namespace limber::app

@@ -7,7 +7,7 @@
 
 #include "engine/output/snapshot.h"
 
-namespace limber {
+namespace limber::app {
 
 /// Drawing lags one tick behind, so that there are two snapshots to interpolate. If ticks are more frequent than
 /// frames, the latest snapshot is drawn. All times in seconds. [main]
@@ -16,7 +16,7 @@ class SnapshotInterpolation {
   static constexpr double kLongestInterval = 0.1;  ///< Longer gaps between snapshots are not interpolated.
 
   /// Adds the newest snapshot, which may be the one added before.
-  void add(std::shared_ptr<const Snapshot> newest, double now) {
+  void add(std::shared_ptr<const engine::Snapshot> newest, double now) {
     if (newest == current_) return;
     const bool continuous =
         current_ != nullptr && newest->tick == current_->tick + 1 && newest->render_scene == current_->render_scene;
@@ -29,15 +29,15 @@ class SnapshotInterpolation {
   }
 
   bool empty() const { return current_ == nullptr; }
-  const Snapshot& previous() const { return *previous_; }
-  const Snapshot& current() const { return *current_; }
+  const engine::Snapshot& previous() const { return *previous_; }
+  const engine::Snapshot& current() const { return *current_; }
   /// Position of a frame between previous() and current(), from 0 to 1.
   double mix(double now) const { return interval_ <= 0 ? 1 : std::clamp((now - time_) / interval_, 0.0, 1.0); }
 
  private:
-  std::shared_ptr<const Snapshot> previous_, current_;
+  std::shared_ptr<const engine::Snapshot> previous_, current_;
   double time_ = 0;      // time at which current_ was added
   double interval_ = 0;  // time between previous_ and current_
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -22,7 +22,7 @@ std::uint32_t node_of(const TreeSnapshot& tree, std::uint32_t part_offset) {
   return 0;
 }
 
-double mass_of(const ValueSnapshot& values, std::uint32_t node) {
+double mass_of(const engine::ValueSnapshot& values, std::uint32_t node) {
   const Property* const property = values.tree->nodes()[node].table->find("mass");
   const double* const mass =
       property == nullptr ? nullptr : values.value(values.tree->location({node, property})).numbers;
@@ -30,19 +30,19 @@ double mass_of(const ValueSnapshot& values, std::uint32_t node) {
 }
 
 Vec3 grabbed_point(const ViewState& view, std::uint32_t part_offset, const Vec3& point) {
-  const Pose pose = part_pose(view.now, part_offset);
+  const Pose pose = engine::part_pose(view.now, part_offset);
   return pose.position + pose.rotation * point;
 }
 
 }  // namespace
 
-void ViewportMouse::event(const InputEvent& event, const ViewState& view) {
-  if (event.kind == InputEvent::Kind::move) {
+void ViewportMouse::event(const panel::InputEvent& event, const ViewState& view) {
+  if (event.kind == panel::InputEvent::Kind::move) {
     x_ = event.x;
     y_ = event.y;
     if (grab_ && std::hypot(x_ - grab_->x, y_ - grab_->y) > kClickTolerance) grab_->moved = true;
   }
-  if (event.kind != InputEvent::Kind::button || event.button != 0) return;
+  if (event.kind != panel::InputEvent::Kind::button || event.button != 0) return;
   if (event.down) {
     press(event, view);
   } else {
@@ -50,14 +50,14 @@ void ViewportMouse::event(const InputEvent& event, const ViewState& view) {
   }
 }
 
-void ViewportMouse::press(const InputEvent& event, const ViewState& view) {
+void ViewportMouse::press(const panel::InputEvent& event, const ViewState& view) {
   grab_.reset();
   if (event.mods.shift || event.mods.alt) return;  // reserved for camera movement
-  const std::optional<Picked> picked = pick(view.now, view.camera, ndc_x(view, x_), ndc_y(view, y_));
+  const std::optional<render::Picked> picked = render::pick(view.now, view.camera, ndc_x(view, x_), ndc_y(view, y_));
   const std::uint32_t node = picked ? node_of(view.tree(), picked->part_offset) : 0;
   if (node == 0) return;
   const std::uint32_t body = view.tree().nodes()[view.tree().nodes()[node].parent].parent;
-  const Vec3 along = ray_through(view.camera, ndc_x(view, x_), ndc_y(view, y_));
+  const Vec3 along = render::ray_through(view.camera, ndc_x(view, x_), ndc_y(view, y_));
   const std::string path = view.tree().path(node);
   if (event.mods.ctrl) {
     Message push{path + "/apply_impulse", {}};
@@ -66,7 +66,7 @@ void ViewportMouse::press(const InputEvent& event, const ViewState& view) {
     messages_.push_back(std::move(push));
     return;
   }
-  const Pose pose = part_pose(view.now, picked->part_offset);
+  const Pose pose = engine::part_pose(view.now, picked->part_offset);
   grab_ = Grab{picked->part_offset,
                std::string(view.tree().name(body)),
                std::string(view.tree().name(node)),
@@ -98,7 +98,7 @@ void ViewportMouse::release(const ViewState& view) {
 
 // the mouse position projected to the plane through the grabbed point, parallel to the view plane
 Vec3 ViewportMouse::target(const ViewState& view) const {
-  const Vec3 along = ray_through(view.camera, ndc_x(view, x_), ndc_y(view, y_));
+  const Vec3 along = render::ray_through(view.camera, ndc_x(view, x_), ndc_y(view, y_));
   return view.camera.eye + along * (grab_->depth / std::max(glm::dot(along, view.camera.forward), 0.05));
 }
 
@@ -112,14 +112,14 @@ void ViewportMouse::frame(const ViewState& view) {
   messages_.push_back(std::move(hold));
 }
 
-std::optional<SpringMarker> ViewportMouse::spring_marker(const ViewState& view) const {
+std::optional<panel::SpringMarker> ViewportMouse::spring_marker(const ViewState& view) const {
   if (!grab_ || !grab_->moved || grab_->part_offset >= view.now.transient.size()) return std::nullopt;
   const glm::vec4 clip = view.camera.projection * view.camera.view *
                          glm::vec4(glm::vec3(grabbed_point(view, grab_->part_offset, grab_->point)), 1);
   if (clip.w <= 0) return std::nullopt;
-  return SpringMarker{(static_cast<double>(clip.x / clip.w) + 1) / 2 * view.width,
-                      (1 - static_cast<double>(clip.y / clip.w)) / 2 * view.height, x_, y_,
-                      fmt::format("{}  {}", grab_->body, grab_->part)};
+  return panel::SpringMarker{(static_cast<double>(clip.x / clip.w) + 1) / 2 * view.width,
+                             (1 - static_cast<double>(clip.y / clip.w)) / 2 * view.height, x_, y_,
+                             fmt::format("{}  {}", grab_->body, grab_->part)};
 }
 
-}  // namespace limber
+}  // namespace limber::app

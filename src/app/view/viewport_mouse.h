@@ -13,13 +13,14 @@
 #include "ui/panel/spring_marker.h"
 #include "ui/render/pick.h"
 
-namespace limber {
+namespace limber::app {
 
 /// The view at the time of an event; sizes in pixels.
 struct ViewState {
-  const Snapshot& now;
-  const ValueSnapshot& values;  ///< Values of the same show; if its structure is older than `now`, no part is found.
-  CameraMatrices camera;
+  const engine::Snapshot& now;
+  const engine::ValueSnapshot&
+      values;  ///< Values of the same show; if its structure is older than `now`, no part is found.
+  render::CameraMatrices camera;
   int width = 1;
   int height = 1;
   double clock = 0;  ///< s
@@ -35,7 +36,7 @@ class ViewportMouse {
   static constexpr double kPushSpeed = 2;          ///< m/s that a push gives a free part.
 
   /// Handles a press, release or move that the panel does not use.
-  void event(const InputEvent& event, const ViewState& view);
+  void event(const panel::InputEvent& event, const ViewState& view);
   /// Called once per frame: updates the target of the part that is being dragged.
   void frame(const ViewState& view);
 
@@ -50,7 +51,7 @@ class ViewportMouse {
   void stop_following() { followed_.reset(); }
 
   /// Returns the marker of the current drag.
-  std::optional<SpringMarker> spring_marker(const ViewState& view) const;
+  std::optional<panel::SpringMarker> spring_marker(const ViewState& view) const;
 
  private:
   struct Grab {
@@ -62,7 +63,7 @@ class ViewportMouse {
     bool moved = false;
   };
 
-  void press(const InputEvent& event, const ViewState& view);
+  void press(const panel::InputEvent& event, const ViewState& view);
   void release(const ViewState& view);
   Vec3 target(const ViewState& view) const;
 
@@ -75,4 +76,4 @@ class ViewportMouse {
   std::vector<Message> messages_;
 };
 
-}  // namespace limber
+}  // namespace limber::app

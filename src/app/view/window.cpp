@@ -15,7 +15,7 @@
 #include "base/system/process.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -57,7 +57,7 @@ std::string printed_on(int key) {
   return name == nullptr ? "" : name;
 }
 
-KeyMods key_mods(int mods) {
+panel::KeyMods key_mods(int mods) {
   return {(mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_ALT) != 0};
 }
 
@@ -115,10 +115,10 @@ GLFWwindow* make_window(const char* title, int width, int height, const ContextK
 }
 
 // EGL in addition to GLX: some X servers have no GLX, and OpenGL ES comes with EGL
-std::vector<ContextKind> context_kinds(GlApi api) {
-  const GlApiInfo& info = gl_api_info(api);
-  if (!gl_can_load(api)) return {};
-  if (api == GlApi::es)
+std::vector<ContextKind> context_kinds(render::GlApi api) {
+  const render::GlApiInfo& info = render::gl_api_info(api);
+  if (!render::gl_can_load(api)) return {};
+  if (api == render::GlApi::es)
     return {{GLFW_OPENGL_ES_API, GLFW_EGL_CONTEXT_API, info.major, info.minor},
             {GLFW_OPENGL_ES_API, GLFW_NATIVE_CONTEXT_API, info.major, info.minor}};
   return {{GLFW_OPENGL_API, GLFW_NATIVE_CONTEXT_API, info.major, info.minor},
@@ -149,7 +149,7 @@ std::vector<std::string> available_versions() {
 bool Window::has_display() { return is_set("DISPLAY") || is_set("WAYLAND_DISPLAY"); }
 
 Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width, int height,
-                                             std::span<const GlApi> apis) {
+                                             std::span<const render::GlApi> apis) {
   if (!has_display())
     return Error{"no display: DISPLAY and WAYLAND_DISPLAY are not set; a desktop session or xvfb-run sets one"};
 #if defined(GLFW_PLATFORM)
@@ -166,13 +166,13 @@ Result<std::unique_ptr<Window>> Window::open(const std::string& title, int width
   request_failed = false;
   set_handler("XSetIOErrorHandler", handle_lost_display);
   set_handler("XSetErrorHandler", handle_failed_request);
-  for (const GlApi api : apis) {
+  for (const render::GlApi api : apis) {
     for (const ContextKind& kind : context_kinds(api)) {
       GLFWwindow* const window = make_window(title.c_str(), width, height, kind);
       if (window != nullptr) return std::unique_ptr<Window>(new Window(window, api));
     }
   }
-  const std::string error = gl_context_error(apis, available_versions());
+  const std::string error = render::gl_context_error(apis, available_versions());
   glfwTerminate();
   return Error{fmt::format("no window can be opened: {}", error)};
 }
@@ -196,7 +196,7 @@ Result<std::unique_ptr<Window>> Window::open_beside(const Window& first, const s
   return beside;
 }
 
-Window::Window(GLFWwindow* window, GlApi api) : window_(window), api_(api) {
+Window::Window(GLFWwindow* window, render::GlApi api) : window_(window), api_(api) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
@@ -217,7 +217,7 @@ void Window::on_display_lost(std::function<void()> callback) { display_lost = st
 // presses and releases of modifier keys are events, too: they decide whether later letters are shortcuts
 void Window::on_key(GLFWwindow* window, int key, int, int action, int) {
   if (action == GLFW_REPEAT) return;  // the panel repeats keys itself
-  InputEvent event{.kind = InputEvent::Kind::key};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::key};
   event.key = KeyLayout(printed_on).key(key);
   event.down = action == GLFW_PRESS;
   const auto either_down = [&](int left, int right) {
@@ -230,13 +230,13 @@ void Window::on_key(GLFWwindow* window, int key, int, int action, int) {
 }
 
 void Window::on_char(GLFWwindow* window, unsigned character) {
-  InputEvent event{.kind = InputEvent::Kind::text};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::text};
   event.character = character;
   window_of(window).events_.push_back(event);
 }
 
 void Window::on_button(GLFWwindow* window, int button, int action, int mods) {
-  InputEvent event{.kind = InputEvent::Kind::button};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::button};
   event.button = button;
   event.down = action == GLFW_PRESS;
   event.mods = key_mods(mods);
@@ -244,7 +244,7 @@ void Window::on_button(GLFWwindow* window, int button, int action, int mods) {
 }
 
 void Window::on_focus(GLFWwindow* window, int focused) {
-  InputEvent event{.kind = InputEvent::Kind::focus};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::focus};
   event.down = focused == GLFW_TRUE;
   window_of(window).events_.push_back(event);
 }
@@ -253,7 +253,7 @@ void Window::on_move(GLFWwindow* window, double x, double y) {
   Window& self = window_of(window);
   const double dx = x - std::exchange(self.x_, x);
   const double dy = y - std::exchange(self.y_, y);
-  InputEvent event{.kind = InputEvent::Kind::move};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::move};
   // convert from window units to pixels, which differ on some screens
   int width = 0;
   int height = 0;
@@ -276,7 +276,7 @@ void Window::on_move(GLFWwindow* window, double x, double y) {
 
 void Window::on_scroll(GLFWwindow* window, double x, double y) {
   window_of(window).mouse_.wheel += y;
-  InputEvent event{.kind = InputEvent::Kind::wheel};
+  panel::InputEvent event{.kind = panel::InputEvent::Kind::wheel};
   event.x = x;
   event.y = y;
   window_of(window).events_.push_back(event);
@@ -290,7 +290,7 @@ void Window::poll(double seconds) {
   }
 }
 
-KeyLabels Window::key_labels() const { return KeyLayout(printed_on).labels(); }
+panel::KeyLabels Window::key_labels() const { return KeyLayout(printed_on).labels(); }
 
 bool Window::closed() const { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
 
@@ -327,7 +327,7 @@ std::string Window::clipboard() const {
 
 void Window::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
-std::vector<InputEvent> Window::consume_events() { return std::exchange(events_, {}); }
+std::vector<panel::InputEvent> Window::consume_events() { return std::exchange(events_, {}); }
 MouseMovement Window::consume_mouse() { return std::exchange(mouse_, {}); }
 void Window::set_title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 
@@ -379,4 +379,4 @@ void Window::swap() { glfwSwapBuffers(window_); }
 void Window::make_current() { glfwMakeContextCurrent(window_); }
 void Window::set_vsync(bool enabled) { glfwSwapInterval(enabled ? 1 : 0); }
 
-}  // namespace limber
+}  // namespace limber::app

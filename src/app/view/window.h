@@ -14,7 +14,7 @@
 
 struct GLFWwindow;
 
-namespace limber {
+namespace limber::app {
 
 /// Mouse movement since the last call: pixels of the window, steps of the wheel.
 struct MouseMovement {
@@ -32,7 +32,7 @@ class Window {
   /// Opens a window with the first of `apis` that is available and makes its context current. The error says why no
   /// window can be opened. [main]
   static Result<std::unique_ptr<Window>> open(const std::string& title, int width, int height,
-                                              std::span<const GlApi> apis);
+                                              std::span<const render::GlApi> apis);
   /// Opens a second window with a context that shares objects with that of `first`, on another screen if there is one.
   /// The context of `first` stays current. `first` must outlive it. [main]
   static Result<std::unique_ptr<Window>> open_beside(const Window& first, const std::string& title, int width,
@@ -46,7 +46,7 @@ class Window {
 
   /// Processes events; waits for one at most `seconds`. [main]
   void poll(double seconds);
-  GlApi api() const { return api_; }
+  render::GlApi api() const { return api_; }
   bool closed() const;
   /// True if the window was destroyed from outside. [main]
   bool lost() const;
@@ -58,12 +58,12 @@ class Window {
   /// Scale of the window's screen: 2 on a screen with twice the pixel density. [main]
   double content_scale() const;
   /// Returns the input events since the last call, for the panel. [main]
-  std::vector<InputEvent> consume_events();
+  std::vector<panel::InputEvent> consume_events();
   /// True if there was input since the last consume_events(). [main]
   bool has_events() const { return !events_.empty() || mouse_.any(); }
   MouseMovement consume_mouse();
   /// Returns the labels of keys that are identified by their position. [main]
-  KeyLabels key_labels() const;
+  panel::KeyLabels key_labels() const;
   std::string clipboard() const;
   void set_clipboard(const std::string& text);
   void set_title(const std::string& text);
@@ -81,7 +81,7 @@ class Window {
   void set_vsync(bool enabled);
 
  private:
-  Window(GLFWwindow* window, GlApi api);
+  Window(GLFWwindow* window, render::GlApi api);
   static void on_key(GLFWwindow* window, int key, int code, int action, int mods);
   static void on_move(GLFWwindow* window, double x, double y);
   static void on_scroll(GLFWwindow* window, double x, double y);
@@ -90,12 +90,12 @@ class Window {
   static void on_focus(GLFWwindow* window, int focused);
 
   GLFWwindow* window_;
-  GlApi api_;
-  std::vector<InputEvent> events_;
+  render::GlApi api_;
+  std::vector<panel::InputEvent> events_;
   MouseMovement mouse_;
   double x_ = 0;
   double y_ = 0;
   int windowed_rect_[4] = {0, 0, 0, 0};  // position and size before full screen
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -14,7 +14,7 @@
 #include "base/system/thread.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::app {
 
 namespace {
 
@@ -23,25 +23,25 @@ constexpr double kShaderCheckInterval = 0.25;  // s
 }  // namespace
 
 Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& options, const std::string& scene,
-                                                     EngineLink& link) {
+                                                     engine::EngineLink& link) {
   // software renderers create their worker threads from this thread, and use every core
   system::lower_thread_priority();
   Result<ImageSize> size = image_size(options);
   if (!size) return Error{size.error()};
-  const GuiSettings settings = load_settings(settings_file());
+  const panel::GuiSettings settings = panel::load_settings(panel::settings_file());
   if (options.size.empty() && settings.window_width > 0 && settings.window_height > 0)
     *size = {settings.window_width, settings.window_height};
   Result<std::unique_ptr<Window>> window =
-      Window::open(fmt::format("Limber: {}", scene), size->width, size->height, gl_apis(options.gl));
+      Window::open(fmt::format("Limber: {}", scene), size->width, size->height, render::gl_apis(options.gl));
   if (!window) return Error{window.error()};
-  const GlApiInfo& api = gl_api_info((*window)->api());
+  const render::GlApiInfo& api = render::gl_api_info((*window)->api());
   // GPUs without OpenGL 3.3 are those of single-board computers
-  const bool software = gl_is_software();
-  const bool slow = software || api.api != GlApi::core;
-  const Quality quality = render_quality(options, slow ? Quality::low : Quality::high);
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api.api, shader_dir(), quality);
+  const bool software = render::gl_is_software();
+  const bool slow = software || api.api != render::GlApi::core;
+  const render::Quality quality = render_quality(options, slow ? render::Quality::low : render::Quality::high);
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::make(api.api, shader_dir(), quality);
   if (!renderer) return Error{renderer.error()};
-  print_notice("window {} × {}, drawn by {} with {}", size->width, size->height, gl_driver(), api.name);
+  print_notice("window {} × {}, drawn by {} with {}", size->width, size->height, render::gl_driver(), api.name);
   if (slow && options.quality.empty())
     print_notice("using --quality low because of {}; --quality high looks better",
                  software ? "software rendering" : api.name);
@@ -49,22 +49,23 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& optio
       new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
 }
 
-WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer,
-                       const DisplayOptions& options, const GuiSettings& settings, std::string scene, EngineLink& link)
+WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<render::Renderer> renderer,
+                       const DisplayOptions& options, const panel::GuiSettings& settings, std::string scene,
+                       engine::EngineLink& link)
     : window_(std::move(window)),
       renderer_(std::move(renderer)),
-      settings_file_(settings_file()),
+      settings_file_(panel::settings_file()),
       saved_settings_(settings),
       panel_scale_(options.panel_scale.value_or(1)),
       fixed_size_(!options.size.empty()),
       scene_(std::move(scene)),
       link_(link) {
-  GuiOptions panel = panel_options(window_.get(), window_->api());
+  panel::GuiOptions panel = panel_options(window_.get(), window_->api());
   panel.settings = settings;
   if (!options.monitor.empty()) panel.settings.monitor = options.monitor;
   if (options.hide_pointer) panel.settings.hide_pointer = *options.hide_pointer;
   const bool full_screen = options.full_screen.value_or(settings.full_screen);
-  gui_ = std::make_unique<Gui>(link_, std::move(panel));
+  gui_ = std::make_unique<panel::Gui>(link_, std::move(panel));
   if (const std::string& monitor = gui_->settings().monitor; !monitor.empty()) {
     if (const Result<void> moved = window_->move_to_monitor(monitor); !moved) log_warning("{}", moved.error());
   }
@@ -73,13 +74,13 @@ WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer>
 }
 
 WindowShow::~WindowShow() {
-  GuiSettings now = gui_->settings();
+  panel::GuiSettings now = gui_->settings();
   if (!fixed_size_ && window_->width() > 0 && !window_->is_full_screen()) {
     now.window_width = window_->width();
     now.window_height = window_->height();
   }
   now.full_screen = window_->is_full_screen();
-  if (now != saved_settings_) save_settings(settings_file_, now);
+  if (now != saved_settings_) panel::save_settings(settings_file_, now);
 }
 
 void WindowShow::send(std::vector<Message> messages) {
@@ -88,7 +89,7 @@ void WindowShow::send(std::vector<Message> messages) {
 }
 
 void WindowShow::update_snapshots(double now) {
-  std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  std::shared_ptr<const engine::Snapshot> newest = link_.snapshots.read();
   if (newest == nullptr) return;
   if (snapshots_.empty()) camera_.set_default_view(*newest);
   snapshots_.add(std::move(newest), now);
@@ -96,26 +97,27 @@ void WindowShow::update_snapshots(double now) {
 
 // the panel has priority; the view receives the remaining events
 void WindowShow::handle_input(int width, int height, double now) {
-  const std::vector<InputEvent> events = window_->consume_events();
-  for (const InputEvent& event : events) gui_->push(event);
+  const std::vector<panel::InputEvent> events = window_->consume_events();
+  for (const panel::InputEvent& event : events) gui_->push(event);
   if (output_ != nullptr) {
-    for (const InputEvent& key : output_->consume_keys()) gui_->push(key);
+    for (const panel::InputEvent& key : output_->consume_keys()) gui_->push(key);
   }
   if (gui_->context().show_help) gui_->set_key_labels(window_->key_labels());
   gui_->frame({static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now});
-  for (const HotkeyAction action : gui_->consume_actions()) act(action);
-  GuiContext& context = gui_->context();
+  for (const panel::HotkeyAction action : gui_->consume_actions()) act(action);
+  panel::GuiContext& context = gui_->context();
   if (context.value_snapshot != nullptr) {
-    const ViewState view{
-        snapshots_.current(),
-        *context.value_snapshot,
-        camera_matrices(camera_of(snapshots_.current()), width, height, free_part(*gui_, width, height)),
-        width,
-        height,
-        now};
-    for (const InputEvent& event : events) {
-      const bool release = event.kind == InputEvent::Kind::button && !event.down;
-      if (release || event.kind == InputEvent::Kind::move || !gui_->wants_mouse()) viewport_mouse_.event(event, view);
+    const ViewState view{snapshots_.current(),
+                         *context.value_snapshot,
+                         render::camera_matrices(engine::camera_of(snapshots_.current()), width, height,
+                                                 free_part(*gui_, width, height)),
+                         width,
+                         height,
+                         now};
+    for (const panel::InputEvent& event : events) {
+      const bool release = event.kind == panel::InputEvent::Kind::button && !event.down;
+      if (release || event.kind == panel::InputEvent::Kind::move || !gui_->wants_mouse())
+        viewport_mouse_.event(event, view);
     }
     viewport_mouse_.frame(view);
     if (std::vector<Message> messages = viewport_mouse_.consume_messages(); !messages.empty())
@@ -128,13 +130,13 @@ void WindowShow::handle_input(int width, int height, double now) {
   follow_part();
 }
 
-void WindowShow::act(HotkeyAction action) {
-  if (action == HotkeyAction::toggle_output_window) toggle_output();
-  if (action == HotkeyAction::toggle_full_screen)
+void WindowShow::act(panel::HotkeyAction action) {
+  if (action == panel::HotkeyAction::toggle_output_window) toggle_output();
+  if (action == panel::HotkeyAction::toggle_full_screen)
     output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
-  if (action != HotkeyAction::default_view && action != HotkeyAction::restore_view) return;
+  if (action != panel::HotkeyAction::default_view && action != panel::HotkeyAction::restore_view) return;
   viewport_mouse_.stop_following();
-  if (action == HotkeyAction::default_view) send(camera_.default_view());
+  if (action == panel::HotkeyAction::default_view) send(camera_.default_view());
 }
 
 void WindowShow::toggle_output() {
@@ -181,13 +183,13 @@ void WindowShow::handle_mouse() {
   const double height = std::max(window_->height(), 1) *
                         free_part(*gui_, std::max(window_->width(), 1), std::max(window_->height(), 1)).height;
   if (mouse.pan_x != 0 || mouse.pan_y != 0) viewport_mouse_.stop_following();
-  send(camera_.move(mouse, camera_of(snapshots_.current()), height, system::clock_seconds()));
+  send(camera_.move(mouse, engine::camera_of(snapshots_.current()), height, system::clock_seconds()));
 }
 
 void WindowShow::update_title(double now) {
   const std::optional<double> rate = frames_.count(now);
   if (!rate) return;
-  const Snapshot& snapshot = snapshots_.current();
+  const engine::Snapshot& snapshot = snapshots_.current();
   window_->set_title(fmt::format("Limber: {}  {:.0f} frames per second  {:.2f} × real time{}", scene_, *rate,
                                  snapshot.speed, snapshot.paused ? "  paused" : ""));
 }
@@ -241,4 +243,4 @@ WindowShow::End WindowShow::frame() {
   return End::none;
 }
 
-}  // namespace limber
+}  // namespace limber::app

@@ -16,7 +16,7 @@
 #include "ui/panel/gui.h"
 #include "ui/render/renderer.h"
 
-namespace limber {
+namespace limber::app {
 
 /// [main]
 class WindowShow {
@@ -24,7 +24,7 @@ class WindowShow {
   /// Must be called after all other threads were created: this thread lowers its priority, so that drawing never delays
   /// the simulation. The error says why there is no window. [main]
   static Result<std::unique_ptr<WindowShow>> open(const DisplayOptions& options, const std::string& scene,
-                                                  EngineLink& link);
+                                                  engine::EngineLink& link);
 
   /// Saves the panel's settings.
   ~WindowShow();
@@ -38,13 +38,13 @@ class WindowShow {
   End frame();
 
  private:
-  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<Renderer> renderer, const DisplayOptions& options,
-             const GuiSettings& settings, std::string scene, EngineLink& link);
+  WindowShow(std::unique_ptr<Window> window, std::unique_ptr<render::Renderer> renderer, const DisplayOptions& options,
+             const panel::GuiSettings& settings, std::string scene, engine::EngineLink& link);
 
   void update_snapshots(double now);
   void check_for_changes(double now);
   void handle_input(int width, int height, double now);
-  void act(HotkeyAction action);
+  void act(panel::HotkeyAction action);
   void toggle_output();
   Result<void> draw_window(double mix, int width, int height);
   Result<void> draw_output(double mix);
@@ -54,17 +54,17 @@ class WindowShow {
   void update_title(double now);
 
   std::unique_ptr<Window> window_;
-  std::unique_ptr<Renderer> renderer_;    // destroyed before its context
-  std::unique_ptr<OutputWindow> output_;  // null: there is none
+  std::unique_ptr<render::Renderer> renderer_;  // destroyed before its context
+  std::unique_ptr<OutputWindow> output_;        // null: there is none
   ViewportMouse viewport_mouse_;
   CameraControl camera_;
   std::string settings_file_;
-  GuiSettings saved_settings_;  // the settings as saved in the file
-  double panel_scale_ = 1;      // scale of the panel relative to the screen's own
-  bool fixed_size_ = false;     // the command line sets the window's size
-  std::unique_ptr<Gui> gui_;    // destroyed before its context
+  panel::GuiSettings saved_settings_;  // the settings as saved in the file
+  double panel_scale_ = 1;             // scale of the panel relative to the screen's own
+  bool fixed_size_ = false;            // the command line sets the window's size
+  std::unique_ptr<panel::Gui> gui_;    // destroyed before its context
   std::string scene_;
-  EngineLink& link_;
+  engine::EngineLink& link_;
   SnapshotInterpolation snapshots_;
   FramePace pace_;
   ChangeDetector changes_;
@@ -72,4 +72,4 @@ class WindowShow {
   double shader_check_time_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::app

@@ -12,12 +12,12 @@
 #include "sim/world/motor.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
 bool is_gravity(const Property& property) {
-  static const Property* const gravity = &World::table().at("gravity");
+  static const Property* const gravity = &sim::World::table().at("gravity");
   return &property == gravity;
 }
 
@@ -74,8 +74,8 @@ std::string arg_text(const Arg& arg) {
 int own_axis_index(const Store& store, NodeId node, const Property& property) {
   const PropertyTable* table = &store.table(node);
   int own_axis = -1;
-  if (table == &Joint::table()) own_axis = static_cast<const Joint*>(store.object(node))->own_axis();
-  if (table == &Motor::table()) own_axis = static_cast<const Motor*>(store.object(node))->joint().own_axis();
+  if (table == &sim::Joint::table()) own_axis = static_cast<const sim::Joint*>(store.object(node))->own_axis();
+  if (table == &sim::Motor::table()) own_axis = static_cast<const sim::Motor*>(store.object(node))->joint().own_axis();
   if (own_axis < 0) return -1;
   const bool angular = property.name.find("angular") != std::string::npos;
   return (own_axis >= 3) == angular ? own_axis % 3 : -1;
@@ -169,4 +169,4 @@ Result<PropertyValues> expand(const Store& store, NodeId node, const Property& p
   return expanded;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

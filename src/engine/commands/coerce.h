@@ -9,7 +9,7 @@
 #include "base/message.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Numbers for one property: the first `count` of `values`. One number may be expanded to three; see expand().
 struct PropertyValues {
@@ -41,4 +41,4 @@ std::string expected_text(const Property& property);
 /// True if an action accepts this number of arguments. Vectors must be complete.
 bool action_accepts_count(const Property& action, std::size_t numbers);
 
-}  // namespace limber
+}  // namespace limber::engine

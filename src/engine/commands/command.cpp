@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 std::size_t weight_of(const Message& message) {
   std::size_t bytes = sizeof message + message.address.capacity() + message.args.capacity() * sizeof(Arg);
@@ -27,4 +27,4 @@ Message error_message(std::string_view address, std::string_view text) {
   return {"/error", {Arg::of(address), Arg::of(shortened(text, kMaxErrorText))}};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -14,7 +14,7 @@
 #include "base/message.h"
 #include "base/osc_config.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A Lua text for the running scene, from a console or the panel: run it, or complete its last word. There is no
 /// message for it, so it can't come from the network.
@@ -75,4 +75,4 @@ struct Counters {
   std::atomic<std::uint64_t> disabled{0};        ///< Handlers that are disabled because they failed.
 };
 
-}  // namespace limber
+}  // namespace limber::engine

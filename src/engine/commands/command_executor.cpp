@@ -8,7 +8,7 @@
 #include "base/log/log.h"
 #include "engine/commands/console_params.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 // Costs in units of LiveInput::kPassWork: a rejection or an answer, a message to the scene's handlers.
@@ -70,7 +70,7 @@ void CommandExecutor::queue_for_handlers(Outcome& outcome, Message& message, con
 
 // Scene parameters that the text sets become overrides, except in replays of older takes.
 Evaluation CommandExecutor::evaluate_text(std::string_view text) {
-  Scene& scene = *show_.session->scene;
+  script::Scene& scene = *show_.session->scene;
   const ConsoleParams console_params(show_.session->store, scene.params());
   Evaluation result = scene.evaluate(text);
   if (show_.rules.keeps_timers) console_params.add_to(show_.overrides);
@@ -93,4 +93,4 @@ void CommandExecutor::evaluate(const EvaluationRequest& request, const CommandOr
   request.on_result(std::move(result));
 }
 
-}  // namespace limber
+}  // namespace limber::engine

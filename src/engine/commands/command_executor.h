@@ -3,7 +3,7 @@
 
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
 class CommandExecutor {
  public:
@@ -28,4 +28,4 @@ class CommandExecutor {
   ShowState& show_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

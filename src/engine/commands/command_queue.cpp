@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::engine {
 
 bool CommandQueue::push(Command command, bool urgent_pushed) {
   if (command.arrival == 0) command.arrival = next_arrival();
@@ -64,4 +64,4 @@ bool CommandQueue::has_urgent(UrgentKind kind) {
   return std::ranges::any_of(urgent_, [&](const UrgentRequest& request) { return request.kind == kind; });
 }
 
-}  // namespace limber
+}  // namespace limber::engine

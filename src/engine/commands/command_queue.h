@@ -12,7 +12,7 @@
 #include "base/threads/bounded_queue.h"
 #include "engine/commands/urgent.h"
 
-namespace limber {
+namespace limber::engine {
 
 class CommandQueue {
  public:
@@ -52,4 +52,4 @@ class CommandQueue {
   std::atomic<std::uint64_t> discarded_{0};
 };
 
-}  // namespace limber
+}  // namespace limber::engine

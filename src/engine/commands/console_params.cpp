@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -45,4 +45,4 @@ void ConsoleParams::add_to(Overrides& overrides) const {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "engine/edits/overrides.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 class ConsoleParams {
  public:
@@ -29,4 +29,4 @@ class ConsoleParams {
   std::uint64_t written_ = 0;  // bit mask of the parameters that were set
 };
 
-}  // namespace limber
+}  // namespace limber::engine

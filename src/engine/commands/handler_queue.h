@@ -8,7 +8,7 @@
 
 #include "base/message.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A bounded FIFO. A message that does not fit is dropped. The limits depend only on the pushed messages, so a replay
 /// drops the same ones. [sim]
@@ -59,4 +59,4 @@ class HandlerQueue {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

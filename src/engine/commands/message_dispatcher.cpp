@@ -15,7 +15,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -23,7 +23,8 @@ constexpr std::size_t kMaxPaths = 16384;  // size of the cache of exact paths
 
 // the classes with legacy addresses
 std::array<const PropertyTable*, 6> legacy_classes() {
-  return {&World::table(), &Part::table(), &Joint::table(), &Motor::table(), &Camera::table(), &Shape::table()};
+  return {&sim::World::table(), &sim::Part::table(),   &sim::Joint::table(),
+          &sim::Motor::table(), &sim::Camera::table(), &sim::Shape::table()};
 }
 
 constexpr SpecialAddress kSpecialAddresses[] = {
@@ -83,10 +84,10 @@ std::string_view normalized_address(std::string_view address, std::array<char, 9
 std::string object_text(const Store& store, NodeId id) {
   const std::string& kind = store.table(id).name();
   const NodeId owner = store.parent(store.parent(id));  // body / group "part" / part
-  if (!owner.null() && &store.table(owner) == &Body::table())
+  if (!owner.null() && &store.table(owner) == &sim::Body::table())
     return fmt::format("{} '{}/{}'", kind, store.name(owner), store.name(id));
-  return &store.table(id) == &Body::table() || kind == "group" ? fmt::format("{} '{}'", kind, store.name(id))
-                                                               : store.path(id);
+  return &store.table(id) == &sim::Body::table() || kind == "group" ? fmt::format("{} '{}'", kind, store.name(id))
+                                                                    : store.path(id);
 }
 
 // True for the single argument 0, which a button sends when it is released and which triggers nothing.
@@ -117,7 +118,7 @@ std::string MessageDispatcher::legacy_address(const PropertyTable& table, const 
 
 std::span<const SpecialAddress> MessageDispatcher::special_addresses() { return kSpecialAddresses; }
 
-MessageDispatcher::MessageDispatcher(World& world, Presets* presets,
+MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
                                      std::span<const PropertyTable* const> extra_classes)
     : world_(world), presets_(presets), store_(world.store()) {
   for (const PropertyTable* table : legacy_classes()) add_class(*table);
@@ -170,8 +171,8 @@ Outcome MessageDispatcher::execute_one(const Message& message) {
 }
 
 NodeId MessageDispatcher::singleton(const PropertyTable& table) const {
-  if (&table == &World::table()) return world_.id();
-  return &table == &Camera::table() ? world_.visuals().camera().id() : NodeId{};
+  if (&table == &sim::World::table()) return world_.id();
+  return &table == &sim::Camera::table() ? world_.visuals().camera().id() : NodeId{};
 }
 
 Outcome MessageDispatcher::execute_named(const AddressEntry& entry, const Message& message) {
@@ -183,7 +184,7 @@ Outcome MessageDispatcher::execute_named(const AddressEntry& entry, const Messag
     refs_.push_back({singleton_id, &property});
     return is_action ? execute_action(args) : apply(true, args);
   }
-  const bool shapes = entry.table == &Shape::table();
+  const bool shapes = entry.table == &sim::Shape::table();
   const Result<ValueSplit> split = split_value(property, args);
   if (!split) return Outcome::rejected(split.error());
   const std::span<const Arg> names = args.first(args.size() - split->count);
@@ -323,7 +324,7 @@ Outcome MessageDispatcher::execute_action(std::span<const Arg> value) {
 
 Outcome MessageDispatcher::part_force(const Message& message) {
   // as in ofxDabPhysics: a force, and optionally its point of application relative to the center of mass, world axes
-  static const Property& property = Part::table().at("apply_force");
+  static const Property& property = sim::Part::table().at("apply_force");
   const Result<ValueSplit> split = split_value(property, message.args);
   if (!split) return Outcome::rejected("takes 3 numbers, or 6 with a point of application");
   const std::span<const Arg> names = std::span(message.args).first(message.args.size() - split->count);
@@ -336,19 +337,19 @@ Outcome MessageDispatcher::part_force(const Message& message) {
       return Outcome::rejected(fmt::format("takes numbers; {} is not finite", numbers[i]));
   }
   refs_.clear();
-  if (const Result<void> selected = selector_.select(Part::table(), property, names, refs_); !selected)
+  if (const Result<void> selected = selector_.select(sim::Part::table(), property, names, refs_); !selected)
     return Outcome::rejected(selected.error());
-  if (Selector::is_single(names, 2) && static_cast<Part*>(store_.object(refs_.front().node))->is_static())
+  if (Selector::is_single(names, 2) && static_cast<sim::Part*>(store_.object(refs_.front().node))->is_static())
     return Outcome::rejected(fmt::format("{} is static and never moves", object_text(store_, refs_.front().node)));
   for (const PropertyRef& ref : refs_) {
-    Part& part = *static_cast<Part*>(store_.object(ref.node));
+    sim::Part& part = *static_cast<sim::Part*>(store_.object(ref.node));
     part.apply_force_at({numbers[0], numbers[1], numbers[2]}, part.center() + Vec3(numbers[3], numbers[4], numbers[5]));
   }
   return {};
 }
 
 Outcome MessageDispatcher::part_hold(const Message& message) {
-  static const Property& property = Part::table().at("position");
+  static const Property& property = sim::Part::table().at("position");
   constexpr std::size_t kNames = 2;
   constexpr std::size_t kNumbers = 6;
   const std::span<const Arg> args = message.args;
@@ -361,10 +362,11 @@ Outcome MessageDispatcher::part_hold(const Message& message) {
     if (!arg.is_numeric() || !std::isfinite(numbers[i])) return Outcome::rejected("takes six numbers after the names");
   }
   refs_.clear();
-  if (const Result<void> selected = selector_.select(Part::table(), property, args.first(kNames), refs_); !selected)
+  if (const Result<void> selected = selector_.select(sim::Part::table(), property, args.first(kNames), refs_);
+      !selected)
     return Outcome::rejected(selected.error());
   const NodeId id = refs_.front().node;
-  if (static_cast<Part*>(store_.object(id))->is_static())
+  if (static_cast<sim::Part*>(store_.object(id))->is_static())
     return Outcome::rejected(fmt::format("{} is static and never moves", object_text(store_, id)));
   if (!mouse_springs_.attach(world_, id, {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}))
     return Outcome::rejected(fmt::format("the maximum of {} springs is reached", MouseSprings::kMaxSprings));
@@ -372,10 +374,10 @@ Outcome MessageDispatcher::part_hold(const Message& message) {
 }
 
 Outcome MessageDispatcher::part_release(const Message& message) {
-  static const Property& property = Part::table().at("position");
+  static const Property& property = sim::Part::table().at("position");
   if (message.args.size() != 2) return Outcome::rejected("takes a body and a part");
   refs_.clear();
-  if (const Result<void> selected = selector_.select(Part::table(), property, message.args, refs_); !selected)
+  if (const Result<void> selected = selector_.select(sim::Part::table(), property, message.args, refs_); !selected)
     return Outcome::rejected(selected.error());
   for (const PropertyRef& ref : refs_) mouse_springs_.release(ref.node);
   return {};
@@ -406,7 +408,7 @@ Outcome MessageDispatcher::projection(const Message& message) {
   std::vector<Write> writes;
   const NodeId camera = world_.visuals().camera().id();
   for (std::size_t i = 0; i < std::size(kProperties); i++) {
-    const Property& property = Camera::table().at(kProperties[i]);
+    const Property& property = sim::Camera::table().at(kProperties[i]);
     const Result<PropertyValues> value = coerce(property, std::span(message.args).subspan(i, 1));
     if (!value) return Outcome::rejected(fmt::format("{}: {}", property.name, value.error()));
     writes.push_back({{camera, &property}, *value});
@@ -476,4 +478,4 @@ Outcome MessageDispatcher::reject_unsupported(const Message&) {
       "the frames of a joint can't be changed; move its parts (position, rotation) or create the joint again");
 }
 
-}  // namespace limber
+}  // namespace limber::engine

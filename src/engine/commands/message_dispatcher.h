@@ -20,7 +20,7 @@
 #include "properties/catalog.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A special address: one that is not derived from a property.
 struct SpecialAddress {
@@ -36,7 +36,7 @@ class MessageDispatcher {
 
   /// If `presets` is null, preset messages are rejected. `extra_classes`: more classes, with their objects in a group
   /// of that name in each body; their legacy addresses take precedence over those of the built-in classes.
-  explicit MessageDispatcher(World& world, Presets* presets = nullptr,
+  explicit MessageDispatcher(sim::World& world, Presets* presets = nullptr,
                              std::span<const PropertyTable* const> extra_classes = {});
 
   /// Sets the source of /list/health, which is empty without it.
@@ -112,7 +112,7 @@ class MessageDispatcher {
   Outcome execute_preset(const Message& message);
   Outcome request_take(const Message& message);
 
-  World& world_;
+  sim::World& world_;
   Presets* presets_;
   const Health* health_ = nullptr;
   Store& store_;
@@ -130,4 +130,4 @@ class MessageDispatcher {
   std::vector<Write> writes_;      // the validated values of the message
 };
 
-}  // namespace limber
+}  // namespace limber::engine

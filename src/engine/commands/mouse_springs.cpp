@@ -6,9 +6,9 @@
 #include "sim/world/body.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
-bool MouseSprings::attach(World& world, NodeId part, const Vec3& point, const Vec3& target) {
+bool MouseSprings::attach(sim::World& world, NodeId part, const Vec3& point, const Vec3& target) {
   const auto same =
       std::find_if(springs_.begin(), springs_.end(), [&](const Spring& spring) { return spring.part == part; });
   if (same == springs_.end() && springs_.size() >= kMaxSprings) return false;
@@ -21,13 +21,13 @@ void MouseSprings::release(NodeId part) {
   std::erase_if(springs_, [&](const Spring& spring) { return spring.part == part; });
 }
 
-void MouseSprings::apply_forces(World& world) {
+void MouseSprings::apply_forces(sim::World& world) {
   if (springs_.empty()) return;
   const Store& store = world.store();
   std::erase_if(springs_,
                 [&](const Spring& spring) { return !store.alive(spring.part) || world.time() > spring.until; });
   for (const Spring& spring : springs_) {
-    Part& part = *static_cast<Part*>(store.object(spring.part));
+    sim::Part& part = *static_cast<sim::Part*>(store.object(spring.part));
     double mass = 0;
     for (const auto& other : part.body().parts()) mass += other->is_static() ? 0 : other->mass();
     const Pose pose = part.pose();
@@ -41,4 +41,4 @@ void MouseSprings::apply_forces(World& world) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class MouseSprings {
  public:
@@ -17,11 +17,11 @@ class MouseSprings {
 
   /// Attaches a spring to `point` (in the part's frame), or moves the part's existing spring. `target` is in the world.
   /// Returns false if there are too many.
-  bool attach(World& world, NodeId part, const Vec3& point, const Vec3& target);
+  bool attach(sim::World& world, NodeId part, const Vec3& point, const Vec3& target);
   void release(NodeId part);
   void clear() { springs_.clear(); }
   /// Removes expired springs and applies the forces of the others. Call it before each step.
-  void apply_forces(World& world);
+  void apply_forces(sim::World& world);
   std::size_t size() const { return springs_.size(); }
 
  private:
@@ -34,4 +34,4 @@ class MouseSprings {
   std::vector<Spring> springs_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "base/message.h"
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::engine {
 
 struct Outcome {
   enum class Kind : std::uint8_t {
@@ -44,4 +44,4 @@ struct Outcome {
   }
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -13,7 +13,7 @@
 #include "sim/shapes/shape_list.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -48,7 +48,7 @@ Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) con
 Outcome QueryHandler::list_of_body(std::string_view kind, std::span<const Arg> args) const {
   if (args.size() != 1 || args[0].kind == Arg::Kind::nil) return Outcome::rejected("takes the name of a body");
   const std::string name = Selector::name_text(args[0]);
-  const Body* body = world_.find_body(name);
+  const sim::Body* body = world_.find_body(name);
   if (body == nullptr) {
     return Outcome::rejected(fmt::format("there is no body '{}'{}", printable(name),
                                          hints_.consume() ? name_hint(name, world_.body_names()) : ""));
@@ -56,10 +56,10 @@ Outcome QueryHandler::list_of_body(std::string_view kind, std::span<const Arg> a
   Message answer{fmt::format("/list/{}", kind), {Arg::of(name)}};
   const Store& store = world_.store();
   if (kind == "behaviors") {
-    const BehaviorList& list = world_.behaviors();
-    std::vector<const Behavior*> behaviors(body->behaviors().list().begin(), body->behaviors().list().end());
-    std::ranges::sort(behaviors, {}, [&](const Behavior* behavior) { return list.order().place(*behavior); });
-    for (const Behavior* behavior : behaviors) answer.args.push_back(Arg::of(behavior->name()));
+    const sim::BehaviorList& list = world_.behaviors();
+    std::vector<const sim::Behavior*> behaviors(body->behaviors().list().begin(), body->behaviors().list().end());
+    std::ranges::sort(behaviors, {}, [&](const sim::Behavior* behavior) { return list.order().place(*behavior); });
+    for (const sim::Behavior* behavior : behaviors) answer.args.push_back(Arg::of(behavior->name()));
     return answered(std::move(answer), 1);
   }
   const std::string_view group = kind.substr(0, kind.size() - 1);
@@ -105,4 +105,4 @@ std::string QueryHandler::address_hint(std::string_view address, const std::vect
   return nearest.empty() ? "; `limber describe` lists all" : fmt::format("; did you mean '{}'?", nearest);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,13 +6,13 @@
 #include "engine/commands/selector.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class QueryHandler {
  public:
   /// `hints`: limits the number of "did you mean" hints per tick. `budget`: limits the work of the patterns in a
   /// query.
-  QueryHandler(World& world, HintBudget& hints, PatternBudget& budget)
+  QueryHandler(sim::World& world, HintBudget& hints, PatternBudget& budget)
       : world_(world), hints_(hints), budget_(budget) {}
 
   /// Answers /list/bodies, shapes, gears and groups, and /list/parts, joints, motors and behaviors of a body, with
@@ -28,9 +28,9 @@ class QueryHandler {
  private:
   Outcome list_of_body(std::string_view kind, std::span<const Arg> args) const;
 
-  World& world_;
+  sim::World& world_;
   HintBudget& hints_;
   PatternBudget& budget_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

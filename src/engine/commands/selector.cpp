@@ -10,7 +10,7 @@
 #include "sim/shapes/shape_list.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -33,7 +33,7 @@ bool Selector::is_single(std::span<const Arg> names, std::size_t count) {
   return true;
 }
 
-void Selector::add_elements(const Body& body, const PropertyTable& table, const Property& property,
+void Selector::add_elements(const sim::Body& body, const PropertyTable& table, const Property& property,
                             std::string_view element, std::vector<PropertyRef>& out) const {
   const Store& store = world_.store();
   const NodeId group = store.child(body.id(), table.name());
@@ -52,7 +52,7 @@ template <class Visit>
 bool Selector::visit_bodies(std::string_view name, bool any, Visit visit) const {
   bool found = false;
   if (!is_pattern(name)) {
-    const Body* const body = world_.find_body(name);
+    const sim::Body* const body = world_.find_body(name);
     if (body != nullptr) visit(*body);
     return body != nullptr;
   }
@@ -70,8 +70,8 @@ Result<void> Selector::select(const PropertyTable& table, const Property& proper
   std::string buffers[2];
   const std::string_view first = names.empty() ? "*" : view_of(names[0], buffers[0]);
   const std::string_view second = names.size() < 2 ? "" : view_of(names[1], buffers[1]);
-  const bool body_found =
-      visit_bodies(first, names.empty(), [&](const Body& body) { add_elements(body, table, property, second, out); });
+  const bool body_found = visit_bodies(
+      first, names.empty(), [&](const sim::Body& body) { add_elements(body, table, property, second, out); });
   // a single name that is not a body: an element in any body
   if (names.size() == 1 && !body_found) {
     for (const auto& body : world_.bodies()) add_elements(*body, table, property, first, out);
@@ -89,8 +89,8 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
   const std::string_view body_name = names.size() == 2 ? view_of(names[0], buffers[0]) : "*";
   const std::string_view name = view_of(names.back(), buffers[1]);
   const std::string_view parameter_name = view_of(parameter, buffers[2]);
-  const Behavior* without_parameter = nullptr;
-  const auto add = [&](const Behavior& behavior) {
+  const sim::Behavior* without_parameter = nullptr;
+  const auto add = [&](const sim::Behavior& behavior) {
     const Property* const property = behavior.type().table->find(parameter_name);
     if (property != nullptr && property->writable()) {
       out.push_back({behavior.id(), property});
@@ -98,12 +98,12 @@ Result<void> Selector::select_behaviors(std::span<const Arg> names, const Arg& p
       without_parameter = &behavior;
     }
   };
-  visit_bodies(body_name, names.size() < 2, [&](const Body& body) {
+  visit_bodies(body_name, names.size() < 2, [&](const sim::Body& body) {
     if (!is_pattern(name)) {
-      if (const Behavior* behavior = body.behaviors().find(name)) add(*behavior);
+      if (const sim::Behavior* behavior = body.behaviors().find(name)) add(*behavior);
       return;
     }
-    for (const Behavior* behavior : body.behaviors().list()) {
+    for (const sim::Behavior* behavior : body.behaviors().list()) {
       if (budget_.match(name, behavior->name())) add(*behavior);
     }
   });
@@ -118,7 +118,7 @@ Result<void> Selector::select_shapes(const Property& property, std::span<const A
   std::string buffer;
   const std::string_view name = names.empty() ? "*" : view_of(names[0], buffer);
   if (!is_pattern(name)) {
-    if (const Shape* shape = world_.shapes().find(name)) out.push_back({shape->id(), &property});
+    if (const sim::Shape* shape = world_.shapes().find(name)) out.push_back({shape->id(), &property});
   } else {
     for (const auto& shape : world_.shapes().list()) {
       if (budget_.exceeded()) return budget_exceeded();
@@ -136,7 +136,7 @@ Error Selector::budget_exceeded() {
   return Error{"the patterns need too much work; use more specific names, or send fewer messages at a time"};
 }
 
-Error Selector::no_parameter(const Behavior& behavior, std::string_view parameter) const {
+Error Selector::no_parameter(const sim::Behavior& behavior, std::string_view parameter) const {
   std::vector<std::string_view> candidates;
   for (const Property& property : behavior.type().table->properties()) {
     if (property.writable()) candidates.push_back(property.name);
@@ -148,7 +148,7 @@ Error Selector::no_parameter(const Behavior& behavior, std::string_view paramete
 Error Selector::no_such_behavior(std::string_view name) const {
   std::vector<std::string_view> candidates;
   for (const auto& body : world_.bodies()) {
-    for (const Behavior* behavior : body->behaviors().list()) {
+    for (const sim::Behavior* behavior : body->behaviors().list()) {
       if (std::find(candidates.begin(), candidates.end(), behavior->name()) == candidates.end())
         candidates.push_back(behavior->name());
     }
@@ -164,7 +164,7 @@ Error Selector::no_such_name(std::string_view kind, std::string_view name) const
 }
 
 Error Selector::no_such_element(std::string_view kind, std::string_view body, std::string_view element) const {
-  const Body* found = world_.find_body(body);
+  const sim::Body* found = world_.find_body(body);
   if (found == nullptr && !is_pattern(body))
     return Error{fmt::format("there is no body '{}'{}", printable(body), hint(body, world_.body_names()))};
   if (found == nullptr || is_pattern(element))
@@ -175,7 +175,7 @@ Error Selector::no_such_element(std::string_view kind, std::string_view body, st
       fmt::format("no {} '{}' in '{}'{}", kind, printable(element), printable(body), hint(element, candidates))};
 }
 
-void Selector::add_names(const Body& body, std::string_view kind, std::vector<std::string_view>& out) const {
+void Selector::add_names(const sim::Body& body, std::string_view kind, std::vector<std::string_view>& out) const {
   const Store& store = world_.store();
   for (const NodeId id : store.children(store.child(body.id(), kind))) out.push_back(store.name(id));
 }
@@ -184,4 +184,4 @@ std::string Selector::hint(std::string_view name, const std::vector<std::string_
   return hints_.consume() ? name_hint(name, names) : "";
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,9 +10,11 @@
 #include "properties/catalog.h"
 #include "sim/world/world.h"
 
-namespace limber {
-
+namespace limber::sim {
 class Behavior;
+}  // namespace limber::sim
+
+namespace limber::engine {
 
 /// Limits the number of "did you mean" hints per pass: searching similar names among a thousand bodies costs far more
 /// than the message itself, and a flood of wrong names must not delay the tick.
@@ -26,7 +28,8 @@ class Selector {
  public:
   /// `budget`: the budget of the patterns of a message. Exceeding it is an error, and the contents of `out` are
   /// invalid.
-  Selector(World& world, HintBudget& hints, PatternBudget& budget) : world_(world), hints_(hints), budget_(budget) {}
+  Selector(sim::World& world, HintBudget& hints, PatternBudget& budget)
+      : world_(world), hints_(hints), budget_(budget) {}
 
   /// Appends the property of all elements selected by `names` to `out`, in stream order. No name: every element of
   /// every body; one: all elements of that body, or if there is no such body, the elements of that name in every body;
@@ -47,8 +50,8 @@ class Selector {
   static bool is_single(std::span<const Arg> names, std::size_t count);
 
  private:
-  void add_elements(const Body& body, const PropertyTable& table, const Property& property, std::string_view element,
-                    std::vector<PropertyRef>& out) const;
+  void add_elements(const sim::Body& body, const PropertyTable& table, const Property& property,
+                    std::string_view element, std::vector<PropertyRef>& out) const;
   /// Visits the body of that name, or all bodies that match it as a pattern (`any`: all) while the budget suffices.
   /// Returns false if there is none.
   template <class Visit>
@@ -56,15 +59,15 @@ class Selector {
   Error no_such_behavior(std::string_view name) const;
   Error no_such_name(std::string_view kind, std::string_view name) const;
   Error no_such_element(std::string_view kind, std::string_view body, std::string_view element) const;
-  Error no_parameter(const Behavior& behavior, std::string_view parameter) const;
-  void add_names(const Body& body, std::string_view kind, std::vector<std::string_view>& out) const;
+  Error no_parameter(const sim::Behavior& behavior, std::string_view parameter) const;
+  void add_names(const sim::Body& body, std::string_view kind, std::vector<std::string_view>& out) const;
   std::string hint(std::string_view name, const std::vector<std::string_view>& names) const;
 
   static Error budget_exceeded();
 
-  World& world_;
+  sim::World& world_;
   HintBudget& hints_;
   PatternBudget& budget_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

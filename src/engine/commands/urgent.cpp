@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -79,4 +79,4 @@ bool UrgentPrecedence::discards(const Message& message, UrgentKind kind) {
   return (discarded_by(message) & bit(kind)) != 0;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

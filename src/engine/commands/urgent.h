@@ -8,7 +8,7 @@
 
 #include "engine/commands/command.h"
 
-namespace limber {
+namespace limber::engine {
 
 enum class UrgentKind : std::uint8_t { panic, panic_end, pause, take_stop };
 
@@ -42,4 +42,4 @@ class UrgentPrecedence {
   std::array<std::uint64_t, 4> newest_{};  // by kind
 };
 
-}  // namespace limber
+}  // namespace limber::engine

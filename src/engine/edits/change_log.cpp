@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 std::uint64_t ChangeLog::add(ChangeEntry entry) {
   const std::scoped_lock lock(mutex_);
@@ -45,4 +45,4 @@ std::vector<ChangeEntry> ChangeLog::since(double time) const {
   return entries;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace limber {
+namespace limber::engine {
 
 struct ChangeEntry {
   std::uint64_t number = 0;  ///< Counts from 1.
@@ -38,4 +38,4 @@ class ChangeLog {
   std::uint64_t versions_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

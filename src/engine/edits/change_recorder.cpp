@@ -8,7 +8,7 @@
 
 #include "properties/property_text.h"
 
-namespace limber {
+namespace limber::engine {
 
 void ChangeRecorder::begin(const CommandOrigin& source, double time) {
   source_ = source;
@@ -62,4 +62,4 @@ void ChangeRecorder::flush(const Store& store) {
   omitted_ = 0;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "engine/edits/change_log.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 class ChangeRecorder {
  public:
@@ -45,4 +45,4 @@ class ChangeRecorder {
   std::size_t omitted_ = 0;            // number of writes that are not noted
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -1,7 +1,7 @@
 // The properties of /edit.
 #include "engine/edits/edit_node.h"
 
-namespace limber {
+namespace limber::engine {
 
 const PropertyTable& EditNode::table() {
   using namespace properties;
@@ -18,11 +18,11 @@ const PropertyTable& EditNode::table() {
   return table;
 }
 
-EditNode::EditNode(World& world, UndoStack& undo_stack) : world_(world), undo_stack_(undo_stack) {
+EditNode::EditNode(sim::World& world, UndoStack& undo_stack) : world_(world), undo_stack_(undo_stack) {
   world.store().add(table(), world.store().root(), "edit", this);
 }
 
 Result<void> EditNode::undo(std::span<const double>) { return undo_stack_.undo(world_); }
 Result<void> EditNode::redo(std::span<const double>) { return undo_stack_.redo(world_); }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,13 +6,13 @@
 
 #include "engine/edits/undo_stack.h"
 
-namespace limber {
+namespace limber::engine {
 
 class EditNode {
  public:
   static const PropertyTable& table();
 
-  EditNode(World& world, UndoStack& undo_stack);
+  EditNode(sim::World& world, UndoStack& undo_stack);
 
  private:
   std::string_view undo_text() const { return undo_stack_.undo_text(); }
@@ -20,8 +20,8 @@ class EditNode {
   Result<void> undo(std::span<const double> args);
   Result<void> redo(std::span<const double> args);
 
-  World& world_;
+  sim::World& world_;
   UndoStack& undo_stack_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

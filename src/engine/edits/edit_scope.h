@@ -7,11 +7,11 @@
 #include "engine/edits/undo_stack.h"
 #include "engine/presets/presets.h"
 
-namespace limber {
+namespace limber::engine {
 
 class EditScope {
  public:
-  EditScope(World& world, Presets& presets, UndoStack& undo_stack, ChangeRecorder& change_recorder)
+  EditScope(sim::World& world, Presets& presets, UndoStack& undo_stack, ChangeRecorder& change_recorder)
       : world_(world), presets_(presets), undo_stack_(undo_stack), change_recorder_(change_recorder) {
     const auto on_write = [](void* self, NodeId id, const Property& property, bool over_time,
                              const double* old_values) {
@@ -39,7 +39,7 @@ class EditScope {
     if (!over_time) change_recorder_.on_write(id, property, old_values);
   }
 
-  World& world_;
+  sim::World& world_;
   Presets& presets_;
   UndoStack& undo_stack_;
   ChangeRecorder& change_recorder_;
@@ -48,4 +48,4 @@ class EditScope {
   bool begun_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

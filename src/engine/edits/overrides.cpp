@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 constexpr std::size_t kMaxOverrides = 65536;  // limits a flood of different addresses
@@ -80,4 +80,4 @@ std::vector<Override> Overrides::in_order() const {
   return list;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

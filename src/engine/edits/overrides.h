@@ -12,7 +12,7 @@
 #include "base/message.h"
 #include "engine/presets/preset.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// One of three: a message, the address of a released value (it has the scene's value again), or a recalled preset. The
 /// others are null.
@@ -79,4 +79,4 @@ class Overrides {
   std::uint64_t version_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

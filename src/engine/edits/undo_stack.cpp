@@ -11,7 +11,7 @@
 #include "base/log/log.h"
 #include "properties/catalog.h"
 
-namespace limber {
+namespace limber::engine {
 
 bool UndoStack::OpenStep::has(NodeId id, const Property& property) const {
   if (id.slot >= masks.size()) return false;
@@ -30,8 +30,8 @@ bool UndoStack::OpenStep::add(NodeId id, const Property& property) {
   return true;
 }
 
-void UndoStack::begin(const CommandOrigin& source, const World& world) {
-  static const Property& paused = World::table().at("paused");
+void UndoStack::begin(const CommandOrigin& source, const sim::World& world) {
+  static const Property& paused = sim::World::table().at("paused");
   source_ = source;
   time_ = world.time();
   running_ = world.store().values(world.id(), paused)[0] == 0;
@@ -146,7 +146,7 @@ void UndoStack::trim() {
 }
 
 // True if another controller is still extending the step, so that an undo would be overwritten at once.
-bool UndoStack::extended_by_other(const Step& step, const World& world) const {
+bool UndoStack::extended_by_other(const Step& step, const sim::World& world) const {
   const bool same_source = step.source.source == source_.source && step.source.ip == source_.ip &&
                            (source_.ip == 0 || step.source.port == source_.port);
   return running_ && !same_source && world.time() - step.time <= kMergeSeconds;
@@ -172,7 +172,7 @@ void UndoStack::exchange(Step& step, Store& store, std::size_t& changed, std::si
   step.values = std::move(current);
 }
 
-Result<void> UndoStack::exchange(Steps& from, Steps& to, World& world, const char* verb) {
+Result<void> UndoStack::exchange(Steps& from, Steps& to, sim::World& world, const char* verb) {
   version_++;
   complete_steps(world.store());
   for (std::size_t i = from.size(); i > 0; i--) {
@@ -205,8 +205,8 @@ Result<void> UndoStack::exchange(Steps& from, Steps& to, World& world, const cha
   return Error{fmt::format("there is nothing to {}", verb)};
 }
 
-Result<void> UndoStack::undo(World& world) { return exchange(undo_steps_, redo_steps_, world, "undo"); }
-Result<void> UndoStack::redo(World& world) { return exchange(redo_steps_, undo_steps_, world, "redo"); }
+Result<void> UndoStack::undo(sim::World& world) { return exchange(undo_steps_, redo_steps_, world, "undo"); }
+Result<void> UndoStack::redo(sim::World& world) { return exchange(redo_steps_, undo_steps_, world, "redo"); }
 
 void UndoStack::update_texts(const Store& store) {
   const auto text_of = [&](const Steps& steps) {
@@ -291,4 +291,4 @@ void UndoStack::restore(const State& state) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -14,7 +14,7 @@
 #include "properties/store.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class UndoStack {
  public:
@@ -27,7 +27,7 @@ class UndoStack {
   explicit UndoStack(Overrides& overrides) : overrides_(overrides) {}
 
   /// Attributes the following writes to this controller. Its writes within one pass form one step.
-  void begin(const CommandOrigin& source, const World& world);
+  void begin(const CommandOrigin& source, const sim::World& world);
   /// Records a write. `old_values`: the previous value. `over_time`: a morph will write values to the property.
   void on_write(const Store& store, NodeId id, const Property& property, bool over_time, const double* old_values);
   /// Ends the pass: completes its steps and drops those that have changed nothing.
@@ -35,9 +35,9 @@ class UndoStack {
 
   /// Undoes the newest step. Skips a step that another controller is still extending, and steps that can't be undone
   /// any more. Returns an error if there is nothing to undo.
-  Result<void> undo(World& world);
+  Result<void> undo(sim::World& world);
   /// Redoes the step that was undone last.
-  Result<void> redo(World& world);
+  Result<void> redo(sim::World& world);
   /// Readable description of the next step to undo or redo, such as "/physics/body/arm/part/tip/mass (console)"; empty:
   /// none.
   std::string_view undo_text() const { return undo_text_; }
@@ -110,8 +110,8 @@ class UndoStack {
   void purge_removed(Step& step, const Store& store);
   void trim();
   void drop(const Step* step);
-  bool extended_by_other(const Step& step, const World& world) const;
-  Result<void> exchange(Steps& from, Steps& to, World& world, const char* verb);
+  bool extended_by_other(const Step& step, const sim::World& world) const;
+  Result<void> exchange(Steps& from, Steps& to, sim::World& world, const char* verb);
   static void exchange(Step& step, Store& store, std::size_t& changed, std::size_t& removed);
   static bool differs(const Step& step, const Store& store);
   void update_texts(const Store& store);
@@ -134,4 +134,4 @@ class UndoStack {
   std::string undo_text_, redo_text_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 void PassLog::append(InputLog& inputs, const RecordedPass& pass) {
   std::uint32_t length = 0;
@@ -74,4 +74,4 @@ void CheckpointStore::free_memory() {
   if (pages_.bytes() == 0) pages_.clear();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -19,7 +19,7 @@
 #include "script/scene/scene_checkpoint.h"
 #include "sim/state/world_checkpoint.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Recorded passes, encoded. Doesn't allocate once its memory has grown.
 class PassLog {
@@ -45,8 +45,8 @@ class PassLog {
 struct Checkpoint {
   std::uint64_t tick = 0;
   double time = 0;
-  WorldCheckpoint world;
-  SceneCheckpoint scene;
+  sim::WorldCheckpoint world;
+  script::SceneCheckpoint scene;
   bool has_scene = false;
   std::shared_ptr<const Overrides> overrides;
   std::shared_ptr<const UndoStack::State> undo;
@@ -91,4 +91,4 @@ class CheckpointStore {
   Archive scratch_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,7 +6,7 @@
 
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -64,7 +64,7 @@ void History::record_input(const Message& message, const CommandOrigin& origin, 
   if (!checkpoints_.empty()) inputs_.record(message, origin, evaluate);
 }
 
-void History::end_pass(Session& session, const CallLog& calls, bool running, double seconds) {
+void History::end_pass(Session& session, const script::CallLog& calls, bool running, double seconds) {
   if (seconds <= 0) {
     if (!checkpoints_.empty()) clear("history is switched off");
     limit_reason_ = "history is switched off";
@@ -79,7 +79,7 @@ void History::end_pass(Session& session, const CallLog& calls, bool running, dou
   release_ended_runs(session);
 }
 
-void History::append_pass(const CallLog& calls, bool running) {
+void History::append_pass(const script::CallLog& calls, bool running) {
   pass_.running = running;
   pass_.stopped_calls = calls.stopped_since_rewind();
   if (!running && inputs_.empty() && pass_.stopped_calls.empty()) return;
@@ -92,7 +92,7 @@ void History::release_ended_runs(Session& session) const {
   session.scene->release_ended(pinned_ != nullptr ? pinned_->tick : empty() ? kNoTick : oldest_tick());
 }
 
-bool History::checkpoint_due(const World& world, bool stopped) const {
+bool History::checkpoint_due(const sim::World& world, bool stopped) const {
   if (too_large_) return false;
   const bool interval_over =
       world.time() >= checkpoint_time_ + kCheckpointInterval - 1e-9 || world.tick() < checkpoint_tick_;
@@ -109,7 +109,7 @@ void History::capture_checkpoint(Session& session) {
   checkpoint_time_ = session.world.time();
 }
 
-void History::trim(const World& world, double seconds) {
+void History::trim(const sim::World& world, double seconds) {
   while (checkpoints_.size() > 1 && checkpoints_[1]->time <= world.time() - seconds + 1e-9) {
     drop_oldest();
     limit_reason_ = "history is limited by /physics/sim/history";
@@ -162,4 +162,4 @@ bool History::restore_before(Session& session, std::uint64_t tick) {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -12,7 +12,7 @@
 #include "engine/history/checkpoint.h"
 #include "script/vm/call_log.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Target of a rewind.
 struct RewindTarget {
@@ -20,7 +20,7 @@ struct RewindTarget {
   std::optional<double> time;  ///< s; takes precedence over `tick`.
 
   /// True if the world is at the target or past it.
-  bool reached(const World& world) const {
+  bool reached(const sim::World& world) const {
     return time ? world.time() + world.timestep() / 2 > *time : world.tick() >= tick;
   }
 };
@@ -39,7 +39,7 @@ class History {
   void record_input(const Message& message, const CommandOrigin& origin, bool evaluate);
   /// Ends the pass: records the stopped calls in `calls`, captures a checkpoint if one is due and discards everything
   /// older than `seconds`; 0 switches history off.
-  void end_pass(Session& session, const CallLog& calls, bool running, double seconds);
+  void end_pass(Session& session, const script::CallLog& calls, bool running, double seconds);
   /// Sets the memory limit: a replay may use more than kMaxBytes.
   void set_max_bytes(std::size_t bytes) { max_bytes_ = bytes; }
 
@@ -70,13 +70,13 @@ class History {
 
  private:
   static constexpr std::uint64_t kNoTick = ~std::uint64_t{0};
-  void append_pass(const CallLog& calls, bool running);
-  bool checkpoint_due(const World& world, bool stopped) const;
+  void append_pass(const script::CallLog& calls, bool running);
+  bool checkpoint_due(const sim::World& world, bool stopped) const;
   void capture_checkpoint(Session& session);
   void restore_checkpoint(Session& session, std::size_t index);
   void drop(std::size_t index);
   void drop_oldest();
-  void trim(const World& world, double seconds);
+  void trim(const sim::World& world, double seconds);
   void release_ended_runs(Session& session) const;
 
   CheckpointStore store_;
@@ -94,4 +94,4 @@ class History {
   RecordedPass pass_;   // scratch
 };
 
-}  // namespace limber
+}  // namespace limber::engine

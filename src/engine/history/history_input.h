@@ -3,7 +3,7 @@
 
 #include "engine/input/recorded_input.h"
 
-namespace limber {
+namespace limber::engine {
 
 class HistoryInput final : public RecordedInput {
  public:
@@ -22,4 +22,4 @@ class HistoryInput final : public RecordedInput {
   RecordedPass& pass_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,7 +10,7 @@
 #include "base/log/log.h"
 #include "engine/history/history_input.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -42,7 +42,7 @@ class UnaffectedState {
   std::array<double, 3> values_{};
   const int steps_;
   PresetList presets_;
-  CallLog calls_;
+  script::CallLog calls_;
   Store::Listener listener_;
 };
 
@@ -68,7 +68,7 @@ class Resimulation {
 }  // namespace
 
 Rewinder::Target Rewinder::target_of(const Transport::RewindRequest& request) const {
-  const World& world = show_.session->world;
+  const sim::World& world = show_.session->world;
   const History& history = show_.history;
   Target result;
   RewindTarget& target = result.target;
@@ -88,7 +88,7 @@ Rewinder::Target Rewinder::target_of(const Transport::RewindRequest& request) co
 
 Outcome Rewinder::rewind(const Transport::RewindRequest& request) {
   show_.pacer.excuse_stall();
-  const World& world = show_.session->world;
+  const sim::World& world = show_.session->world;
   const double time = world.time();
   if (!show_.history.validate(*show_.session) || world.tick() <= show_.history.oldest_tick())
     return Outcome::rejected(fmt::format("can't rewind: {}", show_.history.limit_reason()));
@@ -146,4 +146,4 @@ void Rewinder::resimulate(RecordedPass& pass) {
   if (session.scene != nullptr) session.scene->collect_garbage();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -5,7 +5,7 @@
 #include "engine/input/recorded_input.h"
 #include "engine/simulator.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Rewinder {
  public:
@@ -32,4 +32,4 @@ class Rewinder {
   Simulator& simulator_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

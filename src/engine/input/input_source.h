@@ -12,7 +12,7 @@
 #include "engine/transport.h"
 #include "script/scene/sources.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// [sim]
 class InputSource {
@@ -40,8 +40,8 @@ class InputSource {
 
   /// Input of a run of the scene.
   struct SceneFiles {
-    std::shared_ptr<const Sources> sources;  ///< Read instead of the files on disk; null: the files on disk.
-    bool fails = false;                      ///< The run failed when it was recorded.
+    std::shared_ptr<const script::Sources> sources;  ///< Read instead of the files on disk; null: the files on disk.
+    bool fails = false;                              ///< The run failed when it was recorded.
   };
   /// Returns the files of the next run, which has this kind.
   virtual SceneFiles begin_run(TakeSceneRun::Kind) { return {}; }
@@ -59,4 +59,4 @@ class InputSource {
   virtual Result<void> accepts_changes() const { return {}; }
 };
 
-}  // namespace limber
+}  // namespace limber::engine

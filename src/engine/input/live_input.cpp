@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 // Costs in units of LiveInput::kPassWork: a console evaluation, a rejected message.
@@ -19,7 +19,7 @@ void HandlerBudget::begin(double now) {
   seconds_ = std::min(seconds_ + kShare * elapsed, kMaxSeconds);
 }
 
-bool PanicTimer::update(const Panic& panic, double now, std::optional<double> step) {
+bool PanicTimer::update(const sim::Panic& panic, double now, std::optional<double> step) {
   const double elapsed = now - std::exchange(last_update_, now);
   if (!panic.on() || panic.first_second_over()) {
     age_ = 0;
@@ -83,7 +83,7 @@ void LiveInput::execute_messages(bool may_step) {
 
 // Measures the age of a panic in real time, or with --fast in simulated time, so that equal runs have equal results.
 void LiveInput::update_panic_timer(bool may_step) {
-  World& world = show_.session->world;
+  sim::World& world = show_.session->world;
   std::optional<double> step;
   if (show_.options.fast) step = may_step ? world.timestep() : 0;
   if (!panic_timer_.update(world.panic(), show_.options.clock(), step)) return;
@@ -160,7 +160,7 @@ void LiveInput::record_event(const TakeEvent& event) { record(message_of(event),
 
 // Records the ticks that were actually rewound: the history of a replay may reach back further, or less far.
 Outcome LiveInput::rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) {
-  const World& world = show_.session->world;
+  const sim::World& world = show_.session->world;
   const std::uint64_t tick = world.tick();
   Outcome outcome = rewinder_.rewind(request);
   if (outcome.kind == Outcome::Kind::rejected) return outcome;
@@ -228,4 +228,4 @@ void LiveInput::reject(const Message& message, const CommandOrigin& origin, cons
     output.push({Outgoing::Destination::error, origin, error_message(message.address, outcome.error)});
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "engine/history/rewinder.h"
 #include "engine/takes/recording.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Time budget of handlers (osc:on), a token bucket: it refills by kShare of real time, up to kMaxSeconds. One call may
 /// overdraw it; the next calls then wait until it is positive again. Messages are handled in order, and the values that
@@ -37,7 +37,7 @@ class PanicTimer {
 
   /// Call it once per pass, at the real time `now` (s). `step`: seconds to add to the panic's age; without a value, the
   /// real time since the last call. Returns true when the first second is over.
-  bool update(const Panic& panic, double now, std::optional<double> step);
+  bool update(const sim::Panic& panic, double now, std::optional<double> step);
   /// Restarts the measurement at real time `now`.
   void restart(double now);
 
@@ -120,4 +120,4 @@ class LiveInput final : public InputSource {
   HandlerBudget handler_budget_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 void RecordedInput::execute(std::span<InputRecord> inputs) {
   EditScope edit_scope = show_.edit_scope();
@@ -33,4 +33,4 @@ bool RecordedInput::execute_event(const Message& message) {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

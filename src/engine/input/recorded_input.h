@@ -6,7 +6,7 @@
 
 #include "engine/commands/command_executor.h"
 
-namespace limber {
+namespace limber::engine {
 
 class RecordedInput : public InputSource {
  public:
@@ -27,4 +27,4 @@ class RecordedInput : public InputSource {
   std::optional<std::uint64_t> handler_calls_;  // number of handler calls in this pass; nothing: all
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -53,4 +53,4 @@ void CounterNode::publish() {
   for (const auto* count : all) *out++ = static_cast<double>(count->load(std::memory_order_relaxed));
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include "engine/commands/command.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 class CounterNode {
  public:
@@ -20,4 +20,4 @@ class CounterNode {
   NodeId id_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

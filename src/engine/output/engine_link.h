@@ -16,7 +16,7 @@
 #include "engine/output/snapshot.h"
 #include "engine/output/value_snapshot.h"
 
-namespace limber {
+namespace limber::engine {
 
 struct EngineLink {
   static constexpr std::size_t kMaxItems = 65536;                  ///< Maximum number of waiting outgoing messages.
@@ -84,4 +84,4 @@ struct EngineLink {
   }
 };
 
-}  // namespace limber
+}  // namespace limber::engine

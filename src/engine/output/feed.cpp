@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -197,4 +197,4 @@ bool Feed::send_value(Value& value, const Sender& send) {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -16,7 +16,7 @@
 #include "engine/output/value_snapshot.h"
 #include "properties/pattern_budget.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Feed {
  public:
@@ -96,4 +96,4 @@ class Feed {
   std::unordered_map<std::string_view, Value*> old_by_path_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -105,4 +105,4 @@ std::string time_of_day(std::int64_t seconds) {
 std::uint64_t failed_writes() { return failed_writes_count.load(std::memory_order_relaxed); }
 void count_failed_write() { failed_writes_count.fetch_add(1, std::memory_order_relaxed); }
 
-}  // namespace limber
+}  // namespace limber::engine

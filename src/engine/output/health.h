@@ -11,7 +11,7 @@
 
 #include "base/message.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Kinds of problems. health.cpp has their names and descriptions.
 enum class HealthItem : std::uint8_t {
@@ -85,4 +85,4 @@ std::string time_of_day(std::int64_t seconds);
 std::uint64_t failed_writes();
 void count_failed_write();
 
-}  // namespace limber
+}  // namespace limber::engine

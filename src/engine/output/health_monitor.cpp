@@ -2,7 +2,7 @@
 #include "engine/output/health_monitor.h"
 #include "sim/behavior/behavior_list.h"
 
-namespace limber {
+namespace limber::engine {
 
 void HealthMonitor::update(bool not_owned) {
   constexpr std::uint64_t kReadInterval = 16;  // passes between two reads of counters that take longer
@@ -32,4 +32,4 @@ void HealthMonitor::update(bool not_owned) {
   health.set(HealthItem::log, log_suppressed() - log_suppressed_before_);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "base/log/output.h"
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
 class HealthMonitor {
  public:
@@ -26,4 +26,4 @@ class HealthMonitor {
   const std::uint64_t writes_failed_before_ = failed_writes();
 };
 
-}  // namespace limber
+}  // namespace limber::engine

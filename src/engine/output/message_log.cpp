@@ -9,7 +9,7 @@
 #include "base/system/clock.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -75,4 +75,4 @@ std::string message_text(const Message& message) {
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

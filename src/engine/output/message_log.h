@@ -11,7 +11,7 @@
 
 #include "base/message.h"
 
-namespace limber {
+namespace limber::engine {
 
 struct LoggedMessage {
   std::uint64_t number = 0;  ///< Counts from 1; there are gaps if entries were dropped.
@@ -57,4 +57,4 @@ class MessageLog {
 /// Returns a readable text such as "/physics/part/mass arm 0.3". Shows at most 16 arguments and shortens long ones.
 std::string message_text(const Message& message);
 
-}  // namespace limber
+}  // namespace limber::engine

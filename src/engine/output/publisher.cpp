@@ -8,7 +8,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 /// Grain size of the parallel copy, in numbers.
@@ -16,8 +16,8 @@ constexpr int kCopyGrain = 1 << 14;
 }  // namespace
 
 const TransientOffsets& transient_offsets() {
-  static const auto joint = [](const char* name) { return Joint::table().at(name).offset; };
-  static const auto part = [](const char* name) { return Part::table().at(name).offset; };
+  static const auto joint = [](const char* name) { return sim::Joint::table().at(name).offset; };
+  static const auto part = [](const char* name) { return sim::Part::table().at(name).offset; };
   static const TransientOffsets offsets{joint("position"), joint("rotation"), joint("relrot"),
                                         joint("offsets"),  part("position"),  part("rotation")};
   return offsets;
@@ -36,7 +36,7 @@ void Publisher::update_body_list() {
   for (const auto& body : world_.bodies()) {
     BodyEntry& entry = body_list->bodies.emplace_back();
     entry.name = body->name();
-    entry.enabled_offset = block_of(body->id()) + Body::table().at("enabled").offset;
+    entry.enabled_offset = block_of(body->id()) + sim::Body::table().at("enabled").offset;
     for (const auto& joint : body->joints()) {
       entry.joint_names.push_back(joint->name());
       entry.joint_offsets.push_back(block_of(joint->id()));
@@ -78,4 +78,4 @@ void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& time
   out_.publish(snapshot);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

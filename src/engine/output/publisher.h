@@ -7,11 +7,11 @@
 #include "engine/output/snapshot.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Publisher {
  public:
-  Publisher(World& world, Latest<Snapshot>& out) : world_(world), out_(out) {}
+  Publisher(sim::World& world, Latest<Snapshot>& out) : world_(world), out_(out) {}
 
   /// Publishes a snapshot of the current state. `speed_factor`: measured simulated seconds per real second.
   void publish(bool paused, double speed_factor, const PhaseTimes& times = {});
@@ -19,11 +19,11 @@ class Publisher {
  private:
   void update_body_list();
 
-  World& world_;
+  sim::World& world_;
   Latest<Snapshot>& out_;
   std::shared_ptr<const BodyList> body_list_;
   std::shared_ptr<const RenderScene> render_scene_;
   std::uint64_t structure_version_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -14,7 +14,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -26,12 +26,12 @@ struct PlacedRenderShape {
 // Finds the render shapes of parts; caches those of each shape and model.
 class RenderShapeCollector {
  public:
-  RenderShapeCollector(const World& world, std::vector<RenderShape>& shapes) : world_(world), shapes_(shapes) {
+  RenderShapeCollector(const sim::World& world, std::vector<RenderShape>& shapes) : world_(world), shapes_(shapes) {
     for (std::size_t i = 0; i < world.shapes().list().size(); i++)
       material_of_[world.shapes().list()[i]->id().slot] = static_cast<std::uint32_t>(i + 1);
   }
 
-  const std::vector<PlacedRenderShape>& shapes_of(const Part& part, std::size_t link_index) {
+  const std::vector<PlacedRenderShape>& shapes_of(const sim::Part& part, std::size_t link_index) {
     if (world_.store().alive(part.shape())) return of_shape(part.shape());
     const auto& model = part.body().model();
     if (model == nullptr || link_index >= model->links.size()) return none_;
@@ -44,38 +44,39 @@ class RenderShapeCollector {
   const std::vector<PlacedRenderShape>& of_shape(NodeId id) {
     const auto [known, is_new] = of_shape_.try_emplace(id.slot);
     if (!is_new) return known->second;
-    const Shape& shape = *static_cast<const Shape*>(world_.store().object(id));
-    for (const PlacedShape& placed : shape.placed()) add(known->second, placed, material_of_[id.slot]);
+    const sim::Shape& shape = *static_cast<const sim::Shape*>(world_.store().object(id));
+    for (const model::PlacedShape& placed : shape.placed()) add(known->second, placed, material_of_[id.slot]);
     return known->second;
   }
 
   // A model without any visuals is drawn with its collision shapes.
-  std::vector<std::vector<PlacedRenderShape>> of_model(const BodyModel& model) {
-    const bool has_visuals =
-        std::any_of(model.links.begin(), model.links.end(), [](const LinkModel& l) { return !l.visuals.empty(); });
+  std::vector<std::vector<PlacedRenderShape>> of_model(const model::BodyModel& model) {
+    const bool has_visuals = std::any_of(model.links.begin(), model.links.end(),
+                                         [](const model::LinkModel& l) { return !l.visuals.empty(); });
     std::vector<std::vector<PlacedRenderShape>> links(model.links.size());
     for (std::size_t i = 0; i < links.size(); i++) {
-      const LinkModel& link = model.links[i];
-      const std::vector<PlacedShape>& placed_shapes = has_visuals ? link.visuals : link.collisions;
+      const model::LinkModel& link = model.links[i];
+      const std::vector<model::PlacedShape>& placed_shapes = has_visuals ? link.visuals : link.collisions;
       for (std::size_t k = 0; k < placed_shapes.size(); k++) {
-        const Shape* const shape = has_visuals ? world_.shapes().find(visual_shape_name(model, link, k)) : nullptr;
+        const sim::Shape* const shape =
+            has_visuals ? world_.shapes().find(sim::visual_shape_name(model, link, k)) : nullptr;
         add(links[i], placed_shapes[k], shape == nullptr ? 0 : material_of_[shape->id().slot]);
       }
     }
     return links;
   }
 
-  void add(std::vector<PlacedRenderShape>& to, const PlacedShape& placed, std::uint32_t material) {
+  void add(std::vector<PlacedRenderShape>& to, const model::PlacedShape& placed, std::uint32_t material) {
     to.push_back({static_cast<std::uint32_t>(shapes_.size()), placed.origin});
     shapes_.push_back({placed.shape, material});
   }
 
-  const World& world_;
+  const sim::World& world_;
   std::vector<RenderShape>& shapes_;
   const std::vector<PlacedRenderShape> none_;
   std::unordered_map<std::uint32_t, std::uint32_t> material_of_;  // by the shape's slot; 0: default values
   std::unordered_map<std::uint32_t, std::vector<PlacedRenderShape>> of_shape_;
-  std::unordered_map<const BodyModel*, std::vector<std::vector<PlacedRenderShape>>> of_model_;
+  std::unordered_map<const model::BodyModel*, std::vector<std::vector<PlacedRenderShape>>> of_model_;
 };
 
 // offset of a property in its object's block
@@ -83,7 +84,7 @@ std::uint32_t at(const PropertyTable& table, std::string_view property) { return
 
 }  // namespace
 
-RenderScene::RenderScene(const World& world) {
+RenderScene::RenderScene(const sim::World& world) {
   const StoreView& view = *world.store().view();
   const auto block = [&](NodeId id) {
     return Block{view.slots[id.slot].persistent, world.store().table(id).persistent_width()};
@@ -93,11 +94,11 @@ RenderScene::RenderScene(const World& world) {
   for (const auto& shape : world.shapes().list()) blocks_.push_back(block(shape->id()));
 
   RenderShapeCollector collector(world, shapes);
-  const std::uint32_t enabled = Body::table().at("enabled").offset;
+  const std::uint32_t enabled = sim::Body::table().at("enabled").offset;
   for (const auto& body : world.bodies()) {
     const std::uint32_t enabled_offset = view.slots[body->id().slot].transient + enabled;
     for (std::size_t i = 0; i < body->parts().size(); i++) {
-      const Part& part = *body->parts()[i];
+      const sim::Part& part = *body->parts()[i];
       for (const PlacedRenderShape& placed : collector.shapes_of(part, i))
         instances.push_back({view.slots[part.id().slot].transient, enabled_offset, placed.shape, placed.origin});
     }
@@ -113,9 +114,10 @@ void RenderScene::copy_visuals(std::span<const double> persistent, std::vector<d
 }
 
 Material material_of(const Snapshot& snapshot, std::uint32_t material) {
-  static const PropertyTable& table = Shape::table();
-  static const std::uint32_t first =
-      Visuals::table().persistent_width() + Camera::table().persistent_width() + Appearance::table().persistent_width();
+  static const PropertyTable& table = sim::Shape::table();
+  static const std::uint32_t first = sim::Visuals::table().persistent_width() +
+                                     sim::Camera::table().persistent_width() +
+                                     sim::Appearance::table().persistent_width();
   static const std::vector<double> defaults = [] {
     std::vector<double> all(table.persistent_width());
     for (const Property& property : table.properties())
@@ -131,8 +133,8 @@ Material material_of(const Snapshot& snapshot, std::uint32_t material) {
 }
 
 CameraSettings camera_of(const Snapshot& snapshot) {
-  static const PropertyTable& table = Camera::table();
-  const double* const v = snapshot.visuals.data() + Visuals::table().persistent_width();
+  static const PropertyTable& table = sim::Camera::table();
+  const double* const v = snapshot.visuals.data() + sim::Visuals::table().persistent_width();
   return {vec3_at(v + at(table, "position")),
           vec3_at(v + at(table, "rotation")),
           v[at(table, "fovy")],
@@ -143,11 +145,11 @@ CameraSettings camera_of(const Snapshot& snapshot) {
 }
 
 AppearanceSettings appearance_of(const Snapshot& snapshot) {
-  static const PropertyTable& table = Appearance::table();
-  static const Property& background = Visuals::table().at("background");
+  static const PropertyTable& table = sim::Appearance::table();
+  static const Property& background = sim::Visuals::table().at("background");
   const double* const b = snapshot.visuals.data() + background.offset;
   const double* const v =
-      snapshot.visuals.data() + Visuals::table().persistent_width() + Camera::table().persistent_width();
+      snapshot.visuals.data() + sim::Visuals::table().persistent_width() + sim::Camera::table().persistent_width();
   const bool custom = !std::equal(b, b + 3, background.initial.begin());
   return {v[at(table, "style")] != 0,
           v[at(table, "exposure")],
@@ -163,4 +165,4 @@ AppearanceSettings appearance_of(const Snapshot& snapshot) {
           custom};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,14 +9,17 @@
 #include "base/vec.h"
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::sim {
+class World;
+}  // namespace limber::sim
+
+namespace limber::engine {
 
 struct Snapshot;
-class World;
 
 /// A geometry and its material, shared by its instances.
 struct RenderShape {
-  ShapeModel geometry;
+  model::ShapeModel geometry;
   std::uint32_t material = 0;  ///< For material_of().
 };
 
@@ -30,7 +33,7 @@ struct RenderInstance {
 
 /// Rebuilt only when bodies or shapes are added, removed or changed; shared by the snapshots in between.
 struct RenderScene {
-  explicit RenderScene(const World& world);  ///< [sim]
+  explicit RenderScene(const sim::World& world);  ///< [sim]
 
   std::vector<RenderShape> shapes;
   std::vector<RenderInstance> instances;
@@ -88,4 +91,4 @@ struct AppearanceSettings {
 };
 AppearanceSettings appearance_of(const Snapshot& snapshot);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 void LiveOutput::push(Outgoing out) {
   const bool answer =
@@ -80,4 +80,4 @@ bool LiveOutput::report_script_error(std::string_view file, int line, std::strin
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

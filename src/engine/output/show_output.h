@@ -14,7 +14,7 @@
 #include "engine/output/engine_link.h"
 #include "engine/output/value_snapshotter.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Output {
  public:
@@ -151,4 +151,4 @@ class Outputs {
   Output* current_ = &live_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "engine/output/render_scene.h"
 #include "sim/visuals/overlay.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A body in a snapshot. Its joints are in stream order (root to tip).
 struct BodyEntry {
@@ -60,12 +60,12 @@ struct Snapshot {
   std::shared_ptr<const BodyList> body_list;
   std::vector<double> transient;  ///< Transient values of every node (states and readouts), in the layout of the store.
   std::shared_ptr<const RenderScene> render_scene;
-  std::vector<double> visuals;        ///< For material_of(), camera_of(), appearance_of().
-  std::uint64_t visuals_version = 0;  ///< Changes when `visuals` of the same `render_scene` may have changed.
-  std::vector<OverlayMark> overlay;   ///< Empty while the debug overlay is off.
+  std::vector<double> visuals;            ///< For material_of(), camera_of(), appearance_of().
+  std::uint64_t visuals_version = 0;      ///< Changes when `visuals` of the same `render_scene` may have changed.
+  std::vector<sim::OverlayMark> overlay;  ///< Empty while the debug overlay is off.
 };
 
 /// Returns the world pose of a part, given by the index of its block (BodyEntry::part_offsets). [any]
 Pose part_pose(const Snapshot& snapshot, std::uint32_t part_offset);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -13,7 +13,7 @@
 #include "engine/output/snapshot.h"
 #include "properties/tree_snapshot.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A value set by a client that subscribes to changes (CommandOrigin::is_subscriber).
 struct ClientWrite {
@@ -60,4 +60,4 @@ struct ValueSnapshot {
   }
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limber {
+namespace limber::engine {
 
 void ValueSnapshotter::note_write(const Store& store, const CommandOrigin& origin, const PropertyRef& ref,
                                   bool clamped) {
@@ -68,4 +68,4 @@ void ValueSnapshotter::fill_computed(const Store& store, ValueSnapshot& snapshot
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -11,7 +11,7 @@
 #include "engine/output/value_snapshot.h"
 #include "properties/catalog.h"
 
-namespace limber {
+namespace limber::engine {
 
 class ValueSnapshotter {
  public:
@@ -52,4 +52,4 @@ class ValueSnapshotter {
   std::uint64_t write_count_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

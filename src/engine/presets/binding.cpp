@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "properties/catalog.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -243,4 +243,4 @@ RecallResult recall(Store& store, const PresetBinding& binding, const Blend& ble
   return result;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -16,7 +16,7 @@
 #include "properties/interpolate.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 class PresetBinding {
  public:
@@ -113,4 +113,4 @@ std::string missing_choices(const Store& store, const PresetBinding& binding, co
 /// Applies the blend at once. Values that are equal already are not written, so that they cause no on-change callbacks.
 RecallResult recall(Store& store, const PresetBinding& binding, const Blend& blend);
 
-}  // namespace limber
+}  // namespace limber::engine

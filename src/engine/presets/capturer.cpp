@@ -20,7 +20,7 @@
 #include "properties/catalog.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -181,7 +181,7 @@ struct MatchedProperties {
 
   void add(const Store& store, NodeId id, std::uint64_t properties) {
     by_slot[id.slot] |= properties;
-    any_part = any_part || &store.table(id) == &Part::table();
+    any_part = any_part || &store.table(id) == &sim::Part::table();
   }
 };
 
@@ -205,7 +205,7 @@ Result<MatchedProperties> match_selection(const Store& store, const std::vector<
 
 // Returns the bits of the state properties of parts (pose, velocity) that the selection includes.
 std::uint64_t part_states(const PresetSelection& selection) {
-  const auto bit = [](const char* name) { return std::uint64_t{1} << Part::table().at(name).index; };
+  const auto bit = [](const char* name) { return std::uint64_t{1} << sim::Part::table().at(name).index; };
   return (selection.poses ? bit("position") | bit("rotation") : 0) |
          (selection.velocities ? bit("linear_velocity") | bit("angular_velocity") : 0);
 }
@@ -220,7 +220,7 @@ Result<PresetPlan> plan_selection(const Store& store, const PresetPlan& everythi
     const std::uint64_t selected = matched->by_slot[node.id.slot];
     std::uint64_t properties = node.properties & selected;
     // `poses` and `velocities` apply to the parts that the patterns match, or to all if they match none
-    if (node.table == &Part::table() && (selected != 0 || !matched->any_part)) properties |= states;
+    if (node.table == &sim::Part::table() && (selected != 0 || !matched->any_part)) properties |= states;
     if (properties != 0) planner.add(node.id, *node.table, properties);
   }
   PresetPlan plan = planner.finish();
@@ -359,4 +359,4 @@ std::shared_ptr<const Preset> PresetCapturer::capture_script(const Store& store)
   return preset;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

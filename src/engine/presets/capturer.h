@@ -13,7 +13,7 @@
 #include "engine/presets/preset.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::engine {
 
 class PresetPlanner;
 
@@ -83,4 +83,4 @@ class PresetCapturer {
   std::future<std::vector<double>> next_buffer_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

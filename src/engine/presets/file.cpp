@@ -17,7 +17,7 @@
 #include "engine/output/health.h"
 #include "script/scene/script_files.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace fs = std::filesystem;
 
@@ -52,7 +52,7 @@ std::string PresetFile::path_for(const std::string& scene) {
 
 PresetFile::WriteAccess PresetFile::write_access_for(const std::string& scene, const std::string& locks,
                                                      bool keep_lock) {
-  return {ScriptFiles(scene, {}).show_folder(),
+  return {script::ScriptFiles(scene, {}).show_folder(),
           locks.empty() ? "" : fmt::format("{}/{}.presets", locks, SceneLock::name_of(scene)), keep_lock};
 }
 
@@ -70,7 +70,7 @@ Result<ParsedPresets> PresetFile::load() {
   if (size > kMaxBytes)
     return file_error(path_,
                       fmt::format("the file of {} MB exceeds the limit of {} MB", size >> 20u, kMaxBytes >> 20u));
-  const FileStamp before(path_);
+  const model::FileStamp before(path_);
   std::string text(size, '\0');
   std::ifstream in(path_, std::ios::binary);
   if (!in.read(text.data(), static_cast<std::streamsize>(text.size()))) return file_error(path_, "it can't be read");
@@ -89,7 +89,8 @@ Result<std::string> PresetFile::target() const {
   const fs::path real = fs::canonical(path_, error);
   if (error) return path_;  // a dangling link is replaced itself
   const std::string folder = fs::absolute(path_).parent_path().string();
-  if (!is_inside(real.string(), folder) && (show_folder_.empty() || !is_inside(real.string(), show_folder_))) {
+  if (!script::is_inside(real.string(), folder) &&
+      (show_folder_.empty() || !script::is_inside(real.string(), show_folder_))) {
     return Error{fmt::format("it is a link to {}, outside of the show's folder; put a file in its place",
                              printable(real.string()))};
   }
@@ -144,7 +145,7 @@ Result<void> PresetFile::write(const PresetList& presets, std::string& notice) {
   }
   if (std::rename(temporary.c_str(), path.c_str()) != 0) return failed(system::error_reason());
   system::sync_folder(path);
-  last_stamp_ = FileStamp(path);
+  last_stamp_ = model::FileStamp(path);
   has_unparsed_ = false;
   return {};
 }
@@ -186,4 +187,4 @@ BackgroundWriter::Clock::time_point PresetSaver::run() {
   return BackgroundWriter::kNever;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

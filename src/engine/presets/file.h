@@ -16,7 +16,7 @@
 #include "engine/presets/text.h"
 #include "model/file_stamp.h"
 
-namespace limber {
+namespace limber::engine {
 
 class PresetFile {
  public:
@@ -62,8 +62,8 @@ class PresetFile {
   std::string show_folder_;
   SceneLock lock_;
   bool keep_lock_ = false;
-  FileStamp last_stamp_;       // stamp when it was last read or written
-  bool has_unparsed_ = false;  // it has content that could not be parsed
+  model::FileStamp last_stamp_;  // stamp when it was last read or written
+  bool has_unparsed_ = false;    // it has content that could not be parsed
 };
 
 /// Of several saves in a burst only the last one is written.
@@ -94,4 +94,4 @@ class PresetSaver : private BackgroundWriter::Task {
   std::atomic<bool> saved_{true};
 };
 
-}  // namespace limber
+}  // namespace limber::engine

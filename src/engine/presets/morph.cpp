@@ -8,14 +8,15 @@
 #include "base/text.h"
 #include "sim/behavior/behavior.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
 constexpr std::array<std::string_view, 4> kEasings = {"linear", "smooth", "in", "out"};
 
 bool is_member(const Store& store, NodeId id) {
-  return store.table(id).name() == "behavior" && static_cast<const Behavior*>(store.object(id))->group() != nullptr;
+  return store.table(id).name() == "behavior" &&
+         static_cast<const sim::Behavior*>(store.object(id))->group() != nullptr;
 }
 
 }  // namespace
@@ -203,4 +204,4 @@ double Morphs::progress(double time) const {
   return slowest;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

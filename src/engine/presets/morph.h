@@ -12,7 +12,7 @@
 #include "engine/presets/binding.h"
 #include "engine/presets/preset.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Easing curve: constant speed; slow at both ends; slow at the start; slow at the end.
 enum class Easing : std::uint8_t { linear, smooth, in, out };
@@ -97,4 +97,4 @@ class Morphs {
   std::vector<Morph> morphs_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

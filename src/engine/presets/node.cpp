@@ -1,7 +1,7 @@
 // The properties and actions of /preset.
 #include "engine/presets/node.h"
 
-namespace limber {
+namespace limber::engine {
 
 const PropertyTable& PresetNode::table() {
   using namespace properties;
@@ -21,7 +21,7 @@ const PropertyTable& PresetNode::table() {
   return table;
 }
 
-PresetNode::PresetNode(World& world, Presets& presets)
+PresetNode::PresetNode(sim::World& world, Presets& presets)
     : world_(world), presets_(presets), id_(world.store().add(table(), world.store().root(), "preset", this)) {}
 
 void PresetNode::publish() {
@@ -40,4 +40,4 @@ Result<void> PresetNode::act_stop(std::span<const double>) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,13 +6,13 @@
 
 #include "engine/presets/presets.h"
 
-namespace limber {
+namespace limber::engine {
 
 class PresetNode {
  public:
   static const PropertyTable& table();
 
-  PresetNode(World& world, Presets& presets);
+  PresetNode(sim::World& world, Presets& presets);
   /// Publishes `count`, `progress` and `saved`.
   void publish();
 
@@ -21,9 +21,9 @@ class PresetNode {
   Result<void> act_recall(std::span<const double> args);
   Result<void> act_stop(std::span<const double> args);
 
-  World& world_;
+  sim::World& world_;
   Presets& presets_;
   NodeId id_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

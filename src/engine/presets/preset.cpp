@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 int PresetLayout::find(std::string_view name) const {
   for (std::size_t i = 0; i < properties.size(); i++) {
@@ -204,4 +204,4 @@ Blend align(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const 
   return PresetAligner(*a, *b).run();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

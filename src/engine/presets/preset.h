@@ -11,7 +11,7 @@
 
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A property in a preset, identified by its name and the type of its values.
 struct PresetProperty {
@@ -141,4 +141,4 @@ class PresetBuilder {
   std::unordered_map<std::string, std::uint32_t> layouts_;  // by their content
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -13,7 +13,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -227,11 +227,11 @@ void Presets::forget_store() {
   morphs_.clear();
 }
 
-void Presets::advance(World& world) {
+void Presets::advance(sim::World& world) {
   if (!morphs_.empty()) morphs_.advance(world.store(), world.time());
 }
 
-Outcome Presets::execute(std::string_view command, const Message& message, World& world) {
+Outcome Presets::execute(std::string_view command, const Message& message, sim::World& world) {
   if (command == "store") return store(message, world);
   if (command == "recall") return recall(message, world);
   if (command == "morph") return morph(message, world);
@@ -290,7 +290,7 @@ Blend Presets::blend_of(const std::shared_ptr<const Preset>& a, const std::share
   return blend;
 }
 
-Outcome Presets::store(const Message& message, World& world) {
+Outcome Presets::store(const Message& message, sim::World& world) {
   Result<StoreCommand> command = parse_store(message);
   if (!command) return Outcome::rejected(command.error());
   auto existing = bank_.list.end();
@@ -332,7 +332,7 @@ Outcome Presets::erase(const Message& message) {
   return {};
 }
 
-Outcome Presets::recall(const Message& message, World& world) {
+Outcome Presets::recall(const Message& message, sim::World& world) {
   const Result<RecallCommand> command = parse_recall(message);
   if (!command) return Outcome::rejected(command.error());
   Result<Blend> blend = Blend{};
@@ -346,13 +346,13 @@ Outcome Presets::recall(const Message& message, World& world) {
   return outcome_of(apply(world, *blend, command->seconds, command->easing));
 }
 
-Result<void> Presets::recall_number(World& world, double number, double seconds) {
+Result<void> Presets::recall_number(sim::World& world, double number, double seconds) {
   const Outcome outcome = recall({"/preset/recall", {Arg::of(number), Arg::of(seconds)}}, world);
   if (outcome.kind == Outcome::Kind::rejected) return Error{outcome.error};
   return {};
 }
 
-Outcome Presets::morph(const Message& message, World& world) {
+Outcome Presets::morph(const Message& message, sim::World& world) {
   const Result<MorphCommand> command = parse_morph(message);
   if (!command) return Outcome::rejected(command.error());
   const auto a = resolve(command->a);
@@ -386,7 +386,7 @@ Result<std::shared_ptr<const PresetBinding>> Presets::bind(const Store& store, c
 }
 
 // Applies a blend, at once or as a morph; returns a description of values that were skipped.
-Result<std::string> Presets::apply(World& world, const Blend& blend, double seconds, Easing easing) {
+Result<std::string> Presets::apply(sim::World& world, const Blend& blend, double seconds, Easing easing) {
   Store& store = world.store();
   const auto binding = bind(store, blend);
   if (!binding) return Error{fmt::format("{}: {}", name_of(blend), binding.error())};
@@ -400,7 +400,7 @@ Result<std::string> Presets::apply(World& world, const Blend& blend, double seco
     morph.announce(store);
     morphs_.begin(std::move(morph));
   } else {
-    const RecallResult result = limber::recall(store, **binding, blend);
+    const RecallResult result = limber::engine::recall(store, **binding, blend);
     const std::size_t count = result.clamped + result.rejected;
     if (count > 0) {
       notices.push_back(fmt::format("{} value{} clamped or rejected ({})", count, count == 1 ? " was" : "s were",
@@ -412,9 +412,9 @@ Result<std::string> Presets::apply(World& world, const Blend& blend, double seco
   return notices.empty() ? std::string() : fmt::format("{}: {}", name_of(blend), fmt::join(notices, "; "));
 }
 
-void Presets::reapply(World& world, const Blend& blend) {
+void Presets::reapply(sim::World& world, const Blend& blend) {
   const auto binding = bind(world.store(), blend);
-  if (binding) (void)limber::recall(world.store(), **binding, blend);
+  if (binding) (void)limber::engine::recall(world.store(), **binding, blend);
 }
 
 Result<void> Presets::check(const Message& message, std::span<const Message> before) const {
@@ -436,4 +436,4 @@ Result<void> Presets::check(const Message& message, std::span<const Message> bef
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

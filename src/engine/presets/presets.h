@@ -19,7 +19,7 @@
 #include "engine/presets/morph.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class Presets {
  public:
@@ -53,21 +53,21 @@ class Presets {
   const std::string& file() const { return bank_.file; }
 
   /// Executes /preset/store, recall, morph, delete or /list/presets, selected by the last word of the address.
-  Outcome execute(std::string_view command, const Message& message, World& world);
+  Outcome execute(std::string_view command, const Message& message, sim::World& world);
   /// Checks whether a message would succeed after the messages in `before`.
   Result<void> check(const Message& message, std::span<const Message> before) const;
   /// Recalls a preset by its number, from 1, over `seconds`; a fractional number is a blend of its two neighbors.
-  Result<void> recall_number(World& world, double number, double seconds);
+  Result<void> recall_number(sim::World& world, double number, double seconds);
   /// Stops running morphs at their current values.
   void stop() { morphs_.clear(); }
   /// Advances running morphs to the world's time.
-  void advance(World& world);
+  void advance(sim::World& world);
   /// Prepares for the next /preset/store in slices; call once per tick.
-  void prepare(const World& world) { capturer_.prepare(world.store()); }
+  void prepare(const sim::World& world) { capturer_.prepare(world.store()); }
   /// Completes that preparation at once, when no tick waits.
-  void finish_planning(const World& world) { capturer_.finish_planning(world.store()); }
+  void finish_planning(const sim::World& world) { capturer_.finish_planning(world.store()); }
   /// Applies recovered values like a recall; returns a description of values that were skipped.
-  Result<std::string> restore(World& world, const std::shared_ptr<const Preset>& values) {
+  Result<std::string> restore(sim::World& world, const std::shared_ptr<const Preset>& values) {
     return apply(world, Blend::of(values), 0, Easing::linear);
   }
   /// Captures all properties.
@@ -77,13 +77,13 @@ class Presets {
   /// True if all stored presets are on the disk.
   bool saved() const { return bank_.saver == nullptr || bank_.saver->saved(); }
   /// Applies a recall again that was recorded as an override, after a reset.
-  void reapply(World& world, const Blend& blend);
+  void reapply(sim::World& world, const Blend& blend);
 
   const PresetList& list() const { return bank_.list; }
   /// Names, one per line.
   std::string_view names() const { return names_; }
   /// Progress of the running morph that is least advanced, 0 to 1; 1 if none runs.
-  double progress(const World& world) const { return morphs_.progress(world.time()); }
+  double progress(const sim::World& world) const { return morphs_.progress(world.time()); }
   /// Waits until all presets are on the disk. [any but sim]
   void finish_saving() {
     if (bank_.saver != nullptr) bank_.saver->finish();
@@ -108,9 +108,9 @@ class Presets {
   void release(NodeId id, const Property& property) { morphs_.release(id, property); }
 
  private:
-  Outcome store(const Message& message, World& world);
-  Outcome recall(const Message& message, World& world);
-  Outcome morph(const Message& message, World& world);
+  Outcome store(const Message& message, sim::World& world);
+  Outcome recall(const Message& message, sim::World& world);
+  Outcome morph(const Message& message, sim::World& world);
   Outcome erase(const Message& message);
   Outcome list_names(const Message& message) const;
 
@@ -118,7 +118,7 @@ class Presets {
   Result<std::shared_ptr<const Preset>> resolve(const Arg& arg) const;
   Result<Blend> blend_at(double number);
   Blend blend_of(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b, double amount);
-  Result<std::string> apply(World& world, const Blend& blend, double seconds, Easing easing);
+  Result<std::string> apply(sim::World& world, const Blend& blend, double seconds, Easing easing);
   Result<std::shared_ptr<const PresetBinding>> bind(const Store& store, const Blend& blend);
   Error not_found(std::string_view name) const;
   void update_names();
@@ -139,4 +139,4 @@ class Presets {
   std::vector<Pair> pairs_;  // recently blended
 };
 
-}  // namespace limber
+}  // namespace limber::engine

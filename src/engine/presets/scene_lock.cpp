@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "base/system/file.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace fs = std::filesystem;
 
@@ -45,4 +45,4 @@ void SceneLock::release() {
   lock_ = {};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

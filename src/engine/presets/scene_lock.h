@@ -7,7 +7,7 @@
 
 #include "base/system/descriptor.h"
 
-namespace limber {
+namespace limber::engine {
 
 class SceneLock {
  public:
@@ -34,4 +34,4 @@ class SceneLock {
   system::Descriptor lock_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

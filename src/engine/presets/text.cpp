@@ -14,7 +14,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -452,4 +452,4 @@ Result<ParsedPresets> import_pattrstorage(std::string_view text) {
   return PattrstorageImporter().run(file);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

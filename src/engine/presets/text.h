@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "engine/presets/preset.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Result of parsing a preset file.
 struct ParsedPresets {
@@ -29,4 +29,4 @@ Result<ParsedPresets> parse_presets(std::string_view text);
 /// reported as problems. Error: the text isn't a pattrstorage file.
 Result<ParsedPresets> import_pattrstorage(std::string_view text);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,7 +6,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 constexpr std::uint32_t kCheapNodeCount = 4096;  // nodes that can be visited in one tick at negligible cost
@@ -66,4 +66,4 @@ void RecoveryControl::end() {
   if (saver_ != nullptr) saver_->end();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

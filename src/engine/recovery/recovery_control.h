@@ -8,7 +8,7 @@
 #include "engine/recovery/recovery_saver.h"
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
 class RecoveryControl {
  public:
@@ -39,4 +39,4 @@ class RecoveryControl {
   bool suspended_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -16,7 +16,7 @@
 #include "base/text.h"
 #include "engine/presets/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace fs = std::filesystem;
 
@@ -154,4 +154,4 @@ void RecoveryFile::end(bool remove_recoverable) {
   lock_.release();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -12,7 +12,7 @@
 #include "engine/presets/preset.h"
 #include "engine/presets/scene_lock.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Values left by a run that crashed.
 struct RecoverableValues {
@@ -59,4 +59,4 @@ class RecoveryFile {
   SceneLock lock_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "engine/output/health.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -118,4 +118,4 @@ void RecoverySaver::switch_scene(const std::string& scene) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::engine

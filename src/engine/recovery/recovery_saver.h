@@ -12,7 +12,7 @@
 #include "engine/background_writer.h"
 #include "engine/recovery/recovery_file.h"
 
-namespace limber {
+namespace limber::engine {
 
 class RecoverySaver : private BackgroundWriter::Task {
  public:
@@ -77,4 +77,4 @@ class RecoverySaver : private BackgroundWriter::Task {
   std::optional<Values> submitted_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

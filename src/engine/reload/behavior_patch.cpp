@@ -7,11 +7,11 @@
 #include "base/log/log.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
-SavedBehavior saved_behavior(const Behavior& behavior) {
+SavedBehavior saved_behavior(const sim::Behavior& behavior) {
   const PropertyTable& table = *behavior.type().table;
   const double* const values = std::as_const(behavior.store()).persistent_block(behavior.id());
   return {behavior.body().name(), behavior.name(), behavior.type().name,
@@ -20,16 +20,17 @@ SavedBehavior saved_behavior(const Behavior& behavior) {
 
 class BehaviorPatcher {
  public:
-  BehaviorPatcher(const ScenePatch& patch, const std::vector<Body*>& bodies, const std::vector<SavedBehavior>& saved)
+  BehaviorPatcher(const ScenePatch& patch, const std::vector<sim::Body*>& bodies,
+                  const std::vector<SavedBehavior>& saved)
       : patch_(patch), bodies_(bodies), saved_(saved), list_(patch.world.behaviors()) {}
 
   void run() {
     replace_types();
     for (const auto& [body, name] : patch_.diff.removed_behaviors) {
-      if (Behavior* const removed = bodies_[body]->behaviors().find(name)) list_.remove(*removed);
+      if (sim::Behavior* const removed = bodies_[body]->behaviors().find(name)) list_.remove(*removed);
     }
     for (const std::string& name : patch_.diff.removed_groups) {
-      if (BehaviorGroup* const removed = list_.find_group(name)) list_.remove(*removed);
+      if (sim::BehaviorGroup* const removed = list_.find_group(name)) list_.remove(*removed);
     }
     for (std::size_t i = 0; i < bodies_.size(); i++) {
       for (std::size_t k = 0; k < patch_.now.bodies[i].behaviors.size(); k++) apply_behavior(i, k);
@@ -43,8 +44,8 @@ class BehaviorPatcher {
  private:
   // Replaces the types that come from files by those of the new run, and rebuilds their instances.
   void replace_types() {
-    const BehaviorTypes& source_types = patch_.candidate.behaviors().types();
-    BehaviorTypes& types = list_.types();
+    const sim::BehaviorTypes& source_types = patch_.candidate.behaviors().types();
+    sim::BehaviorTypes& types = list_.types();
     std::vector<std::string> removed;
     for (const auto& type : types.all()) {
       if (!type->is_built_in && source_types.find(type->name) == nullptr) removed.push_back(type->name);
@@ -70,7 +71,7 @@ class BehaviorPatcher {
   }
 
   // Copies saved values to the replacement of a behavior, except the properties of `except`, which the scene sets.
-  void copy_values(const SavedBehavior& from, const Behavior& to, std::uint64_t except) {
+  void copy_values(const SavedBehavior& from, const sim::Behavior& to, std::uint64_t except) {
     Store& store = patch_.world.store();
     for (const Property& property : to.type().table->properties()) {
       if (!property.stored() || !property.writable() || (except >> property.index & 1u) != 0) continue;
@@ -90,8 +91,8 @@ class BehaviorPatcher {
     const BehaviorDescription& now = patch_.now.bodies[body].behaviors[index];
     if (now.of_group) return;
     const BehaviorDiff& diff = patch_.diff.behaviors[body][index];
-    const Behavior& source = *patch_.candidate.bodies()[body]->behaviors().list()[index];
-    Behavior* live = bodies_[body]->behaviors().find(now.name);
+    const sim::Behavior& source = *patch_.candidate.bodies()[body]->behaviors().list()[index];
+    sim::Behavior* live = bodies_[body]->behaviors().find(now.name);
     const SavedBehavior* before = find_saved(bodies_[body]->name(), now.name);
     SavedBehavior replaced;
     const bool must_replace =
@@ -114,8 +115,9 @@ class BehaviorPatcher {
     set_properties(source.id(), live->id(), *now.table, diff.changed);
   }
 
-  Behavior* add(Body& body, const std::string& type, const std::string& name, const BehaviorSetup& setup) {
-    const Result<Behavior*> added = list_.add(body, type, name, setup);
+  sim::Behavior* add(sim::Body& body, const std::string& type, const std::string& name,
+                     const sim::BehaviorSetup& setup) {
+    const Result<sim::Behavior*> added = list_.add(body, type, name, setup);
     added_ = true;
     if (added) return *added;
     log_warning("behavior '{}/{}' was removed: {}", body.name(), name, added.error());
@@ -125,9 +127,9 @@ class BehaviorPatcher {
   // Attaches unmanaged behaviors (made in callbacks) to rebuilt bodies again.
   void restore_unmanaged() {
     for (const SavedBehavior& saved : saved_) {
-      Body* const body = patch_.world.find_body(saved.body);
+      sim::Body* const body = patch_.world.find_body(saved.body);
       if (body == nullptr || body->behaviors().find(saved.name) != nullptr || in_old_spec(saved)) continue;
-      if (const Behavior* const behavior = add(*body, saved.type, saved.name, saved.setup))
+      if (const sim::Behavior* const behavior = add(*body, saved.type, saved.name, saved.setup))
         copy_values(saved, *behavior, 0);
     }
   }
@@ -142,8 +144,8 @@ class BehaviorPatcher {
   void apply_group(std::size_t index) {
     const GroupDescription& now = patch_.now.groups[index];
     const BehaviorDiff& diff = patch_.diff.groups[index];
-    const BehaviorGroup& source = *patch_.candidate.behaviors().groups()[index];
-    BehaviorGroup* live = list_.find_group(now.name);
+    const sim::BehaviorGroup& source = *patch_.candidate.behaviors().groups()[index];
+    sim::BehaviorGroup* live = list_.find_group(now.name);
     const bool must_replace = live != nullptr && (live->type().name != now.type || !(live->setup() == now.setup));
     std::uint64_t mask = diff.changed;
     if (must_replace) {
@@ -152,7 +154,7 @@ class BehaviorPatcher {
     }
     if (live == nullptr) {
       added_ = true;
-      const Result<BehaviorGroup*> added = list_.add_group(now.type, now.name, now.setup);
+      const Result<sim::BehaviorGroup*> added = list_.add_group(now.type, now.name, now.setup);
       if (!added) return log_warning("group behavior '{}' was removed: {}", now.name, added.error());
       live = *added;
       mask = explicit_mask(now.values);
@@ -166,30 +168,30 @@ class BehaviorPatcher {
     for (std::size_t k = 0; k < now.size(); k++) {
       const std::uint64_t mask = patch_.diff.behaviors[body][k].changed;
       if (!now[k].of_group || mask == 0) continue;
-      const Behavior* const live = bodies_[body]->behaviors().find(now[k].name);
+      const sim::Behavior* const live = bodies_[body]->behaviors().find(now[k].name);
       if (live == nullptr || live->group() == nullptr) continue;
       set_properties(patch_.candidate.bodies()[body]->behaviors().list()[k]->id(), live->id(), *now[k].table, mask);
     }
   }
 
   const ScenePatch& patch_;
-  const std::vector<Body*>& bodies_;
+  const std::vector<sim::Body*>& bodies_;
   const std::vector<SavedBehavior>& saved_;
-  BehaviorList& list_;
+  sim::BehaviorList& list_;
   bool added_ = false;
 };
 
 }  // namespace
 
-void save_behaviors(const Body& body, std::vector<SavedBehavior>& saved) {
-  for (const Behavior* behavior : body.behaviors().list()) {
+void save_behaviors(const sim::Body& body, std::vector<SavedBehavior>& saved) {
+  for (const sim::Behavior* behavior : body.behaviors().list()) {
     if (behavior->group() == nullptr) saved.push_back(saved_behavior(*behavior));
   }
 }
 
-void apply_behaviors(const ScenePatch& patch, const std::vector<Body*>& bodies,
+void apply_behaviors(const ScenePatch& patch, const std::vector<sim::Body*>& bodies,
                      const std::vector<SavedBehavior>& saved) {
   BehaviorPatcher(patch, bodies, saved).run();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

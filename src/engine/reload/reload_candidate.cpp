@@ -13,19 +13,19 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
-ReloadCandidate::ReloadCandidate(ReloadRequest request, ScriptHost& host)
-    : request_(std::move(request)), scene_(std::make_unique<Scene>(world_, host, request_.options)) {
+ReloadCandidate::ReloadCandidate(ReloadRequest request, script::ScriptHost& host)
+    : request_(std::move(request)), scene_(std::make_unique<script::Scene>(world_, host, request_.options)) {
   result_ = scene_->run(request_.file, &request_.inputs);
   if (!result_) return;
-  flush_detached(world_);
+  sim::flush_detached(world_);
   spec_ = std::make_shared<const SceneSpec>(describe(world_));
   diff_ = compare(*request_.base_spec, *spec_);
   script_preset_ = PresetCapturer::capture_script(store_);
   scene_->prepare();
 }
 
-std::vector<SourceFile> ReloadCandidate::files() const { return scene_->sources()->files(); }
+std::vector<script::SourceFile> ReloadCandidate::files() const { return scene_->sources()->files(); }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,17 +6,17 @@
 #include <tuple>
 #include <unordered_map>
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
-bool same_mesh(const std::shared_ptr<const MeshModel>& a, const std::shared_ptr<const MeshModel>& b) {
+bool same_mesh(const std::shared_ptr<const model::MeshModel>& a, const std::shared_ptr<const model::MeshModel>& b) {
   if (a == b) return true;
   return a != nullptr && b != nullptr && a->hull == b->hull && a->vertices == b->vertices &&
          a->triangles == b->triangles;
 }
 
-bool same_geometry(const ShapeModel& a, const ShapeModel& b) {
+bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b) {
   return a.kind == b.kind && a.normal == b.normal && a.size == b.size && a.radius == b.radius && a.height == b.height &&
          same_mesh(a.mesh, b.mesh) && nearly_same(a.mesh_pose, b.mesh_pose);
 }
@@ -24,7 +24,7 @@ bool same_geometry(const ShapeModel& a, const ShapeModel& b) {
 bool same_geometry(const ShapeDescription& a, const ShapeDescription& b) {
   return same_geometry(a.model, b.model) &&
          std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(),
-                    [](const PlacedShape& x, const PlacedShape& y) {
+                    [](const model::PlacedShape& x, const model::PlacedShape& y) {
                       return same_geometry(x.shape, y.shape) && nearly_same(x.origin, y.origin);
                     });
 }
@@ -34,7 +34,7 @@ bool same_construction(const PartDescription& a, const PartDescription& b) {
   return a.shape == b.shape || (a.shape->name == b.shape->name && same_geometry(*a.shape, *b.shape));
 }
 
-bool same_mimic(const std::optional<Mimic>& a, const std::optional<Mimic>& b) {
+bool same_mimic(const std::optional<sim::Mimic>& a, const std::optional<sim::Mimic>& b) {
   if (!a || !b) return !a && !b;
   return a->leader == b->leader && a->multiplier == b->multiplier && a->offset == b->offset;
 }
@@ -55,7 +55,7 @@ bool all_same_construction(const std::vector<T>& a, const std::vector<T>& b) {
 }
 
 // Compares by content, because the model cache may return either of two equal models.
-bool same_model(const std::shared_ptr<const BodyModel>& a, const std::shared_ptr<const BodyModel>& b) {
+bool same_model(const std::shared_ptr<const model::BodyModel>& a, const std::shared_ptr<const model::BodyModel>& b) {
   return a == b || (a != nullptr && b != nullptr && a->content_hash == b->content_hash);
 }
 
@@ -152,7 +152,7 @@ void compare_pairs(const BodyDescription& before, const BodyDescription& now, Bo
     const PartDescription* const b = find_named(now.parts, before.parts[pair.b].name);
     if (a == nullptr || b == nullptr || find_pair(now, a->name, b->name) != nullptr) continue;
     out.pairs.push_back({static_cast<std::size_t>(a - now.parts.data()), static_cast<std::size_t>(b - now.parts.data()),
-                         PairEdit::none});
+                         sim::PairEdit::none});
   }
 }
 
@@ -373,4 +373,4 @@ SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -11,7 +11,7 @@
 
 #include "engine/reload/scene_spec.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A body that is added or differs between the two specs. Sets of properties are bit masks.
 struct BodyDiff {
@@ -85,4 +85,4 @@ BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescriptio
 /// Returns a bit mask of the properties that differ in value or in being explicitly set.
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now);
 
-}  // namespace limber
+}  // namespace limber::engine

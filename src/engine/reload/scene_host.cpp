@@ -7,7 +7,7 @@
 
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 constexpr std::size_t kMaxPresetCommands = 256;  // preset commands of scripts per tick
@@ -45,4 +45,4 @@ void SceneHost::script_error(std::string_view file, int line, std::string_view t
 
 void SceneHost::print(std::string_view text) { log_print(text, show_.options.print ? OutputTo::out : OutputTo::error); }
 
-}  // namespace limber
+}  // namespace limber::engine

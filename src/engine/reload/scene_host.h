@@ -7,9 +7,9 @@
 #include "engine/reload/scene_reloader.h"
 #include "engine/show_state.h"
 
-namespace limber {
+namespace limber::engine {
 
-class SceneHost final : public ScriptHost {
+class SceneHost final : public script::ScriptHost {
  public:
   /// `reloader` is only used once the scene runs.
   SceneHost(ShowState& show, SceneReloader& reloader) : show_(show), reloader_(reloader) {}
@@ -31,4 +31,4 @@ class SceneHost final : public ScriptHost {
   SceneReloader& reloader_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

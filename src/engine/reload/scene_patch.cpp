@@ -17,36 +17,36 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
 template <class T>
-T* find_alive(const World& world, NodeId id) {
+T* find_alive(const sim::World& world, NodeId id) {
   const Store& store = world.store();
   if (!store.alive(id) || &store.table(id) != &T::table()) return nullptr;
   return static_cast<T*>(store.object(id));
 }
 
 std::uint64_t part_property_bit(std::string_view property) {
-  return std::uint64_t{1} << Part::table().at(property).index;
+  return std::uint64_t{1} << sim::Part::table().at(property).index;
 }
 
 // Saves the values of a body's objects while the body is rebuilt, by class and name.
 class SavedValues {
  public:
-  explicit SavedValues(const Body& body) {
+  explicit SavedValues(const sim::Body& body) {
     for (const NodeId id : objects_of(body)) save(body.store(), id);
-    for (const PartPair& pair : body.pairs().list()) {
+    for (const sim::PartPair& pair : body.pairs().list()) {
       pairs_.push_back({body.parts()[pair.a]->name(), body.parts()[pair.b]->name(), pair.edit});
     }
   }
 
   // Restores the edits of pairs if both parts still exist.
-  void restore_pairs_to(Body& body) const {
+  void restore_pairs_to(sim::Body& body) const {
     for (const SavedPair& pair : pairs_) {
-      const Part* const a = body.find_part(pair.a);
-      const Part* const b = body.find_part(pair.b);
+      const sim::Part* const a = body.find_part(pair.a);
+      const sim::Part* const b = body.find_part(pair.b);
       if (a != nullptr && b != nullptr) (void)body.pairs().edit(*a, *b, pair.edit);
     }
   }
@@ -58,7 +58,7 @@ class SavedValues {
       return entry.table == &table && entry.name == store.name(id);
     });
     if (found == entries_.end()) return;
-    if (&table == &Part::table())
+    if (&table == &sim::Part::table())
       except |= part_property_bit("linear_velocity") | part_property_bit("angular_velocity");
     const std::uint64_t mask = described_mask(table) & ~except;
     for (const Property& property : table.properties()) {
@@ -72,7 +72,7 @@ class SavedValues {
  private:
   struct SavedPair {
     std::string a, b;
-    PairEdit edit;
+    sim::PairEdit edit;
   };
   struct Entry {
     const PropertyTable* table;
@@ -99,7 +99,7 @@ class PatchApplier {
 
   void run(LiveObjects& objects) {
     set_properties(patch_.candidate.id(), patch_.world.id(), patch_.diff.world);
-    const Visuals& visuals = patch_.candidate.visuals();
+    const sim::Visuals& visuals = patch_.candidate.visuals();
     set_properties(visuals.id(), patch_.world.visuals().id(), patch_.diff.visuals);
     set_properties(visuals.camera().id(), patch_.world.visuals().camera().id(), patch_.diff.camera);
     set_properties(visuals.appearance().id(), patch_.world.visuals().appearance().id(), patch_.diff.appearance);
@@ -109,14 +109,14 @@ class PatchApplier {
     apply_gears();
     apply_behaviors(patch_, bodies_, saved_behaviors_);
     for (const std::size_t removed : patch_.diff.removed_shapes) {
-      if (Shape* const shape = find_alive<Shape>(patch_.world, objects.shapes[removed]))
+      if (sim::Shape* const shape = find_alive<sim::Shape>(patch_.world, objects.shapes[removed]))
         patch_.world.shapes().remove(*shape);
     }
     patch_.world.shapes().move_to_front(shapes_);
     patch_.world.move_bodies_to_front(bodies_);
     objects = {};
-    for (const Shape* shape : shapes_) objects.shapes.push_back(shape->id());
-    for (const Body* body : bodies_) objects.bodies.push_back(body->id());
+    for (const sim::Shape* shape : shapes_) objects.shapes.push_back(shape->id());
+    for (const sim::Body* body : bodies_) objects.bodies.push_back(body->id());
   }
 
  private:
@@ -134,7 +134,8 @@ class PatchApplier {
 
   void remove_bodies(const LiveObjects& objects) {
     for (const std::size_t removed : patch_.diff.removed_bodies) {
-      if (Body* const body = find_alive<Body>(patch_.world, objects.bodies[removed])) patch_.world.remove_body(*body);
+      if (sim::Body* const body = find_alive<sim::Body>(patch_.world, objects.bodies[removed]))
+        patch_.world.remove_body(*body);
     }
   }
 
@@ -142,8 +143,8 @@ class PatchApplier {
     auto next = patch_.diff.shapes.begin();
     for (std::size_t i = 0; i < patch_.now.shapes.size(); i++) {
       const std::optional<std::size_t> before = patch_.diff.old_shape_indices[i];
-      const Shape& source = *patch_.candidate.shapes().list()[i];
-      Shape* shape = before ? find_alive<Shape>(patch_.world, objects.shapes[*before]) : nullptr;
+      const sim::Shape& source = *patch_.candidate.shapes().list()[i];
+      sim::Shape* shape = before ? find_alive<sim::Shape>(patch_.world, objects.shapes[*before]) : nullptr;
       const bool differs = next != patch_.diff.shapes.end() && next->new_index == i;
       if (shape == nullptr) {
         shape = patch_.world.shapes().find(source.name());
@@ -152,7 +153,7 @@ class PatchApplier {
         shape->assign_geometry(source);
         // a new shape gets all values, because colors of a URDF file are not explicitly set
         set_properties(source.id(), shape->id(),
-                       is_new ? described_mask(Shape::table()) : explicit_mask(patch_.now.shapes[i]->values));
+                       is_new ? described_mask(sim::Shape::table()) : explicit_mask(patch_.now.shapes[i]->values));
       } else if (differs) {
         if (next->geometry_changed) shape->assign_geometry(source);
         set_properties(source.id(), shape->id(), next->changed);
@@ -167,7 +168,7 @@ class PatchApplier {
     for (std::size_t i = 0; i < patch_.now.bodies.size(); i++) {
       const std::optional<std::size_t> before = patch_.diff.old_body_indices[i];
       const bool differs = next != patch_.diff.bodies.end() && next->new_index == i;
-      Body* body = before ? find_alive<Body>(patch_.world, objects.bodies[*before]) : nullptr;
+      sim::Body* body = before ? find_alive<sim::Body>(patch_.world, objects.bodies[*before]) : nullptr;
       if (body == nullptr) {
         body = add_body(i);
       } else if (differs) {
@@ -181,25 +182,25 @@ class PatchApplier {
   // A gear that was removed, or lost a body, is added again with the values of the scene; others keep their values.
   void apply_gears() {
     for (const std::string& name : patch_.diff.removed_gears) {
-      if (Gear* const removed = patch_.world.gears().find(name)) patch_.world.gears().remove(*removed);
+      if (sim::Gear* const removed = patch_.world.gears().find(name)) patch_.world.gears().remove(*removed);
     }
-    std::vector<Gear*> order;
+    std::vector<sim::Gear*> order;
     for (std::size_t i = 0; i < patch_.now.gears.size(); i++) {
       const GearDescription& now = patch_.now.gears[i];
-      const Gear& source = *patch_.candidate.gears().list()[i];
-      Joint* const a = joint_of(now.body_a, now.joint_a);
-      Joint* const b = joint_of(now.body_b, now.joint_b);
+      const sim::Gear& source = *patch_.candidate.gears().list()[i];
+      sim::Joint* const a = joint_of(now.body_a, now.joint_a);
+      sim::Joint* const b = joint_of(now.body_b, now.joint_b);
       LIMBER_CHECK(a != nullptr && b != nullptr);
-      Gear* live = patch_.world.gears().find(now.name);
+      sim::Gear* live = patch_.world.gears().find(now.name);
       if (live != nullptr && (&live->joint_a() != a || &live->joint_b() != b)) {
         patch_.world.gears().remove(*live);
         live = nullptr;
       }
       if (live == nullptr) {
-        const Result<Gear*> added = patch_.world.gears().add(now.name, *a, *b, source.ratio(), source.offset());
+        const Result<sim::Gear*> added = patch_.world.gears().add(now.name, *a, *b, source.ratio(), source.offset());
         LIMBER_CHECK(added.ok());
         live = *added;
-        set_properties(source.id(), live->id(), described_mask(Gear::table()));
+        set_properties(source.id(), live->id(), described_mask(sim::Gear::table()));
       } else {
         const GearDiff& diff = patch_.diff.gears[i];
         set_properties(source.id(), live->id(), diff.changed);
@@ -209,26 +210,26 @@ class PatchApplier {
     patch_.world.gears().move_to_front(order);
   }
 
-  Joint* joint_of(const std::string& body, const std::string& joint) const {
-    for (Body* const candidate : bodies_) {
+  sim::Joint* joint_of(const std::string& body, const std::string& joint) const {
+    for (sim::Body* const candidate : bodies_) {
       if (candidate->name() == body) return candidate->find_joint(joint);
     }
     return nullptr;
   }
 
   // Adds a body that is new or was removed, or adopts an unmanaged body of this name.
-  Body* add_body(std::size_t i) {
-    const Body& source = *patch_.candidate.bodies()[i];
-    Body* const unmanaged = patch_.world.find_body(source.name());
+  sim::Body* add_body(std::size_t i) {
+    const sim::Body& source = *patch_.candidate.bodies()[i];
+    sim::Body* const unmanaged = patch_.world.find_body(source.name());
     if (unmanaged == nullptr) return *patch_.world.copy_body(source, source.name());
     BodyDiff diff = compare_unmanaged(describe_body(*unmanaged), patch_.now.bodies[i]);
     diff.new_index = i;
     return &patch_body(*unmanaged, diff);
   }
 
-  Body& patch_body(Body& body, const BodyDiff& diff) {
-    const Body& source = *patch_.candidate.bodies()[diff.new_index];
-    Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
+  sim::Body& patch_body(sim::Body& body, const BodyDiff& diff) {
+    const sim::Body& source = *patch_.candidate.bodies()[diff.new_index];
+    sim::Body& live = diff.rebuild ? rebuild(body, source, diff) : body;
     if (!diff.rebuild && diff.start_changed) live.recovery().save_start_pose(source);
     const std::vector<NodeId> from = objects_of(source);
     const std::vector<NodeId> to = objects_of(live);
@@ -240,17 +241,17 @@ class PatchApplier {
     return live;
   }
 
-  Body& rebuild(Body& body, const Body& source, const BodyDiff& diff) {
+  sim::Body& rebuild(sim::Body& body, const sim::Body& source, const BodyDiff& diff) {
     const SavedValues saved(body);
     save_behaviors(body, saved_behaviors_);
-    Body& live = rebuild_body(patch_.world, body, source, diff.joints_to_reset);
+    sim::Body& live = sim::rebuild_body(patch_.world, body, source, diff.joints_to_reset);
     saved.restore_pairs_to(live);
     const std::vector<NodeId> objects = objects_of(live);
     for (std::size_t i = 0; i < objects.size(); i++) saved.restore_to(store_, objects[i], diff.changed[i]);
     return live;
   }
 
-  static void move_body(Body& live, const Body& source, const BodyDiff& diff) {
+  static void move_body(sim::Body& live, const sim::Body& source, const BodyDiff& diff) {
     const Pose before = live.pose();
     const Pose target = source.pose();
     const Pose to{diff.position_changed ? target.position : before.position,
@@ -258,28 +259,30 @@ class PatchApplier {
     if (live.parts().empty()) return live.set_pose(to);
     if (diff.position_changed || diff.rotation_changed) {
       const Pose moved = to * before.inverse();
-      const std::size_t root_tree = tree_roots(live).front();
-      const auto move_along = [&](std::size_t first) { move_tree(live, first, moved * live.parts()[first]->pose()); };
+      const std::size_t root_tree = sim::tree_roots(live).front();
+      const auto move_along = [&](std::size_t first) {
+        sim::move_tree(live, first, moved * live.parts()[first]->pose());
+      };
       if (root_tree == 0) {
-        move_tree(live, 0, to);
+        sim::move_tree(live, 0, to);
       } else {
         move_along(root_tree);
       }
       for (const std::size_t first : diff.trees_with_root) move_along(first);
     }
-    for (const std::size_t first : diff.trees_placed) move_tree(live, first, source.parts()[first]->pose());
+    for (const std::size_t first : diff.trees_placed) sim::move_tree(live, first, source.parts()[first]->pose());
   }
 
   const ScenePatch& patch_;
   Store& store_;
-  std::vector<Shape*> shapes_;
-  std::vector<Body*> bodies_;
+  std::vector<sim::Shape*> shapes_;
+  std::vector<sim::Body*> bodies_;
   std::vector<SavedBehavior> saved_behaviors_;  // of rebuilt bodies
 };
 
 }  // namespace
 
-LiveObjects live_objects_of(const World& world) {
+LiveObjects live_objects_of(const sim::World& world) {
   LiveObjects objects;
   for (const auto& shape : world.shapes().list()) objects.shapes.push_back(shape->id());
   for (const auto& body : world.bodies()) objects.bodies.push_back(body->id());
@@ -288,4 +291,4 @@ LiveObjects live_objects_of(const World& world) {
 
 void apply(const ScenePatch& patch, LiveObjects& objects) { PatchApplier(patch).run(objects); }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -8,7 +8,7 @@
 #include "engine/reload/scene_diff.h"
 #include "engine/reload/scene_spec.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Ids of the live objects of the current spec, in its order. An object that was removed since has a stale id.
 struct LiveObjects {
@@ -17,12 +17,12 @@ struct LiveObjects {
 };
 
 /// Returns the ids of all objects of a world that was captured as a spec just now.
-LiveObjects live_objects_of(const World& world);
+LiveObjects live_objects_of(const sim::World& world);
 
 /// The input of apply().
 struct ScenePatch {
-  World& world;            ///< The live world.
-  const World& candidate;  ///< The world of the new run, from which `now` was captured.
+  sim::World& world;            ///< The live world.
+  const sim::World& candidate;  ///< The world of the new run, from which `now` was captured.
   const SceneSpec& before;
   const SceneSpec& now;
   const SceneDiff& diff;
@@ -34,4 +34,4 @@ struct ScenePatch {
 /// in a callback) with the name of a new one becomes managed. An object of the spec that was removed is added again.
 void apply(const ScenePatch& patch, LiveObjects& objects);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,7 +10,7 @@
 #include "engine/presets/capturer.h"
 #include "script/scene/earlier_runs.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -20,11 +20,11 @@ std::string counted(std::uint64_t count, std::string_view noun) {
 
 }  // namespace
 
-SceneReloader::SceneReloader(std::string file, ScriptHost& host, Overrides& overrides)
+SceneReloader::SceneReloader(std::string file, script::ScriptHost& host, Overrides& overrides)
     : file_(std::move(file)), host_(host), overrides_(overrides) {}
 
-void SceneReloader::capture(const Session& session, const SceneOptions& options, const std::string& file,
-                            std::vector<SourceFile> failed_files) {
+void SceneReloader::capture(const Session& session, const script::SceneOptions& options, const std::string& file,
+                            std::vector<script::SourceFile> failed_files) {
   file_ = file;
   options_ = options;
   spec_ = std::make_shared<const SceneSpec>(describe(session.world));
@@ -70,7 +70,7 @@ SceneReloader::ApplyResult SceneReloader::apply_candidate(ReloadCandidate& candi
   if (session.scene != nullptr) session.scene->capture_handles();
   apply({session.world, candidate.world(), *spec_, *candidate.spec(), candidate.diff(), set_by_scene}, objects_);
   const auto live_id = [&](NodeId id) { return counterpart(candidate.world().store(), id, store); };
-  std::unique_ptr<Scene>& scene = candidate.scene();
+  std::unique_ptr<script::Scene>& scene = candidate.scene();
   scene->rerun_values(rerun_values_);
   std::uint64_t default_mask = scene->become_live(session.world, live_id, session.scene.get());
   for (const NodeId params = scene->params(); default_mask != 0; default_mask &= default_mask - 1)
@@ -90,10 +90,10 @@ SceneReloader::ApplyResult SceneReloader::apply_candidate(ReloadCandidate& candi
 }
 
 // A parameter with `rerun` may change many times a second, so such runs log losses only.
-void SceneReloader::report_timers(const CarriedTimers& timers, bool from_disk) {
+void SceneReloader::report_timers(const script::CarriedTimers& timers, bool from_disk) {
   if (timers.ended > 0) {
     log_warning("{} scheduled by the oldest run ended: a scene keeps the timers of {} runs before the last save",
-                counted(timers.ended, "timer"), EarlierRuns::kMaxRuns);
+                counted(timers.ended, "timer"), script::EarlierRuns::kMaxRuns);
   }
   if (!from_disk) return;
   if (timers.timers > 0) {
@@ -114,9 +114,9 @@ void SceneReloader::report_fixed() {
   for (const std::string& file : std::exchange(files_with_errors_, {})) host_.script_error(file, 0, "");
 }
 
-void SceneReloader::set_files(std::vector<SourceFile> files) {
+void SceneReloader::set_files(std::vector<script::SourceFile> files) {
   if (sources_ != nullptr) {
-    const std::vector<SourceFile> files_of_last_run = sources_->files();
+    const std::vector<script::SourceFile> files_of_last_run = sources_->files();
     files.insert(files.end(), files_of_last_run.begin(), files_of_last_run.end());
   }
   if (files.empty() && !file_.empty()) files.push_back({file_, {}});
@@ -124,9 +124,9 @@ void SceneReloader::set_files(std::vector<SourceFile> files) {
   files_ = std::move(files);
 }
 
-std::vector<SourceFile> SceneReloader::files() const {
+std::vector<script::SourceFile> SceneReloader::files() const {
   const std::scoped_lock lock(files_mutex_);
   return files_;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -14,7 +14,7 @@
 #include "engine/reload/scene_patch.h"
 #include "engine/session.h"
 
-namespace limber {
+namespace limber::engine {
 
 class SceneReloader {
  public:
@@ -24,17 +24,17 @@ class SceneReloader {
     outdated,  ///< There was a reset or reload since the request: a new candidate is needed.
   };
 
-  SceneReloader(std::string file, ScriptHost& host, Overrides& overrides);
+  SceneReloader(std::string file, script::ScriptHost& host, Overrides& overrides);
 
   /// Captures a session right after a successful run of the scene in `file`, or an empty session after a failed run.
   /// `failed_files`: the files that the failed run has read. [sim]
-  void capture(const Session& session, const SceneOptions& options, const std::string& file,
-               std::vector<SourceFile> failed_files = {});
+  void capture(const Session& session, const script::SceneOptions& options, const std::string& file,
+               std::vector<script::SourceFile> failed_files = {});
   /// Makes a request for a candidate. `reuse_files`: run the sources of the last successful run, not the files on disk.
   /// [sim]
   ReloadRequest make_request(const Session& session, bool reuse_files);
   /// Sets the script limits of later candidates, when a take has ended. [sim]
-  void set_limits(const ScriptLimits& limits) {
+  void set_limits(const script::ScriptLimits& limits) {
     options_.limits = limits;
     options_.keep_timers = true;
   }
@@ -48,27 +48,27 @@ class SceneReloader {
   /// The values of all properties after the last successful run. [sim]
   const std::shared_ptr<const Preset>& script_preset() const { return script_preset_; }
   /// The files that the last successful run depends on, and those of a failed run since. [any]
-  std::vector<SourceFile> files() const;
+  std::vector<script::SourceFile> files() const;
 
  private:
-  void set_files(std::vector<SourceFile> files);
+  void set_files(std::vector<script::SourceFile> files);
   void report_fixed();
-  static void report_timers(const CarriedTimers& timers, bool from_disk);
+  static void report_timers(const script::CarriedTimers& timers, bool from_disk);
 
   std::string file_;
-  SceneOptions options_;
-  ScriptHost& host_;
+  script::SceneOptions options_;
+  script::ScriptHost& host_;
   Overrides& overrides_;
   std::shared_ptr<const SceneSpec> spec_;
   std::shared_ptr<const Preset> script_preset_;
-  std::shared_ptr<const Sources> sources_;
+  std::shared_ptr<const script::Sources> sources_;
   LiveObjects objects_;
   std::vector<double> rerun_values_;  // values of parameters with `rerun`
   std::vector<double> scratch_;       // scratch
   std::set<std::string> files_with_errors_;
 
   mutable std::mutex files_mutex_;
-  std::vector<SourceFile> files_;
+  std::vector<script::SourceFile> files_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -11,7 +11,7 @@
 #include "engine/reload/reload_candidate.h"
 #include "sim/visuals/visuals.h"
 
-namespace limber {
+namespace limber::engine {
 
 SceneRunner::Run SceneRunner::begin_run(TakeSceneRun::Kind kind, bool reuse_files, const std::string& scene) {
   Run run;
@@ -21,22 +21,22 @@ SceneRunner::Run SceneRunner::begin_run(TakeSceneRun::Kind kind, bool reuse_file
 }
 
 // Captures the result of a run, for reloads and for the preset "script".
-void SceneRunner::capture_run(const Session& session, const SceneOptions& options, const std::string& file,
-                              std::vector<SourceFile> failed_files) {
+void SceneRunner::capture_run(const Session& session, const script::SceneOptions& options, const std::string& file,
+                              std::vector<script::SourceFile> failed_files) {
   reloader_.capture(session, options, file, std::move(failed_files));
   show_.presets.set_script_preset(reloader_.script_preset());
 }
 
 Result<void> SceneRunner::start() {
   const Run run = begin_run(TakeSceneRun::Kind::start);
-  const SceneOptions options = show_.scene_options();
-  SceneOptions run_options = options;
+  const script::SceneOptions options = show_.scene_options();
+  script::SceneOptions run_options = options;
   run_options.sources = run.files.sources;
   if (run.files.fails) return Error{"the scene failed when the take was recorded, too"};
   std::unique_ptr<Session>& session = show_.session;
   const std::string& file = show_.options.scene;
   if (Result<void> result = session->run(file, host_, run_options); !result) {
-    std::vector<SourceFile> tried_files = session->scene->sources()->files();
+    std::vector<script::SourceFile> tried_files = session->scene->sources()->files();
     session = show_.new_session();
     capture_run(*session, options, file, std::move(tried_files));
     return result;
@@ -66,10 +66,10 @@ bool SceneRunner::reset() {
   show_.pacer.excuse_stall();
   const Run run = begin_run(TakeSceneRun::Kind::reset);
   auto fresh = show_.new_session();
-  SceneOptions options = show_.scene_options();
-  const World& before = show_.session->world;
+  script::SceneOptions options = show_.scene_options();
+  const sim::World& before = show_.session->world;
   if (before.seed() != show_.scene_seed) options.seed = before.seed();  // the performer has set it
-  SceneOptions run_options = options;
+  script::SceneOptions run_options = options;
   run_options.sources = run.files.sources;
   const Result<void> result = run.files.fails ? Result<void>(Error{"it failed when the take was recorded, too"})
                                               : fresh->run(show_.options.scene, host_, run_options);
@@ -91,7 +91,7 @@ bool SceneRunner::reset() {
 
 // Copies a value that is session state, not scene state (paused, speed, history), into a new session.
 void SceneRunner::copy_session_value(Session& fresh, std::string_view name) const {
-  const Property& property = World::table().at(name);
+  const Property& property = sim::World::table().at(name);
   const Session& session = *show_.session;
   (void)fresh.store.set(fresh.world.id(), property, {session.store.values(session.world.id(), property), 1});
 }
@@ -105,7 +105,7 @@ std::unique_ptr<Session> SceneRunner::install_session(std::unique_ptr<Session> f
 // The debug overlay belongs to the user, so it stays as it is across scenes.
 std::unique_ptr<Session> SceneRunner::swap_session(std::unique_ptr<Session> fresh) {
   std::unique_ptr<Session>& session = show_.session;
-  const Property& overlay = Appearance::table().at("overlay");
+  const Property& overlay = sim::Appearance::table().at("overlay");
   (void)fresh->store.set(fresh->world.visuals().appearance().id(), overlay,
                          {session->store.values(session->world.visuals().appearance().id(), overlay), 1});
   LiveOutput& output = show_.outputs.live();
@@ -236,7 +236,7 @@ SceneReloader::ApplyResult SceneRunner::apply_candidate(ReloadCandidate& candida
   if (result != SceneReloader::ApplyResult::applied) return result;
   show_.history.clear("the scene was run again there");
   show_.presets.set_script_preset(reloader_.script_preset());
-  static const Property& seed = World::table().at("seed");
+  static const Property& seed = sim::World::table().at("seed");
   if ((candidate.diff().world >> seed.index & 1u) != 0) show_.scene_seed = session.world.seed();
   if (!is_start) return result;
   show_.scene_seed = session.world.seed();
@@ -285,4 +285,4 @@ void SceneRunner::rerun_if_requested() {
   if (show_.input->must_rerun()) run_now(TakeSceneRun::Kind::rerun, true);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

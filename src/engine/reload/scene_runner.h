@@ -14,7 +14,7 @@
 #include "engine/sim_thread_executor.h"
 #include "engine/takes/recording.h"
 
-namespace limber {
+namespace limber::engine {
 
 class SceneRunner {
  public:
@@ -39,7 +39,7 @@ class SceneRunner {
   /// Loads the presets of a scene. May wait for the disk. [any]
   Presets::Bank read_presets(const std::string& scene);
   /// The source files of the scene. [any]
-  std::vector<SourceFile> files() const { return reloader_.files(); }
+  std::vector<script::SourceFile> files() const { return reloader_.files(); }
 
   /// A run of the scene in a take that is recorded or replayed.
   struct Run {
@@ -56,7 +56,7 @@ class SceneRunner {
   /// Replaces the session and returns the previous one.
   std::unique_ptr<Session> swap_session(std::unique_ptr<Session> fresh);
 
-  ScriptHost& host() { return host_; }
+  script::ScriptHost& host() { return host_; }
   SceneReloader& reloader() { return reloader_; }
   /// Work for other threads that waits for the end of a tick.
   SimThreadExecutor& requests() { return requests_; }
@@ -64,8 +64,8 @@ class SceneRunner {
  private:
   void copy_session_value(Session& fresh, std::string_view name) const;
   std::unique_ptr<Session> install_session(std::unique_ptr<Session> fresh);
-  void capture_run(const Session& session, const SceneOptions& options, const std::string& file,
-                   std::vector<SourceFile> failed_files = {});
+  void capture_run(const Session& session, const script::SceneOptions& options, const std::string& file,
+                   std::vector<script::SourceFile> failed_files = {});
   void reapply_overrides();
   Result<void> apply_initial_overrides();
   void begin_show();
@@ -78,4 +78,4 @@ class SceneRunner {
   SimThreadExecutor requests_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

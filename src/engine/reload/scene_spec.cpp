@@ -13,7 +13,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -39,7 +39,7 @@ SpecValues spec_values_of(const Store& store, NodeId id) {
   return result;
 }
 
-std::shared_ptr<const ShapeDescription> describe_shape(const Store& store, const Shape& shape) {
+std::shared_ptr<const ShapeDescription> describe_shape(const Store& store, const sim::Shape& shape) {
   return std::make_shared<const ShapeDescription>(
       ShapeDescription{shape.name(), spec_values_of(store, shape.id()), shape.model(), shape.children()});
 }
@@ -48,15 +48,15 @@ StartPose start_pose_of(const Store& store, NodeId id, const Pose& pose) {
   return {pose, is_explicit(store, id, "position"), is_explicit(store, id, "rotation")};
 }
 
-BodyDescription body_of(const Body& body, const Shapes& shapes) {
+BodyDescription body_of(const sim::Body& body, const Shapes& shapes) {
   const Store& store = body.store();
   BodyDescription out;
   out.name = body.name();
   out.values = spec_values_of(store, body.id());
   out.start = start_pose_of(store, body.id(), body.pose());
   out.model = body.model();
-  const std::vector<std::size_t> trees = tree_roots(body);
-  std::unordered_map<const Part*, std::size_t> part_index;
+  const std::vector<std::size_t> trees = sim::tree_roots(body);
+  std::unordered_map<const sim::Part*, std::size_t> part_index;
   for (const auto& part : body.parts()) {
     part_index[part.get()] = out.parts.size();
     const auto shape = shapes.find(part->shape().slot);
@@ -69,7 +69,7 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
     out.start.position_set |= out.parts.front().start.position_set;
     out.start.rotation_set |= out.parts.front().start.rotation_set;
   }
-  std::unordered_map<const Joint*, std::size_t> joint_index;
+  std::unordered_map<const sim::Joint*, std::size_t> joint_index;
   for (const auto& joint : body.joints()) {
     joint_index[joint.get()] = out.joints.size();
     const Pose from = joint->parent().pose() * joint->spec().frame_in_parent;
@@ -80,10 +80,10 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
   for (const auto& motor : body.motors()) {
     out.motors.push_back({joint_index[&motor->joint()], spec_values_of(store, motor->id())});
   }
-  for (const PartPair& pair : body.pairs().list()) {
-    if (pair.edit != PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
+  for (const sim::PartPair& pair : body.pairs().list()) {
+    if (pair.edit != sim::PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
   }
-  for (const Behavior* behavior : body.behaviors().list()) {
+  for (const sim::Behavior* behavior : body.behaviors().list()) {
     out.behaviors.push_back({behavior->name(), behavior->type().name, behavior->type().table, behavior->setup(),
                              behavior->group() != nullptr, spec_values_of(store, behavior->id())});
   }
@@ -92,7 +92,7 @@ BodyDescription body_of(const Body& body, const Shapes& shapes) {
 
 }  // namespace
 
-std::vector<NodeId> objects_of(const Body& body) {
+std::vector<NodeId> objects_of(const sim::Body& body) {
   std::vector<NodeId> ids{body.id()};
   const auto add = [&](const auto& list) {
     for (const auto& object : list) ids.push_back(object->id());
@@ -106,7 +106,7 @@ std::vector<NodeId> objects_of(const Body& body) {
 std::uint64_t described_mask(const PropertyTable& table) {
   std::uint64_t mask = 0;
   for (const Property& property : table.properties()) {
-    const bool pose = &table == &Part::table() && (property.name == "position" || property.name == "rotation");
+    const bool pose = &table == &sim::Part::table() && (property.name == "position" || property.name == "rotation");
     if (property.stored() && property.writable() && !pose) mask |= std::uint64_t{1} << property.index;
   }
   return mask;
@@ -118,18 +118,18 @@ std::uint64_t explicit_mask(const SpecValues& values) {
   return mask;
 }
 
-BodyDescription describe_body(const Body& body) {
-  const World& world = body.world();
+BodyDescription describe_body(const sim::Body& body) {
+  const sim::World& world = body.world();
   Shapes shapes;
   for (const auto& part : body.parts()) {
     if (!world.store().alive(part->shape()) || shapes.contains(part->shape().slot)) continue;
     shapes[part->shape().slot] =
-        describe_shape(world.store(), *static_cast<const Shape*>(world.store().object(part->shape())));
+        describe_shape(world.store(), *static_cast<const sim::Shape*>(world.store().object(part->shape())));
   }
   return body_of(body, shapes);
 }
 
-SceneSpec describe(const World& world) {
+SceneSpec describe(const sim::World& world) {
   SceneSpec out;
   out.world = spec_values_of(world.store(), world.id());
   out.visuals = spec_values_of(world.store(), world.visuals().id());
@@ -143,12 +143,12 @@ SceneSpec describe(const World& world) {
   out.bodies.reserve(world.bodies().size());
   for (const auto& body : world.bodies()) out.bodies.push_back(body_of(*body, shapes));
   for (const auto& gear : world.gears().list()) {
-    const Joint& a = gear->joint_a();
-    const Joint& b = gear->joint_b();
+    const sim::Joint& a = gear->joint_a();
+    const sim::Joint& b = gear->joint_b();
     out.gears.push_back({gear->name(), a.body().name(), a.name(), b.body().name(), b.name(),
                          spec_values_of(world.store(), gear->id())});
   }
-  for (const BehaviorGroup* group : world.behaviors().groups()) {
+  for (const sim::BehaviorGroup* group : world.behaviors().groups()) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           spec_values_of(world.store(), group->id())});
   }
@@ -156,4 +156,4 @@ SceneSpec describe(const World& world) {
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -12,7 +12,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// A property after the run: set by the script (or copied from another object), or a default of the object. Properties
 /// that were not set and have the table's default are omitted.
@@ -33,8 +33,8 @@ struct StartPose {
 struct ShapeDescription {
   std::string name;
   SpecValues values;
-  ShapeModel model;
-  std::vector<PlacedShape> children;
+  model::ShapeModel model;
+  std::vector<model::PlacedShape> children;
 };
 struct PartDescription {
   std::string name;
@@ -47,7 +47,7 @@ struct PartDescription {
 struct JointDescription {
   std::string name;
   SpecValues values;
-  JointSpec spec;
+  sim::JointSpec spec;
   std::size_t parent = 0;  ///< Index of the part.
   std::size_t child = 0;   ///< Index of the part.
   Pose start;              ///< The child's joint frame in the parent's, at the start.
@@ -60,14 +60,14 @@ struct MotorDescription {
 struct PairDescription {
   std::size_t a = 0;
   std::size_t b = 0;
-  PairEdit edit = PairEdit::none;
+  sim::PairEdit edit = sim::PairEdit::none;
 };
 /// A behavior of a body. For members of a group only `values` is used.
 struct BehaviorDescription {
   std::string name;
   std::string type;
   const PropertyTable* table = nullptr;
-  BehaviorSetup setup;
+  sim::BehaviorSetup setup;
   bool of_group = false;  ///< It is a member of a group.
   SpecValues values;
 };
@@ -75,7 +75,7 @@ struct GroupDescription {
   std::string name;
   std::string type;
   const PropertyTable* table = nullptr;
-  GroupSetup setup;
+  sim::GroupSetup setup;
   SpecValues values;
 };
 struct GearDescription {
@@ -88,7 +88,7 @@ struct BodyDescription {
   std::string name;
   SpecValues values;
   StartPose start;
-  std::shared_ptr<const BodyModel> model;
+  std::shared_ptr<const model::BodyModel> model;
   std::vector<PartDescription> parts;
   std::vector<JointDescription> joints;
   std::vector<MotorDescription> motors;
@@ -108,15 +108,15 @@ struct SceneSpec {
 };
 
 /// Captures the objects of a world in their order. Call it right after a run, before anything else changes the world.
-SceneSpec describe(const World& world);
-BodyDescription describe_body(const Body& body);
+SceneSpec describe(const sim::World& world);
+BodyDescription describe_body(const sim::Body& body);
 
 /// Returns the ids of a body and its parts, joints and motors, in this order.
-std::vector<NodeId> objects_of(const Body& body);
+std::vector<NodeId> objects_of(const sim::Body& body);
 
 /// Returns a bit mask of the properties that a description contains: stored and writable ones, except poses of parts.
 std::uint64_t described_mask(const PropertyTable& table);
 /// Returns a bit mask of the properties that were explicitly set.
 std::uint64_t explicit_mask(const SpecValues& values);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -6,7 +6,7 @@
 #include "engine/presets/text.h"
 #include "engine/takes/encoding.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -240,7 +240,7 @@ void InputLog::append_pass(std::string& text, const RecordedPass& pass) {
   }
   if (!pass.stopped_calls.empty()) {
     out.varint(pass.stopped_calls.size());
-    for (const StoppedCall& stop : pass.stopped_calls) {
+    for (const script::StoppedCall& stop : pass.stopped_calls) {
       out.varint(stop.number);
       out.string(stop.file);
       out.varint(static_cast<std::uint64_t>(stop.line));
@@ -268,7 +268,7 @@ bool read_pass(std::string_view bytes, InputCodec& codec, RecordedPass& pass) {
   if (!read_messages(in, codec, (parts & kMessages) != 0, pass.messages)) return false;
   pass.stopped_calls.clear();
   for (std::size_t left = (parts & kStopped) != 0 ? in.count() : 0; left > 0 && !in.failed(); left--) {
-    StoppedCall stop;
+    script::StoppedCall stop;
     stop.number = in.varint();
     stop.file = in.string();
     stop.line = static_cast<int>(in.varint() & 0x7fffffffu);
@@ -335,4 +335,4 @@ bool read_files(std::string_view bytes, TakeFileList& list) {
   return in.at_end();
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,7 +10,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -183,4 +183,4 @@ void append_frame(std::string& out, TakeFrame kind, std::string_view payload) {
   bytes.fixed_int(frame_checksum(kind, payload), 4);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

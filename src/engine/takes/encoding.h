@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "engine/takes/take.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Encodes values at the end of a string. Doesn't allocate while the capacity of the string suffices.
 class TakeEncoder {
@@ -122,4 +122,4 @@ struct TakeFileList {
 std::string text_of(const TakeFileList& list);
 bool read_files(std::string_view bytes, TakeFileList& list);
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "engine/reload/reload_candidate.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -16,8 +16,8 @@ constexpr std::size_t kMaxReplayHistoryBytes = std::size_t{1}
 
 // Script limits of a replay. The take lists the calls that were stopped, so another call exceeds these limits only if
 // the replay differs from the recording. They are lower in a running session, which must not hang for long.
-ScriptLimits replay_limits(bool in_show) {
-  ScriptLimits limits;
+script::ScriptLimits replay_limits(bool in_show) {
+  script::ScriptLimits limits;
   limits.call_ms *= in_show ? 10 : 100;
   limits.replay_ms *= in_show ? 1 : 10;
   limits.run_ms *= 10;
@@ -132,7 +132,7 @@ void TakePlayback::run_scene(const TakeSceneRun& run) {
 // Changes to another scene.
 void TakePlayback::load_scene(const TakeSceneRun& run, const SceneRunner::Run& scene_run) {
   auto session = show_.new_session();
-  SceneOptions run_options = show_.scene_options();
+  script::SceneOptions run_options = show_.scene_options();
   run_options.sources = scene_run.files.sources;
   if (!session->run_detached(run.scene, scenes_.host(), run_options)) return;
   auto loaded = input_->player().presets(run);
@@ -168,7 +168,7 @@ Result<void> TakePlayback::play(const std::string& file, std::optional<std::uint
 Result<void> TakePlayback::check(TakePlayer& player) {
   const std::vector<TakeSceneRun>& runs = player.tick().runs;
   if (runs.empty() || !runs.front().succeeded) return Error{"its scene failed when it was recorded, too"};
-  SceneOptions options = show_.options.scene_options;
+  script::SceneOptions options = show_.options.scene_options;
   options.package_paths = player.initial_state().package_paths;
   options.limits = replay_limits(true);
   options.sources = player.sources(runs.front());
@@ -210,7 +210,7 @@ void TakePlayback::end() {
   recovery_.set_suspended(false);
   reload_request_.reset();
   show_.presets.exchange(std::exchange(presets_after_, {}));
-  const ScriptLimits& limits = show_.options.scene_options.limits;
+  const script::ScriptLimits& limits = show_.options.scene_options.limits;
   if (show_.session->scene != nullptr) show_.session->scene->set_limits(limits);
   scenes_.reloader().set_limits(limits);
   show_.history.clear("a take was played before");
@@ -229,4 +229,4 @@ std::optional<TakeNode::Status> TakePlayback::status() const {
   return TakeNode::Status{name_, true, player.ticks(), player.total_ticks(), input_->in_show()};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -9,7 +9,7 @@
 #include "engine/reload/scene_runner.h"
 #include "engine/takes/take_input.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakePlayback {
  public:
@@ -55,4 +55,4 @@ class TakePlayback {
   std::optional<ReloadRequest> reload_request_;  // of the take
 };
 
-}  // namespace limber
+}  // namespace limber::engine

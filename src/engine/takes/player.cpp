@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::engine {
 
 Result<std::unique_ptr<TakePlayer>> TakePlayer::open(const std::string& path, bool current_scripts) {
   auto reader = TakeReader::open(path);
@@ -57,7 +57,7 @@ const TakeSceneRun* TakePlayer::next_external_run() const {
   return &tick_.runs[next_run_];
 }
 
-void TakePlayer::find_diverged_body(World& world) {
+void TakePlayer::find_diverged_body(sim::World& world) {
   search_ticks_--;
   const std::span<const std::uint64_t> hashes = world.motion_hash().body_hashes();
   const auto& all = world.bodies();
@@ -75,7 +75,8 @@ bool TakePlayer::end_matches(const std::function<std::uint64_t()>& state_hash) c
   return has_more() || !reader_->end() || state_hash() == reader_->end()->state_hash;
 }
 
-void TakePlayer::compare(World& world, const CallLog& calls, const std::function<std::uint64_t()>& state_hash) {
+void TakePlayer::compare(sim::World& world, const script::CallLog& calls,
+                         const std::function<std::uint64_t()>& state_hash) {
   if (!comparable()) return;
   const bool motion_matches = world.motion_hash().compute() == tick_.motion_hash && world.tick() == tick_.tick;
   const bool calls_match = current_scripts_ || (calls.missing_stops() == 0 && next_run_ == tick_.runs.size());
@@ -117,4 +118,4 @@ std::string text_of(const ReplayResult& v) {
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -14,7 +14,7 @@
 #include "engine/takes/reader.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Result of a replay.
 struct ReplayResult {
@@ -50,8 +50,8 @@ class TakePlayer {
   std::span<InputRecord> messages() { return tick_.messages; }
   /// The calls of the tick that must be stopped as in the recording; none with `current_scripts`, where calls may
   /// differ.
-  std::vector<StoppedCall> stopped_calls() const {
-    return current_scripts_ ? std::vector<StoppedCall>() : tick_.stopped_calls;
+  std::vector<script::StoppedCall> stopped_calls() const {
+    return current_scripts_ ? std::vector<script::StoppedCall>() : tick_.stopped_calls;
   }
   /// Number of ticks replayed so far; passes while paused are not counted.
   std::uint64_t ticks() const { return result_.ticks; }
@@ -66,11 +66,11 @@ class TakePlayer {
   }
   /// Returns the next run of this tick if it was requested from outside, else null.
   const TakeSceneRun* next_external_run() const;
-  std::shared_ptr<const Sources> sources(const TakeSceneRun& run) { return reader_->sources(run.files); }
+  std::shared_ptr<const script::Sources> sources(const TakeSceneRun& run) { return reader_->sources(run.files); }
   std::optional<TakeReader::PresetBank> presets(const TakeSceneRun& run) const { return reader_->presets(run.files); }
 
   /// Compares the state after the tick with the recorded hashes.
-  void compare(World& world, const CallLog& calls, const std::function<std::uint64_t()>& state_hash);
+  void compare(sim::World& world, const script::CallLog& calls, const std::function<std::uint64_t()>& state_hash);
   ReplayResult result() const;
 
  private:
@@ -81,7 +81,7 @@ class TakePlayer {
   bool has_more() const { return ahead_at_ < ahead_end_; }
   /// True if this version computes hashes in the same way.
   bool comparable() const { return reader_->header().version >= kFirstComparableTakeVersion; }
-  void find_diverged_body(World& world);
+  void find_diverged_body(sim::World& world);
   bool end_matches(const std::function<std::uint64_t()>& state_hash) const;
 
   std::unique_ptr<TakeReader> reader_;
@@ -100,4 +100,4 @@ class TakePlayer {
 /// Describes a result, such as "replayed 600 ticks: all hashes match the take".
 std::string text_of(const ReplayResult& result);
 
-}  // namespace limber
+}  // namespace limber::engine

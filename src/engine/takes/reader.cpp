@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "engine/presets/text.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -169,17 +169,17 @@ std::size_t TakeReader::content_size(std::uint32_t content) const {
   return content == 0 || content > contents_.size() ? 0 : contents_[content - 1]->size();
 }
 
-std::shared_ptr<const Sources> TakeReader::sources(std::uint32_t files) {
+std::shared_ptr<const script::Sources> TakeReader::sources(std::uint32_t files) {
   if (files == 0 || files > file_lists_.size()) return nullptr;
   sources_.resize(file_lists_.size());
-  std::shared_ptr<const Sources>& sources = sources_[files - 1];
+  std::shared_ptr<const script::Sources>& sources = sources_[files - 1];
   if (sources != nullptr) return sources;
   const TakeFileList& list = file_lists_[files - 1];
   // runs with the same files share the sources and the models that were built from them
   for (std::size_t i = 0; i < sources_.size(); i++) {
     if (sources_[i] != nullptr && file_lists_[i] == list) return sources = sources_[i];
   }
-  auto set = std::make_shared<FileSet>();
+  auto set = std::make_shared<model::FileSet>();
   set->mesh_paths = list.meshes;
   for (const auto& [path, content] : list.files) {
     if (content != 0) set->contents[path] = contents_[content - 1];
@@ -189,9 +189,9 @@ std::shared_ptr<const Sources> TakeReader::sources(std::uint32_t files) {
   for (const auto& file : list.files) {
     if (!file.first.ends_with(".lua")) models.files.push_back(file);
   }
-  std::shared_ptr<ModelLibrary>& library = libraries_[text_of(models)];
-  if (library == nullptr) library = std::make_shared<ModelLibrary>(set);
-  sources = std::make_shared<const Sources>(list.found, set, library);
+  std::shared_ptr<model::ModelLibrary>& library = libraries_[text_of(models)];
+  if (library == nullptr) library = std::make_shared<model::ModelLibrary>(set);
+  sources = std::make_shared<const script::Sources>(list.found, set, library);
   return sources;
 }
 
@@ -203,4 +203,4 @@ std::optional<TakeReader::PresetBank> TakeReader::presets(std::uint32_t files) c
   return bank;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

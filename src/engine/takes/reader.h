@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "engine/takes/encoding.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakeReader {
  public:
@@ -36,7 +36,7 @@ class TakeReader {
 
   /// Returns the files of a run, by TakeSceneRun::files. Available once the tick with that run was read; null if there
   /// are none.
-  std::shared_ptr<const Sources> sources(std::uint32_t files);
+  std::shared_ptr<const script::Sources> sources(std::uint32_t files);
   /// Presets that a run has read, with the path of their file.
   struct PresetBank {
     PresetList list;
@@ -74,11 +74,11 @@ class TakeReader {
   InputCodec codec_;
   std::vector<std::shared_ptr<const std::string>> contents_;
   std::vector<TakeFileList> file_lists_;
-  std::vector<std::shared_ptr<const Sources>> sources_;
-  std::map<std::string, std::shared_ptr<ModelLibrary>> libraries_;  // by the list of their models and meshes
-  bool at_end_ = false;                                             // next() has reached the end, or a corrupt frame
+  std::vector<std::shared_ptr<const script::Sources>> sources_;
+  std::map<std::string, std::shared_ptr<model::ModelLibrary>> libraries_;  // by the list of their models and meshes
+  bool at_end_ = false;  // next() has reached the end, or a corrupt frame
   std::optional<TakeEnd> end_;
   std::string damage_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,7 +10,7 @@
 
 #include "base/build_info.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -44,7 +44,7 @@ void TakeRecorder::run_succeeded(std::size_t run, TakeFiles files) {
   writer_->write(std::move(files));
 }
 
-void TakeRecorder::end_tick(bool running, World& world, const CallLog& calls,
+void TakeRecorder::end_tick(bool running, sim::World& world, const script::CallLog& calls,
                             const std::function<std::uint64_t()>& state_hash, bool with_state_hash) {
   if (!running && !with_state_hash && tick_.runs.empty() && inputs_.empty() && calls.stopped().empty()) return;
   tick_.running = running;
@@ -85,4 +85,4 @@ std::unique_ptr<TakeWriter> TakeRecorder::abandon() {
   return std::move(writer_);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

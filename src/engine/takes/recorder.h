@@ -12,7 +12,7 @@
 #include "engine/takes/writer.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakeRecorder {
  public:
@@ -41,8 +41,8 @@ class TakeRecorder {
   }
   /// Writes the pass; a pass without inputs while paused is skipped. `with_state_hash`: include the state hash in any
   /// case. Doesn't allocate once its buffers have grown.
-  void end_tick(bool running, World& world, const CallLog& calls, const std::function<std::uint64_t()>& state_hash,
-                bool with_state_hash = false);
+  void end_tick(bool running, sim::World& world, const script::CallLog& calls,
+                const std::function<std::uint64_t()>& state_hash, bool with_state_hash = false);
 
   /// Ends the take, or discards it and its file. Returns the writer, which may need a while to finish in the
   /// background.
@@ -60,4 +60,4 @@ class TakeRecorder {
   std::string payload_, frame_;  // scratch
 };
 
-}  // namespace limber
+}  // namespace limber::engine

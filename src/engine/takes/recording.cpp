@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "script/scene/script_files.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -89,7 +89,7 @@ void apply_initial_state(ShowState& show, const TakeInitialState& state) {
     show.overrides.add_recall(blend);
   }
   const auto set = [&](const char* property, double value) {
-    (void)show.session->store.set(show.session->world.id(), World::table().at(property), {&value, 1});
+    (void)show.session->store.set(show.session->world.id(), sim::World::table().at(property), {&value, 1});
   };
   set("seed", static_cast<double>(state.world_seed));
   set("paused", state.paused ? 1 : 0);
@@ -125,7 +125,7 @@ Outcome TakeRecording::request(const Message& message) {
   if (!name) return Outcome::rejected(name.error());
   const std::string& show_folder = show_.session->scene->show_folder();
   const std::string folder = (std::filesystem::path(show_folder) / "takes").string();
-  if (!is_inside(folder, show_folder))
+  if (!script::is_inside(folder, show_folder))
     return Outcome::rejected("takes/ is a link that leads out of the show's folder; put a folder in its place");
   requested_file_ = folder + "/" + *name + ".take";
   outcome.answers.push_back({"/take/recording", {Arg::of(*name)}});
@@ -191,4 +191,4 @@ std::optional<TakeNode::Status> TakeRecording::status() const {
   return TakeNode::Status{name_, false, recorder_->ticks(), 0, false};
 }
 
-}  // namespace limber
+}  // namespace limber::engine

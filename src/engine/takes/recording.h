@@ -12,7 +12,7 @@
 #include "engine/takes/recorder.h"
 #include "engine/takes/take_node.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Returns the options, seeds, presets and overrides with which a take begins. `reset`: it begins with a reset of the
 /// running session.
@@ -70,4 +70,4 @@ class TakeRecording {
   bool end_requested_ = false;                      // the recording ends at the end of this pass
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -17,7 +17,7 @@
 #include "script/scene/sources.h"
 #include "script/vm/call_log.h"
 
-namespace limber {
+namespace limber::engine {
 
 /// Version of the format. 3: the hashes skip values that are at their defaults; takes of version 1 and 2 can be
 /// replayed, but not compared. 4: a reload keeps timers (SceneOptions::keep_timers).
@@ -73,7 +73,7 @@ struct TakeInitialState {
 
 /// The files that a run of the scene has read.
 struct TakeFiles {
-  std::shared_ptr<const Sources> sources;
+  std::shared_ptr<const script::Sources> sources;
   std::optional<PresetList> presets;  ///< Presets from the file next to the scene, if they were read as well.
   std::string preset_file;
 };
@@ -128,7 +128,7 @@ struct RecordedPass {
   bool running = false;  ///< Simulated time advanced.
   std::vector<TakeSceneRun> runs;
   std::vector<InputRecord> messages;
-  std::vector<StoppedCall> stopped_calls;
+  std::vector<script::StoppedCall> stopped_calls;
   std::uint64_t tick = 0;                   ///< Tick of the world after the pass.
   std::uint64_t motion_hash = 0;            ///< MotionHash::now().
   std::optional<std::uint64_t> state_hash;  ///< Engine::state_hash(); not in every tick, to bound the cost.
@@ -151,4 +151,4 @@ struct TakeHeader {
   int rules = kTakeRules;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

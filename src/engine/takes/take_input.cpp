@@ -1,7 +1,7 @@
 // TakeInput: the decisions that the take contains, and the comparison with it.
 #include "engine/takes/take_input.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -56,4 +56,4 @@ void TakeInput::end_pass() {
 
 Result<void> TakeInput::accepts_changes() const { return Error{kPlayingError}; }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -7,7 +7,7 @@
 #include "engine/input/live_input.h"
 #include "engine/takes/player.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakeInput final : public RecordedInput {
  public:
@@ -50,4 +50,4 @@ class TakeInput final : public RecordedInput {
   bool stop_requested_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -1,7 +1,7 @@
 // The properties of /take.
 #include "engine/takes/take_node.h"
 
-namespace limber {
+namespace limber::engine {
 
 const PropertyTable& TakeNode::table() {
   using namespace properties;
@@ -18,7 +18,8 @@ const PropertyTable& TakeNode::table() {
   return table;
 }
 
-TakeNode::TakeNode(World& world) : world_(world), id_(world.store().add(table(), world.store().root(), "take", this)) {}
+TakeNode::TakeNode(sim::World& world)
+    : world_(world), id_(world.store().add(table(), world.store().root(), "take", this)) {}
 
 void TakeNode::publish(const Status& status) {
   if (name_ != status.name) name_ = status.name;
@@ -30,4 +31,4 @@ void TakeNode::publish(const Status& status) {
   out[3] = status.in_session ? 1 : 0;
 }
 
-}  // namespace limber
+}  // namespace limber::engine

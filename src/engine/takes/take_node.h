@@ -7,13 +7,13 @@
 
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakeNode {
  public:
   static const PropertyTable& table();
 
-  explicit TakeNode(World& world);
+  explicit TakeNode(sim::World& world);
 
   /// The take that is being recorded or replayed.
   struct Status {
@@ -29,9 +29,9 @@ class TakeNode {
  private:
   std::string_view read_name() const { return name_; }
 
-  World& world_;
+  sim::World& world_;
   NodeId id_;
   std::string name_;
 };
 
-}  // namespace limber
+}  // namespace limber::engine

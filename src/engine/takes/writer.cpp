@@ -19,7 +19,7 @@
 #include "engine/presets/text.h"
 #include "engine/takes/encoding.h"
 
-namespace limber {
+namespace limber::engine {
 
 namespace {
 
@@ -179,7 +179,7 @@ void TakeWriter::append(const Job& job) {
   }
   TakeFileList list;
   if (job.files->sources != nullptr) {
-    SourcesRead read = job.files->sources->read();
+    script::SourcesRead read = job.files->sources->read();
     list.found = std::move(read.found);
     list.meshes = std::move(read.meshes);
     for (const auto& [path, text] : read.texts) list.files.emplace_back(path, content_number(text));
@@ -258,4 +258,4 @@ void TakeWriter::end_block() {
   done_.store(true);
 }
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -17,7 +17,7 @@
 #include "engine/background_writer.h"
 #include "engine/takes/take.h"
 
-namespace limber {
+namespace limber::engine {
 
 class TakeWriter : private BackgroundWriter::Task {
  public:
@@ -101,4 +101,4 @@ class TakeWriter : private BackgroundWriter::Task {
   bool first_write_ = true;  // nothing was queued yet
 };
 
-}  // namespace limber
+}  // namespace limber::engine

@@ -10,7 +10,7 @@
 #include "model/problems.h"
 #include "model/xml_text.h"
 
-namespace limber::collada {
+namespace limber::model::collada {
 
 const Element* next_element(const Element* element, const Element* top) {
   const bool skip_children = is_named(element, "extra") || is_named(element, "technique");
@@ -153,9 +153,9 @@ Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& un
 
 }  // namespace
 
-}  // namespace limber::collada
+}  // namespace limber::model::collada
 
-namespace limber {
+namespace limber::model {
 
 Result<MeshSoup> soup_from_collada(std::string_view bytes) {
   if (bytes.size() > kMaxUrdfBytes) {
@@ -183,4 +183,4 @@ Result<MeshSoup> soup_from_collada(std::string_view bytes) {
   return collada::collect_triangles(*scene, *unit, geometries);
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -18,7 +18,7 @@
 #include "base/vec.h"
 #include "model/mesh/triangles.h"
 
-namespace limber::collada {
+namespace limber::model::collada {
 
 using Element = tinyxml2::XMLElement;
 
@@ -129,4 +129,4 @@ class GeometryReader {
   PolygonTriangulator triangulator_;
 };
 
-}  // namespace limber::collada
+}  // namespace limber::model::collada

@@ -7,7 +7,7 @@
 #include "model/mesh/load.h"
 #include "model/xml_text.h"
 
-namespace limber::collada {
+namespace limber::model::collada {
 
 namespace {
 
@@ -254,4 +254,4 @@ Result<const MeshSoup*> GeometryReader::read(const Element* geometry) {
   return &soup;
 }
 
-}  // namespace limber::collada
+}  // namespace limber::model::collada

@@ -9,7 +9,7 @@
 
 #include "model/mesh/collada.h"
 
-namespace limber::collada {
+namespace limber::model::collada {
 
 namespace {
 
@@ -189,4 +189,4 @@ class SceneReader {
 
 Result<Scene> read_scene(const Element* root, const IdIndex& ids) { return SceneReader(root, ids).read(); }
 
-}  // namespace limber::collada
+}  // namespace limber::model::collada

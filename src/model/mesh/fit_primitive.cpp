@@ -8,7 +8,7 @@
 
 #include "model/mesh/mass_properties.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<PlacedShape> recognize_primitive(const Hull& whole) {
   return box ? box : fit_capsule(whole, solid);
 }
 
-}  // namespace limber
+}  // namespace limber::model

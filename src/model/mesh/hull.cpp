@@ -8,7 +8,7 @@
 
 #include "model/mesh/hull_surface.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -214,4 +214,4 @@ Hull reduced_hull(std::span<const Vec3> points, const HullLimits& limits) {
   return reduced_hull(convex_hull(points), limits);
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -6,7 +6,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::model {
 
 struct Hull {
   std::vector<Vec3> vertices;
@@ -35,4 +35,4 @@ Hull reduced_hull(const Hull& whole, const HullLimits& limits = {});
 /// Distance of a point from a triangle. [any]
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -186,4 +186,4 @@ Hull HullSurface::result() const {
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "model/mesh/hull.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Triangles with adjacency. Adding a point marks the faces visible from it as dead; they stay in the list, so that
 /// face indices remain valid.
@@ -69,4 +69,4 @@ class HullSurface {
   std::vector<Edge> horizon_;
 };
 
-}  // namespace limber
+}  // namespace limber::model

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "model/mesh/load.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -140,4 +140,4 @@ Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& pa
   return entry.mesh;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -13,7 +13,7 @@
 #include "model/file_set.h"
 #include "model/file_stamp.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Resolves `uri` (package://, model://, file://, relative or absolute path) to a file. Searches for the path as
 /// written (relative to the URDF's folder), then below each of `package_paths`, then in the folder and its parents,
@@ -48,4 +48,4 @@ class MeshLibrary {
   std::map<std::string, Entry> meshes_;
 };
 
-}  // namespace limber
+}  // namespace limber::model

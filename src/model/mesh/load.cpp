@@ -20,7 +20,7 @@
 #include "model/mesh/triangles.h"
 #include "model/xml_text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -139,4 +139,4 @@ Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, cons
   return mesh;
 }
 
-}  // namespace limber
+}  // namespace limber::model

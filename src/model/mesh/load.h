@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::model {
 
 inline constexpr std::size_t kMaxMeshBytes = 128u << 20;
 inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
@@ -26,4 +26,4 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
 /// Loads a mesh from a file; the error starts with the file's path. [any]
 Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, const Vec3& scale);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -183,4 +183,4 @@ Mat3 regularized_tensor(const Mat3& tensor, bool& raised) {
   return p.axes * diagonal(m.x, m.y, m.z) * glm::transpose(p.axes);
 }
 
-}  // namespace limber
+}  // namespace limber::model

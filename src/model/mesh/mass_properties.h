@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Eigenvalues and eigenvectors of an inertia tensor: tensor = axes * diag(moments) * transpose(axes).
 struct PrincipalAxes {
@@ -45,4 +45,4 @@ std::string tensor_error(const Mat3& tensor);
 /// smaller moments are unstable in single precision. Sets `raised` to true if that changed the tensor. [any]
 Mat3 regularized_tensor(const Mat3& tensor, bool& raised);
 
-}  // namespace limber
+}  // namespace limber::model

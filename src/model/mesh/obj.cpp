@@ -8,7 +8,7 @@
 #include "model/mesh/load.h"
 #include "model/mesh/triangles.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -143,4 +143,4 @@ Result<MeshSoup> soup_from_obj(std::string_view bytes) {
   return soup;
 }
 
-}  // namespace limber
+}  // namespace limber::model

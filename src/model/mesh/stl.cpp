@@ -10,7 +10,7 @@
 #include "model/mesh/load.h"
 #include "model/mesh/triangles.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -137,4 +137,4 @@ Result<MeshSoup> soup_from_stl(std::string_view bytes) {
       "can't be read: neither ASCII STL nor binary STL of the length in its header. Export it again as binary STL."};
 }
 
-}  // namespace limber
+}  // namespace limber::model

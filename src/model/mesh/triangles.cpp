@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "model/mesh/load.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -121,4 +121,4 @@ void PolygonTriangulator::clip_ears(std::span<const Vec3> corners, const Vec3& n
   add_triangle_fan(remaining, out);
 }
 
-}  // namespace limber
+}  // namespace limber::model

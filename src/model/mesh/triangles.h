@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Triangles without shared vertices: three corners each, counter-clockwise seen from outside.
 using MeshSoup = std::vector<Vec3>;
@@ -72,4 +72,4 @@ class PolygonTriangulator {
   std::uint64_t steps_left_ = 100'000'000;
 };
 
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -120,4 +120,4 @@ void build_structure(UrdfBuildContext& build) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::model

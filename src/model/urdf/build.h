@@ -12,7 +12,7 @@
 #include "model/urdf/import.h"
 #include "model/urdf/tree.h"
 
-namespace limber {
+namespace limber::model {
 
 /// Inputs and intermediate results shared by the steps.
 struct UrdfBuildContext {
@@ -40,4 +40,4 @@ Result<void> build_poses(UrdfBuildContext& build);
 /// hollows of their mesh (collisions.cpp). [any]
 void build_collisions(UrdfBuildContext& build);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "model/urdf/reader.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -358,4 +358,4 @@ Result<UrdfFile> check_urdf(const std::string& text, const std::string& fallback
   return file;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 #include "model/problems.h"
 #include "model/urdf/file.h"
 
-namespace limber {
+namespace limber::model {
 
 inline constexpr int kMaxUrdfLinks = 10000;
 
@@ -15,4 +15,4 @@ inline constexpr int kMaxUrdfLinks = 10000;
 /// text contains no usable robot; the error starts with a line number and a colon. [any]
 Result<UrdfFile> check_urdf(const std::string& text, const std::string& fallback_name, Problems& problems);
 
-}  // namespace limber
+}  // namespace limber::model

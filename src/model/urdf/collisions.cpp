@@ -16,7 +16,7 @@
 #include "model/overlap.h"
 #include "model/urdf/build.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -130,4 +130,4 @@ void build_collisions(UrdfBuildContext& build) {
   check_hollow_meshes(build);
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::model {
 
 struct UrdfOrigin {
   Vec3 xyz{0, 0, 0};
@@ -77,4 +77,4 @@ struct UrdfFile {
   std::vector<UrdfJoint> joints;
 };
 
-}  // namespace limber
+}  // namespace limber::model

@@ -17,7 +17,7 @@
 #include "model/urdf/tree.h"
 #include "model/xml_text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -160,4 +160,4 @@ Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, co
   return import_urdf(path, options, meshes);
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -12,7 +12,7 @@
 #include "model/body_model.h"
 #include "model/mesh/library.h"
 
-namespace limber {
+namespace limber::model {
 
 struct ImportOptions {
   std::optional<bool> fixed_base;          ///< Unset: a root without mass is fixed to the world.
@@ -36,4 +36,4 @@ Result<std::shared_ptr<const BodyModel>> import_urdf(const std::string& path, co
 Result<std::shared_ptr<const BodyModel>> import_urdf_text(std::string_view text, const std::string& path,
                                                           const ImportOptions& options, MeshLibrary& meshes);
 
-}  // namespace limber
+}  // namespace limber::model

@@ -8,7 +8,7 @@
 #include "model/mesh/mass_properties.h"
 #include "model/urdf/build.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -180,4 +180,4 @@ class MassBuilder {
 
 void build_masses(UrdfBuildContext& build) { MassBuilder(build).run(); }
 
-}  // namespace limber
+}  // namespace limber::model

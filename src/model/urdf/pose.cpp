@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "model/urdf/build.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -268,4 +268,4 @@ Result<void> build_poses(UrdfBuildContext& build) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "model/urdf/reader.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -208,4 +208,4 @@ std::optional<UrdfMimic> UrdfReader::mimic(const Element& element, const std::st
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "model/urdf/reader.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -190,4 +190,4 @@ bool UrdfReader::mesh_geometry(const Element& element, const std::string& owner,
   return false;
 }
 
-}  // namespace limber
+}  // namespace limber::model

@@ -11,7 +11,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -277,4 +277,4 @@ void UrdfReader::report_deferred() {
       "Write digits on both sides of the point, no '+', and single blanks between numbers only: 0.5, 5.0, 1.");
 }
 
-}  // namespace limber
+}  // namespace limber::model

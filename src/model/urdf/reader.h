@@ -16,7 +16,7 @@
 #include "model/problems.h"
 #include "model/urdf/file.h"
 
-namespace limber {
+namespace limber::model {
 
 /// The valid range of a number.
 struct NumberRange {
@@ -102,4 +102,4 @@ class UrdfReader {
   std::string concave_owner_;
 };
 
-}  // namespace limber
+}  // namespace limber::model

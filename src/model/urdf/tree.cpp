@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::model {
 
 namespace {
 
@@ -137,4 +137,4 @@ Result<std::vector<UrdfNode>> find_tree(const UrdfFile& file, Problems& problems
   return TreeFinder(file, problems).run();
 }
 
-}  // namespace limber
+}  // namespace limber::model

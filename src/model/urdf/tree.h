@@ -7,7 +7,7 @@
 #include "model/problems.h"
 #include "model/urdf/file.h"
 
-namespace limber {
+namespace limber::model {
 
 /// One link of the tree, in depth-first order from the root (siblings in file order), with its parent.
 struct UrdfNode {
@@ -20,4 +20,4 @@ struct UrdfNode {
 /// every link has a parent) starts with a line number and a colon. Linear in links and joints for any input. [any]
 Result<std::vector<UrdfNode>> find_tree(const UrdfFile& file, Problems& problems);
 
-}  // namespace limber
+}  // namespace limber::model

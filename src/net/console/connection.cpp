@@ -5,7 +5,7 @@
 
 #include "base/system/net/socket.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace {
 
@@ -142,4 +142,4 @@ void ConsoleConnection::send() {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::console

@@ -11,7 +11,7 @@
 #include "net/console/protocol.h"
 #include "net/console/subscription.h"
 
-namespace limber {
+namespace limber::console {
 
 /// [server thread]
 class ConsoleConnection {
@@ -63,4 +63,4 @@ class ConsoleConnection {
   bool broken_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::console

@@ -8,7 +8,7 @@
 #include "base/system/net/socket.h"
 #include "base/system/wait.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace {
 
@@ -116,4 +116,4 @@ Result<ConnectedProgram> connect_to_program(int pid) {
   return Error{fmt::format("no running Limber program has the process id {}; there are:{}", pid, list_text(programs))};
 }
 
-}  // namespace limber
+}  // namespace limber::console

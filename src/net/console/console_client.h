@@ -10,7 +10,7 @@
 #include "net/console/protocol.h"
 #include "net/console/runtime_folder.h"
 
-namespace limber {
+namespace limber::console {
 
 class ConsoleClient {
  public:
@@ -53,4 +53,4 @@ struct ConnectedProgram {
 /// [main]
 Result<ConnectedProgram> connect_to_program(int pid);
 
-}  // namespace limber
+}  // namespace limber::console

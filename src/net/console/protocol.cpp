@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace {
 
@@ -173,4 +173,4 @@ Result<ConsoleLine> parse_line(std::string_view text) {
   return line;
 }
 
-}  // namespace limber
+}  // namespace limber::console

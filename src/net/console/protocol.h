@@ -11,7 +11,7 @@
 #include "base/log/log.h"
 #include "base/result.h"
 
-namespace limber {
+namespace limber::console {
 
 /// Longest line that either side accepts, bytes: the longest text with every byte escaped, plus the JSON around it.
 inline constexpr std::size_t kMaxLine = 8 * kMaxEvaluatedBytes;
@@ -73,4 +73,4 @@ std::string rejected_line(std::string_view reason);
 Result<ConsoleRequest> parse_request(std::string_view line);
 Result<ConsoleLine> parse_line(std::string_view line);
 
-}  // namespace limber
+}  // namespace limber::console

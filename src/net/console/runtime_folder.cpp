@@ -15,7 +15,7 @@
 #include "base/system/net/local_socket.h"
 #include "base/system/process.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace fs = std::filesystem;
 
@@ -107,4 +107,4 @@ Result<system::Descriptor> connect_console(const std::string& path) {
   return socket;
 }
 
-}  // namespace limber
+}  // namespace limber::console

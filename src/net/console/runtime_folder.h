@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "base/system/descriptor.h"
 
-namespace limber {
+namespace limber::console {
 
 /// Returns the existing folders that only this user can access (0700), in order of preference: $XDG_RUNTIME_DIR (if
 /// unset, /run/user/<uid>), then limber-<uid> in the folder for temporary files ($TMPDIR, else /tmp). [any]
@@ -33,4 +33,4 @@ std::vector<ConsoleSocket> console_sockets(const std::string& folder);
 /// Returns a non-blocking connection to a program of this user. [any]
 Result<system::Descriptor> connect_console(const std::string& path);
 
-}  // namespace limber
+}  // namespace limber::console

@@ -16,7 +16,7 @@
 #include "base/system/wait.h"
 #include "net/console/runtime_folder.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace {
 
@@ -24,7 +24,8 @@ constexpr auto kLogPollInterval = std::chrono::milliseconds(50);  // log polling
 
 }  // namespace
 
-ConsoleServer::ConsoleServer(EngineLink& link, ConsoleOptions options) : link_(link), options_(std::move(options)) {}
+ConsoleServer::ConsoleServer(engine::EngineLink& link, ConsoleOptions options)
+    : link_(link), options_(std::move(options)) {}
 
 ConsoleServer::~ConsoleServer() { stop(); }
 
@@ -118,15 +119,15 @@ void ConsoleServer::deliver_results() {
 }
 
 std::string ConsoleServer::submit(std::uint64_t connection, const ConsoleRequest& request) {
-  auto job = std::make_shared<EvaluationRequest>();
+  auto job = std::make_shared<engine::EvaluationRequest>();
   const bool completes = request.kind == ConsoleRequest::Kind::complete;
-  job->action = completes ? EvaluationRequest::Action::complete : EvaluationRequest::Action::run;
+  job->action = completes ? engine::EvaluationRequest::Action::complete : engine::EvaluationRequest::Action::run;
   job->text = request.text;
   job->on_result = [queue = result_queue_, connection, id = request.id](Evaluation evaluation) {
     queue->results.push({connection, id, std::move(evaluation)});
     queue->wake.notify();
   };
-  Command command;
+  engine::Command command;
   command.origin.source = CommandSource::console;
   command.evaluation = std::move(job);
   if (!link_.command_queue.push(std::move(command))) return "the command queue is full; try again";
@@ -134,4 +135,4 @@ std::string ConsoleServer::submit(std::uint64_t connection, const ConsoleRequest
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::console

@@ -14,7 +14,7 @@
 #include "engine/output/engine_link.h"
 #include "net/console/connection.h"
 
-namespace limber {
+namespace limber::console {
 
 struct ConsoleOptions {
   std::string folder;      ///< Folder of the socket; empty: make_runtime_folder().
@@ -27,7 +27,7 @@ class ConsoleServer {
   static constexpr std::size_t kMaxConnections = 8;
 
   /// `link` outlives it.
-  ConsoleServer(EngineLink& link, ConsoleOptions options);
+  ConsoleServer(engine::EngineLink& link, ConsoleOptions options);
   ~ConsoleServer();
   ConsoleServer(const ConsoleServer&) = delete;
   ConsoleServer& operator=(const ConsoleServer&) = delete;
@@ -57,7 +57,7 @@ class ConsoleServer {
   void deliver_results();
   std::string submit(std::uint64_t connection, const ConsoleRequest& request);
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   const ConsoleOptions options_;
   std::string path_;
   system::Descriptor listener_;
@@ -70,4 +70,4 @@ class ConsoleServer {
   std::thread thread_;
 };
 
-}  // namespace limber
+}  // namespace limber::console

@@ -13,7 +13,7 @@
 #include "base/text.h"
 #include "properties/property_text.h"
 
-namespace limber {
+namespace limber::console {
 
 namespace {
 
@@ -27,24 +27,24 @@ std::string change_text(const std::string& path, const std::string& from, const 
 
 class MessageSubscription : public Subscription {
  public:
-  MessageSubscription(EngineLink& link, std::string pattern)
+  MessageSubscription(engine::EngineLink& link, std::string pattern)
       : messages_(link.message_log),
         watch_(link.message_log),
         pattern_(std::move(pattern)),
         seen_(messages_.newest()) {}
 
   void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>& drop) override {
-    for (const LoggedMessage& line : messages_.since(seen_)) {
+    for (const engine::LoggedMessage& line : messages_.since(seen_)) {
       if (const std::uint64_t overwritten = line.number - seen_ - 1; overwritten > 0) drop(overwritten);
       seen_ = line.number;
       if (!pattern_.empty() && !address_matches(pattern_, line.message.address)) continue;
-      send(traffic_line(line.incoming, line.time, line.peer, message_text(line.message)));
+      send(traffic_line(line.incoming, line.time, line.peer, engine::message_text(line.message)));
     }
   }
 
  private:
-  MessageLog& messages_;
-  MessageLog::Watch watch_;
+  engine::MessageLog& messages_;
+  engine::MessageLog::Watch watch_;
   const std::string pattern_;
   std::uint64_t seen_;
 };
@@ -52,27 +52,27 @@ class MessageSubscription : public Subscription {
 // values set by controllers, starting with the recent ones
 class ControllerSubscription : public Subscription {
  public:
-  explicit ControllerSubscription(ChangeLog& changes) : changes_(changes) {}
+  explicit ControllerSubscription(engine::ChangeLog& changes) : changes_(changes) {}
 
   void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>&) override {
-    for (const ChangeEntry& line : changes_.after(seen_)) {
+    for (const engine::ChangeEntry& line : changes_.after(seen_)) {
       seen_ = line.version;
       send(change_line(line.time, line.source, change_text(line.path, line.from, line.to)));
     }
   }
 
  private:
-  ChangeLog& changes_;
+  engine::ChangeLog& changes_;
   std::uint64_t seen_ = 0;
 };
 
 // all values that match a pattern, regardless of the source of the change
 class PatternSubscription : public Subscription {
  public:
-  PatternSubscription(EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
+  PatternSubscription(engine::EngineLink& link, std::string pattern) : link_(link), pattern_(std::move(pattern)) {}
 
   void poll(const std::function<void(std::string)>& send, const std::function<void(std::uint64_t)>&) override {
-    const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+    const std::shared_ptr<const engine::ValueSnapshot> snapshot = link_.value_snapshots.read();
     const bool is_new = requested_ != 0 && snapshot != nullptr && snapshot->request >= requested_;
     if (is_new) compare(snapshot, send);
     if (is_new || requested_ == 0) requested_ = link_.request_value_snapshot();
@@ -86,7 +86,8 @@ class PatternSubscription : public Subscription {
   };
   static constexpr std::size_t kNew = ~std::size_t{0};
 
-  void compare(const std::shared_ptr<const ValueSnapshot>& snapshot, const std::function<void(std::string)>& send) {
+  void compare(const std::shared_ptr<const engine::ValueSnapshot>& snapshot,
+               const std::function<void(std::string)>& send) {
     const bool tree_changed = snapshot_ == nullptr || snapshot_->tree != snapshot->tree;
     if (tree_changed) bind(*snapshot->tree);
     const double now = system::clock_seconds();
@@ -95,8 +96,8 @@ class PatternSubscription : public Subscription {
     for (std::size_t i = 0; snapshot_ != nullptr && i < values_.size(); i++) {
       const std::size_t before = tree_changed ? values_[i].old_index : i;
       if (before == kNew) continue;
-      const PropertyValue old_value = snapshot_->value((tree_changed ? old_values_ : values_)[before].location);
-      const PropertyValue new_value = snapshot->value(values_[i].location);
+      const engine::PropertyValue old_value = snapshot_->value((tree_changed ? old_values_ : values_)[before].location);
+      const engine::PropertyValue new_value = snapshot->value(values_[i].location);
       const Property& property = *values_[i].ref.property;
       const bool same = old_value.text == new_value.text &&
                         std::equal(new_value.numbers, new_value.numbers + property.width, old_value.numbers);
@@ -131,29 +132,29 @@ class PatternSubscription : public Subscription {
     }
   }
 
-  static std::string text_of(const Property& property, const PropertyValue& value) {
+  static std::string text_of(const Property& property, const engine::PropertyValue& value) {
     return property.type == PropertyType::text ? printable(value.text) : value_text(property, value.numbers);
   }
 
   // the controller that last set each path since `time`
   std::unordered_map<std::string, std::string> sources_since(double time) const {
     std::unordered_map<std::string, std::string> sources;
-    for (ChangeEntry& line : link_.changes.since(time)) sources[line.path] = std::move(line.source);
+    for (engine::ChangeEntry& line : link_.changes.since(time)) sources[line.path] = std::move(line.source);
     return sources;
   }
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   const std::string pattern_;
   std::uint64_t requested_ = 0;
   double compared_at_ = system::clock_seconds();
-  std::shared_ptr<const ValueSnapshot> snapshot_;
+  std::shared_ptr<const engine::ValueSnapshot> snapshot_;
   std::vector<Value> values_;
   std::vector<Value> old_values_;  // values of the previous tree, while it is compared with the new one
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const ConsoleRequest& request) {
+Result<std::unique_ptr<Subscription>> make_subscription(engine::EngineLink& link, const ConsoleRequest& request) {
   if (!request.text.empty() && request.text.front() != '/')
     return Error{fmt::format("'{}' is not an address; it must begin with /", printable(shortened(request.text, 100)))};
   std::unique_ptr<Subscription> subscription;
@@ -167,4 +168,4 @@ Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const 
   return subscription;
 }
 
-}  // namespace limber
+}  // namespace limber::console

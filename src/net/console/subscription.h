@@ -9,7 +9,7 @@
 #include "engine/output/engine_link.h"
 #include "net/console/protocol.h"
 
-namespace limber {
+namespace limber::console {
 
 /// [server thread]
 class Subscription {
@@ -21,6 +21,6 @@ class Subscription {
 };
 
 /// Creates the subscription for a request; the error describes the mistake in its pattern. `link` outlives it.
-Result<std::unique_ptr<Subscription>> make_subscription(EngineLink& link, const ConsoleRequest& request);
+Result<std::unique_ptr<Subscription>> make_subscription(engine::EngineLink& link, const ConsoleRequest& request);
 
-}  // namespace limber
+}  // namespace limber::console

@@ -11,7 +11,7 @@
 #include "base/sip_hash.h"
 #include "base/system/net/interfaces.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -108,4 +108,4 @@ std::string AmplificationLimit::token_of(std::uint32_t ip, std::int64_t epoch) c
   return fmt::format("{:016x}", sip_hash(secret_, ip, static_cast<std::uint64_t>(epoch) + 1));
 }
 
-}  // namespace limber
+}  // namespace limber::osc

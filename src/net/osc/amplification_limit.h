@@ -17,7 +17,7 @@
 #include "net/osc/options.h"
 #include "net/osc/warning_throttle.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Limits answers per source address. [net]
 class AmplificationLimit {
@@ -83,4 +83,4 @@ class AmplificationLimit {
 /// The subnets of the system's interfaces and loopback. [any]
 std::vector<Cidr> connected_subnets();
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-namespace limber {
+namespace limber::osc {
 
 /// Real time as monotonic time and as NTP time.
 struct NetClock {
@@ -24,4 +24,4 @@ struct NetClock {
   };
 };
 
-}  // namespace limber
+}  // namespace limber::osc

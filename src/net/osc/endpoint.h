@@ -3,11 +3,11 @@
 
 #include "base/system/net/socket.h"
 
-namespace limber {
+namespace limber::osc {
 
 using system::Endpoint;
 using system::endpoint_text;
 using system::parse_ipv4;
 using system::resolve;
 
-}  // namespace limber
+}  // namespace limber::osc

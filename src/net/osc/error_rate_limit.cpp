@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limber {
+namespace limber::osc {
 
 bool ErrorRateLimit::allow(const Endpoint& sender, std::int64_t now) {
   auto window = std::ranges::find(windows_, sender, &Window::sender);
@@ -33,4 +33,4 @@ bool ErrorRateLimit::record_answer(const Endpoint& sender, std::int64_t now) {
   return !std::exchange(window->answers_errors, true);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

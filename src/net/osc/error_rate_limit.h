@@ -7,7 +7,7 @@
 
 #include "net/osc/endpoint.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Counts per sender, for the last 256 senders. [net]
 class ErrorRateLimit {
@@ -36,4 +36,4 @@ class ErrorRateLimit {
   std::vector<Window> windows_;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

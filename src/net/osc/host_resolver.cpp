@@ -12,7 +12,7 @@
 #include "base/system/thread.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -134,4 +134,4 @@ bool TargetResolver::consume_retry(std::int64_t now) {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -16,7 +16,7 @@
 #include "net/osc/endpoint.h"
 #include "net/osc/sender.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Resolves a host and a port to an address: resolve(), or a replacement in tests.
 using ResolveFunction = std::function<Result<Endpoint>(const std::string& host, std::uint16_t port)>;
@@ -75,4 +75,4 @@ class TargetResolver {
   std::optional<std::int64_t> retry_at_;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

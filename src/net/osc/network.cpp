@@ -15,7 +15,7 @@
 #include "base/system/wait.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -71,7 +71,7 @@ void Outbox::send(Sender& sender, std::size_t max_messages) {
   }
 }
 
-Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& offsets, NetClock clock,
+Network::Network(engine::EngineLink& link, OscOptions options, const engine::TransientOffsets& offsets, NetClock clock,
                  ResolveFunction look_up)
     : link_(link),
       options_(std::move(options)),
@@ -80,7 +80,7 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
       receiver_(
           link, options_.allow,
           {.error =
-               [this](const Outgoing& out) {
+               [this](const engine::Outgoing& out) {
                  out.origin.source == CommandSource::oscquery ? link_.push_out(out) : sender_.send(out);
                },
            .pong = [this](const CommandOrigin& to) { pong(to); },
@@ -100,8 +100,8 @@ Network::Network(EngineLink& link, OscOptions options, const TransientOffsets& o
       targets_(std::move(look_up), [wake = wake_] { wake->notify(); }),
       streams_(link, offsets, clock_, subscription_gate()),
       subscribers_(link, clock_,
-                   [this](const Outgoing& out) {
-                     if (out.destination == Outgoing::Destination::reply) return sender_.send_value(out);
+                   [this](const engine::Outgoing& out) {
+                     if (out.destination == engine::Outgoing::Destination::reply) return sender_.send_value(out);
                      sender_.send(out);
                      return true;
                    }),
@@ -265,11 +265,12 @@ void Network::process_packets() {
 }
 
 void Network::pong(const CommandOrigin& to) {
-  const std::shared_ptr<const Snapshot> newest = link_.snapshots.read();
+  const std::shared_ptr<const engine::Snapshot> newest = link_.snapshots.read();
   const std::uint64_t tick = newest ? newest->tick : 0;
   const double time = newest ? newest->time : 0;
   if (to.source != CommandSource::oscquery) return sender_.pong(to, tick, time);
-  link_.push_out({Outgoing::Destination::reply, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
+  link_.push_out(
+      {engine::Outgoing::Destination::reply, to, {"/pong", {Arg::of(static_cast<double>(tick)), Arg::of(time)}}});
 }
 
 void Network::update_own_endpoints() {
@@ -293,8 +294,9 @@ void Network::record_received(const Endpoint& from, std::size_t bytes) {
 void Network::challenge(const Endpoint& peer, bool is_subscribing) {
   const std::optional<std::string> token = amplification_.make_challenge(peer.ip, is_subscribing, clock_.steady());
   if (token)
-    sender_.send(
-        {Outgoing::Destination::reply, {CommandSource::osc, peer.ip, peer.port}, {"/token", {Arg::of(*token)}}});
+    sender_.send({engine::Outgoing::Destination::reply,
+                  {CommandSource::osc, peer.ip, peer.port},
+                  {"/token", {Arg::of(*token)}}});
 }
 
 void Network::handle_token(const Message& message, const CommandOrigin& origin) {
@@ -314,8 +316,8 @@ Result<void> Network::subscribe(const Message& message, const CommandOrigin& ori
 }
 
 void Network::publish_health() {
-  link_.health.set(HealthItem::limited, amplification_.withheld());
-  link_.health.set(HealthItem::loops, sender_.loops());
+  link_.health.set(engine::HealthItem::limited, amplification_.withheld());
+  link_.health.set(engine::HealthItem::loops, sender_.loops());
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -25,7 +25,7 @@
 #include "net/osc/subscribers.h"
 #include "net/osc/unreachable_targets.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// The open ports, for display. [any]
 class NetworkStatus {
@@ -66,14 +66,14 @@ class PacketQueue {
 /// The engine's messages, which are sent in parts so that input is not delayed. [net]
 class Outbox {
  public:
-  explicit Outbox(EngineLink& link) : link_(link) {}
+  explicit Outbox(engine::EngineLink& link) : link_(link) {}
   void send(Sender& sender, std::size_t max_messages);
   /// True if a part of the messages is unsent.
   bool has_unsent() const { return next_ < messages_.size(); }
 
  private:
-  EngineLink& link_;
-  std::vector<Outgoing> messages_;
+  engine::EngineLink& link_;
+  std::vector<engine::Outgoing> messages_;
   std::size_t next_ = 0;  // index of the first unsent message
 };
 
@@ -82,7 +82,7 @@ class Outbox {
 /// OSC configuration is applied. `link` must outlive the Network.
 class Network {
  public:
-  Network(EngineLink& link, OscOptions options, const TransientOffsets& offsets, NetClock clock = {},
+  Network(engine::EngineLink& link, OscOptions options, const engine::TransientOffsets& offsets, NetClock clock = {},
           ResolveFunction look_up = resolve);
   ~Network();
   Network(const Network&) = delete;
@@ -125,7 +125,7 @@ class Network {
   void challenge(const Endpoint& peer, bool is_subscribing);
   void publish_health();
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   const OscOptions options_;
   const NetClock clock_;
   std::shared_ptr<system::Wake> wake_;
@@ -145,4 +145,4 @@ class Network {
   std::atomic<bool> stop_{false};
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -11,7 +11,7 @@
 #include "base/text.h"
 #include "net/osc/endpoint.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -213,4 +213,4 @@ std::string target_text(const StreamTarget& target) {
   return text + ")";
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "engine/commands/command.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// A range of IPv4 addresses.
 struct Cidr {
@@ -57,4 +57,4 @@ OscConfig effective_config(const OscOptions& options, const OscConfig* scene);
 /// "127.0.0.1:9005 (pos+rot at 60 Hz)" with the settings that differ from the default, for the log.
 std::string target_text(const StreamTarget& target);
 
-}  // namespace limber
+}  // namespace limber::osc

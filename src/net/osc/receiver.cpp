@@ -13,7 +13,7 @@
 #include "net/osc/packets/validate.h"
 #include "net/osc/subscribers.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -41,7 +41,8 @@ struct Receiver::ListenSocket {
   std::uint32_t kernel_drops = 0;  // the kernel's counter, which starts with the socket
 };
 
-Receiver::Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks, const NetClock& clock)
+Receiver::Receiver(engine::EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks,
+                   const NetClock& clock)
     : link_(link), allow_(std::move(allow)), callbacks_(std::move(callbacks)), clock_(clock), scheduled_(clock) {}
 
 Receiver::~Receiver() = default;
@@ -160,7 +161,7 @@ namespace {
 struct UrgentAddresses {
   bool any = false;
   static void bundle(int, std::uint64_t) {}
-  void message(const char* address, const char*) { any = any || urgent_kind_of_address(address).has_value(); }
+  void message(const char* address, const char*) { any = any || engine::urgent_kind_of_address(address).has_value(); }
   static void argument(char, const char*) {}
   static void end_message() {}
 };
@@ -184,7 +185,7 @@ Receiver::ScanResult Receiver::scan(const char* data, std::size_t size, const Co
   if (!decoded || scheduled_.is_future(decoded->time_tag)) return scanned;
   scanned.urgent = true;
   for (Message& message : decoded->messages) {
-    if (const std::optional<UrgentKind> kind = urgent_kind(message))
+    if (const std::optional<engine::UrgentKind> kind = engine::urgent_kind(message))
       link_.command_queue.push_urgent({*kind, std::move(message), origin, scanned.arrival});
   }
   return scanned;
@@ -248,7 +249,7 @@ void Receiver::log_messages(const CommandOrigin& origin, const Decoded& packet) 
 }
 
 // A packet that scan() found to be due is applied now, even if the clock has changed since.
-void Receiver::deliver(std::uint64_t time_tag, Command command, bool urgent_pushed) {
+void Receiver::deliver(std::uint64_t time_tag, engine::Command command, bool urgent_pushed) {
   switch (urgent_pushed ? ScheduledCommands::ScheduleResult::now : scheduled_.schedule(time_tag, command)) {
     case ScheduledCommands::ScheduleResult::scheduled:
       return;
@@ -274,14 +275,14 @@ void Receiver::deliver(std::uint64_t time_tag, Command command, bool urgent_push
 
 void Receiver::process_pending() {
   decode_slice();
-  while (std::optional<Command> command = scheduled_.pop_due()) {
+  while (std::optional<engine::Command> command = scheduled_.pop_due()) {
     command->arrival = 0;  // it counts as arriving now
     push(std::move(*command));
   }
   if (std::exchange(wake_pending_, false)) link_.wake_engine();
 }
 
-void Receiver::push(Command command, bool urgent_pushed) {
+void Receiver::push(engine::Command command, bool urgent_pushed) {
   const std::size_t count = command.messages.size();
   if (link_.command_queue.push(std::move(command), urgent_pushed)) {
     wake_pending_ = true;
@@ -293,7 +294,7 @@ void Receiver::push(Command command, bool urgent_pushed) {
 
 void Receiver::reject(const CommandOrigin& origin, const std::string& address, const std::string& text) {
   link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
-  callbacks_.error({Outgoing::Destination::error, origin, error_message(address, text)});
+  callbacks_.error({engine::Outgoing::Destination::error, origin, engine::error_message(address, text)});
 }
 
 void Receiver::record_kernel_drops(ListenSocket& socket, std::uint32_t count) {
@@ -320,4 +321,4 @@ int Receiver::socket_of(const Endpoint& sender) const {
 
 bool Receiver::allowed(std::uint32_t ip) const { return is_allowed(allow_, ip); }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -23,12 +23,12 @@
 #include "net/osc/scheduled_commands.h"
 #include "net/osc/warning_throttle.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Callbacks for everything that the receiver does not push into the engine's command queue.
 struct ReceiverCallbacks {
   /// Sends an /error message to the sender of a rejected message.
-  std::function<void(const Outgoing&)> error = [](const Outgoing&) {};
+  std::function<void(const engine::Outgoing&)> error = [](const engine::Outgoing&) {};
   /// Answers a /ping.
   std::function<void(const CommandOrigin&)> pong = [](const CommandOrigin&) {};
   /// Handles /subscribe and /unsubscribe.
@@ -47,7 +47,7 @@ struct ReceiverCallbacks {
 /// Receives and decodes OSC input. [net], unless noted otherwise.
 class Receiver {
  public:
-  Receiver(EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks, const NetClock& clock);
+  Receiver(engine::EngineLink& link, std::vector<Cidr> allow, ReceiverCallbacks callbacks, const NetClock& clock);
   ~Receiver();
 
   /// Closes sockets that are not in the list, opens the missing ones and leaves the others alone. Returns an error text
@@ -107,15 +107,15 @@ class Receiver {
   void enqueue(ListenSocket& socket, const char* data, std::size_t size, const Endpoint& from);
   void decode_slice();
   void log_messages(const CommandOrigin& origin, const Decoded& packet);
-  void deliver(std::uint64_t time_tag, Command command, bool urgent_pushed);
-  void push(Command command, bool urgent_pushed = false);
+  void deliver(std::uint64_t time_tag, engine::Command command, bool urgent_pushed);
+  void push(engine::Command command, bool urgent_pushed = false);
   void reject(const CommandOrigin& origin, const std::string& address, const std::string& text);
   void record_kernel_drops(ListenSocket& socket, std::uint32_t count);
   bool allowed(std::uint32_t ip) const;
   template <class Text>
   void warn_throttled(WarningThrottle& throttle, const Text& text);
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   std::vector<Cidr> allow_;
   ReceiverCallbacks callbacks_;
   const NetClock& clock_;
@@ -136,4 +136,4 @@ class Receiver {
   WarningThrottle malformed_log_, denied_log_, queue_full_log_, kernel_drops_log_, far_future_log_, schedule_full_log_;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

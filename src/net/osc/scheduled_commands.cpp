@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -12,22 +12,22 @@ constexpr std::int64_t kMaxWait = 10'000'000'000;  // ns
 
 }  // namespace
 
-ScheduledCommands::ScheduleResult ScheduledCommands::schedule(std::uint64_t time_tag, Command& command) {
+ScheduledCommands::ScheduleResult ScheduledCommands::schedule(std::uint64_t time_tag, engine::Command& command) {
   const std::uint64_t now = clock_.ntp();
   if (time_tag <= now) return ScheduleResult::now;
   if (time_tag - now > kMaxLead) return ScheduleResult::too_far;
-  const std::size_t bytes = weight_of(command);
+  const std::size_t bytes = engine::weight_of(command);
   if (scheduled_.size() >= kMaxCommands || bytes > kMaxBytes - bytes_) return ScheduleResult::full;
   bytes_ += bytes;
   scheduled_.emplace(time_tag, Entry{std::move(command), bytes, clock_.steady() + kMaxWait});
   return ScheduleResult::scheduled;
 }
 
-std::optional<Command> ScheduledCommands::pop_due() {
+std::optional<engine::Command> ScheduledCommands::pop_due() {
   if (scheduled_.empty()) return std::nullopt;
   const auto first = scheduled_.begin();
   if (first->first > clock_.ntp() && first->second.deadline > clock_.steady()) return std::nullopt;
-  std::optional<Command> command = std::move(first->second.command);
+  std::optional<engine::Command> command = std::move(first->second.command);
   bytes_ -= first->second.bytes;
   scheduled_.erase(first);
   return command;
@@ -46,4 +46,4 @@ std::optional<std::int64_t> ScheduledCommands::timeout() const {
   return std::clamp<std::int64_t>(entry.deadline - clock_.steady(), 0, by_tag);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

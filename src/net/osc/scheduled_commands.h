@@ -9,7 +9,7 @@
 #include "engine/commands/command.h"
 #include "net/osc/clock.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Scheduled commands, ordered by time tag and, for equal tags, by arrival. [net]
 class ScheduledCommands {
@@ -34,16 +34,16 @@ class ScheduledCommands {
     return time_tag > now && time_tag - now <= kMaxLead;
   }
   /// Schedules a command. Moves from `command` only if the result is `scheduled`.
-  ScheduleResult schedule(std::uint64_t time_tag, Command& command);
+  ScheduleResult schedule(std::uint64_t time_tag, engine::Command& command);
   /// Returns the next command that is due, if any.
-  std::optional<Command> pop_due();
+  std::optional<engine::Command> pop_due();
   /// Nanoseconds until a command is due; empty if none is scheduled.
   std::optional<std::int64_t> timeout() const;
   std::size_t size() const { return scheduled_.size(); }
 
  private:
   struct Entry {
-    Command command;
+    engine::Command command;
     std::size_t bytes = 0;
     std::int64_t deadline = 0;  // steady time; bounds the wait if the system clock is set back
   };
@@ -52,4 +52,4 @@ class ScheduledCommands {
   std::multimap<std::uint64_t, Entry> scheduled_;  // a multimap keeps equal keys in insertion order
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace limber {
+namespace limber::osc {
 
 bool SendBudget::Account::try_consume(std::size_t bytes, std::size_t values) {
   if (available_.bytes <= 0 || available_.values <= 0) {
@@ -88,4 +88,4 @@ std::size_t SendBudget::throttled() const {
   return static_cast<std::size_t>(std::ranges::count_if(accounts_, [](const Account& a) { return a.throttled(); }));
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace limber {
+namespace limber::osc {
 
 /// Limits per second.
 struct SendLimits {
@@ -91,4 +91,4 @@ class SendBudget {
   bool started_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -12,7 +12,7 @@
 #include "base/text.h"
 #include "net/osc/packets/decode.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -40,8 +40,8 @@ bool answerable(const Message& error) {
 
 }  // namespace
 
-Sender::Sender(Counters& counters, MessageLog& message_log, std::function<int(const Endpoint&)> reply_socket,
-               const NetClock& clock)
+Sender::Sender(engine::Counters& counters, engine::MessageLog& message_log,
+               std::function<int(const Endpoint&)> reply_socket, const NetClock& clock)
     : counters_(counters), message_log_(message_log), reply_socket_(std::move(reply_socket)), clock_(clock) {}
 
 Result<void> Sender::open() {
@@ -50,25 +50,25 @@ Result<void> Sender::open() {
   return {};
 }
 
-void Sender::send(const Outgoing& out) {
-  const bool error = out.destination == Outgoing::Destination::error;
+void Sender::send(const engine::Outgoing& out) {
+  const bool error = out.destination == engine::Outgoing::Destination::error;
   if (error && !answerable(out.message)) return;
   if (error && !error_limiter_.allow({out.origin.ip, out.origin.port}, clock_.steady())) return;
   const std::span<const char> packet = encode(out.message);
   if (packet.empty()) return;
   switch (out.destination) {
-    case Outgoing::Destination::reply:
-    case Outgoing::Destination::direct:
-      send_to_origin(out.origin, packet, out.destination == Outgoing::Destination::reply);
+    case engine::Outgoing::Destination::reply:
+    case engine::Outgoing::Destination::direct:
+      send_to_origin(out.origin, packet, out.destination == engine::Outgoing::Destination::reply);
       return;
-    case Outgoing::Destination::error:
+    case engine::Outgoing::Destination::error:
       send_to_origin(out.origin, packet, true);
       send_to_targets(packet, true);
       return;
-    case Outgoing::Destination::event:
+    case engine::Outgoing::Destination::event:
       send_to_subscribers(packet);
       [[fallthrough]];
-    case Outgoing::Destination::targets:
+    case engine::Outgoing::Destination::targets:
       send_to_targets(packet, false);
       return;
   }
@@ -84,7 +84,7 @@ std::span<const char> Sender::encode(const Message& message) {
   return packet;
 }
 
-bool Sender::send_value(const Outgoing& out) {
+bool Sender::send_value(const engine::Outgoing& out) {
   const Endpoint to{out.origin.ip, out.origin.port};
   const std::span<const char> packet = encode(out.message);
   if (packet.empty()) return true;
@@ -177,11 +177,11 @@ void Sender::handle_result(int error, const Endpoint& to, std::span<const char> 
   }
 }
 
-void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet) {
+void log_sent(engine::MessageLog& message_log, const Endpoint& to, std::span<const char> packet) {
   // stream frames exist only as bytes, so packets are decoded again
   const Result<Decoded> decoded = decode_packet(packet.data(), packet.size());
   if (!decoded) return;
   for (const Message& message : decoded->messages) message_log.add(false, endpoint_text(to), message);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

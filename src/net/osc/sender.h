@@ -16,7 +16,7 @@
 #include "net/osc/packets/encode.h"
 #include "net/osc/warning_throttle.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// A stream target with its resolved address.
 struct ResolvedTarget {
@@ -34,7 +34,7 @@ using SendGate = std::function<bool(const Endpoint& to, std::size_t bytes, std::
 class Sender {
  public:
   /// `reply_socket` returns the listening socket that received a sender's last message, or -1.
-  Sender(Counters& counters, MessageLog& message_log, std::function<int(const Endpoint&)> reply_socket,
+  Sender(engine::Counters& counters, engine::MessageLog& message_log, std::function<int(const Endpoint&)> reply_socket,
          const NetClock& clock);
 
   /// Sets the gates for answers and for messages to subscribers. Neither applies to configured targets.
@@ -60,11 +60,11 @@ class Sender {
   /// Sends a message to the receivers that `out.destination` selects. Error messages are limited to ten a second per
   /// sender, and none is sent if the rejected message was itself an answer or a stream, so that two programs aimed at
   /// each other do not loop.
-  void send(const Outgoing& out);
+  void send(const engine::Outgoing& out);
   /// Sends a `/pong` to the sender of a `/ping`.
   void pong(const CommandOrigin& to, std::uint64_t tick, double time);
   /// Sends a subscribed value. Returns false if the subscriber's budget does not allow it now.
-  bool send_value(const Outgoing& out);
+  bool send_value(const engine::Outgoing& out);
   /// Records that `peer` answers /error messages; it gets none for a minute.
   void record_error_answer(const Endpoint& peer);
   /// Number of message loops detected and stopped.
@@ -79,8 +79,8 @@ class Sender {
   std::span<const char> encode(const Message& message);
   void handle_result(int error, const Endpoint& to, std::span<const char> packet);
 
-  Counters& counters_;
-  MessageLog& message_log_;
+  engine::Counters& counters_;
+  engine::MessageLog& message_log_;
   std::function<int(const Endpoint&)> reply_socket_;
   const NetClock& clock_;
   system::UdpSender out_;
@@ -99,6 +99,6 @@ class Sender {
 
 /// Logs each message of a packet that this program encoded. Costs a decoding, so call it only while the log is enabled.
 /// [net]
-void log_sent(MessageLog& message_log, const Endpoint& to, std::span<const char> packet);
+void log_sent(engine::MessageLog& message_log, const Endpoint& to, std::span<const char> packet);
 
-}  // namespace limber
+}  // namespace limber::osc

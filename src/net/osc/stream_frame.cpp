@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "net/osc/packets/wire.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -23,7 +23,7 @@ void append_text(std::vector<char>& bytes, std::string_view text) {
   bytes.resize(end, 0);
 }
 
-bool is_streamed(const BodyEntry& body, const StreamTarget& config) {
+bool is_streamed(const engine::BodyEntry& body, const StreamTarget& config) {
   return !body.joint_offsets.empty() && pattern_match(config.bodies, body.name);
 }
 
@@ -44,7 +44,7 @@ bool write_numbers(char* to, const std::vector<std::uint32_t>& joints, std::uint
 
 }  // namespace
 
-void StreamFrame::lay_out(const std::shared_ptr<const BodyList>& body_list, const StreamTarget& config) {
+void StreamFrame::lay_out(const std::shared_ptr<const engine::BodyList>& body_list, const StreamTarget& config) {
   if (body_list == body_list_ && config == config_) return;
   body_list_ = body_list;
   config_ = config;
@@ -77,7 +77,8 @@ void StreamFrame::lay_out(const std::shared_ptr<const BodyList>& body_list, cons
   std::ranges::stable_sort(numbers_, {}, &NumberBlock::body);
 }
 
-void StreamFrame::add_message(const Stream& stream, const BodyEntry& body, std::uint32_t index, std::size_t limit) {
+void StreamFrame::add_message(const Stream& stream, const engine::BodyEntry& body, std::uint32_t index,
+                              std::size_t limit) {
   const std::string_view address = stream.address;
   const std::size_t count = body.joint_offsets.size() * stream.width;
   const std::size_t size = padded(address.size()) + padded(2 + count) + padded(body.name.size()) + 4 * count;
@@ -123,7 +124,7 @@ void StreamFrame::end_datagram() {
   open_.clear();
 }
 
-void StreamFrame::fill(const Snapshot& snapshot) {
+void StreamFrame::fill(const engine::Snapshot& snapshot) {
   for (const NumberBlock& n : numbers_) {
     const std::vector<std::uint32_t>& joints = body_list_->bodies[n.body].joint_offsets;
     char* to = bytes_.data() + n.position;
@@ -133,4 +134,4 @@ void StreamFrame::fill(const Snapshot& snapshot) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::osc

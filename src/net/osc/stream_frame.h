@@ -11,19 +11,19 @@
 #include "engine/commands/command.h"
 #include "engine/output/snapshot.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// The datagrams of one frame of a stream. [net]
 class StreamFrame {
  public:
-  explicit StreamFrame(const TransientOffsets& offsets) : offsets_(offsets) {}
+  explicit StreamFrame(const engine::TransientOffsets& offsets) : offsets_(offsets) {}
 
   /// Rebuilds the layout if the body list or the configuration has changed since the last call. Messages are ordered by
   /// stream (pos, rot, relrot, relpos), then as in the body list; bodies without joints have none. A message larger
   /// than a datagram is omitted and its body listed in `too_large()`.
-  void lay_out(const std::shared_ptr<const BodyList>& body_list, const StreamTarget& config);
+  void lay_out(const std::shared_ptr<const engine::BodyList>& body_list, const StreamTarget& config);
   /// Writes the snapshot's numbers into the messages. Does not allocate.
-  void fill(const Snapshot& snapshot);
+  void fill(const engine::Snapshot& snapshot);
 
   /// The sizes of the datagrams, which are stored contiguously in `bytes()`.
   std::span<const std::uint32_t> datagram_sizes() const { return datagrams_; }
@@ -43,11 +43,11 @@ class StreamFrame {
     std::uint32_t width;
   };
 
-  void add_message(const Stream& stream, const BodyEntry& body, std::uint32_t index, std::size_t limit);
+  void add_message(const Stream& stream, const engine::BodyEntry& body, std::uint32_t index, std::size_t limit);
   void end_datagram();
 
-  const TransientOffsets offsets_;
-  std::shared_ptr<const BodyList> body_list_;
+  const engine::TransientOffsets offsets_;
+  std::shared_ptr<const engine::BodyList> body_list_;
   StreamTarget config_;
   std::vector<char> bytes_;
   std::vector<std::uint32_t> datagrams_;
@@ -58,4 +58,4 @@ class StreamFrame {
   std::size_t first_numbers_ = 0;    // index of its first entry in numbers_
 };
 
-}  // namespace limber
+}  // namespace limber::osc

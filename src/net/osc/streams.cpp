@@ -10,7 +10,7 @@
 #include "base/text.h"
 #include "net/osc/sender.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -22,7 +22,8 @@ bool wants_streams(const StreamTarget& config) { return config.pos || config.rot
 
 }  // namespace
 
-Streams::Streams(EngineLink& link, const TransientOffsets& offsets, const NetClock& clock, SendGate may_serve)
+Streams::Streams(engine::EngineLink& link, const engine::TransientOffsets& offsets, const NetClock& clock,
+                 SendGate may_serve)
     : link_(link), offsets_(offsets), clock_(clock), may_serve_(std::move(may_serve)) {}
 
 void Streams::set_targets(const std::vector<ResolvedTarget>& targets) {
@@ -38,7 +39,7 @@ void Streams::set_targets(const std::vector<ResolvedTarget>& targets) {
 
 void Streams::send_due(system::UdpSender& sender) {
   const std::int64_t now = clock_.steady();
-  std::shared_ptr<const Snapshot> snapshot;
+  std::shared_ptr<const engine::Snapshot> snapshot;
   const std::size_t begin = first_;
   std::size_t served = 0;  // bytes to subscribers
   for (std::size_t i = 0; i < streams_.size(); i++) {
@@ -56,7 +57,7 @@ void Streams::send_due(system::UdpSender& sender) {
 }
 
 // Returns the number of bytes of the frame, 0 if it was skipped.
-std::size_t Streams::send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot) {
+std::size_t Streams::send_frame(system::UdpSender& sender, Stream& stream, const engine::Snapshot& snapshot) {
   stream.frame.lay_out(snapshot.body_list, stream.target.config);
   if (!stream.frame.too_large().empty() && stream.reported_too_large != snapshot.body_list) {
     stream.reported_too_large = snapshot.body_list;
@@ -96,4 +97,4 @@ std::optional<std::int64_t> Streams::timeout() const {
   return std::max<std::int64_t>(0, (*next)->next_due - clock_.steady());
 }
 
-}  // namespace limber
+}  // namespace limber::osc

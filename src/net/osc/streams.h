@@ -12,7 +12,7 @@
 #include "net/osc/stream_frame.h"
 #include "net/osc/warning_throttle.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Schedules stream frames without drift: frame n of a target is due n periods after its first. Frames more than a
 /// period late are skipped. [net]
@@ -23,7 +23,7 @@ class Streams {
 
   /// `may_serve` is asked for each frame to a subscriber; a rejected frame is skipped.
   Streams(
-      EngineLink& link, const TransientOffsets& offsets, const NetClock& clock,
+      engine::EngineLink& link, const engine::TransientOffsets& offsets, const NetClock& clock,
       SendGate may_serve = [](const Endpoint&, std::size_t, std::size_t) { return true; });
 
   /// Targets that are also in the old list keep their schedule.
@@ -36,20 +36,21 @@ class Streams {
 
  private:
   struct Stream {
-    Stream(const ResolvedTarget& t, const TransientOffsets& offsets, std::int64_t now)
+    Stream(const ResolvedTarget& t, const engine::TransientOffsets& offsets, std::int64_t now)
         : target(t), next_due(now), frame(offsets) {}
     ResolvedTarget target;
     std::int64_t next_due;
     StreamFrame frame;
-    std::shared_ptr<const BodyList> reported_too_large;  // the body list for which a too large message was reported
-    bool segmentation = true;                            // cleared if the route does not support segmentation offload
+    std::shared_ptr<const engine::BodyList>
+        reported_too_large;    // the body list for which a too large message was reported
+    bool segmentation = true;  // cleared if the route does not support segmentation offload
   };
 
-  std::size_t send_frame(system::UdpSender& sender, Stream& stream, const Snapshot& snapshot);
+  std::size_t send_frame(system::UdpSender& sender, Stream& stream, const engine::Snapshot& snapshot);
   void log_frame(const Stream& stream, std::size_t datagrams);
 
-  EngineLink& link_;
-  const TransientOffsets offsets_;
+  engine::EngineLink& link_;
+  const engine::TransientOffsets offsets_;
   const NetClock& clock_;
   const SendGate may_serve_;
   std::vector<std::unique_ptr<Stream>> streams_;
@@ -57,4 +58,4 @@ class Streams {
   WarningThrottle lost_log_;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -12,7 +12,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -40,8 +40,8 @@ std::string normalize_stream(const std::string& text) {
 
 }  // namespace
 
-Subscribers::Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
-                         SendLimits per_sender, SendLimits total)
+Subscribers::Subscribers(engine::EngineLink& link, const NetClock& clock,
+                         std::function<bool(const engine::Outgoing&)> send, SendLimits per_sender, SendLimits total)
     : link_(link), clock_(clock), send_(std::move(send)), budget_(per_sender, total) {}
 
 Subscribers::Subscriber* Subscribers::find(const CommandOrigin& origin) const {
@@ -141,7 +141,7 @@ void Subscribers::remove_idle() {
 void Subscribers::work() {
   if (subscribers_.empty()) {
     in_round_ = false;
-    link_.health.set(HealthItem::reduced, 0);
+    link_.health.set(engine::HealthItem::reduced, 0);
     return;
   }
   const std::int64_t now = clock_.steady();
@@ -159,7 +159,7 @@ void Subscribers::work() {
 }
 
 void Subscribers::begin_round() {
-  const std::shared_ptr<const ValueSnapshot> newest = link_.value_snapshots.read();
+  const std::shared_ptr<const engine::ValueSnapshot> newest = link_.value_snapshots.read();
   if (newest == nullptr) return;
   const bool fresh = snapshot_request_ != 0 && newest->request >= snapshot_request_;
   if (newest->number == snapshot_number_ && !fresh) return;
@@ -203,22 +203,23 @@ void Subscribers::check_paths(Subscriber& subscriber) {
     if (s->stream || std::exchange(s->checked, true)) continue;
     const std::string_view problem = subscriber.feed.problem(s->path);
     if (problem.empty()) continue;
-    send_({Outgoing::Destination::error, subscriber.origin,
-           error_message("/subscribe", fmt::format("{}; waiting for it", problem))});
+    send_({engine::Outgoing::Destination::error, subscriber.origin,
+           engine::error_message("/subscribe", fmt::format("{}; waiting for it", problem))});
   }
   if (!subscriber.feed.truncated() || std::exchange(subscriber.reported_truncated, true)) return;
-  const std::string text = fmt::format("matches more than {} values; the others are not sent", Feed::kMaxValues);
-  send_({Outgoing::Destination::error, subscriber.origin, error_message("/subscribe", text)});
+  const std::string text =
+      fmt::format("matches more than {} values; the others are not sent", engine::Feed::kMaxValues);
+  send_({engine::Outgoing::Destination::error, subscriber.origin, engine::error_message("/subscribe", text)});
 }
 
 // Returns false if the slice is used up.
 bool Subscribers::send_values(Subscriber& subscriber, const Subscription& s, int& left) {
   bool exhausted = false;
   const auto [count, complete] = subscriber.feed.send_changes(
-      s.path, [&](const std::string& path, const Property& property, const PropertyValue& value) {
+      s.path, [&](const std::string& path, const Property& property, const engine::PropertyValue& value) {
         exhausted = left <= 0;
         if (exhausted) return false;
-        Outgoing out{Outgoing::Destination::reply, subscriber.origin, {path, {}}};
+        engine::Outgoing out{engine::Outgoing::Destination::reply, subscriber.origin, {path, {}}};
         for (std::uint32_t i = 0; i < property.width; i++) out.message.args.push_back(Arg::of(value.numbers[i]));
         if (property.type == PropertyType::text) out.message.args.push_back(Arg::of(value.text));
         if (!send_(out)) return false;
@@ -241,9 +242,9 @@ void Subscribers::report_throttling(std::int64_t now) {
     Message message{"/subscription/full", {}};
     if (report.throttled)
       message = {"/subscription/reduced", {Arg::of(std::round(report.values)), Arg::of(std::round(report.bytes))}};
-    send_({Outgoing::Destination::direct, (*subscriber)->origin, std::move(message)});
+    send_({engine::Outgoing::Destination::direct, (*subscriber)->origin, std::move(message)});
   }
-  link_.health.set(HealthItem::reduced, budget_.throttled());
+  link_.health.set(engine::HealthItem::reduced, budget_.throttled());
 }
 
 std::optional<std::int64_t> Subscribers::timeout() const {
@@ -278,4 +279,4 @@ std::vector<Endpoint> Subscribers::endpoints() const {
   return endpoints;
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -17,7 +17,7 @@
 #include "net/osc/send_budget.h"
 #include "net/osc/sender.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// The subscriptions of all peers. [net]
 class Subscribers {
@@ -31,7 +31,7 @@ class Subscribers {
   static constexpr std::size_t kComparisonsPerValue = 64;
 
   /// `send` sends values, events and errors; it returns false if a value may not be sent now.
-  Subscribers(EngineLink& link, const NetClock& clock, std::function<bool(const Outgoing&)> send,
+  Subscribers(engine::EngineLink& link, const NetClock& clock, std::function<bool(const engine::Outgoing&)> send,
               SendLimits per_sender = SendBudget::kPerSender, SendLimits total = SendBudget::kTotal);
 
   static bool handles(const Message& message) {
@@ -71,7 +71,7 @@ class Subscribers {
     CommandOrigin origin;
     std::vector<std::unique_ptr<Subscription>> subscriptions;
     SendBudget::Account* account = nullptr;
-    Feed feed;
+    engine::Feed feed;
     std::uint64_t snapshot_number = 0;  // number of the last snapshot
     bool reported_truncated = false;    // an error about too many matching values was sent
   };
@@ -89,12 +89,12 @@ class Subscribers {
   bool send_values(Subscriber& subscriber, const Subscription& s, int& left);
   void report_throttling(std::int64_t now);
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   const NetClock& clock_;
-  std::function<bool(const Outgoing&)> send_;
+  std::function<bool(const engine::Outgoing&)> send_;
   SendBudget budget_;
   std::vector<std::unique_ptr<Subscriber>> subscribers_;
-  std::shared_ptr<const ValueSnapshot> snapshot_;  // the snapshot being compared and sent
+  std::shared_ptr<const engine::ValueSnapshot> snapshot_;  // the snapshot being compared and sent
   std::uint64_t snapshot_number_ = 0;
   bool in_round_ = false;               // some subscribers have not been served with snapshot_
   bool sends_values_ = false;           // this round sends values; false: it only updates the feeds
@@ -104,4 +104,4 @@ class Subscribers {
   bool changed_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -7,7 +7,7 @@
 
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr int kMaxPerCall = 64;
 
 }  // namespace
 
-void UnreachableTargets::poll(system::UdpSender& sender, Counters& counters, std::int64_t now) {
+void UnreachableTargets::poll(system::UdpSender& sender, engine::Counters& counters, std::int64_t now) {
   for (int i = 0; i < kMaxPerCall; i++) {
     const std::optional<system::SendFailure> failure = sender.next_failure();
     if (!failure) return;
@@ -35,4 +35,4 @@ void UnreachableTargets::record(const Endpoint& target, int error, std::int64_t 
   log_info("OSC out {}: {}; sending anyway", endpoint_text(target), reason);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

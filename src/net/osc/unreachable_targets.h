@@ -8,7 +8,7 @@
 #include "engine/commands/command.h"
 #include "net/osc/endpoint.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Reads the failures that the system reports for one sender's datagrams. [net]
 class UnreachableTargets {
@@ -18,7 +18,7 @@ class UnreachableTargets {
   static constexpr std::size_t kMaxTargets = 256;  ///< Maximum number of remembered targets.
 
   /// Handles the failures reported since the last call: counts each as unsent and logs each target once. `now` in ns.
-  void poll(system::UdpSender& sender, Counters& counters, std::int64_t now);
+  void poll(system::UdpSender& sender, engine::Counters& counters, std::int64_t now);
 
  private:
   void record(const Endpoint& target, int error, std::int64_t now);
@@ -26,4 +26,4 @@ class UnreachableTargets {
   std::map<Endpoint, std::int64_t> last_failure_;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::osc {
 
 /// Throttles one kind of warning. [one thread]
 class WarningThrottle {
@@ -34,4 +34,4 @@ class WarningThrottle {
   std::uint64_t suppressed_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -12,7 +12,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -143,7 +143,7 @@ const Attributes& attributes_of(const Property& property) { return attributes_ca
 
 const std::string& attributes_text(const Property& property) { return attributes_cached(property).text; }
 
-std::string value_json(const Property& property, const PropertyValue& value) {
+std::string value_json(const Property& property, const engine::PropertyValue& value) {
   if (property.type == PropertyType::text) return "[" + json_text(value.text) + "]";
   const double* const values = value.numbers;
   if (property.type == PropertyType::choice) {
@@ -156,7 +156,7 @@ std::string value_json(const Property& property, const PropertyValue& value) {
   });
 }
 
-Message value_message(const std::string& path, const Property& property, const PropertyValue& value) {
+Message value_message(const std::string& path, const Property& property, const engine::PropertyValue& value) {
   Message message{path, {}};
   if (property.type == PropertyType::text) message.args.push_back(Arg::of(value.text));
   const double* const values = value.numbers;
@@ -192,4 +192,4 @@ const std::vector<std::string_view>& known_attributes() {
   return names;
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -10,7 +10,7 @@
 #include "engine/output/value_snapshot.h"
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// Returns the OSC type tags of a property's message: f; i, or h if the range exceeds 31 bits; T (or F) for booleans; s
 /// for the label of a choice; [ffff] for a rotation, because clients show four plain f as a color; N for an action
@@ -28,9 +28,9 @@ const std::vector<std::pair<std::string_view, std::string>>& attributes_of(const
 const std::string& attributes_text(const Property& property);
 
 /// Returns the value as JSON: `[-9.81]`, `["servo"]`, `[[0,0,0,1]]`.
-std::string value_json(const Property& property, const PropertyValue& value);
+std::string value_json(const Property& property, const engine::PropertyValue& value);
 /// Returns a message with the value; with the tags of tags_of() it is equivalent to the JSON.
-Message value_message(const std::string& path, const Property& property, const PropertyValue& value);
+Message value_message(const std::string& path, const Property& property, const engine::PropertyValue& value);
 
 /// Returns the text as a quoted JSON string; invalid UTF-8 is replaced.
 std::string json_text(std::string_view text);
@@ -42,4 +42,4 @@ std::string short_doc(const Property& property);
 /// Returns all supported attributes, including FULL_PATH, CONTENTS and VALUE.
 const std::vector<std::string_view>& known_attributes();
 
-}  // namespace limber
+}  // namespace limber::oscquery

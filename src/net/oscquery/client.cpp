@@ -8,7 +8,7 @@
 #include "base/log/log.h"
 #include "net/oscquery/attributes.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -47,20 +47,20 @@ bool QueryClient::on_text(std::string_view frame) {
 
 void QueryClient::on_binary(std::string_view frame) { host_.process(origin_, std::string(frame)); }
 
-void QueryClient::on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot,
+void QueryClient::on_snapshot(const std::shared_ptr<const engine::ValueSnapshot>& snapshot,
                               std::span<const std::string> events) {
   for (const std::string& event : events) sink_.send(true, event);
   if (!is_listening()) return;
   feed_.update(snapshot, origin_);
-  feed_.send_changes([this](const std::string& path, const Property& property, const PropertyValue& value) {
+  feed_.send_changes([this](const std::string& path, const Property& property, const engine::PropertyValue& value) {
     if (sink_.queued_bytes() >= kMaxQueuedForValues) return false;
     sink_.send(false, host_.encode(value_message(path, property, value), tags_of(property)));
     return true;
   });
 }
 
-void QueryClient::send_reply(const Outgoing& out, double now) {
-  if (out.destination == Outgoing::Destination::error) {
+void QueryClient::send_reply(const engine::Outgoing& out, double now) {
+  if (out.destination == engine::Outgoing::Destination::error) {
     if (now - error_window_start_ >= 1) {
       error_window_start_ = now;
       errors_ = 0;
@@ -83,4 +83,4 @@ void QueryClient::send_log() {
   sink_.send(true, frame.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -14,7 +14,7 @@
 #include "engine/output/feed.h"
 #include "net/oscquery/host.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The sending side of a client's connection.
 class ClientSink {
@@ -43,9 +43,9 @@ class QueryClient {
   void on_binary(std::string_view frame);
 
   /// Sends path events and changed values from a new value snapshot.
-  void on_snapshot(const std::shared_ptr<const ValueSnapshot>& snapshot, std::span<const std::string> events);
+  void on_snapshot(const std::shared_ptr<const engine::ValueSnapshot>& snapshot, std::span<const std::string> events);
   /// Sends the reply to one of the client's messages; errors at most ten per second. `now` in s.
-  void send_reply(const Outgoing& out, double now);
+  void send_reply(const engine::Outgoing& out, double now);
   /// Sends new log lines if the client has requested them.
   void send_log();
 
@@ -56,11 +56,11 @@ class QueryClient {
   CommandOrigin origin_;
   ClientSink& sink_;
   const QueryHost& host_;
-  Feed feed_;
+  engine::Feed feed_;
   bool wants_log_ = false;
   std::uint64_t seen_line_ = 0;
   double error_window_start_ = 0;  // start of the current second, s
   int errors_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::oscquery

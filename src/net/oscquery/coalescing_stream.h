@@ -15,7 +15,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/websocket/teardown.hpp>
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The layer below Beast's WebSocket stream. Beast's own writes (pongs, close frames) and append() are sent in call
 /// order and never interleaved.
@@ -89,4 +89,4 @@ void async_teardown(boost::beast::role_type role, CoalescingStream& stream, Hand
 }
 inline void beast_close_socket(CoalescingStream& stream) { stream.next_layer().close(); }
 
-}  // namespace limber
+}  // namespace limber::oscquery

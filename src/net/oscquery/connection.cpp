@@ -17,7 +17,7 @@
 
 #include "net/oscquery/web_socket.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
@@ -170,4 +170,4 @@ void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context
   allowed ? connection->reject_too_many() : connection->reject_address();
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

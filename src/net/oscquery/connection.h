@@ -10,7 +10,7 @@
 
 #include "net/oscquery/hub.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// Limits per client and for the whole server.
 struct QueryLimits {
@@ -72,4 +72,4 @@ class ConnectionSlot {
 /// Serves a client for the whole lifetime of its connection. `context` must outlive the io_context's handlers.
 void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context);
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -10,7 +10,7 @@
 
 #include "base/message.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The application's side of the query server.
 struct QueryHost {
@@ -27,4 +27,4 @@ struct QueryHost {
   std::function<bool(std::uint32_t ip)> is_allowed = [](std::uint32_t) { return true; };
 };
 
-}  // namespace limber
+}  // namespace limber::oscquery

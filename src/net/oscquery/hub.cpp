@@ -8,7 +8,7 @@
 
 #include "net/oscquery/path_events.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -18,7 +18,7 @@ HttpResponse too_busy(const char* reason) {
 
 }  // namespace
 
-QueryHub::QueryHub(EngineLink& link, QueryHost host, std::vector<std::string> names, double (*now)())
+QueryHub::QueryHub(engine::EngineLink& link, QueryHost host, std::vector<std::string> names, double (*now)())
     : link_(link), host_(std::move(host)), names_(std::move(names)), now_(now) {}
 
 HostInfo QueryHub::info() const { return {names_, host_.osc_port()}; }
@@ -45,7 +45,7 @@ void QueryHub::request_values() {
 
 void QueryHub::on_link_event() {
   send_replies();
-  const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+  const std::shared_ptr<const engine::ValueSnapshot> snapshot = link_.value_snapshots.read();
   if (snapshot == nullptr) return;
   respond_waiting(snapshot);
   if (clients_snapshot_request_ == 0 || snapshot->request < clients_snapshot_request_) return;
@@ -54,7 +54,7 @@ void QueryHub::on_link_event() {
   if (std::exchange(request_again_, false)) request_values();
 }
 
-void QueryHub::update_clients(const std::shared_ptr<const ValueSnapshot>& snapshot) {
+void QueryHub::update_clients(const std::shared_ptr<const engine::ValueSnapshot>& snapshot) {
   std::vector<std::string> events;
   if (snapshot_ != nullptr && snapshot_->tree != snapshot->tree)
     events = path_events_between(*snapshot_->tree, *snapshot->tree);
@@ -65,7 +65,7 @@ void QueryHub::update_clients(const std::shared_ptr<const ValueSnapshot>& snapsh
   }
 }
 
-void QueryHub::respond_waiting(const std::shared_ptr<const ValueSnapshot>& snapshot) {
+void QueryHub::respond_waiting(const std::shared_ptr<const engine::ValueSnapshot>& snapshot) {
   std::vector<WaitingRequest> ready;
   std::erase_if(waiting_requests_, [&](WaitingRequest& w) {
     if (snapshot->request < w.snapshot_request) return false;
@@ -101,7 +101,7 @@ void QueryHub::tick() {
     expired.push_back(std::move(w));
     return true;
   });
-  const std::shared_ptr<const ValueSnapshot> snapshot = link_.value_snapshots.read();
+  const std::shared_ptr<const engine::ValueSnapshot> snapshot = link_.value_snapshots.read();
   for (const WaitingRequest& waiting : expired) {
     waiting.respond(snapshot != nullptr ? respond_from_tree(waiting.request, *snapshot)
                                         : too_busy("the simulation is busy; try again"));
@@ -110,10 +110,10 @@ void QueryHub::tick() {
 
 void QueryHub::send_replies() {
   link_.query_output_queue.drain(replies_);
-  for (const Outgoing& out : replies_) {
+  for (const engine::Outgoing& out : replies_) {
     const auto to = std::ranges::find_if(clients_, [&](const QueryClient* c) { return c->origin() == out.origin; });
     if (to != clients_.end()) (*to)->send_reply(out, now_());
   }
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -13,7 +13,7 @@
 #include "net/oscquery/client.h"
 #include "net/oscquery/request.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The part of the query server between the engine and its connections.
 class QueryHub {
@@ -28,7 +28,8 @@ class QueryHub {
   using Respond = std::function<void(HttpResponse answer)>;
 
   /// `now` returns a time in seconds. `link` must outlive the hub.
-  QueryHub(EngineLink& link, QueryHost host, std::vector<std::string> names, double (*now)() = &system::clock_seconds);
+  QueryHub(engine::EngineLink& link, QueryHost host, std::vector<std::string> names,
+           double (*now)() = &system::clock_seconds);
 
   const QueryHost& host() const { return host_; }
   HostInfo info() const;
@@ -57,21 +58,21 @@ class QueryHub {
     double since = 0;
   };
 
-  void update_clients(const std::shared_ptr<const ValueSnapshot>& snapshot);
-  void respond_waiting(const std::shared_ptr<const ValueSnapshot>& snapshot);
+  void update_clients(const std::shared_ptr<const engine::ValueSnapshot>& snapshot);
+  void respond_waiting(const std::shared_ptr<const engine::ValueSnapshot>& snapshot);
   void send_replies();
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   const QueryHost host_;
   const std::vector<std::string> names_;
   double (*now_)();
   std::vector<WaitingRequest> waiting_requests_;
   std::vector<QueryClient*> clients_;
-  std::shared_ptr<const ValueSnapshot> snapshot_;  // the last one sent to the clients
-  std::uint64_t clients_snapshot_request_ = 0;     // request number for the clients; 0: none is pending
-  bool request_again_ = false;                     // request another one after it
-  double last_request_ = 0;                        // time of the last request for the clients, s
-  std::vector<Outgoing> replies_;
+  std::shared_ptr<const engine::ValueSnapshot> snapshot_;  // the last one sent to the clients
+  std::uint64_t clients_snapshot_request_ = 0;             // request number for the clients; 0: none is pending
+  bool request_again_ = false;                             // request another one after it
+  double last_request_ = 0;                                // time of the last request for the clients, s
+  std::vector<engine::Outgoing> replies_;
 };
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -6,7 +6,7 @@
 #include "base/check.h"
 #include "base/embedded.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 std::span<const EmbeddedFile> panel_files();
 
@@ -40,4 +40,4 @@ std::string_view panel_page() {
   return page;
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace limber {
+namespace limber::oscquery {
 
 /// Returns the page; valid for the lifetime of the program. [any]
 std::string_view panel_page();
 
-}  // namespace limber
+}  // namespace limber::oscquery

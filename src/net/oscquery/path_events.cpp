@@ -10,7 +10,7 @@
 
 #include "net/oscquery/attributes.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::vector<std::string> path_events_between(const TreeSnapshot& before, const T
   return frames;
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -6,7 +6,7 @@
 
 #include "properties/tree_snapshot.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 inline constexpr std::size_t kMaxPathEvents = 64;
 
@@ -15,4 +15,4 @@ inline constexpr std::size_t kMaxPathEvents = 64;
 /// events are replaced by one PATH_CHANGED of their common parent.
 std::vector<std::string> path_events_between(const TreeSnapshot& before, const TreeSnapshot& after);
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -15,7 +15,7 @@
 #include "net/oscquery/page.h"
 #include "net/oscquery/tree_json.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -98,7 +98,7 @@ Result<TreePropertyRef> find(const TreeSnapshot& tree, std::string_view path) {
   return unescaped ? unescaped : ref;
 }
 
-HttpResponse attribute_of(const ValueSnapshot& snapshot, const TreePropertyRef& ref, std::string_view name) {
+HttpResponse attribute_of(const engine::ValueSnapshot& snapshot, const TreePropertyRef& ref, std::string_view name) {
   const auto member = [&](std::string_view json) { return json_response(fmt::format(R"({{"{}":{}}})", name, json)); };
   HttpResponse nothing = no_content();
   if (name == "FULL_PATH") return member(json_text(snapshot.tree->path(ref)));
@@ -164,7 +164,7 @@ std::optional<HttpResponse> respond_without_tree(const HttpRequest& request, con
                                     name_hint(target.key.substr(0, 100), known_attributes())));
 }
 
-HttpResponse respond_from_tree(const HttpRequest& request, const ValueSnapshot& snapshot) {
+HttpResponse respond_from_tree(const HttpRequest& request, const engine::ValueSnapshot& snapshot) {
   const ParsedTarget target = parse_target(request.target);
   const Result<TreePropertyRef> ref = find(*snapshot.tree, target.path);
   if (!ref) return rejection(404, ref.error());
@@ -195,4 +195,4 @@ std::string host_info_json(const HostInfo& info) {
   return text + "}";
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -9,7 +9,7 @@
 
 #include "engine/output/value_snapshot.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The relevant parts of a request. Untrusted text.
 struct HttpRequest {
@@ -43,9 +43,9 @@ std::optional<HttpResponse> reject_unknown_origin(const HttpRequest& request, co
 std::optional<HttpResponse> respond_without_tree(const HttpRequest& request, const HostInfo& info);
 
 /// Returns the response for a path of the tree.
-HttpResponse respond_from_tree(const HttpRequest& request, const ValueSnapshot& snapshot);
+HttpResponse respond_from_tree(const HttpRequest& request, const engine::ValueSnapshot& snapshot);
 
 /// Returns the HOST_INFO document, `{"NAME":…,"EXTENSIONS":{…},…}`.
 std::string host_info_json(const HostInfo& info);
 
-}  // namespace limber
+}  // namespace limber::oscquery

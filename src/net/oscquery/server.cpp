@@ -18,7 +18,7 @@
 #include "base/text.h"
 #include "net/oscquery/connection.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace net = boost::asio;
 using tcp = boost::asio::ip::tcp;
@@ -40,7 +40,7 @@ std::vector<std::string> own_names(const QueryHost& host) {
 }  // namespace
 
 struct QueryServer::Running {
-  Running(EngineLink& link, const QueryHost& host, const std::shared_ptr<system::Wake>& engine_wake)
+  Running(engine::EngineLink& link, const QueryHost& host, const std::shared_ptr<system::Wake>& engine_wake)
       : wake(engine_wake), hub(link, host, own_names(host)) {}
   ~Running() {
     io.stop();
@@ -129,7 +129,7 @@ struct QueryServer::Running {
   std::thread thread;
 };
 
-QueryServer::QueryServer(EngineLink& link, QueryHost host)
+QueryServer::QueryServer(engine::EngineLink& link, QueryHost host)
     : link_(link), host_(std::move(host)), wake_(std::make_shared<system::Wake>()) {
   link_.wake_query = [wake = wake_] { wake->notify(); };
 }
@@ -159,4 +159,4 @@ std::uint16_t QueryServer::port() const {
   return running_ == nullptr ? std::uint16_t{0} : running_->acceptor.local_endpoint(ignored).port();
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

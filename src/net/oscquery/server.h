@@ -11,14 +11,14 @@
 #include "engine/output/engine_link.h"
 #include "net/oscquery/host.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// The HTTP and WebSocket server.
 class QueryServer {
  public:
   /// Create it before the engine starts: the constructor sets `link.wake_query`, which stays callable after the server
   /// is destroyed. `link` must outlive the server.
-  QueryServer(EngineLink& link, QueryHost host);
+  QueryServer(engine::EngineLink& link, QueryHost host);
   ~QueryServer();
   QueryServer(const QueryServer&) = delete;
   QueryServer& operator=(const QueryServer&) = delete;
@@ -34,10 +34,10 @@ class QueryServer {
 
  private:
   struct Running;
-  EngineLink& link_;
+  engine::EngineLink& link_;
   QueryHost host_;
   std::unique_ptr<Running> running_;
   std::shared_ptr<system::Wake> wake_;
 };
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "net/oscquery/attributes.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace {
 
@@ -34,7 +34,8 @@ int max_levels(const TreeSnapshot& tree, std::uint32_t top) {
 
 class Writer {
  public:
-  Writer(const ValueSnapshot& snapshot, std::string& out) : snapshot_(snapshot), tree_(*snapshot.tree), out_(out) {}
+  Writer(const engine::ValueSnapshot& snapshot, std::string& out)
+      : snapshot_(snapshot), tree_(*snapshot.tree), out_(out) {}
 
   void write_property(const std::string& path, const TreePropertyRef& ref) {
     out_ += R"({"FULL_PATH":)";
@@ -77,14 +78,14 @@ class Writer {
     });
   }
 
-  const ValueSnapshot& snapshot_;
+  const engine::ValueSnapshot& snapshot_;
   const TreeSnapshot& tree_;
   std::string& out_;
 };
 
 }  // namespace
 
-std::string node_json(const ValueSnapshot& snapshot, const TreePropertyRef& ref, int depth) {
+std::string node_json(const engine::ValueSnapshot& snapshot, const TreePropertyRef& ref, int depth) {
   std::string out;
   Writer writer(snapshot, out);
   const std::string path = snapshot.tree->path(ref);
@@ -96,7 +97,7 @@ std::string node_json(const ValueSnapshot& snapshot, const TreePropertyRef& ref,
   return out;
 }
 
-std::string find_json(const ValueSnapshot& snapshot, std::string_view words, std::size_t limit) {
+std::string find_json(const engine::ValueSnapshot& snapshot, std::string_view words, std::size_t limit) {
   const TreeSnapshot& tree = *snapshot.tree;
   std::vector<std::string> normalized;
   for (const std::string_view word : split(words, ' ')) {
@@ -122,9 +123,9 @@ std::string find_json(const ValueSnapshot& snapshot, std::string_view words, std
   return out + fmt::format(R"(],"MORE":{}}})", found > limit);
 }
 
-std::string property_value_json(const ValueSnapshot& snapshot, const TreePropertyRef& ref) {
+std::string property_value_json(const engine::ValueSnapshot& snapshot, const TreePropertyRef& ref) {
   if (ref.property == nullptr || ref.property->kind == PropertyKind::action) return "";
   return value_json(*ref.property, snapshot.value(snapshot.tree->location(ref)));
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

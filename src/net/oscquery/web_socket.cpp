@@ -13,7 +13,7 @@
 
 #include "net/oscquery/coalescing_stream.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 namespace net = boost::asio;
 namespace beast = boost::beast;
@@ -155,4 +155,4 @@ void serve_web_socket(beast::tcp_stream stream, const beast::http::request<beast
   std::make_shared<WebSocket>(std::move(stream), context, std::move(slot))->run(upgrade);
 }
 
-}  // namespace limber
+}  // namespace limber::oscquery

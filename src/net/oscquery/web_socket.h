@@ -8,11 +8,11 @@
 
 #include "net/oscquery/connection.h"
 
-namespace limber {
+namespace limber::oscquery {
 
 /// Accepts the upgrade and serves the client until either side closes the connection.
 void serve_web_socket(boost::beast::tcp_stream stream,
                       const boost::beast::http::request<boost::beast::http::empty_body>& upgrade, QueryContext& context,
                       ConnectionSlot slot);
 
-}  // namespace limber
+}  // namespace limber::oscquery

@@ -5,7 +5,7 @@
 #include "script/api/script_context.h"
 #include "sim/behavior/behavior_list.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 std::int32_t table_name(void* c, std::int32_t table) {
   ScriptContext& context = context_of(c);
@@ -26,23 +26,23 @@ std::int32_t behavior_type(void* c, const char* type, std::int32_t length, std::
 void select_clear(void* c) { context_of(c).arguments.selections = {}; }
 
 void select_none(void* c, std::int32_t of) {
-  context_of(c).arguments.selections[static_cast<std::size_t>(of)] = Selection(std::vector<std::string>{});
+  context_of(c).arguments.selections[static_cast<std::size_t>(of)] = sim::Selection(std::vector<std::string>{});
 }
 
 void select_word(void* c, std::int32_t of, const char* text, std::int32_t length) {
-  Selection& selection = context_of(c).arguments.selections[static_cast<std::size_t>(of)];
+  sim::Selection& selection = context_of(c).arguments.selections[static_cast<std::size_t>(of)];
   std::vector<std::string> words = selection.words();
   words.emplace_back(text_of(text, length));
-  selection = Selection(std::move(words));
+  selection = sim::Selection(std::move(words));
 }
 
 std::int32_t add_behavior(void* c, std::int32_t slot, std::int32_t generation, const char* type,
                           std::int32_t type_length, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  Body* body = object_of<Body>(context, id_of(slot, generation));
+  sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
   const auto& selections = context.arguments.selections;
-  const Result<Behavior*> behavior =
+  const Result<sim::Behavior*> behavior =
       context.world->behaviors().add(*body, text_of(type, type_length), std::string(text_of(name, length)),
                                      {selections[0], selections[1], selections[2]});
   return behavior ? context.set_id((*behavior)->id()) : context.reject(behavior.error());
@@ -51,7 +51,7 @@ std::int32_t add_behavior(void* c, std::int32_t slot, std::int32_t generation, c
 std::int32_t add_group(void* c, const char* type, std::int32_t type_length, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
   const auto& selections = context.arguments.selections;
-  const Result<BehaviorGroup*> group = context.world->behaviors().add_group(
+  const Result<sim::BehaviorGroup*> group = context.world->behaviors().add_group(
       text_of(type, type_length), std::string(text_of(name, length)), {selections[3], selections[0], selections[4]});
   return group ? context.set_id((*group)->id()) : context.reject(group.error());
 }
@@ -59,11 +59,11 @@ std::int32_t add_group(void* c, const char* type, std::int32_t type_length, cons
 std::int32_t behavior_text(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
-  if (const BehaviorGroup* group = group_of(context, id)) return context.set_text(group->type().name);
-  const Behavior* const behavior = behavior_of(context, id);
+  if (const sim::BehaviorGroup* group = group_of(context, id)) return context.set_text(group->type().name);
+  const sim::Behavior* const behavior = behavior_of(context, id);
   if (behavior == nullptr) return kRemoved;
   if (which == 0) return context.set_text(behavior->type().name);
   return behavior->error().empty() ? kRejected : context.set_text(behavior->error());
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

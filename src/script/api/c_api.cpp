@@ -8,7 +8,7 @@
 #include "sim/neighbors/mass_table.h"
 #include "sim/neighbors/neighbor_set.h"
 
-namespace limber {
+namespace limber::script {
 
 static_assert(sizeof(LimberSlot) == sizeof(NodeSlot));
 static_assert(offsetof(LimberSlot, generation) == offsetof(NodeSlot, generation));
@@ -25,20 +25,20 @@ static_assert(offsetof(LimberView, persistent) == offsetof(StoreView, persistent
 static_assert(offsetof(LimberView, transient) == offsetof(StoreView, transient));
 static_assert(offsetof(LimberView, slot_count) == offsetof(StoreView, slot_count));
 
-static_assert(sizeof(LimberMassEntry) == sizeof(MassProperties));
-static_assert(offsetof(LimberMassEntry, inertia_x) == offsetof(MassProperties, unit_inertia));
-static_assert(sizeof(LimberMassTable) == sizeof(MassTable::View));
-static_assert(offsetof(LimberMassTable, indices) == offsetof(MassTable::View, index_of_slot));
-static_assert(sizeof(LimberNeighbor) == sizeof(Neighbor));
-static_assert(offsetof(LimberNeighbor, index) == offsetof(Neighbor, index));
-static_assert(offsetof(LimberNeighbor, x) == offsetof(Neighbor, offset));
-static_assert(offsetof(LimberNeighbor, distance) == offsetof(Neighbor, distance));
+static_assert(sizeof(LimberMassEntry) == sizeof(sim::MassProperties));
+static_assert(offsetof(LimberMassEntry, inertia_x) == offsetof(sim::MassProperties, unit_inertia));
+static_assert(sizeof(LimberMassTable) == sizeof(sim::MassTable::View));
+static_assert(offsetof(LimberMassTable, indices) == offsetof(sim::MassTable::View, index_of_slot));
+static_assert(sizeof(LimberNeighbor) == sizeof(sim::Neighbor));
+static_assert(offsetof(LimberNeighbor, index) == offsetof(sim::Neighbor, index));
+static_assert(offsetof(LimberNeighbor, x) == offsetof(sim::Neighbor, offset));
+static_assert(offsetof(LimberNeighbor, distance) == offsetof(sim::Neighbor, distance));
 
-static_assert(sizeof(LimberMeans) == sizeof(NeighborMeans));
-static_assert(offsetof(LimberMeans, offset) == offsetof(NeighborMeans, offset));
-static_assert(offsetof(LimberMeans, velocity) == offsetof(NeighborMeans, velocity));
-static_assert(offsetof(LimberMeans, angular_velocity) == offsetof(NeighborMeans, angular_velocity));
-static_assert(offsetof(LimberMeans, separation) == offsetof(NeighborMeans, separation));
+static_assert(sizeof(LimberMeans) == sizeof(sim::NeighborMeans));
+static_assert(offsetof(LimberMeans, offset) == offsetof(sim::NeighborMeans, offset));
+static_assert(offsetof(LimberMeans, velocity) == offsetof(sim::NeighborMeans, velocity));
+static_assert(offsetof(LimberMeans, angular_velocity) == offsetof(sim::NeighborMeans, angular_velocity));
+static_assert(offsetof(LimberMeans, separation) == offsetof(sim::NeighborMeans, separation));
 
 const LimberApi& limber_api() {
   static const LimberApi api = {
@@ -68,4 +68,4 @@ const std::string& limber_cdef() {
   return text;
 }
 
-}  // namespace limber
+}  // namespace limber::script

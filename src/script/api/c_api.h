@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace limber {
+namespace limber::script {
 
 #define LIMBER_STRUCT(...) __VA_ARGS__
 #define LIMBER_CALL(result, name, arguments)
@@ -40,4 +40,4 @@ const LimberApi& limber_api();
 /// The same declarations as text for LuaJIT's ffi.cdef.
 const std::string& limber_cdef();
 
-}  // namespace limber
+}  // namespace limber::script

@@ -4,7 +4,7 @@
 #include "script/scene/script_host.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 constexpr std::size_t kMaxText = std::size_t{1} << 20u;  // bytes per call
@@ -18,7 +18,7 @@ bool CallEffects::send(Route route, const CommandOrigin& to, Message message) {
   return true;
 }
 
-void CallEffects::apply(World& world, ScriptHost& host) {
+void CallEffects::apply(sim::World& world, ScriptHost& host) {
   forces.apply(world.force_accumulators());
   for (RoutedMessage& routed : messages_) {
     if (routed.route == Route::all) {
@@ -39,4 +39,4 @@ void CallEffects::clear() {
   presets_.clear();
 }
 
-}  // namespace limber
+}  // namespace limber::script

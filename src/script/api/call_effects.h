@@ -11,7 +11,7 @@
 #include "base/message.h"
 #include "script/api/force_queue.h"
 
-namespace limber {
+namespace limber::script {
 
 class ScriptHost;
 
@@ -33,7 +33,7 @@ class CallEffects {
   /// True if the call can be joined with the next one, because it requested nothing but forces and presets.
   bool can_wait() const { return messages_.empty() && !reset_ && !panic_; }
   /// Applies the forces and passes the requests to the host.
-  void apply(World& world, ScriptHost& host);
+  void apply(sim::World& world, ScriptHost& host);
   /// Removes the messages and presets.
   void clear();
 
@@ -52,4 +52,4 @@ class CallEffects {
   bool panic_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::script

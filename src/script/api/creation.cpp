@@ -17,7 +17,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -39,7 +39,7 @@ bool is_full(ScriptContext& c) {
 }
 
 // pose of a body's root; NaN means "as the model places it"
-void set_placement(BuildOptions& build, const double* pose) {
+void set_placement(sim::BuildOptions& build, const double* pose) {
   build.position.reset();
   build.rotation.reset();
   if (std::isfinite(pose[0])) build.position = Vec3(pose[0], pose[1], pose[2]);
@@ -51,27 +51,27 @@ void mark_explicit(const ScriptContext& c, NodeId id, std::string_view property)
   Store& store = c.world->store();
   if (c.answer.top_level != 0) store.mark_explicitly_set(id, store.table(id).at(property));
 }
-void mark_pose_explicit(const ScriptContext& c, NodeId id, const BuildOptions& options) {
+void mark_pose_explicit(const ScriptContext& c, NodeId id, const sim::BuildOptions& options) {
   if (options.position) mark_explicit(c, id, "position");
   if (options.rotation) mark_explicit(c, id, "rotation");
 }
 
-void log_problems(const BodyModel& model) {
-  for (const std::string& line : load_messages(model)) log_warning("{}", line);
+void log_problems(const model::BodyModel& model) {
+  for (const std::string& line : model::load_messages(model)) log_warning("{}", line);
 }
 
 // hull of points given by a script, or of a mesh file with a different vertex limit
-std::shared_ptr<MeshModel> mesh_of_points(std::vector<Vec3> points, std::string name, int max_vertices,
-                                          double tolerance) {
-  const Hull hull = reduced_hull(points, {16, max_vertices, tolerance});
-  auto mesh = std::make_shared<MeshModel>();
+std::shared_ptr<model::MeshModel> mesh_of_points(std::vector<Vec3> points, std::string name, int max_vertices,
+                                                 double tolerance) {
+  const model::Hull hull = model::reduced_hull(points, {16, max_vertices, tolerance});
+  auto mesh = std::make_shared<model::MeshModel>();
   mesh->name = std::move(name);
   mesh->vertices = hull.vertices;
   mesh->triangles = hull.triangles;
   mesh->hull = hull.vertices;
   mesh->hull_error = hull.error;
   mesh->closed = true;
-  mesh->unit_inertial = unit_inertial_of(hull.vertices, hull.triangles);
+  mesh->unit_inertial = model::unit_inertial_of(hull.vertices, hull.triangles);
   return mesh;
 }
 
@@ -82,38 +82,39 @@ Error not_loaded(std::string_view file) {
                   file)};
 }
 
-Result<std::shared_ptr<const MeshModel>> read_mesh(const ScriptContext& c, std::string_view file, const Vec3& scale,
-                                                   int max_vertices) {
+Result<std::shared_ptr<const model::MeshModel>> read_mesh(const ScriptContext& c, std::string_view file,
+                                                          const Vec3& scale, int max_vertices) {
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const MeshModel>> mesh = c.sources->mesh(*path, scale);
-  if (!mesh || max_vertices == HullLimits{}.max_vertices) return mesh;
-  auto changed = std::make_shared<MeshModel>(**mesh);
-  const Hull hull = reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, HullLimits{}.tolerance});
+  Result<std::shared_ptr<const model::MeshModel>> mesh = c.sources->mesh(*path, scale);
+  if (!mesh || max_vertices == model::HullLimits{}.max_vertices) return mesh;
+  auto changed = std::make_shared<model::MeshModel>(**mesh);
+  const model::Hull hull =
+      model::reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, model::HullLimits{}.tolerance});
   changed->hull = hull.vertices;
   changed->hull_error = hull.error;
-  return std::shared_ptr<const MeshModel>(std::move(changed));
+  return std::shared_ptr<const model::MeshModel>(std::move(changed));
 }
 
-Result<std::shared_ptr<const MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
-                                                      int max_vertices) {
+Result<std::shared_ptr<const model::MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
+                                                             int max_vertices) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}|{}", file, scale.x, scale.y, scale.z, max_vertices);
   const auto known = c.loaded.meshes.find(key);
   if (known != c.loaded.meshes.end()) return known->second;
   if (c.answer.top_level == 0) return not_loaded(file);
-  Result<std::shared_ptr<const MeshModel>> mesh = read_mesh(c, file, scale, max_vertices);
+  Result<std::shared_ptr<const model::MeshModel>> mesh = read_mesh(c, file, scale, max_vertices);
   if (mesh) c.loaded.meshes[key] = *mesh;
   return mesh;
 }
 
-Result<std::shared_ptr<const BodyModel>> model_of_file(ScriptContext& c, std::string_view file) {
-  const std::string key = fmt::format("{}|{}", file, options_key(c.arguments.import));
+Result<std::shared_ptr<const model::BodyModel>> model_of_file(ScriptContext& c, std::string_view file) {
+  const std::string key = fmt::format("{}|{}", file, model::options_key(c.arguments.import));
   const auto known = c.loaded.models.find(key);
   if (known != c.loaded.models.end()) return known->second;
   if (c.answer.top_level == 0) return not_loaded(file);
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const BodyModel>> model = c.sources->model(*path, c.arguments.import);
+  Result<std::shared_ptr<const model::BodyModel>> model = c.sources->model(*path, c.arguments.import);
   if (!model) return model;
   log_problems(**model);
   c.loaded.models[key] = *model;
@@ -131,14 +132,14 @@ std::int32_t add_body(void* c, const char* name, std::int32_t length) {
 std::int32_t copy_body(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
-  const Body* source = object_of<Body>(context, id_of(slot, generation));
+  const sim::Body* source = object_of<sim::Body>(context, id_of(slot, generation));
   if (source == nullptr) return kRemoved;
   return creation_result(context, context.world->copy_body(*source, std::string(text_of(name, length))));
 }
 
 std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  Body* body = object_of<Body>(context, id_of(slot, generation));
+  sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
   context.world->remove_body(*body);
   return kOk;
@@ -147,13 +148,13 @@ std::int32_t remove_body(void* c, std::int32_t slot, std::int32_t generation) {
 std::int32_t edit_pair(void* c, std::int32_t slot, std::int32_t generation, std::int32_t a_slot,
                        std::int32_t a_generation, std::int32_t b_slot, std::int32_t b_generation, std::int32_t edit) {
   ScriptContext& context = context_of(c);
-  Body* const body = object_of<Body>(context, id_of(slot, generation));
-  const Part* const a = object_of<Part>(context, id_of(a_slot, a_generation));
-  const Part* const b = object_of<Part>(context, id_of(b_slot, b_generation));
+  sim::Body* const body = object_of<sim::Body>(context, id_of(slot, generation));
+  const sim::Part* const a = object_of<sim::Part>(context, id_of(a_slot, a_generation));
+  const sim::Part* const b = object_of<sim::Part>(context, id_of(b_slot, b_generation));
   if (body == nullptr || a == nullptr || b == nullptr) return kRemoved;
-  const Result<void> done = body->pairs().edit(*a, *b, static_cast<PairEdit>(edit));
+  const Result<void> done = body->pairs().edit(*a, *b, static_cast<sim::PairEdit>(edit));
   if (!done) return context.reject(done.error());
-  if (static_cast<PairEdit>(edit) != PairEdit::included) return kOk;
+  if (static_cast<sim::PairEdit>(edit) != sim::PairEdit::included) return kOk;
   for (const auto& joint : body->joints()) {
     const bool joined =
         (&joint->parent() == a && &joint->child() == b) || (&joint->parent() == b && &joint->child() == a);
@@ -167,10 +168,10 @@ std::int32_t edit_pair(void* c, std::int32_t slot, std::int32_t generation, std:
 
 std::int32_t excluded_pair(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const Body* const body = object_of<Body>(context, id_of(slot, generation));
+  const sim::Body* const body = object_of<sim::Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
   std::int32_t count = 0;
-  for (const PartPair& pair : body->pairs().list()) {
+  for (const sim::PartPair& pair : body->pairs().list()) {
     if (!pair.excluded() || count++ != index) continue;
     context.answer.number[0] = pair.a;
     context.answer.number[1] = pair.b;
@@ -184,17 +185,17 @@ std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const
                       std::int32_t shape_slot, std::int32_t shape_generation, double mass, const double* pose) {
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
-  Body* body = object_of<Body>(context, id_of(slot, generation));
-  Shape* shape = object_of<Shape>(context, id_of(shape_slot, shape_generation));
+  sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
+  sim::Shape* shape = object_of<sim::Shape>(context, id_of(shape_slot, shape_generation));
   if (body == nullptr || shape == nullptr) return kRemoved;
   // by default the first part is placed at the body's pose
   const Pose default_pose = body->parts().empty() ? body->pose() : Pose{};
-  BuildOptions placement;
+  sim::BuildOptions placement;
   set_placement(placement, pose);
   const Pose at{placement.position.value_or(default_pose.position), placement.rotation.value_or(default_pose.rotation)};
   // a negative mass means "not given"
-  const double used_mass = mass >= 0 ? mass : shape->model().kind == ShapeKind::plane ? 0 : 1;
-  const Result<Part*> part = body->add_part(std::string(text_of(name, length)), *shape, used_mass, at);
+  const double used_mass = mass >= 0 ? mass : shape->model().kind == model::ShapeKind::plane ? 0 : 1;
+  const Result<sim::Part*> part = body->add_part(std::string(text_of(name, length)), *shape, used_mass, at);
   if (part && mass > 0) mark_explicit(context, (*part)->id(), "mass");
   if (part) mark_pose_explicit(context, (*part)->id(), placement);
   return creation_result(context, part);
@@ -207,15 +208,15 @@ std::int32_t add_joint(void* c, std::int32_t slot, std::int32_t generation, cons
   const Store& store = context.world->store();
   const auto part_at = [&](std::int32_t part_slot) {
     const auto of_slot = static_cast<std::size_t>(part_slot);
-    return object_of<Part>(context,
-                           id_of(part_slot, static_cast<std::int32_t>(store.view()->slots[of_slot].generation)));
+    return object_of<sim::Part>(context,
+                                id_of(part_slot, static_cast<std::int32_t>(store.view()->slots[of_slot].generation)));
   };
-  Body* body = object_of<Body>(context, id_of(slot, generation));
-  Part* parent = part_at(parent_slot);
-  Part* child = part_at(child_slot);
+  sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
+  sim::Part* parent = part_at(parent_slot);
+  sim::Part* child = part_at(child_slot);
   if (body == nullptr || parent == nullptr || child == nullptr) return kRemoved;
   const std::string_view type_text = text_of(type, type_length);
-  const std::optional<JointType> wanted = joint_type_named(type_text);
+  const std::optional<model::JointType> wanted = model::joint_type_named(type_text);
   if (!wanted) {
     const std::vector<std::string> types = {"revolute", "prismatic", "spherical", "planar", "floating", "fixed"};
     return context.reject(fmt::format("joint '{}/{}': there is no joint type '{}'{}", body->name(),
@@ -227,7 +228,7 @@ std::int32_t add_joint(void* c, std::int32_t slot, std::int32_t generation, cons
 
 std::int32_t add_motor(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  Joint* joint = object_of<Joint>(context, id_of(slot, generation));
+  sim::Joint* joint = object_of<sim::Joint>(context, id_of(slot, generation));
   if (joint == nullptr) return kRemoved;
   return creation_result(context, joint->body().add_motor(*joint));
 }
@@ -236,12 +237,12 @@ std::int32_t add_gear(void* c, const char* name, std::int32_t length, std::int32
                       std::int32_t slot_b, std::int32_t generation_b, double ratio, double offset) {
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
-  Joint* a = object_of<Joint>(context, id_of(slot_a, generation_a));
-  Joint* b = object_of<Joint>(context, id_of(slot_b, generation_b));
+  sim::Joint* a = object_of<sim::Joint>(context, id_of(slot_a, generation_a));
+  sim::Joint* b = object_of<sim::Joint>(context, id_of(slot_b, generation_b));
   if (a == nullptr || b == nullptr) return kRemoved;
   const bool given = !std::isnan(offset);
-  const Result<Gear*> gear = context.world->gears().add(std::string(text_of(name, length)), *a, *b, ratio,
-                                                        given ? std::optional(offset) : std::nullopt);
+  const Result<sim::Gear*> gear = context.world->gears().add(std::string(text_of(name, length)), *a, *b, ratio,
+                                                             given ? std::optional(offset) : std::nullopt);
   if (gear && given) mark_explicit(context, (*gear)->id(), "offset");
   return creation_result(context, gear);
 }
@@ -250,20 +251,20 @@ std::int32_t add_shape(void* c, const char* name, std::int32_t length, const cha
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
   const std::string_view wanted(kind);
-  ShapeModel model;
+  model::ShapeModel model;
   if (wanted == "plane") {
-    model.kind = ShapeKind::plane;
+    model.kind = model::ShapeKind::plane;
     model.normal = {n[0], n[1], n[2]};
   } else if (wanted == "box") {
-    model.kind = ShapeKind::box;
+    model.kind = model::ShapeKind::box;
     model.size = {n[0], n[1], n[2]};
   } else if (wanted == "compound") {
-    model.kind = ShapeKind::compound;
+    model.kind = model::ShapeKind::compound;
   } else {
-    model.kind = wanted == "sphere"     ? ShapeKind::sphere
-                 : wanted == "cylinder" ? ShapeKind::cylinder
-                 : wanted == "capsule"  ? ShapeKind::capsule
-                                        : ShapeKind::cone;
+    model.kind = wanted == "sphere"     ? model::ShapeKind::sphere
+                 : wanted == "cylinder" ? model::ShapeKind::cylinder
+                 : wanted == "capsule"  ? model::ShapeKind::capsule
+                                        : model::ShapeKind::cone;
     model.radius = n[0];
     model.height = n[1];
   }
@@ -273,8 +274,8 @@ std::int32_t add_shape(void* c, const char* name, std::int32_t length, const cha
 std::int32_t add_child(void* c, std::int32_t slot, std::int32_t generation, std::int32_t child_slot,
                        std::int32_t child_generation, const double* pose) {
   ScriptContext& context = context_of(c);
-  Shape* shape = object_of<Shape>(context, id_of(slot, generation));
-  const Shape* child = object_of<Shape>(context, id_of(child_slot, child_generation));
+  sim::Shape* shape = object_of<sim::Shape>(context, id_of(slot, generation));
+  const sim::Shape* child = object_of<sim::Shape>(context, id_of(child_slot, child_generation));
   if (shape == nullptr || child == nullptr) return kRemoved;
   context.world->transaction().save(*shape);
   const Result<void> done = shape->add_child(*child, pose_at(pose));
@@ -290,8 +291,8 @@ std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, cons
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
   const Vec3 scale(sx, sy, sz);
-  ShapeModel model;
-  model.kind = ShapeKind::mesh;
+  model::ShapeModel model;
+  model.kind = model::ShapeKind::mesh;
   if (file_length > 0) {
     const auto mesh = mesh_of_file(context, text_of(file, file_length), scale, max_vertices);
     if (!mesh) return context.reject(mesh.error());
@@ -339,9 +340,9 @@ std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, cons
   if (!model) return context.reject(model.error());
   set_placement(context.arguments.build, pose);
   const std::string body_name = length > 0 ? std::string(text_of(name, length)) : (*model)->name;
-  const Result<Body*> body = context.world->add_body(*model, body_name, context.arguments.build);
+  const Result<sim::Body*> body = context.world->add_body(*model, body_name, context.arguments.build);
   if (body) mark_pose_explicit(context, (*body)->id(), context.arguments.build);
   return creation_result(context, body);
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

@@ -6,10 +6,12 @@
 
 #include "script/api/c_api.h"
 
-namespace limber {
-
+namespace limber::sim {
 class ForceAccumulators;
 class World;
+}  // namespace limber::sim
+
+namespace limber::script {
 
 class ForceQueue {
  public:
@@ -19,22 +21,22 @@ class ForceQueue {
   /// Doubles the capacity. Returns false at the maximum; apply() frees entries then.
   bool grow();
   /// Marks all entries as coming from successful calls. They are applied later, together with others, to save time.
-  void commit(ForceAccumulators& loads);
+  void commit(sim::ForceAccumulators& loads);
   /// Applies the committed entries in order. Skips parts that have been removed.
-  void apply_committed(ForceAccumulators& loads);
+  void apply_committed(sim::ForceAccumulators& loads);
   /// Applies all entries.
-  void apply(ForceAccumulators& loads);
+  void apply(sim::ForceAccumulators& loads);
   /// Applies all entries in the middle of a call, recording the parts for a rollback if the call fails.
-  void apply_with_rollback(World& world);
+  void apply_with_rollback(sim::World& world);
   /// Discards the entries since commit().
   void discard_uncommitted() { view_.count = committed_; }
 
  private:
-  void apply_range(std::int32_t from, std::int32_t to, ForceAccumulators& loads) const;
+  void apply_range(std::int32_t from, std::int32_t to, sim::ForceAccumulators& loads) const;
 
   std::vector<LimberForce> entries_;
   std::int32_t committed_ = 0;  // number of entries that are committed
   LimberForces view_{};
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -13,7 +13,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -50,7 +50,7 @@ void behavior_forget(void* c, std::int32_t file) { context_of(c).behaviors->remo
 
 std::int32_t behavior_declare(void* c, std::int32_t file, const char* doc, std::int32_t length, std::int32_t is_group) {
   ScriptContext& context = context_of(c);
-  constexpr std::size_t kMaxParameters = 64 - kCommonBehaviorProperties;
+  constexpr std::size_t kMaxParameters = 64 - sim::kCommonBehaviorProperties;
   if (context.arguments.parameters.size() > kMaxParameters) {
     return context.reject(fmt::format("params: a behavior can have at most {} parameters", kMaxParameters));
   }
@@ -65,7 +65,7 @@ void in_behavior(void* c, std::int32_t on) { context_of(c).answer.in_behavior = 
 
 std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kRemoved;
   if (kind == 1) return item_result(context, behavior->parts(), index);
   if (kind == 2) return item_result(context, behavior->joints(), index);
@@ -74,14 +74,14 @@ std::int32_t behavior_item(void* c, std::int32_t slot, std::int32_t generation, 
 
 std::int32_t behavior_body(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kRemoved;
   return context.set_id(behavior->body().id());
 }
 
 std::int32_t behavior_due(void* c, std::int32_t slot, std::int32_t generation, std::int32_t property) {
   const ScriptContext& context = context_of(c);
-  Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kRemoved;
   return behavior->interval_elapsed(behavior->type().table->property(static_cast<std::uint32_t>(property))) ? 1 : 0;
 }
@@ -93,11 +93,11 @@ LimberIteration* iterations(void* c) { return context_of(c).neighbors.iterations
 std::int32_t neighbors(void* c, std::int32_t slot, std::int32_t generation, std::int32_t part_slot,
                        std::int32_t part_generation, double radius, std::int32_t number) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
-  const Part* part = object_of<Part>(context, id_of(part_slot, part_generation));
+  const sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const sim::Part* part = object_of<sim::Part>(context, id_of(part_slot, part_generation));
   if (behavior == nullptr || part == nullptr) return kRemoved;
   const auto at = static_cast<std::size_t>(number);
-  std::vector<Neighbor>& found = context.neighbors.lists[at];
+  std::vector<sim::Neighbor>& found = context.neighbors.lists[at];
   behavior->group()->neighbors().find_near(*part, radius, found);
   LimberIteration& iteration = context.neighbors.iterations[at];
   iteration = {reinterpret_cast<const LimberNeighbor*>(found.data()), 0, static_cast<std::int32_t>(found.size()),
@@ -113,14 +113,14 @@ const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t gener
                                   std::int32_t part_generation, double min_distance, double max_distance,
                                   std::int32_t want) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
-  const Part* part = object_of<Part>(context, id_of(part_slot, part_generation));
+  const sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const sim::Part* part = object_of<sim::Part>(context, id_of(part_slot, part_generation));
   if (behavior == nullptr || part == nullptr) return nullptr;
-  NeighborSet& set = behavior->group()->neighbors();
-  const NeighborMeans& means = set.means_near(*part, min_distance, max_distance, static_cast<unsigned>(want));
+  sim::NeighborSet& set = behavior->group()->neighbors();
+  const sim::NeighborMeans& means = set.means_near(*part, min_distance, max_distance, static_cast<unsigned>(want));
   const std::span<const std::int32_t> numbers = set.index_of_slot();
   if (part->id().slot < numbers.size() && numbers[part->id().slot] >= 0) {
-    const NeighborMeans* const first = &means - numbers[part->id().slot];
+    const sim::NeighborMeans* const first = &means - numbers[part->id().slot];
     context.neighbors.group_means = {reinterpret_cast<const LimberMeans*>(first),
                                      numbers.data(),
                                      static_cast<std::int32_t>(numbers.size()),
@@ -133,15 +133,15 @@ const LimberMeans* neighbor_means(void* c, std::int32_t slot, std::int32_t gener
 }
 
 std::int32_t behavior_group(void* c, std::int32_t slot, std::int32_t generation) {
-  const Behavior* behavior = behavior_of(context_of(c), id_of(slot, generation));
+  const sim::Behavior* behavior = behavior_of(context_of(c), id_of(slot, generation));
   return behavior == nullptr ? kRemoved : static_cast<std::int32_t>(behavior->group()->id().slot);
 }
 
 std::int32_t neighbor_part(void* c, std::int32_t slot, std::int32_t generation, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const Behavior* behavior = behavior_of(context, id_of(slot, generation));
+  const sim::Behavior* behavior = behavior_of(context, id_of(slot, generation));
   if (behavior == nullptr) return kRemoved;
   return item_result(context, behavior->group()->neighbor_parts(), index);
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

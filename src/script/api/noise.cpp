@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -70,4 +70,4 @@ double gradient_noise(double x, double y, double z) {
   return std::clamp(mix(w, layer(0, z), layer(1, z - 1)), -1.0, 1.0);
 }
 
-}  // namespace limber
+}  // namespace limber::script

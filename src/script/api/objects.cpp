@@ -16,7 +16,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -42,16 +42,16 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   if (kind == shapes) return item(c, c.world->shapes().list(), i);
   if (kind == gears) return item(c, c.world->gears().list(), i);
   if (kind == groups) {
-    const std::vector<BehaviorGroup*> all = c.world->behaviors().groups();
-    return item<BehaviorGroup>(c, all, i);
+    const std::vector<sim::BehaviorGroup*> all = c.world->behaviors().groups();
+    return item<sim::BehaviorGroup>(c, all, i);
   }
-  if (const Behavior* behavior = behavior_of(c, id)) {
+  if (const sim::Behavior* behavior = behavior_of(c, id)) {
     c.world->behaviors().update_members();
     if (kind == parts) return item(c, behavior->parts(), i);
     if (kind == joints) return item(c, behavior->joints(), i);
     return item(c, behavior->motors(), i);
   }
-  const Body* body = object_of<Body>(c, id);
+  const sim::Body* body = object_of<sim::Body>(c, id);
   if (body == nullptr) return kRemoved;
   if (kind == behaviors) return item(c, body->behaviors().list(), i);
   if (kind == parts) return item(c, body->parts(), i);
@@ -102,26 +102,26 @@ std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
   // the objects of a body are in its store groups: parts, joints …
   const Store& store = context.world->store();
   const NodeId above = store.parent(store.parent(id_of(slot, generation)));
-  return context.set_id(object_of<Body>(context, above) == nullptr ? NodeId{} : above);
+  return context.set_id(object_of<sim::Body>(context, above) == nullptr ? NodeId{} : above);
 }
 
 std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
   if (!context.alive(id)) return kRemoved;
-  if (const Joint* joint = object_of<Joint>(context, id)) {
+  if (const sim::Joint* joint = object_of<sim::Joint>(context, id)) {
     if (which == 0) return context.set_id(joint->parent().id());
     if (which == 1) return context.set_id(joint->child().id());
     return context.set_id(joint->motor() == nullptr ? NodeId{} : joint->motor()->id());
   }
-  if (const Motor* motor = object_of<Motor>(context, id)) return context.set_id(motor->joint().id());
-  if (const Gear* gear = object_of<Gear>(context, id)) {
+  if (const sim::Motor* motor = object_of<sim::Motor>(context, id)) return context.set_id(motor->joint().id());
+  if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
     return context.set_id(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
   }
-  if (const Part* part = object_of<Part>(context, id)) {
+  if (const sim::Part* part = object_of<sim::Part>(context, id)) {
     return context.set_id(context.alive(part->shape()) ? part->shape() : NodeId{});
   }
-  const Body* body = object_of<Body>(context, id);
+  const sim::Body* body = object_of<sim::Body>(context, id);
   return context.set_id(body == nullptr || body->root() == nullptr ? NodeId{} : body->root()->id());
 }
 
@@ -136,7 +136,7 @@ std::int32_t list_item(void* c, std::int32_t slot, std::int32_t generation, std:
 std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int32_t kind, const char* name,
                   std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const World& world = *context.world;
+  const sim::World& world = *context.world;
   const std::string_view wanted = text_of(name, length);
   if (kind == bodies) return id_or_error(context, world.find_body(wanted), world.bodies(), "body", "there is", wanted);
   if (kind == shapes)
@@ -145,15 +145,15 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     return id_or_error(context, world.gears().find(wanted), world.gears().list(), "gear", "there is", wanted);
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
-    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
-    return find_among<BehaviorGroup>(context, all, "group behavior", id, wanted);
+    const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
+    return find_among<sim::BehaviorGroup>(context, all, "group behavior", id, wanted);
   }
-  if (const Behavior* behavior = behavior_of(context, id)) {
+  if (const sim::Behavior* behavior = behavior_of(context, id)) {
     if (kind == parts) return find_among(context, behavior->parts(), "part", id, wanted);
     if (kind == joints) return find_among(context, behavior->joints(), "joint", id, wanted);
     return find_among(context, behavior->motors(), "motor", id, wanted);
   }
-  const Body* body = object_of<Body>(context, id);
+  const sim::Body* body = object_of<sim::Body>(context, id);
   if (body == nullptr) return kRemoved;
   if (kind == behaviors) return find_among(context, body->behaviors().list(), "behavior", id, wanted);
   // create texts only for errors: a look-up in every tick must not allocate
@@ -170,38 +170,38 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   // Sort order: bodies, each followed by its parts, joints, motors, behaviors; then shapes, gears, groups; removed
   // objects last.
   const ScriptContext& context = context_of(c);
-  const World& world = *context.world;
+  const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
   constexpr double kBody = 0x1p26;
   constexpr double kKind = 0x1p23;
   constexpr double kShapes = 0x1p52;
-  const auto within = [&](const Body& body, double kind, std::size_t at) {
+  const auto within = [&](const sim::Body& body, double kind, std::size_t at) {
     return kBody * static_cast<double>(1 + index_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
   };
-  if (const Body* body = object_of<Body>(context, id)) return within(*body, 0, 0);
-  if (const Part* part = object_of<Part>(context, id)) {
+  if (const sim::Body* body = object_of<sim::Body>(context, id)) return within(*body, 0, 0);
+  if (const sim::Part* part = object_of<sim::Part>(context, id)) {
     return within(part->body(), 1, index_in(part->body().parts(), part));
   }
-  if (const Joint* joint = object_of<Joint>(context, id)) {
+  if (const sim::Joint* joint = object_of<sim::Joint>(context, id)) {
     return within(joint->body(), 2, index_in(joint->body().joints(), joint));
   }
-  if (const Motor* motor = object_of<Motor>(context, id)) {
-    const Body& body = motor->joint().body();
+  if (const sim::Motor* motor = object_of<sim::Motor>(context, id)) {
+    const sim::Body& body = motor->joint().body();
     return within(body, 3, index_in(body.motors(), motor));
   }
-  if (const Behavior* behavior = behavior_of(context, id)) {
-    const std::span<Behavior* const> all = behavior->body().behaviors().list();
+  if (const sim::Behavior* behavior = behavior_of(context, id)) {
+    const std::span<sim::Behavior* const> all = behavior->body().behaviors().list();
     return within(behavior->body(), 4,
                   static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
   }
-  if (const BehaviorGroup* group = group_of(context, id)) {
-    const std::vector<BehaviorGroup*> all = world.behaviors().groups();
+  if (const sim::BehaviorGroup* group = group_of(context, id)) {
+    const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
     return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
   }
-  if (const Gear* gear = object_of<Gear>(context, id)) {
+  if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
     return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));
   }
-  if (const Shape* shape = object_of<Shape>(context, id)) {
+  if (const sim::Shape* shape = object_of<sim::Shape>(context, id)) {
     return kShapes + static_cast<double>(index_in(world.shapes().list(), shape));
   }
   return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
@@ -209,16 +209,16 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
 
 std::int32_t joint_type(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
-  const Joint* joint = object_of<Joint>(context, id_of(slot, generation));
+  const sim::Joint* joint = object_of<sim::Joint>(context, id_of(slot, generation));
   if (joint == nullptr) return kRemoved;
-  return context.set_text(std::string(joint_type_name(joint->type())));
+  return context.set_text(std::string(model::joint_type_name(joint->type())));
 }
 
 std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {
   ScriptContext& context = context_of(c);
-  const Body* body = object_of<Body>(context, id_of(slot, generation));
+  const sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
   if (body == nullptr) return kRemoved;
-  const Result<Pose> pose = limber::link_pose(*body, text_of(name, length));
+  const Result<Pose> pose = limber::sim::link_pose(*body, text_of(name, length));
   if (!pose) return context.reject(pose.error());
   const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
                            pose->rotation.y, pose->rotation.z, pose->rotation.w};
@@ -230,10 +230,10 @@ std::int32_t state_hash(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   const NodeId id = id_of(slot, generation);
   if (!context.alive(id)) return kRemoved;
-  if (const Body* body = object_of<Body>(context, id)) {
-    return context.set_text(fmt::format("{:016x}", body_hash(*body, hash_bytes("limber"))));
+  if (const sim::Body* body = object_of<sim::Body>(context, id)) {
+    return context.set_text(fmt::format("{:016x}", sim::body_hash(*body, hash_bytes("limber"))));
   }
   return context.set_text(fmt::format("{:016x}", context.hash(context.world->state_hash())));
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

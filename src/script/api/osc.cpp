@@ -6,7 +6,7 @@
 #include "script/api/script_context.h"
 #include "script/vm/guard.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::int32_t osc_target(void* c, const char* address, std::int32_t length, doubl
   return kOk;
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

@@ -5,7 +5,7 @@
 #include <array>
 #include <optional>
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -66,4 +66,4 @@ std::uint64_t ParamsNode::carry_over(std::span<const LiveParam> previous) {
   return defaults;
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -9,7 +9,7 @@
 #include "properties/store.h"
 #include "script/scene/run_inputs.h"
 
-namespace limber {
+namespace limber::script {
 
 class ParamsNode {
  public:
@@ -42,4 +42,4 @@ struct SceneParams {
   NodeId id() const { return node == nullptr ? NodeId{} : node->id(); }
 };
 
-}  // namespace limber
+}  // namespace limber::script

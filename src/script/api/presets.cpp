@@ -1,7 +1,7 @@
 // C API: presets.
 #include "script/api/script_context.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 std::int32_t request_preset(void* c) {
   ScriptContext& context = context_of(c);
@@ -17,4 +17,4 @@ void preset_names(void* c) {
   context_of(c).set_text(std::move(names));
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

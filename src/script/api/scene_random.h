@@ -10,7 +10,7 @@
 #include "base/memory/archive.h"
 #include "base/random.h"
 
-namespace limber {
+namespace limber::script {
 
 /// Seeded with the world's seed and the name of the file.
 class SceneRandom {
@@ -51,4 +51,4 @@ class SceneRandom {
   Random random_before_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

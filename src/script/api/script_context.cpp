@@ -14,9 +14,9 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::script {
 
-ScriptContext::ScriptContext(World& w, ScriptHost& h, SceneOptions o)
+ScriptContext::ScriptContext(sim::World& w, ScriptHost& h, SceneOptions o)
     : world(&w),
       host(h),
       options(std::move(o)),
@@ -30,7 +30,7 @@ ScriptContext::~ScriptContext() {
   set_world(nullptr);
 }
 
-void ScriptContext::set_world(World* new_world) {
+void ScriptContext::set_world(sim::World* new_world) {
   if (world != nullptr) {
     world->store().unregister_view(views.store);
     world->mass_table().unregister_view(views.masses);
@@ -100,36 +100,36 @@ void ScriptContext::end_call(bool success) {
   effects.clear();
 }
 
-Behavior* behavior_of(const ScriptContext& c, NodeId id) {
+sim::Behavior* behavior_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   if (!c.alive(id) || store.table(id).name() != "behavior") return nullptr;
-  return static_cast<Behavior*>(store.object(id));
+  return static_cast<sim::Behavior*>(store.object(id));
 }
 
-BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
+sim::BehaviorGroup* group_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   // a node of the store without properties (Store::is_group) is no group of behaviors, but its table has the same name
   if (!c.alive(id) || store.is_group(id) || store.table(id).name() != "group") return nullptr;
-  return static_cast<BehaviorGroup*>(store.object(id));
+  return static_cast<sim::BehaviorGroup*>(store.object(id));
 }
 
 std::string label_of(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   if (!store.alive(id)) return "an object that no longer exists";
   const PropertyTable* const table = &store.table(id);
-  if (table == &World::table()) return "sim";
-  if (table == &Visuals::table()) return "visuals";
-  if (table == &Camera::table()) return "visuals.camera";
-  if (table == &Appearance::table()) return "visuals.look";
+  if (table == &sim::World::table()) return "sim";
+  if (table == &sim::Visuals::table()) return "visuals";
+  if (table == &sim::Camera::table()) return "visuals.camera";
+  if (table == &sim::Appearance::table()) return "visuals.look";
   const std::string& name = store.name(id);
-  if (table == &Body::table() || table == &Shape::table() || table == &Gear::table())
+  if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table())
     return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
-  if (table == &Part::table() || table == &Joint::table() || table == &Motor::table() ||
+  if (table == &sim::Part::table() || table == &sim::Joint::table() || table == &sim::Motor::table() ||
       behavior_of(c, id) != nullptr) {
     return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
   }
   return "params";
 }
 
-}  // namespace limber
+}  // namespace limber::script

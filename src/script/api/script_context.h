@@ -27,10 +27,13 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
-
+namespace limber::sim {
 class Behavior;
 class BehaviorGroup;
+}  // namespace limber::sim
+
+namespace limber::script {
+
 class BehaviorScripts;
 
 /// The result of the last API call and facts about the running script call (`top_level`, `call`, `in_behavior`), which
@@ -49,17 +52,17 @@ class Answer : public LimberAnswer {
 /// Memory of a world that compiled Lua reads. The addresses of the views are constant.
 struct WorldViews {
   StoreView store;
-  MassTable::View masses;
+  sim::MassTable::View masses;
 };
 
 /// Arguments that several API calls collect before the call that uses them.
 struct CollectedArguments {
   std::vector<Vec3> mesh_points;
-  ImportOptions import;
-  BuildOptions build;
+  model::ImportOptions import;
+  sim::BuildOptions build;
   Message message;
   std::vector<Property> parameters;
-  std::array<Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
+  std::array<sim::Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
 };
 
 /// Results of neighbor searches.
@@ -67,14 +70,14 @@ struct NeighborResults {
   static constexpr std::size_t kMaxIterations = 16;
   /// Iterations and the lists that they iterate over; nested loops use several at a time.
   std::array<LimberIteration, kMaxIterations> iterations{};
-  std::array<std::vector<Neighbor>, kMaxIterations> lists;
+  std::array<std::vector<sim::Neighbor>, kMaxIterations> lists;
   LimberGroupMeans group_means{};  ///< Means of a whole group, as last requested; valid until the call ends.
 };
 
 /// Models and meshes that the run has loaded, by request: callbacks can reuse them, but must not read from disk.
 struct LoadedModels {
-  std::map<std::string, std::shared_ptr<const BodyModel>> models;
-  std::map<std::string, std::shared_ptr<const MeshModel>> meshes;
+  std::map<std::string, std::shared_ptr<const model::BodyModel>> models;
+  std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes;
 };
 
 /// OSC ports and handlers of the scene.
@@ -103,16 +106,16 @@ struct SceneTimers {
 };
 
 struct ScriptContext final : CallHooks {
-  ScriptContext(World& w, ScriptHost& h, SceneOptions o);
+  ScriptContext(sim::World& w, ScriptHost& h, SceneOptions o);
   ~ScriptContext();
   ScriptContext(const ScriptContext&) = delete;
   ScriptContext& operator=(const ScriptContext&) = delete;
 
-  World*
+  sim::World*
       world;  ///< Replaced when a detached run goes live; null after the run was replaced, unless its timers continue.
   WorldViews views;
   /// Attaches the views to that world, or detaches them (null).
-  void set_world(World* new_world);
+  void set_world(sim::World* new_world);
   ScriptHost& host;
   SceneOptions options;
   ScriptFiles files;
@@ -172,9 +175,9 @@ T* object_of(const ScriptContext& c, NodeId id) {
   return static_cast<T*>(c.world->store().object(id));
 }
 /// Returns the behavior or group with this id, or null.
-Behavior* behavior_of(const ScriptContext& c, NodeId id);
-BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
+sim::Behavior* behavior_of(const ScriptContext& c, NodeId id);
+sim::BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
 /// Returns the name of an object for messages: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 
-}  // namespace limber
+}  // namespace limber::script

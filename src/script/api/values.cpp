@@ -15,7 +15,7 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -57,8 +57,8 @@ std::int32_t write(ScriptContext& c, NodeId id, const Property& property, std::s
 
 // index of the own axis of a joint or motor in a property with three numbers; -1: none
 int own_index(const ScriptContext& c, NodeId id, const Property& property) {
-  const Joint* joint = object_of<Joint>(c, id);
-  if (const Motor* motor = object_of<Motor>(c, id)) joint = &motor->joint();
+  const sim::Joint* joint = object_of<sim::Joint>(c, id);
+  if (const sim::Motor* motor = object_of<sim::Motor>(c, id)) joint = &motor->joint();
   if (joint == nullptr || joint->own_axis() < 0) return -1;
   const bool is_linear = property.name.find("linear") != std::string::npos;
   return is_linear == (joint->own_axis() < 3) ? joint->own_axis() % 3 : -1;
@@ -75,9 +75,10 @@ const LimberMassTable* mass_table(void* c) {
 }
 
 std::int32_t class_table(void* c, std::int32_t which) {
-  const PropertyTable* const tables[] = {&World::table(),      &Body::table(),  &Part::table(),    &Joint::table(),
-                                         &Motor::table(),      &Shape::table(), &Visuals::table(), &Camera::table(),
-                                         &Appearance::table(), &Gear::table()};
+  const PropertyTable* const tables[] = {&sim::World::table(),   &sim::Body::table(),   &sim::Part::table(),
+                                         &sim::Joint::table(),   &sim::Motor::table(),  &sim::Shape::table(),
+                                         &sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(),
+                                         &sim::Gear::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 
@@ -198,4 +199,4 @@ std::int32_t act(void* c, std::int32_t slot, std::int32_t generation, std::int32
   return kOk;
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

@@ -15,7 +15,7 @@
 #include "sim/visuals/visuals.h"
 #include "sim/world/part.h"
 
-namespace limber::calls {
+namespace limber::script::calls {
 
 namespace {
 
@@ -24,7 +24,7 @@ Random& generator_of(ScriptContext& c, std::int32_t slot, std::int32_t generatio
   const NodeId id = id_of(slot, generation);
   // an rng object that outlives its behavior draws from the scene's generator
   if (slot < 0 || !c.alive(id)) return c.generator();
-  auto& behavior = *static_cast<Behavior*>(c.world->store().object(id));
+  auto& behavior = *static_cast<sim::Behavior*>(c.world->store().object(id));
   behavior.save_for_rollback();
   return behavior.random();
 }
@@ -143,9 +143,9 @@ double clamp(double x, double lo, double hi) {
 
 std::int32_t contact(void* c, std::int32_t index) {
   ScriptContext& context = context_of(c);
-  const std::span<const ContactEvent> list = context.world->contacts().events();
+  const std::span<const sim::ContactEvent> list = context.world->contacts().events();
   if (index >= static_cast<std::int32_t>(list.size())) return kRejected;
-  const ContactEvent& event = list[static_cast<std::size_t>(index)];
+  const sim::ContactEvent& event = list[static_cast<std::size_t>(index)];
   // an earlier callback may have removed one of them
   if (!context.alive(event.part) || !context.alive(event.other)) return kRemoved;
   const auto word = [](std::uint32_t v) { return static_cast<double>(v); };
@@ -263,4 +263,4 @@ void handles(void* c, std::int32_t** ids, std::int32_t count) {
   context_of(c).handle_ids = {ids, static_cast<std::size_t>(count)};
 }
 
-}  // namespace limber::calls
+}  // namespace limber::script::calls

@@ -15,7 +15,7 @@
 #include "script/vm/vm.h"
 #include "sim/behavior/behavior_list.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -34,13 +34,14 @@ void BehaviorScripts::detach() {
 }
 
 bool BehaviorScripts::is_loaded(std::string_view type) const {
-  const std::string plain_name = normalized_type_name(type);
-  return std::ranges::any_of(files_, [&](const BehaviorFile& f) { return normalized_type_name(f.type) == plain_name; });
+  const std::string plain_name = sim::normalized_type_name(type);
+  return std::ranges::any_of(files_,
+                             [&](const BehaviorFile& f) { return sim::normalized_type_name(f.type) == plain_name; });
 }
 
 Result<std::int32_t> BehaviorScripts::read(std::string_view type) {
   const ScriptFiles& files = context_->files;
-  const BehaviorTypes& types = context_->world->behaviors().types();
+  const sim::BehaviorTypes& types = context_->world->behaviors().types();
   const std::string path = context_->sources->find_behavior(files, type);
   if (path.empty()) {
     std::vector<std::string> names = files.behavior_names();
@@ -61,15 +62,16 @@ void BehaviorScripts::remove_last(std::int32_t file) {
   generators_.resize(files_.size());
 }
 
-Result<std::shared_ptr<const BehaviorType>> BehaviorScripts::declare(std::int32_t number, std::string doc,
-                                                                     bool is_group, std::vector<Property> parameters) {
+Result<std::shared_ptr<const sim::BehaviorType>> BehaviorScripts::declare(std::int32_t number, std::string doc,
+                                                                          bool is_group,
+                                                                          std::vector<Property> parameters) {
   const std::string& name = file(number).type;
-  const auto make = [scripts = shared_from_this(), number]() -> std::unique_ptr<Behavior> {
+  const auto make = [scripts = shared_from_this(), number]() -> std::unique_ptr<sim::Behavior> {
     return std::make_unique<LuaBehavior>(scripts, number);
   };
-  BehaviorTypes& types = context_->world->behaviors().types();
-  const Result<void> added = types.add(
-      BehaviorType::create(name, std::move(doc), BehaviorTargets::any, is_group, std::move(parameters), make));
+  sim::BehaviorTypes& types = context_->world->behaviors().types();
+  const Result<void> added = types.add(sim::BehaviorType::create(name, std::move(doc), sim::BehaviorTargets::any,
+                                                                 is_group, std::move(parameters), make));
   if (!added) return Error{added.error()};
   return types.find(name);
 }
@@ -88,7 +90,7 @@ Random& BehaviorScripts::generator(std::int32_t file) {
 // saves the state before the first draw of a call, so that a failed call can be rolled back
 void BehaviorScripts::save_generator(std::int32_t file) {
   FileGenerator& generator = generators_[static_cast<std::size_t>(file)];
-  WorldTransaction& undo = context_->world->transaction();
+  sim::WorldTransaction& undo = context_->world->transaction();
   if (!undo.active() || std::exchange(generator.saved_in_call, context_->answer.call) == context_->answer.call) return;
   generator.saved = generator.current;
   undo.record(
@@ -111,31 +113,31 @@ std::uint64_t BehaviorScripts::hash(std::uint64_t start) const {
 
 // wraps every call into a behavior's functions
 template <class Call>
-BehaviorFault BehaviorScripts::call_vm(Call call) {
+sim::BehaviorFault BehaviorScripts::call_vm(Call call) {
   if (vm_ == nullptr) return {"the scene no longer uses this type; use it once at the top level", "", 0};
   for (const std::int32_t number : released_) vm_->behaviors().drop(number);
   released_.clear();
   const std::int32_t outer = std::exchange(context_->answer.in_behavior, 1);
-  BehaviorFault fault = call();
+  sim::BehaviorFault fault = call();
   context_->answer.in_behavior = outer;
   return fault;
 }
 
-std::int32_t BehaviorScripts::create(const Behavior& behavior, std::int32_t file) {
+std::int32_t BehaviorScripts::create(const sim::Behavior& behavior, std::int32_t file) {
   return vm_ == nullptr ? 0 : vm_->behaviors().make(file, behavior.id());
 }
 
-BehaviorFault BehaviorScripts::start(std::int32_t number) {
+sim::BehaviorFault BehaviorScripts::start(std::int32_t number) {
   return call_vm([&] { return vm_->behaviors().start(number); });
 }
 
-BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
+sim::BehaviorFault BehaviorScripts::step(std::int32_t number, double dt) {
   return call_vm([&] { return vm_->behaviors().step(number, dt); });
 }
 
 void BehaviorScripts::step_all(StepBatch& batch, double dt) {
   StepBatch* const outer = std::exchange(batch_, &batch);
-  BehaviorFault fault = call_vm([&] { return vm_->behaviors().step_all(dt, batch.current); });
+  sim::BehaviorFault fault = call_vm([&] { return vm_->behaviors().step_all(dt, batch.current); });
   batch_ = outer;
   if (fault.text.empty()) return;
   // Nothing was stepped: there is no Vm any more, or a replay skips this call. The fault belongs to the first running
@@ -160,7 +162,7 @@ std::int32_t BehaviorScripts::next_step() {
   return batch.current;
 }
 
-BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
+sim::BehaviorFault BehaviorScripts::restore(std::int32_t number, std::string_view state, bool migrate) {
   return call_vm([&] { return vm_->behaviors().restore(number, state, migrate); });
 }
 
@@ -173,4 +175,4 @@ void BehaviorScripts::release(std::int32_t number) {
   if (vm_ != nullptr) released_.push_back(number);
 }
 
-}  // namespace limber
+}  // namespace limber::script

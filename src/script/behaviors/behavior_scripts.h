@@ -15,8 +15,11 @@
 #include "sim/behavior/behavior.h"
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::script {
+
 struct ScriptContext;
 class Vm;
 
@@ -47,8 +50,8 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   void remove_last(std::int32_t file);
   BehaviorFile& file(std::int32_t number) { return files_[static_cast<std::size_t>(number)]; }
   /// Registers the file's type, with these parameters, in the world.
-  Result<std::shared_ptr<const BehaviorType>> declare(std::int32_t file, std::string doc, bool is_group,
-                                                      std::vector<Property> parameters);
+  Result<std::shared_ptr<const sim::BehaviorType>> declare(std::int32_t file, std::string doc, bool is_group,
+                                                           std::vector<Property> parameters);
   /// Returns the generator for `rng` and math.random in a file's functions.
   Random& generator(std::int32_t file);
   /// Serializes generators and pending drops for a checkpoint.
@@ -58,12 +61,12 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
 
   // Calls of one instance, identified by its number in the Vm. A fault without text means success.
   /// Registers a behavior in the Vm. Returns its number, or 0 if there is no Vm any more.
-  std::int32_t create(const Behavior& behavior, std::int32_t file);
-  BehaviorFault start(std::int32_t number);
-  BehaviorFault step(std::int32_t number, double dt);
+  std::int32_t create(const sim::Behavior& behavior, std::int32_t file);
+  sim::BehaviorFault start(std::int32_t number);
+  sim::BehaviorFault step(std::int32_t number, double dt);
   /// Instances of one file that are stepped in one call of the Vm.
   struct StepBatch {
-    std::span<Behavior* const> members;
+    std::span<sim::Behavior* const> members;
     std::span<const std::int32_t> numbers;  ///< Their numbers in the Vm.
     bool changed = false;                   ///< Some may no longer run, so runs() must be checked.
     std::size_t next = 0;                   ///< Index of the next instance.
@@ -76,7 +79,7 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   /// call.
   std::int32_t next_step();
   /// Gives the instance an older state; `migrate`: through its `migrate` function, if the file has one.
-  BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
+  sim::BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
   /// Returns its `state` serialized as text. The error names the key of a value that can't be serialized.
   Result<std::string> state(std::int32_t number);
   /// Releases the instance's data in the Vm, at the next call.
@@ -95,7 +98,7 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   };
   void save_generator(std::int32_t file);
   template <class Call>
-  BehaviorFault call_vm(Call call);
+  sim::BehaviorFault call_vm(Call call);
 
   ScriptContext* context_;
   Vm* vm_ = nullptr;
@@ -105,4 +108,4 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
   StepBatch* batch_ = nullptr;             // of the step_all() call in progress
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -10,7 +10,7 @@
 #include "sim/behavior/behavior_group.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::script {
 
 LuaBehavior::LuaBehavior(std::shared_ptr<BehaviorScripts> scripts, std::int32_t file)
     : scripts_(std::move(scripts)), file_(file) {}
@@ -19,7 +19,7 @@ LuaBehavior::~LuaBehavior() {
   if (number_ != 0) scripts_->release(number_);
 }
 
-bool LuaBehavior::check(BehaviorFault fault) {
+bool LuaBehavior::check(sim::BehaviorFault fault) {
   if (fault.text.empty()) return true;
   fail(std::move(fault));
   return false;
@@ -46,13 +46,13 @@ void LuaBehavior::step(double dt) {
 }
 
 // number of a member that only needs its step; 0: must be handled individually
-std::int32_t LuaBehavior::batch_number(const Behavior& member) const {
+std::int32_t LuaBehavior::batch_number(const sim::Behavior& member) const {
   const auto& other = static_cast<const LuaBehavior&>(member);
   const bool only_steps = other.started_ && !other.inherited_;
   return only_steps && other.scripts_ == scripts_ && other.file_ == file_ ? other.number_ : 0;
 }
 
-void LuaBehavior::step_group(std::span<Behavior* const> members, double dt) {
+void LuaBehavior::step_group(std::span<sim::Behavior* const> members, double dt) {
   // thousands of members are scattered in memory, so they are visited only after something has changed
   if (std::exchange(numbered_at_, group()->members_version()) != group()->members_version()) {
     numbers_.clear();
@@ -80,7 +80,7 @@ void LuaBehavior::step_group(std::span<Behavior* const> members, double dt) {
   }
 }
 
-void LuaBehavior::adopt_state(Behavior& previous) {
+void LuaBehavior::adopt_state(sim::Behavior& previous) {
   auto* const old = dynamic_cast<LuaBehavior*>(&previous);
   if (old == nullptr) return;
   started_ = old->started_;
@@ -111,4 +111,4 @@ void LuaBehavior::serialize(Archive& archive) {
 
 Result<std::string> LuaBehavior::state() const { return scripts_->state(number_); }
 
-}  // namespace limber
+}  // namespace limber::script

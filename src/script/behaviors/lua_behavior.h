@@ -11,9 +11,9 @@
 #include "script/behaviors/behavior_scripts.h"
 #include "sim/behavior/behavior.h"
 
-namespace limber {
+namespace limber::script {
 
-class LuaBehavior final : public Behavior {
+class LuaBehavior final : public sim::Behavior {
  public:
   /// `file`: index of the type's file in BehaviorScripts.
   LuaBehavior(std::shared_ptr<BehaviorScripts> scripts, std::int32_t file);
@@ -22,22 +22,22 @@ class LuaBehavior final : public Behavior {
   void start() override;
   void step(double dt) override;
   /// Steps members that need nothing but their step in one call of the Vm.
-  void step_group(std::span<Behavior* const> members, double dt) override;
+  void step_group(std::span<sim::Behavior* const> members, double dt) override;
   /// Takes over the state of the previous instance, through `migrate` if the file has changed. If the state can't be
   /// transferred, logs a warning and starts with an empty one.
-  void adopt_state(Behavior& previous) override;
+  void adopt_state(sim::Behavior& previous) override;
   void serialize(Archive& archive) override;
 
   /// Returns its `state` serialized as text. The error names the key of a value that is not plain data.
   Result<std::string> state() const;
   const BehaviorFile& file() const { return scripts_->file(file_); }
 
-  using Behavior::fail;  // for BehaviorScripts, which steps several in one call
+  using sim::Behavior::fail;  // for BehaviorScripts, which steps several in one call
 
  private:
   bool prepare();
-  std::int32_t batch_number(const Behavior& member) const;
-  bool check(BehaviorFault fault);
+  std::int32_t batch_number(const sim::Behavior& member) const;
+  bool check(sim::BehaviorFault fault);
 
   /// State taken over from another instance, and the source text of that instance's file.
   struct InheritedState {
@@ -56,4 +56,4 @@ class LuaBehavior final : public Behavior {
   std::vector<std::int32_t> running_numbers_;  // scratch: numbers of the running members
 };
 
-}  // namespace limber
+}  // namespace limber::script

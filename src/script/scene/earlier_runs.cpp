@@ -13,7 +13,7 @@
 #include "sim/behavior/behavior_group.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -22,8 +22,8 @@ namespace {
 std::string object_key(const ScriptContext& c, NodeId id) {
   const Store& store = c.world->store();
   std::string name;
-  if (const Behavior* behavior = behavior_of(c, id)) name = behavior->type().name;
-  if (const BehaviorGroup* group = group_of(c, id)) name = group->type().name;
+  if (const sim::Behavior* behavior = behavior_of(c, id)) name = behavior->type().name;
+  if (const sim::BehaviorGroup* group = group_of(c, id)) name = group->type().name;
   for (NodeId at = id; !at.null(); at = store.parent(at)) {
     name += '\0';
     name += store.name(at);
@@ -172,4 +172,4 @@ EarlierRuns::Counts EarlierRuns::counts() {
   return all;
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -12,8 +12,11 @@
 #include "script/vm/limits.h"
 
 namespace limber {
-
 class Store;
+}  // namespace limber
+
+namespace limber::script {
+
 class Vm;
 struct ScriptContext;
 
@@ -88,4 +91,4 @@ class EarlierRuns {
   std::vector<Run> runs_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

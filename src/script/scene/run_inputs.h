@@ -9,7 +9,7 @@
 
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::script {
 
 class Sources;
 
@@ -27,4 +27,4 @@ struct RunInputs {
   std::shared_ptr<const Sources> sources;  ///< Files to use instead of the disk; null: the disk.
 };
 
-}  // namespace limber
+}  // namespace limber::script

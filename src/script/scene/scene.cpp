@@ -7,9 +7,9 @@
 #include "script/scene/earlier_runs.h"
 #include "script/vm/vm.h"
 
-namespace limber {
+namespace limber::script {
 
-Scene::Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted)
+Scene::Scene(sim::World& world, ScriptHost& host, SceneOptions options, VmMode wanted)
     : earlier_(std::make_unique<EarlierRuns>()),
       context_(std::make_unique<ScriptContext>(world, host, std::move(options))),
       vm_(std::make_unique<Vm>(*context_, wanted)) {}
@@ -106,4 +106,4 @@ std::string Scene::names() { return vm_->names(); }
 
 const std::string& Scene::show_folder() const { return context_->files.show_folder(); }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -16,10 +16,13 @@
 #include "script/scene/scene_options.h"
 #include "script/scene/script_host.h"
 
-namespace limber {
+namespace limber::sim {
+class World;
+}  // namespace limber::sim
+
+namespace limber::script {
 
 class Sources;
-class World;
 class CallLog;
 class EarlierRuns;
 class HandleNames;
@@ -44,7 +47,7 @@ class Scene {
  public:
   /// World and host outlive the scene. Objects that a scene created in the world stay when the scene is destroyed,
   /// except its parameters. The mode is `compiled` only if it is `wanted` and no other scene of the process has it.
-  Scene(World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::compiled);
+  Scene(sim::World& world, ScriptHost& host, SceneOptions options, VmMode wanted = VmMode::compiled);
   ~Scene();
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;
@@ -92,7 +95,7 @@ class Scene {
   /// takes over parameters, `state` and the phase of timers. If callbacks of `previous` have set timers, they continue
   /// with its functions and variables. Returns a bit mask of the parameters that start at their defaults again.
   /// `previous` may then be destroyed on any thread.
-  std::uint64_t become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous);
+  std::uint64_t become_live(sim::World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous);
   /// Timers of earlier runs that become_live() carried over.
   const CarriedTimers& carried_timers() const { return carried_timers_; }
   /// Releases runs in which all timers ended before that tick; no rewind can reach it. [sim]
@@ -130,4 +133,4 @@ class Scene {
   std::unique_ptr<HandleNames> handle_names_;  // from capture_handles() to become_live(), if the run continues
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -9,7 +9,7 @@
 #include "script/scene/scene.h"
 #include "script/vm/vm.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -94,4 +94,4 @@ void SceneCheckpoint::release(PageStore& pages) {
   earlier_.clear();
 }
 
-}  // namespace limber
+}  // namespace limber::script

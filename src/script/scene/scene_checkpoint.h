@@ -7,7 +7,7 @@
 #include "base/memory/archive.h"
 #include "base/memory/page_store.h"
 
-namespace limber {
+namespace limber::script {
 
 class Scene;
 class Vm;
@@ -43,4 +43,4 @@ class SceneCheckpoint {
   std::vector<EarlierState> earlier_;  // earlier runs with pending timers
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -9,7 +9,7 @@
 
 #include "script/vm/limits.h"
 
-namespace limber {
+namespace limber::script {
 
 class Sources;
 
@@ -23,4 +23,4 @@ struct SceneOptions {
   std::shared_ptr<const Sources> sources = nullptr;  ///< Files to use instead of the disk; null: the disk.
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -8,7 +8,7 @@
 #include "script/vm/vm.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::script {
 
 RunInputs Scene::inputs() {
   const ScriptContext& c = *context_;
@@ -70,7 +70,7 @@ void map_handles(ScriptContext& c, const std::function<NodeId(NodeId)>& live_id)
 
 }  // namespace
 
-std::uint64_t Scene::become_live(World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
+std::uint64_t Scene::become_live(sim::World& world, const std::function<NodeId(NodeId)>& live_id, Scene* previous) {
   ScriptContext& c = *context_;
   map_handles(c, live_id);
   std::vector<Property> properties;
@@ -122,4 +122,4 @@ void Scene::rerun_values(std::vector<double>& out) const {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::script

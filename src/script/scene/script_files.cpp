@@ -11,7 +11,7 @@
 
 #include "sim/behavior/behavior_type.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace fs = std::filesystem;
 
@@ -150,10 +150,10 @@ std::vector<std::string> ScriptFiles::behavior_folders() const {
 }
 
 std::string ScriptFiles::find_behavior(std::string_view type, std::vector<std::string>* tried) const {
-  const std::string wanted = normalized_type_name(type);
+  const std::string wanted = sim::normalized_type_name(type);
   for (const std::string& folder : behavior_folders()) {
     for (const std::string& name : lua_files(folder)) {
-      if (normalized_type_name(name) == wanted) return (fs::path(folder) / (name + ".lua")).string();
+      if (sim::normalized_type_name(name) == wanted) return (fs::path(folder) / (name + ".lua")).string();
     }
     if (tried != nullptr) tried->push_back((fs::path(folder) / (wanted + ".lua")).string());
   }
@@ -180,4 +180,4 @@ Result<std::string> read_script(const std::string& path) {
   return std::string{std::istreambuf_iterator<char>(in), {}};
 }
 
-}  // namespace limber
+}  // namespace limber::script

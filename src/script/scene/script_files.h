@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::script {
 
 /// True if the file, after resolving symlinks, is inside the folder or a subfolder. The file need not exist.
 bool is_inside(const std::string& file, const std::string& folder);
@@ -50,4 +50,4 @@ class ScriptFiles {
 /// Reads a whole script unchanged. Errors: not found, not readable, larger than 1 MB.
 Result<std::string> read_script(const std::string& path);
 
-}  // namespace limber
+}  // namespace limber::script

@@ -11,7 +11,7 @@
 #include "base/osc_config.h"
 #include "base/result.h"
 
-namespace limber {
+namespace limber::script {
 
 class ScriptHost {
  public:
@@ -45,4 +45,4 @@ class ScriptHost {
   virtual void print(std::string_view text) { write_line(OutputTo::out, text); }
 };
 
-}  // namespace limber
+}  // namespace limber::script

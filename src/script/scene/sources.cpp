@@ -8,13 +8,13 @@
 
 #include "base/hash.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
 // lives as long as the process, so that a reset or another scene loads the same file at no cost
-ModelLibrary& models() {
-  static ModelLibrary library;
+model::ModelLibrary& models() {
+  static model::ModelLibrary library;
   return library;
 }
 
@@ -30,8 +30,8 @@ const T* Sources::find_known(std::map<std::string, T> Sources::*list, const std:
   return nullptr;
 }
 
-Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
-                 std::shared_ptr<ModelLibrary> library)
+Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr<const model::FileSet>& files,
+                 std::shared_ptr<model::ModelLibrary> library)
     : archived_files_(files), library_(std::move(library)), found_(std::move(found)) {}
 
 // the result of an earlier run, else that of `find`
@@ -81,23 +81,24 @@ Result<std::string> Sources::text(const std::string& path) {
   return text;
 }
 
-Result<std::shared_ptr<const BodyModel>> Sources::model(const std::string& path, const ImportOptions& options) {
-  const std::string key = model_key(path, options);
+Result<std::shared_ptr<const model::BodyModel>> Sources::model(const std::string& path,
+                                                               const model::ImportOptions& options) {
+  const std::string key = model::model_key(path, options);
   contents_.try_emplace(path, 0);  // watch unreadable files as well
   const auto* before = find_known(&Sources::models_, key);
-  ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
-  Result<std::shared_ptr<const BodyModel>> model = before ? *before : library.load_urdf(path, options);
+  model::ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
+  Result<std::shared_ptr<const model::BodyModel>> model = before ? *before : library.load_urdf(path, options);
   if (!model) return model;
   for (std::size_t i = 0; i < (*model)->files.size(); i++) contents_[(*model)->files[i]] = (*model)->file_hashes[i];
   return models_[key] = *model;
 }
 
-Result<std::shared_ptr<const MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale) {
+Result<std::shared_ptr<const model::MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
   contents_.try_emplace(path, 0);
   const auto* before = find_known(&Sources::meshes_, key);
-  ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
-  Result<std::shared_ptr<const MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
+  model::ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
+  Result<std::shared_ptr<const model::MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
   if (!mesh) return mesh;
   contents_[path] = (*mesh)->content_hash;
   return meshes_[key] = *mesh;
@@ -107,7 +108,7 @@ SourcesRead Sources::read() const {
   SourcesRead read{found_, texts_, {}, {}};
   for (const auto& [key, model] : models_) {
     const std::string folder = std::filesystem::path(model->file).parent_path().string();
-    for (const auto& [name, file] : model->mesh_paths) read.meshes[FileSet::mesh_key(folder, name)] = file;
+    for (const auto& [name, file] : model->mesh_paths) read.meshes[model::FileSet::mesh_key(folder, name)] = file;
   }
   for (const auto& [path, content] : contents_) {
     if (!texts_.contains(path)) read.files.push_back(path);
@@ -127,4 +128,4 @@ std::vector<SourceFile> Sources::files() const {
   return files;
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -13,7 +13,7 @@
 #include "model/model_library.h"
 #include "script/scene/script_files.h"
 
-namespace limber {
+namespace limber::script {
 
 /// A file that a run depends on, or a path where it searched for a file and found none.
 struct SourceFile {
@@ -36,8 +36,8 @@ class Sources {
 
   /// Sources of an archived run: files that it has not read are reported as missing, whatever is on the disk.
   /// `library`: models created from these files before; runs that share it share models, as runs from the disk do.
-  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const FileSet>& files,
-          std::shared_ptr<ModelLibrary> library);
+  Sources(std::map<std::string, std::string> found, const std::shared_ptr<const model::FileSet>& files,
+          std::shared_ptr<model::ModelLibrary> library);
 
   /// Same as in ScriptFiles.
   Result<std::string> find(const ScriptFiles& files, std::string_view name);
@@ -47,8 +47,8 @@ class Sources {
   std::string find_behavior(const ScriptFiles& files, std::string_view type);
   /// Returns a script's text.
   Result<std::string> text(const std::string& path);
-  Result<std::shared_ptr<const BodyModel>> model(const std::string& path, const ImportOptions& options);
-  Result<std::shared_ptr<const MeshModel>> mesh(const std::string& path, const Vec3& scale);
+  Result<std::shared_ptr<const model::BodyModel>> model(const std::string& path, const model::ImportOptions& options);
+  Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale);
 
   /// Ends the run: drops the reference to the earlier run.
   void close() { earlier_ = nullptr; }
@@ -65,14 +65,14 @@ class Sources {
   Result<std::string> look_up(const std::string& key, Find find);
 
   std::shared_ptr<const Sources> earlier_;
-  std::shared_ptr<const FileSet> archived_files_;
-  std::shared_ptr<ModelLibrary> library_;  // of the archived files
+  std::shared_ptr<const model::FileSet> archived_files_;
+  std::shared_ptr<model::ModelLibrary> library_;  // of the archived files
   std::map<std::string, std::string> found_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::uint64_t> contents_;  // hashes of all files read, by path; 0: unknown
-  std::map<std::string, std::shared_ptr<const BodyModel>> models_;
-  std::map<std::string, std::shared_ptr<const MeshModel>> meshes_;
+  std::map<std::string, std::shared_ptr<const model::BodyModel>> models_;
+  std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes_;
   std::vector<std::string> tried_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -5,7 +5,7 @@
 
 #include "script/vm/vm.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -49,7 +49,7 @@ bool BehaviorCalls::push(int functions, std::int32_t number) {
 }
 
 // guarded call of the function pushed by push(), with further arguments
-BehaviorFault BehaviorCalls::guarded_call(int arguments, int results) {
+sim::BehaviorFault BehaviorCalls::guarded_call(int arguments, int results) {
   vm_.collector().begin_calls();
   if (vm_.guard().call(arguments, results)) return {};
   lua_settop(vm_.state(), 0);
@@ -68,31 +68,31 @@ std::int32_t BehaviorCalls::make(std::int32_t file, NodeId id) {
   return number;
 }
 
-BehaviorFault BehaviorCalls::start(std::int32_t number) {
+sim::BehaviorFault BehaviorCalls::start(std::int32_t number) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, clear_lists_);
   lua_pushnumber(L, number);
   call_export(L, 1, 0);
   if (!push(start_of_, number)) return {};
-  BehaviorFault fault = guarded_call(1, 0);
+  sim::BehaviorFault fault = guarded_call(1, 0);
   lua_settop(L, 0);
   return fault;
 }
 
-BehaviorFault BehaviorCalls::step(std::int32_t number, double dt) {
+sim::BehaviorFault BehaviorCalls::step(std::int32_t number, double dt) {
   lua_State* const L = vm_.state();
   push(step_of_, number);
   lua_pushnumber(L, dt);
-  BehaviorFault fault = guarded_call(2, 0);
+  sim::BehaviorFault fault = guarded_call(2, 0);
   lua_settop(L, 0);
   return fault;
 }
 
-BehaviorFault BehaviorCalls::step_all(double dt, const std::int32_t& stepping) {
+sim::BehaviorFault BehaviorCalls::step_all(double dt, const std::int32_t& stepping) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, step_all_);
   lua_pushnumber(L, dt);
-  BehaviorFault fault = guarded_call(1, 0);
+  sim::BehaviorFault fault = guarded_call(1, 0);
   // the instance was stopped in its last instruction
   if (!fault.text.empty() && fault.line == 0 && push(step_of_, stepping)) {
     lua_settop(L, -2);
@@ -103,7 +103,7 @@ BehaviorFault BehaviorCalls::step_all(double dt, const std::int32_t& stepping) {
   return fault;
 }
 
-BehaviorFault BehaviorCalls::restore(std::int32_t number, std::string_view state, bool migrate) {
+sim::BehaviorFault BehaviorCalls::restore(std::int32_t number, std::string_view state, bool migrate) {
   lua_State* const L = vm_.state();
   lua_rawgeti(L, LUA_REGISTRYINDEX, restore_);
   lua_pushnumber(L, number);
@@ -113,11 +113,11 @@ BehaviorFault BehaviorCalls::restore(std::int32_t number, std::string_view state
     return {};
   }
   lua_pushvalue(L, 1);  // the previous state
-  if (BehaviorFault fault = guarded_call(2, 1); !fault.text.empty()) return fault;
+  if (sim::BehaviorFault fault = guarded_call(2, 1); !fault.text.empty()) return fault;
   lua_rawgeti(L, LUA_REGISTRYINDEX, accept_migrated_state_);
   lua_pushnumber(L, number);
   lua_pushvalue(L, -3);
-  BehaviorFault fault;
+  sim::BehaviorFault fault;
   if (call_export(L, 2, 3) && !lua_isnil(L, -3)) {
     fault = {string_at(L, -3), string_at(L, -2), static_cast<int>(lua_tointeger(L, -1))};
   }
@@ -143,4 +143,4 @@ void BehaviorCalls::drop(std::int32_t number) {
   call_export(L, 1, 0);
 }
 
-}  // namespace limber
+}  // namespace limber::script

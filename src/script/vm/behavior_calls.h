@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "sim/behavior/behavior.h"
 
-namespace limber {
+namespace limber::script {
 
 class Vm;
 
@@ -24,13 +24,13 @@ class BehaviorCalls {
 
   /// Creates the `self` of an instance and returns its number, from 1.
   std::int32_t make(std::int32_t file, NodeId id);
-  BehaviorFault start(std::int32_t number);
-  BehaviorFault step(std::int32_t number, double dt);
+  sim::BehaviorFault start(std::int32_t number);
+  sim::BehaviorFault step(std::int32_t number, double dt);
   /// Steps the instances that BehaviorScripts::next_step() returns, until it returns 0 or one fails. `stepping`: number
   /// of the current one, updated by next_step().
-  BehaviorFault step_all(double dt, const std::int32_t& stepping);
+  sim::BehaviorFault step_all(double dt, const std::int32_t& stepping);
   /// Sets the instance's `state` from text; `migrate`: through its `migrate` function, if it has one.
-  BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
+  sim::BehaviorFault restore(std::int32_t number, std::string_view state, bool migrate);
   /// Returns the instance's `state` serialized as text. The error names the key of a value that can't be serialized.
   Result<std::string> state(std::int32_t number);
   /// Releases the instance's data. Its number is not used again.
@@ -38,7 +38,7 @@ class BehaviorCalls {
 
  private:
   bool push(int functions, std::int32_t number);
-  BehaviorFault guarded_call(int arguments, int results);
+  sim::BehaviorFault guarded_call(int arguments, int results);
 
   Vm& vm_;
   int make_ = -1;  // registry references of exported functions
@@ -54,4 +54,4 @@ class BehaviorCalls {
   int migrate_of_ = -1;
 };
 
-}  // namespace limber
+}  // namespace limber::script

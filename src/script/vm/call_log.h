@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace limber {
+namespace limber::script {
 
 struct StoppedCall {
   std::uint64_t number = 0;  ///< From 1.
@@ -69,4 +69,4 @@ class CallLog {
   std::size_t next_skip_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -9,7 +9,7 @@
 #include "base/memory/archive.h"
 #include "script/vm/lua_memory.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -59,4 +59,4 @@ void GarbageCollector::after_tick() {
   pause();  // LUA_GCSTEP restarts the automatic collector
 }
 
-}  // namespace limber
+}  // namespace limber::script

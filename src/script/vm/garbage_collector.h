@@ -6,8 +6,11 @@
 struct lua_State;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::script {
+
 class LuaMemory;
 
 class GarbageCollector {
@@ -36,4 +39,4 @@ class GarbageCollector {
   int cycles_left_ = 0;  // cycles still to complete
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -19,7 +19,7 @@
 #include "base/system/signals.h"
 #include "script/vm/call_log.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -358,4 +358,4 @@ void Guard::set_place_to_function(int function) {
   fault_.text = fmt::format("{}:{}: {}", fault_.file, fault_.line, fault_.text);
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -16,8 +16,11 @@ struct lua_Debug;
 struct lua_State;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::script {
+
 class CallLog;
 
 /// The reason for a failed call, for display.
@@ -144,4 +147,4 @@ class Guard {
   Stop stop_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -6,7 +6,7 @@
 
 #include "base/sanitized.h"
 
-namespace limber {
+namespace limber::script {
 
 /// Factor for all time budgets: the approximate slowdown of C++ code by sanitizers.
 inline constexpr double kBudgetScale = kSanitized ? 10 : 1;
@@ -29,4 +29,4 @@ struct ScriptLimits {
   std::size_t max_objects = 500'000;    ///< Max. number of nodes: about 100 000 parts with their joints and motors.
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -7,7 +7,7 @@
 
 #include "base/memory/archive.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -65,4 +65,4 @@ void* LuaMemory::allocate(void* self, void* block, std::size_t before, std::size
   return result;
 }
 
-}  // namespace limber
+}  // namespace limber::script

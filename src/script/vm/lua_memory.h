@@ -9,8 +9,10 @@
 struct lua_State;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::script {
 
 class LuaMemory {
  public:
@@ -51,4 +53,4 @@ class LuaMemory {
   bool in_call_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::script

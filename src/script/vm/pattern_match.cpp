@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -341,4 +341,4 @@ bool PatternMatcher::in_set(unsigned char c, const char* p, const char* last) {
   return !wanted;
 }
 
-}  // namespace limber
+}  // namespace limber::script

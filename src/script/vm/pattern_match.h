@@ -8,7 +8,7 @@
 #include <functional>
 #include <string_view>
 
-namespace limber {
+namespace limber::script {
 
 struct Match {
   static constexpr int kMaxCaptures = 32;
@@ -75,4 +75,4 @@ class PatternMatcher {
   Match match_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::script {
 
 std::span<const std::string_view> prelude_order() {
   static constexpr std::array<std::string_view, 32> kOrder{"core.lua",
@@ -61,4 +61,4 @@ bool call_export(lua_State* state, int arguments, int results) {
   return false;
 }
 
-}  // namespace limber
+}  // namespace limber::script

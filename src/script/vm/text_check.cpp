@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::optional<TextFault> text_fault(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace limber
+}  // namespace limber::script

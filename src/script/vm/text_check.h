@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace limber {
+namespace limber::script {
 
 struct TextFault {
   int line = 1;
@@ -15,4 +15,4 @@ struct TextFault {
 /// Returns the fault, or nothing if the text is acceptable. Linear time.
 std::optional<TextFault> text_fault(std::string_view text);
 
-}  // namespace limber
+}  // namespace limber::script

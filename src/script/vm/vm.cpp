@@ -16,7 +16,7 @@
 #include "script/vm/text_check.h"
 #include "sim/visuals/visuals.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -111,7 +111,7 @@ void Vm::load_prelude(ScriptContext& context) {
     lua_pushnumber(L, id.generation);
     lua_setfield(L, -2, (name + "_generation").c_str());
   };
-  const Visuals& visuals = context.world->visuals();
+  const sim::Visuals& visuals = context.world->visuals();
   set_id_fields("world", context.world->id());
   set_id_fields("visuals", visuals.id());
   set_id_fields("camera", visuals.camera().id());
@@ -287,4 +287,4 @@ void Vm::collect_garbage() {
   collector_->after_tick();
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -19,8 +19,11 @@
 struct lua_State;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::script {
+
 struct ScriptContext;
 struct ScriptPlace;
 
@@ -131,4 +134,4 @@ class Vm {
   BehaviorCalls behaviors_{*this};
 };
 
-}  // namespace limber
+}  // namespace limber::script

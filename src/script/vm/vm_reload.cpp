@@ -3,7 +3,7 @@
 
 #include "script/vm/vm.h"
 
-namespace limber {
+namespace limber::script {
 
 // pushes a prelude function by name; functions that are called once per reload have no registry reference
 void Vm::push_export(const char* name) {
@@ -125,4 +125,4 @@ void Vm::apply_state_changes(std::string_view before, std::string_view after) {
   call(2, 0);
 }
 
-}  // namespace limber
+}  // namespace limber::script

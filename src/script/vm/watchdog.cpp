@@ -9,7 +9,7 @@
 #include "base/system/signals.h"
 #include "base/system/thread.h"
 
-namespace limber {
+namespace limber::script {
 
 namespace {
 
@@ -149,4 +149,4 @@ std::int64_t Watchdog::check(Watch& watch, std::int64_t poll) {
   return watch.second_half ? std::min(poll, kResendInterval) : kPingReplyTime;
 }
 
-}  // namespace limber
+}  // namespace limber::script

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace limber {
+namespace limber::script {
 
 /// A Lua state under watch: its thread writes call numbers, the watchdog writes the number of a call to stop.
 struct Watch {
@@ -71,4 +71,4 @@ class Watchdog {
   std::thread thread_;
 };
 
-}  // namespace limber
+}  // namespace limber::script

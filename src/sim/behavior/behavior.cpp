@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 Behavior::Behavior() = default;
 Behavior::~Behavior() = default;
@@ -176,4 +176,4 @@ std::uint64_t Behavior::state_hash(std::uint64_t hash) const {
   return numbers.value();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -15,8 +15,10 @@
 #include "sim/behavior/behavior_properties.h"
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
 
 /// Reason why a behavior is suspended; with `file` and `line` if it is a script's error.
 struct BehaviorFault {
@@ -136,4 +138,4 @@ class Behavior : public BehaviorAttachment {
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 
-}  // namespace limber
+}  // namespace limber::sim

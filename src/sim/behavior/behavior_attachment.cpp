@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -106,4 +106,4 @@ Result<void> BehaviorAttachment::check_selected_names() const {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -13,13 +13,16 @@
 #include "sim/behavior/selection.h"
 
 namespace limber {
+class Store;
+}  // namespace limber
+
+namespace limber::sim {
 
 class BehaviorGroup;
 class Body;
 class Joint;
 class Motor;
 class Part;
-class Store;
 class World;
 
 /// The targets of a behavior, as selected by the scene. Copies of a body and members of a group share one object.
@@ -89,4 +92,4 @@ class BehaviorAttachment {
   Targets targets_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

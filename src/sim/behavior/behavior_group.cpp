@@ -18,7 +18,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -255,4 +255,4 @@ std::uint64_t BehaviorGroup::state_hash(std::uint64_t hash) const {
   return numbers.value();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -11,7 +11,7 @@
 #include "sim/behavior/behavior.h"
 #include "sim/neighbors/neighbor_set.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// The targets of a group. Neighbors are parts of all bodies that it selects; its own parts may be among them.
 struct GroupSetup {
@@ -129,4 +129,4 @@ struct RemovedBehavior {
   std::size_t index_on_body = 0;  ///< Among the behaviors of its body.
 };
 
-}  // namespace limber
+}  // namespace limber::sim

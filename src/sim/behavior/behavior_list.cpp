@@ -12,7 +12,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -317,4 +317,4 @@ std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
   return hash;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

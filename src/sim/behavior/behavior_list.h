@@ -16,7 +16,7 @@
 #include "sim/behavior/behavior_type.h"
 #include "sim/neighbors/neighbor_set.h"
 
-namespace limber {
+namespace limber::sim {
 
 class BehaviorList {
  public:
@@ -118,4 +118,4 @@ class BehaviorList {
   std::function<void(const Behavior&)> on_fault_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,7 +10,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 std::string StepEntry::key() const {
   return group != nullptr ? "/" + group->name() : single->body().name() + "/" + single->name();
@@ -132,4 +132,4 @@ void BehaviorOrder::move(BehaviorGroup& group, std::size_t place) {
   world_.store().bump_structure_version();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -11,7 +11,7 @@
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/behavior_group.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// A single behavior or a group. Empty if it was removed in the present step.
 struct StepEntry {
@@ -53,4 +53,4 @@ class BehaviorOrder {
   mutable std::uint64_t places_structure_ = ~std::uint64_t{0};  // the structure version for which places were computed
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,7 +10,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<Property> common_group_properties() {
       place_property("Position in the step order of all names of behaviors, from 1."));
 }
 
-}  // namespace limber
+}  // namespace limber::sim

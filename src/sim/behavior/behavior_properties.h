@@ -6,7 +6,7 @@
 
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::sim {
 
 inline constexpr std::uint32_t kCommonBehaviorProperties = 4;
 
@@ -15,4 +15,4 @@ std::vector<Property> common_behavior_properties();
 /// The properties of a group.
 std::vector<Property> common_group_properties();
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void BehaviorTransaction::begin() {
   saved_count_ = 0;
@@ -88,4 +88,4 @@ void BehaviorTransaction::show_last() {
   list_.insert(std::move(hidden.removed));
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -11,7 +11,7 @@
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/behavior_group.h"
 
-namespace limber {
+namespace limber::sim {
 
 class BehaviorList;
 
@@ -60,4 +60,4 @@ class BehaviorTransaction {
   std::vector<Hidden> hidden_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

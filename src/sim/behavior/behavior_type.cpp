@@ -11,7 +11,7 @@
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/behavior_group.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -124,4 +124,4 @@ Result<std::shared_ptr<const BehaviorType>> BehaviorTypes::require(std::string_v
   return Error{fmt::format("there is no behavior type '{}'{}", printable(name), name_hint(typed_name, names))};
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "properties/property_table.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Behavior;
 
@@ -87,4 +87,4 @@ class BehaviorTypes {
   std::vector<std::shared_ptr<const BehaviorType>> types_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 #include "sim/behavior/behavior_group.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void NeighborBehavior::step(double dt) {
   const auto members = group()->members();
@@ -73,4 +73,4 @@ void NeighborBehavior::step_same_range(std::span<const std::uint32_t> indices, d
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/neighbors/neighbor_set.h"
 #include "sim/world/force_accumulators.h"
 
-namespace limber {
+namespace limber::sim {
 
 class NeighborBehavior : public Behavior {
  public:
@@ -51,4 +51,4 @@ class NeighborBehavior : public Behavior {
   std::vector<Part*> queried_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -5,7 +5,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 constexpr std::string_view kAll = "all";
@@ -32,4 +32,4 @@ std::string_view Selection::first_missing(const std::vector<std::string_view>& n
 
 bool Selection::has_names() const { return std::any_of(words_.begin(), words_.end(), is_name); }
 
-}  // namespace limber
+}  // namespace limber::sim

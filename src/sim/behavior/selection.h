@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Selection {
  public:
@@ -35,4 +35,4 @@ class Selection {
   std::vector<std::string> words_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -1,7 +1,7 @@
 // AwakeObjects: one pass over the objects and one over the joints.
 #include "sim/bullet/awake_objects.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 void AwakeObjects::collect(const btAlignedObjectArray<btRigidBody*>& movable, const btCollisionObjectArray& objects,
                            const btAlignedObjectArray<btTypedConstraint*>& joints) {
@@ -33,4 +33,4 @@ void AwakeObjects::collect(const btAlignedObjectArray<btRigidBody*>& movable, co
   valid_ = true;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -5,7 +5,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/union_find.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// The lists change only when objects and joints are added, removed, woken or put to sleep. Then call invalidate(), and
 /// collect() before the next use. Their memory is that of the present BulletMemory::Scope. [sim]
@@ -42,4 +42,4 @@ class AwakeObjects {
   UnionFind joined_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -24,7 +24,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 inline btScalar to_scalar(double v) { return static_cast<btScalar>(v); }
 inline btVector3 to_bt(const Vec3& v) { return {to_scalar(v.x), to_scalar(v.y), to_scalar(v.z)}; }
@@ -35,4 +35,4 @@ inline Vec3 from_bt(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
 inline Quat from_bt(const btQuaternion& q) { return quat_xyzw(q.x(), q.y(), q.z(), q.w()); }
 inline Pose from_bt(const btTransform& t) { return {from_bt(t.getOrigin()), from_bt(t.getRotation())}; }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 #include "base/memory/memcheck.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 namespace {
 
@@ -66,4 +66,4 @@ BulletMemory* BulletMemory::current() { return current_memory; }
 BulletMemory::Scope::Scope(BulletMemory* memory) : previous_(current_memory) { current_memory = memory; }
 BulletMemory::Scope::~Scope() { current_memory = previous_; }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 
 #include "base/memory/arena.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 class BulletMemory {
  public:
@@ -33,4 +33,4 @@ class BulletMemory {
   Arena arena_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

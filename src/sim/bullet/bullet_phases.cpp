@@ -6,7 +6,7 @@
 #include "base/system/clock.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 namespace {
 
@@ -67,4 +67,4 @@ BulletPhaseCounter::~BulletPhaseCounter() {
 
 const BulletPhases& BulletPhaseCounter::phases() const { return measurement.phases; }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -1,7 +1,7 @@
 // Time that Bullet spends in the phases of a step, from Bullet's own profile zones. For the benchmark.
 #pragma once
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Seconds, summed over all worlds.
 struct BulletPhases {
@@ -23,4 +23,4 @@ class BulletPhaseCounter {
   const BulletPhases& phases() const;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

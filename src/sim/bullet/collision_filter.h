@@ -5,7 +5,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Two objects may collide if each one's group has a bit in the other's mask, unless they belong to one body and one of
 /// them doesn't collide with its own body. By default, objects may collide with everything.
@@ -36,4 +36,4 @@ struct CollisionFilter {
   }
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

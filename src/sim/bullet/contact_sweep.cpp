@@ -8,7 +8,7 @@
 #include "base/check.h"
 #include "base/memory/prefetch.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Prefetch distance, in pairs.
@@ -185,4 +185,4 @@ void ContactSweep::finish() const {
   for (int i = 0; i < friction_.size(); ++i) (*bullet_friction_)[i].m_appliedImpulse = friction_[i].impulse;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -5,7 +5,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/joints/joint_block.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Bullet sets up the rows; the sweeps copy the values they need, 96 bytes per row instead of 160, with the rows of one
 /// pair of bodies in sequence, so that the pair's velocities are read and written once for all of them. The order is
@@ -68,4 +68,4 @@ class ContactSweep {
   btAlignedObjectArray<Pair> pairs_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

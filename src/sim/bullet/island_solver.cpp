@@ -8,7 +8,7 @@
 
 #include "sim/bullet/spin.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) {
   btSequentialImpulseConstraintSolver::convertBodies(bodies, count, info);
@@ -92,8 +92,9 @@ btScalar IslandSolver::solveGroupCacheFriendlyIterations(btCollisionObject** bod
                                                          const btContactSolverInfo& info, btIDebugDraw* drawer) {
   // Bullet solves an island of one resting body without setting it up
   if (std::exchange(use_direct_, false)) {
-    const IslandPools pools{m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool,
-                            m_tmpSolverContactFrictionConstraintPool, m_tmpSolverContactRollingFrictionConstraintPool};
+    const solver::IslandPools pools{m_tmpSolverBodyPool, m_tmpSolverContactConstraintPool,
+                                    m_tmpSolverContactFrictionConstraintPool,
+                                    m_tmpSolverContactRollingFrictionConstraintPool};
     if (direct_.solve(pools, info)) return 0;
     convert_constraints(constraints, constraint_count, info);
   }
@@ -310,4 +311,4 @@ btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
   return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

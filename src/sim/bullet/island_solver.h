@@ -9,7 +9,7 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/solver/direct_solver.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Sequential impulses with our own joint rows, whose softness has physical units (rate + softness·impulse = velocity)
 /// and which are stable for any softness. Also applies gyroscopic torques, which Bullet omits for light bodies (its 3x3
@@ -27,8 +27,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   }
   /// True: the next islands use the direct solver even if they have no joints.
   void set_contacts_direct(bool on) { contacts_direct_ = on; }
-  DirectSolver& direct() { return direct_; }
-  const DirectSolver& direct() const { return direct_; }
+  solver::DirectSolver& direct() { return direct_; }
+  const solver::DirectSolver& direct() const { return direct_; }
 
  protected:
   void convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) override;
@@ -77,8 +77,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   struct GearRow {
     GearConstraint* gear;
-    FixedArray<int, 4> bodies;
-    FixedArray<GearSide, 4> sides;
+    solver::FixedArray<int, 4> bodies;
+    solver::FixedArray<GearSide, 4> sides;
     int count;
     btScalar target_rate;  // rate that is missing without the impulses of this step
     btScalar softness;
@@ -88,13 +88,13 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   void apply_gear_impulse(const GearRow& row, btScalar impulse);
 
-  IndexedArray<GearRow> gears_;  // of the present island
+  solver::IndexedArray<GearRow> gears_;  // of the present island
   bool gears_swept_ = false;
-  IndexedArray<JointRow> planned_;  // of all joints of the island, in their order
+  solver::IndexedArray<JointRow> planned_;  // of all joints of the island, in their order
   int planned_count_ = 0;
   btAlignedObjectArray<SweptJoint> joints_;
   ContactSweep contacts_;
-  DirectSolver direct_;
+  solver::DirectSolver direct_;
   int steps_left_ = 1;
   int step_count_ = 1;
   bool direct_enabled_ = false;
@@ -102,4 +102,4 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   bool use_direct_ = false;  // in the present island
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

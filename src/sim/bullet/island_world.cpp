@@ -12,7 +12,7 @@
 #include "sim/collision/dispatcher.h"
 #include "sim/world/stability.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// A batch is complete with this many joints and contact pairs; results don't depend on it.
@@ -50,8 +50,8 @@ WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()
   btDefaultCollisionConstructionInfo pools;
   pools.m_defaultMaxPersistentManifoldPoolSize = pools.m_defaultMaxCollisionAlgorithmPoolSize = kManifoldPoolSize;
   configuration = std::make_unique<btDefaultCollisionConfiguration>(pools);
-  dispatcher = std::make_unique<Dispatcher>(configuration.get());
-  broadphase = std::make_unique<Broadphase>(setup.broadphase_margin, setup.thread_pool.get());
+  dispatcher = std::make_unique<collision::Dispatcher>(configuration.get());
+  broadphase = std::make_unique<collision::Broadphase>(setup.broadphase_margin, setup.thread_pool.get());
   const BulletMemory::Scope heap(nullptr);
   for (int i = 0; i < (setup.thread_pool ? setup.thread_pool->thread_count() : 1); ++i) {
     solvers.push_back(std::make_unique<IslandSolver>());
@@ -216,7 +216,7 @@ void IslandWorld::predictUnconstraintMotion(btScalar) {
   unstable_.store(false, std::memory_order_relaxed);
   if (sleep_.execute_wakes(!first_substep_)) awake_.invalidate();
   collect_awake();
-  static_cast<Dispatcher&>(*dispatcher).set_sleeping(sleep_.sleeping() > 0);
+  static_cast<collision::Dispatcher&>(*dispatcher).set_sleeping(sleep_.sleeping() > 0);
 }
 void IslandWorld::integrateTransforms(btScalar) {}
 
@@ -229,9 +229,10 @@ void IslandWorld::updateAabbs() {
   const int count = objects.size();
   left_aabb_.resizeNoInitialize(count);
   for_each(objects, [&](int i, btCollisionObject& object) {
-    if (i + kObjectsAhead / 2 < count) Broadphase::prefetch_proxy(*objects[i + kObjectsAhead / 2]);
-    left_aabb_[i] =
-        Broadphase::refit_aabb(object, getDispatchInfo().m_timeStep) ? object.getBroadphaseHandle() : nullptr;
+    if (i + kObjectsAhead / 2 < count) collision::Broadphase::prefetch_proxy(*objects[i + kObjectsAhead / 2]);
+    left_aabb_[i] = collision::Broadphase::refit_aabb(object, getDispatchInfo().m_timeStep)
+                        ? object.getBroadphaseHandle()
+                        : nullptr;
   });
   int left_count = 0;
   for (int i = 0; i < count; ++i) {
@@ -333,16 +334,16 @@ void IslandWorld::solve_islands(const btContactSolverInfo& info) {
                });
 }
 
-DirectSolver& IslandWorld::direct() { return solvers.front()->direct(); }
+solver::DirectSolver& IslandWorld::direct() { return solvers.front()->direct(); }
 
 void IslandWorld::set_direct(bool on) {
   for (const auto& solver : solvers) solver->set_direct(on);
 }
 
-DirectCounts IslandWorld::direct_counts() const {
-  DirectCounts sum;
+solver::DirectCounts IslandWorld::direct_counts() const {
+  solver::DirectCounts sum;
   for (const auto& solver : solvers) {
-    const DirectCounts& counts = solver->direct().counts();
+    const solver::DirectCounts& counts = solver->direct().counts();
     sum.islands += counts.islands;
     sum.direct += counts.direct;
     sum.too_large += counts.too_large;
@@ -351,4 +352,4 @@ DirectCounts IslandWorld::direct_counts() const {
   return sum;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

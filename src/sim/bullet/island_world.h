@@ -16,7 +16,7 @@
 #include "sim/solver/direct_solver.h"
 #include "sim/world/world_setup.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 class IslandSolver;
 
@@ -28,7 +28,7 @@ struct WorldParts {
   BulletMemory* memory;  ///< Of the scope at construction, or null.
   std::unique_ptr<btDefaultCollisionConfiguration> configuration;
   std::unique_ptr<btCollisionDispatcher> dispatcher;
-  std::unique_ptr<Broadphase> broadphase;
+  std::unique_ptr<collision::Broadphase> broadphase;
   /// One per thread; on the heap, because their data lives for one step only.
   std::vector<std::unique_ptr<IslandSolver>> solvers;
   std::shared_ptr<ThreadPool> thread_pool;
@@ -82,9 +82,9 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   /// Selects the direct solver (true) or the iterative one for all islands, from the next step on.
   void set_direct(bool on);
   /// Counts since the world was created.
-  DirectCounts direct_counts() const;
+  solver::DirectCounts direct_counts() const;
   /// Solver of the calling thread; it solves all islands if there is no thread pool.
-  DirectSolver& direct();
+  solver::DirectSolver& direct();
 
  protected:
   void predictUnconstraintMotion(btScalar h) override;
@@ -122,4 +122,4 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   btAlignedObjectArray<btBroadphaseProxy*> left_aabb_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -5,7 +5,7 @@
 
 #include "sim/collision/dispatcher.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// A batch is complete with this many bodies; results don't depend on it.
@@ -79,7 +79,8 @@ void Islands::find_contacts(const AwakeObjects& awake, btDispatcher& dispatcher)
   ordered_manifolds_.resizeNoInitialize(0);
   const int manifolds = dispatcher.getNumManifolds();
   for (int i = 0; i < manifolds; ++i) {
-    if (i + kManifoldsAhead < manifolds) prefetch_end(*dispatcher.getManifoldByIndexInternal(i + kManifoldsAhead));
+    if (i + kManifoldsAhead < manifolds)
+      collision::prefetch_end(*dispatcher.getManifoldByIndexInternal(i + kManifoldsAhead));
     btPersistentManifold* manifold = dispatcher.getManifoldByIndexInternal(i);
     if (manifold->getNumContacts() == 0) continue;
     const btCollisionObject* a = manifold->getBody0();
@@ -132,4 +133,4 @@ Islands::Batch Islands::batch(int index) const {
   return {range(body_start_), range(joint_start_), range(contact_start_), last - first, constrained};
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -5,7 +5,7 @@
 #include "sim/bullet/awake_objects.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// In each step: find(), find_contacts() once contacts are known, make_batches(). Islands are numbered in the order of
 /// their first body; their joints are in the order of their creation, their contacts in that of the age of the parts.
@@ -72,4 +72,4 @@ class Islands {
   btAlignedObjectArray<OrderedManifold> ordered_manifolds_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-namespace limber {
+namespace limber::sim::bullet {
 
 using Float4 [[gnu::vector_size(16)]] = float;
 
@@ -15,4 +15,4 @@ inline Float4 load(const float* v) {
 
 inline void store(float* v, Float4 vector) { std::memcpy(v, &vector, sizeof vector); }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

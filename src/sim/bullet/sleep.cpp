@@ -7,7 +7,7 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/collision/dispatcher.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Distance from its rest pose, m and rad, within which a part counts as at rest.
@@ -187,7 +187,7 @@ bool SleepTracker::wake_touched(bool mid_tick) {
   btDispatcher& dispatcher = *world_.getDispatcher();
   const int count = dispatcher.getNumManifolds();
   for (int i = 0; i < count; ++i) {
-    if (i + kAhead < count) prefetch_end(*dispatcher.getManifoldByIndexInternal(i + kAhead));
+    if (i + kAhead < count) collision::prefetch_end(*dispatcher.getManifoldByIndexInternal(i + kAhead));
     const btPersistentManifold& manifold = *dispatcher.getManifoldByIndexInternal(i);
     if (manifold.getNumContacts() == 0) continue;
     const btCollisionObject& a = *manifold.getBody0();
@@ -305,4 +305,4 @@ void SleepTracker::find_islands(const AwakeObjects& awake) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/union_find.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// An island (parts that touch or are joined) falls asleep at the end of a tick when it has been at rest for kRest, or
 /// half of it without joints: none of its parts left its pose, no force acted, no property changed, and no motor
@@ -105,4 +105,4 @@ class SleepTracker {
   btAlignedObjectArray<std::uint32_t> group_of_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

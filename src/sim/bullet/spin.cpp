@@ -7,7 +7,7 @@
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/solver/gyroscope.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Distance of a pivot from the axis, relative to the radius of gyration, up to which a body counts as balanced.
@@ -277,7 +277,7 @@ void integrate_free_rotation(const Vec3& inertia, Quat& rotation, Vec3& w, doubl
   const double substep = h / substeps;
   Vec3 local = glm::conjugate(rotation) * w;
   for (int i = 0; i < substeps; ++i) {
-    const Vec3 change = gyroscopic_change(inertia, local, substep);
+    const Vec3 change = solver::gyroscopic_change(inertia, local, substep);
     rotation = rotation * rotation_of((local + change / 2.0) * substep);
     local += change;
   }
@@ -300,10 +300,10 @@ Vec3 gyroscopic_change(const btRigidBody& body, double h) {
   if (step.spin != 0) {
     const double along = moment_about(body, moments, step.axis);
     const double across = (moments.x + moments.y + moments.z - along) / 2;
-    return gyroscopic_change(along, across, step.axis, step.spin, step.tumble, h);
+    return solver::gyroscopic_change(along, across, step.axis, step.spin, step.tumble, h);
   }
   const btMatrix3x3& axes = body.getWorldTransform().getBasis();
-  return from_bt(axes * to_bt(gyroscopic_change(moments, from_bt(body.getAngularVelocity() * axes), h)));
+  return from_bt(axes * to_bt(solver::gyroscopic_change(moments, from_bt(body.getAngularVelocity() * axes), h)));
 }
 
 Vec3 gyroscopic_torque(const btRigidBody& body, const Vec3& w, double h) {
@@ -378,4 +378,4 @@ void record_clamp(btRigidBody& body, double amount) {
 
 double clamped_by(const btRigidBody& body) { return static_cast<double>(body.getCcdSweptSphereRadius()); }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Rotation per substep, rad, beyond which rotation other than spin is clamped (to less than pi, as in Bullet):
 /// pivots would move along straight lines instead of arcs, and joints would drift apart.
@@ -64,4 +64,4 @@ void reset_clamp(btRigidBody& body);
 void record_clamp(btRigidBody& body, double amount);
 double clamped_by(const btRigidBody& body);
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -3,7 +3,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 class UnionFind {
  public:
@@ -28,4 +28,4 @@ class UnionFind {
   btAlignedObjectArray<int> parent_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 /// An axis of an edge pair or of the second box is preferred only if its separation is larger by this (relative, and in
@@ -134,4 +134,4 @@ BoxAxis SeparatingAxis::find(const Box& a, const Box& b, const ManifoldBuilder& 
   return test.best();
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

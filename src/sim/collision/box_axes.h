@@ -5,7 +5,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/collision/manifold_builder.h"
 
-namespace limber {
+namespace limber::sim::collision {
 
 struct Box {
   const btVector3& center;
@@ -45,4 +45,4 @@ class SeparatingAxis {
   int b_ = kNone;  // of the second one; both: the cross product
 };
 
-}  // namespace limber
+}  // namespace limber::sim::collision

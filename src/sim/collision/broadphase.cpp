@@ -7,7 +7,7 @@
 #include "base/memory/prefetch.h"
 #include "sim/bullet/collision_filter.h"
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 /// Boxes without neighbors are extended along the motion of this many steps, so that objects leave them less often.
@@ -99,7 +99,7 @@ bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   if ((b.m_collisionFilterGroup & a.m_collisionFilterMask) == 0) return false;
   const auto& first = *static_cast<const btCollisionObject*>(a.m_clientObject);
   const auto& second = *static_cast<const btCollisionObject*>(b.m_clientObject);
-  if (!CollisionFilter::of(first).accepts(CollisionFilter::of(second))) return false;
+  if (!bullet::CollisionFilter::of(first).accepts(bullet::CollisionFilter::of(second))) return false;
   return first.checkCollideWith(&second) && second.checkCollideWith(&first);
 }
 
@@ -121,7 +121,7 @@ void extend_along_motion(const btCollisionObject& object, btScalar h, btVector3&
 }  // namespace
 
 Broadphase::Broadphase(double margin, ThreadPool* thread_pool)
-    : margin_(to_scalar(margin)),
+    : margin_(bullet::to_scalar(margin)),
       thread_pool_(thread_pool),
       tree_count_(thread_pool == nullptr ? 1 : std::min(thread_pool->thread_count(), kMaxTrees)),
       searches_(std::make_unique<std::vector<SearchTask>>()) {}
@@ -355,4 +355,4 @@ void Broadphase::getBroadphaseAabb(btVector3& low, btVector3& high) const {
   for (const btDbvt& tree : moving_) extend(tree);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

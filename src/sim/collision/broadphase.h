@@ -12,7 +12,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvt.h>
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// Dynamic bounding volume trees of Bullet (btDbvt): one of static objects and one, or several with a thread pool, of
 /// moving objects; and Bullet's pair cache. The pairs found don't depend on the trees. The cache contains only pairs
@@ -91,4 +91,4 @@ class Broadphase : public btBroadphaseInterface {
   std::unique_ptr<std::vector<SearchTask>> searches_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::collision

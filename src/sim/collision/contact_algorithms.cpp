@@ -15,7 +15,7 @@
 #include "sim/collision/contact_features.h"
 #include "sim/collision/manifold_builder.h"
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 /// A face is the reference face if its normal is within 1.1 degrees of the contact normal.
@@ -330,4 +330,4 @@ void ContactAlgorithms::install(btCollisionDispatcher& dispatcher) {
   dispatcher.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_box_);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -6,7 +6,7 @@
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// Bullet adds one point per step, and perturbs the pose of a shape to find another: a box that falls flat tilts, and
 /// one that slides sinks and turns while its points drift. These algorithms find all points of a step at once, from the
@@ -40,4 +40,4 @@ class ContactAlgorithms {
   CreateConvex convex_convex_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 constexpr int kCapCorners = 12;
@@ -27,7 +27,8 @@ const std::array<Corner, kCapCorners>& unit_circle() {
     std::array<Corner, kCapCorners> corners{};
     for (int i = 0; i < kCapCorners; ++i) {
       const double angle = 2 * kPi * i / kCapCorners;
-      corners[static_cast<std::size_t>(i)] = {to_scalar(fixed::cos(angle)), to_scalar(fixed::sin(angle))};
+      corners[static_cast<std::size_t>(i)] = {bullet::to_scalar(fixed::cos(angle)),
+                                              bullet::to_scalar(fixed::sin(angle))};
     }
     return corners;
   }();
@@ -247,4 +248,4 @@ void find_points_on_plane(const btConvexShape& shape, const btVector3& direction
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -5,7 +5,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// A convex polygon, a segment (2 points) or a point, counterclockwise about its normal. The surface is `margin`
 /// outside of the points, along the normal. [sim]
@@ -37,4 +37,4 @@ void find_feature(const btConvexShape& shape, const btVector3& direction, Contac
 void find_points_on_plane(const btConvexShape& shape, const btVector3& direction, btScalar plane, btScalar max_distance,
                           ContactFeature& feature);
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 /// Below this speed a contact sticks: m/s, rad/s.
@@ -107,4 +107,4 @@ void set_friction_direction(btCollisionObject& object, const btVector3& directio
   object.setAnisotropicFriction(stored);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -3,7 +3,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// Kind of a friction row, stored in its m_overrideNumSolverIterations, which Bullet doesn't use for friction. Each
 /// friction_along row is followed by its friction_across row.
@@ -36,4 +36,4 @@ void store_rolling_friction(btManifoldPoint& point, const btVector3& torque);
 /// direction: isotropic.
 void set_friction_direction(btCollisionObject& object, const btVector3& direction, btScalar factor);
 
-}  // namespace limber
+}  // namespace limber::sim::collision

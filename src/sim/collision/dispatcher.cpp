@@ -4,7 +4,7 @@
 
 #include "sim/collision/manifold_builder.h"
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 /// Prefetch distances of the stages, in pairs.
@@ -81,4 +81,4 @@ void Dispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const 
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -8,7 +8,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/collision/contact_algorithms.h"
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// Prefetches the end of a manifold, which holds the number of points and the objects.
 [[gnu::always_inline]] inline void prefetch_end(const btPersistentManifold& manifold) {
@@ -49,4 +49,4 @@ class Dispatcher : public btCollisionDispatcher {
   btManifoldArray manifolds_;                      // of one pair
 };
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::collision {
 namespace {
 
 constexpr int kMaxPoints = 4;
@@ -197,4 +197,4 @@ void ContactResult::addContactPoint(const btVector3& normal_on_b, const btVector
   if (replaces) copy_warm_start(probe, manifold.getContactPoint(replaced));
 }
 
-}  // namespace limber
+}  // namespace limber::sim::collision

@@ -5,7 +5,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::collision {
 
 /// Flag of a contact point, in addition to Bullet's: the surfaces have met and the impact is over; see contacts.h.
 inline constexpr int kContactClosed = 1 << 16;
@@ -68,4 +68,4 @@ class ContactResult : public btManifoldResult {
   void addContactPoint(const btVector3& normal_on_b, const btVector3& point_on_b, btScalar depth) override;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::collision

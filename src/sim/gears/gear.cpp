@@ -12,7 +12,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -73,9 +73,9 @@ bool Gear::enabled() const { return world_.store().values(id_, *gear_properties(
 bool Gear::couples(const Body& body) const { return &joint_a_->body() == &body || &joint_b_->body() == &body; }
 
 void Gear::make_constraint() {
-  const BulletMemory::Scope scope(&world_.bullet_memory());
-  constraint_ = std::make_unique<GearConstraint>(joint_a_->constraint(), joint_a_->own_axis(), joint_b_->constraint(),
-                                                 joint_b_->own_axis());
+  const bullet::BulletMemory::Scope scope(&world_.bullet_memory());
+  constraint_ = std::make_unique<bullet::GearConstraint>(joint_a_->constraint(), joint_a_->own_axis(),
+                                                         joint_b_->constraint(), joint_b_->own_axis());
 }
 
 void Gear::replace_joints(Joint& joint_a, Joint& joint_b) {
@@ -87,7 +87,7 @@ void Gear::replace_joints(Joint& joint_a, Joint& joint_b) {
 }
 
 void Gear::apply_settings() {
-  const GearSettings settings{ratio(), offset(), world_.store().values(id_, *gear_properties().max_force)[0]};
+  const bullet::GearSettings settings{ratio(), offset(), world_.store().values(id_, *gear_properties().max_force)[0]};
   if (!(settings == constraint_->settings())) {
     joint_a_->wake();
     joint_b_->wake();
@@ -121,10 +121,11 @@ Result<void> Gear::act_remove(std::span<const double>) {
 }
 
 Result<void> check_gear_joint(const Joint& joint) {
-  const JointType type = joint.type();
-  if (type == JointType::revolute || type == JointType::continuous || type == JointType::prismatic) return {};
+  const model::JointType type = joint.type();
+  if (type == model::JointType::revolute || type == model::JointType::continuous || type == model::JointType::prismatic)
+    return {};
   return Error{fmt::format("joint '{}/{}' is {}; a gear needs a revolute, continuous or prismatic joint",
-                           joint.body().name(), joint.name(), joint_type_name(type))};
+                           joint.body().name(), joint.name(), model::joint_type_name(type))};
 }
 
 std::vector<Joint*> couple_mimic_joints(const Body& body) {
@@ -139,4 +140,4 @@ std::vector<Joint*> couple_mimic_joints(const Body& body) {
   return followers;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

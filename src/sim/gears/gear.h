@@ -9,10 +9,13 @@
 #include "base/memory/archive.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::sim::bullet {
+class GearConstraint;
+}  // namespace limber::sim::bullet
+
+namespace limber::sim {
 
 class Body;
-class GearConstraint;
 class Joint;
 class World;
 
@@ -29,8 +32,8 @@ class Gear {
   const std::string& name() const;
   Joint& joint_a() const { return *joint_a_; }
   Joint& joint_b() const { return *joint_b_; }
-  GearConstraint& constraint() { return *constraint_; }
-  const GearConstraint& constraint() const { return *constraint_; }
+  bullet::GearConstraint& constraint() { return *constraint_; }
+  const bullet::GearConstraint& constraint() const { return *constraint_; }
   double ratio() const;
   double offset() const;
   bool enabled() const;
@@ -64,7 +67,7 @@ class Gear {
   NodeId id_;
   Joint* joint_a_;
   Joint* joint_b_;
-  std::unique_ptr<GearConstraint> constraint_;
+  std::unique_ptr<bullet::GearConstraint> constraint_;
   // what persists from tick to tick, besides its properties
   struct State {
     bool in_world = false;
@@ -78,4 +81,4 @@ Result<void> check_gear_joint(const Joint& joint);
 /// exist, because a leader may be listed after its follower in the file.
 std::vector<Joint*> couple_mimic_joints(const Body& body);
 
-}  // namespace limber
+}  // namespace limber::sim

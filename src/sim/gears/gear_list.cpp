@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -26,7 +26,7 @@ class GearUnionFind {
   enum class Relation : std::uint8_t { independent, redundant, contradictory };
 
   /// Relation of another gear b = ratio·a + offset to those joined before; joins it if it is independent.
-  Relation join(const JointConstraint* a, const JointConstraint* b, double ratio, double offset,
+  Relation join(const bullet::JointConstraint* a, const bullet::JointConstraint* b, double ratio, double offset,
                 double* contradiction) {
     if (ratio == 0) return Relation::independent;
     const Position at_a = find(a);
@@ -47,18 +47,18 @@ class GearUnionFind {
 
  private:
   struct Position {
-    const JointConstraint* root = nullptr;
+    const bullet::JointConstraint* root = nullptr;
     double factor = 1;
     double offset = 0;
   };
-  Position find(const JointConstraint* joint) {
+  Position find(const bullet::JointConstraint* joint) {
     Position at{joint, 1, 0};
     for (auto parent = positions_.find(joint); parent != positions_.end(); parent = positions_.find(at.root)) {
       at = {parent->second.root, at.factor * parent->second.factor, at.factor * parent->second.offset + at.offset};
     }
     return at;
   }
-  std::unordered_map<const JointConstraint*, Position> positions_;
+  std::unordered_map<const bullet::JointConstraint*, Position> positions_;
 };
 
 void warn_unused(const Gear& gear, GearUnionFind::Relation relation, double contradiction) {
@@ -131,7 +131,7 @@ void GearList::find_redundant() {
   double contradiction = 0;
   for (const auto& body : world_.bodies()) {
     for (const Joint* follower : body->followers()) {
-      const GearConstraint& gear = *follower->mimic_gear();
+      const bullet::GearConstraint& gear = *follower->mimic_gear();
       groups.join(&gear.joint_a(), &gear.joint_b(), gear.settings().ratio, gear.settings().offset, &contradiction);
     }
   }
@@ -161,7 +161,7 @@ void GearList::reset_constraints(const Body& body) {
 
 void GearList::warn_slipping() {
   for (const auto& gear : gears_.list()) {
-    GearConstraint& constraint = gear->constraint();
+    bullet::GearConstraint& constraint = gear->constraint();
     if (!constraint.is_slipping() || !constraint.report_slip()) continue;
     log_warning(
         "gear '{}': joint '{}/{}' is {:.3g} away from the position set by the gear: limits, locks or contacts prevent "
@@ -202,4 +202,4 @@ void GearList::serialize(Archive& archive) {
   for (const auto& gear : gears_.list()) gear->serialize(archive);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -11,7 +11,7 @@
 #include "sim/gears/gear.h"
 #include "sim/world/object_list.h"
 
-namespace limber {
+namespace limber::sim {
 
 class GearList {
  public:
@@ -64,4 +64,4 @@ class GearList {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 
 void MassTable::add(const Part& part) {
   const std::size_t index = part.accumulator_index();
@@ -24,4 +24,4 @@ void MassTable::register_view(View& copy) {
 
 void MassTable::unregister_view(View& copy) { std::erase(views_, &copy); }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 
 class Part;
 
@@ -36,4 +36,4 @@ class MassTable {
   std::vector<View*> views_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

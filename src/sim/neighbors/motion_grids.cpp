@@ -5,7 +5,7 @@
 
 #include "sim/bullet/simd.h"
 
-namespace limber {
+namespace limber::sim {
 
 void MotionGrids::begin_tick() {
   velocities_gathered_ = false;
@@ -52,8 +52,8 @@ void MotionGrids::fill_motions(Grid& grid, bool velocities) {
     NeighborMotion& motion = grid.motions[k];
     const std::uint32_t i = order[k];
     if (velocities) {
-      store(motion.velocity, load(velocities_[i].velocity));
-      store(motion.angular_velocity, load(velocities_[i].angular_velocity));
+      bullet::store(motion.velocity, bullet::load(velocities_[i].velocity));
+      bullet::store(motion.angular_velocity, bullet::load(velocities_[i].angular_velocity));
     }
     motion.position[0] = points.x[i];
     motion.position[1] = points.y[i];
@@ -62,4 +62,4 @@ void MotionGrids::fill_motions(Grid& grid, bool velocities) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim

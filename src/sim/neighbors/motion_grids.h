@@ -10,7 +10,7 @@
 #include "sim/neighbors/part_cloud.h"
 #include "sim/neighbors/point_grid.h"
 
-namespace limber {
+namespace limber::sim {
 
 class MotionGrids {
  public:
@@ -42,4 +42,4 @@ class MotionGrids {
   bool velocities_gathered_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::sim {
 
 void NeighborLists::invalidate() {
   for (Lists& lists : lists_) {
@@ -70,4 +70,4 @@ void NeighborLists::build(Lists& lists, const Source& source) {
   lists.built = true;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 
 #include "sim/neighbors/point_grid.h"
 
-namespace limber {
+namespace limber::sim {
 
 class NeighborLists {
  public:
@@ -43,4 +43,4 @@ class NeighborLists {
   std::vector<std::uint32_t> found_, part_at_;  // scratch
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,13 +6,13 @@
 
 #include "sim/bullet/simd.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // Returns the unit vector times 1 − distance/max_distance, or zero if the points coincide.
-Float4 separation_vector(const Float4& r, float inverse_max_distance) {
+bullet::Float4 separation_vector(const bullet::Float4& r, float inverse_max_distance) {
   const float distance = std::sqrt((r[0] * r[0] + r[1] * r[1]) + r[2] * r[2]);
-  return distance > 0 ? r * (1 / distance - inverse_max_distance) : Float4{};
+  return distance > 0 ? r * (1 / distance - inverse_max_distance) : bullet::Float4{};
 }
 
 }  // namespace
@@ -119,24 +119,24 @@ NeighborMeans MeansCalculator::sum_near(MotionGrids::Grid& grid, const PartData&
   const float inverse_max_distance = 1 / max_radius;
   found_.resize(cloud_.size() + kPointPadding);
   const std::uint32_t count = grid.grid.find_near(query, static_cast<float>(min_distance), max_radius, found_.data());
-  const Float4 center_point{query.x, query.y, query.z, 0};
-  Float4 offset{}, velocity{}, angular_velocity{}, separation{};
+  const bullet::Float4 center_point{query.x, query.y, query.z, 0};
+  bullet::Float4 offset{}, velocity{}, angular_velocity{}, separation{};
   for (std::uint32_t j = 0; j < count; j++) {
     const NeighborMotion& neighbor = grid.motions[found_[j]];
-    const Float4 r = load(neighbor.position) - center_point;
+    const bullet::Float4 r = bullet::load(neighbor.position) - center_point;
     offset += r;
     if constexpr ((Want & kWantVelocity) != 0) {
-      velocity += load(neighbor.velocity);
-      angular_velocity += load(neighbor.angular_velocity);
+      velocity += bullet::load(neighbor.velocity);
+      angular_velocity += bullet::load(neighbor.angular_velocity);
     }
     if constexpr ((Want & kWantSeparation) != 0) separation += separation_vector(r, inverse_max_distance);
   }
   NeighborSum sum{};
   Separation separations;
-  store(sum.offset, offset);
-  store(sum.velocity, velocity);
-  store(sum.angular_velocity, angular_velocity);
-  store(separations.sum, separation);
+  bullet::store(sum.offset, offset);
+  bullet::store(sum.velocity, velocity);
+  bullet::store(sum.angular_velocity, angular_velocity);
+  bullet::store(separations.sum, separation);
   NeighborMotion own{};
   if constexpr ((Want & kWantVelocity) != 0) {
     put(own.velocity, cloud_.velocity_of(part));
@@ -166,15 +166,16 @@ void MeansCalculator::sum_pairs(const Query& query, MotionGrids::Grid& grid) {
 
 void MeansCalculator::sum_pair_separations(std::uint32_t index, std::span<const std::uint32_t> found,
                                            const NeighborMotion* motions, float inverse_max_distance) {
-  const Float4 own_position = load(motions[index].position) - Float4{0, 0, 0, 1};
-  Float4 separation = load(separations_[index].sum);
+  const bullet::Float4 own_position = bullet::load(motions[index].position) - bullet::Float4{0, 0, 0, 1};
+  bullet::Float4 separation = bullet::load(separations_[index].sum);
   for (const std::uint32_t other : found) {
-    const Float4 vector = separation_vector(load(motions[other].position) - own_position, inverse_max_distance);
+    const bullet::Float4 vector =
+        separation_vector(bullet::load(motions[other].position) - own_position, inverse_max_distance);
     separation += vector;
     float* const other_sum = separations_[other].sum;
-    store(other_sum, load(other_sum) - vector);
+    bullet::store(other_sum, bullet::load(other_sum) - vector);
   }
-  store(separations_[index].sum, separation);
+  bullet::store(separations_[index].sum, separation);
 }
 
 // Converts sums over neighbors to means; motions relative to the part's own.
@@ -197,4 +198,4 @@ NeighborMeans MeansCalculator::means_from_sums(const NeighborSum& sum, const Sep
   return means;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/neighbors/neighbor_sums.h"
 #include "sim/neighbors/part_cloud.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// Means over the neighbors of a part: parts of other bodies between two distances. All zero if there are none.
 struct NeighborMeans {
@@ -77,4 +77,4 @@ class MeansCalculator {
   std::vector<Totals> body_totals_;  // by ordinal
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 constexpr double kMaxRadius = 1e7;  // m: farther than any two parts are apart, but its square is a finite float
@@ -131,4 +131,4 @@ void NeighborSet::find_near(const Part& part, double radius, std::vector<Neighbo
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim

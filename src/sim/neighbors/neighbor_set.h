@@ -12,7 +12,7 @@
 #include "sim/neighbors/neighbor_means.h"
 #include "sim/neighbors/part_cloud.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// Result of find_near(): a part near another.
 struct Neighbor {
@@ -83,4 +83,4 @@ class NeighborSet {
   std::vector<std::uint32_t> found_;   // scratch
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,35 +9,36 @@
 
 #include "sim/bullet/simd.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
 template <bool Motions>
 void add_pairs_4(std::uint32_t index, std::span<const std::uint32_t> found, const NeighborMotion* motions,
                  NeighborSum* sums) {
-  const Float4 one{0, 0, 0, 1}, two{0, 0, 0, 2};
+  const bullet::Float4 one{0, 0, 0, 1}, two{0, 0, 0, 2};
   const NeighborMotion& own = motions[index];
-  const Float4 own_position = load(own.position) - one;
-  const Float4 own_velocity = load(own.velocity), own_angular_velocity = load(own.angular_velocity);
+  const bullet::Float4 own_position = bullet::load(own.position) - one;
+  const bullet::Float4 own_velocity = bullet::load(own.velocity),
+                       own_angular_velocity = bullet::load(own.angular_velocity);
   NeighborSum& own_sum = sums[index];
-  Float4 offset = load(own_sum.offset), velocity = load(own_sum.velocity),
-         angular_velocity = load(own_sum.angular_velocity);
+  bullet::Float4 offset = bullet::load(own_sum.offset), velocity = bullet::load(own_sum.velocity),
+                 angular_velocity = bullet::load(own_sum.angular_velocity);
   for (const std::uint32_t other : found) {
     const NeighborMotion& neighbor = motions[other];
     NeighborSum& other_sum = sums[other];
-    const Float4 r = load(neighbor.position) - own_position;
+    const bullet::Float4 r = bullet::load(neighbor.position) - own_position;
     offset += r;
-    store(other_sum.offset, load(other_sum.offset) - (r - two));
+    bullet::store(other_sum.offset, bullet::load(other_sum.offset) - (r - two));
     if constexpr (!Motions) continue;
-    velocity += load(neighbor.velocity);
-    angular_velocity += load(neighbor.angular_velocity);
-    store(other_sum.velocity, load(other_sum.velocity) + own_velocity);
-    store(other_sum.angular_velocity, load(other_sum.angular_velocity) + own_angular_velocity);
+    velocity += bullet::load(neighbor.velocity);
+    angular_velocity += bullet::load(neighbor.angular_velocity);
+    bullet::store(other_sum.velocity, bullet::load(other_sum.velocity) + own_velocity);
+    bullet::store(other_sum.angular_velocity, bullet::load(other_sum.angular_velocity) + own_angular_velocity);
   }
-  store(own_sum.offset, offset);
-  store(own_sum.velocity, velocity);
-  store(own_sum.angular_velocity, angular_velocity);
+  bullet::store(own_sum.offset, offset);
+  bullet::store(own_sum.velocity, velocity);
+  bullet::store(own_sum.angular_velocity, angular_velocity);
 }
 
 #if defined(__x86_64__)
@@ -75,4 +76,4 @@ AddPairs select_add_pairs(VectorWidth width, bool motions) {
   return motions ? add_pairs_4<true> : add_pairs_4<false>;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "sim/neighbors/point_finder.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// Position (m), velocity (m/s) and angular velocity (rad/s) of a point; the fourth component of its position is 1.
 struct alignas(64) NeighborMotion {
@@ -19,6 +19,7 @@ struct alignas(64) NeighborSum {
   float offset[4], velocity[4], angular_velocity[4], unused[4];
 };
 
+using limber::put;
 /// Copies a vector in single precision.
 inline void put(float* to, const Vec3& v) {
   for (int i = 0; i < 3; i++) to[i] = static_cast<float>(v[i]);
@@ -32,4 +33,4 @@ using AddPairs = void (*)(std::uint32_t index, std::span<const std::uint32_t> fo
 /// are summed too; else their sums are undefined.
 AddPairs select_add_pairs(VectorWidth width, bool motions);
 
-}  // namespace limber
+}  // namespace limber::sim

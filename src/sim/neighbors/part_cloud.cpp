@@ -7,7 +7,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 // Offsets of a part's motion in its transient values.
@@ -124,4 +124,4 @@ Vec3 PartCloud::angular_velocity_of(const PartData& data) const {
   return vec3_at(world_.store().transient_values().data() + data.transient_offset + part_offsets().angular_velocity);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "sim/neighbors/point_grid.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 class Part;
@@ -78,4 +78,4 @@ class PartCloud {
   std::vector<Vec3> centers_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,7 +8,7 @@
 #include <immintrin.h>
 #endif
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -165,4 +165,4 @@ PointFinder::PointFinder(VectorWidth width)
 #endif
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace limber {
+namespace limber::sim {
 
 /// Position and body to find neighbors for.
 struct PointQuery {
@@ -55,4 +55,4 @@ class PointFinder {
   Find all_, min_, skip_body_, min_and_skip_body_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

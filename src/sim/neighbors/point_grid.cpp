@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::uint32_t PointGrid::find_pairs(std::uint32_t index, float min_distance, flo
   return finder_.find(candidates_from(from), query, min_distance, max_distance, !one_per_body_, out);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

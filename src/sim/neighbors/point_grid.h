@@ -9,7 +9,7 @@
 
 #include "sim/neighbors/point_finder.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// Points in structure-of-arrays layout, each with the index of its body.
 struct PointCloud {
@@ -84,4 +84,4 @@ class PointGrid {
   std::vector<std::uint32_t> candidate_indices_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 #include "model/mesh/mass_properties.h"
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -16,31 +16,31 @@ bool is_identity(const Pose& pose) {
   return glm::length(pose.position) < 1e-9 && std::abs(std::abs(pose.rotation.w) - 1) < 1e-12;
 }
 
-std::shared_ptr<btCollisionShape> hull_shape(const MeshModel& mesh, const Pose& at) {
+std::shared_ptr<btCollisionShape> hull_shape(const model::MeshModel& mesh, const Pose& at) {
   auto hull = std::make_shared<btConvexHullShape>();
-  for (const Vec3& v : mesh.hull) hull->addPoint(to_bt(at * v), false);
+  for (const Vec3& v : mesh.hull) hull->addPoint(bullet::to_bt(at * v), false);
   hull->setMargin(kMargin);
   hull->recalcLocalAabb();
   hull->initializePolyhedralFeatures();  // contact manifolds need its faces
   return hull;
 }
 
-std::shared_ptr<btCollisionShape> primitive_shape(const ShapeModel& m) {
-  const btScalar radius = to_scalar(m.radius);
-  const btScalar height = to_scalar(m.height);
+std::shared_ptr<btCollisionShape> primitive_shape(const model::ShapeModel& m) {
+  const btScalar radius = bullet::to_scalar(m.radius);
+  const btScalar height = bullet::to_scalar(m.height);
   const btScalar half = height / 2;
   switch (m.kind) {
-    case ShapeKind::plane:
-      return std::make_shared<btStaticPlaneShape>(to_bt(m.normal), btScalar(0));
-    case ShapeKind::sphere:
+    case model::ShapeKind::plane:
+      return std::make_shared<btStaticPlaneShape>(bullet::to_bt(m.normal), btScalar(0));
+    case model::ShapeKind::sphere:
       return std::make_shared<btSphereShape>(radius);
-    case ShapeKind::box:
-      return std::make_shared<btBoxShape>(to_bt(m.size * 0.5));
-    case ShapeKind::cylinder:
+    case model::ShapeKind::box:
+      return std::make_shared<btBoxShape>(bullet::to_bt(m.size * 0.5));
+    case model::ShapeKind::cylinder:
       return std::make_shared<btCylinderShapeZ>(btVector3(radius, radius, half));
-    case ShapeKind::capsule:
+    case model::ShapeKind::capsule:
       return std::make_shared<btCapsuleShapeZ>(radius, height);
-    case ShapeKind::cone: {
+    case model::ShapeKind::cone: {
       auto cone = std::make_shared<btConeShapeZ>(radius, height);
       cone->setMargin(std::min({kMargin, radius / 10, height / 10}));
       return cone;
@@ -51,7 +51,7 @@ std::shared_ptr<btCollisionShape> primitive_shape(const ShapeModel& m) {
 }
 
 // Sets the center, the principal axes, and the moments per kilogram.
-void set_mass_properties(Geometry& geometry, const Inertial& inertial) {
+void set_mass_properties(Geometry& geometry, const model::Inertial& inertial) {
   geometry.frame.position = inertial.center;
   const Mat3 tensor = inertial.tensor / inertial.mass;
   const double trace = tensor[0][0] + tensor[1][1] + tensor[2][2];
@@ -60,7 +60,7 @@ void set_mass_properties(Geometry& geometry, const Inertial& inertial) {
     // the tensor is diagonal already: shapes keep their axes, and no rotated compound is needed
     geometry.unit_inertia = {tensor[0][0], tensor[1][1], tensor[2][2]};
   } else {
-    const PrincipalAxes principal = principal_axes(tensor);
+    const model::PrincipalAxes principal = model::principal_axes(tensor);
     geometry.unit_inertia = principal.moments;
     geometry.frame.rotation = glm::normalize(glm::quat_cast(principal.axes));
   }
@@ -70,23 +70,23 @@ void set_mass_properties(Geometry& geometry, const Inertial& inertial) {
 }
 
 // Returns the mass distribution of the shapes' volume, with a density of 1.
-Inertial solid_inertial(const std::vector<PlacedShape>& shapes) {
-  std::vector<Inertial> solids;
-  for (const PlacedShape& placed : shapes) {
-    if (placed.shape.kind != ShapeKind::plane)
-      solids.push_back(transformed(unit_inertial_of(placed.shape), placed.origin));
+model::Inertial solid_inertial(const std::vector<model::PlacedShape>& shapes) {
+  std::vector<model::Inertial> solids;
+  for (const model::PlacedShape& placed : shapes) {
+    if (placed.shape.kind != model::ShapeKind::plane)
+      solids.push_back(model::transformed(model::unit_inertial_of(placed.shape), placed.origin));
   }
-  return combined(solids);
+  return model::combined(solids);
 }
 
 // Sets the collision shape: a single shape if possible, else a compound.
 void set_collision_shape(Geometry& geometry) {
-  const std::vector<PlacedShape>& shapes = geometry.placed;
+  const std::vector<model::PlacedShape>& shapes = geometry.placed;
   const Pose to_center = geometry.frame.inverse();
   auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
-  for (const PlacedShape& placed : shapes) {
+  for (const model::PlacedShape& placed : shapes) {
     const Pose at = to_center * placed.origin;
-    const bool mesh = placed.shape.kind == ShapeKind::mesh && placed.shape.mesh != nullptr;
+    const bool mesh = placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr;
     std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at) : primitive_shape(placed.shape);
     if (shape == nullptr) continue;
     if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
@@ -94,7 +94,7 @@ void set_collision_shape(Geometry& geometry) {
       geometry.shape = shape;
       return;
     }
-    compound->addChildShape(mesh ? btTransform::getIdentity() : to_bt(at), shape.get());
+    compound->addChildShape(mesh ? btTransform::getIdentity() : bullet::to_bt(at), shape.get());
     geometry.children.push_back(std::move(shape));
   }
   geometry.shape = compound;
@@ -102,10 +102,11 @@ void set_collision_shape(Geometry& geometry) {
 
 }  // namespace
 
-std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& shapes, const Inertial& inertial) {
+std::shared_ptr<const Geometry> make_geometry(const std::vector<model::PlacedShape>& shapes,
+                                              const model::Inertial& inertial) {
   auto geometry = std::make_shared<Geometry>();
   geometry->placed = shapes;
-  const Inertial solid = solid_inertial(shapes);
+  const model::Inertial solid = solid_inertial(shapes);
   geometry->volume = solid.mass;
   const bool given = inertial.mass > 0 && inertial.tensor[0][0] > 0;
   if (given || solid.mass > 0) set_mass_properties(*geometry, given ? inertial : solid);
@@ -113,4 +114,4 @@ std::shared_ptr<const Geometry> make_geometry(const std::vector<PlacedShape>& sh
   return geometry;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

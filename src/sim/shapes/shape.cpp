@@ -8,7 +8,7 @@
 #include "base/color.h"
 #include "sim/shapes/geometry.h"
 
-namespace limber {
+namespace limber::sim {
 
 const PropertyTable& Shape::table() {
   using namespace properties;
@@ -40,55 +40,56 @@ Result<void> first_error(Result<void> a, Result<void> b) { return a ? b : a; }
 
 }  // namespace
 
-std::string visual_shape_name(const BodyModel& model, const LinkModel& link, std::size_t number) {
+std::string visual_shape_name(const model::BodyModel& model, const model::LinkModel& link, std::size_t number) {
   std::string name = fmt::format("{}.{}", model.name, link.name);
   if (number > 0) name += fmt::format(".{}", number + 1);
   return name;
 }
 
-Result<void> check_shape(const ShapeModel& m) {
+Result<void> check_shape(const model::ShapeModel& m) {
   switch (m.kind) {
-    case ShapeKind::plane:
+    case model::ShapeKind::plane:
       if (!is_finite(m.normal) || glm::length(m.normal) < 1e-9) return Error{"a plane needs a normal that is not zero"};
       return {};
-    case ShapeKind::sphere:
+    case model::ShapeKind::sphere:
       return check_length(m.radius, "sphere", "radius");
-    case ShapeKind::box:
+    case model::ShapeKind::box:
       for (int i = 0; i < 3; i++) {
         if (const Result<void> ok = check_length(m.size[i], "box", "size"); !ok) return ok;
       }
       return {};
-    case ShapeKind::cylinder:
+    case model::ShapeKind::cylinder:
       return first_error(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
-    case ShapeKind::capsule:
+    case model::ShapeKind::capsule:
       return first_error(check_length(m.radius, "capsule", "radius"), check_length(m.height, "capsule", "height"));
-    case ShapeKind::cone:
+    case model::ShapeKind::cone:
       return first_error(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
-    case ShapeKind::mesh:
+    case model::ShapeKind::mesh:
       if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
       return {};
-    case ShapeKind::compound:
+    case model::ShapeKind::compound:
       return {};
   }
   return {};
 }
 
-Shape::Shape(Store& store, NodeId group, std::string name, ShapeModel model)
+Shape::Shape(Store& store, NodeId group, std::string name, model::ShapeModel model)
     : store_(store), id_(store.add(table(), group, std::move(name), this)), model_(std::move(model)) {
-  if (model_.kind == ShapeKind::plane) model_.normal = normalized(model_.normal);
+  if (model_.kind == model::ShapeKind::plane) model_.normal = normalized(model_.normal);
 }
 
 Shape::~Shape() { store_.remove(id_); }
 
 Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
-  if (model_.kind != ShapeKind::compound) {
+  if (model_.kind != model::ShapeKind::compound) {
     return Error{fmt::format("shape '{}' is not a compound; create one with sim:add_compound_shape", name())};
   }
   if (&child == this) return Error{fmt::format("compound '{}' can't contain itself", name())};
-  if (child.model().kind == ShapeKind::plane) return Error{fmt::format("compound '{}' can't contain a plane", name())};
+  if (child.model().kind == model::ShapeKind::plane)
+    return Error{fmt::format("compound '{}' can't contain a plane", name())};
   if (children_.size() + child.placed().size() > 1000)
     return Error{fmt::format("compound '{}' can contain at most 1000 shapes", name())};
-  for (PlacedShape placed : child.placed()) {
+  for (model::PlacedShape placed : child.placed()) {
     placed.origin = origin * placed.origin;
     children_.push_back(placed);
   }
@@ -103,9 +104,9 @@ void Shape::truncate_children(std::size_t count) {
   store_.bump_structure_version();
 }
 
-std::vector<PlacedShape> Shape::placed() const {
-  if (model_.kind == ShapeKind::compound) return children_;
-  PlacedShape self;
+std::vector<model::PlacedShape> Shape::placed() const {
+  if (model_.kind == model::ShapeKind::compound) return children_;
+  model::PlacedShape self;
   self.shape = model_;
   return {self};
 }
@@ -117,7 +118,7 @@ void Shape::assign_geometry(const Shape& source) {
   store_.bump_structure_version();
 }
 
-void Shape::set_color(const PlacedShape& visual) {
+void Shape::set_color(const model::PlacedShape& visual) {
   if (!visual.color) return;
   const Vec3 hsb = hsb_of(*visual.color);
   for (const char* const property : {"ambient_color", "diffuse_color"}) {
@@ -128,8 +129,8 @@ void Shape::set_color(const PlacedShape& visual) {
 }
 
 std::shared_ptr<const Geometry> Shape::geometry() const {
-  if (geometry_ == nullptr) geometry_ = make_geometry(placed(), Inertial{});
+  if (geometry_ == nullptr) geometry_ = make_geometry(placed(), model::Inertial{});
   return geometry_;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

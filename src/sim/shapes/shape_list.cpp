@@ -8,9 +8,9 @@
 #include "sim/shapes/geometry.h"
 #include "sim/state/world_transaction.h"
 
-namespace limber {
+namespace limber::sim {
 
-Result<Shape*> ShapeList::add(std::string name, ShapeModel model) {
+Result<Shape*> ShapeList::add(std::string name, model::ShapeModel model) {
   if (const Result<void> available = shapes_.check_new_name("shape", name); !available) return Error{available.error()};
   if (const Result<void> valid = check_shape(model); !valid) {
     return Error{fmt::format("shape '{}': {}", name, valid.error())};
@@ -20,10 +20,10 @@ Result<Shape*> ShapeList::add(std::string name, ShapeModel model) {
   return &shape;
 }
 
-void ShapeList::add_visuals(const BodyModel& model) {
-  for (const LinkModel& link : model.links) {
+void ShapeList::add_visuals(const model::BodyModel& model) {
+  for (const model::LinkModel& link : model.links) {
     for (std::size_t i = 0; i < link.visuals.size(); i++) {
-      const PlacedShape& visual = link.visuals[i];
+      const model::PlacedShape& visual = link.visuals[i];
       std::string name = visual_shape_name(model, link, i);
       if (find(name) != nullptr) continue;
       if (const Result<Shape*> shape = add(std::move(name), visual.shape)) (*shape)->set_color(visual);
@@ -47,13 +47,14 @@ NodeId ShapeList::matching(const Store& other, NodeId shape) const {
 }
 
 const std::vector<std::shared_ptr<const Geometry>>& ShapeList::geometries_of(
-    const std::shared_ptr<const BodyModel>& model) {
+    const std::shared_ptr<const model::BodyModel>& model) {
   ModelGeometry& cached = geometries_[model.get()];
   if (cached.model == nullptr) {
     cached.model = model;
-    for (const LinkModel& link : model->links) cached.links.push_back(make_geometry(link.collisions, link.inertial));
+    for (const model::LinkModel& link : model->links)
+      cached.links.push_back(make_geometry(link.collisions, link.inertial));
   }
   return cached.links;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

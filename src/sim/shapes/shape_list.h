@@ -11,7 +11,7 @@
 #include "sim/shapes/shape.h"
 #include "sim/world/object_list.h"
 
-namespace limber {
+namespace limber::sim {
 
 class WorldTransaction;
 
@@ -23,10 +23,10 @@ class ShapeList {
   std::span<const std::unique_ptr<Shape>> list() const { return shapes_.list(); }
   Shape* find(std::string_view name) const { return shapes_.find(name); }
   /// Errors: the name is taken or can't be printed, a number is out of range.
-  Result<Shape*> add(std::string name, ShapeModel model);
+  Result<Shape*> add(std::string name, model::ShapeModel model);
   /// Adds a shape with the visual's color for each visual of the model (visual_shape_name). Shapes that exist already
   /// are left unchanged: all bodies of the model share them.
-  void add_visuals(const BodyModel& model);
+  void add_visuals(const model::BodyModel& model);
   void remove(Shape& shape);
   void move_to_front(const std::vector<Shape*>& first) { shapes_.move_to_front(first); }
   /// Removes all shapes and geometries.
@@ -35,18 +35,19 @@ class ShapeList {
   NodeId matching(const Store& other, NodeId shape) const;
 
   /// One geometry per link, built once per model and shared by all its bodies.
-  const std::vector<std::shared_ptr<const Geometry>>& geometries_of(const std::shared_ptr<const BodyModel>& model);
+  const std::vector<std::shared_ptr<const Geometry>>& geometries_of(
+      const std::shared_ptr<const model::BodyModel>& model);
 
  private:
   struct ModelGeometry {
-    std::shared_ptr<const BodyModel> model;  // keeps the map key's address from being reused
+    std::shared_ptr<const model::BodyModel> model;  // keeps the map key's address from being reused
     std::vector<std::shared_ptr<const Geometry>> links;
   };
 
   Store& store_;
   WorldTransaction& transaction_;
   ObjectList<Shape> shapes_;
-  std::unordered_map<const BodyModel*, ModelGeometry> geometries_;
+  std::unordered_map<const model::BodyModel*, ModelGeometry> geometries_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 
 #include "sim/collision/contact_friction.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Softness of contact and loop rows, relative to the response of their two bodies alone. Without it, if servos or
@@ -20,7 +20,7 @@ constexpr double kConeTolerance = 1.02;
 double body_mobility(const btSolverBody& body, const Spatial& jacobian) {
   const btRigidBody* rigid = body.m_originalBody;
   if (rigid == nullptr) return 0;
-  const btVector3 angular = to_bt(jacobian.angular);
+  const btVector3 angular = bullet::to_bt(jacobian.angular);
   return glm::dot(jacobian.linear, jacobian.linear) * static_cast<double>(rigid->getInvMass()) +
          static_cast<double>(angular.dot(rigid->getInvInertiaTensorWorld() * angular));
 }
@@ -78,8 +78,8 @@ void CoupledRows::collect_loops() {
     const Island::Link& link = island_.links[i];
     if (trees_.node_of_link(i) >= 0) continue;
     loop_rows_[i] = rows_.size();
-    for (const JointRow& row : link.joint->rows()) {
-      const AxisJacobian j = link.joint->pose().jacobian(row.axis);
+    for (const bullet::JointRow& row : link.joint->rows()) {
+      const bullet::AxisJacobian j = link.joint->pose().jacobian(row.axis);
       CoupledRow out;
       out.loop = true;
       out.a = {trees_.node_of(link.body_a), make_spatial(-j.linear, j.angular_a)};
@@ -101,13 +101,13 @@ void CoupledRows::collect_gears() {
   first_gear_ = rows_.size();
   gear_jacobians_.clear();
   for (const Island::GearLink& link : island_.gears) {
-    const GearConstraint::Row& row = link.gear->row();
+    const bullet::GearConstraint::Row& row = link.gear->row();
     CoupledRow out;
     out.loop = true;
     out.gear = gear_jacobians_.size();
     FixedArray<BodyJacobian, 2>& extra_jacobians = gear_jacobians_.emplace_back();
     out.target = row.velocity;
-    const IndexedSpan<const GearConstraint::BodyJacobian> bodies = link.gear->jacobians();
+    const IndexedSpan<const bullet::GearConstraint::BodyJacobian> bodies = link.gear->jacobians();
     for (int i = 0; i < bodies.size(); ++i) {
       BodyJacobian& body = i == 0 ? out.a : i == 1 ? out.b : extra_jacobians[i - 2];
       body = {trees_.node_of(link.bodies[i]), make_spatial(bodies[i].linear, bodies[i].angular)};
@@ -170,7 +170,7 @@ bool CoupledRows::restore_friction_cone() {
     CoupledRow& first = rows_[i];
     CoupledRow& second = rows_[i + 1];
     if (first.contact == nullptr || first.normal < 0) continue;
-    if (first.contact->m_overrideNumSolverIterations != friction_along) continue;
+    if (first.contact->m_overrideNumSolverIterations != collision::friction_along) continue;
     const double max_force = static_cast<double>(first.contact->m_friction) * rows_[first.normal].impulse;
     const double force = fixed::hypot(first.impulse, second.impulse);
     if (!(force > kConeTolerance * max_force)) continue;
@@ -182,4 +182,4 @@ bool CoupledRows::restore_friction_cone() {
   return changed;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

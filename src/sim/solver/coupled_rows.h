@@ -5,7 +5,7 @@
 #include "sim/solver/forest/spanning_trees.h"
 #include "sim/solver/lcp/boxed_lcp.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Jacobian of a row with respect to one body.
 struct BodyJacobian {
@@ -104,4 +104,4 @@ class CoupledRows {
   int fixed_count_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

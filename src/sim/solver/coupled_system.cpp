@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Rounds in which axes may still be deferred once contacts are known.
@@ -123,7 +123,7 @@ int CoupledSystem::defer_ill_conditioned_gears() {
 // Defers the motors and limits of a gear's axes; where locks hold these, disables the gear for the step.
 int CoupledSystem::defer_gear(CoupledRow& row) {
   int deferred = 0;
-  const GearConstraint& gear = *island_.gears[row.gear].gear;
+  const bullet::GearConstraint& gear = *island_.gears[row.gear].gear;
   for (int i = 0; i < island_.links.size(); ++i) {
     const int node = trees_.node_of_link(i);
     if (node < 0) continue;
@@ -178,4 +178,4 @@ double CoupledSystem::solve_lcp(LcpSolve how) {
   return violation;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

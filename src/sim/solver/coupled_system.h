@@ -6,7 +6,7 @@
 #include "sim/solver/delassus.h"
 #include "sim/solver/lcp/boxed_lcp.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// begin(), then solve() after each solve of the trees. [sim]
 class CoupledSystem {
@@ -51,4 +51,4 @@ class CoupledSystem {
   IndexedArray<int> lcp_index_;  // by row: index in lcp_rows_; -1: inactive
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

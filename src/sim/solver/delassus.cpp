@@ -6,7 +6,7 @@
 
 #include "sim/solver/lcp/dense_kernels.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Cost of a free axis on the path of an impulse to the root, in multiply-adds.
@@ -256,4 +256,4 @@ void DelassusMatrix::compute_column(const ImpulseSite& site, IndexedSpan<const i
   for (int n = 0; n < axes.size(); ++n) axes[n] = rate(released_[n]);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -6,7 +6,7 @@
 
 #include "sim/solver/coupled_rows.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Computes the matrix of a BoxedLcp as products of half responses, or, if only few axes have been deferred since, as a
 /// low-rank update of the previous matrix. [sim]
@@ -76,4 +76,4 @@ class DelassusMatrix {
   IndexedArray<double> columns_;        // of the released axes, and of one new row
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

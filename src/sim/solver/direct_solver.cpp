@@ -12,7 +12,7 @@
 #include "sim/solver/spin_clamp.h"
 #include "sim/solver/split_impulse.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Islands with more contact and friction rows use the iterative solver, because the dense matrix would cost too much.
@@ -161,15 +161,15 @@ bool DirectSolver::Step::iterate_corrections() {
 void DirectSolver::Step::write() {
   for (int i = 0; i < trees_.node_count(); ++i) {
     const Spatial& change = trees_.axes.change(i);
-    trees_.body(i).m_deltaLinearVelocity = to_bt(change.linear);
-    trees_.body(i).m_deltaAngularVelocity = to_bt(change.angular);
+    trees_.body(i).m_deltaLinearVelocity = bullet::to_bt(change.linear);
+    trees_.body(i).m_deltaAngularVelocity = bullet::to_bt(change.angular);
   }
   CoupledRows& rows = coupled_.rows;
   for (const CoupledRow& row : rows) {
-    if (row.contact != nullptr) row.contact->m_appliedImpulse = to_scalar(row.impulse);
+    if (row.contact != nullptr) row.contact->m_appliedImpulse = bullet::to_scalar(row.impulse);
   }
   for (int i = 0; i < island.links.size(); ++i) {
-    JointConstraint& joint = *island.links[i].joint;
+    bullet::JointConstraint& joint = *island.links[i].joint;
     const int node = trees_.node_of_link(i);
     impulses_.clear();
     if (node >= 0) {
@@ -214,7 +214,7 @@ void DirectSolver::Step::fall_back() {
 
 // Residual of a row of a joint, calculated from the bodies' velocities, independently of the solver's rates.
 double DirectSolver::Step::axis_residual(const Island::Link& link, const AxisRow& row) const {
-  const AxisJacobian j = link.joint->pose().jacobian(row.axis);
+  const bullet::AxisJacobian j = link.joint->pose().jacobian(row.axis);
   const double rate = dot(make_spatial(-j.linear, j.angular_a), trees_.velocity(link.body_a)) +
                       dot(make_spatial(j.linear, j.angular_b), trees_.velocity(link.body_b));
   const TreeNode& n = trees_.axes.forest.node(row.node);
@@ -254,11 +254,11 @@ void DirectSolver::begin() {
   step_->island.gears.clear();
 }
 
-void DirectSolver::add_joint(JointConstraint& joint, int body_a, int body_b) {
+void DirectSolver::add_joint(bullet::JointConstraint& joint, int body_a, int body_b) {
   step_->island.links.push_back({&joint, body_a, body_b});
 }
 
-void DirectSolver::add_gear(GearConstraint& gear, const std::array<int, 4>& bodies) {
+void DirectSolver::add_gear(bullet::GearConstraint& gear, const std::array<int, 4>& bodies) {
   step_->island.gears.push_back({&gear, {bodies}});
 }
 
@@ -285,4 +285,4 @@ bool DirectSolver::solve(const IslandPools& pools, const btContactSolverInfo& in
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -13,10 +13,12 @@ struct btSolverConstraint;
 template <typename T>
 class btAlignedObjectArray;
 
-namespace limber {
-
+namespace limber::sim::bullet {
 class GearConstraint;
 class JointConstraint;
+}  // namespace limber::sim::bullet
+
+namespace limber::sim::solver {
 
 /// Bullet's data of the island. The results are written to them when the whole island is solved. Before, only the
 /// velocities of bodies that rotate too fast for the step are reduced (SpinClamp).
@@ -51,9 +53,9 @@ class DirectSolver {
   /// Removes all joints and gears; call before adding those of an island.
   void begin();
   /// Adds a joint whose rows are planned, with its two solver bodies.
-  void add_joint(JointConstraint& joint, int body_a, int body_b);
+  void add_joint(bullet::JointConstraint& joint, int body_a, int body_b);
   /// Adds a gear whose row is planned, with the solver body of each of its sides.
-  void add_gear(GearConstraint& gear, const std::array<int, 4>& bodies);
+  void add_gear(bullet::GearConstraint& gear, const std::array<int, 4>& bodies);
   int joint_count() const;
   /// Solves the island. Returns false if the iterative solver must do it; no result is written then, but after a failed
   /// attempt the warm-start impulses of the previous step are removed from `pools`, joints and gears.
@@ -75,4 +77,4 @@ class DirectSolver {
   DirectResiduals residuals_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

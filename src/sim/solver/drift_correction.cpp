@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Largest correction, m/s, so that joints torn apart are not closed in one step.
@@ -12,7 +12,7 @@ constexpr double kMaxDriftSpeed = 20;
 /// The correction diverges if an update changes it by more than this, m, and by more than twice an earlier change.
 constexpr double kDivergingDrift = 1e-3;
 
-bool is_hard_linear_lock(const JointRow& row) { return row.axis < 3 && is_hard_lock(row); }
+bool is_hard_linear_lock(const bullet::JointRow& row) { return row.axis < 3 && is_hard_lock(row); }
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void DriftCorrection::update(double min_drift) {
   predicted_.resize(island_.links.size());
   for (int i = 0; i < island_.links.size(); ++i) {
     predicted_[i] = predict_drift(i);
-    for (const JointRow& row : island_.links[i].joint->rows()) {
+    for (const bullet::JointRow& row : island_.links[i].joint->rows()) {
       if (is_hard_linear_lock(row))
         largest = std::max(largest, std::fabs(predicted_[i][row.axis] - applied_[i][row.axis]));
     }
@@ -51,7 +51,7 @@ bool DriftCorrection::scale(int link, double fraction) {
 // Applies the correction to the joint's rows in a tree, or to its coupled rows if it closes a loop.
 void DriftCorrection::apply(int link, const Vec3& drift) {
   const int node = trees_.node_of_link(link);
-  const JointRows& rows = island_.links[link].joint->rows();
+  const bullet::JointRows& rows = island_.links[link].joint->rows();
   for (int r = 0; r < rows.size(); ++r) {
     if (!is_hard_linear_lock(rows[r])) continue;
     const double change = (drift[rows[r].axis] - applied_[link][rows[r].axis]) / island_.h;
@@ -72,7 +72,7 @@ void DriftCorrection::predict_motions() {
 
 DriftCorrection::BodyMotion DriftCorrection::predict_motion(int body) const {
   const Spatial v = trees_.velocity(body);
-  const RotationStep turn = island_.rotation_step(body, v.angular);
+  const bullet::RotationStep turn = island_.rotation_step(body, v.angular);
   return {v, turn.translation(v.linear, island_.h), turn.rotation(island_.h), turn.clamped(island_.h) > 0};
 }
 
@@ -81,7 +81,7 @@ DriftCorrection::BodyMotion DriftCorrection::predict_motion(int body) const {
 Vec3 DriftCorrection::predict_drift(int link) {
   const double h = island_.h;
   const Island::Link& l = island_.links[link];
-  const JointConstraint& joint = *l.joint;
+  const bullet::JointConstraint& joint = *l.joint;
   const auto motion_of = [&](int body) {
     const int node = trees_.node_of(body);
     return node < 0 ? predict_motion(body) : motions_[node];
@@ -92,21 +92,21 @@ Vec3 DriftCorrection::predict_drift(int link) {
     skipped_clamped_ = true;
     return applied_[link];
   }
-  const Vec3 arm_a = from_bt(joint.pose().arm_a());
-  const Vec3 arm_b = from_bt(joint.pose().arm_b());
+  const Vec3 arm_a = bullet::from_bt(joint.pose().arm_a());
+  const Vec3 arm_b = bullet::from_bt(joint.pose().arm_b());
   Vec3 gap(0);
-  for (int k = 0; k < 3; ++k) gap += from_bt(joint.pose().linear_axis(k)) * joint.value(k);
+  for (int k = 0; k < 3; ++k) gap += bullet::from_bt(joint.pose().linear_axis(k)) * joint.value(k);
   const Vec3 pivot_arm = arm_a - gap;
   const Vec3 end_gap =
       gap + b.translation - a.translation + (b.rotation * arm_b - arm_b) - (a.rotation * pivot_arm - pivot_arm);
   const Vec3 pivot_velocity = translated(b.velocity, arm_b).linear - translated(a.velocity, arm_a).linear;
   Vec3 drift(0);
   for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = from_bt(joint.pose().linear_axis(k));
+    const Vec3 axis = bullet::from_bt(joint.pose().linear_axis(k));
     drift[k] = std::clamp(glm::dot(a.rotation * axis, end_gap) - glm::dot(axis, gap + pivot_velocity * h),
                           -kMaxDriftSpeed * h, kMaxDriftSpeed * h);
   }
   return drift;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

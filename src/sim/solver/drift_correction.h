@@ -6,7 +6,7 @@
 
 #include "sim/solver/coupled_rows.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// begin() after the first solve without corrections, then update() and another solve until nothing changes. [sim]
 class DriftCorrection {
@@ -55,4 +55,4 @@ class DriftCorrection {
   bool skipped_clamped_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 constexpr int kMaxNewtonSteps = 4;            // converges quadratically: the third iteration reaches the last digits
@@ -47,4 +47,4 @@ Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spi
   return rest * (fixed::cos(angle) - 1) + glm::cross(axis, rest) * fixed::sin(angle);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -3,7 +3,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Returns the change of the angular velocity of a torque-free body in `h` s. `inertia`: principal moments, kg·m²;
 /// `spin`: angular velocity along the principal axes, rad/s. Integrates Euler's equations by the implicit midpoint
@@ -15,4 +15,4 @@ Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h);
 /// angular velocity perpendicular to the unit vector `axis`, with moments `along` the axis and `across` it.
 Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spin, const Vec3& rest, double h);
 
-}  // namespace limber
+}  // namespace limber::sim::solver

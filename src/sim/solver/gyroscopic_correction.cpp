@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 constexpr int kMaxGyroPasses = 10;
@@ -22,9 +22,9 @@ void GyroscopicCorrection::begin() {
       const btSolverBody& b = trees_.body(i);
       const double before = static_cast<double>(b.m_angularVelocity.length());
       const double after = glm::length(trees_.velocity(trees_.body_of(i)).angular);
-      if (!(std::max(before, after) * island_.h > kSlowRotation)) continue;
+      if (!(std::max(before, after) * island_.h > bullet::kSlowRotation)) continue;
       const Sym3& moment = trees_.axes.forest.node(i).inertia.moment;
-      const Vec3 applied = moment * gyroscopic_change(*b.m_originalBody, island_.h);
+      const Vec3 applied = moment * bullet::gyroscopic_change(*b.m_originalBody, island_.h);
       impulses_.push_back({i, (moment.xx + moment.yy + moment.zz) / 3, applied, Vec3(0), {}, {}});
     }
   }
@@ -38,11 +38,11 @@ bool GyroscopicCorrection::update_residuals() {
     const Vec3 before = island_.start_velocity(body).angular;
     const Vec3 middle = (before + trees_.velocity(body).angular) / 2.0;
     const btRigidBody& rigid = island_.rigid(body);
-    const Vec3 residual = island_.h * gyroscopic_torque(rigid, middle, island_.h) - g.applied;
+    const Vec3 residual = island_.h * bullet::gyroscopic_torque(rigid, middle, island_.h) - g.applied;
     g.residual_changes[1] = g.residual_changes[0];
     g.residual_changes[0] = residual - g.residual;
     g.residual = residual;
-    const double tumble_speed = glm::length(split_rotation(rigid, middle, island_.h).tumble);
+    const double tumble_speed = glm::length(bullet::split_rotation(rigid, middle, island_.h).tumble);
     const double tolerance = kGyroTolerance * tumble_speed + kGyroSpinTolerance * glm::length(middle);
     pending = pending || glm::length(residual) > tolerance * g.scale;
   }
@@ -86,4 +86,4 @@ bool GyroscopicCorrection::correct() {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 
 #include "sim/solver/forest/spanning_trees.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// begin() after the first solve, then correct() and another solve until nothing changes. [sim]
 class GyroscopicCorrection {
@@ -38,4 +38,4 @@ class GyroscopicCorrection {
   int passes_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

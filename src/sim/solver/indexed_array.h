@@ -9,7 +9,7 @@
 
 #include "base/capacity.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// std::vector with int indices and sizes.
 template <class T>
@@ -57,4 +57,4 @@ class IndexedSpan : public std::span<T> {
   IndexedSpan last(int count) const { return Base::last(count_of(count)); }
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -10,21 +10,21 @@
 #include "sim/solver/forest/spatial_algebra.h"
 #include "sim/solver/indexed_array.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 inline Spatial make_spatial(const btVector3& linear, const btVector3& angular) {
-  return {from_bt(linear), from_bt(angular)};
+  return {bullet::from_bt(linear), bullet::from_bt(angular)};
 }
 
 /// One island of bodies during one substep. [sim]
 struct Island {
   struct Link {  ///< A joint between two solver bodies.
-    JointConstraint* joint;
+    bullet::JointConstraint* joint;
     int body_a;
     int body_b;
   };
   struct GearLink {
-    GearConstraint* gear;
+    bullet::GearConstraint* gear;
     FixedArray<int, 4> bodies;
   };
 
@@ -46,18 +46,18 @@ struct Island {
     return make_spatial(b.m_linearVelocity + b.m_externalForceImpulse, b.m_angularVelocity + b.m_externalTorqueImpulse);
   }
   /// Splits the angular velocity `w` of a body into spin and rest.
-  RotationStep rotation_step(int i, const Vec3& w) const {
-    if (body(i).m_originalBody != nullptr) return split_rotation(rigid(i), w, h);
-    RotationStep turn;
+  bullet::RotationStep rotation_step(int i, const Vec3& w) const {
+    if (body(i).m_originalBody != nullptr) return bullet::split_rotation(rigid(i), w, h);
+    bullet::RotationStep turn;
     turn.tumble = w;
     return turn;
   }
 };
 
 /// True for a lock without bounds or softness.
-inline bool is_hard_lock(const JointRow& row) {
+inline bool is_hard_lock(const bullet::JointRow& row) {
   return row.softness == 0 && static_cast<double>(row.lower) <= -AxisRow::kInfinity &&
          static_cast<double>(row.upper) >= AxisRow::kInfinity;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

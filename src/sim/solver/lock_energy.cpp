@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Drift corrections are scaled down by a little more than linear interpolation yields.
@@ -25,16 +25,16 @@ double LockEnergy::work_of_locks(const Tree& tree) const {
   for (int i = tree.first; i < tree.last; ++i) {
     if (trees_.link_of(i) < 0) continue;
     const Island::Link& link = island_.links[trees_.link_of(i)];
-    const JointConstraint& joint = *link.joint;
+    const bullet::JointConstraint& joint = *link.joint;
     const Spatial a = island_.start_velocity(link.body_a);
     const Spatial b = island_.start_velocity(link.body_b);
-    const Vec3 drift =
-        translated(b, from_bt(joint.pose().arm_b())).linear - translated(a, from_bt(joint.pose().arm_a())).linear;
+    const Vec3 drift = translated(b, bullet::from_bt(joint.pose().arm_b())).linear -
+                       translated(a, bullet::from_bt(joint.pose().arm_a())).linear;
     const Vec3 spin = b.angular - a.angular;
     for (const AxisRow& row : trees_.axes.rows(i)) {
       if (row.bounded() || !row.hard()) continue;
-      const double rate = row.axis < 3 ? glm::dot(from_bt(joint.pose().linear_axis(row.axis)), drift)
-                                       : glm::dot(from_bt(joint.pose().dual_axis(row.axis - 3)), spin);
+      const double rate = row.axis < 3 ? glm::dot(bullet::from_bt(joint.pose().linear_axis(row.axis)), drift)
+                                       : glm::dot(bullet::from_bt(joint.pose().dual_axis(row.axis - 3)), spin);
       work += row.impulse * (rate + trees_.axes.rate(i, row.axis)) / 2;
     }
   }
@@ -85,4 +85,4 @@ void LockEnergy::store() {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 
 #include "sim/solver/drift_correction.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// begin() after the solve without drift correction. The energy that the locks of a tree may return is stored in its
 /// first joint from step to step. [sim]
@@ -30,4 +30,4 @@ class LockEnergy {
   IndexedArray<double> uncorrected_work_;  // by tree: of its locks without drift correction, J
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

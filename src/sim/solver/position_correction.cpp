@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Position error of a joint above which it is corrected, m; and the tolerance of the correction.
@@ -23,7 +23,7 @@ btTransform integrated(const btTransform& from, const btVector3& linear, const b
   return to;
 }
 
-double error_of(const JointConstraint& joint, int axis, double goal) {
+double error_of(const bullet::JointConstraint& joint, int axis, double goal) {
   const double error = goal - joint.value(axis);
   return axis < 3 ? error : std::remainder(error, 2 * kPi);
 }
@@ -71,8 +71,8 @@ void PositionCorrection::predict_poses() {
     const btTransform pushed =
         integrated(b.m_worldTransform, b.m_pushVelocity, turn_velocity, island_.info->m_timeStep);
     const Spatial v = trees_.velocity(trees_.body_of(i));
-    const RotationStep turn = island_.rotation_step(trees_.body_of(i), v.angular);
-    Pose end = from_bt(pushed);
+    const bullet::RotationStep turn = island_.rotation_step(trees_.body_of(i), v.angular);
+    Pose end = bullet::from_bt(pushed);
     end.position += turn.translation(v.linear, island_.h);
     end.rotation = turn.rotation(island_.h) * end.rotation;
     end_poses_.push_back(end);
@@ -83,8 +83,8 @@ void PositionCorrection::predict_poses() {
 void PositionCorrection::set_goals() {
   goals_.assign(island_.links.size(), {});
   for (int i = 0; i < goals_.size(); ++i) {
-    const JointConstraint& joint = *island_.links[i].joint;
-    for (const JointRow& row : joint.rows()) {
+    const bullet::JointConstraint& joint = *island_.links[i].joint;
+    for (const bullet::JointRow& row : joint.rows()) {
       if (!is_hard_lock(row)) continue;
       goals_[i][row.axis] = joint.value(row.axis) + static_cast<double>(row.velocity * island_.info->m_timeStep);
     }
@@ -92,7 +92,7 @@ void PositionCorrection::set_goals() {
 }
 
 void PositionCorrection::set_poses() {
-  for (int i = 0; i < trees_.node_count(); ++i) trees_.rigid(i).setWorldTransform(to_bt(end_poses_[i]));
+  for (int i = 0; i < trees_.node_count(); ++i) trees_.rigid(i).setWorldTransform(bullet::to_bt(end_poses_[i]));
   for (const Island::Link& link : island_.links) link.joint->refresh();
 }
 
@@ -104,8 +104,8 @@ void PositionCorrection::restore_poses() {
 double PositionCorrection::position_error() const {
   double largest = 0;
   for (int i = 0; i < island_.links.size(); ++i) {
-    const JointConstraint& joint = *island_.links[i].joint;
-    for (const JointRow& row : joint.rows()) {
+    const bullet::JointConstraint& joint = *island_.links[i].joint;
+    for (const bullet::JointRow& row : joint.rows()) {
       if (row.axis < 3 && is_hard_lock(row))
         largest = std::max(largest, std::fabs(error_of(joint, row.axis, goals_[i][row.axis])));
     }
@@ -140,14 +140,14 @@ bool PositionCorrection::add_node(int node) {
 }
 
 void PositionCorrection::add_rows(int link) {
-  const JointConstraint& joint = *island_.links[link].joint;
-  for (const JointRow& row : joint.rows()) {
-    if (row.kind != JointRow::Kind::lock) continue;
+  const bullet::JointConstraint& joint = *island_.links[link].joint;
+  for (const bullet::JointRow& row : joint.rows()) {
+    if (row.kind != bullet::JointRow::Kind::lock) continue;
     const double distance = is_hard_lock(row) ? error_of(joint, row.axis, goals_[link][row.axis]) : 0;
     axes_.add(row.axis, distance, 0, -2 * AxisRow::kInfinity, 2 * AxisRow::kInfinity, AxisRow::other);
   }
   for (int axis = 0; axis < 6; ++axis) {
-    const AxisSettings& s = joint.axis(axis);
+    const bullet::AxisSettings& s = joint.axis(axis);
     if (!s.limited()) continue;
     const double down = static_cast<double>(s.lower) - joint.value(axis);
     const double up = static_cast<double>(s.upper) - joint.value(axis);
@@ -175,13 +175,13 @@ void PositionCorrection::set_push_velocities() const {
   for (int i = 0; i < trees_.node_count(); ++i) {
     btSolverBody& b = trees_.body(i);
     const Spatial v = trees_.velocity(trees_.body_of(i));
-    const RotationStep turn = island_.rotation_step(trees_.body_of(i), v.angular);
-    const Pose start = from_bt(b.m_worldTransform);
+    const bullet::RotationStep turn = island_.rotation_step(trees_.body_of(i), v.angular);
+    const Pose start = bullet::from_bt(b.m_worldTransform);
     const Quat push = glm::conjugate(turn.rotation(h)) * end_poses_[i].rotation * glm::conjugate(start.rotation);
-    b.m_pushVelocity = to_bt((end_poses_[i].position - start.position - turn.translation(v.linear, h)) / h);
+    b.m_pushVelocity = bullet::to_bt((end_poses_[i].position - start.position - turn.translation(v.linear, h)) / h);
     b.m_turnVelocity =
-        to_bt(bullet_turn_velocity(push) / (h * static_cast<double>(island_.info->m_splitImpulseTurnErp)));
+        bullet::to_bt(bullet_turn_velocity(push) / (h * static_cast<double>(island_.info->m_splitImpulseTurnErp)));
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

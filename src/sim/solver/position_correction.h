@@ -5,7 +5,7 @@
 
 #include "sim/solver/forest/spanning_trees.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Adds to the push and turn velocities of Bullet's solver bodies. Islands with loops are not corrected. [sim]
 class PositionCorrection {
@@ -37,4 +37,4 @@ class PositionCorrection {
   IndexedArray<FixedArray<double, 6>> goals_;  // by joint: positions of its locked axes at the step's end
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Target of the clamp after the solve, as a fraction of kMaxRotationPerStep, since contacts and motors will restore
@@ -18,7 +18,7 @@ constexpr double kClampTolerance = 1.01;
 constexpr double kMaxRotation = 0.5;
 constexpr double kRotationGoal = 0.44;
 
-Vec3 center_of(const btRigidBody& body) { return from_bt(body.getCenterOfMassPosition()); }
+Vec3 center_of(const btRigidBody& body) { return bullet::from_bt(body.getCenterOfMassPosition()); }
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Spatial SpinClamp::velocity(int node, Stage stage) const {
 
 Spatial SpinClamp::velocity_without_spin(int node, Stage stage) const {
   const Spatial v = velocity(node, stage);
-  const RotationStep turn = island_.rotation_step(trees_.body_of(node), v.angular);
+  const bullet::RotationStep turn = island_.rotation_step(trees_.body_of(node), v.angular);
   return {v.linear - turn.spin * glm::cross(turn.axis, turn.lever), turn.tumble};
 }
 
@@ -65,7 +65,7 @@ double SpinClamp::fastest_rotation(const Tree& tree, Stage stage) const {
   double fastest = 0;
   for (int i = tree.first; i < tree.last; ++i) {
     const Vec3 w = velocity(i, stage).angular;
-    if (glm::dot(w, w) * island_.h * island_.h <= kMaxRotationPerStep * kMaxRotationPerStep) continue;
+    if (glm::dot(w, w) * island_.h * island_.h <= bullet::kMaxRotationPerStep * bullet::kMaxRotationPerStep) continue;
     fastest = std::max(fastest, glm::length(velocity_without_spin(i, stage).angular));
   }
   return fastest;
@@ -84,11 +84,11 @@ void SpinClamp::scale_motion(int node, Stage stage, const RigidMotion& rigid, do
   btSolverBody& body = trees_.body(node);
   const Vec3 arm = center_of(*body.m_originalBody) - rigid.center;
   const Spatial relative = velocity_without_spin(node, stage) - translated(rigid.velocity, arm);
-  if (glm::length(relative.angular) * island_.h > kClampTolerance * kMaxRotationPerStep) {
-    record_clamp(*body.m_originalBody, -glm::length(relative.angular) * scale_change);
+  if (glm::length(relative.angular) * island_.h > kClampTolerance * bullet::kMaxRotationPerStep) {
+    bullet::record_clamp(*body.m_originalBody, -glm::length(relative.angular) * scale_change);
   }
-  body.m_deltaLinearVelocity += to_bt(relative.linear * scale_change);
-  body.m_deltaAngularVelocity += to_bt(relative.angular * scale_change);
+  body.m_deltaLinearVelocity += bullet::to_bt(relative.linear * scale_change);
+  body.m_deltaAngularVelocity += bullet::to_bt(relative.angular * scale_change);
 }
 
 bool SpinClamp::clamp(Stage stage) {
@@ -96,16 +96,17 @@ bool SpinClamp::clamp(Stage stage) {
   bool changed = false;
   for (const Tree& t : trees_) {
     if (trees_.is_single_body(t)) continue;
-    if (!(fastest_rotation(t, stage) * h > kClampTolerance * kMaxRotationPerStep)) continue;
+    if (!(fastest_rotation(t, stage) * h > kClampTolerance * bullet::kMaxRotationPerStep)) continue;
     const RigidMotion rigid = rigid_motion(t, stage);
     const double fastest = fastest_relative_rotation(t, stage, rigid);
-    if (!(fastest * h > kClampTolerance * kMaxRotationPerStep)) continue;
+    if (!(fastest * h > kClampTolerance * bullet::kMaxRotationPerStep)) continue;
     if (before_.empty()) {
       for (int i = 0; i < island_.pools->bodies.size(); ++i)
         before_.emplace_back(island_.body(i).m_deltaLinearVelocity, island_.body(i).m_deltaAngularVelocity);
     }
     changed = true;
-    const double scale_change = (stage == Stage::before ? 1 : kClampTarget) * kMaxRotationPerStep / (fastest * h) - 1;
+    const double scale_change =
+        (stage == Stage::before ? 1 : kClampTarget) * bullet::kMaxRotationPerStep / (fastest * h) - 1;
     for (int i = t.first; i < t.last; ++i) scale_motion(i, stage, rigid, scale_change);
   }
   return changed;
@@ -122,9 +123,9 @@ void SpinClamp::undo() const {
 bool SpinClamp::drives_spin(int link, int axis) const {
   if (link < 0 || axis < 3) return false;
   const Island::Link& l = island_.links[link];
-  const Vec3 axis_direction = from_bt(l.joint->pose().linear_axis(axis - 3));
+  const Vec3 axis_direction = bullet::from_bt(l.joint->pose().linear_axis(axis - 3));
   return std::ranges::any_of(std::array{l.body_a, l.body_b}, [&](int body) {
-    const RotationStep turn = island_.rotation_step(body, trees_.velocity(body).angular);
+    const bullet::RotationStep turn = island_.rotation_step(body, trees_.velocity(body).angular);
     return turn.spin != 0 && std::fabs(glm::dot(turn.axis, axis_direction)) > 0.99;
   });
 }
@@ -138,7 +139,7 @@ double SpinClamp::fastest_tumbling(const Tree& tree) const {
     if (glm::dot(v.angular, v.angular) * h * h <= kMaxRotation * kMaxRotation) continue;
     const double tumble_speed = glm::length(island_.rotation_step(trees_.body_of(i), v.angular).tumble);
     if (!trees_.is_single_body(tree)) fastest = std::max(fastest, tumble_speed);
-    if (tumble_speed * h > kMaxRotation) record_clamp(trees_.rigid(i), tumble_speed - kRotationGoal / h);
+    if (tumble_speed * h > kMaxRotation) bullet::record_clamp(trees_.rigid(i), tumble_speed - kRotationGoal / h);
   }
   return fastest;
 }
@@ -159,4 +160,4 @@ bool SpinClamp::limit_target_rates() {
   return changed;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 
 #include "sim/solver/forest/spanning_trees.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// If a body rotates by more than kMaxRotationPerStep in a step, Bullet rotates it by less than its angular velocity
 /// implies. In a tree with such a body (spins, see spin.h, excluded) the motion relative to the tree's rigid motion is
@@ -49,4 +49,4 @@ class SpinClamp {
       before_;  // by body: velocity changes before the clamp; empty: unchanged
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Softness of rows, relative to the response of their bodies alone: penetration is not corrected if joints reduce the
@@ -77,9 +77,9 @@ void SplitImpulse::write() const {
   const double turn_erp = static_cast<double>(island_.info->m_splitImpulseTurnErp);  // Bullet multiplies by it
   for (int i = 0; i < forest.size(); ++i) {
     const Spatial change = forest.node(i).velocity_change * (max_angular / fastest);
-    trees_.body(i).m_pushVelocity = to_bt(change.linear);
-    trees_.body(i).m_turnVelocity = to_bt(change.angular / turn_erp);
+    trees_.body(i).m_pushVelocity = bullet::to_bt(change.linear);
+    trees_.body(i).m_turnVelocity = bullet::to_bt(change.angular / turn_erp);
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 #include "sim/solver/coupled_rows.h"
 #include "sim/solver/delassus.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Writes push and turn velocities to Bullet's solver bodies. Uses the trees' factor and overwrites their inputs. [sim]
 class SplitImpulse {
@@ -30,4 +30,4 @@ class SplitImpulse {
   IndexedArray<int> lcp_rows_;  // normals, and locks that close loops
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

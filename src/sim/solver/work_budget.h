@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Work is counted in multiply-adds instead of time, so that results are the same on every machine. [sim]
 class WorkBudget {
@@ -30,4 +30,4 @@ class WorkBudget {
   double spent_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -7,7 +7,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -148,4 +148,4 @@ void BodyState::apply_to(Body& body, const std::vector<bool>& joints_to_reset) c
   body.mark_joints_dirty();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,7 +10,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 
 class BodyState {
  public:
@@ -43,4 +43,4 @@ class BodyState {
   std::vector<JointState> joints_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -12,7 +12,7 @@
 #include "sim/world/joint.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 
 std::vector<std::size_t> tree_roots(const Body& body) {
   const auto parts = body.parts();
@@ -50,7 +50,7 @@ Result<Pose> link_pose(const Body& body, std::string_view name) {
   std::vector<std::string_view> names;
   for (const auto& part : body.parts()) names.push_back(part->name());
   if (body.model() != nullptr) {
-    for (const MergedLink& merged : body.model()->merged) {
+    for (const model::MergedLink& merged : body.model()->merged) {
       if (merged.name == name) return body.parts()[static_cast<std::size_t>(merged.link)]->pose() * merged.offset;
       names.push_back(merged.name);
     }
@@ -58,4 +58,4 @@ Result<Pose> link_pose(const Body& body, std::string_view name) {
   return Error{fmt::format("body '{}' has no link '{}'{}", body.name(), name, name_hint(name, names))};
 }
 
-}  // namespace limber
+}  // namespace limber::sim

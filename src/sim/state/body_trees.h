@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 
@@ -19,4 +19,4 @@ void move_tree(const Body& body, std::size_t root, const Pose& pose);
 /// Returns the world pose of a link by name, including links that the importer merged into a part.
 Result<Pose> link_pose(const Body& body, std::string_view name);
 
-}  // namespace limber
+}  // namespace limber::sim

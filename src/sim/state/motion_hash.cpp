@@ -8,7 +8,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::uint64_t MotionHash::compute() {
   return hash;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::sim {
 
 class World;
 
@@ -37,4 +37,4 @@ class MotionHash {
   std::vector<std::uint64_t> body_hashes_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

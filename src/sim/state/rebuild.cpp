@@ -9,7 +9,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 Body& rebuild_body(World& world, Body& body, const Body& blueprint, const std::vector<bool>& joints_to_reset) {
   const BodyState state(body);
@@ -32,4 +32,4 @@ void flush_detached(World& world) {
   for (const auto& body : world.bodies()) body->update_moved_joints();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 class World;
@@ -18,4 +18,4 @@ Body& rebuild_body(World& world, Body& body, const Body& blueprint, const std::v
 /// and is never stepped.
 void flush_detached(World& world);
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::uint64_t World::state_hash() const {
   return behaviors_->state_hash(hash);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

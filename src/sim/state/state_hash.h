@@ -3,11 +3,11 @@
 
 #include <cstdint>
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 
 /// Returns a hash of the body's name, poses, velocities and persistent values, bit for bit, and of `start`.
 std::uint64_t body_hash(const Body& body, std::uint64_t start);
 
-}  // namespace limber
+}  // namespace limber::sim

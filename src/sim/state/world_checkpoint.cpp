@@ -3,7 +3,7 @@
 
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void WorldCheckpoint::capture(World& world, PageStore& pages, const WorldCheckpoint* previous, Archive& scratch) {
   const auto capture_pages = [&](PageStore::PageList& pages_of, std::span<const std::byte> memory,
@@ -38,4 +38,4 @@ void WorldCheckpoint::release(PageStore& pages) {
   for (PageStore::PageList* list : {&bullet_, &persistent_, &transient_, &objects_}) pages.release(*list);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

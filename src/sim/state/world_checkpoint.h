@@ -7,7 +7,7 @@
 #include "base/memory/archive.h"
 #include "base/memory/page_store.h"
 
-namespace limber {
+namespace limber::sim {
 
 class World;
 
@@ -27,4 +27,4 @@ class WorldCheckpoint {
   std::size_t objects_size_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

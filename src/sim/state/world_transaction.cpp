@@ -13,7 +13,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 struct WorldTransaction::SavedForces {
   std::uint32_t accumulator;
@@ -165,4 +165,4 @@ void WorldTransaction::hide(std::vector<std::unique_ptr<Gear>>& list, std::size_
   hide_in<&WorldTransaction::hidden_gears_>(list, index);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

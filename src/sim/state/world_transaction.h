@@ -11,7 +11,7 @@
 
 #include "base/id.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 class Gear;
@@ -108,4 +108,4 @@ class WorldTransaction {
   std::vector<Hidden<Gear>> hidden_gears_;  // destroyed before the bodies
 };
 
-}  // namespace limber
+}  // namespace limber::sim

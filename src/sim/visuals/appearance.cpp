@@ -1,7 +1,7 @@
 // Appearance: its properties. The numbers are factors on the style's values, so that they mean the same in each style.
 #include "sim/visuals/appearance.h"
 
-namespace limber {
+namespace limber::sim {
 
 const PropertyTable& Appearance::table() {
   using namespace properties;
@@ -35,4 +35,4 @@ Result<void> Appearance::act_prefer(std::span<const double> args) {
   return {};
 }
 
-}  // namespace limber
+}  // namespace limber::sim

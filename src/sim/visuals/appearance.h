@@ -3,7 +3,7 @@
 
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Appearance {
  public:
@@ -19,4 +19,4 @@ class Appearance {
   NodeId id_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

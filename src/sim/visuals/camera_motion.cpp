@@ -10,7 +10,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -120,4 +120,4 @@ void CameraMoves::step_follow() {
   camera.look_at(camera.eye() + moved, camera.target() + moved);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

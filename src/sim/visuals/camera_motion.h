@@ -9,7 +9,7 @@
 #include "base/memory/archive.h"
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim {
 
 class World;
 
@@ -56,4 +56,4 @@ class CameraMoves {
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 
-}  // namespace limber
+}  // namespace limber::sim

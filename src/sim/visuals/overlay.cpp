@@ -13,7 +13,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -117,9 +117,9 @@ void Overlay::add_contacts(std::vector<OverlayMark>& out) const {
     for (int k = 0; k < manifold.getNumContacts(); k++) {
       const btManifoldPoint& point = manifold.getContactPoint(k);
       if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
-      const Vec3 normal = from_bt(point.m_normalWorldOnB) * (first ? 1.0 : -1.0);
+      const Vec3 normal = bullet::from_bt(point.m_normalWorldOnB) * (first ? 1.0 : -1.0);
       OverlayMark& mark = out.emplace_back(
-          make_mark(Kind::contact, pushed.id(), arrow_size(pushed), from_bt(point.getPositionWorldOnB())));
+          make_mark(Kind::contact, pushed.id(), arrow_size(pushed), bullet::from_bt(point.getPositionWorldOnB())));
       mark.vector = weights(normal * static_cast<double>(point.getAppliedImpulse()) / step, pushed.mass());
     }
   }
@@ -152,4 +152,4 @@ void Overlay::collect(std::vector<OverlayMark>& out) const {
   add_contacts(out);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Behavior;
 class Body;
@@ -59,4 +59,4 @@ class Overlay {
   std::vector<OverlayMark> forces_;  // of the last tick
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -126,4 +126,4 @@ void Visuals::clear() {
   camera_moves_.stop();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,7 +8,7 @@
 #include "sim/visuals/camera_motion.h"
 #include "sim/visuals/overlay.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// The camera, with the conventions of ofxDabPhysics: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are
 /// derived from it.
@@ -60,4 +60,4 @@ class Visuals {
   Overlay overlay_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -7,7 +7,7 @@
 #include "sim/world/stability.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 /// Bodies per task of the parallel loop; has no influence on the result.
@@ -15,7 +15,7 @@ constexpr int kBodiesPerTask = 4;
 }  // namespace
 
 void AwakeBodies::publish() {
-  const SleepTracker& sleep = world_.bullet().sleep();
+  const bullet::SleepTracker& sleep = world_.bullet().sleep();
   const bool is_valid = sleep_version_ == sleep.version() && structure_version_ == world_.store().structure_version();
   if (!is_valid) {
     bodies_.clear();
@@ -38,4 +38,4 @@ void AwakeBodies::publish() {
   structure_version_ = world_.store().structure_version();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

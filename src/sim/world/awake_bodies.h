@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 class World;
@@ -26,4 +26,4 @@ class AwakeBodies {
   std::uint64_t structure_version_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -177,7 +177,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
     return Error{fmt::format("part '{}/{}' needs a mass of {} .. {} kg, or 0 for a static part, not {}", this->name(),
                              name, mass_property.min, mass_property.max, mass)};
   }
-  if (shape.model().kind == ShapeKind::plane && mass > 0) {
+  if (shape.model().kind == model::ShapeKind::plane && mass > 0) {
     return Error{fmt::format("part '{}/{}' is a plane: its mass must be 0, not {} kg", this->name(), name, mass)};
   }
   if (shape.placed().empty()) {
@@ -186,7 +186,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
   auto part = std::make_unique<Part>(*this, parts_.group(), std::move(name), shape.geometry(), mass,
                                      Pose{pose.position, glm::normalize(pose.rotation)});
   part->set_shape(shape.id());
-  if (shape.model().kind == ShapeKind::plane) {
+  if (shape.model().kind == model::ShapeKind::plane) {
     // friction and restitution of two parts multiply: a plane with 1 leaves the other part's values unchanged
     store().mutable_values(part->id(), Part::table().at("friction"))[0] = 1;
     store().mutable_values(part->id(), Part::table().at("restitution"))[0] = 1;
@@ -194,7 +194,7 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
   return &add_recorded(world_.transaction(), parts_, structure_version_, std::move(part));
 }
 
-Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
+Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, model::JointType type, const Vec3& position,
                                const Vec3& axis) {
   if (const Result<void> free = joints_.check_new_name("joint", name); !free) return Error{free.error()};
   const auto fault = [&](std::string_view problem) {
@@ -229,7 +229,7 @@ Result<Motor*> Body::add_motor(Joint& joint) {
   };
   if (&joint.body() != this) return fault("belongs to another body");
   if (joint.motor() != nullptr) return fault("has a motor already");
-  if (joint.type() == JointType::fixed) return fault("is fixed and can't have a motor");
+  if (joint.type() == model::JointType::fixed) return fault("is fixed and can't have a motor");
   return &add_recorded(world_.transaction(), motors_, structure_version_,
                        std::make_unique<Motor>(joint, motors_.group()));
 }
@@ -331,4 +331,4 @@ bool Body::is_static() const {
          std::all_of(parts().begin(), parts().end(), [](const auto& part) { return part->is_static(); });
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -17,7 +17,7 @@
 #include "sim/world/object_list.h"
 #include "sim/world/part_pairs.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Joint;
 class Motor;
@@ -55,7 +55,7 @@ class Body {
   BodyBehaviors& behaviors() { return behaviors_; }
   const BodyBehaviors& behaviors() const { return behaviors_; }
   /// The model that it was imported from, or null; contains the frames of merged links.
-  const std::shared_ptr<const BodyModel>& model() const { return model_; }
+  const std::shared_ptr<const model::BodyModel>& model() const { return model_; }
 
   /// Adds a part with the given shape; `mass` in kg, 0: static. Errors: the name is taken or can't be printed, the pose
   /// is invalid, the mass is out of range, a plane with mass, an empty compound.
@@ -63,7 +63,7 @@ class Body {
   /// Adds a joint. The present pose of its parts becomes its zero position. `position` and `axis` are in world
   /// coordinates. Errors: the name is taken, parts of another body, the same part twice, two static parts, an axis of
   /// length 0.
-  Result<Joint*> add_joint(std::string name, Part& parent, Part& child, JointType type, const Vec3& position,
+  Result<Joint*> add_joint(std::string name, Part& parent, Part& child, model::JointType type, const Vec3& position,
                            const Vec3& axis);
   /// Adds a motor. A joint has at most one; a fixed joint can't have one.
   Result<Motor*> add_motor(Joint& joint);
@@ -105,7 +105,7 @@ class Body {
   std::uint32_t structure_version() const { return structure_version_; }
 
   // Construction of an empty body; called by World.
-  void build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options);
+  void build(const std::shared_ptr<const model::BodyModel>& model, const BuildOptions& options);
   void build_copy(const Body& source);
 
   /// Adds new parts and joints to Bullet's world; called by World before a step.
@@ -121,7 +121,7 @@ class Body {
 
   World& world_;
   NodeId id_;
-  std::shared_ptr<const BodyModel> model_;
+  std::shared_ptr<const model::BodyModel> model_;
   ObjectList<Part> parts_;
   ObjectList<Joint> joints_;
   ObjectList<Motor> motors_;
@@ -142,4 +142,4 @@ class Body {
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved this body
 };
 
-}  // namespace limber
+}  // namespace limber::sim

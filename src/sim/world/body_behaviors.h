@@ -9,7 +9,7 @@
 
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::sim {
 
 class Behavior;
 
@@ -42,4 +42,4 @@ class BodyBehaviors {
   std::vector<Behavior*> behaviors_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

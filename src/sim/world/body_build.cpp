@@ -12,12 +12,12 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
 // Gives the motor of a model's joint its limits, and its mode.
-void set_up_motor(Motor& motor, const JointModel& m, bool servo) {
+void set_up_motor(Motor& motor, const model::JointModel& m, bool servo) {
   const Joint& joint = motor.joint();
   Store& store = joint.body().store();
   const bool linear = joint.own_axis() == 2;
@@ -25,13 +25,14 @@ void set_up_motor(Motor& motor, const JointModel& m, bool servo) {
   store.mutable_values(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
   store.mutable_values(motor.id(), Motor::table().at("damping"))[0] = m.damping;
   // planar and floating joints have several axes, and mimic joints follow their leader: none gets a servo by default
-  const bool use_servo = servo && m.type != JointType::floating && m.type != JointType::planar && !joint.spec().mimic;
+  const bool use_servo =
+      servo && m.type != model::JointType::floating && m.type != model::JointType::planar && !joint.spec().mimic;
   if (!use_servo) motor.set_mode(MotorMode::off);
 }
 
 }  // namespace
 
-void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptions& options) {
+void Body::build(const std::shared_ptr<const model::BodyModel>& model, const BuildOptions& options) {
   model_ = model;
   Pose root = model->links.front().start;
   if (options.position) root.position = *options.position;
@@ -39,14 +40,14 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
   const Pose displacement = root * model->links.front().start.inverse();
   const auto& geometries = world_.shapes().geometries_of(model);
   for (std::size_t i = 0; i < model->links.size(); i++) {
-    const LinkModel& link = model->links[i];
+    const model::LinkModel& link = model->links[i];
     Part& part = parts_.add(std::make_unique<Part>(*this, parts_.group(), link.name, geometries[i], link.inertial.mass,
                                                    displacement * link.start));
     if (!link.self_collision) store().mutable_values(part.id(), Part::table().at("self_collision"))[0] = 0;
     part.flush();
   }
   pairs_.build(*model);
-  for (const JointModel& m : model->joints) {
+  for (const model::JointModel& m : model->joints) {
     JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
     if (m.mimic >= 0)
       spec.mimic = Mimic{model->joints[static_cast<std::size_t>(m.mimic)].name, m.mimic_multiplier, m.mimic_offset};
@@ -56,7 +57,7 @@ void Body::build(const std::shared_ptr<const BodyModel>& model, const BuildOptio
     joint.apply_limits();
     joint.constraint().reset(joint.own_axis() == 5 ? Vec3(0, 0, m.start) : Vec3(0));
     joint.publish();
-    if (m.type == JointType::fixed) continue;
+    if (m.type == model::JointType::fixed) continue;
     set_up_motor(motors_.add(std::make_unique<Motor>(joint, motors_.group())), m, options.servo_motors);
   }
   followers_ = couple_mimic_joints(*this);
@@ -104,4 +105,4 @@ void Body::build_copy(const Body& source) {
   world_.behaviors().copy(source, *this);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

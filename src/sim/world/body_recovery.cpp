@@ -13,7 +13,7 @@
 #include "sim/world/stability.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void BodyRecovery::save_new_start_pose() {
   if (!std::exchange(state_.is_new, false)) return;
@@ -56,7 +56,7 @@ const Joint* BodyRecovery::consume_separated_joint() {
 }
 
 bool BodyRecovery::restore_good_pose(const Part& part, const std::string& instability) {
-  IslandWorld& bullet = body_.world().bullet();
+  bullet::IslandWorld& bullet = body_.world().bullet();
   const std::string cause = state_.restored_this_tick ? "" : likely_cause(body_, part);
   for (std::size_t i = 0; i < body_.parts().size(); i++) {
     Part& member = *body_.parts()[i];
@@ -96,4 +96,4 @@ void BodyRecovery::serialize(Archive& archive) {
   archive.serialize_all(is_new, restored_this_tick, restored_once, good_pose_count, good_poses);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,8 +10,11 @@
 #include "base/vec.h"
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
+
 class Body;
 class Joint;
 class Part;
@@ -55,4 +58,4 @@ class BodyRecovery {
   Joint* separated_joint_ = nullptr;  // a joint that came apart in this tick
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void BodyWarnings::warn_static_velocity(std::string_view subject) {
   if (std::exchange(state_.static_velocity, true)) return;
@@ -26,26 +26,27 @@ void BodyWarnings::warn_static_velocity(std::string_view subject) {
       body_.name(), subject);
 }
 
-void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || clamped_by(part.rigid()) > 0; }
+void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || bullet::clamped_by(part.rigid()) > 0; }
 
 void BodyWarnings::note(const Joint& joint) {
-  const JointConstraint& constraint = joint.constraint();
+  const bullet::JointConstraint& constraint = joint.constraint();
   has_joint_problem_ =
       has_joint_problem_ || constraint.drives().spring_limited() || constraint.drives().target_outside();
 }
 
 void BodyWarnings::warn_clamped() {
   if (!std::exchange(is_clamped_, false) || std::exchange(state_.clamped, true)) return;
-  const auto clamped_of = [](const std::unique_ptr<Part>& part) { return clamped_by(part->rigid()); };
+  const auto clamped_of = [](const std::unique_ptr<Part>& part) { return bullet::clamped_by(part->rigid()); };
   const Part& part = **std::ranges::max_element(body_.parts(), {}, clamped_of);
   const World& world = body_.world();
-  const double allowed = kMaxRotationPerStep * world.substeps() / world.timestep();
-  const double excess = clamped_by(part.rigid());
+  const double allowed = bullet::kMaxRotationPerStep * world.substeps() / world.timestep();
+  const double excess = bullet::clamped_by(part.rigid());
   const double requested = std::max(glm::length(part.angular_velocity()), allowed + excess);
   log_warning(
       "part '{}/{}': rotation of {:.4g} rad/s is clamped by {:.4g} rad/s, since it exceeds 45 degrees per substep; "
       "about {} substeps would allow it (reported once per body)",
-      body_.name(), part.name(), requested, excess, std::ceil(requested * world.timestep() / kMaxRotationPerStep));
+      body_.name(), part.name(), requested, excess,
+      std::ceil(requested * world.timestep() / bullet::kMaxRotationPerStep));
 }
 
 void BodyWarnings::warn_joints() {
@@ -61,7 +62,7 @@ void BodyWarnings::log() {
   warn_clamped();
   warn_joints();
   for (const Joint* follower : body_.followers()) {
-    GearConstraint& gear = *follower->mimic_gear();
+    bullet::GearConstraint& gear = *follower->mimic_gear();
     if (!gear.is_slipping() || !gear.report_slip()) continue;
     log_warning(
         "joint '{}/{}' is {:.3g} away from the position set by its leader '{}': limits, locks or contacts block it. "
@@ -72,4 +73,4 @@ void BodyWarnings::log() {
 
 void BodyWarnings::serialize(Archive& archive) { archive.serialize(state_); }
 
-}  // namespace limber
+}  // namespace limber::sim

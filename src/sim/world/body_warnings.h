@@ -4,8 +4,11 @@
 #include <string_view>
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
+
 class Body;
 class Joint;
 class Part;
@@ -39,4 +42,4 @@ class BodyWarnings {
   bool has_joint_problem_ = false;  // a joint may have to report a capped spring or a target outside its limits
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -9,7 +9,7 @@
 #include "sim/collision/manifold_builder.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 Part* part_of(const btCollisionObject* object) { return static_cast<Part*>(object->getUserPointer()); }
@@ -43,17 +43,17 @@ void Contacts::begin_tick() {
 // Adds a touching point as of the last substep.
 void Contacts::Pair::add(btManifoldPoint& point) {
   touching = true;
-  if ((point.m_contactPointFlags & kContactClosed) == 0) {
+  if ((point.m_contactPointFlags & collision::kContactClosed) == 0) {
     impulse += point.getAppliedImpulse();
     if (point.getAppliedImpulse() > 0 && point.getDistance() <= kClosedDistance) {
-      point.m_contactPointFlags |= kContactClosed;
+      point.m_contactPointFlags |= collision::kContactClosed;
     } else if (point.getAppliedImpulse() > 0) {
       closing = true;
     }
   }
   if (point.getDistance() < distance) {
     distance = point.getDistance();
-    position = from_bt(point.getPositionWorldOnB());
+    position = bullet::from_bt(point.getPositionWorldOnB());
   }
 }
 
@@ -96,4 +96,4 @@ void Contacts::serialize(Archive& archive) {
   archive.serialize_all(reporting, pairs, events);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

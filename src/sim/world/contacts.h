@@ -13,8 +13,11 @@ class btManifoldPoint;
 class btPersistentManifold;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
+
 class Part;
 
 /// Two parts began to touch; `part` reports contacts.
@@ -67,4 +70,4 @@ class Contacts {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

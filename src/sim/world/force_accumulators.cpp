@@ -6,7 +6,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -20,7 +20,7 @@ void apply_to_bullet(Part& part, const ForceAccumulators::Wrench& wrench, const 
   // clamped to more than any part withstands, but finite: NaN and infinities would spread to all parts that it
   // touches
   const Vec3 limit(1e15);
-  const auto clamped = [&](const Vec3& v) { return to_bt(glm::clamp(v, -limit, limit)); };
+  const auto clamped = [&](const Vec3& v) { return bullet::to_bt(glm::clamp(v, -limit, limit)); };
   rigid.applyCentralForce(clamped(wrench.force));
   rigid.applyTorque(clamped(wrench.torque));
   rigid.applyCentralImpulse(clamped(impulse.linear));
@@ -95,4 +95,4 @@ void ForceAccumulators::serialize(Archive& archive) {
   for (const std::uint32_t index : pending_) archive.serialize_all(wrenches_[index], impulses_[index]);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,8 +8,11 @@
 #include "base/vec.h"
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
+
 class Part;
 
 class ForceAccumulators {
@@ -78,4 +81,4 @@ class ForceAccumulators {
   std::vector<std::uint32_t> index_of_slot_;  // accumulator by the slot of the part's node; kNone: no part
 };
 
-}  // namespace limber
+}  // namespace limber::sim

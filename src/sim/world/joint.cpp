@@ -14,7 +14,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -51,7 +51,7 @@ const LimitProperties& limit_properties() {
 
 // Returns relrot(), or the constraint's angles where both are the same (equal axis order, unambiguous, no full turns),
 // since relrot() is costly.
-Vec3 stream_angles(const JointConstraint& constraint) {
+Vec3 stream_angles(const bullet::JointConstraint& constraint) {
   const Vec3 angles = constraint.pose().angles();
   const bool same = constraint.pose().order() == std::array<int, 3>{2, 1, 0} && constraint.axis(4).locked() &&
                     std::abs(angles.x) <= kPi && std::abs(angles.y) <= kPi / 2 && std::abs(angles.z) <= kPi;
@@ -59,20 +59,20 @@ Vec3 stream_angles(const JointConstraint& constraint) {
 }
 
 // True if a joint type leaves an axis free, apart from limits; axes 0..2 are linear, 3..5 angular.
-bool is_free_by_type(JointType type, int axis) {
+bool is_free_by_type(model::JointType type, int axis) {
   switch (type) {
-    case JointType::revolute:
-    case JointType::continuous:
+    case model::JointType::revolute:
+    case model::JointType::continuous:
       return axis == 5;
-    case JointType::prismatic:
+    case model::JointType::prismatic:
       return axis == 2;
-    case JointType::planar:
+    case model::JointType::planar:
       return axis == 0 || axis == 1 || axis == 5;
-    case JointType::spherical:
+    case model::JointType::spherical:
       return axis >= 3;
-    case JointType::floating:
+    case model::JointType::floating:
       return true;
-    case JointType::fixed:
+    case model::JointType::fixed:
       return false;
   }
   return false;
@@ -124,11 +124,11 @@ const PropertyTable& Joint::table() {
   return table;
 }
 
-std::unique_ptr<JointConstraint> Joint::make_constraint(Part& parent, Part& child, const JointSpec& spec) {
-  const BulletMemory::Scope scope(&parent.body().world().bullet_memory());
-  return std::make_unique<JointConstraint>(parent.rigid(), child.rigid(),
-                                           to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
-                                           to_bt(child.geometry()->frame.inverse() * spec.frame_in_child));
+std::unique_ptr<bullet::JointConstraint> Joint::make_constraint(Part& parent, Part& child, const JointSpec& spec) {
+  const bullet::BulletMemory::Scope scope(&parent.body().world().bullet_memory());
+  return std::make_unique<bullet::JointConstraint>(
+      parent.rigid(), child.rigid(), bullet::to_bt(parent.geometry()->frame.inverse() * spec.frame_in_parent),
+      bullet::to_bt(child.geometry()->frame.inverse() * spec.frame_in_child));
 }
 
 Joint::Joint(Body& body, NodeId group, std::string name, Part& parent, Part& child, const JointSpec& spec)
@@ -160,8 +160,9 @@ void Joint::add_to_world() {
 }
 
 void Joint::couple_to(Joint& leader) {
-  const BulletMemory::Scope scope(&body_.world().bullet_memory());
-  mimic_gear_ = std::make_unique<GearConstraint>(*leader.constraint_, leader.own_axis(), *constraint_, own_axis());
+  const bullet::BulletMemory::Scope scope(&body_.world().bullet_memory());
+  mimic_gear_ =
+      std::make_unique<bullet::GearConstraint>(*leader.constraint_, leader.own_axis(), *constraint_, own_axis());
   mimic_gear_->set({spec_.mimic->multiplier, spec_.mimic->offset, 0});
 }
 
@@ -177,7 +178,7 @@ void Joint::remove_from_world() {
 
 void Joint::wake() {
   if (!state_.in_world) return;
-  SleepTracker& sleep = body_.world().bullet().sleep();
+  bullet::SleepTracker& sleep = body_.world().bullet().sleep();
   if (!parent_.is_static()) sleep.wake(parent_.rigid());
   if (!child_.is_static()) sleep.wake(child_.rigid());
 }
@@ -185,8 +186,8 @@ void Joint::wake() {
 const std::string& Joint::name() const { return body_.store().name(id_); }
 
 int Joint::own_axis() const {
-  if (spec_.type == JointType::fixed) return -1;
-  return spec_.type == JointType::prismatic ? 2 : 5;
+  if (spec_.type == model::JointType::fixed) return -1;
+  return spec_.type == model::JointType::prismatic ? 2 : 5;
 }
 
 double Joint::value() const { return own_axis() < 0 ? 0 : constraint_->value(own_axis()); }
@@ -200,7 +201,7 @@ void Joint::apply_limits() {
     const auto value_of = [&](const std::array<const Property*, 2>& properties) {
       return static_cast<float>(store.values(id_, *properties[half])[axis % 3]);
     };
-    AxisSettings settings = constraint_->axis(axis);
+    bullet::AxisSettings settings = constraint_->axis(axis);
     settings.lower = value_of(limit_properties().lower);
     settings.upper = value_of(limit_properties().upper);
     settings.stop_erp = value_of(limit_properties().stop_erp);
@@ -243,7 +244,7 @@ void Joint::publish() {
   put(transient + properties.angles->offset, constraint_->pose().angles());
   put(transient + properties.offsets->offset, constraint_->pose().offsets());
   put(transient + properties.relrot->offset, stream_angles(*constraint_));
-  put(transient + properties.position->offset, from_bt(parent * frame.getOrigin()));
+  put(transient + properties.position->offset, bullet::from_bt(parent * frame.getOrigin()));
   const Quat q = child_.pose().rotation * spec_.frame_in_child.rotation;
   double* rotation = transient + properties.rotation->offset;
   rotation[0] = q.x;
@@ -283,7 +284,7 @@ bool Joint::check_separation() {
 
 void Joint::read_axis(double* out) const {
   const btMatrix3x3& frame = constraint_->pose().frame_in_parent().getBasis();
-  put(out, from_bt(parent_.rigid().getCenterOfMassTransform().getBasis() * frame.getColumn(2)));
+  put(out, bullet::from_bt(parent_.rigid().getCenterOfMassTransform().getBasis() * frame.getColumn(2)));
 }
 
-}  // namespace limber
+}  // namespace limber::sim

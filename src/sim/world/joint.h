@@ -10,11 +10,14 @@
 #include "model/body_model.h"
 #include "properties/store.h"
 
-namespace limber {
-
-class Body;
+namespace limber::sim::bullet {
 class GearConstraint;
 class JointConstraint;
+}  // namespace limber::sim::bullet
+
+namespace limber::sim {
+
+class Body;
 class Motor;
 class Part;
 
@@ -27,7 +30,7 @@ struct Mimic {
 
 /// Construction data of a joint.
 struct JointSpec {
-  JointType type = JointType::revolute;
+  model::JointType type = model::JointType::revolute;
   Pose frame_in_parent;  ///< In the parent's link frame; z = the own axis.
   Pose frame_in_child;
   bool limited = false;  ///< Whether the own axis has limits; else it is free.
@@ -48,15 +51,15 @@ class Joint {
 
   NodeId id() const { return id_; }
   const std::string& name() const;
-  JointType type() const { return spec_.type; }
+  model::JointType type() const { return spec_.type; }
   const JointSpec& spec() const { return spec_; }
   Body& body() const { return body_; }
   Part& parent() const { return parent_; }
   Part& child() const { return child_; }
   Motor* motor() const { return motor_; }
   void set_motor(Motor* motor) { motor_ = motor; }
-  JointConstraint& constraint() { return *constraint_; }
-  const JointConstraint& constraint() const { return *constraint_; }
+  bullet::JointConstraint& constraint() { return *constraint_; }
+  const bullet::JointConstraint& constraint() const { return *constraint_; }
 
   /// Index of the joint's own axis, which `value`, `mode` and `target` refer to: 2 (linear z) for a prismatic joint, -1
   /// for a fixed one, else 5 (angular z). Axes 0..2 are linear x y z, 3..5 angular x y z.
@@ -91,7 +94,7 @@ class Joint {
   /// Adds the gear to Bullet's world, after both joints were added.
   void add_mimic_gear();
   /// The gear between this joint and its leader, or null if it has none.
-  GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
+  bullet::GearConstraint* mimic_gear() const { return mimic_gear_.get(); }
   /// Writes limits, ERP and CFM of all axes to the constraint; the on-change callback of these properties.
   void apply_limits();
   /// For checkpoints.
@@ -100,7 +103,7 @@ class Joint {
   void read_axis(double* out) const;
 
  private:
-  static std::unique_ptr<JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
+  static std::unique_ptr<bullet::JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
 
   // fields that every tick reads come first
   Body& body_;
@@ -108,8 +111,8 @@ class Joint {
   Motor* motor_ = nullptr;
   Part& parent_;
   Part& child_;
-  std::unique_ptr<JointConstraint> constraint_;
-  std::unique_ptr<GearConstraint> mimic_gear_;
+  std::unique_ptr<bullet::JointConstraint> constraint_;
+  std::unique_ptr<bullet::GearConstraint> mimic_gear_;
   // what persists from tick to tick, besides its properties
   struct State {
     std::uint8_t open_axes = 0;  // bit set of the axes that are not locked
@@ -121,4 +124,4 @@ class Joint {
   JointSpec spec_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -12,7 +12,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -206,7 +206,7 @@ void Motor::step_towards(const Vec3& target, double max_step) {
 }
 
 void Motor::save_held_position() {
-  for (int axis = 0; axis < 6; axis++) state_.held_position[at(axis)] = constraint_.value(axis);
+  for (int axis = 0; axis < 6; axis++) state_.held_position[bullet::at(axis)] = constraint_.value(axis);
   constraint_.goals().restart();
 }
 
@@ -221,7 +221,7 @@ void Motor::apply_axes() {
       return static_cast<float>(persistent[r[half]->offset + static_cast<std::uint32_t>(axis % 3)]);
     };
     if (!joint_.is_open(axis)) continue;  // its drive is set when its limits open
-    AxisSettings settings = constraint_.axis(axis);
+    bullet::AxisSettings settings = constraint_.axis(axis);
     settings.drive = panic.drive(mode(axis));
     settings.max_force = value_of(properties.max_force);
     settings.stiffness = value_of(properties.stiffness);
@@ -238,7 +238,7 @@ void Motor::apply_axes() {
   const double smoothing = store.values(id_, *properties.smoothing)[0];
   if (constraint_.goals().smoothing() != smoothing) {
     joint_.wake();
-    const BulletMemory::Scope scope(&joint_.body().world().bullet_memory());
+    const bullet::BulletMemory::Scope scope(&joint_.body().world().bullet_memory());
     constraint_.goals().set_smoothing(smoothing);
   }
   apply_targets();
@@ -267,7 +267,7 @@ bool Motor::update_targets() {
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const values = persistent + axis % 3;
     changed |= constraint_.set_goal(
-        axis, holding ? state_.held_position[at(axis)] : values[properties.servo_position[half]->offset],
+        axis, holding ? state_.held_position[bullet::at(axis)] : values[properties.servo_position[half]->offset],
         values[properties.rest[half]->offset],
         holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset]);
   }
@@ -303,7 +303,7 @@ void Motor::warn_target_outside() {
   if (joint_.spec().mimic || std::exchange(state_.warned_target_outside, true)) return;
   for (int axis = 0; axis < 6; axis++) {
     if (!constraint_.drives().target_outside(axis)) continue;
-    const AxisSettings& s = constraint_.axis(axis);
+    const bullet::AxisSettings& s = constraint_.axis(axis);
     const char* const names[] = {"x", "y", "z"};
     const bool angular = axis >= 3;
     const std::string axis_text =
@@ -368,4 +368,4 @@ Result<void> Motor::validate_own_axis(const double*) const {
   return Error{"a fixed joint has no axis of its own"};
 }
 
-}  // namespace limber
+}  // namespace limber::sim

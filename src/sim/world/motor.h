@@ -7,7 +7,7 @@
 #include "properties/store.h"
 #include "sim/world/joint.h"
 
-namespace limber {
+namespace limber::sim {
 
 enum class MotorMode : std::uint8_t { off, spin, servo, spring };
 
@@ -71,7 +71,7 @@ class Motor {
   static void prefetch_targets(const void* object);
 
   Joint& joint_;
-  JointConstraint& constraint_;  // of the joint
+  bullet::JointConstraint& constraint_;  // of the joint
   NodeId id_;
   // what persists from tick to tick, besides its properties
   struct State {
@@ -82,4 +82,4 @@ class Motor {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -15,7 +15,7 @@
 #include "base/text.h"
 #include "properties/store.h"
 
-namespace limber {
+namespace limber::sim {
 
 template <class T>
 class ObjectList {
@@ -68,4 +68,4 @@ class ObjectList {
   std::vector<std::unique_ptr<T>> objects_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

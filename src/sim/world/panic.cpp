@@ -11,7 +11,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 void Panic::begin() { set_on(true); }
 void Panic::end() { set_on(false); }
@@ -40,7 +40,7 @@ void Panic::apply_gravity() {
   const Vec3 gravity = vec3_at(world_.store().values(world_.id(), property));
   const double size = glm::length(gravity);
   const bool limited = state_.on && size > kDamping * kTerminalSpeed;
-  world_.bullet().setGravity(to_bt(limited ? gravity * (kDamping * kTerminalSpeed / size) : gravity));
+  world_.bullet().setGravity(bullet::to_bt(limited ? gravity * (kDamping * kTerminalSpeed / size) : gravity));
 }
 
 bool Panic::holds_motors() const {
@@ -48,9 +48,9 @@ bool Panic::holds_motors() const {
   return world_.store().values(world_.id(), motors)[0] == 0;
 }
 
-AxisDrive Panic::drive(MotorMode mode) const {
-  if (!state_.on) return static_cast<AxisDrive>(mode);
-  return mode != MotorMode::off && holds_motors() ? AxisDrive::servo : AxisDrive::off;
+bullet::AxisDrive Panic::drive(MotorMode mode) const {
+  if (!state_.on) return static_cast<bullet::AxisDrive>(mode);
+  return mode != MotorMode::off && holds_motors() ? bullet::AxisDrive::servo : bullet::AxisDrive::off;
 }
 
 void Panic::damp(double h) {
@@ -66,4 +66,4 @@ void Panic::damp(double h) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim

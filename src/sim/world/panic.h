@@ -6,10 +6,13 @@
 
 #include "base/memory/archive.h"
 
-namespace limber {
+namespace limber::sim::bullet {
+enum class AxisDrive : std::uint8_t;
+}  // namespace limber::sim::bullet
+
+namespace limber::sim {
 
 class World;
-enum class AxisDrive : std::uint8_t;
 enum class MotorMode : std::uint8_t;
 
 class Panic {
@@ -48,7 +51,7 @@ class Panic {
   bool holds_motors() const;
   /// Returns the drive of an axis with motor mode `mode`: during a panic, it holds its position with its own
   /// strength, or is off.
-  AxisDrive drive(MotorMode mode) const;
+  bullet::AxisDrive drive(MotorMode mode) const;
   /// Damps all velocities; call after each substep of h seconds.
   void damp(double h);
   /// For checkpoints.
@@ -66,4 +69,4 @@ class Panic {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

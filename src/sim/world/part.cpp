@@ -12,7 +12,7 @@
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -44,7 +44,7 @@ void apply_mass(Part& part) {
   btRigidBody& rigid = part.rigid();
   const double mass = number_of(part, property);
   const btScalar before = rigid.getInvMass();
-  rigid.setMassProps(static_cast<btScalar>(mass), to_bt(part.geometry()->unit_inertia * mass));
+  rigid.setMassProps(static_cast<btScalar>(mass), bullet::to_bt(part.geometry()->unit_inertia * mass));
   rigid.updateInertiaTensor();
   // Bullet stores gravity as a force, which was computed with the old mass
   rigid.setGravity(part.body().world().bullet().getGravity());
@@ -85,8 +85,8 @@ void apply_surface(Part& part) {
   rigid.setRollingFriction(static_cast<btScalar>(number_of(part, rolling)));
   rigid.setSpinningFriction(static_cast<btScalar>(number_of(part, spinning)));
   const Vec3 in_link = vec3_at(part.body().store().values(part.id(), direction));
-  set_friction_direction(rigid, to_bt(glm::inverse(part.geometry()->frame.rotation) * in_link),
-                         static_cast<btScalar>(number_of(part, factor)));
+  collision::set_friction_direction(rigid, bullet::to_bt(glm::inverse(part.geometry()->frame.rotation) * in_link),
+                                    static_cast<btScalar>(number_of(part, factor)));
   const auto restitution = static_cast<btScalar>(number_of(part, bounce));
   rigid.setRestitution(restitution);
   if (surface_of(rigid) != before) part.wake();
@@ -96,7 +96,7 @@ void apply_surface(Part& part) {
   if (rigid.getContactProcessingThreshold() == threshold) return;
   rigid.setContactProcessingThreshold(threshold);
   // existing contacts keep the threshold that they were created with
-  IslandWorld& bullet = part.body().world().bullet();
+  bullet::IslandWorld& bullet = part.body().world().bullet();
   if (!rigid.isInWorld()) return;
   bullet.getPairCache()->cleanProxyFromPairs(rigid.getBroadphaseHandle(), bullet.getDispatcher());
 }
@@ -104,7 +104,7 @@ void apply_surface(Part& part) {
 void read_center(const Part& part, double* out) { put(out, part.center()); }
 void read_inertia(const Part& part, double* out) { put(out, part.geometry()->unit_inertia * part.mass()); }
 void read_principal_axes(const Part& part, double* out) { put(out, part.principal_axes()); }
-void read_rotation_clamped(const Part& part, double* out) { out[0] = clamped_by(part.rigid()); }
+void read_rotation_clamped(const Part& part, double* out) { out[0] = bullet::clamped_by(part.rigid()); }
 
 Result<void> validate_mass(const Part& part, const double*) {
   if (!part.is_static()) return {};
@@ -217,12 +217,12 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
       is_static_(mass <= 0),
       state_{.start = pose} {
   body_.store().mutable_values(id_, table().at("mass"))[0] = is_static_ ? 0 : mass;
-  const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : to_bt(geometry_->unit_inertia * mass);
+  const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : bullet::to_bt(geometry_->unit_inertia * mass);
   btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
                                                 geometry_->shape.get(), inertia);
-  info.m_startWorldTransform = to_bt(pose * geometry_->frame);
+  info.m_startWorldTransform = bullet::to_bt(pose * geometry_->frame);
   {
-    const BulletMemory::Scope scope(&body_.world().bullet_memory());
+    const bullet::BulletMemory::Scope scope(&body_.world().bullet_memory());
     rigid_ = std::make_unique<btRigidBody>(info);
   }
   rigid_->setUserPointer(this);
@@ -374,11 +374,11 @@ void Part::clear_forces() {
 void Part::publish() {
   double* const transient = body_.store().transient_block(id_);
   const MotionProperties& properties = motion_properties();
-  const Pose pose = from_bt(rigid_->getWorldTransform()) * geometry_->frame.inverse();
+  const Pose pose = bullet::from_bt(rigid_->getWorldTransform()) * geometry_->frame.inverse();
   put(transient + properties.position->offset, pose.position);
   put(transient + properties.rotation->offset, pose.rotation);
-  put(transient + properties.linear_velocity->offset, from_bt(rigid_->getLinearVelocity()));
-  put(transient + properties.angular_velocity->offset, from_bt(rigid_->getAngularVelocity()));
+  put(transient + properties.linear_velocity->offset, bullet::from_bt(rigid_->getLinearVelocity()));
+  put(transient + properties.angular_velocity->offset, bullet::from_bt(rigid_->getAngularVelocity()));
 }
 
 bool Part::reports_contacts() const { return state_.report_contacts; }
@@ -389,7 +389,7 @@ void Part::prefetch_rigid_body(const void* object) {
 }
 
 void Part::apply_pose() {
-  const btTransform t = to_bt(pose() * geometry_->frame);
+  const btTransform t = bullet::to_bt(pose() * geometry_->frame);
   if (!is_static_ || !(t == rigid_->getWorldTransform())) wake();
   rigid_->setWorldTransform(t);
   rigid_->setInterpolationWorldTransform(t);
@@ -404,11 +404,11 @@ void Part::apply_velocity() {
     }
     return;
   }
-  const bool changes = to_bt(linear_velocity()) != rigid_->getLinearVelocity() ||
-                       to_bt(angular_velocity()) != rigid_->getAngularVelocity();
+  const bool changes = bullet::to_bt(linear_velocity()) != rigid_->getLinearVelocity() ||
+                       bullet::to_bt(angular_velocity()) != rigid_->getAngularVelocity();
   if (changes) wake();
-  rigid_->setLinearVelocity(to_bt(linear_velocity()));
-  rigid_->setAngularVelocity(to_bt(angular_velocity()));
+  rigid_->setLinearVelocity(bullet::to_bt(linear_velocity()));
+  rigid_->setAngularVelocity(bullet::to_bt(angular_velocity()));
 }
 
 void Part::apply_collision() {
@@ -416,7 +416,7 @@ void Part::apply_collision() {
   static const Property& mask = table().at("collision_mask");
   static const Property& own = table().at("self_collision");
   const Store& store = body_.store();
-  CollisionFilter filter;
+  bullet::CollisionFilter filter;
   filter.group = static_cast<std::uint16_t>(store.values(id_, group)[0]);
   filter.mask = static_cast<std::uint16_t>(store.values(id_, mask)[0]);
   filter.body = static_cast<std::int32_t>(body_.id().slot);
@@ -430,4 +430,4 @@ void Part::apply_report_contacts() {
   state_.report_contacts = wanted;
 }
 
-}  // namespace limber
+}  // namespace limber::sim

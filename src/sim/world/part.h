@@ -14,7 +14,7 @@
 
 class btRigidBody;
 
-namespace limber {
+namespace limber::sim {
 
 class Body;
 class Shape;
@@ -125,4 +125,4 @@ class Part {
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its forces
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -16,7 +16,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -106,7 +106,7 @@ bool PartPairs::set_overlaps(std::size_t a, std::size_t b) {
 // Applies a change of a pair's exclusion.
 void PartPairs::apply(std::size_t a, std::size_t b) {
   const PartPair* const pair = find(a, b);
-  IslandWorld& bullet = body_.world().bullet();
+  bullet::IslandWorld& bullet = body_.world().bullet();
   btRigidBody& rigid_a = body_.parts()[a]->rigid();
   btRigidBody& rigid_b = body_.parts()[b]->rigid();
   if (pair != nullptr && pair->excluded()) {
@@ -123,8 +123,8 @@ void PartPairs::apply_all() {
   }
 }
 
-void PartPairs::build(const BodyModel& model) {
-  for (const Overlap& overlap : model.overlaps) {
+void PartPairs::build(const model::BodyModel& model) {
+  for (const model::Overlap& overlap : model.overlaps) {
     (void)set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
   }
   state_.checked_count = body_.parts().size();
@@ -141,18 +141,18 @@ void PartPairs::find_new_overlaps(OverlapReport& report) {
   if (state_.checked_count >= parts.size()) return;
   const std::size_t first_new = std::exchange(state_.checked_count, parts.size());
   if (parts.size() < 2) return;
-  std::vector<OverlapPart> shapes;
+  std::vector<model::OverlapPart> shapes;
   std::vector<std::pair<std::size_t, std::size_t>> joined;
   for (const auto& part : parts) shapes.push_back({part->geometry()->placed, part->pose()});
   for (const auto& joint : body_.joints()) {
     joined.push_back(std::minmax(index_of(body_, joint->parent()), index_of(body_, joint->child())));
   }
   std::sort(joined.begin(), joined.end());
-  const OverlapResult result = find_overlaps(shapes, [&](std::size_t a, std::size_t b) {
+  const model::OverlapResult result = model::find_overlaps(shapes, [&](std::size_t a, std::size_t b) {
     return b >= first_new && !(parts[a]->is_static() && parts[b]->is_static()) &&
            !std::binary_search(joined.begin(), joined.end(), std::pair(a, b));
   });
-  for (const Overlap& overlap : result.found) {
+  for (const model::Overlap& overlap : result.found) {
     const auto a = static_cast<std::size_t>(overlap.a);
     const auto b = static_cast<std::size_t>(overlap.b);
     if (!set_overlaps(a, b)) continue;
@@ -166,4 +166,4 @@ void PartPairs::serialize(Archive& archive) {
   archive.serialize_all(list, checked_count);
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -10,11 +10,17 @@
 #include "base/result.h"
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::model {
+struct BodyModel;
+}  // namespace limber::model
+
+namespace limber::sim {
+
 class Body;
 class Part;
-struct BodyModel;
 
 /// Setting of a pair by a script.
 enum class PairEdit : std::uint16_t { none, excluded, included };
@@ -59,7 +65,7 @@ class PartPairs {
 
   // While the body is built, after its parts were added.
   /// Sets the pairs to those that overlap in the model.
-  void build(const BodyModel& model);
+  void build(const model::BodyModel& model);
   void build_copy(const PartPairs& source);
 
   /// For checkpoints.
@@ -81,4 +87,4 @@ class PartPairs {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -15,7 +15,7 @@
 #include "sim/world/part.h"
 #include "sim/world/world.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -31,7 +31,7 @@ constexpr double kMassRatio = 500;
 constexpr int kMaxSubsteps = 1000;
 
 double squared(const btVector3& v) {
-  const Vec3 d = from_bt(v);
+  const Vec3 d = bullet::from_bt(v);
   return glm::dot(d, d);
 }
 
@@ -50,7 +50,8 @@ const char* find_instability(const btRigidBody& part, double h) {
   if (speed >= kMaxSpeed * kMaxSpeed) return "is faster than 500 m/s";
   if (distance >= kMaxDistance * kMaxDistance) return "is farther than 10 km from the origin";
   if (spin >= kMaxRotationRate * kMaxRotationRate) return "rotates faster than 20000 rad/s";
-  return glm::length(tumbling_velocity(part, h)) < kMaxTumblingRate ? nullptr : "tumbles faster than 1000 rad/s";
+  return glm::length(bullet::tumbling_velocity(part, h)) < kMaxTumblingRate ? nullptr
+                                                                            : "tumbles faster than 1000 rad/s";
 }
 
 namespace {
@@ -145,4 +146,4 @@ void StabilityCheck::end_tick() {
 
 void StabilityCheck::serialize(Archive& archive) { archive.serialize(state_); }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,8 +8,11 @@
 class btRigidBody;
 
 namespace limber {
-
 class Archive;
+}  // namespace limber
+
+namespace limber::sim {
+
 class Body;
 class Part;
 class World;
@@ -49,4 +52,4 @@ class StabilityCheck {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

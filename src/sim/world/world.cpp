@@ -12,7 +12,7 @@
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 
-namespace limber {
+namespace limber::sim {
 
 namespace {
 
@@ -40,8 +40,8 @@ const WorldProperties& world_properties() {
 }
 
 // Adds the islands solved in this tick to the readouts.
-void publish_solver_counts(World& world, const DirectCounts& before) {
-  const DirectCounts now = world.bullet().direct_counts();
+void publish_solver_counts(World& world, const solver::DirectCounts& before) {
+  const solver::DirectCounts now = world.bullet().direct_counts();
   const auto add = [&](const Property* property, std::uint64_t count) {
     world.store().mutable_values(world.id(), *property)[0] += static_cast<double>(count);
   };
@@ -58,7 +58,7 @@ void apply_gravity(World& world) { world.panic().apply_gravity(); }
 void apply_panic_motors(World& world) { world.panic().update_motors(); }
 
 void apply_solver_settings(World& world) {
-  IslandWorld& bullet = world.bullet();
+  bullet::IslandWorld& bullet = world.bullet();
   bullet.wake_all();
   bullet.getSolverInfo().m_numIterations =
       static_cast<int>(world.store().values(world.id(), *world_properties().iterations)[0]);
@@ -126,8 +126,8 @@ World::World(Store& store, const WorldSetup& setup)
       id_(store.add(table(), store.add_group(store.root(), "physics"), "sim", this)),
       bodies_(store, store.add_group(store.parent(id_), "body")) {
   {
-    const BulletMemory::Scope scope(&bullet_memory_);
-    bullet_ = std::make_unique<IslandWorld>(setup);
+    const bullet::BulletMemory::Scope scope(&bullet_memory_);
+    bullet_ = std::make_unique<bullet::IslandWorld>(setup);
   }
   const NodeId physics = store_.parent(id_);
   gears_ = std::make_unique<GearList>(*this, physics);
@@ -170,7 +170,7 @@ Result<Body*> World::add_body(std::string name) {
   return &body;
 }
 
-Result<Body*> World::add_body(const std::shared_ptr<const BodyModel>& model, std::string name,
+Result<Body*> World::add_body(const std::shared_ptr<const model::BodyModel>& model, std::string name,
                               const BuildOptions& options) {
   Result<Body*> body = add_body(std::move(name));
   if (!body) return body;
@@ -235,7 +235,7 @@ TickTimes World::step() {
   force_accumulators_.apply();
   contacts_.begin_tick();
   const double physics_time = system::clock_seconds();
-  const DirectCounts previous_counts = bullet_->direct_counts();
+  const solver::DirectCounts previous_counts = bullet_->direct_counts();
   bullet_->step(timestep() / substeps(), substeps());
   const double readout_time = system::clock_seconds();
   contacts_.end_tick();
@@ -281,4 +281,4 @@ void World::serialize(Archive& archive) {
   if (archive.loading()) awake_bodies_.invalidate();
 }
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -25,15 +25,21 @@
 
 class btDynamicsWorld;
 
-namespace limber {
+namespace limber::model {
+struct BodyModel;
+}  // namespace limber::model
+
+namespace limber::sim::bullet {
+class IslandWorld;
+}  // namespace limber::sim::bullet
+
+namespace limber::sim {
 
 class BehaviorList;
 class Body;
 class GearList;
-class IslandWorld;
 class ShapeList;
 class Visuals;
-struct BodyModel;
 struct BuildOptions;
 
 /// Durations of the phases of a tick, in seconds.
@@ -58,7 +64,8 @@ class World {
 
   /// Adds an empty body. Errors: the name is taken or contains characters that can't be printed.
   Result<Body*> add_body(std::string name);
-  Result<Body*> add_body(const std::shared_ptr<const BodyModel>& model, std::string name, const BuildOptions& options);
+  Result<Body*> add_body(const std::shared_ptr<const model::BodyModel>& model, std::string name,
+                         const BuildOptions& options);
   /// Copies a body of this or another world with all its values, to the same place, so that both overlap. Contacts are
   /// found in the next step: moving the copy (set_pose) before it avoids a collision of the two.
   Result<Body*> copy_body(const Body& source, std::string name);
@@ -112,8 +119,8 @@ class World {
 
   ForceAccumulators& force_accumulators() { return force_accumulators_; }
   MassTable& mass_table() { return mass_table_; }
-  IslandWorld& bullet() { return *bullet_; }
-  BulletMemory& bullet_memory() { return bullet_memory_; }
+  bullet::IslandWorld& bullet() { return *bullet_; }
+  bullet::BulletMemory& bullet_memory() { return bullet_memory_; }
   /// The thread pool that runs the tick's parallel loops, or null. [sim]
   ThreadPool* thread_pool() const { return thread_pool_.get(); }
   /// Rolls back guarded calls of scripts.
@@ -126,8 +133,8 @@ class World {
   Store& store_;
   std::shared_ptr<ThreadPool> thread_pool_;  // runs the parallel loops of a step, or null
   NodeId id_;
-  BulletMemory bullet_memory_;
-  std::unique_ptr<IslandWorld> bullet_;
+  bullet::BulletMemory bullet_memory_;
+  std::unique_ptr<bullet::IslandWorld> bullet_;
   ForceAccumulators force_accumulators_;
   MassTable mass_table_;
   std::unique_ptr<ShapeList> shapes_;
@@ -151,4 +158,4 @@ class World {
   } state_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim

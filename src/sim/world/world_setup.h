@@ -5,7 +5,7 @@
 
 #include "base/threads/thread_pool.h"
 
-namespace limber {
+namespace limber::sim {
 
 /// Settings of a world.
 struct WorldSetup {
@@ -15,4 +15,4 @@ struct WorldSetup {
                                               ///< them. Null: the calling thread only.
 };
 
-}  // namespace limber
+}  // namespace limber::sim

@@ -8,12 +8,12 @@
 
 #include "engine/output/engine_link.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// All times in seconds. [main]
 class CommandSender {
  public:
-  explicit CommandSender(EngineLink& link) : link_(link) {}
+  explicit CommandSender(engine::EngineLink& link) : link_(link) {}
 
   /// Sends a message for the next tick. Returns the number of the request for a value snapshot that follows it.
   std::uint64_t send(Message message, double now);
@@ -27,19 +27,19 @@ class CommandSender {
   void end_drag() { dragging_ = false; }
 
   /// Requests a value snapshot if it is time and the requested one has arrived. `latest` may be null.
-  void update_request(const ValueSnapshot* latest, double now);
+  void update_request(const engine::ValueSnapshot* latest, double now);
   /// Returns the replies since the last call; valid until the next one.
-  std::span<const Outgoing> replies();
+  std::span<const engine::Outgoing> replies();
 
  private:
   void request(double now);
 
-  EngineLink& link_;
+  engine::EngineLink& link_;
   std::uint16_t edit_number_ = 0;
   bool dragging_ = false;
   std::uint64_t last_request_ = 0;
   double last_request_time_ = 0;
-  std::vector<Outgoing> replies_;
+  std::vector<engine::Outgoing> replies_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

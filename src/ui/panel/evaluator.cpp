@@ -3,10 +3,10 @@
 
 #include <utility>
 
-namespace limber {
+namespace limber::panel {
 
-std::uint64_t Evaluator::request(EngineLink& link, std::string text, EvaluationRequest::Action mode) {
-  auto evaluate = std::make_shared<EvaluationRequest>();
+std::uint64_t Evaluator::request(engine::EngineLink& link, std::string text, engine::EvaluationRequest::Action mode) {
+  auto evaluate = std::make_shared<engine::EvaluationRequest>();
   const std::uint64_t id = ++last_id_;
   evaluate->action = mode;
   evaluate->text = std::move(text);
@@ -22,4 +22,4 @@ const std::vector<Evaluator::Response>& Evaluator::consume_responses() {
   return responses_;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

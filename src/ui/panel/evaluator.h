@@ -10,7 +10,7 @@
 #include "base/threads/bounded_queue.h"
 #include "engine/output/engine_link.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// [main]
 class Evaluator {
@@ -21,8 +21,8 @@ class Evaluator {
   };
 
   /// Requests an evaluation. Returns its id, or 0 if the simulation's queue is full.
-  std::uint64_t request(EngineLink& link, std::string text,
-                        EvaluationRequest::Action mode = EvaluationRequest::Action::run);
+  std::uint64_t request(engine::EngineLink& link, std::string text,
+                        engine::EvaluationRequest::Action mode = engine::EvaluationRequest::Action::run);
   /// Returns the results since the last call.
   const std::vector<Response>& consume_responses();
 
@@ -34,4 +34,4 @@ class Evaluator {
   std::uint64_t last_id_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -11,7 +11,7 @@
 
 #include "ui/panel/imgui_versions.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -123,4 +123,4 @@ Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>
   return fonts;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 
 struct ImFont;
 
-namespace limber {
+namespace limber::panel {
 
 struct FontFiles {
   std::string text;  ///< Empty: Dear ImGui's built-in font.
@@ -31,4 +31,4 @@ bool collect_characters(std::string_view text, std::set<unsigned>& characters);
 /// `files.fallback`. [main]
 Fonts load_fonts(const FontFiles& files, double pixels, const std::set<unsigned>& characters = {});
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -12,7 +12,7 @@
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/theme.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -74,7 +74,7 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
 
 }  // namespace
 
-Gui::Gui(EngineLink& link, GuiOptions options)
+Gui::Gui(engine::EngineLink& link, GuiOptions options)
     : options_(std::move(options)), imgui_context_(ImGui::CreateContext()), context_(link) {
   ImGui::SetCurrentContext(imgui_context_);
   ImGuiIO& io = ImGui::GetIO();
@@ -401,4 +401,4 @@ void Gui::draw_notice() const {
   ImGui::End();
 }
 
-}  // namespace limber
+}  // namespace limber::panel

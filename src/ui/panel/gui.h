@@ -19,7 +19,7 @@
 
 struct ImGuiContext;
 
-namespace limber {
+namespace limber::panel {
 
 struct GuiOptions {
   bool draws = true;                       ///< Draw with OpenGL in the current context; false: nothing is drawn.
@@ -44,7 +44,7 @@ struct GuiFrame {
 class Gui {
  public:
   /// `link` must outlive it. [main]
-  Gui(EngineLink& link, GuiOptions options);
+  Gui(engine::EngineLink& link, GuiOptions options);
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
@@ -112,4 +112,4 @@ class Gui {
   bool fonts_drawn_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "engine/presets/morph.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -114,7 +114,7 @@ void GuiContext::select(std::string path) {
 
 void GuiContext::recall(double number) {
   if (number > this->number("/preset/count")) return show_notice(fmt::format("Preset {} not found", number));
-  const std::vector<std::string> names = easings();
+  const std::vector<std::string> names = engine::easings();
   const auto easing = std::min(static_cast<std::size_t>(std::max(settings.easing, 0)), names.size() - 1);
   send("/preset/recall", {Arg::of(number), Arg::of(settings.morph_seconds), Arg::of(std::string_view(names[easing]))});
 }
@@ -128,9 +128,9 @@ void GuiContext::copy_with_notice(const std::string& text) {
 
 // Handles replies: rejected messages, and rewinds that went back less than requested.
 void GuiContext::handle_replies() {
-  for (const Outgoing& reply : commands_.replies()) {
+  for (const engine::Outgoing& reply : commands_.replies()) {
     const std::vector<Arg>& args = reply.message.args;
-    if (reply.destination == Outgoing::Destination::error && args.size() == 2) {
+    if (reply.destination == engine::Outgoing::Destination::error && args.size() == 2) {
       rejection = {fmt::format("{}: {}", args[0].text, args[1].text), clock + kRejectionDuration};
     } else if (reply.message.address == "/transport/rewound" && args.size() > 2) {
       show_notice(fmt::format("Rewound only {:.2f} s: {}", args[0].number, args[2].text));
@@ -153,7 +153,7 @@ void GuiContext::begin_frame(double clock_now) {
   clock = clock_now;
   handle_replies();
   snapshot = link.snapshots.read();
-  if (std::shared_ptr<const ValueSnapshot> newest = link.value_snapshots.read();
+  if (std::shared_ptr<const engine::ValueSnapshot> newest = link.value_snapshots.read();
       newest != nullptr && newest != value_snapshot) {
     const bool first = value_snapshot == nullptr;
     value_snapshot = std::move(newest);
@@ -163,4 +163,4 @@ void GuiContext::begin_frame(double clock_now) {
   commands_.update_request(value_snapshot.get(), clock);
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -19,7 +19,7 @@
 #include "ui/panel/spring_marker.h"
 #include "ui/panel/widgets/widget_names.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// A property in the snapshot's tree and its address.
 struct PropertyHandle {
@@ -59,11 +59,12 @@ inline constexpr double kRewindSeconds = 2;
 /// [main]
 class GuiContext {
  public:
-  explicit GuiContext(EngineLink& engine_link) : link(engine_link), commands_(engine_link) {}
+  explicit GuiContext(engine::EngineLink& engine_link) : link(engine_link), commands_(engine_link) {}
 
-  EngineLink& link;
-  std::shared_ptr<const ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
-  std::shared_ptr<const Snapshot> snapshot;  ///< Newer than the value snapshot; null until the first one arrives.
+  engine::EngineLink& link;
+  std::shared_ptr<const engine::ValueSnapshot> value_snapshot;  ///< Value snapshot; null until the first one arrives.
+  std::shared_ptr<const engine::Snapshot>
+      snapshot;  ///< Newer than the value snapshot; null until the first one arrives.
   Fonts fonts;
   double scale = 1;  ///< Pixels per unit, where a unit is a pixel at text size 16.
   double clock = 0;  ///< Time of the frame in s, for animations.
@@ -143,4 +144,4 @@ class GuiContext {
   PendingValues pending_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -8,7 +8,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -156,4 +156,4 @@ std::string keys_text(const Hotkey& hotkey, const KeyLabels& labels) {
                      key_name(static_cast<GuiKey>(static_cast<int>(hotkey.press.key) + hotkey.key_count - 1)));
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -11,7 +11,7 @@
 
 #include "ui/panel/input.h"
 
-namespace limber {
+namespace limber::panel {
 
 enum class HotkeyAction : std::uint8_t {
   play_pause,
@@ -82,4 +82,4 @@ class Hotkeys {
 /// Returns "Ctrl+R", or "1 .. 8" for consecutive keys.
 std::string keys_text(const Hotkey& hotkey, const KeyLabels& labels);
 
-}  // namespace limber
+}  // namespace limber::panel

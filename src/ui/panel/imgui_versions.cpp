@@ -13,7 +13,7 @@
 #define LIMBER_IMGUI_TEXTURES 0
 #endif
 
-namespace limber::imgui {
+namespace limber::panel::imgui {
 
 namespace {
 
@@ -180,4 +180,4 @@ void text_ellipsis(const ImVec2& low, const ImVec2& high, const std::string& tex
 
 bool is_hovered(const ImRect& box, ImGuiID id) { return hoverable(box, id, ImGui::GetCurrentContext()->LastItemData); }
 
-}  // namespace limber::imgui
+}  // namespace limber::panel::imgui

@@ -9,7 +9,7 @@
 
 struct ImRect;
 
-namespace limber::imgui {
+namespace limber::panel::imgui {
 
 /// Prepares a new context for the functions below: key mapping, and disables Dear ImGui's own distribution of events
 /// over frames, because InputQueue does that.
@@ -43,4 +43,4 @@ struct Activation {
 bool is_hovered(const ImRect& box, ImGuiID id);
 Activation activation(ImGuiID id, bool hovered);
 
-}  // namespace limber::imgui
+}  // namespace limber::panel::imgui

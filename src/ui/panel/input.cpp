@@ -5,7 +5,7 @@
 
 #include "ui/panel/imgui_versions.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -96,4 +96,4 @@ std::vector<KeyPress> InputQueue::next_frame() {
   return std::move(delivered.pressed);
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace limber {
+namespace limber::panel {
 
 /// Keys by their meaning; independent of the window system.
 enum class GuiKey : std::uint8_t {
@@ -140,4 +140,4 @@ class InputQueue {
   double x_ = -1, y_ = -1;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

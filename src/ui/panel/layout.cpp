@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -74,4 +74,4 @@ Layout lay_out(double width, double height, double scale) {
   return layout;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace limber {
+namespace limber::panel {
 
 /// Pixels, from the top left corner.
 struct PanelRect {
@@ -30,4 +30,4 @@ inline constexpr double kCompactBelow = 1200;
 /// `scale`: pixels per unit, where a unit is a pixel at text size 16. Slots that do not fit are empty.
 Layout lay_out(double width, double height, double scale);
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::panel {
 
 std::string lua_text(std::string_view name) {
   std::string text = "\"";
@@ -60,4 +60,4 @@ std::string lua_path(const TreeSnapshot& tree, const TreePropertyRef& ref) {
   return ref.property->min_args == 0 ? fmt::format("{}:{}()", object, ref.property->name) : std::string();
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -6,7 +6,7 @@
 
 #include "properties/tree_snapshot.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// Returns `sim:body("arm"):part("tip").mass` for /physics/body/arm/part/tip/mass; empty if Lua has no equivalent.
 /// [any]
@@ -15,4 +15,4 @@ std::string lua_path(const TreeSnapshot& tree, const TreePropertyRef& ref);
 /// Returns a name as a quoted Lua string. Names contain no control characters.
 std::string lua_text(std::string_view name);
 
-}  // namespace limber
+}  // namespace limber::panel

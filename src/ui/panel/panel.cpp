@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -28,4 +28,4 @@ std::vector<PanelType> panel_types() {
   return types;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

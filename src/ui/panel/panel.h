@@ -10,7 +10,7 @@
 #include "ui/panel/gui_context.h"
 #include "ui/panel/layout.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// Base class of panels. [main]
 class Panel {
@@ -52,4 +52,4 @@ bool register_panel_type(PanelType type) {
   return register_panel(type);
 }
 
-}  // namespace limber
+}  // namespace limber::panel

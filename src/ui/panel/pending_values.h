@@ -8,7 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 
-namespace limber {
+namespace limber::panel {
 
 class PendingValues {
  public:
@@ -33,4 +33,4 @@ class PendingValues {
   std::unordered_map<std::string, PendingValue> values_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -12,7 +12,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -122,4 +122,4 @@ void save_settings(const std::string& file, const GuiSettings& settings) {
     log_warning("can't save the panel settings to {}. Check that the folder is writable", printable(file));
 }
 
-}  // namespace limber
+}  // namespace limber::panel

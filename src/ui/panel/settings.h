@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::panel {
 
 struct GuiSettings {
   static constexpr double kMinTextSize = 12;
@@ -44,4 +44,4 @@ GuiSettings load_settings(const std::string& file);
 /// Writes the file atomically; a failure is only logged. [main]
 void save_settings(const std::string& file, const GuiSettings& settings);
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace limber {
+namespace limber::panel {
 
 /// The dragged point and its target, in pixels, and the name of the dragged part.
 struct SpringMarker {
@@ -11,4 +11,4 @@ struct SpringMarker {
   std::string name;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -5,7 +5,7 @@
 
 #include "ui/panel/gui_context.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 constexpr const char* kEye = "/visuals/camera/eye";
@@ -32,4 +32,4 @@ void StoredViews::restore(GuiContext& context, std::size_t number) const {
     context.send(address, point(address == kEye ? view->eye : view->target));
 }
 
-}  // namespace limber
+}  // namespace limber::panel

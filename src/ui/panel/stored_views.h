@@ -7,7 +7,7 @@
 
 #include "ui/panel/pending_values.h"
 
-namespace limber {
+namespace limber::panel {
 
 class GuiContext;
 
@@ -26,4 +26,4 @@ class StoredViews {
   std::array<std::optional<View>, 9> views_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -127,4 +127,4 @@ void apply_theme(double scale) {
   ImGui::GetStyle() = style;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace limber {
+namespace limber::panel {
 
 /// The palette, by purpose.
 enum class ThemeColor : std::uint8_t {
@@ -49,4 +49,4 @@ std::span<const TextOnBackground> text_combinations();
 /// Resets the style of Dear ImGui's current context. `scale`: pixels per unit, where a unit is a pixel at text size 16.
 void apply_theme(double scale);
 
-}  // namespace limber
+}  // namespace limber::panel

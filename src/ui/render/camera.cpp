@@ -6,7 +6,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr double kMaxOrbitDistance = 1e5;
 
 }  // namespace
 
-CameraMatrices camera_matrices(const CameraSettings& camera, int width, int height, const FreeArea& free_area) {
+CameraMatrices camera_matrices(const engine::CameraSettings& camera, int width, int height, const FreeArea& free_area) {
   CameraMatrices out;
   const glm::dvec3 r = glm::radians(camera.rotation);
   glm::dmat4 view = glm::translate(glm::dmat4(1), camera.position);
@@ -68,4 +68,4 @@ void Orbit::zoom(double factor) {
   eye = target + normalized(offset) * std::clamp(length * factor, kMinOrbitDistance, kMaxOrbitDistance);
 }
 
-}  // namespace limber
+}  // namespace limber::render

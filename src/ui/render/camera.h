@@ -5,7 +5,7 @@
 
 #include "engine/output/render_scene.h"
 
-namespace limber {
+namespace limber::render {
 
 /// A camera: matrices and the vectors they were computed from.
 struct CameraMatrices {
@@ -23,7 +23,8 @@ struct FreeArea {
 };
 /// Computes the camera for a view of that size, pixels. The field of view spans the height of `free_area`, centered
 /// in it; the view extends beyond it. [any]
-CameraMatrices camera_matrices(const CameraSettings& camera, int width, int height, const FreeArea& free_area = {});
+CameraMatrices camera_matrices(const engine::CameraSettings& camera, int width, int height,
+                               const FreeArea& free_area = {});
 
 /// An orbit camera with a target point. Angles in radians; the camera stays upright.
 struct Orbit {
@@ -39,4 +40,4 @@ struct Orbit {
   void zoom(double factor);
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -6,7 +6,7 @@
 
 #include "base/color.h"
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr std::size_t kMaxBoundsSamples = 2000;
 float to_float(double v) { return static_cast<float>(v); }
 glm::vec3 to_float(const Vec3& v) { return {to_float(v.x), to_float(v.y), to_float(v.z)}; }
 
-double bounding_radius(const ShapeModel& shape) {
+double bounding_radius(const model::ShapeModel& shape) {
   double far = 0;
   if (shape.mesh != nullptr) {
     for (const Vec3& v : shape.mesh->vertices) far = std::max(far, glm::length(shape.mesh_pose * v));
@@ -25,11 +25,11 @@ double bounding_radius(const ShapeModel& shape) {
   }
   const double half = shape.height / 2;
   switch (shape.kind) {
-    case ShapeKind::box:
+    case model::ShapeKind::box:
       return glm::length(shape.size) / 2;
-    case ShapeKind::sphere:
+    case model::ShapeKind::sphere:
       return shape.radius;
-    case ShapeKind::capsule:
+    case model::ShapeKind::capsule:
       return shape.radius + half;
     default:
       return std::hypot(shape.radius, half);
@@ -46,7 +46,7 @@ Pose interpolate(const Pose& from, const Pose& to, double mix) {
 
 // ofxDabPhysics's scales of diffuse and ambient light are 0.5 for full reflection, hence the factor 2; its exponents
 // are for Phong highlights, the shader's for Blinn-Phong, hence the factor 4
-DrawList::InstanceMaterial DrawList::instance_material(const Material& m) {
+DrawList::InstanceMaterial DrawList::instance_material(const engine::Material& m) {
   InstanceMaterial out{};
   const Vec3 diffuse = rgb_of(m.diffuse_color);
   const Vec3 ambient = rgb_of(m.ambient_color);
@@ -60,21 +60,21 @@ DrawList::InstanceMaterial DrawList::instance_material(const Material& m) {
   return out;
 }
 
-void DrawList::rebuild_shapes(const Snapshot& current) {
+void DrawList::rebuild_shapes(const engine::Snapshot& current) {
   scene_ = current.render_scene;
   meshes_.clear();
   shapes_.clear();
   models_.clear();
   std::map<MeshKey, std::uint32_t> numbers;
-  for (const RenderShape& render_shape : scene_->shapes) {
-    const ShapeModel& shape = render_shape.geometry;
+  for (const engine::RenderShape& render_shape : scene_->shapes) {
+    const model::ShapeModel& shape = render_shape.geometry;
     ShapeDraw shape_draw;
     shape_draw.material = render_shape.material;
     shape_draw.normal = shape.normal;
     shape_draw.bounding_radius = bounding_radius(shape);
     shape_draw.mesh = {shape.kind, nullptr};
     if (shape.mesh != nullptr) {
-      shape_draw.mesh = {ShapeKind::mesh, shape.mesh.get()};
+      shape_draw.mesh = {model::ShapeKind::mesh, shape.mesh.get()};
       shape_draw.offset = shape.mesh_pose;
       models_[shape.mesh.get()] = shape.mesh;
     }
@@ -88,18 +88,19 @@ void DrawList::rebuild_shapes(const Snapshot& current) {
   }
 }
 
-void DrawList::update_materials(const Snapshot& current) {
+void DrawList::update_materials(const engine::Snapshot& current) {
   materials_version_ = current.visuals_version;
   std::uint32_t max_material = 0;
   for (const ShapeDraw& shape : shapes_) max_material = std::max(max_material, shape.material);
   materials_.clear();
-  for (std::uint32_t i = 0; i <= max_material; i++) materials_.push_back(instance_material(material_of(current, i)));
+  for (std::uint32_t i = 0; i <= max_material; i++)
+    materials_.push_back(instance_material(engine::material_of(current, i)));
 }
 
 void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera) {
   const InstanceMaterial& material = materials_[shape.material];
   if (material.alpha < kMinVisibleAlpha || !is_finite(pose.position) || !is_finite(pose.rotation)) return;
-  if (shape.mesh.kind == ShapeKind::plane) {
+  if (shape.mesh.kind == model::ShapeKind::plane) {
     planes_.push_back({to_float(pose.position),
                        to_float(pose.rotation * shape.normal),
                        {material.diffuse[0], material.diffuse[1], material.diffuse[2]},
@@ -136,7 +137,8 @@ void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const Draw
   radii_.push_back(to_float(shape.bounding_radius));
 }
 
-void DrawList::update(const Snapshot& previous, const Snapshot& current, double mix, const DrawCamera& camera) {
+void DrawList::update(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                      const DrawCamera& camera) {
   if (scene_ != current.render_scene) {
     rebuild_shapes(current);
     update_materials(current);
@@ -150,10 +152,10 @@ void DrawList::update(const Snapshot& previous, const Snapshot& current, double 
   planes_.clear();
   positions_.clear();
   radii_.clear();
-  for (const RenderInstance& instance : scene_->instances) {
+  for (const engine::RenderInstance& instance : scene_->instances) {
     if (current.transient[instance.enabled_offset] == 0) continue;
-    Pose part = part_pose(current, instance.part_offset);
-    if (interpolates) part = interpolate(part_pose(previous, instance.part_offset), part, mix);
+    Pose part = engine::part_pose(current, instance.part_offset);
+    if (interpolates) part = interpolate(engine::part_pose(previous, instance.part_offset), part, mix);
     add_instance(shapes_[instance.shape], part * instance.origin, camera);
   }
   compute_bounds();
@@ -228,4 +230,4 @@ void DrawList::build_batches() {
   add_in_order(transparent_, transparent_instances_);
 }
 
-}  // namespace limber
+}  // namespace limber::render

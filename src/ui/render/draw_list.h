@@ -13,7 +13,7 @@
 #include "engine/output/snapshot.h"
 #include "ui/render/mesh.h"
 
-namespace limber {
+namespace limber::render {
 
 /// Per-instance vertex attributes, in the layout of shaders/shape.vert.
 struct Instance {
@@ -30,8 +30,8 @@ struct Instance {
 
 /// Identifies a mesh: a primitive's, or one from a file (`model` is set).
 struct MeshKey {
-  ShapeKind kind = ShapeKind::box;
-  const MeshModel* model = nullptr;
+  model::ShapeKind kind = model::ShapeKind::box;
+  const model::MeshModel* model = nullptr;
   // NOLINTNEXTLINE(modernize-use-nullptr): reported for the comparison that the compiler generates
   auto operator<=>(const MeshKey&) const = default;
 };
@@ -66,7 +66,7 @@ class DrawList {
  public:
   /// Rebuilds the lists. `mix`: interpolation from 0 (`previous`) to 1 (`current`). Snapshots of different scenes are
   /// not interpolated: then only `current` is used. [main]
-  void update(const Snapshot& previous, const Snapshot& current, double mix, const DrawCamera& camera);
+  void update(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, const DrawCamera& camera);
 
   const std::vector<Instance>& instances() const { return instances_; }
   const std::vector<Batch>& opaque() const { return opaque_; }
@@ -77,9 +77,9 @@ class DrawList {
   const glm::vec3& center() const { return center_; }
   float radius() const { return radius_; }
   /// The scene of the last update(); null before the first.
-  const std::shared_ptr<const RenderScene>& scene() const { return scene_; }
+  const std::shared_ptr<const engine::RenderScene>& scene() const { return scene_; }
   /// The meshes from files that the scene uses.
-  const std::map<const MeshModel*, std::shared_ptr<const MeshModel>>& models() const { return models_; }
+  const std::map<const model::MeshModel*, std::shared_ptr<const model::MeshModel>>& models() const { return models_; }
 
  private:
   struct InstanceSize {
@@ -104,9 +104,9 @@ class DrawList {
     std::uint32_t key = 0;  // mesh number * kDetailLevels + detail
     float depth = 0;
   };
-  static InstanceMaterial instance_material(const Material& m);
-  void rebuild_shapes(const Snapshot& current);
-  void update_materials(const Snapshot& current);
+  static InstanceMaterial instance_material(const engine::Material& m);
+  void rebuild_shapes(const engine::Snapshot& current);
+  void update_materials(const engine::Snapshot& current);
   void add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera);
   void compute_bounds();
   void sort_opaque();
@@ -114,12 +114,12 @@ class DrawList {
   void add_in_order(std::vector<Batch>& batches, const std::vector<VisibleInstance>& visible);
   void build_batches();
 
-  std::shared_ptr<const RenderScene> scene_;
+  std::shared_ptr<const engine::RenderScene> scene_;
   std::uint64_t materials_version_ = 0;
   std::vector<MeshKey> meshes_;  // by mesh number
   std::vector<ShapeDraw> shapes_;
   std::vector<InstanceMaterial> materials_;
-  std::map<const MeshModel*, std::shared_ptr<const MeshModel>> models_;
+  std::map<const model::MeshModel*, std::shared_ptr<const model::MeshModel>> models_;
   std::vector<VisibleInstance> opaque_instances_, transparent_instances_;
   std::vector<std::uint32_t> first_, order_;  // scratch
   std::vector<glm::vec3> positions_;
@@ -131,4 +131,4 @@ class DrawList {
   float radius_ = 1;
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -10,7 +10,7 @@
 
 #include "base/system/process.h"
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -136,4 +136,4 @@ bool gl_is_software() {
   return false;
 }
 
-}  // namespace limber
+}  // namespace limber::render

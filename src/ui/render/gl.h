@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace limber {
+namespace limber::render {
 
 /// Kinds of OpenGL objects.
 enum class GlKind : std::uint8_t { buffer, vertex_array, texture, renderbuffer, framebuffer, program };
@@ -84,4 +84,4 @@ std::string gl_driver();
 /// True if the driver renders in software. [main]
 bool gl_is_software();
 
-}  // namespace limber
+}  // namespace limber::render

@@ -8,7 +8,7 @@
 
 #include "base/color.h"
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -122,7 +122,7 @@ void set_ground_map(const SceneBounds& bounds, float radius, Lighting& out) {
 
 }  // namespace
 
-Lighting compute_lighting(const AppearanceSettings& appearance, const CameraMatrices& camera, double far,
+Lighting compute_lighting(const engine::AppearanceSettings& appearance, const CameraMatrices& camera, double far,
                           const SceneBounds& bounds) {
   const Style& style = appearance.studio ? kStudio : kStage;
   Lighting out{};
@@ -167,4 +167,4 @@ Lighting compute_lighting(const AppearanceSettings& appearance, const CameraMatr
   return out;
 }
 
-}  // namespace limber
+}  // namespace limber::render

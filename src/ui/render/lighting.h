@@ -8,7 +8,7 @@
 #include "engine/output/render_scene.h"
 #include "ui/render/camera.h"
 
-namespace limber {
+namespace limber::render {
 
 /// The uniform block `Frame` of shaders/common.glsl, with the same layout.
 struct FrameUniforms {
@@ -52,7 +52,7 @@ struct Lighting {
   float floor_half_width = 10;  ///< Half the floor's width, m.
 };
 /// Computes the lighting of a frame. `far`: the camera's far plane, m. [any]
-Lighting compute_lighting(const AppearanceSettings& appearance, const CameraMatrices& camera, double far,
+Lighting compute_lighting(const engine::AppearanceSettings& appearance, const CameraMatrices& camera, double far,
                           const SceneBounds& bounds);
 
-}  // namespace limber
+}  // namespace limber::render

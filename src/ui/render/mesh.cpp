@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -65,18 +65,18 @@ void add_quarter(std::vector<ProfilePoint>& profile, double corner_r, double cor
   }
 }
 
-MeshVertices round_mesh(ShapeKind kind, int detail) {
+MeshVertices round_mesh(model::ShapeKind kind, int detail) {
   const int around = std::array{40, 20, 12, 8}[static_cast<std::size_t>(detail)];
   const int quarter = std::array{10, 5, 3, 3}[static_cast<std::size_t>(detail)];
   const int bevel = std::array{3, 2, 1, 1}[static_cast<std::size_t>(detail)];
   std::vector<ProfilePoint> profile;
-  if (kind == ShapeKind::sphere || kind == ShapeKind::capsule) {
-    const double end = kind == ShapeKind::capsule ? 1 : 0;
+  if (kind == model::ShapeKind::sphere || kind == model::ShapeKind::capsule) {
+    const double end = kind == model::ShapeKind::capsule ? 1 : 0;
     add_quarter(profile, 0, end, false, quarter);
     add_quarter(profile, 0, -end, true, quarter);
     return revolve(profile, around);
   }
-  if (kind == ShapeKind::cylinder) {
+  if (kind == model::ShapeKind::cylinder) {
     profile.push_back({0, 1, 0, 1});
     add_quarter(profile, 1, 1, false, bevel);
     add_quarter(profile, 1, -1, true, bevel);
@@ -181,7 +181,7 @@ struct Soup {
   std::vector<std::array<unsigned, 3>> triangles;
 };
 
-Soup soup_of(const MeshModel& model) {
+Soup soup_of(const model::MeshModel& model) {
   Soup soup{model.vertices, {}};
   const auto count = static_cast<unsigned>(model.vertices.size());
   for (std::size_t i = 0; i + 2 < model.triangles.size(); i += 3) {
@@ -227,21 +227,21 @@ Soup cluster_vertices(const Soup& fine, int cells) {
 
 }  // namespace
 
-MeshVertices primitive_mesh(ShapeKind kind, int detail) {
+MeshVertices primitive_mesh(model::ShapeKind kind, int detail) {
   switch (kind) {
-    case ShapeKind::box:
+    case model::ShapeKind::box:
       return detail == kDetailLevels - 1 ? chamfered_box() : box_mesh(detail);
-    case ShapeKind::sphere:
-    case ShapeKind::capsule:
-    case ShapeKind::cylinder:
-    case ShapeKind::cone:
+    case model::ShapeKind::sphere:
+    case model::ShapeKind::capsule:
+    case model::ShapeKind::cylinder:
+    case model::ShapeKind::cone:
       return round_mesh(kind, detail);
     default:
       return {};
   }
 }
 
-MeshVertices model_mesh(const MeshModel& model, int detail) {
+MeshVertices model_mesh(const model::MeshModel& model, int detail) {
   Soup soup = soup_of(model);
   if (detail > 0 && soup.triangles.size() > 200) soup = cluster_vertices(soup, detail == 1 ? 16 : 8);
   std::vector<Vec3> face_normals;
@@ -291,28 +291,28 @@ IndexedMesh with_shared_vertices(const MeshVertices& triangles) {
   return out;
 }
 
-MeshSize mesh_size(const ShapeModel& shape) {
+MeshSize mesh_size(const model::ShapeModel& shape) {
   const double r = shape.radius;
   const double half = shape.height / 2;
   switch (shape.kind) {
-    case ShapeKind::box: {
+    case model::ShapeKind::box: {
       const double min_edge = std::min({shape.size.x, shape.size.y, shape.size.z});
       const double round = std::min(0.08 * min_edge, 0.02);
       return {shape.size / 2.0 - Vec3(round), round};
     }
-    case ShapeKind::sphere:
+    case model::ShapeKind::sphere:
       return {Vec3(0), r};
-    case ShapeKind::capsule:
+    case model::ShapeKind::capsule:
       return {Vec3(0, 0, half), r};
-    case ShapeKind::cylinder: {
+    case model::ShapeKind::cylinder: {
       const double round = std::min({0.1 * r, 0.1 * half, 0.015});
       return {Vec3(r - round, r - round, half - round), round};
     }
-    case ShapeKind::cone:
+    case model::ShapeKind::cone:
       return {Vec3(r, r, half), 0};
     default:
       return {};
   }
 }
 
-}  // namespace limber
+}  // namespace limber::render

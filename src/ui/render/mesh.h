@@ -8,7 +8,7 @@
 #include "base/vec.h"
 #include "model/body_model.h"
 
-namespace limber {
+namespace limber::render {
 
 struct MeshVertex {
   float corner[3];
@@ -22,10 +22,10 @@ using MeshVertices = std::vector<MeshVertex>;
 inline constexpr int kDetailLevels = 4;
 
 /// The mesh of a primitive; empty for planes, meshes and compounds. [any]
-MeshVertices primitive_mesh(ShapeKind kind, int detail);
+MeshVertices primitive_mesh(model::ShapeKind kind, int detail);
 /// The mesh of a file, with smooth normals across edges of less than 35°. Coarser levels of detail merge nearby
 /// vertices. [any]
-MeshVertices model_mesh(const MeshModel& model, int detail);
+MeshVertices model_mesh(const model::MeshModel& model, int detail);
 
 /// Triangles with shared vertices, so that a GPU transforms each vertex once.
 struct IndexedMesh {
@@ -40,6 +40,6 @@ struct MeshSize {
   Vec3 extent{1, 1, 1};
   double rounding_radius = 0;
 };
-MeshSize mesh_size(const ShapeModel& shape);
+MeshSize mesh_size(const model::ShapeModel& shape);
 
-}  // namespace limber
+}  // namespace limber::render

@@ -11,7 +11,7 @@
 
 #include "base/system/process.h"
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -107,4 +107,4 @@ OffscreenContext::~OffscreenContext() {
   // the display is not terminated, because drivers leak memory when they are unloaded
 }
 
-}  // namespace limber
+}  // namespace limber::render

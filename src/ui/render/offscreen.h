@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "ui/render/gl.h"
 
-namespace limber {
+namespace limber::render {
 
 /// Owns the context. [main]
 class OffscreenContext {
@@ -31,4 +31,4 @@ class OffscreenContext {
   GlApi api_;
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -14,7 +14,7 @@ constexpr double kMaxWeights =
     4;  // force of the longest arrow, in weights of the part; the arrow of one weight has the length `reach`
 constexpr double kMinWeights = 0.02;
 
-using Kind = OverlayMark::Kind;
+using Kind = sim::OverlayMark::Kind;
 
 // linear, in the order of kinds: amber, amber, white, green, red, blue
 const std::array<glm::vec3, 6> kColors = {{{1.0F, 0.42F, 0.03F},
@@ -24,14 +24,14 @@ const std::array<glm::vec3, 6> kColors = {{{1.0F, 0.42F, 0.03F},
                                            {1.0F, 0.06F, 0.10F},
                                            {0.08F, 0.45F, 1.0F}}};
 
-Vec3 axis_of(const OverlayMark& mark, int further) {
+Vec3 axis_of(const sim::OverlayMark& mark, int further) {
   Vec3 axis(0);
   axis[(mark.axis + further) % 3] = 1;
   return mark.rotation * axis;
 }
 
-OverlayMark interpolate(const OverlayMark& previous, const OverlayMark& current, double mix) {
-  OverlayMark mark = current;
+sim::OverlayMark interpolate(const sim::OverlayMark& previous, const sim::OverlayMark& current, double mix) {
+  sim::OverlayMark mark = current;
   mark.position = glm::mix(previous.position, current.position, mix);
   mark.vector = glm::mix(previous.vector, current.vector, mix);
   mark.rotation = glm::slerp(previous.rotation, current.rotation, mix);
@@ -40,7 +40,7 @@ OverlayMark interpolate(const OverlayMark& previous, const OverlayMark& current,
 }
 
 // true if both are the same mark; contacts have no identity across ticks
-bool is_same_mark(const OverlayMark& previous, const OverlayMark& current) {
+bool is_same_mark(const sim::OverlayMark& previous, const sim::OverlayMark& current) {
   return previous.kind == current.kind && previous.slot == current.slot && previous.axis == current.axis &&
          current.kind != Kind::contact;
 }
@@ -83,7 +83,7 @@ void OverlayLines::arc(const Vec3& at, const Vec3& x, const Vec3& y, double low,
 }
 
 // a hinge: its axis, an arc between the limits or a circle, and a spoke at the current angle
-void OverlayLines::hinge(const OverlayMark& mark) {
+void OverlayLines::hinge(const sim::OverlayMark& mark) {
   const double size = 0.8 * mark.size;
   const Vec3 axis = axis_of(mark, 0);
   const Vec3 x = axis_of(mark, 1) * size;
@@ -103,7 +103,7 @@ void OverlayLines::hinge(const OverlayMark& mark) {
 
 // a slider: a line along its range with a bar at each limit and a longer bar at the current position; without limits, a
 // line around the position
-void OverlayLines::slider(const OverlayMark& mark) {
+void OverlayLines::slider(const sim::OverlayMark& mark) {
   const Vec3 axis = axis_of(mark, 0);
   const Vec3 side = axis_of(mark, 1) * (0.3 * mark.size);
   const double low = mark.limited ? mark.lower : mark.value - mark.size;
@@ -119,7 +119,7 @@ void OverlayLines::slider(const OverlayMark& mark) {
   bar(mark.value, 2, 2);
 }
 
-void OverlayLines::draw(const OverlayMark& mark) {
+void OverlayLines::draw(const sim::OverlayMark& mark) {
   color_ = kColors[static_cast<std::size_t>(mark.kind)];
   const double size = mark.size;
   switch (mark.kind) {
@@ -143,14 +143,15 @@ void OverlayLines::draw(const OverlayMark& mark) {
   arrow(mark.position, mark.vector * (size * std::min(1.0, kMaxWeights / length)), 0.4 * size);
 }
 
-void OverlayLines::update(const Snapshot& previous, const Snapshot& current, double mix, double pixels) {
+void OverlayLines::update(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                          double pixels) {
   lines_.clear();
   width_ = pixels;
-  const std::vector<OverlayMark>& old = previous.overlay;
+  const std::vector<sim::OverlayMark>& old = previous.overlay;
   for (std::size_t i = 0; i < current.overlay.size(); i++) {
-    const OverlayMark& mark = current.overlay[i];
+    const sim::OverlayMark& mark = current.overlay[i];
     draw(mix < 1 && i < old.size() && is_same_mark(old[i], mark) ? interpolate(old[i], mark, mix) : mark);
   }
 }
 
-}  // namespace limber
+}  // namespace limber::render

@@ -8,7 +8,7 @@
 
 #include "engine/output/snapshot.h"
 
-namespace limber {
+namespace limber::render {
 
 /// One line, in the layout of shaders/overlay.vert.
 struct OverlayLine {
@@ -24,13 +24,13 @@ class OverlayLines {
  public:
   /// Rebuilds the lines. `mix`: interpolation from 0 (`previous`) to 1 (`current`); marks that are only in `current`
   /// are not interpolated. `pixels`: width of a symbol's lines. Allocates only when it grows. [main]
-  void update(const Snapshot& previous, const Snapshot& current, double mix, double pixels);
+  void update(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, double pixels);
   std::span<const OverlayLine> lines() const { return lines_; }
 
  private:
-  void draw(const OverlayMark& mark);
-  void hinge(const OverlayMark& mark);
-  void slider(const OverlayMark& mark);
+  void draw(const sim::OverlayMark& mark);
+  void hinge(const sim::OverlayMark& mark);
+  void slider(const sim::OverlayMark& mark);
   void arrow(const Vec3& from, const Vec3& vector, double head);
   void cross(const Vec3& at, const Quat& rotation, double half);
   void arc(const Vec3& at, const Vec3& x, const Vec3& y, double low, double high);
@@ -41,4 +41,4 @@ class OverlayLines {
   double width_ = 1;
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -9,7 +9,7 @@
 
 #include "ui/render/mesh.h"
 
-namespace limber {
+namespace limber::render {
 
 namespace {
 
@@ -18,7 +18,7 @@ struct Aabb {
 };
 
 // bounding box of a shape in its own frame
-Aabb bounds_of(const ShapeModel& shape) {
+Aabb bounds_of(const model::ShapeModel& shape) {
   if (shape.mesh == nullptr) {
     const MeshSize size = mesh_size(shape);
     const Vec3 half(size.extent.x + size.rounding_radius, size.extent.y + size.rounding_radius,
@@ -80,7 +80,7 @@ void keep_nearest(std::optional<double>& nearest, const std::optional<double>& d
   if (distance && (!nearest || *distance < *nearest)) nearest = distance;
 }
 
-std::optional<double> hit_mesh(const MeshModel& mesh, const Vec3& from, const Vec3& direction) {
+std::optional<double> hit_mesh(const model::MeshModel& mesh, const Vec3& from, const Vec3& direction) {
   std::optional<double> nearest;
   const auto corner = [&](std::size_t i) { return mesh.vertices[mesh.triangles[i]]; };
   for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3)
@@ -89,11 +89,11 @@ std::optional<double> hit_mesh(const MeshModel& mesh, const Vec3& from, const Ve
 }
 
 // tests the mesh that is drawn for this kind, scaled like in the vertex shader
-std::optional<double> hit_primitive_mesh(const ShapeModel& shape, const Vec3& from, const Vec3& direction) {
+std::optional<double> hit_primitive_mesh(const model::ShapeModel& shape, const Vec3& from, const Vec3& direction) {
   constexpr int kDetail = 1;
-  static const std::map<ShapeKind, MeshVertices> meshes = [] {
-    std::map<ShapeKind, MeshVertices> all;
-    for (const ShapeKind kind : {ShapeKind::capsule, ShapeKind::cylinder, ShapeKind::cone})
+  static const std::map<model::ShapeKind, MeshVertices> meshes = [] {
+    std::map<model::ShapeKind, MeshVertices> all;
+    for (const model::ShapeKind kind : {model::ShapeKind::capsule, model::ShapeKind::cylinder, model::ShapeKind::cone})
       all[kind] = primitive_mesh(kind, kDetail);
     return all;
   }();
@@ -110,12 +110,12 @@ std::optional<double> hit_primitive_mesh(const ShapeModel& shape, const Vec3& fr
   return nearest;
 }
 
-std::optional<double> hit_shape(const ShapeModel& shape, const Vec3& from, const Vec3& direction) {
-  if (shape.kind == ShapeKind::sphere && shape.mesh == nullptr) return hit_sphere(shape.radius, from, direction);
+std::optional<double> hit_shape(const model::ShapeModel& shape, const Vec3& from, const Vec3& direction) {
+  if (shape.kind == model::ShapeKind::sphere && shape.mesh == nullptr) return hit_sphere(shape.radius, from, direction);
   const std::optional<Interval> box = hit_box(bounds_of(shape), from, direction);
   if (!box) return std::nullopt;
   if (shape.mesh != nullptr) return hit_mesh(*shape.mesh, from, direction);
-  if (shape.kind == ShapeKind::box) return box->begin > 0 ? std::optional(box->begin) : std::nullopt;
+  if (shape.kind == model::ShapeKind::box) return box->begin > 0 ? std::optional(box->begin) : std::nullopt;
   return hit_primitive_mesh(shape, from, direction);
 }
 
@@ -127,13 +127,13 @@ Vec3 ray_through(const CameraMatrices& camera, double x, double y) {
   return glm::normalize(Vec3(far) / far.w - camera.eye);
 }
 
-std::optional<Picked> pick(const Snapshot& current, const CameraMatrices& camera, double x, double y) {
+std::optional<Picked> pick(const engine::Snapshot& current, const CameraMatrices& camera, double x, double y) {
   const Vec3 direction = ray_through(camera, x, y);
   std::optional<Picked> nearest;
-  for (const RenderInstance& instance : current.render_scene->instances) {
-    const ShapeModel& shape = current.render_scene->shapes[instance.shape].geometry;
-    if (shape.kind == ShapeKind::plane || current.transient[instance.enabled_offset] == 0) continue;
-    Pose pose = part_pose(current, instance.part_offset) * instance.origin;
+  for (const engine::RenderInstance& instance : current.render_scene->instances) {
+    const model::ShapeModel& shape = current.render_scene->shapes[instance.shape].geometry;
+    if (shape.kind == model::ShapeKind::plane || current.transient[instance.enabled_offset] == 0) continue;
+    Pose pose = engine::part_pose(current, instance.part_offset) * instance.origin;
     if (shape.mesh != nullptr) pose = pose * shape.mesh_pose;
     const Quat back = glm::conjugate(pose.rotation);
     const auto distance = hit_shape(shape, back * (camera.eye - pose.position), back * direction);
@@ -143,4 +143,4 @@ std::optional<Picked> pick(const Snapshot& current, const CameraMatrices& camera
   return nearest;
 }
 
-}  // namespace limber
+}  // namespace limber::render

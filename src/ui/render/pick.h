@@ -7,7 +7,7 @@
 #include "engine/output/snapshot.h"
 #include "ui/render/camera.h"
 
-namespace limber {
+namespace limber::render {
 
 /// A part that the user points at.
 struct Picked {
@@ -18,9 +18,9 @@ struct Picked {
 
 /// Returns the nearest part at a point in normalized device coordinates (-1..1, right and up). Ignores planes and
 /// disabled parts. Tests the exact shape of spheres and boxes, and the triangles of other shapes. [any]
-std::optional<Picked> pick(const Snapshot& current, const CameraMatrices& camera, double x, double y);
+std::optional<Picked> pick(const engine::Snapshot& current, const CameraMatrices& camera, double x, double y);
 
 /// Returns the unit direction from the eye through a point in normalized device coordinates. [any]
 Vec3 ray_through(const CameraMatrices& camera, double x, double y);
 
-}  // namespace limber
+}  // namespace limber::render

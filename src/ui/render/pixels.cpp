@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::render {
 
 Result<void> write_png(const Pixels& pixels, const std::string& file) {
   const std::string temporary = file + ".part";
@@ -37,4 +37,4 @@ Result<void> write_png(const Pixels& pixels, const std::string& file) {
   return error;
 }
 
-}  // namespace limber
+}  // namespace limber::render

@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace limber {
+namespace limber::render {
 
 /// Rows from top to bottom, four bytes per pixel: red, green, blue (sRGB), 255.
 struct Pixels {
@@ -25,4 +25,4 @@ struct Pixels {
 /// Writes a PNG file atomically: into a temporary file, which is then renamed. [any]
 Result<void> write_png(const Pixels& pixels, const std::string& file);
 
-}  // namespace limber
+}  // namespace limber::render

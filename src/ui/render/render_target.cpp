@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::render {
 
 void set_srgb_conversion(const GlApiInfo& api, bool enabled) {
   if (!api.srgb_switch) return;
@@ -122,4 +122,4 @@ void RenderTarget::present_shared(const GlFramebuffer& frame, int width, int hei
   copy_to_window(*frame, width, height);
 }
 
-}  // namespace limber
+}  // namespace limber::render

@@ -9,7 +9,7 @@
 #include "ui/render/pixels.h"
 #include "ui/render/shaders.h"
 
-namespace limber {
+namespace limber::render {
 
 /// The scene is drawn in linear light into a multisampled sRGB framebuffer. resolve() converts it to the final bytes in
 /// `finished_`.
@@ -61,4 +61,4 @@ class RenderTarget {
 /// Enables or disables the conversion of sRGB framebuffers, if the API has a switch for it. [main]
 void set_srgb_conversion(const GlApiInfo& api, bool enabled);
 
-}  // namespace limber
+}  // namespace limber::render

@@ -14,7 +14,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/type_ptr.hpp>
 
-namespace limber {
+namespace limber::render {
 
 /// The settings of a quality level.
 struct Renderer::QualitySettings {
@@ -151,7 +151,7 @@ void Renderer::release_unused_meshes() {
   if (meshes_scene_ == draw_list_.scene()) return;
   meshes_scene_ = draw_list_.scene();
   std::erase_if(meshes_, [this](const auto& entry) {
-    const MeshModel* const model = entry.first.first.model;
+    const model::MeshModel* const model = entry.first.first.model;
     return model != nullptr && !draw_list_.models().contains(model);
   });
 }
@@ -247,7 +247,7 @@ void Renderer::draw_plane(const RenderPlane& plane, const Lighting& lighting, bo
 }
 
 // draws the scene's planes; the first horizontal one is the floor; without one, draws a floor at height 0
-void Renderer::draw_planes(const Lighting& lighting, const AppearanceSettings& appearance) {
+void Renderer::draw_planes(const Lighting& lighting, const engine::AppearanceSettings& appearance) {
   glDisable(GL_CULL_FACE);
   bool has_floor = false;
   for (const RenderPlane& plane : draw_list_.planes()) {
@@ -261,7 +261,8 @@ void Renderer::draw_planes(const Lighting& lighting, const AppearanceSettings& a
 }
 
 // draws the overlay on top in two passes: faint where it is occluded, then fully where it is visible
-void Renderer::draw_overlay(const Snapshot& previous, const Snapshot& current, double mix, const RenderTarget& target) {
+void Renderer::draw_overlay(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                            const RenderTarget& target) {
   constexpr double kReferenceHeight = 720;  // height of a view in which lines are 1.3 pixels wide
   constexpr float kOccludedOpacity = 0.3F;
   if (current.overlay.empty()) return;
@@ -317,26 +318,27 @@ void Renderer::draw_depth_maps(const Lighting& lighting) {
   glBindTexture(GL_TEXTURE_2D, *shadow_map_.texture);
 }
 
-Result<void> Renderer::draw(const Snapshot& previous, const Snapshot& current, double mix, int width, int height,
-                            const FreeArea& free_area) {
+Result<void> Renderer::draw(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, int width,
+                            int height, const FreeArea& free_area) {
   return draw_into(target_, previous, current, mix, width, height, free_area);
 }
 
-Result<void> Renderer::draw_output(const Snapshot& previous, const Snapshot& current, double mix, int width,
-                                   int height) {
+Result<void> Renderer::draw_output(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                                   int width, int height) {
   return draw_into(output_, previous, current, mix, width, height, {});
 }
 
-Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& previous, const Snapshot& current, double mix,
-                                 int width, int height, const FreeArea& free_area) {
+Result<void> Renderer::draw_into(RenderTarget& target, const engine::Snapshot& previous,
+                                 const engine::Snapshot& current, double mix, int width, int height,
+                                 const FreeArea& free_area) {
   width = std::max(width, 1);
   height = std::max(height, 1);
   if (width > max_size_ || height > max_size_)
     return Error{fmt::format("an image of {} × {} is too large: {} supports up to {} per side", width, height,
                              gl_driver(), max_size_)};
   if (Result<void> sized = target.resize(width, height, settings_.samples); !sized) return sized;
-  const CameraSettings camera = camera_of(current);
-  const AppearanceSettings appearance = appearance_of(current);
+  const engine::CameraSettings camera = engine::camera_of(current);
+  const engine::AppearanceSettings appearance = engine::appearance_of(current);
   const CameraMatrices matrices = camera_matrices(camera, width, height, free_area);
   draw_list_.update(previous, current, mix,
                     {matrices.eye, matrices.forward, matrices.focal_pixels, settings_.detail_bias});
@@ -387,4 +389,4 @@ Result<void> Renderer::draw_into(RenderTarget& target, const Snapshot& previous,
 void Renderer::finish() { glFinish(); }
 void Renderer::flush() { glFlush(); }
 
-}  // namespace limber
+}  // namespace limber::render

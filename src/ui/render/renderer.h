@@ -16,7 +16,7 @@
 #include "ui/render/render_target.h"
 #include "ui/render/shaders.h"
 
-namespace limber {
+namespace limber::render {
 
 /// Levels of rendering quality.
 enum class Quality : std::uint8_t { low, medium, high };
@@ -31,11 +31,14 @@ class Renderer {
   /// Draws the scene interpolated between two snapshots (`mix` 0: `previous`, 1: `current`). Sizes below 1 are raised
   /// to 1; errors if the size is above max_size() or memory is insufficient. `free_area`: the part not covered by
   /// panels. [main]
-  Result<void> draw(const Snapshot& previous, const Snapshot& current, double mix, int width, int height,
-                    const FreeArea& free_area = {});
-  Result<void> draw(const Snapshot& current, int width, int height) { return draw(current, current, 1, width, height); }
+  Result<void> draw(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, int width,
+                    int height, const FreeArea& free_area = {});
+  Result<void> draw(const engine::Snapshot& current, int width, int height) {
+    return draw(current, current, 1, width, height);
+  }
   /// Draws a second image of the scene for the output window, without panels; independent of draw()'s image. [main]
-  Result<void> draw_output(const Snapshot& previous, const Snapshot& current, double mix, int width, int height);
+  Result<void> draw_output(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, int width,
+                           int height);
   /// Calls `draw` with draw()'s last image bound as the framebuffer, without sRGB conversion. [main]
   void draw_over(const std::function<void()>& draw) const { target_.draw_over(draw); }
   /// Reads back draw()'s last image. [main]
@@ -75,16 +78,17 @@ class Renderer {
   Renderer(GlApi api, std::string shader_folder, const QualitySettings& settings, std::string defines);
 
   DepthMap make_depth(int side, bool compares) const;
-  Result<void> draw_into(RenderTarget& target, const Snapshot& previous, const Snapshot& current, double mix, int width,
-                         int height, const FreeArea& free_area);
-  void draw_overlay(const Snapshot& previous, const Snapshot& current, double mix, const RenderTarget& target);
+  Result<void> draw_into(RenderTarget& target, const engine::Snapshot& previous, const engine::Snapshot& current,
+                         double mix, int width, int height, const FreeArea& free_area);
+  void draw_overlay(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
+                    const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);
   void release_unused_meshes();
   void upload(const FrameUniforms& frame);
   void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool clamp_depth);
   void draw_batches(const std::vector<Batch>& batches, int detail_bias, bool shadow_casters_only);
   void draw_mirrored(const Lighting& lighting);
-  void draw_planes(const Lighting& lighting, const AppearanceSettings& appearance);
+  void draw_planes(const Lighting& lighting, const engine::AppearanceSettings& appearance);
   void upload_instances();
   void draw_depth_maps(const Lighting& lighting);
   void draw_plane(const RenderPlane& plane, const Lighting& lighting, bool is_floor);
@@ -94,7 +98,7 @@ class Renderer {
   const QualitySettings& settings_;
   Shaders shaders_;
   DrawList draw_list_;
-  std::shared_ptr<const RenderScene> meshes_scene_;
+  std::shared_ptr<const engine::RenderScene> meshes_scene_;
   std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
   GlBuffer instances_, uniforms_;
   GlVertexArray no_attributes_;  // without attributes, for shaders that generate their vertices
@@ -106,4 +110,4 @@ class Renderer {
   int max_size_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -14,7 +14,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 
-namespace limber {
+namespace limber::render {
 
 /// The files of shaders/, embedded by the build.
 std::span<const EmbeddedFile> shader_files();
@@ -158,7 +158,7 @@ Result<void> Shaders::build_all() {
   }
   if (!folder_.empty()) {
     for (const EmbeddedFile& file : shader_files())
-      stamps_[std::string(file.name)] = FileStamp(folder_ + "/" + std::string(file.name));
+      stamps_[std::string(file.name)] = model::FileStamp(folder_ + "/" + std::string(file.name));
   }
   report_error(error);
   return {};
@@ -169,7 +169,7 @@ bool Shaders::reload() {
   for (auto& [file, stamp] : stamps_) {
     const std::string path = folder_ + "/" + file;
     if (stamp.is_current(path)) continue;
-    stamp = FileStamp(path);
+    stamp = model::FileStamp(path);
     changed = true;
   }
   if (!changed) return false;
@@ -195,4 +195,4 @@ GLint Shaders::uniform(std::string_view name, const char* uniform) const {
   return glGetUniformLocation(program(name), uniform);
 }
 
-}  // namespace limber
+}  // namespace limber::render

@@ -12,7 +12,7 @@
 #include "model/file_stamp.h"
 #include "ui/render/gl.h"
 
-namespace limber {
+namespace limber::render {
 
 /// [main]
 class Shaders {
@@ -52,8 +52,8 @@ class Shaders {
   std::string folder_;
   std::string defines_;
   std::map<std::string, Program, std::less<>> programs_;
-  std::map<std::string, FileStamp, std::less<>> stamps_;
+  std::map<std::string, model::FileStamp, std::less<>> stamps_;
   std::string error_;
 };
 
-}  // namespace limber
+}  // namespace limber::render

@@ -19,8 +19,8 @@ namespace limber {
 
 namespace {
 
-EngineOptions options_with(int threads) {
-  EngineOptions options;
+engine::EngineOptions options_with(int threads) {
+  engine::EngineOptions options;
   options.threads = threads;
   return options;
 }
@@ -36,7 +36,7 @@ void set(Store& store, NodeId id, const PropertyTable& table, const char* proper
 }
 
 // share of the tick outside of the physics
-double overhead_share(const PhaseTimes& t) {
+double overhead_share(const engine::PhaseTimes& t) {
   return (t.commands + t.scripts + t.behaviors + t.callbacks + t.readouts + t.snapshot + t.gc) / (t.total() + t.gc);
 }
 
@@ -73,7 +73,7 @@ struct ArmSide {
 struct Phases {
   TimeSamples commands, scripts, behaviors, effects, physics, readouts, snapshot, collector, overhead, snapshot_part;
 
-  void add(const PhaseTimes& t) {
+  void add(const engine::PhaseTimes& t) {
     commands.add(t.commands);
     scripts.add(t.scripts);
     behaviors.add(t.behaviors);
@@ -107,13 +107,13 @@ double raw_bytes_per_part(const ArmScene& scene) {
 
 // phases inside Bullet, of the fastest tick
 Json bullet_phases(BenchArms& arms, int ticks) {
-  BulletPhases best;
+  sim::bullet::BulletPhases best;
   double best_sum = 0;
   for (int i = 0; i < ticks; i++) {
     arms.drive(arms.time());
-    const BulletPhaseCounter counter;
+    const sim::bullet::BulletPhaseCounter counter;
     arms.tick();
-    const BulletPhases& p = counter.phases();
+    const sim::bullet::BulletPhases& p = counter.phases();
     const double sum = p.broadphase + p.narrowphase + p.islands + p.solver;
     if (i > 0 && sum >= best_sum) continue;
     best = p;
@@ -127,7 +127,7 @@ Json bullet_phases(BenchArms& arms, int ticks) {
 
 }  // namespace
 
-int default_iterations() { return static_cast<int>(World::table().at("solver_iterations").initial[0]); }
+int default_iterations() { return static_cast<int>(sim::World::table().at("solver_iterations").initial[0]); }
 
 ArmScene arm_scene(int arms) {
   ArmScene scene;
@@ -146,41 +146,43 @@ ArmScene direct_arm_scene(int arms) {
 
 BenchArms::BenchArms(const ArmScene& scene, int threads) : scene_(scene), engine_(link_, options_with(threads)) {
   LIMBER_CHECK(engine_.start().ok());
-  World& world = engine_.world();
+  sim::World& world = engine_.world();
   heap_when_empty_ = system::heap_bytes();
-  set(world.store(), world.id(), World::table(), "timestep", {scene.step * scene.substeps});
-  set(world.store(), world.id(), World::table(), "substeps", {static_cast<double>(scene.substeps)});
-  set(world.store(), world.id(), World::table(), "solver_iterations", {static_cast<double>(scene.solver_iterations)});
-  set(world.store(), world.id(), World::table(), "solver", {scene.direct ? 1.0 : 0.0});
-  ShapeModel box;
+  set(world.store(), world.id(), sim::World::table(), "timestep", {scene.step * scene.substeps});
+  set(world.store(), world.id(), sim::World::table(), "substeps", {static_cast<double>(scene.substeps)});
+  set(world.store(), world.id(), sim::World::table(), "solver_iterations",
+      {static_cast<double>(scene.solver_iterations)});
+  set(world.store(), world.id(), sim::World::table(), "solver", {scene.direct ? 1.0 : 0.0});
+  model::ShapeModel box;
   box.size = scene.size;
-  ShapeModel plane;
-  plane.kind = ShapeKind::plane;
+  model::ShapeModel plane;
+  plane.kind = model::ShapeKind::plane;
   add_floor(**world.shapes().add("plane", plane));
-  Shape& shape = **world.shapes().add("box", box);
+  sim::Shape& shape = **world.shapes().add("box", box);
   for (int arm = 0; arm < scene.arms; arm++) add_arm(arm, shape);
 }
 
-void BenchArms::add_floor(Shape& plane) {
-  Body& floor = **engine_.world().add_body("floor");
+void BenchArms::add_floor(sim::Shape& plane) {
+  sim::Body& floor = **engine_.world().add_body("floor");
   LIMBER_CHECK(floor.add_part("plane", plane, 0, Pose{}).ok());
 }
 
-void BenchArms::add_arm(int arm, Shape& box) {
+void BenchArms::add_arm(int arm, sim::Shape& box) {
   Store& store = engine_.store();
-  Body& body = **engine_.world().add_body(fmt::format("arm{}", arm + 1));
-  Part* below = *body.add_part("base", box, 0, {scene_.center(arm, -1), quat_identity()});
+  sim::Body& body = **engine_.world().add_body(fmt::format("arm{}", arm + 1));
+  sim::Part* below = *body.add_part("base", box, 0, {scene_.center(arm, -1), quat_identity()});
   for (int i = 0; i < scene_.parts; i++) {
-    Part* above =
+    sim::Part* above =
         *body.add_part(fmt::format("part{}", i + 1), box, scene_.mass, {scene_.center(arm, i), quat_identity()});
     const Vec3 position = scene_.center(arm, i) + scene_.to_joint();
     const Vec3 axis = ArmScene::axis(i) == 0 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-    Joint& joint = **body.add_joint(fmt::format("joint{}", i + 1), *below, *above, JointType::revolute, position, axis);
-    set(store, joint.id(), Joint::table(), "angular_lower_limit", {0, 0, -scene_.limit});
-    set(store, joint.id(), Joint::table(), "angular_upper_limit", {0, 0, scene_.limit});
-    const Motor& motor = **body.add_motor(joint);
-    set(store, motor.id(), Motor::table(), "angular_velocity", {0, 0, scene_.speed});
-    set(store, motor.id(), Motor::table(), "max_angular_force", {0, 0, scene_.force});
+    sim::Joint& joint =
+        **body.add_joint(fmt::format("joint{}", i + 1), *below, *above, model::JointType::revolute, position, axis);
+    set(store, joint.id(), sim::Joint::table(), "angular_lower_limit", {0, 0, -scene_.limit});
+    set(store, joint.id(), sim::Joint::table(), "angular_upper_limit", {0, 0, scene_.limit});
+    const sim::Motor& motor = **body.add_motor(joint);
+    set(store, motor.id(), sim::Motor::table(), "angular_velocity", {0, 0, scene_.speed});
+    set(store, motor.id(), sim::Motor::table(), "max_angular_force", {0, 0, scene_.force});
     joints_.push_back(&joint);
     below = above;
   }
@@ -194,7 +196,7 @@ void BenchArms::drive(double time) {
 
 double BenchArms::joint_gap() const {
   double gap = 0;
-  for (const Joint* joint : joints_) gap = std::max(gap, glm::length(joint->constraint().pose().offsets()));
+  for (const sim::Joint* joint : joints_) gap = std::max(gap, glm::length(joint->constraint().pose().offsets()));
   return gap;
 }
 

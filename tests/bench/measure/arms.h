@@ -9,9 +9,11 @@
 #include "bench/raw/loop.h"
 #include "engine/engine.h"
 
-namespace limber {
-
+namespace limber::sim {
 class Shape;
+}  // namespace limber::sim
+
+namespace limber {
 
 /// The same arms as RawLoop's, built with the world's functions. [sim]
 class BenchArms {
@@ -32,17 +34,17 @@ class BenchArms {
   double time() { return engine_.world().time(); }
   /// Size of the heap before the arms were created, bytes.
   double heap_when_empty() const { return heap_when_empty_; }
-  Engine& engine() { return engine_; }
-  EngineLink& link() { return link_; }
+  engine::Engine& engine() { return engine_; }
+  engine::EngineLink& link() { return link_; }
 
  private:
-  void add_floor(Shape& plane);
-  void add_arm(int arm, Shape& box);
+  void add_floor(sim::Shape& plane);
+  void add_arm(int arm, sim::Shape& box);
 
   ArmScene scene_;
-  EngineLink link_;
-  Engine engine_;
-  std::vector<Joint*> joints_;  // arm by arm, from the base upwards
+  engine::EngineLink link_;
+  engine::Engine engine_;
+  std::vector<sim::Joint*> joints_;  // arm by arm, from the base upwards
   double heap_when_empty_ = 0;
 };
 

@@ -26,11 +26,11 @@ void set(Store& store, NodeId id, std::string_view property, double value) {
 }
 
 // balls with random velocities in a cube; its size gives the desired number of neighbors
-void add_balls(World& world, int bodies) {
-  ShapeModel ball;
-  ball.kind = ShapeKind::sphere;
+void add_balls(sim::World& world, int bodies) {
+  model::ShapeModel ball;
+  ball.kind = model::ShapeKind::sphere;
   ball.radius = 0.02;
-  Shape& shape = **world.shapes().add("ball", ball);
+  sim::Shape& shape = **world.shapes().add("ball", ball);
   const double side =
       std::cbrt(bodies * 4.0 / 3 * kPi * kNeighborDistance * kNeighborDistance * kNeighborDistance / kNeighbors);
   Random random(1, "flock");
@@ -39,27 +39,27 @@ void add_balls(World& world, int bodies) {
     return Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)) * size;
   };
   for (int i = 0; i < bodies; i++) {
-    Body& body = **world.add_body(fmt::format("ball{}", i + 1));
-    Part& part = **body.add_part("ball", shape, 0.1, {between(half), quat_identity()});
+    sim::Body& body = **world.add_body(fmt::format("ball{}", i + 1));
+    sim::Part& part = **body.add_part("ball", shape, 0.1, {between(half), quat_identity()});
     part.set_velocity(between(Vec3(0.1)), between(Vec3(0.1)));
   }
 }
 
-BehaviorGroup& add_group(World& world, const char* type) {
-  GroupSetup setup;
-  setup.bodies = Selection({"ball*"});
-  BehaviorGroup& group = **world.behaviors().add_group(type, type, setup);
+sim::BehaviorGroup& add_group(sim::World& world, const char* type) {
+  sim::GroupSetup setup;
+  setup.bodies = sim::Selection({"ball*"});
+  sim::BehaviorGroup& group = **world.behaviors().add_group(type, type, setup);
   set(world.store(), group.id(), "max_dist", kNeighborDistance);
   set(world.store(), group.id(), "amount", 1e-4);
   return group;
 }
 
 // mean number of neighbors over all parts, including those at the faces of the cube
-double mean_neighbors(BehaviorGroup& group) {
-  std::vector<Part*> parts;
+double mean_neighbors(sim::BehaviorGroup& group) {
+  std::vector<sim::Part*> parts;
   for (const auto& member : group.members()) parts.push_back(member->parts().front());
   double sum = 0;
-  for (const NeighborMeans& means : group.neighbors().means(parts, 0, kNeighborDistance, kWantVelocity))
+  for (const sim::NeighborMeans& means : group.neighbors().means(parts, 0, kNeighborDistance, sim::kWantVelocity))
     sum += means.count;
   return sum / static_cast<double>(parts.size());
 }
@@ -67,16 +67,16 @@ double mean_neighbors(BehaviorGroup& group) {
 }  // namespace
 
 nlohmann::ordered_json measure_flock(int bodies, const MeasureOptions& options) {
-  EngineLink link;
-  Engine engine(link, EngineOptions{});
+  engine::EngineLink link;
+  engine::Engine engine(link, engine::EngineOptions{});
   LIMBER_CHECK(engine.start().ok());
-  World& world = engine.world();
+  sim::World& world = engine.world();
   const double gravity[] = {0, 0, 0};
   LIMBER_CHECK(world.store().set(world.id(), "gravity", gravity).ok());
   set(world.store(), world.id(), "substeps", 1);
   add_balls(world, bodies);
-  BehaviorGroup& cohesion = add_group(world, "cohesion");
-  BehaviorGroup& alignment = add_group(world, "alignment");
+  sim::BehaviorGroup& cohesion = add_group(world, "cohesion");
+  sim::BehaviorGroup& alignment = add_group(world, "alignment");
   const int usual = std::clamp(400000 / bodies, 5, 200);
   const int ticks = options.ticks > 0 ? options.ticks : usual;
   TimeSamples behaviors, cohesions, alignments, ticks_whole;

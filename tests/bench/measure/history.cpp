@@ -32,12 +32,12 @@ end)
 )";
 
 Json measure_history(const ShowFolder& folder, int arms, const std::string& more, int ticks) {
-  std::ofstream(folder.scene()) << fmt::format(kHistoryArms, data_dir(), arms, more);
-  EngineLink link;
-  EngineOptions options;
+  std::ofstream(folder.scene()) << fmt::format(kHistoryArms, app::data_dir(), arms, more);
+  engine::EngineLink link;
+  engine::EngineOptions options;
   options.scene = folder.scene();
   options.fast = true;
-  Engine engine(link, options);
+  engine::Engine engine(link, options);
   LIMBER_CHECK(engine.start().ok());
   TimeSamples plain, with_checkpoint, back;
   double before = 0;

@@ -34,12 +34,12 @@ class BenchShow {
     std::filesystem::create_directories(folder_ / "behaviors_lua");
     std::ofstream(folder_ / "scripts" / "scene.lua") << scene;
     std::ofstream(folder_ / "behaviors_lua" / "small.lua") << behavior;
-    EngineOptions options;
+    engine::EngineOptions options;
     options.scene = (folder_ / "scripts" / "scene.lua").string();
-    options.scene_options.data_dir = data_dir();
+    options.scene_options.data_dir = app::data_dir();
     options.scene_options.limits.run_ms *= 10;
     options.scene_options.limits.call_ms *= 10;
-    engine_ = std::make_unique<Engine>(link_, options);
+    engine_ = std::make_unique<engine::Engine>(link_, options);
     started_ = engine_->start();
   }
   ~BenchShow() {
@@ -50,12 +50,12 @@ class BenchShow {
   BenchShow& operator=(const BenchShow&) = delete;
 
   const Result<void>& started() const { return started_; }
-  Engine& engine() { return *engine_; }
+  engine::Engine& engine() { return *engine_; }
 
  private:
   std::filesystem::path folder_;
-  EngineLink link_;
-  std::unique_ptr<Engine> engine_;
+  engine::EngineLink link_;
+  std::unique_ptr<engine::Engine> engine_;
   Result<void> started_;
 };
 
@@ -130,7 +130,7 @@ std::string twin_scene(const Twin& twin, int parts) {
 }
 
 // time of the last tick in microseconds
-double time_of(const World& world, const Twin& twin, const std::string& body) {
+double time_of(const sim::World& world, const Twin& twin, const std::string& body) {
   const Store& store = world.store();
   const NodeId id =
       twin.group ? world.behaviors().find_group(body)->id() : world.find_body(body)->behaviors().find("it")->id();
@@ -143,7 +143,7 @@ Json measure(const Twin& twin, int parts, int ticks) {
   BenchShow show(twin_scene(twin, parts), "");
   if (!show.started()) return {{"error", show.started().error()}};
   TimeSamples built_in, lua;
-  World& world = show.engine().world();
+  sim::World& world = show.engine().world();
   for (int i = -10; i < ticks; i++) {
     show.engine().tick();
     if (i < 0) continue;

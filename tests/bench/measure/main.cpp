@@ -19,5 +19,5 @@ int main(int argc, char** argv) {
   app.add_option("--gl", options.gl, "Kind of OpenGL, as in `limber --gl`.");
   app.add_option("--ticks", options.ticks, "Number of timed ticks; default: depends on the measurement.");
   CLI11_PARSE(app, argc, argv);
-  return finish_command(run_measures(options));
+  return app::finish_command(run_measures(options));
 }

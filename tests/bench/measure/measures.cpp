@@ -143,7 +143,7 @@ int run_measures(const MeasureOptions& options) {
     if (selected.back() != nullptr) continue;
     std::vector<std::string_view> names;
     for (const Measure& measure : measures()) names.push_back(measure.name);
-    return fail(kUsageError, fmt::format("unknown measurement '{}'{}", name, name_hint(name, names)));
+    return app::fail(app::kUsageError, fmt::format("unknown measurement '{}'{}", name, name_hint(name, names)));
   }
   if (selected.empty()) {
     for (const Measure& measure : measures()) selected.push_back(&measure);
@@ -163,7 +163,7 @@ int run_measures(const MeasureOptions& options) {
     }
   }
   if (options.json) print_result("{}\n", all.dump(2));
-  return kSuccess;
+  return app::kSuccess;
 }
 
 }  // namespace limber

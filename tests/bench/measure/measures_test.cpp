@@ -28,7 +28,7 @@ TEST(Measures, MeasuresAnArm) {
   const Json figures = figures_of("arms-1", options);
   EXPECT_EQ(figures["parts"], 18);  // 17 and the base
   EXPECT_EQ(figures["ticks"], 6);
-  EXPECT_EQ(figures["settings"]["solver_iterations"], World::table().at("solver_iterations").initial[0]);
+  EXPECT_EQ(figures["settings"]["solver_iterations"], sim::World::table().at("solver_iterations").initial[0]);
   for (const Json& side : {figures, figures["raw"]}) {
     EXPECT_GT(side["tick_us"]["min"], 0);
     EXPECT_LE(side["tick_us"]["min"], side["tick_us"]["median"]);

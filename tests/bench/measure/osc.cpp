@@ -31,8 +31,8 @@ constexpr int kBurst = 10000;
 constexpr int kBundled = 20;  // messages per bundle
 
 Packet packet_of(const Message& message) {
-  static PacketBuffer buffer;
-  const std::span<const char> bytes = encode_message(message, buffer);
+  static osc::PacketBuffer buffer;
+  const std::span<const char> bytes = osc::encode_message(message, buffer);
   return {bytes.begin(), bytes.end()};
 }
 
@@ -61,15 +61,15 @@ void pause(BenchArms& arms) {
 
 // messages per second of the best round: receiver, then the engine's part
 double messages_per_second(BenchArms& arms, const std::vector<Packet>& packets, int messages) {
-  const NetClock clock;
-  Receiver receiver(arms.link(), {}, {}, clock);
+  const osc::NetClock clock;
+  osc::Receiver receiver(arms.link(), {}, {}, clock);
   double best = 0;
   for (int round = 0; round < 12; round++) {
     const double start = system::clock_seconds();
     for (const Packet& packet : packets) receiver.process(packet.data(), packet.size(), {0x7f000001, 9});
     double seconds = system::clock_seconds() - start;
     // a tick processes a limited number of messages
-    for (int work = 0; work < 2 * messages; work += Engine::kPassWork) {
+    for (int work = 0; work < 2 * messages; work += engine::Engine::kPassWork) {
       arms.tick();
       seconds += arms.engine().times().commands;
     }
@@ -94,18 +94,18 @@ class Client {
 
  private:
   system::UdpSocket socket_;
-  Endpoint to_;
+  system::Endpoint to_;
 };
 
-OscOptions loopback_only() {
-  OscOptions options;
+osc::OscOptions loopback_only() {
+  osc::OscOptions options;
   options.in = std::vector<ListenAddress>{{"127.0.0.1", 0}};
   options.out.emplace();
   return options;
 }
 
-Json burst(BenchArms& arms, Network& network, const std::vector<Packet>& packets) {
-  Counters& counters = arms.link().counters;
+Json burst(BenchArms& arms, osc::Network& network, const std::vector<Packet>& packets) {
+  engine::Counters& counters = arms.link().counters;
   const auto arrived = [&] { return counters.received.load(); };
   const std::uint64_t before = arrived();
   Client client(network.bound().front().port);
@@ -140,7 +140,7 @@ nlohmann::ordered_json measure_osc_in(const MeasureOptions&) {
   }
   Json figures = {{"messages_per_second", messages_per_second(arms, single, kBurst)},
                   {"messages_per_second_in_bundles", messages_per_second(arms, bundles, kBurst)}};
-  Network network(arms.link(), loopback_only(), transient_offsets());
+  osc::Network network(arms.link(), loopback_only(), engine::transient_offsets());
   if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
   figures["burst_on_loopback"] = burst(arms, network, single);
   network.stop();
@@ -152,7 +152,7 @@ nlohmann::ordered_json measure_osc_latency(const MeasureOptions&) {
   constexpr int kPings = 2000;
   constexpr int kQuestions = 120;
   BenchArms arms(arm_scene(kArms));
-  Network network(arms.link(), loopback_only(), transient_offsets());
+  osc::Network network(arms.link(), loopback_only(), engine::transient_offsets());
   if (const Result<void> started = network.start(); !started) return {{"fault", started.error()}};
   Client client(network.bound().front().port);
   int lost = 0;
@@ -210,8 +210,8 @@ nlohmann::ordered_json measure_osc_out(const MeasureOptions&) {
     }
   });
   StreamTarget target;
-  StreamFrame frame(transient_offsets());
-  const std::shared_ptr<const Snapshot> snapshot = arms.link().snapshots.read();
+  osc::StreamFrame frame(engine::transient_offsets());
+  const std::shared_ptr<const engine::Snapshot> snapshot = arms.link().snapshots.read();
   TimeSamples fill, send;
   bool segmentation = true;
   for (int i = 0; i < kFrames; i++) {

@@ -15,9 +15,9 @@ constexpr int kPanelArms = 1000;
 
 class BenchPanel {
  public:
-  explicit BenchPanel(EngineLink& link) : gui_(link, options()) {}
+  explicit BenchPanel(engine::EngineLink& link) : gui_(link, options()) {}
 
-  Gui& gui() { return gui_; }
+  panel::Gui& gui() { return gui_; }
   /// Runs `count` frames and returns the processor time of each.
   TimeSamples frames(BenchArms& arms, int count) {
     TimeSamples samples;
@@ -31,22 +31,22 @@ class BenchPanel {
     return samples;
   }
   void click(const std::string& name) {
-    const NamedWidget* const widget = gui_.names().find(name);
+    const panel::NamedWidget* const widget = gui_.names().find(name);
     if (widget == nullptr) return;
-    InputEvent event;
-    event.kind = InputEvent::Kind::move;
+    panel::InputEvent event;
+    event.kind = panel::InputEvent::Kind::move;
     event.x = widget->visible.x + widget->visible.width / 2;
     event.y = widget->visible.y + widget->visible.height / 2;
     gui_.push(event);
-    event.kind = InputEvent::Kind::button;
+    event.kind = panel::InputEvent::Kind::button;
     for (const bool down : {true, false}) {
       event.down = down;
       gui_.push(event);
     }
   }
   void type(const std::string& text) {
-    InputEvent event;
-    event.kind = InputEvent::Kind::text;
+    panel::InputEvent event;
+    event.kind = panel::InputEvent::Kind::text;
     for (const char c : text) {
       event.character = static_cast<unsigned char>(c);
       gui_.push(event);
@@ -54,13 +54,13 @@ class BenchPanel {
   }
 
  private:
-  static GuiOptions options() {
-    GuiOptions options;
+  static panel::GuiOptions options() {
+    panel::GuiOptions options;
     options.draws = false;
     return options;
   }
 
-  Gui gui_;
+  panel::Gui gui_;
   double clock_ = 0;
 };
 

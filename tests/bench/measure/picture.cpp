@@ -25,7 +25,7 @@ using Json = nlohmann::ordered_json;
 
 struct PictureScene {
   int arms;
-  Quality quality;
+  render::Quality quality;
   const char* quality_name;
   int width, height;
 };
@@ -35,7 +35,7 @@ constexpr int kFramesPerTick = 2;  // the display runs at twice the rate of the 
 
 // places the camera so that all arms are in view
 void view_all_arms(BenchArms& arms) {
-  World& world = arms.engine().world();
+  sim::World& world = arms.engine().world();
   Vec3 low(0), high(0);
   for (const auto& body : world.bodies()) {
     for (const auto& part : body->parts()) {
@@ -52,8 +52,8 @@ void view_all_arms(BenchArms& arms) {
 }
 
 // `warm`: untimed frames for the upload of meshes and the warm-up of the driver
-Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
-  Result<std::unique_ptr<Renderer>> renderer = Renderer::make(api, shader_dir(), scene.quality);
+Json draw(render::GlApi api, const PictureScene& scene, int warm, int frames) {
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::make(api, app::shader_dir(), scene.quality);
   if (!renderer) return {{"error", renderer.error()}};
   BenchArms arms(arm_scene(scene.arms));
   const auto tick = [&] {
@@ -63,15 +63,15 @@ Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
   };
   tick();
   view_all_arms(arms);
-  std::vector<std::shared_ptr<const Snapshot>> snapshots;
+  std::vector<std::shared_ptr<const engine::Snapshot>> snapshots;
   snapshots.reserve(kTicks);
   for (int i = 0; i < kTicks; i++) snapshots.push_back(tick());
   TimeSamples processor;
   double begin = 0;
   for (int i = 0; i < warm + frames; i++) {
     const auto at = static_cast<std::size_t>(i / kFramesPerTick % (kTicks - 1));
-    const Snapshot& before = *snapshots[at];
-    const Snapshot& now = *snapshots[at + 1];
+    const engine::Snapshot& before = *snapshots[at];
+    const engine::Snapshot& now = *snapshots[at + 1];
     const double mix = 1.0 * (i % kFramesPerTick) / kFramesPerTick;
     if (i == warm) {
       (*renderer)->finish();
@@ -96,18 +96,18 @@ Json draw(GlApi api, const PictureScene& scene, int warm, int frames) {
 }  // namespace
 
 nlohmann::ordered_json measure_picture(const MeasureOptions& options) {
-  const Result<std::unique_ptr<OffscreenContext>> context = OffscreenContext::make(options.gl);
+  const Result<std::unique_ptr<render::OffscreenContext>> context = render::OffscreenContext::make(options.gl);
   if (!context) return {{"error", context.error()}};
-  const bool software = gl_is_software();
+  const bool software = render::gl_is_software();
   // software needs seconds for the large scene
   const int warm = software ? 2 : 100;
   const int frames = options.ticks > 0 ? options.ticks : software ? 100 : 600;
   const int frames_large = software ? std::min(frames, 3) : frames;
-  const GlApi api = (*context)->api();
-  return {{"drawn_by", gl_driver()},
-          {"with", gl_api_info(api).name},
-          {"small", draw(api, {16, Quality::low, "low", 640, 360}, warm, frames)},
-          {"large", draw(api, {1000, Quality::high, "high", 1920, 1080}, warm, frames_large)}};
+  const render::GlApi api = (*context)->api();
+  return {{"drawn_by", render::gl_driver()},
+          {"with", render::gl_api_info(api).name},
+          {"small", draw(api, {16, render::Quality::low, "low", 640, 360}, warm, frames)},
+          {"large", draw(api, {1000, render::Quality::high, "high", 1920, 1080}, warm, frames_large)}};
 }
 
 }  // namespace limber

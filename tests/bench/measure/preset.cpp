@@ -21,7 +21,7 @@ class ArmPresets {
     send({"/transport/pause", {}});
     empty_ = ticks(8).quantile(0.5);
   }
-  Engine& engine() { return arms_.engine(); }
+  engine::Engine& engine() { return arms_.engine(); }
 
   TimeSamples ticks(int count) {
     TimeSamples all;
@@ -119,7 +119,7 @@ Json measure_preset(const MeasureOptions& options) {
   bench.preset("recall", "b");
   bench.send({"/transport/play", {}});
   const MorphCost morph = cost_of_morph(bench, count);
-  const Preset& preset = *bench.engine().presets().list().front();
+  const engine::Preset& preset = *bench.engine().presets().list().front();
   return {{"things", preset.schema->nodes().size()},
           {"rows", preset.schema->property_count()},
           {"numbers", preset.values.size()},

@@ -109,9 +109,9 @@ void play(BenchArms& arms, int ticks, TimeSamples& samples) {
 nlohmann::ordered_json measure_query(const MeasureOptions& options) {
   const int ticks = options.ticks > 0 ? options.ticks : 150;
   BenchArms arms(arm_scene(kQueryArms));
-  Network network(arms.link(), {std::vector<ListenAddress>{}, std::vector<StreamTarget>{}, {}, false},
-                  transient_offsets());
-  QueryServer server(arms.link(), query_host(network, {}));
+  osc::Network network(arms.link(), {std::vector<ListenAddress>{}, std::vector<StreamTarget>{}, {}, false},
+                       engine::transient_offsets());
+  oscquery::QueryServer server(arms.link(), app::query_host(network, {}));
   if (const Result<void> started = server.start({"127.0.0.1", 0}); !started) return {{"fault", started.error()}};
   TimeSamples alone, listened;
   double seconds = 0;

@@ -31,7 +31,7 @@ end)
 )";
 
 void save(const ShowFolder& folder, std::string_view robot, int arms, int version) {
-  std::ofstream(folder.scene()) << fmt::format(kScene, data_dir(), robot, arms, 0.001 * version, version);
+  std::ofstream(folder.scene()) << fmt::format(kScene, app::data_dir(), robot, arms, 0.001 * version, version);
 }
 
 // a running show with its SceneLoader, and a reader of its messages
@@ -59,7 +59,7 @@ class ReloadedShow {
     while (!reloaded || more > 0) {
       link_.output_queue.drain(out_);
       const double now = system::clock_seconds();
-      for (const Outgoing& o : out_) {
+      for (const engine::Outgoing& o : out_) {
         if (o.message.address != "/version") continue;
         if (last_ > 0) gaps.add(now - last_);
         last_ = now;
@@ -74,18 +74,18 @@ class ReloadedShow {
   double first() const { return first_; }
 
  private:
-  static EngineOptions options_of(const std::string& scene) {
-    EngineOptions options;
+  static engine::EngineOptions options_of(const std::string& scene) {
+    engine::EngineOptions options;
     options.scene = scene;
     return options;
   }
 
-  EngineLink link_;
-  Engine engine_;
-  SceneLoader loader_;
+  engine::EngineLink link_;
+  engine::Engine engine_;
+  app::SceneLoader loader_;
   Result<void> started_;
   std::thread sim_;
-  std::vector<Outgoing> out_;
+  std::vector<engine::Outgoing> out_;
   double last_ = 0;
   double first_ = 0;
 };

@@ -15,21 +15,21 @@ namespace limber {
 nlohmann::ordered_json measure_spawn(const MeasureOptions&) {
   constexpr int kCopies = 1000;
   constexpr int kSide = 32;
-  const std::string file = data_dir() + "/urdf/arm17.urdf";
-  EngineLink link;
-  Engine engine(link, EngineOptions{});
+  const std::string file = app::data_dir() + "/urdf/arm17.urdf";
+  engine::EngineLink link;
+  engine::Engine engine(link, engine::EngineOptions{});
   LIMBER_CHECK(engine.start().ok());
-  World& world = engine.world();
-  ModelLibrary library;
+  sim::World& world = engine.world();
+  model::ModelLibrary library;
 
   const double start = system::clock_seconds();
   const auto model = library.load_urdf(file);
   if (!model) return {{"fault", model.error()}};
-  const Result<Body*> first = world.add_body(*model, "arm", BuildOptions{});
+  const Result<sim::Body*> first = world.add_body(*model, "arm", sim::BuildOptions{});
   if (!first) return {{"fault", first.error()}};
   const double loaded = system::clock_seconds();
   for (int i = 1; i <= kCopies; i++) {
-    const Result<Body*> copy = world.copy_body(**first, fmt::format("arm{}", i));
+    const Result<sim::Body*> copy = world.copy_body(**first, fmt::format("arm{}", i));
     LIMBER_CHECK(copy.ok());
     Pose pose = (*copy)->pose();
     const int row = i / kSide;

@@ -31,15 +31,15 @@ local arm = sim:load_urdf("{0}/urdf/arm17.urdf", {{ name = "arm1" }})
 for i = 2, {1} do arm:copy("arm" .. i, {{ position = vec3(2 * (i % 8), 2 * math.floor(i / 8), 0) }}) end
 )";
 
-EngineOptions show_options(const ShowFolder& folder) {
-  EngineOptions options;
+engine::EngineOptions show_options(const ShowFolder& folder) {
+  engine::EngineOptions options;
   options.scene = folder.scene();
   options.fast = true;
   return options;
 }
 
 // messages of one number, as sent by sliders
-void push_messages(EngineLink& link, Random& random) {
+void push_messages(engine::EngineLink& link, Random& random) {
   for (int i = 0; i < kMessages; i++) {
     const int arm = 1 + static_cast<int>(random.uniform() * kArms);
     const std::string address = fmt::format("/physics/body/arm{}/motor/joint_{}/angular_servo_position", arm, i + 1);
@@ -50,7 +50,7 @@ void push_messages(EngineLink& link, Random& random) {
 
 // a show or its replay, and the processor time of its ticks
 struct Show {
-  explicit Show(const EngineOptions& options) : engine(link, options) { LIMBER_CHECK(engine.start().ok()); }
+  explicit Show(const engine::EngineOptions& options) : engine(link, options) { LIMBER_CHECK(engine.start().ok()); }
   void tick() {
     // from another thread, like messages from the network, so that they are not in this core's cache
     if (!engine.is_replaying()) std::thread([this] { push_messages(link, random); }).join();
@@ -64,8 +64,8 @@ struct Show {
     engine.end_take();
     engine.finish_saving();
   }
-  EngineLink link;
-  Engine engine;
+  engine::EngineLink link;
+  engine::Engine engine;
   Random random{1, "sliders"};
   double seconds = 0;
 };
@@ -76,14 +76,14 @@ struct RunTimes {
 
 // alternates tick by tick, so that disturbances affect all three equally
 RunTimes compare_runs(const ShowFolder& folder, int ticks) {
-  EngineOptions recorded = show_options(folder);
+  engine::EngineOptions recorded = show_options(folder);
   recorded.record = folder.file("first.take");
   {
     Show first(recorded);
     for (int i = 0; i < ticks; i++) first.tick();
     first.end();
   }
-  EngineOptions replayed = show_options(folder);
+  engine::EngineOptions replayed = show_options(folder);
   replayed.replay = std::exchange(recorded.record, folder.file("second.take"));
   std::array<Show, 3> shows{Show(show_options(folder)), Show(recorded), Show(replayed)};
   for (int i = 0; i < ticks; i++) {
@@ -120,25 +120,25 @@ double size_of(const std::string& file) {
 }
 
 Recording measure_recording(const ShowFolder& folder, int ticks) {
-  EngineLink link;
-  Engine engine(link, show_options(folder));
+  engine::EngineLink link;
+  engine::Engine engine(link, show_options(folder));
   LIMBER_CHECK(engine.start().ok());
   const std::string file = folder.file("beside.take");
-  BackgroundWriter writer;
-  TakeRecorder recorder(writer, {file, false}, {}, [](const std::string&) {});
+  engine::BackgroundWriter writer;
+  engine::TakeRecorder recorder(writer, {file, false}, {}, [](const std::string&) {});
   LIMBER_CHECK(recorder.wait_until_open().ok());
   const double head = size_of(file);
   Random random(1, "sliders");
-  std::vector<Command> commands;
+  std::vector<engine::Command> commands;
   Recording sum;
-  CallLog calls;
+  script::CallLog calls;
   const double overhead = clock_overhead();
   for (int i = 0; i < ticks; i++) {
     push_messages(link, random);
     link.command_queue.drain(commands);
-    for (const Command& command : commands) link.command_queue.push(command);
+    for (const engine::Command& command : commands) link.command_queue.push(command);
     const double begin = system::thread_seconds();
-    for (const Command& command : commands) recorder.record_message(command.messages[0], command.origin);
+    for (const engine::Command& command : commands) recorder.record_message(command.messages[0], command.origin);
     const double taken = system::thread_seconds();
     engine.tick();
     const double ticked = system::thread_seconds();
@@ -156,7 +156,7 @@ Recording measure_recording(const ShowFolder& folder, int ticks) {
 Json measure_take(const MeasureOptions& options) {
   const int ticks = options.ticks > 0 ? options.ticks : 600;
   const ShowFolder folder;
-  std::ofstream(folder.scene()) << fmt::format(kTakeScene, data_dir(), kArms);
+  std::ofstream(folder.scene()) << fmt::format(kTakeScene, app::data_dir(), kArms);
   const Recording recording = measure_recording(folder, ticks);
   const RunTimes times = compare_runs(folder, ticks);
   return {{"ticks", ticks},

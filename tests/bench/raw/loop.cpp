@@ -18,7 +18,7 @@ double ArmScene::target(int joint, double time) {
   return std::min(1.0, 2 * time) * 0.3 * fixed::sin(kPi * time + 0.4 * joint);
 }
 
-RawLoop::RawLoop(const ArmScene& scene) : scene_(scene), box_(to_bt(scene.size * 0.5)) {
+RawLoop::RawLoop(const ArmScene& scene) : scene_(scene), box_(sim::bullet::to_bt(scene.size * 0.5)) {
   world_.setGravity(btVector3(0, 0, btScalar(-9.81)));
   // the settings of our worlds: two friction directions, split impulses for penetration
   world_.getSolverInfo().m_numIterations = scene.solver_iterations;
@@ -36,11 +36,11 @@ RawLoop::~RawLoop() {
 
 btRigidBody& RawLoop::add_box(const Vec3& center, double mass) {
   btVector3 inertia(0, 0, 0);
-  if (mass > 0) box_.calculateLocalInertia(to_scalar(mass), inertia);
+  if (mass > 0) box_.calculateLocalInertia(sim::bullet::to_scalar(mass), inertia);
   bodies_.push_back(std::make_unique<btRigidBody>(
-      btRigidBody::btRigidBodyConstructionInfo(to_scalar(mass), nullptr, &box_, inertia)));
+      btRigidBody::btRigidBodyConstructionInfo(sim::bullet::to_scalar(mass), nullptr, &box_, inertia)));
   btRigidBody& body = *bodies_.back();
-  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), to_bt(center)));
+  body.setWorldTransform(btTransform(btQuaternion::getIdentity(), sim::bullet::to_bt(center)));
   body.setInterpolationWorldTransform(body.getWorldTransform());
   body.setActivationState(DISABLE_DEACTIVATION);
   world_.addRigidBody(&body);
@@ -54,7 +54,7 @@ void RawLoop::add_floor() {
 }
 
 void RawLoop::add_arm(int arm) {
-  const btVector3 to_joint = to_bt(scene_.to_joint());
+  const btVector3 to_joint = sim::bullet::to_bt(scene_.to_joint());
   btRigidBody* below = &add_box(scene_.center(arm, -1), 0);
   for (int part = 0; part < scene_.parts; part++) {
     btRigidBody* above = &add_box(scene_.center(arm, part), scene_.mass);
@@ -63,11 +63,11 @@ void RawLoop::add_arm(int arm) {
     auto joint = std::make_unique<btGeneric6DofSpring2Constraint>(*below, *above, in_below, in_above);
     for (int axis = 0; axis < 6; axis++) joint->setLimit(axis, 0, 0);
     const int driven_axis = 3 + ArmScene::axis(part);
-    joint->setLimit(driven_axis, to_scalar(-scene_.limit), to_scalar(scene_.limit));
+    joint->setLimit(driven_axis, sim::bullet::to_scalar(-scene_.limit), sim::bullet::to_scalar(scene_.limit));
     joint->enableMotor(driven_axis, true);
     joint->setServo(driven_axis, true);
-    joint->setTargetVelocity(driven_axis, to_scalar(scene_.speed));
-    joint->setMaxMotorForce(driven_axis, to_scalar(scene_.force));
+    joint->setTargetVelocity(driven_axis, sim::bullet::to_scalar(scene_.speed));
+    joint->setMaxMotorForce(driven_axis, sim::bullet::to_scalar(scene_.force));
     world_.addConstraint(joint.get(), true);
     joints_.push_back(std::move(joint));
     below = above;
@@ -77,12 +77,12 @@ void RawLoop::add_arm(int arm) {
 void RawLoop::drive(double time) {
   for (std::size_t i = 0; i < joints_.size(); i++) {
     const int joint = static_cast<int>(i) % scene_.parts;
-    joints_[i]->setServoTarget(3 + ArmScene::axis(joint), to_scalar(ArmScene::target(joint, time)));
+    joints_[i]->setServoTarget(3 + ArmScene::axis(joint), sim::bullet::to_scalar(ArmScene::target(joint, time)));
   }
 }
 
 void RawLoop::tick() {
-  for (int i = 0; i < scene_.substeps; i++) world_.stepSimulation(to_scalar(scene_.step), 0);
+  for (int i = 0; i < scene_.substeps; i++) world_.stepSimulation(sim::bullet::to_scalar(scene_.step), 0);
 }
 
 double RawLoop::joint_gap() const {

@@ -21,17 +21,20 @@ template <class World>
 class BasicSimulation : public RawSimulation {
  public:
   explicit BasicSimulation(const RawScene& raw) : scene(raw) {}
-  Pose pose(int part) const override { return from_bt(bodies[static_cast<std::size_t>(part)]->getWorldTransform()); }
+  Pose pose(int part) const override {
+    return sim::bullet::from_bt(bodies[static_cast<std::size_t>(part)]->getWorldTransform());
+  }
 
   RawEnergy energy() const override {
     RawEnergy sum;
     for (const auto& body : bodies) {
       if (body->isStaticObject()) continue;
       const double mass = 1 / static_cast<double>(body->getInvMass());
-      const Vec3 v = from_bt(body->getLinearVelocity());
-      const Vec3 spin = from_bt(body->getWorldTransform().getBasis().transpose() * body->getAngularVelocity());
-      const Vec3 inverse = from_bt(body->getInvInertiaDiagLocal());
-      sum.potential -= mass * glm::dot(scene.gravity, from_bt(body->getWorldTransform().getOrigin()));
+      const Vec3 v = sim::bullet::from_bt(body->getLinearVelocity());
+      const Vec3 spin =
+          sim::bullet::from_bt(body->getWorldTransform().getBasis().transpose() * body->getAngularVelocity());
+      const Vec3 inverse = sim::bullet::from_bt(body->getInvInertiaDiagLocal());
+      sum.potential -= mass * glm::dot(scene.gravity, sim::bullet::from_bt(body->getWorldTransform().getOrigin()));
       sum.kinetic += mass * glm::dot(v, v) / 2;
       for (int i = 0; i < 3; ++i) sum.kinetic += spin[i] * spin[i] / inverse[i] / 2;
     }
@@ -40,7 +43,7 @@ class BasicSimulation : public RawSimulation {
 
  protected:
   void build(World& world) {
-    world.setGravity(to_bt(scene.gravity));
+    world.setGravity(sim::bullet::to_bt(scene.gravity));
     world.getSolverInfo().m_numIterations = scene.iterations;
     world.getSolverInfo().m_solverMode = SOLVER_USE_WARMSTARTING | SOLVER_SIMD | SOLVER_USE_2_FRICTION_DIRECTIONS;
     world.getSolverInfo().m_splitImpulse = 1;
@@ -53,14 +56,15 @@ class BasicSimulation : public RawSimulation {
   }
   void add_part(World& world, const RawPart& part) {
     if (part.size.y > 0) {
-      shapes.push_back(std::make_unique<btBoxShape>(to_bt(part.size * 0.5)));
+      shapes.push_back(std::make_unique<btBoxShape>(sim::bullet::to_bt(part.size * 0.5)));
     } else {
-      shapes.push_back(std::make_unique<btSphereShape>(to_scalar(part.size.x)));
+      shapes.push_back(std::make_unique<btSphereShape>(sim::bullet::to_scalar(part.size.x)));
     }
     btVector3 inertia(0, 0, 0);
-    if (part.mass > 0) shapes.back()->calculateLocalInertia(to_scalar(part.mass), inertia);
-    btRigidBody::btRigidBodyConstructionInfo info(to_scalar(part.mass), nullptr, shapes.back().get(), inertia);
-    info.m_startWorldTransform = to_bt(part.pose);
+    if (part.mass > 0) shapes.back()->calculateLocalInertia(sim::bullet::to_scalar(part.mass), inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(sim::bullet::to_scalar(part.mass), nullptr, shapes.back().get(),
+                                                  inertia);
+    info.m_startWorldTransform = sim::bullet::to_bt(part.pose);
     info.m_friction = btScalar(0.8);
     bodies.push_back(std::make_unique<btRigidBody>(info));
     bodies.back()->setActivationState(DISABLE_DEACTIVATION);
@@ -71,8 +75,9 @@ class BasicSimulation : public RawSimulation {
     if (scene.attraction <= 0) return;
     for (const auto& body : bodies) {
       if (body->isStaticObject()) continue;
-      const Vec3 offset = Vec3(0, 0, 1) - from_bt(body->getWorldTransform().getOrigin());
-      body->applyCentralForce(to_bt(offset * scene.attraction) - body->getLinearVelocity() * btScalar(0.3));
+      const Vec3 offset = Vec3(0, 0, 1) - sim::bullet::from_bt(body->getWorldTransform().getOrigin());
+      body->applyCentralForce(sim::bullet::to_bt(offset * scene.attraction) -
+                              body->getLinearVelocity() * btScalar(0.3));
     }
   }
   btRigidBody& body(int part) { return *bodies[static_cast<std::size_t>(part)]; }
@@ -83,16 +88,16 @@ class BasicSimulation : public RawSimulation {
     const Vec3 c = glm::cross(a, b);
     btMatrix3x3 m;
     for (int r = 0; r < 3; ++r) {
-      m[r][column] = to_scalar(a[r]);
-      m[r][(column + 1) % 3] = to_scalar(b[r]);
-      m[r][(column + 2) % 3] = to_scalar(c[r]);
+      m[r][column] = sim::bullet::to_scalar(a[r]);
+      m[r][(column + 1) % 3] = sim::bullet::to_scalar(b[r]);
+      m[r][(column + 2) % 3] = sim::bullet::to_scalar(c[r]);
     }
     const RawPart& p = scene.parts[static_cast<std::size_t>(part)];
-    return to_bt(p.pose).inverse() * btTransform(m, to_bt(joint.position));
+    return sim::bullet::to_bt(p.pose).inverse() * btTransform(m, sim::bullet::to_bt(joint.position));
   }
   void measure_joint(RawMeasurements& m, const RawJoint& joint, const btTransform& a, const btTransform& b,
                      double angle) const {
-    m.gap = std::max(m.gap, glm::length(from_bt(a.getOrigin() - b.getOrigin())));
+    m.gap = std::max(m.gap, glm::length(sim::bullet::from_bt(a.getOrigin() - b.getOrigin())));
     if (joint.force > 0) m.servo_error = std::max(m.servo_error, std::fabs(angle - joint.target(time)));
     if (joint.lower <= joint.upper) {
       m.limit_violation = std::max({m.limit_violation, angle - joint.upper, joint.lower - angle});
@@ -100,8 +105,8 @@ class BasicSimulation : public RawSimulation {
   }
   void measure_parts(RawMeasurements& m) const {
     for (const auto& body : bodies) {
-      const double speed = glm::length(from_bt(body->getLinearVelocity()));
-      m.finite = m.finite && speed < 1e5 && is_finite(from_bt(body->getWorldTransform().getOrigin()));
+      const double speed = glm::length(sim::bullet::from_bt(body->getLinearVelocity()));
+      m.finite = m.finite && speed < 1e5 && is_finite(sim::bullet::from_bt(body->getWorldTransform().getOrigin()));
       m.speed = std::max(m.speed, speed);
     }
   }
@@ -130,10 +135,11 @@ class StockSimulation : public BasicSimulation<btDiscreteDynamicsWorld> {
   }
   void step() override {
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      if (scene.joints[i].force > 0) joints_[i]->setServoTarget(3, to_scalar(-scene.joints[i].target(time)));
+      if (scene.joints[i].force > 0)
+        joints_[i]->setServoTarget(3, sim::bullet::to_scalar(-scene.joints[i].target(time)));
     }
     apply_attraction();
-    world_.stepSimulation(to_scalar(scene.step), 0);
+    world_.stepSimulation(sim::bullet::to_scalar(scene.step), 0);
     time += scene.step;
   }
   RawMeasurements measurements() const override {
@@ -155,18 +161,20 @@ class StockSimulation : public BasicSimulation<btDiscreteDynamicsWorld> {
         body(joint.parent), body(joint.child), frame(joint, joint.parent, 0), frame(joint, joint.child, 0));
     for (int axis = 0; axis < 6; ++axis) made->setLimit(axis, 0, 0);
     const bool free = joint.lower > joint.upper;
-    if (!joint.fixed) made->setLimit(3, free ? 1 : to_scalar(-joint.upper), free ? -1 : to_scalar(-joint.lower));
+    if (!joint.fixed)
+      made->setLimit(3, free ? 1 : sim::bullet::to_scalar(-joint.upper),
+                     free ? -1 : sim::bullet::to_scalar(-joint.lower));
     if (joint.force > 0) {
       made->enableMotor(3, true);
       made->setServo(3, true);
-      made->setTargetVelocity(3, to_scalar(joint.speed));
-      made->setMaxMotorForce(3, to_scalar(joint.force));
-      if (scene.servo_erp > 0) made->setParam(BT_CONSTRAINT_ERP, to_scalar(scene.servo_erp), 3);
+      made->setTargetVelocity(3, sim::bullet::to_scalar(joint.speed));
+      made->setMaxMotorForce(3, sim::bullet::to_scalar(joint.force));
+      if (scene.servo_erp > 0) made->setParam(BT_CONSTRAINT_ERP, sim::bullet::to_scalar(scene.servo_erp), 3);
     }
     if (joint.stiffness > 0) {
       made->enableSpring(3, true);
-      made->setStiffness(3, to_scalar(joint.stiffness));
-      made->setDamping(3, to_scalar(joint.damping));
+      made->setStiffness(3, sim::bullet::to_scalar(joint.stiffness));
+      made->setDamping(3, sim::bullet::to_scalar(joint.damping));
       made->setEquilibriumPoint(3, 0);
     }
     world_.addConstraint(made.get(), true);
@@ -183,14 +191,14 @@ class StockSimulation : public BasicSimulation<btDiscreteDynamicsWorld> {
 
 // Allocated as in World; a base class, so that it outlives the parts.
 struct IslandMemory {
-  BulletMemory memory;
+  sim::bullet::BulletMemory memory;
 };
 
-class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorld> {
+class IslandSimulation : private IslandMemory, public BasicSimulation<sim::bullet::IslandWorld> {
  public:
   IslandSimulation(const RawScene& raw, bool direct) : BasicSimulation(raw) {
-    const BulletMemory::Scope scope(&memory);
-    world_ = std::make_unique<IslandWorld>(WorldSetup{});
+    const sim::bullet::BulletMemory::Scope scope(&memory);
+    world_ = std::make_unique<sim::bullet::IslandWorld>(sim::WorldSetup{});
     world_->set_direct(direct);
     world_->direct().measure(scene.measure);
     build(*world_);
@@ -205,14 +213,14 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorl
     constexpr std::size_t kAhead = 8;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
       // as the motors do
-      if (i + kAhead < joints_.size()) prefetch(&joints_[i + kAhead]->axis(5), sizeof(AxisSettings));
+      if (i + kAhead < joints_.size()) prefetch(&joints_[i + kAhead]->axis(5), sizeof(sim::bullet::AxisSettings));
       const RawJoint& j = scene.joints[i];
       if (j.force > 0) joints_[i]->set_goal(5, j.target(time), 0, j.speed);
     }
     apply_attraction();
     world_->step(scene.step, 1);
     time += scene.step;
-    const DirectResiduals& r = world_->direct().residuals();
+    const sim::solver::DirectResiduals& r = world_->direct().residuals();
     max_residuals_ = {0,
                       0,
                       0,
@@ -223,15 +231,16 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorl
   RawMeasurements measurements() const override {
     RawMeasurements m;
     for (std::size_t i = 0; i < joints_.size(); ++i) {
-      const JointConstraint& j = *joints_[i];
-      measure_joint(m, scene.joints[i], to_bt(j.pose().parent_frame()), to_bt(j.pose().child_frame()), j.value(5));
+      const sim::bullet::JointConstraint& j = *joints_[i];
+      measure_joint(m, scene.joints[i], sim::bullet::to_bt(j.pose().parent_frame()),
+                    sim::bullet::to_bt(j.pose().child_frame()), j.value(5));
     }
     measure_parts(m);
     return m;
   }
   Direct direct() const override {
     Direct d = max_residuals_;
-    const DirectCounts c = world_->direct_counts();
+    const sim::solver::DirectCounts c = world_->direct_counts();
     d.direct = static_cast<double>(c.direct);
     d.plain = static_cast<double>(c.too_large);
     d.fallbacks = static_cast<double>(c.fallbacks);
@@ -240,25 +249,25 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<IslandWorl
 
  private:
   void add_joint(const RawJoint& joint) {
-    auto made = std::make_unique<JointConstraint>(body(joint.parent), body(joint.child), frame(joint, joint.parent, 2),
-                                                  frame(joint, joint.child, 2));
-    AxisSettings s;
+    auto made = std::make_unique<sim::bullet::JointConstraint>(
+        body(joint.parent), body(joint.child), frame(joint, joint.parent, 2), frame(joint, joint.child, 2));
+    sim::bullet::AxisSettings s;
     s.lower = static_cast<float>(joint.fixed ? 0 : joint.lower);
     s.upper = static_cast<float>(joint.fixed ? 0 : joint.upper);
     s.velocity = static_cast<float>(joint.speed);
     s.max_force = static_cast<float>(joint.force);
     s.stiffness = static_cast<float>(joint.stiffness);
     s.spring_damping = static_cast<float>(joint.damping);
-    if (joint.force > 0) s.drive = AxisDrive::servo;
-    if (joint.stiffness > 0) s.drive = AxisDrive::spring;
+    if (joint.force > 0) s.drive = sim::bullet::AxisDrive::servo;
+    if (joint.stiffness > 0) s.drive = sim::bullet::AxisDrive::spring;
     made->set_axis(5, s);
     world_->addConstraint(made.get());
     joints_.push_back(std::move(made));
   }
 
-  std::unique_ptr<IslandWorld> world_;
+  std::unique_ptr<sim::bullet::IslandWorld> world_;
   Direct max_residuals_;
-  std::vector<std::unique_ptr<JointConstraint>> joints_;
+  std::vector<std::unique_ptr<sim::bullet::JointConstraint>> joints_;
 };
 
 }  // namespace

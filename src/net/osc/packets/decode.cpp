@@ -10,7 +10,7 @@
 
 #include "net/osc/packets/packet_parser.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -108,4 +108,4 @@ Result<Decoded> decode_packet(const char* data, std::size_t size) {
   return decoded;
 }
 
-}  // namespace limber
+}  // namespace limber::osc

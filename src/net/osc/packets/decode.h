@@ -10,7 +10,7 @@
 #include "base/message.h"
 #include "base/result.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// A well-formed message with arguments that no address accepts.
 struct RejectedMessage {
@@ -30,4 +30,4 @@ struct Decoded {
 /// NaN and infinity pass. [any]
 Result<Decoded> decode_packet(const char* data, std::size_t size);
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -10,7 +10,7 @@
 #include "base/check.h"
 #include "net/osc/packets/packet_writer.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -180,4 +180,4 @@ std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer&
   return finished(out);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

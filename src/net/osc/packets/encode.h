@@ -10,7 +10,7 @@
 #include "base/message.h"
 #include "net/osc/packets/wire.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Buffer for one datagram.
 struct PacketBuffer {
@@ -30,4 +30,4 @@ std::span<const char> encode_tagged(const Message& message, std::string_view tag
 /// Encodes `/pong <tick i> <time f>`; ticks wrap to 0 after 31 bits. [any]
 std::span<const char> encode_pong(std::uint64_t tick, double time, PacketBuffer& buffer);
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -10,7 +10,7 @@
 #include "net/osc/packets/validate.h"
 #include "net/osc/packets/wire.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// Visits the elements of a packet in order. A visitor has the functions
 ///   void bundle(int depth, std::uint64_t time_tag)         a bundle begins; the outermost has depth 1
@@ -164,4 +164,4 @@ const char* PacketParser<Visitor>::message(const char* data, std::size_t size) {
   return nullptr;
 }
 
-}  // namespace limber
+}  // namespace limber::osc

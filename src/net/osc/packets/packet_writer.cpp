@@ -6,7 +6,7 @@
 
 #include "net/osc/packets/wire.h"
 
-namespace limber {
+namespace limber::osc {
 
 char* PacketWriter::extend(std::size_t bytes) {
   if (!valid_ || bytes > size_ - used_) {
@@ -110,4 +110,4 @@ std::span<const char> PacketWriter::packet() const {
   return {begin_, used_};
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -9,7 +9,7 @@
 
 #include "net/osc/packets/validate.h"
 
-namespace limber {
+namespace limber::osc {
 
 /// The caller gives a message's number of type tags first, so that each argument is written to its final position. A
 /// packet becomes invalid, and is then empty, if it does not fit the buffer or if calls come in the wrong order (more
@@ -70,4 +70,4 @@ class PacketWriter {
   bool valid_ = true;
 };
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -3,7 +3,7 @@
 
 #include "net/osc/packets/packet_parser.h"
 
-namespace limber {
+namespace limber::osc {
 
 namespace {
 
@@ -21,4 +21,4 @@ const char* packet_fault(const char* data, std::size_t size) {
   return PacketParser<NullVisitor>(visitor).packet(data, size);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace limber {
+namespace limber::osc {
 
 /// Limits for incoming packets. Sizes in bytes.
 struct OscLimits {
@@ -17,4 +17,4 @@ struct OscLimits {
 /// Returns a constant error text, or null if the datagram may be decoded. [any]
 const char* packet_fault(const char* data, std::size_t size);
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace limber {
+namespace limber::osc {
 
 inline constexpr std::size_t kMaxPacketSize = 65504;  ///< Bytes: the largest UDP payload that is a multiple of 4.
 inline constexpr std::size_t kBundleHeader = 16;      ///< "#bundle", its NUL, eight bytes of time tag.
@@ -34,4 +34,4 @@ inline void store_u64(char* to, std::uint64_t value) {
   std::memcpy(to, &value, sizeof value);
 }
 
-}  // namespace limber
+}  // namespace limber::osc

@@ -5,7 +5,7 @@
 #include "sim/behavior/neighbor_behavior.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -64,4 +64,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -5,7 +5,7 @@
 #include "sim/behavior/common_properties.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -31,4 +31,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -6,7 +6,7 @@
 #include "sim/behavior/common_properties.h"
 #include "sim/world/motor.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -43,4 +43,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 #include "sim/behavior/neighbor_behavior.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -35,4 +35,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

@@ -3,7 +3,7 @@
 #include "sim/behavior/common_properties.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -29,4 +29,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

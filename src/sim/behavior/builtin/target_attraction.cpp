@@ -3,7 +3,7 @@
 #include "sim/behavior/common_properties.h"
 #include "sim/world/part.h"
 
-namespace limber {
+namespace limber::sim {
 namespace {
 
 using namespace properties;
@@ -36,4 +36,4 @@ const BuiltInBehavior registered([] {
 });
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::sim

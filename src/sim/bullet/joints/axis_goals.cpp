@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// The time constant of a filter stage is kStagePart times the smoothing time, plus kStageTicks ticks, since a tick
@@ -73,4 +73,4 @@ GoalStep AxisGoals::advance(int axis, double target, double h, int steps_left) {
   return {from, goal.position, end, static_cast<double>(goal.last_rate)};
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 
 #include "sim/bullet/bullet.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Target of one substep: m or rad, m/s or rad/s.
 struct GoalStep {
@@ -65,4 +65,4 @@ class AxisGoals {
   std::uint8_t started_ = 0;     // bit set of axes that were advanced in this tick
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

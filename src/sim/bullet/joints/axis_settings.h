@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Converts an axis (0, 1, 2: along; 3, 4, 5: about x, y, z) to an array index.
 inline std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
@@ -43,4 +43,4 @@ struct AxisSettings {
 /// Settings of the six axes of a joint.
 using JointAxes = std::array<AxisSettings, 6>;
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -6,7 +6,7 @@
 
 #include "sim/solver/forest/axis_active_set.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Fraction of the position error that one substep corrects.
@@ -76,7 +76,7 @@ void GearConstraint::plan(btScalar h) {
   row_.velocity = std::clamp(kCorrectedFraction * error() / step, -kMaxCorrectionSpeed, kMaxCorrectionSpeed);
   row_.mobility = mobility;
   row_.softness = kSoftness * mobility;
-  row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * AxisRow::kInfinity;
+  row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * solver::AxisRow::kInfinity;
   warm_impulse_ = kGearWarmStart * std::exchange(last_impulse_, 0.0f);
 }
 
@@ -93,4 +93,4 @@ void GearConstraint::end_tick() {
   tick_impulse_ = tick_time_ = 0;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 
 #include "sim/bullet/joints/joint_constraint.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 struct GearSettings {
   double ratio = 1;      ///< Travel of b per travel of a.
@@ -62,7 +62,7 @@ class GearConstraint : public btTypedConstraint {
   void plan(btScalar h);
   const Row& row() const { return row_; }
   /// Dynamic bodies, each once.
-  IndexedSpan<const BodyJacobian> jacobians() const { return {jacobians_.data(), jacobian_count_}; }
+  solver::IndexedSpan<const BodyJacobian> jacobians() const { return {jacobians_.data(), jacobian_count_}; }
   /// Warm-start impulse of the sweeps.
   double warm_impulse() const { return static_cast<double>(warm_impulse_); }
   /// Stores the impulse of the step, for warm starting and the mean force.
@@ -107,4 +107,4 @@ inline bool is_gear(const btTypedConstraint& constraint) {
   return constraint.getConstraintType() == GearConstraint::kType;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Smallest pivot of the scaled matrix. Smaller ones are rounding errors and are raised to it, so that a solve of the
@@ -193,4 +193,4 @@ void JointBlock::finish() const {
   for (int i = 0; i < locked_; ++i) rows_[i].m_appliedImpulse = impulse_[i / 4][i % 4];
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

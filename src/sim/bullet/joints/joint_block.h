@@ -8,7 +8,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/simd.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Bullet on Debian doesn't align its vectors; their fourth float is 0 in rows and bodies.
 inline Float4 to_float4(const btVector3& v) {
@@ -101,4 +101,4 @@ class JointBlock {
   Float4 impulse_[2];
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// A limit gets a row if it is nearer than this plus the distance covered in two steps: rad, m.
@@ -190,7 +190,7 @@ void JointConstraint::set_impulses(const btSolverConstraint* rows, int count) {
   drives_.end_step(step_.h);
 }
 
-void JointConstraint::set_impulses(IndexedSpan<const double> impulses) {
+void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
   for (int r = 0; r < impulses.size() && r < rows_.size(); ++r) {
     const JointRow& row = rows_[r];
     btScalar inverse_mobility = 0;
@@ -256,4 +256,4 @@ btScalar JointConstraint::getParam(int parameter, int axis) const {
   return parameter == BT_CONSTRAINT_STOP_CFM ? s.stop_cfm : s.stop_erp;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

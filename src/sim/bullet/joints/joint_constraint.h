@@ -12,7 +12,7 @@
 #include "sim/bullet/joints/joint_rows.h"
 #include "sim/bullet/joints/joint_warm_start.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// JointPose defines the axes and the order of the angles. Requires IslandSolver. [sim]
 class JointConstraint : public btTypedConstraint {
@@ -75,7 +75,7 @@ class JointConstraint : public btTypedConstraint {
   const JointRows& plan(JointRow* memory);
   const JointRows& rows() const { return rows_; }
   /// Sets the impulses of the planned rows, in their order, once the step is solved.
-  void set_impulses(IndexedSpan<const double> impulses);
+  void set_impulses(solver::IndexedSpan<const double> impulses);
   /// Sets the impulses of the rows just solved, in the order in which getInfo2 wrote them.
   void set_impulses(const btSolverConstraint* rows, int count);
   JointWarmStart& warm_start() { return warm_start_; }
@@ -115,4 +115,4 @@ class JointConstraint : public btTypedConstraint {
   btScalar damping_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

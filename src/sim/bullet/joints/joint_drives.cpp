@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Part of its error that a servo corrects in one step: with a speed limit, and without one.
@@ -200,4 +200,4 @@ void JointDrives::estimate_inertia(const Axis& axis) {
   inertia_estimate_[i] = inertia;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 #include "sim/bullet/joints/joint_pose.h"
 #include "sim/bullet/joints/joint_rows.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// In each substep: begin_step(), plan() for each axis with a drive, end_plan(), store() for each row,
 /// end_step(). [sim]
@@ -79,4 +79,4 @@ class JointDrives {
   float tick_time_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 constexpr double kTurn = 2 * kPi;
@@ -203,4 +203,4 @@ double JointPose::effective_inertia(int axis) const {
   return remainder > 0 ? 1 / remainder : 0;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -8,7 +8,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/joints/axis_settings.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Jacobian of an axis: its rate per velocity of the child (linear, angular_b) and of the parent (-linear, angular_a).
 struct AxisJacobian {
@@ -103,4 +103,4 @@ class JointPose {
   bool own_axis_turns_ = false;  // the own angle can exceed ±pi
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -6,7 +6,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/solver/indexed_array.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 /// Internal step that rows are planned for.
 struct StepTiming {
@@ -69,4 +69,4 @@ class JointRows {
   bool bounded_ = false;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -6,7 +6,7 @@
 
 #include "sim/bullet/joints/axis_settings.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Warm-start factor of locks and motors. On long arms it has the effect of doubling the iterations; from 0.7 on, arms
@@ -39,4 +39,4 @@ void JointWarmStart::begin_step(const JointRows& rows) {
   last_impulse_.fill(0);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

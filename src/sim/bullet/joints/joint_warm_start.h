@@ -6,7 +6,7 @@
 
 #include "sim/bullet/joints/joint_rows.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 
 class JointWarmStart {
  public:
@@ -26,7 +26,7 @@ class JointWarmStart {
   /// decreases at once, and increases or changes of direction within about ten steps.
   const std::array<float, 3>& lock_impulse() const { return lock_impulse_; }
   /// Active set of the last step, for AxisActiveSet.
-  FixedArray<std::uint8_t, 6>& active_set() { return active_set_; }
+  solver::FixedArray<std::uint8_t, 6>& active_set() { return active_set_; }
   /// Energy that the locks of a tree have absorbed and may return, J, >= 0; stored in the tree's first joint.
   double& lock_energy() { return lock_energy_; }
 
@@ -34,8 +34,8 @@ class JointWarmStart {
   std::array<float, 6> last_impulse_{};  // of locks and motors, by axis
   std::array<float, 7> block_impulses_{};
   std::array<float, 3> lock_impulse_{};
-  FixedArray<std::uint8_t, 6> active_set_{};
+  solver::FixedArray<std::uint8_t, 6> active_set_{};
   double lock_energy_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::bullet

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 
 void AxisActiveSet::clear(int capacity) {
   forest.clear(capacity);
@@ -137,4 +137,4 @@ void AxisActiveSet::solve_once(int first, int last) {
   for (int i = first; i < last; ++i) accumulate_node(i);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

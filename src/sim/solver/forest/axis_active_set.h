@@ -9,7 +9,7 @@
 #include "sim/solver/indexed_array.h"
 #include "sim/solver/work_budget.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// A constraint row: rate + softness·impulse = velocity, with the impulse in [lower, upper]. The left side may be
 /// larger while the impulse is at its lower bound, and smaller while it is at its upper bound.
@@ -162,4 +162,4 @@ class AxisActiveSet {
   std::uint64_t factor_version_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 
 #include "sim/solver/forest/axis_active_set.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Tolerance of impulses at bounds, and of rates at a row's velocity, before a state changes.
@@ -323,4 +323,4 @@ int AxisActiveSet::defer_violated(int first, int last) {
   return violated;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

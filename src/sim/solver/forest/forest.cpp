@@ -9,7 +9,7 @@
 
 #include "base/capacity.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Smallest inertia about an axis, relative to that of the body alone.
@@ -133,4 +133,4 @@ void Forest::half_response(TreeLoad a, TreeLoad b, IndexedSpan<double> half) con
 
 int Forest::free_axis_count(int i) const { return node(i).first_free + 6 - std::popcount(node(i).prescribed & 63U); }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -10,7 +10,7 @@
 #include "sim/solver/forest/spatial_algebra.h"
 #include "sim/solver/indexed_array.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// A body and the joint that connects it to its parent. A joint has six axes; each is either prescribed (its rate is
 /// given, its impulse follows) or free (its impulse is given, its rate follows).
@@ -78,4 +78,4 @@ class Forest {
   IndexedArray<TreeNode> nodes_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Ratios of geometric stiffness, times the square of the step, to the moment of inertia. Above the first one, at which
@@ -19,7 +19,7 @@ Sym3 world_inertia(const btRigidBody& body) {
   Sym3 out;
   for (int k = 0; k < 3; ++k) {
     const double moment = 1 / static_cast<double>(inverse[k]);
-    const Vec3 e = from_bt(r.getColumn(k));
+    const Vec3 e = bullet::from_bt(r.getColumn(k));
     out.subtract_outer_product(e, -moment);
   }
   return out;
@@ -40,14 +40,14 @@ Vec3 any_perpendicular(const Vec3& v) {
 
 // Computes the body's motion per rate of each axis, with the other body at rest. Angular axes without rows are chosen
 // to complete the basis. Returns false near a singular pose.
-bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, FixedArray<Spatial, 6>& out) {
+bool motion_axes(const bullet::JointConstraint& joint, const Vec3& arm, double sign, FixedArray<Spatial, 6>& out) {
   unsigned used = 0;
-  for (const JointRow& row : joint.rows()) used |= 1u << row.axis;
+  for (const bullet::JointRow& row : joint.rows()) used |= 1u << row.axis;
   FixedArray<Vec3, 3> dual{Vec3(0), Vec3(0), Vec3(0)};
   int known_count = 0;
   for (int i = 0; i < 3; ++i) {
     if ((used >> (3 + i) & 1) == 0) continue;
-    dual[i] = from_bt(joint.pose().dual_axis(i));
+    dual[i] = bullet::from_bt(joint.pose().dual_axis(i));
     known_count++;
   }
   for (int i = 0; i < 3; ++i) {
@@ -70,14 +70,14 @@ bool motion_axes(const JointConstraint& joint, const Vec3& arm, double sign, Fix
   if (!(std::fabs(volume) > 1e-3 * length_product)) return false;
   for (int i = 0; i < 3; ++i) {
     const Vec3 e = glm::cross(dual[(i + 1) % 3], dual[(i + 2) % 3]) * (sign / volume);
-    out[i] = {from_bt(joint.pose().linear_axis(i)) * sign, Vec3(0)};
+    out[i] = {bullet::from_bt(joint.pose().linear_axis(i)) * sign, Vec3(0)};
     out[3 + i] = {glm::cross(arm, e), e};
   }
   return true;
 }
 
-AxisRow::Kind row_kind_of(const JointRow& row) {
-  if (row.kind == JointRow::Kind::motor) return AxisRow::motor;
+AxisRow::Kind row_kind_of(const bullet::JointRow& row) {
+  if (row.kind == bullet::JointRow::Kind::motor) return AxisRow::motor;
   const bool below = static_cast<double>(row.lower) > -AxisRow::kInfinity;
   const bool above = static_cast<double>(row.upper) < AxisRow::kInfinity;
   if (below && above) return AxisRow::friction;
@@ -95,9 +95,10 @@ void add_geometric_inertia(TreeNode& node, const Island& island, int body, Index
   for (const int i : links) {
     const Island::Link& link = island.links[i];
     const bool child = link.body_b == body;
-    const Vec3 arm = from_bt(child ? link.joint->pose().arm_b() : link.joint->pose().arm_a());
+    const Vec3 arm = bullet::from_bt(child ? link.joint->pose().arm_b() : link.joint->pose().arm_a());
     // lock_impulse() is an impulse: times h it is the stiffness times the square of the step
-    const double stiffness = (child ? island.h : -island.h) * glm::dot(from_bt(link.joint->lock_impulse()), arm);
+    const double stiffness =
+        (child ? island.h : -island.h) * glm::dot(bullet::from_bt(link.joint->lock_impulse()), arm);
     const double length = glm::length(arm);
     if (!(stiffness > kMaxStiffnessRatio * mean_moment && length > 0)) continue;
     const double added = stiffness / kTargetStiffnessRatio - mean_moment;
@@ -121,9 +122,9 @@ void make_floating(TreeNode& node) {
   }
 }
 
-bool attach(TreeNode& node, const JointConstraint& joint, bool forward) {
-  const Vec3 arm_a = from_bt(joint.pose().arm_a());
-  const Vec3 arm_b = from_bt(joint.pose().arm_b());
+bool attach(TreeNode& node, const bullet::JointConstraint& joint, bool forward) {
+  const Vec3 arm_a = bullet::from_bt(joint.pose().arm_a());
+  const Vec3 arm_b = bullet::from_bt(joint.pose().arm_b());
   node.offset = forward ? arm_a - arm_b : arm_b - arm_a;
   return motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, node.axis);
 }
@@ -249,26 +250,26 @@ bool SpanningTrees::add_node(int body, int parent, int link) {
 
 // Adds the rows of a joint to the last node. Present rates include the velocity changes before the solve.
 void SpanningTrees::add_rows(const Island::Link& link) {
-  JointConstraint& joint = *link.joint;
+  bullet::JointConstraint& joint = *link.joint;
   const auto current_velocity = [&](int id) {
     const btSolverBody& b = island_.body(id);
     return island_.velocity(id) + make_spatial(b.m_deltaLinearVelocity, b.m_deltaAngularVelocity);
   };
   const Spatial a = current_velocity(link.body_a);
   const Spatial b = current_velocity(link.body_b);
-  const Vec3 drift =
-      translated(b, from_bt(joint.pose().arm_b())).linear - translated(a, from_bt(joint.pose().arm_a())).linear;
+  const Vec3 drift = translated(b, bullet::from_bt(joint.pose().arm_b())).linear -
+                     translated(a, bullet::from_bt(joint.pose().arm_a())).linear;
   const Vec3 spin = b.angular - a.angular;
   FixedArray<double, 6> rates{};
   for (int k = 0; k < 3; ++k) {
-    rates[k] = glm::dot(from_bt(joint.pose().linear_axis(k)), drift);
-    rates[3 + k] = glm::dot(from_bt(joint.pose().dual_axis(k)), spin);
+    rates[k] = glm::dot(bullet::from_bt(joint.pose().linear_axis(k)), drift);
+    rates[3 + k] = glm::dot(bullet::from_bt(joint.pose().dual_axis(k)), spin);
   }
-  for (const JointRow& row : joint.rows()) {
+  for (const bullet::JointRow& row : joint.rows()) {
     axes.add(row.axis, static_cast<double>(row.velocity), static_cast<double>(row.softness),
              static_cast<double>(row.lower), static_cast<double>(row.upper), row_kind_of(row));
   }
   axes.end_node(rates, joint.warm_start().active_set());
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

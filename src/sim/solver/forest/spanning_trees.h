@@ -5,7 +5,7 @@
 #include "sim/solver/forest/axis_active_set.h"
 #include "sim/solver/island.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// A tree: the nodes first .. last - 1.
 struct Tree {
@@ -82,6 +82,6 @@ SpatialInertia inertia_of(const btRigidBody& body);
 void make_floating(TreeNode& node);
 /// Attaches the node to the joint at the present poses. `forward`: the node is the joint's child. Returns false at a
 /// singular pose.
-bool attach(TreeNode& node, const JointConstraint& joint, bool forward);
+bool attach(TreeNode& node, const bullet::JointConstraint& joint, bool forward);
 
-}  // namespace limber
+}  // namespace limber::sim::solver

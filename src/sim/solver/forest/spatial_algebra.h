@@ -4,7 +4,7 @@
 
 #include "base/vec.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// A velocity (m/s, rad/s), or an impulse (N·s, N·m·s).
 struct Spatial {
@@ -119,4 +119,4 @@ inline void SpatialInertia::add_translated(const SpatialInertia& other, const Ve
   moment.yz += p[2].y + q[1].z;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// After kTrialExchanges, pivoting is aborted if more than this fraction of the rows is still violated: it would rarely
@@ -143,4 +143,4 @@ bool BlockPivoting::solve(int max_exchanges) {
   return false;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -6,7 +6,7 @@
 #include "sim/solver/lcp/dense_lu.h"
 #include "sim/solver/lcp/lcp_state.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Exchanges rows between free and bounded and solves for all free rows at once. The impulse of a friction row at a
 /// bound is tied to that of its normal (a Newton step on both together), unless friction's bounds are frozen. [sim]
@@ -50,4 +50,4 @@ class BlockPivoting {
   bool factored_ = false;  // the factor belongs to the present statuses
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

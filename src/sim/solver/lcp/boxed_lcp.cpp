@@ -1,7 +1,7 @@
 // BoxedLcp: the order of the algorithms.
 #include "sim/solver/lcp/boxed_lcp.h"
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 constexpr int kMaxFirstExchanges = 5;  // from the initial statuses
@@ -80,4 +80,4 @@ double BoxedLcp::refine_friction() {
   return violation;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -6,7 +6,7 @@
 #include "sim/solver/lcp/lemke_path.h"
 #include "sim/solver/lcp/staggered_friction.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// reset(), set the rows and responses, then solve(). [sim]
 class BoxedLcp : private LcpState {
@@ -55,4 +55,4 @@ class BoxedLcp : private LcpState {
   LemkePath path_{*this, pivoting_};
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 #include <immintrin.h>
 #endif
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 using dense::Double2;
@@ -166,4 +166,4 @@ const DenseKernels& DenseKernels::widest() {
 
 const DenseKernels& dense::kernels = DenseKernels::widest();
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <span>
 
-namespace limber {
+namespace limber::sim::solver {
 
 struct ScaledVector {
   const double* values;
@@ -86,4 +86,4 @@ inline double dot_product(const double* a, const double* b, int count) {
   return dense::kernels.dot_product(a, b, count);
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

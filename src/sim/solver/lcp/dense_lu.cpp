@@ -7,7 +7,7 @@
 
 #include "sim/solver/lcp/dense_kernels.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 void DenseLu::reset(int size) {
   size_ = size;
@@ -56,4 +56,4 @@ void DenseLu::solve(IndexedSpan<double> x) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -5,7 +5,7 @@
 #include "sim/solver/indexed_array.h"
 #include "sim/solver/work_budget.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// reset(), set the elements, factor(), then solve() for any number of right-hand sides. [sim]
 class DenseLu {
@@ -28,4 +28,4 @@ class DenseLu {
   int width_ = 0;  // elements per row, even
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -7,7 +7,7 @@
 #include "base/capacity.h"
 #include "sim/solver/lcp/dense_kernels.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 IncrementalLdlt::IncrementalLdlt(WorkBudget& budget, int usual_rows) : budget_(budget) {
   factor_.clear_and_reserve(usual_rows * usual_rows);
@@ -79,4 +79,4 @@ void IncrementalLdlt::solve(IndexedSpan<double> rhs) const {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -8,7 +8,7 @@
 
 #include "sim/solver/work_budget.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Golub and Van Loan, Matrix Computations, section 4.1; without pivoting, since the matrix is positive definite. [sim]
 class IncrementalLdlt {
@@ -40,4 +40,4 @@ class IncrementalLdlt {
   int factored_count_ = 0;                // number of leading rows_ that are factored
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

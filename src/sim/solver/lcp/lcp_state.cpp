@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Up to this number of rows nothing is allocated.
@@ -182,4 +182,4 @@ void LcpState::restore_impulses(const IndexedArray<double>& saved) {
   flush_changes();
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

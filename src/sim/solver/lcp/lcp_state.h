@@ -6,7 +6,7 @@
 #include "sim/solver/lcp/dense_kernels.h"
 #include "sim/solver/work_budget.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// The residual of a row is its target rate - (response·impulses). A row satisfies its complementarity condition if its
 /// residual is 0 within the bounds, <= 0 at the lower and >= 0 at the upper bound. [sim]
@@ -84,4 +84,4 @@ class LcpState {
   IndexedArray<double> center_;          // proximal point: impulses that the softness pulls to
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Status changes per row before the path is aborted.
@@ -203,4 +203,4 @@ bool LemkePath::follow(int max_changes) {
   return false;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 
 #include "sim/solver/lcp/block_pivoting.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Follows the solution along a path from a problem that the present impulses solve to the given one, from one change
 /// of a row's status to the next. A covering vector makes the difference between the two problems. [sim]
@@ -47,4 +47,4 @@ class LemkePath {
   IndexedArray<double> saved_impulses_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 constexpr int kMaxTiedExchanges = 4;
@@ -62,4 +62,4 @@ bool StaggeredFriction::solve() {
   return true;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 
 #include "sim/solver/lcp/subspace_descent.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// Each round is a convex problem, which always has a solution; pivoting with tied friction starts from it. [sim]
 class StaggeredFriction {
@@ -27,4 +27,4 @@ class StaggeredFriction {
   IndexedArray<LcpState::Status> saved_status_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace limber {
+namespace limber::sim::solver {
 namespace {
 
 /// Up to this number of rows nothing is allocated.
@@ -141,4 +141,4 @@ int SubspaceDescent::release_rows(bool only_one) {
   return released;
 }
 
-}  // namespace limber
+}  // namespace limber::sim::solver

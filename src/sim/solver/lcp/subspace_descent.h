@@ -6,7 +6,7 @@
 #include "sim/solver/lcp/block_pivoting.h"
 #include "sim/solver/lcp/incremental_ldlt.h"
 
-namespace limber {
+namespace limber::sim::solver {
 
 /// An active-set descent: steps to the minimum of the free rows, projected to the bounds if that decreases the energy,
 /// then releases rows from their bounds. Each step decreases the energy. [sim]
@@ -37,4 +37,4 @@ class SubspaceDescent {
   IndexedArray<double> residuals_before_;
 };
 
-}  // namespace limber
+}  // namespace limber::sim::solver

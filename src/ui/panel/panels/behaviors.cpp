@@ -15,7 +15,7 @@
 #include "ui/panel/widgets/behavior_entries.h"
 #include "ui/panel/widgets/icons.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -227,7 +227,7 @@ class BehaviorsPanel : public Panel {
   int queued_moves_ = 0;                 // queued moves: negative earlier, positive later
   std::uint64_t last_move_request_ = 0;  // snapshot request that follows the last move
   std::shared_ptr<const TreeSnapshot> tree_;
-  std::shared_ptr<const ValueSnapshot> snapshot_;
+  std::shared_ptr<const engine::ValueSnapshot> snapshot_;
   std::uint32_t body_ = 0;
   std::vector<BehaviorEntry> entries_;
   std::string type_;
@@ -241,4 +241,4 @@ class BehaviorsPanel : public Panel {
                                                                                    .order = 2});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

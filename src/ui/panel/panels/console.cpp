@@ -13,7 +13,7 @@
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -136,8 +136,8 @@ class ConsolePanel : public Panel {
     if (data->EventFlag == ImGuiInputTextFlags_CallbackHistory) self.browse_history(*data);
     if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) {
       self.completed_text_.assign(data->Buf, static_cast<std::size_t>(data->CursorPos));
-      self.completion_request_ =
-          self.evaluator_.request(self.context_->link, self.completed_text_, EvaluationRequest::Action::complete);
+      self.completion_request_ = self.evaluator_.request(self.context_->link, self.completed_text_,
+                                                         engine::EvaluationRequest::Action::complete);
     }
     if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) self.insert_completion(*data);
     return 0;
@@ -190,4 +190,4 @@ class ConsolePanel : public Panel {
                                                                                .order = 0});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

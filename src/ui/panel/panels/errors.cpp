@@ -8,7 +8,7 @@
 #include "ui/panel/widgets/error_list.h"
 #include "ui/panel/widgets/icons.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -70,4 +70,4 @@ class ErrorsPanel : public Panel {
                                                                              .order = 1});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

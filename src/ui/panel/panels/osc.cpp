@@ -11,7 +11,7 @@
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -27,11 +27,11 @@ class OscPanel : public Panel {
     hidden_frames_ = 0;
     if (watch_ == nullptr) {
       last_line_ = context.link.message_log.newest();
-      watch_ = std::make_unique<MessageLog::Watch>(context.link.message_log);
+      watch_ = std::make_unique<engine::MessageLog::Watch>(context.link.message_log);
     }
     draw_counters(context);
     search_field(context.names, "osc.filter", "Filter addresses", filter_, -1);
-    for (const LoggedMessage& line : context.link.message_log.since(last_line_)) add_line(line);
+    for (const engine::LoggedMessage& line : context.link.message_log.since(last_line_)) add_line(line);
     if (!ImGui::BeginChild("##lines", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     ImGui::PushFont(context.fonts.code);
     ImGuiListClipper clipper;
@@ -62,7 +62,7 @@ class OscPanel : public Panel {
   };
 
   static void draw_counters(GuiContext& context) {
-    const Counters& c = context.link.counters;
+    const engine::Counters& c = context.link.counters;
     const std::uint64_t lost = c.dropped.load() + c.dropped_kernel.load();
     const std::uint64_t rejected = c.malformed.load() + c.denied.load() + c.unknown.load() + c.refused.load();
     const std::string texts[] = {fmt::format("In {}", c.received.load()), fmt::format("Out {}", c.sent.load()),
@@ -84,7 +84,7 @@ class OscPanel : public Panel {
                         static_cast<unsigned long long>(c.dropped_kernel.load()));
   }
 
-  void add_line(const LoggedMessage& line) {
+  void add_line(const engine::LoggedMessage& line) {
     last_line_ = line.number;
     if (!filter_.empty() && line.message.address.find(filter_) == std::string::npos) return;
     if (shown_addresses_.size() > kMonitorAddresses) shown_addresses_.clear();
@@ -96,7 +96,7 @@ class OscPanel : public Panel {
     }
     entry.shown = line.time;
     entry.number = ++line_count_;
-    lines_.push_back({line.incoming, message_text(line.message), 0});
+    lines_.push_back({line.incoming, engine::message_text(line.message), 0});
     while (lines_.size() > kMonitorLines) {
       lines_.pop_front();
       removed_count_++;
@@ -116,7 +116,7 @@ class OscPanel : public Panel {
     ImGui::TextDisabled("\u00d7%llu", static_cast<unsigned long long>(line.repeats) + 1);
   }
 
-  std::unique_ptr<MessageLog::Watch> watch_;
+  std::unique_ptr<engine::MessageLog::Watch> watch_;
   int hidden_frames_ = 0;  // number of frames since the monitor was last drawn
   std::uint64_t last_line_ = 0;
   std::string filter_;
@@ -133,4 +133,4 @@ class OscPanel : public Panel {
                                                                        .order = 2});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

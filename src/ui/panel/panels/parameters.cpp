@@ -12,7 +12,7 @@
 #include "ui/panel/widgets/property_search.h"
 #include "ui/panel/widgets/property_widget.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -144,4 +144,4 @@ class ParametersPanel : public Panel {
                                                                                      .order = 0});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/samples.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -19,12 +19,13 @@ constexpr double kGraphUpdateInterval = 0.25;  // s between updates of the numbe
 
 struct Phase {
   const char* name;
-  double PhaseTimes::*time;
+  double engine::PhaseTimes::*time;
 };
-constexpr std::array kPhases = {Phase{"Commands", &PhaseTimes::commands},   Phase{"Scripts", &PhaseTimes::scripts},
-                                Phase{"Behaviors", &PhaseTimes::behaviors}, Phase{"Callbacks", &PhaseTimes::callbacks},
-                                Phase{"Physics", &PhaseTimes::physics},     Phase{"Readouts", &PhaseTimes::readouts},
-                                Phase{"Snapshot", &PhaseTimes::snapshot},   Phase{"GC", &PhaseTimes::gc}};
+constexpr std::array kPhases = {
+    Phase{"Commands", &engine::PhaseTimes::commands},   Phase{"Scripts", &engine::PhaseTimes::scripts},
+    Phase{"Behaviors", &engine::PhaseTimes::behaviors}, Phase{"Callbacks", &engine::PhaseTimes::callbacks},
+    Phase{"Physics", &engine::PhaseTimes::physics},     Phase{"Readouts", &engine::PhaseTimes::readouts},
+    Phase{"Snapshot", &engine::PhaseTimes::snapshot},   Phase{"GC", &engine::PhaseTimes::gc}};
 
 class PerformancePanel : public Panel {
  public:
@@ -119,7 +120,7 @@ class PerformancePanel : public Panel {
     draw(other, second, half);
   }
 
-  std::shared_ptr<const Snapshot> last_;
+  std::shared_ptr<const engine::Snapshot> last_;
   Samples ticks_{kGraphTicks};
   double mean_tick_ = 0;
   double max_ = 0;
@@ -137,4 +138,4 @@ class PerformancePanel : public Panel {
                                            .order = 3});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -13,7 +13,7 @@
 #include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/samples.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -126,4 +126,4 @@ class PlotsPanel : public Panel {
                                                                            .order = 4});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -11,7 +11,7 @@
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/number_slider.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -117,7 +117,7 @@ class PresetsPanel : public Panel {
   }
 
   static void draw_easing(GuiContext& context, float width) {
-    const std::vector<std::string> names = easings();
+    const std::vector<std::string> names = engine::easings();
     const auto selected = std::min(static_cast<std::size_t>(std::max(context.settings.easing, 0)), names.size() - 1);
     ImGui::SetNextItemWidth(width);
     const bool open = ImGui::BeginCombo("##easing", names[selected].c_str());
@@ -165,4 +165,4 @@ class PresetsPanel : public Panel {
     {.name = "presets", .title = "", .wide_slot = PanelSlot::top, .compact_slot = PanelSlot::top, .order = 1});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -7,7 +7,7 @@
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/tree_list.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -115,4 +115,4 @@ class ScenePanel : public Panel {
     {.name = "scene", .title = "Scene", .wide_slot = PanelSlot::left, .compact_slot = PanelSlot::right, .order = 1});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

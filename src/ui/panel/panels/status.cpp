@@ -12,7 +12,7 @@
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -44,7 +44,7 @@ class StatusPanel : public Panel {
     const float indicator = ImGui::GetFontSize() * 0.9F;
     const bool show_names = wide || compact;
     float width = ImGui::CalcTextSize(text.c_str()).x;
-    const std::vector<HealthEntry> losses = context.link.health.entries();
+    const std::vector<engine::HealthEntry> losses = context.link.health.entries();
     const std::string lost = losses.empty() ? "" : fmt::format("{}", losses.size());
     if (!losses.empty()) width += indicator + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
     for (const char* const name : kNames) width += indicator + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
@@ -91,10 +91,10 @@ class StatusPanel : public Panel {
                 ? Indicator{kNames[2], ThemeColor::red, true, fmt::format("Scripts: {} errors, see Errors", errors)}
                 : Indicator{kNames[2], ThemeColor::green, false, "Scripts: no errors"}};
   }
-  static std::string counts_text(const Snapshot& snapshot) {
+  static std::string counts_text(const engine::Snapshot& snapshot) {
     if (snapshot.body_list == nullptr) return {};
     std::size_t parts = 0;
-    for (const BodyEntry& body : snapshot.body_list->bodies) parts += body.part_offsets.size();
+    for (const engine::BodyEntry& body : snapshot.body_list->bodies) parts += body.part_offsets.size();
     return fmt::format("   {} bodies   {} parts", snapshot.body_list->bodies.size(), parts);
   }
   static void draw_indicator(float size, const Indicator& indicator, bool show_name) {
@@ -115,8 +115,8 @@ class StatusPanel : public Panel {
                    indicator.name);
   }
   // A warning sign and the number of kinds of losses; a click copies the list.
-  static void draw_losses(GuiContext& context, const std::vector<HealthEntry>& losses, const std::string& number,
-                          float size) {
+  static void draw_losses(GuiContext& context, const std::vector<engine::HealthEntry>& losses,
+                          const std::string& number, float size) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float high = ImGui::GetFrameHeight();
     if (ImGui::InvisibleButton("##health", {size + ImGui::CalcTextSize(number.c_str()).x, high}))
@@ -124,9 +124,9 @@ class StatusPanel : public Panel {
     context.names.add("status.health");
     if (ImGui::IsItemHovered()) {
       ImGui::BeginTooltip();
-      for (const HealthEntry& entry : losses)
+      for (const engine::HealthEntry& entry : losses)
         ImGui::Text("%llu  %s (since %s)", static_cast<unsigned long long>(entry.count), entry.doc,
-                    time_of_day(entry.since).c_str());
+                    engine::time_of_day(entry.since).c_str());
       ImGui::TextDisabled("Click to copy this list");
       ImGui::EndTooltip();
     }
@@ -146,4 +146,4 @@ class StatusPanel : public Panel {
     {.name = "status", .title = "", .wide_slot = PanelSlot::top, .compact_slot = PanelSlot::top, .order = 2});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -12,7 +12,7 @@
 #include "ui/panel/widgets/property_widget.h"
 #include "ui/panel/widgets/time_widgets.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -163,4 +163,4 @@ class TimePanel : public Panel {
     {.name = "time", .title = "", .wide_slot = PanelSlot::top, .compact_slot = PanelSlot::top, .order = 3});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

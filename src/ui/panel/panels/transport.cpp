@@ -6,7 +6,7 @@
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/time_widgets.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -80,4 +80,4 @@ class TransportPanel : public Panel {
     {.name = "transport", .title = "", .wide_slot = PanelSlot::top, .compact_slot = PanelSlot::top, .order = 0});
 
 }  // namespace
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -22,7 +22,7 @@ std::uint32_t find_child(const TreeSnapshot& tree, std::uint32_t node, std::stri
   return found;
 }
 
-const double* numbers_of(const ValueSnapshot& snapshot, std::uint32_t node, std::string_view property_name) {
+const double* numbers_of(const engine::ValueSnapshot& snapshot, std::uint32_t node, std::string_view property_name) {
   const Property* const property = snapshot.tree->nodes()[node].table->find(property_name);
   return property == nullptr ? nullptr : snapshot.value(snapshot.tree->location({node, property})).numbers;
 }
@@ -72,7 +72,7 @@ std::vector<BehaviorEntry> behavior_entries(const TreeSnapshot& tree, std::uint3
 
 namespace {
 
-int position_of(const ValueSnapshot& snapshot, std::uint32_t node) {
+int position_of(const engine::ValueSnapshot& snapshot, std::uint32_t node) {
   const double* const position = numbers_of(snapshot, node, "place");
   return position == nullptr ? 0 : static_cast<int>(position[0]);
 }
@@ -83,7 +83,7 @@ void sort_entries(std::vector<BehaviorEntry>& entries) {
   std::ranges::stable_sort(entries, {}, &BehaviorEntry::position);
 }
 
-std::vector<Message> move_past(const ValueSnapshot& snapshot, const BehaviorEntry& entry,
+std::vector<Message> move_past(const engine::ValueSnapshot& snapshot, const BehaviorEntry& entry,
                                const BehaviorEntry& neighbor) {
   const auto message = [](const std::string& path, int position) {
     return Message{path + "/place", {Arg::of(static_cast<double>(position))}};
@@ -107,7 +107,7 @@ std::vector<Message> move_past(const ValueSnapshot& snapshot, const BehaviorEntr
   return messages;
 }
 
-void update_entry(const ValueSnapshot& snapshot, BehaviorEntry& entry) {
+void update_entry(const engine::ValueSnapshot& snapshot, BehaviorEntry& entry) {
   entry.active = 0;
   entry.position = entry.nodes.empty() ? 0 : position_of(snapshot, entry.nodes.front());
   entry.time = 0;
@@ -121,4 +121,4 @@ void update_entry(const ValueSnapshot& snapshot, BehaviorEntry& entry) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -8,7 +8,7 @@
 
 #include "engine/output/value_snapshot.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// One line of the list.
 struct BehaviorEntry {
@@ -29,12 +29,12 @@ struct BehaviorEntry {
 /// a group created are represented by the group.
 std::vector<BehaviorEntry> behavior_entries(const TreeSnapshot& tree, std::uint32_t body);
 /// Updates the state of an entry from a value snapshot.
-void update_entry(const ValueSnapshot& snapshot, BehaviorEntry& entry);
+void update_entry(const engine::ValueSnapshot& snapshot, BehaviorEntry& entry);
 /// Sorts the entries by their execution order.
 void sort_entries(std::vector<BehaviorEntry>& entries);
 /// Returns the messages that move an entry just past its neighbor in the execution order, upwards or downwards. A
 /// single message for all bodies if the position is the same on all of them, otherwise one for each.
-std::vector<Message> move_past(const ValueSnapshot& snapshot, const BehaviorEntry& entry,
+std::vector<Message> move_past(const engine::ValueSnapshot& snapshot, const BehaviorEntry& entry,
                                const BehaviorEntry& neighbor);
 
-}  // namespace limber
+}  // namespace limber::panel

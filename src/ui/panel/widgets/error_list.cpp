@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace limber {
+namespace limber::panel {
 
 ErrorEntry parse_error_line(const LogLine& line) {
   ErrorEntry entry{line, {}, {}};
@@ -46,4 +46,4 @@ std::size_t ErrorList::error_count() const {
                                                 [](const ErrorEntry& f) { return f.line.level == LogLevel::error; }));
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -7,7 +7,7 @@
 
 #include "base/log/log.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// One warning or error.
 struct ErrorEntry {
@@ -35,4 +35,4 @@ class ErrorList {
   std::deque<ErrorEntry> entries_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

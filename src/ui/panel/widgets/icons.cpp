@@ -10,7 +10,7 @@
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/widget_names.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -165,4 +165,4 @@ bool search_field(WidgetNames& names, const char* name, const char* hint, std::s
   return changed;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

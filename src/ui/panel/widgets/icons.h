@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace limber {
+namespace limber::panel {
 
 class WidgetNames;
 
@@ -41,4 +41,4 @@ bool icon_button(WidgetNames& names, const char* name, Icon icon, const char* to
 /// changed.
 bool search_field(WidgetNames& names, const char* name, const char* hint, std::string& text, float width);
 
-}  // namespace limber
+}  // namespace limber::panel

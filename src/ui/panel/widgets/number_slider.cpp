@@ -11,7 +11,7 @@
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/theme.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -149,4 +149,4 @@ bool number_slider(const char* id_text, const SliderRange& range, float width, d
   return changed;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

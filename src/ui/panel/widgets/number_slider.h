@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace limber {
+namespace limber::panel {
 
 /// Range and scale of a slider.
 struct SliderRange {
@@ -29,4 +29,4 @@ std::string number_label(double value, bool integer);
 /// z; -1: none.
 bool number_slider(const char* id, const SliderRange& range, float width, double& value, int axis = -1);
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -6,7 +6,7 @@
 
 #include "base/text.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -66,4 +66,4 @@ void PropertySearch::advance(const std::shared_ptr<const TreeSnapshot>& tree) {
   }
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 
 #include "ui/panel/gui_context.h"
 
-namespace limber {
+namespace limber::panel {
 
 class PropertySearch {
  public:
@@ -36,4 +36,4 @@ class PropertySearch {
   std::vector<PropertyHandle> found_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

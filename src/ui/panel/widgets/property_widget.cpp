@@ -16,7 +16,7 @@
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/number_slider.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -327,4 +327,4 @@ void property_line(GuiContext& context, const PropertyHandle& handle, const Prop
   ImGui::PopID();
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -7,7 +7,7 @@
 
 #include "ui/panel/gui_context.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// Options of a property's line.
 struct PropertyLineOptions {
@@ -32,4 +32,4 @@ std::string property_label(const Property& property);
 /// Adds a tooltip to the last item (documentation, unit, range, default, address) and a context menu.
 void property_hint(GuiContext& context, const PropertyHandle& handle);
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -7,7 +7,7 @@
 
 #include "ui/panel/pending_values.h"
 
-namespace limber {
+namespace limber::panel {
 
 class Samples {
  public:
@@ -33,4 +33,4 @@ class Samples {
   std::size_t max_size_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

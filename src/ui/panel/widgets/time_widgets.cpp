@@ -12,7 +12,7 @@
 
 #include "ui/panel/theme.h"
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -63,4 +63,4 @@ double history_bar(const char* id, const HistoryRange& range, float width, doubl
   return back > kMinRewind ? back : 0;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace limber {
+namespace limber::panel {
 
 /// Returns minutes and seconds, "01:23.45"; hundredths are truncated, not rounded.
 std::string clock_text(double seconds);
@@ -18,4 +18,4 @@ struct HistoryRange {
 /// otherwise 0. `dragged_back` is the dragged time in s; the caller stores it between frames.
 double history_bar(const char* id, const HistoryRange& range, float width, double& dragged_back);
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -5,7 +5,7 @@
 #include <array>
 #include <cctype>
 
-namespace limber {
+namespace limber::panel {
 
 namespace {
 
@@ -137,4 +137,4 @@ void TreeList::reveal(std::uint32_t node) {
   dirty_ = true;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -12,7 +12,7 @@
 
 #include "properties/tree_snapshot.h"
 
-namespace limber {
+namespace limber::panel {
 
 /// [main]
 class TreeList {
@@ -48,4 +48,4 @@ class TreeList {
   std::vector<Line> lines_;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -6,7 +6,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-namespace limber {
+namespace limber::panel {
 
 void WidgetNames::add(std::string_view name) {
   if (count_ == widgets_.size()) widgets_.emplace_back();
@@ -32,4 +32,4 @@ const NamedWidget* WidgetNames::find(std::string_view name) const {
   return nullptr;
 }
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -9,7 +9,7 @@
 
 #include "ui/panel/layout.h"
 
-namespace limber {
+namespace limber::panel {
 
 struct NamedWidget {
   std::string name;
@@ -35,4 +35,4 @@ class WidgetNames {
   std::size_t count_ = 0;
 };
 
-}  // namespace limber
+}  // namespace limber::panel

@@ -7,7 +7,7 @@
 #include "sim/collision/contact_friction.h"
 #include "sim/collision/dispatcher.h"
 
-namespace limber {
+namespace limber::sim::bullet {
 namespace {
 
 /// Prefetch distances, in manifolds: of their ends, then of the points and bodies that these refer to.
@@ -45,7 +45,8 @@ void add_external_torque(btSolverConstraint& row, const btSolverBody& a, const b
 // Makes friction across the slip viscous, since it turns with the slip: the impulse per lateral speed is
 // friction·normal impulse/slip. If the contact did not press in the previous step, the normal impulse is unknown and
 // the row remains hard.
-void add_viscous_friction(btSolverConstraint& across, const FrictionFrame& frame, btScalar last_normal_impulse) {
+void add_viscous_friction(btSolverConstraint& across, const collision::FrictionFrame& frame,
+                          btScalar last_normal_impulse) {
   across.m_cfm = 0;
   const btScalar max_impulse = frame.friction * last_normal_impulse;
   if (!(frame.speed > 0 && max_impulse > 0)) return;
@@ -57,10 +58,10 @@ void add_viscous_friction(btSolverConstraint& across, const FrictionFrame& frame
 
 void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
   for (int i = 0; i < count; ++i) {
-    if (i + kEndsAhead < count) prefetch_end(*manifolds[i + kEndsAhead]);
+    if (i + kEndsAhead < count) collision::prefetch_end(*manifolds[i + kEndsAhead]);
     if (i + kPointsAhead < count) {
       const btPersistentManifold& next = *manifolds[i + kPointsAhead];
-      prefetch_points(next);
+      collision::prefetch_points(next);
       prefetch(next.getBody0(), sizeof(btRigidBody));
       prefetch(next.getBody1(), sizeof(btRigidBody));
     }
@@ -93,7 +94,7 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
     normal.m_cfm += kNormalSoftness;
     normal.m_frictionIndex = m_tmpSolverContactFrictionConstraintPool.size();
 
-    const FrictionFrame frame = sliding_frame(
+    const collision::FrictionFrame frame = collision::sliding_frame(
         point, *object_a, *object_b, current_motion(a).velocity_at(arm_a) - current_motion(b).velocity_at(arm_b),
         expected_motion(a).velocity_at(arm_a) - expected_motion(b).velocity_at(arm_b));
     point.m_lateralFrictionDir1 = frame.along;
@@ -105,7 +106,8 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
       row.m_lowerLimit = -frame.friction;
       row.m_upperLimit = frame.friction;
       add_external_torque(row, a, b);
-      row.m_overrideNumSolverIterations = axis == &point.m_lateralFrictionDir1 ? friction_along : friction_across;
+      row.m_overrideNumSolverIterations =
+          axis == &point.m_lateralFrictionDir1 ? collision::friction_along : collision::friction_across;
       if (axis == &point.m_lateralFrictionDir2) add_viscous_friction(row, frame, last_normal_impulse);
     }
     convert_rolling(point, index, id_a, id_b, last_normal_impulse);
@@ -114,7 +116,7 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
 
 void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b,
                                    btScalar last_normal_impulse) {
-  const auto add = [&](const btVector3& axis, btScalar friction, FrictionRow kind) -> btSolverConstraint& {
+  const auto add = [&](const btVector3& axis, btScalar friction, collision::FrictionRow kind) -> btSolverConstraint& {
     btSolverConstraint& row =
         addTorsionalFrictionConstraint(axis, id_a, id_b, contact, point, friction, axis, axis, nullptr, nullptr, 1);
     row.m_overrideNumSolverIterations = kind;
@@ -122,15 +124,16 @@ void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a
     return row;
   };
   if (point.m_combinedSpinningFriction > 0) {
-    add(point.m_normalWorldOnB, point.m_combinedSpinningFriction, friction_spin);
+    add(point.m_normalWorldOnB, point.m_combinedSpinningFriction, collision::friction_spin);
   }
   if (!(point.m_combinedRollingFriction > 0)) return;
   const btSolverBody& a = m_tmpSolverBodyPool[id_a];
   const btSolverBody& b = m_tmpSolverBodyPool[id_b];
-  const FrictionFrame frame = rolling_frame(point, current_motion(a).angular - current_motion(b).angular,
-                                            expected_motion(a).angular - expected_motion(b).angular);
-  add(frame.along, frame.friction, friction_along);
-  add_viscous_friction(add(frame.across, frame.friction, friction_across), frame, last_normal_impulse);
+  const collision::FrictionFrame frame =
+      collision::rolling_frame(point, current_motion(a).angular - current_motion(b).angular,
+                               expected_motion(a).angular - expected_motion(b).angular);
+  add(frame.along, frame.friction, collision::friction_along);
+  add_viscous_friction(add(frame.across, frame.friction, collision::friction_across), frame, last_normal_impulse);
 }
 
 // Sweeps rolling friction with both directions projected onto a disc; spinning friction separately.
@@ -158,11 +161,11 @@ btScalar IslandSolver::sweep_rolling() {
     if (!(normal_impulse > 0)) continue;
     const btScalar max_impulse = row.m_friction * normal_impulse;
     const btScalar first = row.m_appliedImpulse + unclamped_change(row);
-    if (row.m_overrideNumSolverIterations == friction_spin) {
+    if (row.m_overrideNumSolverIterations == collision::friction_spin) {
       set_impulse(row, std::clamp(first, -max_impulse, max_impulse));
       continue;
     }
-    if (row.m_overrideNumSolverIterations != friction_along) continue;
+    if (row.m_overrideNumSolverIterations != collision::friction_along) continue;
     btSolverConstraint& across = rows[i + 1];
     const btScalar second = across.m_appliedImpulse + unclamped_change(across);
     const btScalar length = fixed::hypotf(first, second);
@@ -177,12 +180,12 @@ btScalar IslandSolver::sweep_rolling() {
 void IslandSolver::save_rolling_friction() {
   const btConstraintArray& rows = m_tmpSolverContactRollingFrictionConstraintPool;
   for (int i = 0; i + 1 < rows.size(); ++i) {
-    if (rows[i].m_overrideNumSolverIterations != friction_along) continue;
+    if (rows[i].m_overrideNumSolverIterations != collision::friction_along) continue;
     auto* point =
         static_cast<btManifoldPoint*>(m_tmpSolverContactConstraintPool[rows[i].m_frictionIndex].m_originalContactPoint);
-    store_rolling_friction(*point, rows[i].m_relpos2CrossNormal * rows[i].m_appliedImpulse +
-                                       rows[i + 1].m_relpos2CrossNormal * rows[i + 1].m_appliedImpulse);
+    collision::store_rolling_friction(*point, rows[i].m_relpos2CrossNormal * rows[i].m_appliedImpulse +
+                                                  rows[i + 1].m_relpos2CrossNormal * rows[i + 1].m_appliedImpulse);
   }
 }
 
-}  // namespace limber
+}  // namespace limber::sim::bullet
