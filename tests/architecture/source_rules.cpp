@@ -270,7 +270,14 @@ std::vector<std::string> namespace_complaints(std::string_view path, std::string
     std::smatch match;
     if (!std::regex_match(line, match, opening)) continue;
     const std::string name = match.str(1);
-    if (name == expected || name.starts_with(expected + "::") || name == kSharedNamespace) continue;
+    const auto belongs_to = [&](const Namespace& module) {
+      const std::string other = "limber::" + std::string(module.name);
+      return !module.name.empty() && (name == other || name.starts_with(other + "::"));
+    };
+    if (name == expected || name == kSharedNamespace) continue;
+    // a nested namespace of the module
+    if (name.starts_with(expected + "::") && (expected != "limber" || std::ranges::none_of(kNamespaces, belongs_to)))
+      continue;
     while (std::getline(lines, line) && !line.starts_with("}")) {
       if (line.empty() || line.starts_with("//") || std::regex_match(line, declaration)) continue;
       complaints.push_back(std::string(path) + ": '" + line + "' is in the namespace " + name + "; expected " +
