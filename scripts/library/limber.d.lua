@@ -402,8 +402,8 @@ local joint_ = {}
 ---@field angular_spring_damping vec3like|number # N·m·s/rad, 0 .. 1000000, default 0 0 0. Spring damping about each axis.
 ---@field angular_spring_stiffness_applied vec3 # read-only, N·m/rad. Stiffness in effect about each axis, capped for stability.
 ---@field angular_spring_damping_applied vec3 # read-only, N·m·s/rad. Spring damping in effect about each axis.
----@field applied_force vec3 # read-only, N. Mean force of motors and springs along each axis in the last tick; at a stop, the force against it.
----@field applied_torque vec3 # read-only, N·m. Mean torque of motors and springs about each axis in the last tick; at a stop, the torque against it.
+---@field applied_force vec3 # read-only, N. Mean force of motors and springs along each axis in the last tick; against a limit, its full force.
+---@field applied_torque vec3 # read-only, N·m. Mean torque of motors and springs about each axis in the last tick; against a limit, its full torque.
 local motor_ = {}
 
 ---@class motor_opts
@@ -529,7 +529,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field time number # read-only, s. Simulated time.
 ---@field tick integer # read-only. Ticks since the start.
 ---@field panicked boolean # read-only. True during a panic, which brings everything to rest.
----@field solver_fallbacks integer # read-only. Island steps that the direct solver left to the iterative one, since the start.
+---@field solver_fallbacks integer # read-only. Island steps in which the direct solver failed and the iterative one took over, since the start.
 ---@field sleeping_parts integer # read-only. Number of sleeping parts.
 ---@field islands_direct integer # read-only. Island steps (an island: parts connected by joints or contacts) solved by the direct solver, since the start.
 ---@field islands_iterative integer # read-only. Island steps solved by the iterative solver, regularly or as a fallback, since the start.
@@ -677,7 +677,7 @@ function sim:after(seconds, f) end
 ---@return timer
 function sim:at(time, f) end
 
----Restarts the scene; overridden values stay.
+---Restarts the scene; values set by controllers stay.
 function sim:reset() end
 
 ---Brings everything to rest: behaviors, morphs, forces and the scene's callbacks stop. A second call, after the first second, restores the newest good checkpoint.

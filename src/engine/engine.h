@@ -28,8 +28,8 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Runs the scene file and applies the `sets`. An error names file and line. After a failed scene the world stays
-  /// empty, and the first successful reload becomes the start. [sim]
+  /// Runs the scene file and applies the values of `--set` (EngineOptions::sets). An error names file and line. After a
+  /// failed scene the world stays empty, and the first successful reload becomes the start. [sim]
   Result<void> start();
   /// Runs ticks until the end that the options specify, or until stop(). [sim]
   void run();
@@ -50,7 +50,7 @@ class Engine {
   SceneReloader::ApplyResult reload_now(bool reuse_files = false) {
     return scenes_.run_now(TakeSceneRun::Kind::reload, reuse_files);
   }
-  /// Runs another scene file detached from the show, then replaces the show with it between two ticks and drops all
+  /// Runs another scene file detached from the show, then replaces the session with it between two ticks and drops all
   /// overrides. If the scene fails, returns the error, and the show continues. [any but sim, during run()]
   /// `panics`: EngineLink::panics at the time of the request; the request is discarded if there was a panic since.
   Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {}) {

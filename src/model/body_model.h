@@ -56,7 +56,7 @@ struct MeshModel {
   std::string name;                 ///< The file's name without its extension, for messages.
   std::vector<Vec3> vertices;       ///< Merged vertices of the drawn mesh.
   std::vector<unsigned> triangles;  ///< Three indices per triangle, counter-clockwise seen from outside.
-  std::vector<Vec3> hull;           ///< Vertices of the reduced convex hull, for contacts; kDefaultHullVertices.
+  std::vector<Vec3> hull;           ///< Vertices of the reduced convex hull, for contacts (reduced_hull()).
   double hull_error = 0;            ///< Largest distance of an omitted vertex from the reduced hull, meters.
   double hull_volume = 0;           ///< Volume of the complete convex hull, m³.
   /// The primitive that the complete hull matches (box, sphere or capsule), in the mesh's frame; empty if none.

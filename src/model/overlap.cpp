@@ -11,7 +11,8 @@ namespace limber::model {
 
 namespace {
 
-constexpr int kMaxExpansions = 160;  // to decide whether the depth exceeds the tolerance; a quarter for its precision
+// Limit for deciding whether the depth exceeds the tolerance; for the precision of the depth, a quarter of it.
+constexpr int kMaxExpansions = 160;
 constexpr double kDepthPrecision = 1e-7;  // m
 constexpr double kRelativeDepthPrecision = 0.02;
 // Work limit of find_overlaps(), in box comparisons; a comparison of two shapes costs about 200 of them.

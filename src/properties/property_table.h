@@ -57,7 +57,7 @@ struct PropertyCallbacks {
                    const Property& property) = nullptr;  ///< Called after every write, even of an equal value.
 };
 
-/// Describes one property, state, readout or action.
+/// Describes one setting, state, readout or action.
 struct Property : PropertyCallbacks {
   std::string name;  ///< snake_case; the same in OSC, Lua, the panel and files.
   PropertyType type = PropertyType::number;

@@ -70,6 +70,17 @@ TEST(Neighbors, IncludeCoincidentPartsAtRadiusZero) {
   EXPECT_EQ(s.near(*s.low[0], 0), (Indices{2}));
 }
 
+// When a body with one part is removed, the set has as many parts as it had bodies, but one body has two of them.
+TEST(Neighbors, ExcludeTheOwnBodyAfterAnotherIsRemoved) {
+  LineOfBodies s(2);
+  s.all = std::make_unique<NeighborSet>(s.world, std::vector<Part*>{s.low[0], s.low[1], s.high[1]});
+  s.step();
+  EXPECT_EQ(s.near(*s.low[1], 20), Indices{0});
+  s.all->remove_body(s.low[0]->body());
+  s.step();
+  EXPECT_EQ(s.near(*s.low[1], 20), Indices{});
+}
+
 TEST(Neighbors, UsePositionsFromTheStartOfTheStep) {
   LineOfBodies s(2);
   EXPECT_EQ(s.near(*s.low[0], 2), (Indices{2}));

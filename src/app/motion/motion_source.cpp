@@ -82,8 +82,8 @@ Pose interpolate(const Pose& a, const Pose& b, double mix) {
   return {glm::mix(a.position, b.position, mix), slerp(a.rotation, b.rotation, mix)};
 }
 
-// sets the parent of each link by the first joint that leads to it and closes no loop, and the rest poses along these
-// joints
+// The parent of each link is that of the first joint that leads to it and closes no loop. Sets it, and the rest poses
+// along these joints.
 void set_parents(exporter::MotionBody& motion, const sim::Body& body, const std::vector<Pose>& current) {
   std::map<const sim::Part*, int> number;
   for (std::size_t i = 0; i < body.parts().size(); i++) number[body.parts()[i].get()] = static_cast<int>(i);

@@ -31,11 +31,12 @@ class SceneLoader {
   void stop();
 
  private:
-  // A request for a scene or take. A panic after the first `stops_before` ones, or the end of a take, cancels it.
+  // A request for a scene or take. It is canceled if a panic (for a take, also the end of a take) happens after it
+  // arrived, that is if the count exceeds `stops_before`.
   struct SceneRequest {
     Message message;
     CommandOrigin origin;
-    std::uint64_t stops_before = 0;  // number of panics, or of ended takes, when it arrived
+    std::uint64_t stops_before = 0;  // when it arrived: number of panics; for a take, of panics and ended takes
     friend std::size_t weight_of(const SceneRequest& request) {
       return sizeof request + engine::weight_of(request.message);
     }

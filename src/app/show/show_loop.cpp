@@ -143,8 +143,8 @@ void ShowLoop::end_show() {
   begin_output_shutdown();
   notifier_.stopping();
   engine_.stop();
-  // wait for up to a second, less after another signal. A second signal may be a duplicate of the first (sent to
-  // the program and to its group), so a tick of normal length may still finish
+  // wait 0.9 s for the tick to finish, after another signal 0.25 s. Not less, since that signal may be a duplicate of
+  // the first one (sent to the program and to its process group)
   using Clock = std::chrono::steady_clock;
   Clock::time_point deadline = Clock::now() + 900ms;
   while (!engine_thread_.over() && Clock::now() < deadline) {

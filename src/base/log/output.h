@@ -1,7 +1,8 @@
 // Output: all text that the program writes to standard output, standard error and the log file. Nothing here throws.
 //
-// Messages (the log, notices, scripts' print()) never block the simulation: after start_output() they are queued, and
-// dropped and counted if a device does not accept them. Results of commands (write_result()) are never dropped.
+// Messages (the log, notices, scripts' print()) are queued after start_output(). In live mode they never block the
+// simulation, and are dropped and counted if a device does not accept them; in batch mode it waits
+// (OutputMode). Results of commands (write_result()) are never dropped.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@ class Latest {
     return newest_;
   }
 
-  /// Returns a value to fill and publish: one without readers, with its old contents, or a new one. [the writer]
+  /// Returns a value to fill and publish: one without readers, with its old contents, or a new one. [writer]
   std::shared_ptr<T> acquire_buffer() {
     for (const std::shared_ptr<T>& value : pool_) {
       std::shared_ptr<T> buffer = value;
@@ -29,7 +29,7 @@ class Latest {
     return pool_.back();
   }
 
-  /// Makes the value the newest one. [the writer]
+  /// Makes the value the newest one. [writer]
   void publish(std::shared_ptr<T> value) {
     std::shared_ptr<const T> finished = std::move(value);
     const std::scoped_lock lock(mutex_);

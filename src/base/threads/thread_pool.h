@@ -44,7 +44,7 @@ class ThreadPool {
   }
 
  private:
-  using Call = void (*)(void* of, int task, int thread);
+  using Call = void (*)(void* context, int task, int thread);
   static constexpr int kTaskBits = 32;
 
   void run_tasks(int tasks, Call call, void* context);

@@ -1,5 +1,5 @@
 // Overrides: the values that controllers have set over those of the scene, as the last message for each address and
-// names, so that a reset can apply them again. [sim]
+// leading text arguments (names of objects), so that a reset can apply them again. [sim]
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ class Overrides {
     std::unordered_map<std::string, std::optional<Value>> values;
     std::optional<std::vector<Recall>> recalls;
   };
-  /// From now on stores the previous state of each override that is replaced in `backup`; null: stops.
+  /// From now on stores in `backup` the previous state of each override that is replaced; null: stops.
   void record_into(Backup* backup) {
     backup_ = backup;
     if (backup != nullptr && backup->number == 0) backup->number = ++backup_count_;

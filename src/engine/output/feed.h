@@ -27,9 +27,9 @@ class Feed {
   /// Sends a value. Returns false if it does not fit; it is then offered again the next time.
   using Sender = std::function<bool(const std::string& path, const Property& property, const PropertyValue& value)>;
 
-  /// Subscribes to a path or a pattern, which may match values later only. If several paths match a value, it belongs
-  /// to the one with the smallest `order`. A repeated subscription sends the value again. Returns false if there are
-  /// too many.
+  /// Subscribes to a path or a pattern, which may match nothing until objects are added. If several paths match a
+  /// value, it belongs to the one with the smallest `order`. A repeated subscription to a path (not a pattern) sends
+  /// its value again. Returns false if there are too many.
   bool add(std::string_view path, std::int64_t order = 0);
   /// Cancels a subscription and forgets the values sent for it. Returns false if there is none.
   bool remove(std::string_view path);

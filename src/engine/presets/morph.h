@@ -26,8 +26,8 @@ double ease(Easing easing, double fraction);
 
 class Morph {
  public:
-  /// Starts from the current values at simulated time `time`, s. Includes only properties that differ from the preset;
-  /// of a behavior group that changes also all members, because writes to a group are forwarded to its members.
+  /// Starts from the current values at simulated time `time`, s. Includes only properties that differ from the preset,
+  /// and those of all members of a behavior group that changes, because writes to a group are forwarded to its members.
   Morph(const Store& store, const PresetBinding& binding, Blend goal, double time, double seconds, Easing easing);
 
   /// Writes the values for simulated time `time`. False at the end, where every value equals the preset's bit by bit.

@@ -13,7 +13,7 @@
 
 namespace limber::console {
 
-/// [server thread]
+/// [console]
 class ConsoleConnection {
  public:
   /// Queues a request; its result arrives later through finish_request(). Returns an error text, or an empty one.

@@ -11,7 +11,7 @@
 
 namespace limber::console {
 
-/// [server thread]
+/// [console]
 class Subscription {
  public:
   virtual ~Subscription() = default;

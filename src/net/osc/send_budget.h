@@ -1,5 +1,5 @@
-// SendBudget: limits the bytes and values per second that subscriptions send, per sender and in total. The total is
-// shared max-min fairly: no sender gets less because others demand more than their share.
+// SendBudget: limits the bytes and values per second that are sent to subscribers, for each subscriber and in total.
+// The total is shared max-min fairly: no subscriber gets less because others demand more than their share.
 #pragma once
 
 #include <cstddef>
@@ -75,7 +75,7 @@ class SendBudget {
   const std::vector<Report>& reports(std::int64_t now);
   /// Number of senders that are currently throttled.
   std::size_t throttled() const;
-  /// Time in ns of the next window's end, when reports() has new results.
+  /// End of the current window, ns; from then on reports() has new results.
   std::int64_t window_end() const { return window_start_ + kWindow; }
 
  private:

@@ -74,7 +74,8 @@ struct NeighborResults {
   LimberGroupMeans group_means{};  ///< Means of a whole group, as last requested; valid until the call ends.
 };
 
-/// Models and meshes that the run has loaded, by request: callbacks can reuse them, but must not read from disk.
+/// Models and meshes that the run has loaded, by file name and import options: callbacks can reuse them, but must not
+/// read from disk.
 struct LoadedModels {
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes;

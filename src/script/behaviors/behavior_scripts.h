@@ -54,7 +54,7 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
                                                            std::vector<Property> parameters);
   /// Returns the generator for `rng` and math.random in a file's functions.
   Random& generator(std::int32_t file);
-  /// Serializes generators and pending drops for a checkpoint.
+  /// Serializes the generators, and the numbers of instances to be released, for a checkpoint.
   void serialize(Archive& archive);
   /// Returns the hash continued with the state of the generators that have been used.
   std::uint64_t hash(std::uint64_t start) const;
@@ -72,8 +72,8 @@ class BehaviorScripts : public std::enable_shared_from_this<BehaviorScripts> {
     std::size_t next = 0;                   ///< Index of the next instance.
     std::int32_t current = 0;               ///< Number of the instance that is being stepped; 0: none.
   };
-  /// Steps the instances in one call of the Vm, each with its own guard. Stops after an instance that fails, which is
-  /// suspended. `batch.next` advances by at least one.
+  /// Steps the instances in one call of the Vm, each as a guarded call of its own (Guard::next_call). Stops after an
+  /// instance that fails, which is suspended. `batch.next` advances by at least one.
   void step_all(StepBatch& batch, double dt);
   /// Called between two instances: the previous one succeeded. Returns the number of the next instance; 0 ends the
   /// call.

@@ -5,8 +5,8 @@ local fail, istype, floor = P.fail, P.ffi.istype, math.floor
 local method = P.sim_method
 local number = answer.number
 
--- Undo log of registrations, used if the call fails. Each record has a timer to reactivate, or a list and its previous
--- length. Records of earlier calls are obsolete.
+-- Undo log of registrations, used if the call fails. Each record has a list and its previous length; that of a
+-- canceled timer also has the timer to reactivate. Records of earlier calls are obsolete.
 local journal = {}
 function P.journal(list)
   if #journal > 0 and journal[1].call ~= answer.call then journal = {} end
@@ -207,7 +207,7 @@ function P.exports.set_run_number(number) P.run_number = number end
 function P.timer(number, run) return T(number, run == P.run_number and 0 or run) end
 function P.timer_text(handle) return handle.number_, handle.run_ == 0 and P.run_number or handle.run_ end
 
--- cancels a timer of this earlier run for another run
+-- in an earlier run: cancels one of its timers, at the request of another run
 function P.exports.cancel_timer(number)
   local timer = timer_of[number]
   if timer then timer.disabled = true end

@@ -73,8 +73,8 @@ class EarlierRuns {
   void set_limits(const ScriptLimits& limits);
   /// Returns the hash continued with the runs that have pending timers; unchanged if there are none.
   std::uint64_t hash(std::uint64_t start) const;
-  /// Releases the runs whose timers ended before that tick. Call it when the history begins later, so that no rewind
-  /// needs them.
+  /// Releases the runs whose timers ended before this tick. Call it with the tick of the oldest checkpoint: no rewind
+  /// needs those runs any more.
   void release_ended(std::uint64_t before);
 
   std::vector<Run>& all() { return runs_; }

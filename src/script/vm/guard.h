@@ -31,7 +31,8 @@ struct ScriptFault {
   bool stopped = false;  ///< Stopped by the guard for time or memory; false: the script itself raised an error.
 };
 
-/// Called at the beginning and end of each guarded call, to record its effects and to commit or roll them back.
+/// Called at the beginning and end of each guarded call of Kind::call, to record its effects and to commit or roll
+/// them back.
 struct CallHooks {
   virtual void begin_call() = 0;
   virtual void end_call(bool success) = 0;
@@ -60,8 +61,8 @@ class Guard {
   bool call(int arguments, int results, Kind kind = Kind::call);
   const ScriptFault& fault() const { return fault_; }
   /// Within a call: commits its effects so far and begins a new call with a fresh budget. Returns false if the call
-  /// should end first, because it is to be stopped or there is much garbage. Sets `changed` if the call did more than
-  /// apply forces.
+  /// should end first, because it is to be stopped, there is much garbage, or a replay skips the next call. Sets
+  /// `changed` if the call did more than apply forces.
   bool next_call(bool& changed);
   /// If the fault has no place, sets it to the function on top of the stack.
   void attribute_to_function();
@@ -74,7 +75,7 @@ class Guard {
 
   /// Registry references of prelude functions.
   struct Functions {
-    int handler = -1;        ///< The message handler.
+    int handler = -1;        ///< The error handler (message handler) of lua_pcall.
     int stopped_fault = -1;  ///< Creates the fault of a call that was stopped without an error being raised.
     int failed = -1;         ///< To call after a failure.
   };

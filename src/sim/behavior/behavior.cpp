@@ -85,7 +85,7 @@ bool Behavior::interval_elapsed(const Property& property) {
   const double now = world().time();
   const double tick = world().timestep();
   const double interval = 1e-3 * store().values(id(), property)[0];
-  // a sum of time steps deviates from a multiple of the interval by a few bits
+  // the time, a multiple of the time step, deviates from a multiple of the interval by a few bits
   const double tolerance = 1e-4 * tick;
   const auto existing = std::find_if(state_.timers.begin(), state_.timers.end(),
                                      [&](const IntervalTimer& b) { return b.property == &property; });

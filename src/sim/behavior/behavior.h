@@ -86,7 +86,7 @@ class Behavior : public BehaviorAttachment {
     bool needs_start = true;               ///< start() has to be called before the next step.
   };
   // Called by BehaviorList, BehaviorGroup and BehaviorTransaction. [sim]
-  /// First call: sets its body, type, targets and group (or null). Error: a target doesn't exist.
+  /// To be called first: sets its body, type, targets and group (or null). Error: a target doesn't exist.
   Result<void> attach(Body& body, std::shared_ptr<const BehaviorType> type, std::shared_ptr<const BehaviorSetup> setup,
                       BehaviorGroup* group);
   /// Adds its node and adds it to the list of its body.
@@ -134,7 +134,7 @@ class Behavior : public BehaviorAttachment {
   void request_preparation();
 
   State state_;
-  double step_seconds_ = 0;          // duration of the last tick
+  double step_seconds_ = 0;          // real time that its step took in the last tick
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its state
 };
 

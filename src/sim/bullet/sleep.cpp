@@ -15,8 +15,8 @@ struct RestTolerance {
   btScalar distance;
   btScalar angle;
 };
-/// For islands with joints, where resting parts stay within 2e-7 m and rad. A part that reverses its motion isn't taken
-/// for resting if it accelerates by more than 8e-5 m/s² or rad/s²: it leaves this range within kRest.
+/// For islands with joints, where resting parts stay within 2e-7 m and rad. A part at a turning
+/// point with an acceleration above 8e-5 m/s² or rad/s² isn't considered at rest: within kRest it leaves this range.
 constexpr RestTolerance kJointedTolerance{btScalar(1e-5), btScalar(1e-5)};
 /// For other islands, since stacks jitter in the iterative solver.
 constexpr RestTolerance kOtherTolerance{btScalar(1e-4), btScalar(1e-3)};
@@ -145,7 +145,8 @@ bool SleepTracker::execute_wakes(bool mid_tick) {
   return wake_groups(mid_tick);
 }
 
-// Activates static objects and queues the groups of sleeping ones. Returns true if there is a static object.
+// Handles the objects to be woken: activates static ones, queues the groups of sleeping ones. Returns true if one of
+// them is static.
 bool SleepTracker::handle_requests() {
   const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   bool moved = false;

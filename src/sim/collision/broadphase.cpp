@@ -11,7 +11,7 @@ namespace limber::sim::collision {
 namespace {
 
 /// Boxes without neighbors are extended along the motion of this many steps, so that objects leave them less often.
-/// Near others that would cost more, since every overlapping box is a candidate for contacts. Boxes of objects that
+/// Near other objects it would cost more, as every overlapping box is a candidate for contacts. Boxes of objects that
 /// moved by more than their own size (teleported) are not extended.
 constexpr btScalar kExtensionSteps = 2;
 /// Largest extension of an AABB along its object's motion in a step, m. Faster objects may tunnel through others.

@@ -40,7 +40,8 @@ class Gear {
   /// True if one of its joints belongs to the body.
   bool couples(const Body& body) const;
 
-  /// Replaces the joints by others of the same kind after a body was rebuilt. The gear must not be in Bullet's world.
+  /// Replaces the joints by others of the same kind after a body was rebuilt. Its constraint
+  /// must have been removed (remove_constraint()) before the previous joints were destroyed.
   void replace_joints(Joint& joint_a, Joint& joint_b);
   /// Adds the constraint to Bullet's world if the gear is enabled, not redundant and its joints are in the world; else
   /// removes it.

@@ -29,9 +29,6 @@ PartCloud::PartCloud(World& world, std::vector<Part*> parts) : world_(world), pa
   for (const Part* part : parts_) {
     ids_.push_back(part->id());
     part_data_.push_back(data_of(*part));
-    const auto slot = static_cast<std::size_t>(part_data_.back().body);
-    if (slot >= body_ordinals_.size()) body_ordinals_.resize(slot + 1, -1);
-    if (body_ordinals_[slot] < 0) body_ordinals_[slot] = body_count_++;
   }
   index_parts();
 }
@@ -43,6 +40,13 @@ void PartCloud::index_parts() {
     const auto slot = static_cast<std::size_t>(ids_[i].slot);
     if (slot >= index_of_slot_.size()) index_of_slot_.resize(slot + 1, -1);
     index_of_slot_[slot] = static_cast<std::int32_t>(i);
+  }
+  std::fill(body_ordinals_.begin(), body_ordinals_.end(), -1);
+  body_count_ = 0;
+  for (const PartData& data : part_data_) {
+    const auto slot = static_cast<std::size_t>(data.body);
+    if (slot >= body_ordinals_.size()) body_ordinals_.resize(slot + 1, -1);
+    if (body_ordinals_[slot] < 0) body_ordinals_[slot] = body_count_++;
   }
 }
 

@@ -22,8 +22,8 @@ struct Geometry {
   double volume = 0;                       ///< m³; 0 for a plane.
 };
 
-/// Builds the geometry of a link from its collision shapes and its inertial. If the inertial has no mass, center and
-/// tensor are computed from the shapes' volume.
+/// Builds the geometry of a link from its collision shapes and its inertial. If its mass or tensor is missing (0),
+/// center and tensor are computed from the shapes' volume instead.
 std::shared_ptr<const Geometry> make_geometry(const std::vector<model::PlacedShape>& shapes,
                                               const model::Inertial& inertial);
 

@@ -19,16 +19,17 @@ namespace {
 constexpr int kMaxContactRows = 360;
 /// The same for an island without joints, where the iterative solver is cheaper and nearly as accurate.
 constexpr int kMaxRowsWithoutJoints = 60;
-/// Exchanges of the active set of a tree before axes that have not converged are deferred.
+/// Exchanges of the active set of a tree before axes that have not converged are deferred to the LCP.
 constexpr int kMaxExchanges = 16;
-constexpr int kMaxConePasses = 2;      // solves after the friction was limited to the friction cone
-constexpr int kMaxRotationPasses = 3;  // solves after the target rates of motors were reduced
-constexpr int kMaxDriftPasses = 4;     // solves after the drift correction was updated
-constexpr int kMaxEnergyPasses = 2;    // solves after the drift correction was reduced because it adds energy
+// Repeated solves, at most, after:
+constexpr int kMaxConePasses = 2;      // the friction was limited to the friction cone
+constexpr int kMaxRotationPasses = 3;  // the target rates of motors were reduced
+constexpr int kMaxDriftPasses = 4;     // the drift correction was updated (gyroscopes may need more)
+constexpr int kMaxEnergyPasses = 2;    // the drift correction was reduced because it adds energy
 /// Velocity changes above this count as divergence: m/s, rad/s.
 constexpr double kMaxVelocity = 1e5;
 
-// Residual of a row's condition: the rate by which its impulse would change in a Gauss-Seidel sweep.
+// Natural residual of a row, m/s or rad/s: the change of its impulse in a Gauss-Seidel sweep, times the mobility.
 double natural_residual(double residual, double impulse, double lower, double upper, double mobility) {
   const double after = std::clamp(impulse + residual / mobility, lower, std::max(lower, upper));
   return std::fabs(after - impulse) * mobility;

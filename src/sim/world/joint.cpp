@@ -22,7 +22,7 @@ using namespace properties;
 
 /// Smaller gaps, m, never count as an instability, however small the parts are.
 constexpr double kMinGap = 0.01;
-/// Consecutive ticks with a gap larger than the parts that count as an instability; a short push doesn't.
+/// This many consecutive ticks with a gap larger than the parts count as an instability; a short push doesn't.
 constexpr int kSeparatedTicks = 15;
 
 struct JointReadouts {

@@ -79,7 +79,8 @@ class Joint {
   /// Reads the position from the parts' poses again, after these were set. Chooses the turns closest to the published
   /// angles.
   void update_from_parts();
-  /// Saves the published angles, with full turns, as those of the start pose, for restore_start().
+  /// Saves the present angles of this joint (or of `other`), with full turns, as those of the start pose.
+  /// restore_start() publishes them, so that update_from_parts() chooses their turns after a reset.
   void save_start();
   void save_start(const Joint& other);
   void restore_start();
@@ -89,7 +90,7 @@ class Joint {
   /// Wakes its parts in the next step. [any]
   void wake();
   bool in_world() const { return state_.in_world; }
-  /// Couples this joint to its leader with the ratio and offset of its `mimic` spec.
+  /// Couples this joint to its leader with the multiplier and offset of its `mimic` spec.
   void couple_to(Joint& leader);
   /// Adds the gear to Bullet's world, after both joints were added.
   void add_mimic_gear();

@@ -117,10 +117,10 @@ const PropertyTable& Motor::table() {
     add_axes(list, "angular", true);
     list.push_back(computed<&Motor::read_force>(applied_readout(
         "applied_force", "N",
-        "Mean force of motors and springs along each axis in the last tick; at a stop, the force against it.")));
+        "Mean force of motors and springs along each axis in the last tick; against a limit, its full force.")));
     list.push_back(computed<&Motor::read_torque>(applied_readout(
         "applied_torque", "N·m",
-        "Mean torque of motors and springs about each axis in the last tick; at a stop, the torque against it.")));
+        "Mean torque of motors and springs about each axis in the last tick; against a limit, its full torque.")));
     return PropertyTable("motor", "/physics/body/<body>/motor/<motor>", "/physics/motor", std::move(list),
                          &Motor::prefetch_targets);
   }();
@@ -220,7 +220,7 @@ void Motor::apply_axes() {
     const auto value_of = [&](const std::array<const Property*, 2>& r) {
       return static_cast<float>(persistent[r[half]->offset + static_cast<std::uint32_t>(axis % 3)]);
     };
-    if (!joint_.is_open(axis)) continue;  // its drive is set when its limits open
+    if (!joint_.is_open(axis)) continue;  // Joint::apply_limits() calls this again when the axis is unlocked
     bullet::AxisSettings settings = constraint_.axis(axis);
     settings.drive = panic.drive(mode(axis));
     settings.max_force = value_of(properties.max_force);

@@ -1,4 +1,5 @@
-// Motor: drives the axes of a joint, each in mode off, spin, servo or spring. It has the joint's name. [sim]
+// Motor: drives the axes of a joint, each in mode off, spin (velocity motor, also of a linear axis), servo (position
+// motor) or spring. It has the joint's name. [sim]
 #pragma once
 
 #include <array>

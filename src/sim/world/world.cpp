@@ -104,9 +104,9 @@ const PropertyTable& World::table() {
           transient(readout(integer("tick", 0, 0, kUnbounded, "Ticks since the start."))),
           transient(readout(boolean("panicked", false, "True during a panic, which brings everything to rest."))),
           invokes<&request_panic>(action("panic", 0, 0, Panic::kDoc)),
-          transient(
-              readout(integer("solver_fallbacks", 0, 0, kUnbounded,
-                              "Island steps that the direct solver left to the iterative one, since the start."))),
+          transient(readout(integer("solver_fallbacks", 0, 0, kUnbounded,
+                                    "Island steps in which the direct solver failed and the iterative one took over, "
+                                    "since the start."))),
           transient(readout(integer("sleeping_parts", 0, 0, kUnbounded, "Number of sleeping parts."))),
           transient(
               readout(integer("islands_direct", 0, 0, kUnbounded,
@@ -115,7 +115,7 @@ const PropertyTable& World::table() {
           transient(readout(
               integer("islands_iterative", 0, 0, kUnbounded,
                       "Island steps solved by the iterative solver, regularly or as a fallback, since the start."))),
-          invokes<&request_reset>(action("reset", 0, 0, "Restarts the scene; overridden values stay.")),
+          invokes<&request_reset>(action("reset", 0, 0, "Restarts the scene; values set by controllers stay.")),
       });
   return table;
 }

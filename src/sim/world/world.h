@@ -89,8 +89,8 @@ class World {
   int substeps() const;
   std::uint64_t seed() const;
 
-  /// Runs one tick: behaviors, pending property changes, `substeps` substeps, readouts, contacts, health
-  /// checks. Returns how long they took.
+  /// Runs one tick: behaviors, pending property changes, `substeps` substeps, readouts, contacts, stability
+  /// check. Returns how long they took.
   TickTimes step();
   /// Applies pending property changes without advancing time: while paused, and before the first tick.
   void flush();
@@ -109,8 +109,8 @@ class World {
   const StabilityCheck& stability() const { return stability_; }
   /// Parts that overlap in their first tick; reported in the next step.
   OverlapReport& overlaps() { return overlaps_; }
-  /// Returns a hash of all poses, velocities and persistent values, bit for bit. Generators are added by their
-  /// owners.
+  /// Returns a hash of all poses, velocities and persistent values, bit for bit. Includes the random
+  /// generators of behaviors; ShowState::state_hash() adds that of the scene.
   std::uint64_t state_hash() const;
   /// Hash of the motion, for comparing two runs tick by tick.
   MotionHash& motion_hash() { return motion_hash_; }

@@ -45,7 +45,8 @@ struct PanelType {
 std::vector<PanelType> panel_types();
 bool register_panel(const PanelType& type);
 
-/// Registers the panel class P. In the panel's file: `const bool kRegistered = register_panel_type<P>({…})`.
+/// Registers the panel class P. In the panel's file: `[[maybe_unused]] const bool kClockPanel =
+/// register_panel_type<ClockPanel>({…})`, with a name that is unique in the folder.
 template <class P>
 bool register_panel_type(PanelType type) {
   type.make = [] { return std::unique_ptr<Panel>(std::make_unique<P>()); };

@@ -39,7 +39,7 @@ struct MeshKey {
 /// Consecutive instances of one mesh and level of detail, for one draw call.
 struct Batch {
   MeshKey mesh;
-  int detail = 0;
+  int detail = 0;  ///< Level of detail; 0 is the finest.
   std::uint32_t first = 0;
   std::uint32_t count = 0;
   bool casts_shadow = true;  ///< False for instances with an alpha below 0.5.
@@ -101,7 +101,7 @@ class DrawList {
   };
   struct VisibleInstance {
     Instance instance{};
-    std::uint32_t key = 0;  // mesh number * kDetailLevels + detail
+    std::uint32_t key = 0;  // mesh_index * kDetailLevels + detail
     float depth = 0;
   };
   static InstanceMaterial instance_material(const engine::Material& m);

@@ -94,6 +94,7 @@ void set_light(const Style& style, const SceneBounds& bounds, float radius, Ligh
   } else {
     const float half = 2.4F * radius;
     frame.light_position = glm::vec4(direction, 0);
+    // no cone: every direction is inside, since its cosine is at least -1
     frame.light_direction = glm::vec4(-direction, -2);
     frame.light_color.w = -1;
     map_width = 2 * half;
@@ -106,7 +107,8 @@ void set_light(const Style& style, const SceneBounds& bounds, float radius, Ligh
   frame.soft.y = frame.soft.x * map_width;
 }
 
-// the ground map is an orthographic depth map seen from below, of a layer of 0.15 to 0.6 m above the floor
+// the ground map is an orthographic depth map, seen from below, of the layer just above the floor, which is 0.15 to
+// 0.6 m thick
 void set_ground_map(const SceneBounds& bounds, float radius, Lighting& out) {
   const float half = 1.6F * radius;
   const float range = std::clamp(0.25F * radius, 0.15F, 0.6F);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn = 2 * kPi;
 constexpr double kMaxWeights =
-    4;  // force of the longest arrow, in weights of the part; the arrow of one weight has the length `reach`
+    4;  // force of the longest arrow, in weights of the part; the arrow of one weight has the length OverlayMark::size
 constexpr double kMinWeights = 0.02;
 
 using Kind = sim::OverlayMark::Kind;
