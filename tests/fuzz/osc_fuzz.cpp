@@ -109,7 +109,7 @@ class OscFixture {
     const engine::Counters& counters = link_.counters;
     const std::uint64_t malformed = counters.malformed;
     const std::uint64_t received = counters.received;
-    const bool valid = osc::packet_fault(data, size) == nullptr;
+    const bool valid = limber::osc::packet_fault(data, size) == nullptr;
     check_codec(data, size, valid);
     receiver_.process(data, size, kFrom);
     // the codec accepts all packets that the validator accepts; rejected packets have no effect
@@ -119,14 +119,14 @@ class OscFixture {
 
   // decodes every input, and valid inputs with oscpack, too: both must agree in both directions
   void check_codec(const char* data, std::size_t size, bool valid) {
-    const Result<osc::Decoded> decoded = osc::decode_packet(data, size);
+    const Result<limber::osc::Decoded> decoded = limber::osc::decode_packet(data, size);
     must(decoded.ok() == valid);
 #if LIMBER_OSCPACK
     if (!valid) return;
-    const Result<osc::Decoded> reference = osc::test::oscpack_reference::decode_packet(data, size);
-    must(reference.ok() && osc::test::same(*decoded, *reference));
+    const Result<limber::osc::Decoded> reference = limber::osc::test::oscpack_reference::decode_packet(data, size);
+    must(reference.ok() && limber::osc::test::same(*decoded, *reference));
     for (const Message& message : decoded->messages)
-      must(std::ranges::equal(osc::encode_message(message, buffer_), oscpack_.message(message)));
+      must(std::ranges::equal(limber::osc::encode_message(message, buffer_), oscpack_.message(message)));
 #endif
   }
 
@@ -159,7 +159,7 @@ class OscFixture {
   }
 
   void send(const Message& message) {
-    const std::span<const char> packet = osc::encode_message(message, buffer_);
+    const std::span<const char> packet = limber::osc::encode_message(message, buffer_);
     process_and_check(packet.data(), packet.size());
   }
 
@@ -172,7 +172,7 @@ class OscFixture {
     for (engine::Command& command : commands_) {
       for (const Message& message : command.messages) {
         must(!message.address.empty() && message.address[0] == '/');
-        must(message.args.size() <= osc::OscLimits::kMessageArguments);
+        must(message.args.size() <= limber::osc::OscLimits::kMessageArguments);
         check_packet(message);
         executed_++;
       }
@@ -182,8 +182,8 @@ class OscFixture {
 
   // checks that a message can be encoded as valid OSC
   void check_packet(const Message& message) {
-    const std::span<const char> packet = osc::encode_message(message, buffer_);
-    must(packet.empty() || osc::packet_fault(packet.data(), packet.size()) == nullptr);
+    const std::span<const char> packet = limber::osc::encode_message(message, buffer_);
+    must(packet.empty() || limber::osc::packet_fault(packet.data(), packet.size()) == nullptr);
   }
 
   void drain_output() { link_.output_queue.drain(outgoing_); }
@@ -207,8 +207,8 @@ class OscFixture {
   engine::EngineLink link_;
   engine::Engine engine_{link_, options()};
   std::int64_t steady_ = 0;
-  osc::NetClock clock_{[this] { return steady_; }, [] { return std::uint64_t{1} << 63; }};
-  osc::Receiver receiver_{
+  limber::osc::NetClock clock_{[this] { return steady_; }, [] { return std::uint64_t{1} << 63; }};
+  limber::osc::Receiver receiver_{
       link_,
       {},
       {[this](const engine::Outgoing& out) {
@@ -225,13 +225,13 @@ class OscFixture {
        [this](const CommandOrigin& origin) { return subscribers_.is_subscriber(origin); },
        [](const system::Endpoint&, std::size_t) {}, [this](const Message&, const CommandOrigin&) { tokens_++; }},
       clock_};
-  osc::Subscribers subscribers_{link_, clock_, [this](const engine::Outgoing& out) {
-                                  check_packet(out.message);
-                                  return true;
-                                }};
-  osc::PacketBuffer buffer_;
+  limber::osc::Subscribers subscribers_{link_, clock_, [this](const engine::Outgoing& out) {
+                                          check_packet(out.message);
+                                          return true;
+                                        }};
+  limber::osc::PacketBuffer buffer_;
 #if LIMBER_OSCPACK
-  osc::test::oscpack_reference::Encoder oscpack_;
+  limber::osc::test::oscpack_reference::Encoder oscpack_;
 #endif
   std::vector<engine::Command> commands_;
   std::vector<engine::Outgoing> outgoing_;

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber::sim {
