@@ -25,37 +25,37 @@ inline bool is_address_pattern(std::string_view address) {
   return address.find_first_of("?*[{") != std::string_view::npos || address.find("//") != std::string_view::npos;
 }
 
-/// Looks up paths and patterns in a tree. A Shape is an adapter of the store or of a copy. It has the types `Ref`
+/// Looks up paths and patterns in a tree. A Tree is an adapter of the store or of a copy. It has the types `Ref`
 /// (node, property) and `Set` (node, bit mask of properties), and for nodes root(), name(), table(), path(), key() (a
 /// unique number below keys()), exact_child() (the child of exactly that name, if any) and each_child(), which stops
 /// when its function returns false. An object is used for one lookup.
-template <class Shape>
+template <class Tree>
 class PathMatcher {
  public:
-  using Ref = typename Shape::Ref;
-  using Set = typename Shape::Set;
+  using Ref = typename Tree::Ref;
+  using Set = typename Tree::Set;
   using Id = decltype(Ref::node);
 
-  PathMatcher(const Shape& shape, PatternBudget& budget) : shape_(shape), budget_(budget) {}
+  PathMatcher(const Tree& tree, PatternBudget& budget) : tree_(tree), budget_(budget) {}
 
   /// Returns the property or node at an exact path. `hint`: the error lists similar names, which visits all siblings.
-  static Result<Ref> find(const Shape& shape, std::string_view path, bool hint = true) {
+  static Result<Ref> find(const Tree& tree, std::string_view path, bool hint = true) {
     if (path.empty() || path.front() != '/')
       return Error{fmt::format("'{}' is not an address: it must begin with /", printable(path))};
     if (path.back() == '/') path.remove_suffix(1);
-    Id node = shape.root();
+    Id node = tree.root();
     const std::vector<std::string_view> pieces =
         path.empty() ? std::vector<std::string_view>{} : split(path.substr(1), '/');
     for (std::size_t i = 0; i < pieces.size(); i++) {
       const std::string name = unescape_name(pieces[i]);
-      if (const auto child = child_named(shape, node, name)) {
+      if (const auto child = child_named(tree, node, name)) {
         node = *child;
         continue;
       }
-      const Property* property = shape.table(node).find(name);
+      const Property* property = tree.table(node).find(name);
       if (property != nullptr && i + 1 == pieces.size()) return Ref{node, property};
-      return Error{fmt::format("there is no '{}' in {}{}", printable(name), shape.path(node),
-                               hint ? similar_names(shape, node, name) : "")};
+      return Error{fmt::format("there is no '{}' in {}{}", printable(name), tree.path(node),
+                               hint ? similar_names(tree, node, name) : "")};
     }
     return Ref{node, nullptr};
   }
@@ -68,7 +68,7 @@ class PathMatcher {
     refs.reserve(std::min(count_, limit));
     for (const Set& set : *sets) {
       if (set.properties == 0) refs.push_back({set.node, nullptr});
-      const PropertyTable& table = shape_.table(set.node);
+      const PropertyTable& table = tree_.table(set.node);
       for (std::uint64_t remaining = set.properties; remaining != 0 && refs.size() < limit; remaining &= remaining - 1)
         refs.push_back({set.node, &table.property(static_cast<std::uint32_t>(std::countr_zero(remaining)))});
     }
@@ -80,17 +80,17 @@ class PathMatcher {
     if (pattern.empty() || pattern.front() != '/')
       return Error{fmt::format("'{}' is not an address: it must begin with /", printable(pattern))};
     if (!is_address_pattern(pattern)) {
-      const Result<Ref> ref = find(shape_, pattern);
+      const Result<Ref> ref = find(tree_, pattern);
       if (!ref) return Error{ref.error()};
       count_ = 1;
       return std::vector<Set>{{ref->node, ref->property == nullptr ? 0 : std::uint64_t{1} << ref->property->index}};
     }
     pieces_ = split(pattern.substr(1), '/');
     limit_ = limit;
-    const std::size_t flags = pieces_.size() * shape_.keys();
+    const std::size_t flags = pieces_.size() * tree_.keys();
     if (budget_.charge(static_cast<int>(std::min<std::size_t>(flags / 64, PatternBudget::kStepsPerMessage)))) {
       visited_.assign(flags, false);
-      walk(shape_.root(), 0);
+      walk(tree_.root(), 0);
     }
     if (budget_.exceeded()) {
       return Error{fmt::format("the pattern '{}' needs too much work; make it more specific, or send fewer at a time",
@@ -102,26 +102,26 @@ class PathMatcher {
  private:
   // True if the program defines the node's name (a group such as `part`, or a singleton such as `sim`). Such names are
   // compared as same_name() does.
-  static bool is_fixed_name(const Shape& shape, Id id) {
-    const std::string& path = shape.table(id).path();
+  static bool is_fixed_name(const Tree& tree, Id id) {
+    const std::string& path = tree.table(id).path();
     return path.empty() || path.back() != '>';
   }
 
-  static std::optional<Id> child_named(const Shape& shape, Id parent, std::string_view name) {
-    std::optional<Id> found = shape.exact_child(parent, name);
+  static std::optional<Id> child_named(const Tree& tree, Id parent, std::string_view name) {
+    std::optional<Id> found = tree.exact_child(parent, name);
     if (found) return found;
-    shape.each_child(parent, [&](Id child) {
-      if (!is_fixed_name(shape, child)) return false;  // siblings are alike: skip them all
-      if (same_name(shape.name(child), name)) found = child;
+    tree.each_child(parent, [&](Id child) {
+      if (!is_fixed_name(tree, child)) return false;  // siblings are alike: skip them all
+      if (same_name(tree.name(child), name)) found = child;
       return !found;
     });
     return found;
   }
 
-  static std::string similar_names(const Shape& shape, Id id, std::string_view name) {
-    std::vector<std::string_view> near = shape.table(id).property_names();
-    shape.each_child(id, [&](Id other) {
-      near.push_back(shape.name(other));
+  static std::string similar_names(const Tree& tree, Id id, std::string_view name) {
+    std::vector<std::string_view> near = tree.table(id).property_names();
+    tree.each_child(id, [&](Id other) {
+      near.push_back(tree.name(other));
       return true;
     });
     return name_hint(name, near);
@@ -130,7 +130,7 @@ class PathMatcher {
   bool exceeded() const { return count_ >= limit_ || budget_.exceeded(); }
 
   bool name_matches(Id id, std::string_view piece) {
-    const std::string_view name = shape_.name(id);
+    const std::string_view name = tree_.name(id);
     if (budget_.match(piece, name)) return true;
     const std::string escaped = escape_name(name);
     return escaped != name && budget_.match(piece, escaped);
@@ -157,7 +157,7 @@ class PathMatcher {
   }
 
   void add_properties(Id id) {
-    const std::uint64_t properties = matching_properties(shape_.table(id));
+    const std::uint64_t properties = matching_properties(tree_.table(id));
     if (properties == 0 || exceeded()) return;
     results_.push_back({id, properties});
     count_ += static_cast<std::size_t>(std::popcount(properties));
@@ -167,11 +167,11 @@ class PathMatcher {
     if (piece >= pieces_.size() || exceeded() || !budget_.charge(PatternBudget::kStepsPerName)) return;
     if (pieces_[piece].empty()) {  // `//`: any depth, including none
       // With several `//`, a node is reached in many ways; it is visited once per component.
-      const std::size_t flag = piece * shape_.keys() + shape_.key(id);
+      const std::size_t flag = piece * tree_.keys() + tree_.key(id);
       if (visited_[flag]) return;
       visited_[flag] = true;
       walk(id, piece + 1);
-      shape_.each_child(id, [&](Id child) {
+      tree_.each_child(id, [&](Id child) {
         walk(child, piece);
         return true;
       });
@@ -179,17 +179,17 @@ class PathMatcher {
     }
     if (piece + 1 == pieces_.size()) return add_properties(id);
     if (!is_pattern(pieces_[piece])) {
-      if (const auto child = child_named(shape_, id, unescape_name(pieces_[piece]))) walk(*child, piece + 1);
+      if (const auto child = child_named(tree_, id, unescape_name(pieces_[piece]))) walk(*child, piece + 1);
       return;
     }
-    shape_.each_child(id, [&](Id child) {
+    tree_.each_child(id, [&](Id child) {
       if (exceeded()) return false;
       if (name_matches(child, pieces_[piece])) walk(child, piece + 1);
       return true;
     });
   }
 
-  const Shape& shape_;
+  const Tree& tree_;
   PatternBudget& budget_;
   std::vector<std::string_view> pieces_;
   std::size_t limit_ = 0;

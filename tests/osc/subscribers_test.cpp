@@ -22,8 +22,8 @@ struct SubscribersFixture {
   ManualClock manual_clock;
   NetClock clock = manual_clock.clock();
   std::vector<engine::Outgoing> sent;
-  SendLimits per_sender = SendBudget::kPerSender, total = SendBudget::kTotal;
-  Subscribers subscribers{show.link, clock, [this](const engine::Outgoing& out) { return send(out); }, per_sender,
+  SendLimits per_subscriber = SendBudget::kPerSubscriber, total = SendBudget::kTotal;
+  Subscribers subscribers{show.link, clock, [this](const engine::Outgoing& out) { return send(out); }, per_subscriber,
                           total};
   int slices = 0;
   CommandOrigin first{CommandSource::osc, 0x7f000001, 5001};
@@ -31,7 +31,8 @@ struct SubscribersFixture {
 
   SubscribersFixture() { show.send("/transport/pause"); }
   /// Limits per sender and in total, values per second.
-  SubscribersFixture(double values_each, double values_all) : per_sender{1e9, values_each}, total{1e9, values_all} {}
+  SubscribersFixture(double values_each, double values_all)
+      : per_subscriber{1e9, values_each}, total{1e9, values_all} {}
   bool send(const engine::Outgoing& out) {
     const bool value = out.destination == engine::Outgoing::Destination::reply;
     if (value && !subscribers.try_consume({out.origin.ip, out.origin.port}, 40, 1)) return false;

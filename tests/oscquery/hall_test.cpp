@@ -77,17 +77,17 @@ TEST(QueryHub, RequestTimesOut) {
   QueryHubFixture fixture;
   fixture.request("/scene/wind?VALUE");
   current_time += QueryHub::kRequestTimeout - 0.01;
-  fixture.hub.tick();
+  fixture.hub.update();
   EXPECT_TRUE(fixture.responses.empty());
   current_time += 0.02;
-  fixture.hub.tick();
+  fixture.hub.update();
   ASSERT_EQ(fixture.responses.size(), 1u);
   EXPECT_EQ(fixture.responses[0].status, 503);
   // an older snapshot is better than no response
   engine::test::make_value_snapshot(fixture.show);
   fixture.request("/scene/wind?VALUE");
   current_time += QueryHub::kRequestTimeout + 0.01;
-  fixture.hub.tick();
+  fixture.hub.update();
   ASSERT_EQ(fixture.responses.size(), 2u);
   EXPECT_EQ(fixture.responses[1].body, R"({"VALUE":[0]})");
 }
@@ -117,9 +117,9 @@ TEST(QueryHub, UpdatesClientsOncePerTick) {
   fixture.hub.on_link_event();
   EXPECT_EQ(line.consume_frames(), Frames{});
   const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
-  current_time += QueryHub::kTick;
-  fixture.hub.tick();
-  fixture.hub.tick();
+  current_time += QueryHub::kUpdateInterval;
+  fixture.hub.update();
+  fixture.hub.update();
   EXPECT_EQ(fixture.show.link.value_snapshot_requests.load(), asks + 1) << "one is on its way";
   fixture.make_snapshot();
   EXPECT_EQ(line.consume_frames(), Frames{"/scene/wind f 1"});
@@ -134,16 +134,16 @@ TEST(QueryHub, IdleClientsRequestFewSnapshots) {
   fixture.hub.add_client(client);
   const std::uint64_t asks = fixture.show.link.value_snapshot_requests.load();
   for (int i = 0; i < 60; i++) {
-    current_time += QueryHub::kTick;
-    fixture.hub.tick();
+    current_time += QueryHub::kUpdateInterval;
+    fixture.hub.update();
     fixture.make_snapshot();
   }
   EXPECT_LE(fixture.show.link.value_snapshot_requests.load() - asks, 11u) << "2 s, five a second";
   // they get path events nevertheless
   ASSERT_TRUE(fixture.show.engine.world().add_body("new").ok());
   for (int i = 0; i < 7; i++) {
-    current_time += QueryHub::kTick;
-    fixture.hub.tick();
+    current_time += QueryHub::kUpdateInterval;
+    fixture.hub.update();
     fixture.make_snapshot();
   }
   EXPECT_EQ(line.consume_frames(), Frames{R"({"COMMAND":"PATH_ADDED","DATA":"/physics/body/new"})"});

@@ -8,7 +8,7 @@ namespace {
 
 // A body of 1 kg and 1 kg·m² on a hinge about z through its center, with a motor of 0.1 N·m·s and 0.05 rad/s.
 struct Hinge {
-  explicit Hinge(const solver::ActiveSetMemory& before) {
+  explicit Hinge(const solver::ActiveSetWarmStart& before) {
     rows.clear();
     solver::TreeNode& n = rows.forest.add(-1);
     solver::Sym3 one;

@@ -31,7 +31,7 @@ struct Follower : Rig {
   // One tick towards this target (of a servo) and rest position (of a spring); records the speeds of this tick only.
   void tick(double target, int substeps = 4, double length = kGoalTick) {
     speeds.clear();
-    hinge.set_goal(axis, target, target, static_cast<double>(settings.velocity));
+    hinge.set_target(axis, target, target, static_cast<double>(settings.velocity));
     world.step(length / substeps, substeps);
   }
   void expect_speed(double speed, double part) const {
@@ -231,7 +231,7 @@ TEST(JointGoals, SmoothingLimitsTheRippleOfAStream) {
       for (const std::uint32_t seed : {1u, 2u, 3u}) {
         SCOPED_TRACE(testing::Message() << frequency << ' ' << limit << ' ' << seed);
         Follower f(5, servo_axis(free_axis(), 0, limit, 10000));
-        f.hinge.goals().set_smoothing(2 / frequency);
+        f.hinge.target_interpolator().set_smoothing(2 / frequency);
         const std::vector<double> targets = streamed_targets(frequency, 0.5, 360, seed);
         double farthest = 0;
         for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -248,7 +248,7 @@ TEST(JointGoals, SmoothingLimitsTheRippleOfAStream) {
 TEST(JointGoals, SmoothingDelaysARampAsDocumented) {
   for (const double time : {0.02, 0.1, 1.0}) {
     Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
-    f.hinge.goals().set_smoothing(time);
+    f.hinge.target_interpolator().set_smoothing(time);
     double target = 0;
     for (int i = 0; i < 1200; ++i) f.tick(target = 0.5 * i * kGoalTick);
     f.expect_speed(0.5, 0.001);
@@ -258,7 +258,7 @@ TEST(JointGoals, SmoothingDelaysARampAsDocumented) {
 
 TEST(JointGoals, SmoothingDoesNotOvershoot) {
   Follower f(5, servo_axis(free_axis(), 0, 0, 10000));
-  f.hinge.goals().set_smoothing(0.1);
+  f.hinge.target_interpolator().set_smoothing(0.1);
   f.tick(0);
   double farthest = 0;
   for (int i = 0; i < 120; ++i) {

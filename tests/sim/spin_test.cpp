@@ -1,6 +1,6 @@
 // Fast rotation: driven rotors reach their speed, free bodies rotate by Euler's equations, a spinning top keeps its
 // height, and clamping is reported.
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 
 #include <gtest/gtest.h>
 

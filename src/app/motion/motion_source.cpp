@@ -28,7 +28,7 @@ const JointOffsets& joint_offsets() {
 struct NamedValue {
   const char* name;
   std::uint32_t offset;
-  bool is_angle;
+  bool wraps;
 };
 
 // the exported values of a joint
@@ -138,7 +138,7 @@ MotionSource::Track MotionSource::make_track(const sim::Body& body, const engine
     const sim::Joint& joint = *body.joints()[i];
     track.body.joints.push_back({joint.name(), value_names(joint.type())});
     for (const NamedValue& value : exported_values(joint.type()))
-      track.values.push_back({i, value.offset, value.is_angle});
+      track.values.push_back({i, value.offset, value.wraps});
   }
   return track;
 }
@@ -213,7 +213,7 @@ void MotionSource::fill_sample(const Track& track, const BodyAt& from, const Bod
     const Value& value = track.values[k];
     const double start = from.snapshot.transient[from.body.joint_offsets[value.joint] + value.offset];
     double difference = to.snapshot.transient[to.body.joint_offsets[value.joint] + value.offset] - start;
-    if (value.is_angle) difference -= 2 * kPi * std::round(difference / (2 * kPi));
+    if (value.wraps) difference -= 2 * kPi * std::round(difference / (2 * kPi));
     sample.values[k] = start + difference * mix;
   }
 }

@@ -42,7 +42,7 @@ class MotionSource {
   struct Value {
     std::size_t joint = 0;
     std::uint32_t offset = 0;
-    bool is_angle = false;  // an angle between -pi and pi
+    bool wraps = false;  // an angle between -pi and pi
   };
   // the motion of one body
   struct Track {

@@ -57,7 +57,7 @@ class Resimulation {
 
  private:
   void set(bool on) {
-    show_.presets.set_replaying(on);
+    show_.presets.suspend_saving(on);
     if (show_.session->scene != nullptr) show_.session->scene->set_resimulating(on);
   }
 

@@ -203,7 +203,7 @@ Presets::Bank Presets::exchange(Bank bank) {
 }
 
 void Presets::save() {
-  if (bank_.saver != nullptr && !replaying_) bank_.saver->save(std::make_shared<const PresetList>(bank_.list));
+  if (bank_.saver != nullptr && !saving_suspended_) bank_.saver->save(std::make_shared<const PresetList>(bank_.list));
 }
 
 void Presets::restore(const State& state) {

@@ -101,8 +101,8 @@ class Presets {
   void restore(const State& state);
   /// Replaces the list of presets.
   void set_list(PresetList list);
-  /// While `on`, recorded inputs are replayed: nothing is saved to the disk.
-  void set_replaying(bool on) { replaying_ = on; }
+  /// While `on` (recorded inputs are replayed), nothing is saved to the disk.
+  void suspend_saving(bool on) { saving_suspended_ = on; }
 
   /// Removes a property from running morphs, because a controller has set it.
   void release(NodeId id, const Property& property) { morphs_.release(id, property); }
@@ -125,7 +125,7 @@ class Presets {
   void save();
 
   Overrides& overrides_;
-  bool replaying_ = false;
+  bool saving_suspended_ = false;
   Bank bank_;
   std::string names_;
   std::shared_ptr<const Preset> script_;

@@ -30,7 +30,7 @@ void ConsoleConnection::drop_connection() {
   input_.clear();
 }
 
-system::PollEntry ConsoleConnection::poll_request() const {
+system::PollEntry ConsoleConnection::poll_entry() const {
   if (broken_) return {};
   // stop reading while a request is pending or the output is not read: further input fills the kernel's buffer
   const bool read = !pending_ && !input_ended_ && !output_full();

@@ -26,7 +26,7 @@ class ConsoleConnection {
 
   int fd() const { return connection_.fd(); }
   /// Returns the descriptor and the events to poll for.
-  system::PollEntry poll_request() const;
+  system::PollEntry poll_entry() const;
   /// Appends a line to the output buffer.
   void append(std::string_view line);
   /// Reads available input and handles the next request unless one is pending.

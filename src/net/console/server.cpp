@@ -79,7 +79,7 @@ void ConsoleServer::run() {
 void ConsoleServer::wait_for_events() {
   std::vector<system::PollEntry> waiting = {{.fd = result_queue_->wake.fd()},
                                             {.fd = accept_paused_ ? -1 : listener_.fd()}};
-  for (const auto& [number, connection] : connections_) waiting.push_back(connection.poll_request());
+  for (const auto& [number, connection] : connections_) waiting.push_back(connection.poll_entry());
   std::optional<std::chrono::nanoseconds> limit;
   if (!connections_.empty() || accept_paused_) limit = kLogPollInterval;
   // no need to check the result: the loop checks every source after each wake-up

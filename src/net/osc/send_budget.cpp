@@ -1,4 +1,4 @@
-// Max-min fair sharing: each sender gets its demand, limited to an equal part of the remaining total.
+// Max-min fair sharing: each subscriber gets its demand, limited to an equal part of the remaining total.
 #include "net/osc/send_budget.h"
 
 #include <algorithm>
@@ -28,7 +28,8 @@ std::optional<SendBudget::Report> SendBudget::Account::end_window(std::int64_t n
 }
 
 SendBudget::Account* SendBudget::open_account() {
-  Account& account = accounts_.emplace_back(SendLimits{per_sender_.bytes * kBurst, per_sender_.values * kBurst});
+  Account& account =
+      accounts_.emplace_back(SendLimits{per_subscriber_.bytes * kBurst, per_subscriber_.values * kBurst});
   demands_.reserve(accounts_.size());
   reports_.reserve(accounts_.size());
   return &account;
@@ -52,9 +53,9 @@ void SendBudget::refill(std::int64_t now) {
 }
 
 void SendBudget::distribute(double SendLimits::*member, double seconds) {
-  const double max = per_sender_.*member * seconds;
+  const double max = per_subscriber_.*member * seconds;
   const auto demand_of = [&](const Account& account) {
-    return std::clamp(per_sender_.*member * kBurst - account.available(member), 0.0, max);
+    return std::clamp(per_subscriber_.*member * kBurst - account.available(member), 0.0, max);
   };
   demands_.clear();
   for (const Account& account : accounts_) demands_.push_back(demand_of(account));

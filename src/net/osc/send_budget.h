@@ -19,27 +19,27 @@ struct SendLimits {
 /// Token buckets with max-min fair refills. [one thread]
 class SendBudget {
  public:
-  static constexpr SendLimits kPerSender{24e6, 20e3};  ///< Per sender: a thousand bodies' `pos` at 60 Hz.
+  static constexpr SendLimits kPerSubscriber{24e6, 20e3};  ///< Per subscriber: a thousand bodies' `pos` at 60 Hz.
   static constexpr SendLimits kTotal{48e6, 50e3};
-  static constexpr double kBurst = 0.1;  ///< s of a sender's limit that may be sent at once.
+  static constexpr double kBurst = 0.1;  ///< s of a subscriber's limit that may be sent at once.
   /// ns; interval in which throttling is determined and reported.
   static constexpr std::int64_t kWindow = 2'000'000'000;
   static constexpr std::int64_t kMinRefillInterval = 1'000'000;  ///< ns; minimum time between two refills.
-  /// ns; interval of repeated reports for a throttled sender.
+  /// ns; interval of repeated reports for a throttled subscriber.
   static constexpr std::int64_t kReportInterval = 10'000'000'000;
 
-  explicit SendBudget(SendLimits per_sender = kPerSender, SendLimits total = kTotal)
-      : per_sender_(per_sender), total_(total) {}
+  explicit SendBudget(SendLimits per_subscriber = kPerSubscriber, SendLimits total = kTotal)
+      : per_subscriber_(per_subscriber), total_(total) {}
 
   class Account;
-  /// Reports that throttling of a sender has begun, continues or has ended.
+  /// Reports that throttling of a subscriber has begun, continues or has ended.
   struct Report {
     const Account* account = nullptr;
-    bool throttled = false;  ///< False: the sender is no longer throttled.
+    bool throttled = false;  ///< False: the subscriber is no longer throttled.
     double bytes = 0;        ///< Per second, in the last window.
     double values = 0;
   };
-  /// The budget of one sender.
+  /// The budget of one subscriber.
   class Account {
    public:
     explicit Account(SendLimits available) : available_(available) {}
@@ -73,7 +73,7 @@ class SendBudget {
 
   /// Returns the reports of the window that has ended; empty within a window.
   const std::vector<Report>& reports(std::int64_t now);
-  /// Number of senders that are currently throttled.
+  /// Number of subscribers that are currently throttled.
   std::size_t throttled() const;
   /// End of the current window, ns; from then on reports() has new results.
   std::int64_t window_end() const { return window_start_ + kWindow; }
@@ -81,7 +81,7 @@ class SendBudget {
  private:
   void distribute(double SendLimits::*member, double seconds);
 
-  const SendLimits per_sender_;
+  const SendLimits per_subscriber_;
   const SendLimits total_;
   std::list<Account> accounts_;
   std::vector<double> demands_;  // scratch memory of distribute()

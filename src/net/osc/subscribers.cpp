@@ -41,8 +41,8 @@ std::string normalize_stream(const std::string& text) {
 }  // namespace
 
 Subscribers::Subscribers(engine::EngineLink& link, const NetClock& clock,
-                         std::function<bool(const engine::Outgoing&)> send, SendLimits per_sender, SendLimits total)
-    : link_(link), clock_(clock), send_(std::move(send)), budget_(per_sender, total) {}
+                         std::function<bool(const engine::Outgoing&)> send, SendLimits per_subscriber, SendLimits total)
+    : link_(link), clock_(clock), send_(std::move(send)), budget_(per_subscriber, total) {}
 
 Subscribers::Subscriber* Subscribers::find(const CommandOrigin& origin) const {
   const auto found = std::ranges::find_if(subscribers_, [&](const auto& s) { return s->origin == origin; });

@@ -32,7 +32,7 @@ class Subscribers {
 
   /// `send` sends values, events and errors; it returns false if a value may not be sent now.
   Subscribers(engine::EngineLink& link, const NetClock& clock, std::function<bool(const engine::Outgoing&)> send,
-              SendLimits per_sender = SendBudget::kPerSender, SendLimits total = SendBudget::kTotal);
+              SendLimits per_subscriber = SendBudget::kPerSubscriber, SendLimits total = SendBudget::kTotal);
 
   static bool handles(const Message& message) {
     return message.address == "/subscribe" || message.address == "/unsubscribe";

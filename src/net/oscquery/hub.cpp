@@ -84,12 +84,12 @@ void QueryHub::respond_waiting(const std::shared_ptr<const engine::ValueSnapshot
   }
 }
 
-void QueryHub::tick() {
+void QueryHub::update() {
   const double now = now_();
   const bool listening =
       std::any_of(clients_.begin(), clients_.end(), [](const QueryClient* c) { return c->is_listening(); });
   // half a tick of tolerance, because timers are inexact
-  const double interval = listening ? kTick / 2 : kIdleTick - kTick / 2;
+  const double interval = listening ? kUpdateInterval / 2 : kIdleInterval - kUpdateInterval / 2;
   if (!clients_.empty() && clients_snapshot_request_ == 0 && now - last_request_ >= interval) request_values();
   for (QueryClient* const client : std::vector<QueryClient*>(clients_)) {
     if (std::find(clients_.begin(), clients_.end(), client) != clients_.end()) client->send_log();

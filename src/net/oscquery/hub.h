@@ -18,9 +18,9 @@ namespace limber::oscquery {
 /// The part of the query server between the engine and its connections.
 class QueryHub {
  public:
-  static constexpr double kTick = 1.0 / 30;     ///< s; update interval while a client listens to paths.
-  static constexpr double kIdleTick = 0.2;      ///< s; interval of path events to the other clients.
-  static constexpr double kRequestTimeout = 1;  ///< s; how long a request waits for a value snapshot.
+  static constexpr double kUpdateInterval = 1.0 / 30;  ///< s; update interval while a client listens to paths.
+  static constexpr double kIdleInterval = 0.2;         ///< s; interval of path events to the other clients.
+  static constexpr double kRequestTimeout = 1;         ///< s; how long a request waits for a value snapshot.
   static constexpr std::size_t kMaxRequests = 256;
   /// Approximate limit of all responses from one snapshot.
   static constexpr std::size_t kMaxResponseBytes = std::size_t{64} << 20;
@@ -33,7 +33,7 @@ class QueryHub {
 
   const QueryHost& host() const { return host_; }
   HostInfo info() const;
-  /// Calls `respond` immediately, or later from on_link_event() or tick().
+  /// Calls `respond` immediately, or later from on_link_event() or update().
   void handle_request(HttpRequest request, Respond respond);
 
   void add_client(QueryClient& client);
@@ -43,8 +43,8 @@ class QueryHub {
 
   /// Handles snapshots and replies that may have arrived by the link.
   void on_link_event();
-  /// Updates clients and expires requests. Call it every kTick while busy().
-  void tick();
+  /// Updates clients and expires requests. Call it every kUpdateInterval while busy().
+  void update();
   /// Discards all pending requests without a response and thereby releases their connections.
   void cancel_all() { waiting_requests_.clear(); }
   /// True if there are pending requests or connected clients.

@@ -66,7 +66,7 @@ struct QueryServer::Running {
     descriptor.assign(wake->fd());
     accept();
     wait_for_wake();
-    start_tick();
+    schedule_update();
     thread = std::thread([this] { run(); });
   }
 
@@ -107,13 +107,13 @@ struct QueryServer::Running {
     });
   }
 
-  void start_tick() {
+  void schedule_update() {
     timer.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-        std::chrono::duration<double>(QueryHub::kTick)));
+        std::chrono::duration<double>(QueryHub::kUpdateInterval)));
     timer.async_wait([this](error_code error) {
       if (error) return;
-      if (hub.busy()) hub.tick();
-      start_tick();
+      if (hub.busy()) hub.update();
+      schedule_update();
     });
   }
 

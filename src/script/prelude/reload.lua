@@ -3,13 +3,13 @@
 local P = ...
 local ffi, api, ctx = P.ffi, P.api, P.ctx
 
-local gathered, thing_count, pointers = {}, 0, nil
+local gathered, object_count, pointers = {}, 0, nil
 
 -- passes the addresses of slot and generation of each handle to the API
 local function gather_handles()
   gathered = {}
   for _, handle in pairs(P.handles) do gathered[#gathered + 1] = handle end
-  thing_count = #gathered
+  object_count = #gathered
   P.each_list(function(entry) gathered[#gathered + 1] = entry.list end)
   P.each_link(function(entry) gathered[#gathered + 1] = entry.handle end)
   pointers = ffi.new("int32_t*[?]", #gathered)
@@ -28,7 +28,7 @@ end
 local function index_handles()
   local handles = P.handles
   for slot in pairs(handles) do handles[slot] = nil end
-  for i = 1, thing_count do
+  for i = 1, object_count do
     local handle = gathered[i]
     if handle.slot_ >= 0 then handles[handle.slot_] = handle end
   end

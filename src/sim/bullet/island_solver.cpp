@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 
 namespace limber::sim::bullet {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "sim/bullet/bullet.h"
-#include "sim/bullet/contact_sweep.h"
+#include "sim/bullet/contact_solver.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_block.h"
 #include "sim/bullet/joints/joint_constraint.h"
@@ -93,7 +93,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   solver::IndexedArray<JointRow> planned_;  // of all joints of the island, in their order
   int planned_count_ = 0;
   btAlignedObjectArray<SweptJoint> joints_;
-  ContactSweep contacts_;
+  ContactSolver contacts_;
   solver::DirectSolver direct_;
   int steps_left_ = 1;
   int step_count_ = 1;

@@ -8,7 +8,7 @@
 #include "sim/bullet/island_solver.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 #include "sim/collision/dispatcher.h"
 #include "sim/world/stability.h"
 
@@ -34,7 +34,7 @@ void end_tick(btTypedConstraint& joint) {
   if (is_gear(joint)) static_cast<GearConstraint&>(joint).end_tick();
 }
 
-// Advances the predicted angles of a joint with fast parts (spin.h); `refresh`: also reads the joint's pose.
+// Advances the predicted angles of a joint with fast parts (rotation_step.h); `refresh`: also reads the joint's pose.
 void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
   if (constraint.getConstraintType() != JointConstraint::kType) return;
   JointConstraint& joint = static_cast<JointConstraint&>(constraint);
@@ -244,7 +244,7 @@ void IslandWorld::updateAabbs() {
   if (left_count > 0) broadphase->update_aabbs({&left_aabb_[0], static_cast<std::size_t>(left_count)});
 }
 
-void IslandWorld::updateActivationState(btScalar) { sleep_.end_step(); }
+void IslandWorld::updateActivationState(btScalar) { sleep_.end_substep(); }
 
 void IslandWorld::collect_awake() {
   if (awake_.valid(getNumCollisionObjects())) return;

@@ -16,12 +16,13 @@ struct RestTolerance {
   btScalar angle;
 };
 /// For islands with joints, where resting parts stay within 2e-7 m and rad. A part at a turning
-/// point with an acceleration above 8e-5 m/s² or rad/s² isn't considered at rest: within kRest it leaves this range.
+/// point with an acceleration above 8e-5 m/s² or rad/s² isn't considered at rest: within kTimeToSleep it leaves this
+/// range.
 constexpr RestTolerance kJointedTolerance{btScalar(1e-5), btScalar(1e-5)};
 /// For other islands, since stacks jitter in the iterative solver.
 constexpr RestTolerance kOtherTolerance{btScalar(1e-4), btScalar(1e-3)};
-constexpr auto kJointedRest = static_cast<float>(SleepTracker::kRest);
-constexpr auto kOtherRest = static_cast<float>(SleepTracker::kRest / 2);
+constexpr auto kJointedRest = static_cast<float>(SleepTracker::kTimeToSleep);
+constexpr auto kOtherRest = static_cast<float>(SleepTracker::kTimeToSleep / 2);
 /// Speeds, m/s and rad/s, above which a part is not at rest, even if it is near its rest pose.
 constexpr btScalar kMaxRestSpeed = btScalar(0.01);
 constexpr btScalar kMaxRestSpin = btScalar(0.1);
@@ -200,7 +201,7 @@ bool SleepTracker::wake_touched(bool mid_tick) {
   return wake_groups(mid_tick);
 }
 
-void SleepTracker::end_step() {
+void SleepTracker::end_substep() {
   const btCollisionObjectArray& objects = world_.getCollisionObjectArray();
   for (int i = 0; i < moved_.size(); ++i) objects[moved_[i]]->forceActivationState(ISLAND_SLEEPING);
   moved_.resizeNoInitialize(0);

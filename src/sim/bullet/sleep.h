@@ -10,11 +10,11 @@
 
 namespace limber::sim::bullet {
 
-/// An island (parts that touch or are joined) falls asleep at the end of a tick when it has been at rest for kRest, or
-/// half of it without joints: none of its parts left its pose, no force acted, no property changed, and no motor
-/// commanded a motion. A sleeping island has no velocity, its contacts retain their impulses and its joints their
-/// readouts. Islands that neither touch nor are joined to a static object sleep only if they don't move at all, since
-/// nothing brings them to rest.
+/// An island (parts that touch or are joined) falls asleep at the end of a tick when it has been at rest for
+/// kTimeToSleep, or half of it without joints: none of its parts left its pose, no force acted, no property changed,
+/// and no motor commanded a motion. A sleeping island has no velocity, its contacts retain their impulses and its
+/// joints their readouts. Islands that neither touch nor are joined to a static object sleep only if they don't move at
+/// all, since nothing brings them to rest.
 ///
 /// btCollisionObject::isActive() is true for awake objects; static objects are active only in a step in which they were
 /// moved. Objects are identified by their index in the world's array. Decisions depend only on an island's own history,
@@ -22,7 +22,7 @@ namespace limber::sim::bullet {
 class SleepTracker {
  public:
   /// Simulated time, s, for which an island must be at rest; half of it without joints.
-  static constexpr double kRest = 1;
+  static constexpr double kTimeToSleep = 1;
 
   explicit SleepTracker(btDiscreteDynamicsWorld& world) : world_(world) {}
 
@@ -53,7 +53,7 @@ class SleepTracker {
   /// Wakes islands that an awake object touches. Call after contacts were found. Returns true if something woke.
   bool wake_touched(bool mid_tick);
   /// Ends a substep: static objects that were moved in it are inactive again.
-  void end_step();
+  void end_substep();
 
   /// Compares the part's pose with its rest pose. Call in a tick's last substep, after the part has moved.
   /// `seconds`: length of the tick. [any, each thread for other parts]

@@ -73,21 +73,21 @@ void CoupledRows::collect_contacts() {
 }
 
 void CoupledRows::collect_loops() {
-  loop_rows_.assign(island_.links.size(), -1);
-  for (int i = 0; i < island_.links.size(); ++i) {
-    const Island::Link& link = island_.links[i];
-    if (trees_.node_of_link(i) >= 0) continue;
+  loop_rows_.assign(island_.joints.size(), -1);
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    const Island::Joint& joint = island_.joints[i];
+    if (trees_.node_of_joint(i) >= 0) continue;
     loop_rows_[i] = rows_.size();
-    for (const bullet::JointRow& row : link.joint->rows()) {
-      const bullet::AxisJacobian j = link.joint->pose().jacobian(row.axis);
+    for (const bullet::JointRow& row : joint.constraint->rows()) {
+      const bullet::AxisJacobian j = joint.constraint->pose().jacobian(row.axis);
       CoupledRow out;
       out.loop = true;
-      out.a = {trees_.node_of(link.body_a), make_spatial(-j.linear, j.angular_a)};
-      out.b = {trees_.node_of(link.body_b), make_spatial(j.linear, j.angular_b)};
-      out.target = static_cast<double>(row.velocity) - dot(out.a.jacobian, island_.velocity(link.body_a)) -
-                   dot(out.b.jacobian, island_.velocity(link.body_b));
-      out.mobility = body_mobility(island_.body(link.body_a), out.a.jacobian) +
-                     body_mobility(island_.body(link.body_b), out.b.jacobian);
+      out.a = {trees_.node_of(joint.body_a), make_spatial(-j.linear, j.angular_a)};
+      out.b = {trees_.node_of(joint.body_b), make_spatial(j.linear, j.angular_b)};
+      out.target = static_cast<double>(row.velocity) - dot(out.a.jacobian, island_.velocity(joint.body_a)) -
+                   dot(out.b.jacobian, island_.velocity(joint.body_b));
+      out.mobility = body_mobility(island_.body(joint.body_a), out.a.jacobian) +
+                     body_mobility(island_.body(joint.body_b), out.b.jacobian);
       out.softness = static_cast<double>(row.softness) + kMinSoftness * out.mobility;
       out.lower = static_cast<double>(row.lower);
       out.upper = static_cast<double>(row.upper);
@@ -100,18 +100,18 @@ void CoupledRows::collect_loops() {
 void CoupledRows::collect_gears() {
   first_gear_ = rows_.size();
   gear_jacobians_.clear();
-  for (const Island::GearLink& link : island_.gears) {
-    const bullet::GearConstraint::Row& row = link.gear->row();
+  for (const Island::Gear& gear : island_.gears) {
+    const bullet::GearConstraint::Row& row = gear.constraint->row();
     CoupledRow out;
     out.loop = true;
     out.gear = gear_jacobians_.size();
     FixedArray<BodyJacobian, 2>& extra_jacobians = gear_jacobians_.emplace_back();
     out.target = row.velocity;
-    const IndexedSpan<const bullet::GearConstraint::BodyJacobian> bodies = link.gear->jacobians();
+    const IndexedSpan<const bullet::GearConstraint::BodyJacobian> bodies = gear.constraint->jacobians();
     for (int i = 0; i < bodies.size(); ++i) {
       BodyJacobian& body = i == 0 ? out.a : i == 1 ? out.b : extra_jacobians[i - 2];
-      body = {trees_.node_of(link.bodies[i]), make_spatial(bodies[i].linear, bodies[i].angular)};
-      out.target -= dot(body.jacobian, island_.velocity(link.bodies[i]));
+      body = {trees_.node_of(gear.bodies[i]), make_spatial(bodies[i].linear, bodies[i].angular)};
+      out.target -= dot(body.jacobian, island_.velocity(gear.bodies[i]));
     }
     out.softness = row.softness;
     out.mobility = row.mobility;

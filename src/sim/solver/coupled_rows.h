@@ -56,7 +56,7 @@ class CoupledRows {
   /// Number of contacts, loops and gears.
   int fixed_count() const { return fixed_count_; }
   /// First row of a joint that closes a loop; row of a gear.
-  int first_row_of_loop(int link) const { return loop_rows_[link]; }
+  int first_row_of_loop(int index) const { return loop_rows_[index]; }
   int row_of_gear(int gear) const { return first_gear_ + gear; }
 
   /// Calls f(jacobian) for each body that the row acts on.

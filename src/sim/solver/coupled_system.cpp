@@ -124,11 +124,11 @@ int CoupledSystem::defer_ill_conditioned_gears() {
 int CoupledSystem::defer_gear(CoupledRow& row) {
   int deferred = 0;
   const bullet::GearConstraint& gear = *island_.gears[row.gear].gear;
-  for (int i = 0; i < island_.links.size(); ++i) {
-    const int node = trees_.node_of_link(i);
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    const int node = trees_.node_of_joint(i);
     if (node < 0) continue;
-    if (island_.links[i].joint == &gear.joint_a()) deferred += trees_.axes.defer_axis(node, gear.axis_a());
-    if (island_.links[i].joint == &gear.joint_b()) deferred += trees_.axes.defer_axis(node, gear.axis_b());
+    if (island_.joints[i].constraint == &gear.joint_a()) deferred += trees_.axes.defer_axis(node, gear.axis_a());
+    if (island_.joints[i].constraint == &gear.joint_b()) deferred += trees_.axes.defer_axis(node, gear.axis_b());
   }
   if (deferred == 0) row.lower = row.upper = 0;
   return deferred;

@@ -57,7 +57,7 @@ class DirectSolver::Step {
   bool has_finite_velocities() const;
   bool apply_corrections();
   bool iterate_corrections();
-  double axis_residual(const Island::Link& link, const AxisRow& row) const;
+  double axis_residual(const Island::Joint& joint, const AxisRow& row) const;
   double coupled_residual(int i);
 
   WorkBudget budget_;
@@ -169,9 +169,9 @@ void DirectSolver::Step::write() {
   for (const CoupledRow& row : rows) {
     if (row.contact != nullptr) row.contact->m_appliedImpulse = bullet::to_scalar(row.impulse);
   }
-  for (int i = 0; i < island.links.size(); ++i) {
-    bullet::JointConstraint& joint = *island.links[i].joint;
-    const int node = trees_.node_of_link(i);
+  for (int i = 0; i < island.joints.size(); ++i) {
+    bullet::JointConstraint& joint = *island.joints[i].constraint;
+    const int node = trees_.node_of_joint(i);
     impulses_.clear();
     if (node >= 0) {
       for (const AxisRow& row : trees_.axes.rows(node)) impulses_.push_back(row.impulse);
@@ -181,7 +181,8 @@ void DirectSolver::Step::write() {
     }
     joint.set_impulses(impulses_);
   }
-  for (int i = 0; i < island.gears.size(); ++i) island.gears[i].gear->set_impulse(rows[rows.row_of_gear(i)].impulse);
+  for (int i = 0; i < island.gears.size(); ++i)
+    island.gears[i].constraint->set_impulse(rows[rows.row_of_gear(i)].impulse);
 }
 
 // Corrects penetration, and the position errors of joints that the drift correction leaves. Call after write().
@@ -206,18 +207,18 @@ void DirectSolver::Step::fall_back() {
       b.internalApplyImpulse(row.m_contactNormal2 * b.internalGetInvMass(), row.m_angularComponentB, impulse);
     }
   }
-  for (const Island::Link& link : island.links) {
-    link.joint->warm_start().clear_block_impulses();
-    link.joint->warm_start().active_set().fill(0);
+  for (const Island::Joint& joint : island.joints) {
+    joint.constraint->warm_start().clear_block_impulses();
+    joint.constraint->warm_start().active_set().fill(0);
   }
-  for (const Island::GearLink& link : island.gears) link.gear->forget_impulses();
+  for (const Island::Gear& gear : island.gears) gear.constraint->forget_impulses();
 }
 
 // Residual of a row of a joint, calculated from the bodies' velocities, independently of the solver's rates.
-double DirectSolver::Step::axis_residual(const Island::Link& link, const AxisRow& row) const {
-  const bullet::AxisJacobian j = link.joint->pose().jacobian(row.axis);
-  const double rate = dot(make_spatial(-j.linear, j.angular_a), trees_.velocity(link.body_a)) +
-                      dot(make_spatial(j.linear, j.angular_b), trees_.velocity(link.body_b));
+double DirectSolver::Step::axis_residual(const Island::Joint& joint, const AxisRow& row) const {
+  const bullet::AxisJacobian j = joint.constraint->pose().jacobian(row.axis);
+  const double rate = dot(make_spatial(-j.linear, j.angular_a), trees_.velocity(joint.body_a)) +
+                      dot(make_spatial(j.linear, j.angular_b), trees_.velocity(joint.body_b));
   const TreeNode& n = trees_.axes.forest.node(row.node);
   const double mobility = 1 / dot(n.axis[row.axis], n.inertia * n.axis[row.axis]) + row.softness;
   return natural_residual(row.velocity - row.softness * row.impulse - rate, row.impulse, row.lower, row.upper,
@@ -235,11 +236,11 @@ double DirectSolver::Step::coupled_residual(int i) {
 
 DirectResiduals DirectSolver::Step::measure_residuals() {
   DirectResiduals out;
-  for (int i = 0; i < island.links.size(); ++i) {
-    if (trees_.node_of_link(i) < 0) continue;
-    for (const AxisRow& row : trees_.axes.rows(trees_.node_of_link(i))) {
+  for (int i = 0; i < island.joints.size(); ++i) {
+    if (trees_.node_of_joint(i) < 0) continue;
+    for (const AxisRow& row : trees_.axes.rows(trees_.node_of_joint(i))) {
       double& largest = row.bounded() ? out.bounded : out.unbounded;
-      largest = std::max(largest, axis_residual(island.links[i], row));
+      largest = std::max(largest, axis_residual(island.joints[i], row));
     }
   }
   for (int i = 0; i < coupled_.rows.fixed_count(); ++i) out.coupled = std::max(out.coupled, coupled_residual(i));
@@ -251,19 +252,19 @@ DirectSolver::DirectSolver() : step_(std::make_unique<Step>()) {}
 DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::begin() {
-  step_->island.links.clear();
+  step_->island.joints.clear();
   step_->island.gears.clear();
 }
 
 void DirectSolver::add_joint(bullet::JointConstraint& joint, int body_a, int body_b) {
-  step_->island.links.push_back({&joint, body_a, body_b});
+  step_->island.joints.push_back({&joint, body_a, body_b});
 }
 
 void DirectSolver::add_gear(bullet::GearConstraint& gear, const std::array<int, 4>& bodies) {
   step_->island.gears.push_back({&gear, {bodies}});
 }
 
-int DirectSolver::joint_count() const { return step_->island.links.size(); }
+int DirectSolver::joint_count() const { return step_->island.joints.size(); }
 
 bool DirectSolver::solve(const IslandPools& pools, const btContactSolverInfo& info) {
   const int max_rows = joint_count() == 0 ? kMaxRowsWithoutJoints : kMaxContactRows;

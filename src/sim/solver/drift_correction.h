@@ -25,7 +25,7 @@ class DriftCorrection {
   /// corrected because the rotation of one of its bodies is clamped.
   bool leaves_errors() const { return pending_ || diverged_ || skipped_clamped_; }
   /// Scales down the correction of a joint. Returns true if it had one.
-  bool scale(int link, double fraction);
+  bool scale(int index, double fraction);
 
   static constexpr double kMinDrift = 1e-4;      ///< Smaller changes are ignored, m.
   static constexpr double kMinFastDrift = 1e-6;  ///< The same if bodies rotate fast: a spinning top would lose energy.
@@ -38,10 +38,10 @@ class DriftCorrection {
     bool clamped;  // Bullet clamps its rotation
   };
 
-  void apply(int link, const Vec3& drift);
+  void apply(int index, const Vec3& drift);
   void predict_motions();
   BodyMotion predict_motion(int body) const;
-  Vec3 predict_drift(int link);
+  Vec3 predict_drift(int index);
 
   const Island& island_;
   SpanningTrees& trees_;

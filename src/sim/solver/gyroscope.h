@@ -11,8 +11,8 @@ namespace limber::sim::solver {
 /// step.
 Vec3 gyroscopic_change(const Vec3& inertia, const Vec3& spin, double h);
 
-/// The same for a spin about an axis of symmetry that is integrated separately (spin.h): the change of `rest`, the
-/// angular velocity perpendicular to the unit vector `axis`, with moments `along` the axis and `across` it.
+/// The same for a spin about an axis of symmetry that is integrated separately (rotation_step.h): the change of `rest`,
+/// the angular velocity perpendicular to the unit vector `axis`, with moments `along` the axis and `across` it.
 Vec3 gyroscopic_change(double along, double across, const Vec3& axis, double spin, const Vec3& rest, double h);
 
 }  // namespace limber::sim::solver

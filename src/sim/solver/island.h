@@ -4,7 +4,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 #include "sim/solver/direct_solver.h"
 #include "sim/solver/forest/axis_active_set.h"
 #include "sim/solver/forest/spatial_algebra.h"
@@ -18,18 +18,18 @@ inline Spatial make_spatial(const btVector3& linear, const btVector3& angular) {
 
 /// One island of bodies during one substep. [sim]
 struct Island {
-  struct Link {  ///< A joint between two solver bodies.
-    bullet::JointConstraint* joint;
+  struct Joint {  ///< A joint between two solver bodies.
+    bullet::JointConstraint* constraint;
     int body_a;
     int body_b;
   };
-  struct GearLink {
-    bullet::GearConstraint* gear;
+  struct Gear {
+    bullet::GearConstraint* constraint;
     FixedArray<int, 4> bodies;
   };
 
-  IndexedArray<Link> links;
-  IndexedArray<GearLink> gears;
+  IndexedArray<Joint> joints;
+  IndexedArray<Gear> gears;
   // set by DirectSolver::solve()
   const IslandPools* pools = nullptr;
   const btContactSolverInfo* info = nullptr;

@@ -23,18 +23,18 @@ void LockEnergy::begin() {
 double LockEnergy::work_of_locks(const Tree& tree) const {
   double work = 0;
   for (int i = tree.first; i < tree.last; ++i) {
-    if (trees_.link_of(i) < 0) continue;
-    const Island::Link& link = island_.links[trees_.link_of(i)];
-    const bullet::JointConstraint& joint = *link.joint;
-    const Spatial a = island_.start_velocity(link.body_a);
-    const Spatial b = island_.start_velocity(link.body_b);
-    const Vec3 drift = translated(b, bullet::from_bt(joint.pose().arm_b())).linear -
-                       translated(a, bullet::from_bt(joint.pose().arm_a())).linear;
+    if (trees_.joint_of(i) < 0) continue;
+    const Island::Joint& joint = island_.joints[trees_.joint_of(i)];
+    const bullet::JointConstraint& constraint = *joint.constraint;
+    const Spatial a = island_.start_velocity(joint.body_a);
+    const Spatial b = island_.start_velocity(joint.body_b);
+    const Vec3 drift = translated(b, bullet::from_bt(constraint.pose().arm_b())).linear -
+                       translated(a, bullet::from_bt(constraint.pose().arm_a())).linear;
     const Vec3 spin = b.angular - a.angular;
     for (const AxisRow& row : trees_.axes.rows(i)) {
       if (row.bounded() || !row.hard()) continue;
-      const double rate = row.axis < 3 ? glm::dot(bullet::from_bt(joint.pose().linear_axis(row.axis)), drift)
-                                       : glm::dot(bullet::from_bt(joint.pose().dual_axis(row.axis - 3)), spin);
+      const double rate = row.axis < 3 ? glm::dot(bullet::from_bt(constraint.pose().linear_axis(row.axis)), drift)
+                                       : glm::dot(bullet::from_bt(constraint.pose().dual_axis(row.axis - 3)), spin);
       work += row.impulse * (rate + trees_.axes.rate(i, row.axis)) / 2;
     }
   }
@@ -43,8 +43,8 @@ double LockEnergy::work_of_locks(const Tree& tree) const {
 
 // Energy that the locks of a tree may return; stored in its first joint.
 double& LockEnergy::stored_energy(const Tree& tree) const {
-  const int first = trees_.link_of(tree.first) < 0 ? tree.first + 1 : tree.first;
-  return island_.links[trees_.link_of(first)].joint->warm_start().lock_energy();
+  const int first = trees_.joint_of(tree.first) < 0 ? tree.first + 1 : tree.first;
+  return island_.joints[trees_.joint_of(first)].constraint->warm_start().lock_energy();
 }
 
 // True if the tree has joints, and no motor drives any of them.
@@ -70,7 +70,7 @@ bool LockEnergy::limit() {
     const double fraction =
         uncorrected < allowed_work ? kEnergySafety * (allowed_work - uncorrected) / (work - uncorrected) : 0;
     for (int i = tree.first; i < tree.last; ++i) {
-      if (trees_.link_of(i) >= 0 && drift_.scale(trees_.link_of(i), fraction)) changed = true;
+      if (trees_.joint_of(i) >= 0 && drift_.scale(trees_.joint_of(i), fraction)) changed = true;
     }
   }
   return changed;

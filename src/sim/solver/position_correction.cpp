@@ -44,8 +44,8 @@ Vec3 bullet_turn_velocity(const Quat& rotation) {
 }  // namespace
 
 void PositionCorrection::apply() {
-  for (int i = 0; i < island_.links.size(); ++i) {
-    if (trees_.node_of_link(i) < 0) return;
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    if (trees_.node_of_joint(i) < 0) return;
   }
   predict_poses();
   set_goals();
@@ -81,9 +81,9 @@ void PositionCorrection::predict_poses() {
 
 // Sets the positions that the locked axes should have at the step's end.
 void PositionCorrection::set_goals() {
-  goals_.assign(island_.links.size(), {});
+  goals_.assign(island_.joints.size(), {});
   for (int i = 0; i < goals_.size(); ++i) {
-    const bullet::JointConstraint& joint = *island_.links[i].joint;
+    const bullet::JointConstraint& joint = *island_.joints[i].constraint;
     for (const bullet::JointRow& row : joint.rows()) {
       if (!is_hard_lock(row)) continue;
       goals_[i][row.axis] = joint.value(row.axis) + static_cast<double>(row.velocity * island_.info->m_timeStep);
@@ -93,7 +93,7 @@ void PositionCorrection::set_goals() {
 
 void PositionCorrection::set_poses() {
   for (int i = 0; i < trees_.node_count(); ++i) trees_.rigid(i).setWorldTransform(bullet::to_bt(end_poses_[i]));
-  for (const Island::Link& link : island_.links) link.joint->refresh();
+  for (const Island::Joint& joint : island_.joints) joint.constraint->refresh();
 }
 
 void PositionCorrection::restore_poses() {
@@ -103,8 +103,8 @@ void PositionCorrection::restore_poses() {
 // Largest position error of a joint's linear locks, m.
 double PositionCorrection::position_error() const {
   double largest = 0;
-  for (int i = 0; i < island_.links.size(); ++i) {
-    const bullet::JointConstraint& joint = *island_.links[i].joint;
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    const bullet::JointConstraint& joint = *island_.joints[i].constraint;
     for (const bullet::JointRow& row : joint.rows()) {
       if (row.axis < 3 && is_hard_lock(row))
         largest = std::max(largest, std::fabs(error_of(joint, row.axis, goals_[i][row.axis])));
@@ -127,23 +127,23 @@ bool PositionCorrection::solve_displacements() {
 bool PositionCorrection::add_node(int node) {
   TreeNode& n = axes_.forest.add(trees_.axes.forest.node(node).parent);
   n.inertia = inertia_of(trees_.rigid(node));
-  const int link = trees_.link_of(node);
-  if (link < 0) {
+  const int index = trees_.joint_of(node);
+  if (index < 0) {
     make_floating(n);
   } else {
-    const Island::Link& l = island_.links[link];
-    if (!attach(n, *l.joint, l.body_b == trees_.body_of(node))) return false;
-    add_rows(link);
+    const Island::Joint& joint = island_.joints[index];
+    if (!attach(n, *joint.constraint, joint.body_b == trees_.body_of(node))) return false;
+    add_rows(index);
   }
   axes_.end_node({}, {});
   return true;
 }
 
-void PositionCorrection::add_rows(int link) {
-  const bullet::JointConstraint& joint = *island_.links[link].joint;
+void PositionCorrection::add_rows(int index) {
+  const bullet::JointConstraint& joint = *island_.joints[index].constraint;
   for (const bullet::JointRow& row : joint.rows()) {
     if (row.kind != bullet::JointRow::Kind::lock) continue;
-    const double distance = is_hard_lock(row) ? error_of(joint, row.axis, goals_[link][row.axis]) : 0;
+    const double distance = is_hard_lock(row) ? error_of(joint, row.axis, goals_[index][row.axis]) : 0;
     axes_.add(row.axis, distance, 0, -2 * AxisRow::kInfinity, 2 * AxisRow::kInfinity, AxisRow::other);
   }
   for (int axis = 0; axis < 6; ++axis) {

@@ -26,7 +26,7 @@ class PositionCorrection {
   double position_error() const;
   bool solve_displacements();
   bool add_node(int node);
-  void add_rows(int link);
+  void add_rows(int index);
   void move_bodies();
   void set_push_velocities() const;
 

@@ -37,7 +37,7 @@ Spatial SpinClamp::velocity_without_spin(int node, Stage stage) const {
 // body.
 SpinClamp::RigidMotion SpinClamp::rigid_motion(const Tree& tree, Stage stage) const {
   RigidMotion rigid;
-  if (trees_.link_of(tree.first) >= 0) return rigid;
+  if (trees_.joint_of(tree.first) >= 0) return rigid;
   const auto center = [&](int node) { return center_of(trees_.rigid(node)); };
   // without geometric stiffness, which has no momentum
   const auto inertia = [&](int node) { return inertia_of(trees_.rigid(node)); };
@@ -120,11 +120,11 @@ void SpinClamp::undo() const {
 }
 
 // True if a motor on this axis of a joint drives a spin of one of its bodies.
-bool SpinClamp::drives_spin(int link, int axis) const {
-  if (link < 0 || axis < 3) return false;
-  const Island::Link& l = island_.links[link];
-  const Vec3 axis_direction = bullet::from_bt(l.joint->pose().linear_axis(axis - 3));
-  return std::ranges::any_of(std::array{l.body_a, l.body_b}, [&](int body) {
+bool SpinClamp::drives_spin(int index, int axis) const {
+  if (index < 0 || axis < 3) return false;
+  const Island::Joint& joint = island_.joints[index];
+  const Vec3 axis_direction = bullet::from_bt(joint.constraint->pose().linear_axis(axis - 3));
+  return std::ranges::any_of(std::array{joint.body_a, joint.body_b}, [&](int body) {
     const bullet::RotationStep turn = island_.rotation_step(body, trees_.velocity(body).angular);
     return turn.spin != 0 && std::fabs(glm::dot(turn.axis, axis_direction)) > 0.99;
   });
@@ -151,7 +151,7 @@ bool SpinClamp::limit_target_rates() {
     if (!(rotation > kMaxRotation)) continue;
     for (int i = t.first; i < t.last; ++i) {
       for (AxisRow& row : trees_.axes.rows(i)) {
-        if (!row.bounded() || row.constant() || drives_spin(trees_.link_of(i), row.axis)) continue;
+        if (!row.bounded() || row.constant() || drives_spin(trees_.joint_of(i), row.axis)) continue;
         row.velocity *= kRotationGoal / rotation;
         changed = true;
       }

@@ -8,8 +8,8 @@
 namespace limber::sim::solver {
 
 /// If a body rotates by more than kMaxRotationPerStep in a step, Bullet rotates it by less than its angular velocity
-/// implies. In a tree with such a body (spins, see spin.h, excluded) the motion relative to the tree's rigid motion is
-/// scaled down. Momentum and every homogeneous constraint on the rates are unaffected. [sim]
+/// implies. In a tree with such a body (spins, see rotation_step.h, excluded) the motion relative to the tree's rigid
+/// motion is scaled down. Momentum and every homogeneous constraint on the rates are unaffected. [sim]
 class SpinClamp {
  public:
   SpinClamp(const Island& island, SpanningTrees& trees) : island_(island), trees_(trees) {}
@@ -41,7 +41,7 @@ class SpinClamp {
   RigidMotion rigid_motion(const Tree& tree, Stage stage) const;
   void scale_motion(int node, Stage stage, const RigidMotion& rigid, double scale_change);
   double fastest_tumbling(const Tree& tree) const;
-  bool drives_spin(int link, int axis) const;
+  bool drives_spin(int index, int axis) const;
 
   const Island& island_;
   SpanningTrees& trees_;

@@ -9,7 +9,7 @@
 #include "base/memory/archive.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -26,7 +26,7 @@ void BodyWarnings::warn_static_velocity(std::string_view subject) {
       body_.name(), subject);
 }
 
-void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || bullet::clamped_by(part.rigid()) > 0; }
+void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || bullet::clamped_speed(part.rigid()) > 0; }
 
 void BodyWarnings::note(const Joint& joint) {
   const bullet::JointConstraint& constraint = joint.constraint();
@@ -36,11 +36,11 @@ void BodyWarnings::note(const Joint& joint) {
 
 void BodyWarnings::warn_clamped() {
   if (!std::exchange(is_clamped_, false) || std::exchange(state_.clamped, true)) return;
-  const auto clamped_of = [](const std::unique_ptr<Part>& part) { return bullet::clamped_by(part->rigid()); };
+  const auto clamped_of = [](const std::unique_ptr<Part>& part) { return bullet::clamped_speed(part->rigid()); };
   const Part& part = **std::ranges::max_element(body_.parts(), {}, clamped_of);
   const World& world = body_.world();
   const double allowed = bullet::kMaxRotationPerStep * world.substeps() / world.timestep();
-  const double excess = bullet::clamped_by(part.rigid());
+  const double excess = bullet::clamped_speed(part.rigid());
   const double requested = std::max(glm::length(part.angular_velocity()), allowed + excess);
   log_warning(
       "part '{}/{}': rotation of {:.4g} rad/s is clamped by {:.4g} rad/s, since it exceeds 45 degrees per substep; "

@@ -155,7 +155,7 @@ Joint::~Joint() {
 
 void Joint::add_to_world() {
   if (std::exchange(state_.in_world, true)) return;
-  constraint_->goals().restart();
+  constraint_->target_interpolator().restart();
   body_.world().bullet().addConstraint(constraint_.get());
 }
 

@@ -207,7 +207,7 @@ void Motor::step_towards(const Vec3& target, double max_step) {
 
 void Motor::save_held_position() {
   for (int axis = 0; axis < 6; axis++) state_.held_position[bullet::at(axis)] = constraint_.value(axis);
-  constraint_.goals().restart();
+  constraint_.target_interpolator().restart();
 }
 
 void Motor::apply_axes() {
@@ -236,10 +236,10 @@ void Motor::apply_axes() {
   constraint_.set_damping(store.values(id_, *properties.passive_damping)[0]);
   if (constraint_.bounce() != bounce || constraint_.damping() != damping) joint_.wake();
   const double smoothing = store.values(id_, *properties.smoothing)[0];
-  if (constraint_.goals().smoothing() != smoothing) {
+  if (constraint_.target_interpolator().smoothing() != smoothing) {
     joint_.wake();
     const bullet::BulletMemory::Scope scope(&joint_.body().world().bullet_memory());
-    constraint_.goals().set_smoothing(smoothing);
+    constraint_.target_interpolator().set_smoothing(smoothing);
   }
   apply_targets();
 }
@@ -266,7 +266,7 @@ bool Motor::update_targets() {
     if (!joint_.is_open(axis)) continue;
     const auto half = static_cast<std::size_t>(axis / 3);
     const double* const values = persistent + axis % 3;
-    changed |= constraint_.set_goal(
+    changed |= constraint_.set_target(
         axis, holding ? state_.held_position[bullet::at(axis)] : values[properties.servo_position[half]->offset],
         values[properties.rest[half]->offset],
         holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset]);

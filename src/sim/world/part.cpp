@@ -7,7 +7,7 @@
 
 #include "base/memory/prefetch.h"
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 #include "sim/collision/contact_friction.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
@@ -104,7 +104,7 @@ void apply_surface(Part& part) {
 void read_center(const Part& part, double* out) { put(out, part.center()); }
 void read_inertia(const Part& part, double* out) { put(out, part.geometry()->unit_inertia * part.mass()); }
 void read_principal_axes(const Part& part, double* out) { put(out, part.principal_axes()); }
-void read_rotation_clamped(const Part& part, double* out) { out[0] = bullet::clamped_by(part.rigid()); }
+void read_rotation_clamped(const Part& part, double* out) { out[0] = bullet::clamped_speed(part.rigid()); }
 
 Result<void> validate_mass(const Part& part, const double*) {
   if (!part.is_static()) return {};

@@ -9,7 +9,7 @@
 
 #include "base/memory/archive.h"
 #include "sim/bullet/island_world.h"
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/part.h"

@@ -134,7 +134,7 @@ World::World(Store& store, const WorldSetup& setup)
   behaviors_ = std::make_unique<BehaviorList>(*this, physics);
   visuals_ = std::make_unique<Visuals>(*this);
   shapes_ = std::make_unique<ShapeList>(store_, visuals_->id(), transaction_);
-  bullet_->setInternalTickCallback(&World::after_internal_step, this, false);
+  bullet_->setInternalTickCallback(&World::after_substep, this, false);
 }
 
 World::~World() { clear(); }
@@ -264,7 +264,7 @@ void World::publish_time() {
       static_cast<double>(state_.tick - state_.tick_at_timestep_change) * state_.last_timestep;
 }
 
-void World::after_internal_step(btDynamicsWorld* bullet, btScalar h) {
+void World::after_substep(btDynamicsWorld* bullet, btScalar h) {
   World& world = *static_cast<World*>(bullet->getWorldUserInfo());
   if (world.panic_.on()) {
     world.panic_.damp(static_cast<double>(h));

@@ -128,7 +128,7 @@ class World {
 
  private:
   void publish_time();
-  static void after_internal_step(btDynamicsWorld* bullet, float h);
+  static void after_substep(btDynamicsWorld* bullet, float h);
 
   Store& store_;
   std::shared_ptr<ThreadPool> thread_pool_;  // runs the parallel loops of a step, or null

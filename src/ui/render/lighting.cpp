@@ -13,7 +13,7 @@ namespace limber::render {
 namespace {
 
 struct Style {
-  glm::vec3 light_direction;  // direction to the light
+  glm::vec3 to_light;
   glm::vec3 light_color;
   glm::vec3 sky;
   glm::vec3 ground;
@@ -75,7 +75,7 @@ const glm::mat4& to_map() {
 
 // sets the light's position and cone, and the projection of its shadow map, which covers the lit area
 void set_light(const Style& style, const SceneBounds& bounds, float radius, Lighting& out) {
-  const glm::vec3 direction = glm::normalize(style.light_direction);
+  const glm::vec3 direction = glm::normalize(style.to_light);
   // aims below the scene's center, so that the floor is lit, too
   glm::vec3 target = bounds.center;
   target.z = glm::mix(bounds.floor_height, bounds.center.z, 0.5F);

@@ -24,9 +24,9 @@ const std::array<glm::vec3, 6> kColors = {{{1.0F, 0.42F, 0.03F},
                                            {1.0F, 0.06F, 0.10F},
                                            {0.08F, 0.45F, 1.0F}}};
 
-Vec3 axis_of(const sim::OverlayMark& mark, int further) {
+Vec3 axis_of(const sim::OverlayMark& mark, int offset) {
   Vec3 axis(0);
-  axis[(mark.axis + further) % 3] = 1;
+  axis[(mark.axis + offset) % 3] = 1;
   return mark.rotation * axis;
 }
 

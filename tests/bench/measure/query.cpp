@@ -26,7 +26,7 @@ constexpr int kQueryArms = 16;
 constexpr int kClients = 100;
 constexpr int kPaths = 50;
 constexpr int kRounds = 4;
-constexpr double kTick = 1.0 / 60;
+constexpr double kUpdateInterval = 1.0 / 60;
 
 // RFC 6455: a final text frame of less than 126 bytes, with a zero mask
 std::string text_frame(const std::string& text) {
@@ -99,7 +99,7 @@ void play(BenchArms& arms, int ticks, TimeSamples& samples) {
     const double begin = system::thread_seconds();
     arms.tick();
     samples.add(system::thread_seconds() - begin);
-    next += kTick;
+    next += kUpdateInterval;
     std::this_thread::sleep_for(std::chrono::duration<double>(next - system::clock_seconds()));
   }
 }

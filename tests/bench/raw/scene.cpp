@@ -215,7 +215,7 @@ class IslandSimulation : private IslandMemory, public BasicSimulation<sim::bulle
       // as the motors do
       if (i + kAhead < joints_.size()) prefetch(&joints_[i + kAhead]->axis(5), sizeof(sim::bullet::AxisSettings));
       const RawJoint& j = scene.joints[i];
-      if (j.force > 0) joints_[i]->set_goal(5, j.target(time), 0, j.speed);
+      if (j.force > 0) joints_[i]->set_target(5, j.target(time), 0, j.speed);
     }
     apply_attraction();
     world_->step(scene.step, 1);

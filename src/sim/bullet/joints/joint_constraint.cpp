@@ -49,14 +49,14 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   AxisSettings& current = axes_[at(axis)];
   const AxisSettings before = current;
   current = clamped(settings);
-  if (current.drive != before.drive || (before.locked() && !current.locked())) goals().restart(axis);
+  if (current.drive != before.drive || (before.locked() && !current.locked())) target_interpolator().restart(axis);
   if (current.lower == before.lower && current.upper == before.upper) return;
   pose_.set_ranges(axes_);
   // a free axis may have made many turns, which the new limits must not unwind
   if (axis >= 3 && current.limited()) pose_.turn_into(axis, current.lower, current.upper);
 }
 
-bool JointConstraint::set_goal(int axis, double target, double rest, double velocity) {
+bool JointConstraint::set_target(int axis, double target, double rest, double velocity) {
   AxisSettings& current = axes_[at(axis)];
   const AxisSettings before = current;
   current.target = clamped(target, -1e6, 1e6);
@@ -79,7 +79,7 @@ void JointConstraint::end_tick() {
 
 bool JointConstraint::commands_motion() const {
   constexpr float kMinSpeedFraction = 0.25f;  // of the speed limit: a slower servo is blocked or has reached its target
-  if (goals().moving()) return true;
+  if (target_interpolator().moving()) return true;
   for (int axis = 0; axis < 6; ++axis) {
     const AxisSettings& s = axes_[at(axis)];
     if (s.locked() || s.max_force <= 0 || s.velocity == 0) continue;
@@ -187,7 +187,7 @@ void JointConstraint::set_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < rows_.size(); ++r) {
     set_impulse(rows_[r], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
   }
-  drives_.end_step(step_.h);
+  drives_.end_substep(step_.h);
 }
 
 void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
@@ -201,7 +201,7 @@ void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
     }
     set_impulse(row, to_scalar(impulses[r]), inverse_mobility);
   }
-  drives_.end_step(step_.h);
+  drives_.end_substep(step_.h);
 }
 
 void JointConstraint::set_impulse(const JointRow& row, btScalar impulse, btScalar inverse_mobility) {

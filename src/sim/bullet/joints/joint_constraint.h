@@ -28,8 +28,8 @@ class JointConstraint : public btTypedConstraint {
   /// center.
   void set_axis(int axis, const AxisSettings& settings);
   /// Sets only the goals of an axis: servo target, rest position of the spring, velocity. A new target or rest position
-  /// is interpolated linearly over the next tick (AxisGoals). Returns true if one of them changed.
-  bool set_goal(int axis, double target, double rest, double velocity);
+  /// is interpolated linearly over the next tick (TargetInterpolator). Returns true if one of them changed.
+  bool set_target(int axis, double target, double rest, double velocity);
   /// True if a motor or spring is on.
   bool has_drive() const {
     return std::any_of(axes_.begin(), axes_.end(), [](const AxisSettings& s) { return s.drive != AxisDrive::off; });
@@ -37,8 +37,8 @@ class JointConstraint : public btTypedConstraint {
   const AxisSettings& axis(int axis) const { return axes_[at(axis)]; }
   /// Interpolation of targets and rest positions. Call set_smoothing() within the BulletMemory::Scope that the
   /// constraint was created in.
-  AxisGoals& goals() { return drives_.goals(); }
-  const AxisGoals& goals() const { return drives_.goals(); }
+  TargetInterpolator& target_interpolator() { return drives_.target_interpolator(); }
+  const TargetInterpolator& target_interpolator() const { return drives_.target_interpolator(); }
   /// Sets the joint's frames (in center-of-mass frames). Angles are read again, with the turns nearest to the present.
   void set_frames(const btTransform& frame_in_parent, const btTransform& frame_in_child) {
     pose_.set_frames(frame_in_parent, frame_in_child);

@@ -43,7 +43,7 @@ void JointDrives::reset(const JointPose& pose) {
   inertia_estimate_.fill(0);
   pair_inertia_.fill(0);
   tick_time_ = 0;
-  goals_.restart();
+  interpolator_.restart();
   previous_rate_ = pose.rates();
 }
 
@@ -71,7 +71,7 @@ void JointDrives::end_tick() {
   for (std::size_t i = 0; i < 6; ++i) applied_[i] = tick_impulse_[i] * per_time;
   tick_impulse_.fill(0);
   tick_time_ = 0;
-  goals_.end_tick();
+  interpolator_.end_tick();
 }
 
 void JointDrives::plan(const Axis& axis, JointRows& rows) {
@@ -90,7 +90,7 @@ void JointDrives::plan_spring(const Axis& axis, JointRows& rows) {
   const btScalar stiffness = capped_stiffness(axis);
   stiffness_applied_[at(axis.index)] = stiffness;
   spring_limited_ = spring_limited_ || stiffness < btScalar(0.999) * s.stiffness;
-  const GoalStep goal = goals_.advance(axis.index, s.rest, static_cast<double>(h), axis.step.left);
+  const TargetStep goal = interpolator_.advance(axis.index, s.rest, static_cast<double>(h), axis.step.left);
   const btScalar stretch = static_cast<btScalar>(goal.to - axis.value());
   const btScalar impulse = stiffness * stretch * h;
   if (s.spring_damping > 0) {
@@ -141,14 +141,14 @@ JointDrives::Range JointDrives::servo_range(const Axis& axis) {
   return {lower - deflection, upper + deflection};
 }
 
-// The servo follows the interpolated target of the tick (AxisGoals): feed-forward of the target's velocity plus a part
-// of the error. The feed-forward is limited to twice the target's velocity in the last tick. The rest is corrected no
-// faster than the force can brake, since the target may stop at once.
+// The servo follows the interpolated target of the tick (TargetInterpolator): feed-forward of the target's velocity
+// plus a part of the error. The feed-forward is limited to twice the target's velocity in the last tick. The rest is
+// corrected no faster than the force can brake, since the target may stop at once.
 btScalar JointDrives::servo_velocity(const Axis& axis) {
   const AxisSettings& s = axis.settings;
   const double value = axis.value();
   const auto h = static_cast<double>(axis.step.h);
-  const GoalStep step = goals_.advance(axis.index, s.target, h, axis.step.left);
+  const TargetStep step = interpolator_.advance(axis.index, s.target, h, axis.step.left);
   const Range range = servo_range(axis);
   const auto clamp_to_range = [&](double position) { return std::clamp(position, range.lower, range.upper); };
   const double goal = clamp_to_range(step.to);

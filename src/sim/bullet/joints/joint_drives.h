@@ -4,14 +4,14 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/bullet/joints/axis_goals.h"
 #include "sim/bullet/joints/joint_pose.h"
 #include "sim/bullet/joints/joint_rows.h"
+#include "sim/bullet/joints/target_interpolator.h"
 
 namespace limber::sim::bullet {
 
 /// In each substep: begin_step(), plan() for each axis with a drive, end_plan(), store() for each row,
-/// end_step(). [sim]
+/// end_substep(). [sim]
 class JointDrives {
  public:
   /// An axis in the present substep.
@@ -26,8 +26,8 @@ class JointDrives {
   };
 
   /// Targets of servos and rest positions of springs.
-  AxisGoals& goals() { return goals_; }
-  const AxisGoals& goals() const { return goals_; }
+  TargetInterpolator& target_interpolator() { return interpolator_; }
+  const TargetInterpolator& target_interpolator() const { return interpolator_; }
   /// Resets impulses, inertia estimates and goals.
   void reset(const JointPose& pose);
 
@@ -37,7 +37,7 @@ class JointDrives {
   void end_plan(const JointPose& pose);
   /// Stores the impulse of a motor's or spring's row. `inverse_mobility`: its impulse per change of its rate.
   void store(const JointRow& row, btScalar impulse, btScalar inverse_mobility);
-  void end_step(btScalar h) { tick_time_ += h; }
+  void end_substep(btScalar h) { tick_time_ += h; }
   /// Ends a tick: averages the applied forces.
   void end_tick();
 
@@ -65,7 +65,7 @@ class JointDrives {
   btScalar braking_speed(const Axis& axis, btScalar distance);
   void estimate_inertia(const Axis& axis);
 
-  AxisGoals goals_;
+  TargetInterpolator interpolator_;
   std::array<float, 6> impulse_{};       // of the last substep
   std::array<float, 6> tick_impulse_{};  // sum over the current tick
   std::array<float, 6> applied_{};

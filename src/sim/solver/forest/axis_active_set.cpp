@@ -33,7 +33,7 @@ AxisRow& AxisActiveSet::add(int axis, double velocity, double softness, double l
   return row;
 }
 
-void AxisActiveSet::end_node(const FixedArray<double, 6>& rates, const ActiveSetMemory& previous) {
+void AxisActiveSet::end_node(const FixedArray<double, 6>& rates, const ActiveSetWarmStart& previous) {
   const int node = forest.size() - 1;
   row_start_.push_back(rows_.size());
   pending_.resize(rows_.size(), 0);

@@ -39,7 +39,7 @@ struct AxisRow {
 
 /// Warm start of the active set of a joint: for each axis the row that was active in the previous step, and whether
 /// contacts changed this. 0: unknown.
-using ActiveSetMemory = FixedArray<std::uint8_t, 6>;
+using ActiveSetWarmStart = FixedArray<std::uint8_t, 6>;
 
 /// Constraint rows of a forest, their impulses and the bodies' velocity changes. Rows whose status depends on contacts
 /// are deferred: the coupled system solves them, and applies impulses to them by add_pending(). [sim]
@@ -55,8 +55,8 @@ class AxisActiveSet {
   AxisRow& add(int axis, double velocity, double softness, double lower, double upper, AxisRow::Kind kind);
   /// Completes the last node. `rates`: of its axes before the step's impulses; `previous`: its active set in the last
   /// step.
-  void end_node(const FixedArray<double, 6>& rates, const ActiveSetMemory& previous);
-  ActiveSetMemory active_set(int node) const;
+  void end_node(const FixedArray<double, 6>& rates, const ActiveSetWarmStart& previous);
+  ActiveSetWarmStart active_set(int node) const;
 
   IndexedSpan<AxisRow> rows(int node);
   int index_of(const AxisRow& row) const { return static_cast<int>(&row - rows_.data()); }

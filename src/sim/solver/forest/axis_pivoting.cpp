@@ -125,8 +125,8 @@ int AxisActiveSet::final_state(const BoundedRows& bounded) const {
   return 2 * below;
 }
 
-ActiveSetMemory AxisActiveSet::active_set(int node) const {
-  ActiveSetMemory out{};
+ActiveSetWarmStart AxisActiveSet::active_set(int node) const {
+  ActiveSetWarmStart out{};
   for (int k = bounded_rows_start_[node]; k < bounded_rows_start_[node + 1]; ++k) {
     const BoundedRows& bounded = bounded_rows_[k];
     const int state = bounded.deferred ? final_state(bounded) : bounded.state;

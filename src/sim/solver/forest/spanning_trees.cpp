@@ -87,18 +87,18 @@ AxisRow::Kind row_kind_of(const bullet::JointRow& row) {
 // Geometric stiffness (Andrews, Teichmann and Kry, Geometric stiffness for real-time constrained multibody dynamics,
 // 2017). A body that a joint pulls at with force f at arm r behaves like a pendulum with stiffness f·r against
 // rotation. The explicit step is unstable if it is large, as for the light links of a rope with a heavy end. Increases
-// the node's rotational inertia until it is stable. `links`: the body's joints. Not for bodies on which motors, gears
+// the node's rotational inertia until it is stable. `joints`: the body's joints. Not for bodies on which motors, gears
 // or contacts act: these would do work as the inertia changes.
-void add_geometric_inertia(TreeNode& node, const Island& island, int body, IndexedSpan<const int> links) {
+void add_geometric_inertia(TreeNode& node, const Island& island, int body, IndexedSpan<const int> joints) {
   Sym3& moment = node.inertia.moment;
   const double mean_moment = (moment.xx + moment.yy + moment.zz) / 3;
-  for (const int i : links) {
-    const Island::Link& link = island.links[i];
-    const bool child = link.body_b == body;
-    const Vec3 arm = bullet::from_bt(child ? link.joint->pose().arm_b() : link.joint->pose().arm_a());
+  for (const int i : joints) {
+    const Island::Joint& joint = island.joints[i];
+    const bool child = joint.body_b == body;
+    const Vec3 arm = bullet::from_bt(child ? joint.constraint->pose().arm_b() : joint.constraint->pose().arm_a());
     // lock_impulse() is an impulse: times h it is the stiffness times the square of the step
     const double stiffness =
-        (child ? island.h : -island.h) * glm::dot(bullet::from_bt(link.joint->lock_impulse()), arm);
+        (child ? island.h : -island.h) * glm::dot(bullet::from_bt(joint.constraint->lock_impulse()), arm);
     const double length = glm::length(arm);
     if (!(stiffness > kMaxStiffnessRatio * mean_moment && length > 0)) continue;
     const double added = stiffness / kTargetStiffnessRatio - mean_moment;
@@ -136,11 +136,11 @@ void SpanningTrees::find_acted_on() {
   for (int i = 0; i < contacts.size(); ++i) {
     acted_on_[contacts[i].m_solverBodyIdA] = acted_on_[contacts[i].m_solverBodyIdB] = 1;
   }
-  for (const Island::Link& link : island_.links) {
-    if (link.joint->has_drive()) acted_on_[link.body_a] = acted_on_[link.body_b] = 1;
+  for (const Island::Joint& joint : island_.joints) {
+    if (joint.constraint->has_drive()) acted_on_[joint.body_a] = acted_on_[joint.body_b] = 1;
   }
-  for (const Island::GearLink& link : island_.gears) {
-    for (int i = 0; i < link.gear->jacobians().size(); ++i) acted_on_[link.bodies[i]] = 1;
+  for (const Island::Gear& gear : island_.gears) {
+    for (int i = 0; i < gear.constraint->jacobians().size(); ++i) acted_on_[gear.bodies[i]] = 1;
   }
 }
 
@@ -151,29 +151,30 @@ int SpanningTrees::root_of(int body) {
 
 // Finds the joints that belong to trees, and lists them by body. All static bodies are one vertex: a second joint to it
 // closes a loop.
-void SpanningTrees::unite_links() {
+void SpanningTrees::unite_joints() {
   const int bodies = island_.pools->bodies.size();
   const auto vertex = [&](int body) { return island_.is_dynamic(body) ? body : bodies; };
   group_.resize(bodies + 1);
   for (int i = 0; i < bodies; ++i) group_[i] = vertex(i);
   group_[bodies] = bodies;
-  link_start_.assign(bodies + 2, 0);
-  node_of_link_.clear();
-  for (const Island::Link& link : island_.links) {
-    const int a = root_of(vertex(link.body_a));
-    const int b = root_of(vertex(link.body_b));
-    node_of_link_.push_back(a == b ? -1 : 0);
+  joint_start_.assign(bodies + 2, 0);
+  node_of_joint_.clear();
+  for (const Island::Joint& joint : island_.joints) {
+    const int a = root_of(vertex(joint.body_a));
+    const int b = root_of(vertex(joint.body_b));
+    node_of_joint_.push_back(a == b ? -1 : 0);
     if (a == b) continue;
     group_[std::min(a, b)] = std::max(a, b);
-    link_start_[vertex(link.body_a) + 1]++;
-    link_start_[vertex(link.body_b) + 1]++;
+    joint_start_[vertex(joint.body_a) + 1]++;
+    joint_start_[vertex(joint.body_b) + 1]++;
   }
-  for (int i = 1; i < link_start_.size(); ++i) link_start_[i] += link_start_[i - 1];
-  body_links_.resize(link_start_.back());
-  stack_.assign(link_start_.begin(), link_start_.end() - 1);
-  for (int i = 0; i < island_.links.size(); ++i) {
-    if (node_of_link_[i] < 0) continue;
-    for (const int body : {island_.links[i].body_a, island_.links[i].body_b}) body_links_[stack_[vertex(body)]++] = i;
+  for (int i = 1; i < joint_start_.size(); ++i) joint_start_[i] += joint_start_[i - 1];
+  body_joints_.resize(joint_start_.back());
+  stack_.assign(joint_start_.begin(), joint_start_.end() - 1);
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    if (node_of_joint_[i] < 0) continue;
+    for (const int body : {island_.joints[i].body_a, island_.joints[i].body_b})
+      body_joints_[stack_[vertex(body)]++] = i;
   }
 }
 
@@ -183,14 +184,14 @@ bool SpanningTrees::build() {
   trees_.clear();
   tree_of_.clear();
   body_of_.clear();
-  link_of_.clear();
+  joint_of_.clear();
   node_of_.assign(bodies, -1);
   find_acted_on();
-  unite_links();
+  unite_joints();
   // trees attached to static bodies first, then floating ones
-  for (const int i : links_at(bodies)) {
-    const Island::Link& link = island_.links[i];
-    if (!add_tree(island_.is_dynamic(link.body_a) ? link.body_a : link.body_b, i)) return false;
+  for (const int i : joints_at(bodies)) {
+    const Island::Joint& joint = island_.joints[i];
+    if (!add_tree(island_.is_dynamic(joint.body_a) ? joint.body_a : joint.body_b, i)) return false;
   }
   for (int body = 0; body < bodies; ++body) {
     if (island_.is_dynamic(body) && node_of(body) < 0 && !add_tree(body, -1)) return false;
@@ -199,31 +200,31 @@ bool SpanningTrees::build() {
 }
 
 // Adds the tree with the root `body`, parents before children.
-bool SpanningTrees::add_tree(int body, int link) {
+bool SpanningTrees::add_tree(int body, int index) {
   trees_.push_back({axes.forest.size(), 0});
   stack_.clear();
-  stack_.insert(stack_.end(), {body, -1, link});
+  stack_.insert(stack_.end(), {body, -1, index});
   while (!stack_.empty()) {
     const int depth = stack_.size();
-    const int parent_link = stack_[depth - 1];
+    const int parent_joint = stack_[depth - 1];
     const int parent_node = stack_[depth - 2];
     const int current = stack_[depth - 3];
     stack_.resize(depth - 3);
-    if (!add_node(current, parent_node, parent_link)) return false;
+    if (!add_node(current, parent_node, parent_joint)) return false;
     const int node = axes.forest.size() - 1;
-    const IndexedSpan<const int> links = links_at(current);
-    for (int i = links.size(); i-- > 0;) {
-      if (links[i] == parent_link) continue;
-      const Island::Link& l = island_.links[links[i]];
-      const int other = l.body_a == current ? l.body_b : l.body_a;
-      if (island_.is_dynamic(other)) stack_.insert(stack_.end(), {other, node, links[i]});
+    const IndexedSpan<const int> joints = joints_at(current);
+    for (int i = joints.size(); i-- > 0;) {
+      if (joints[i] == parent_joint) continue;
+      const Island::Joint& joint = island_.joints[joints[i]];
+      const int other = joint.body_a == current ? joint.body_b : joint.body_a;
+      if (island_.is_dynamic(other)) stack_.insert(stack_.end(), {other, node, joints[i]});
     }
   }
   trees_.back().last = axes.forest.size();
   return true;
 }
 
-bool SpanningTrees::add_node(int body, int parent, int link) {
+bool SpanningTrees::add_node(int body, int parent, int index) {
   const btSolverBody& solver_body = island_.body(body);
   const btRigidBody& rigid = *solver_body.m_originalBody;
   if (!is_supported(rigid)) return false;
@@ -231,45 +232,45 @@ bool SpanningTrees::add_node(int body, int parent, int link) {
   const int node = axes.forest.size() - 1;
   node_of_[body] = node;
   body_of_.push_back(body);
-  link_of_.push_back(link);
+  joint_of_.push_back(index);
   tree_of_.push_back(trees_.size() - 1);
   n.inertia = inertia_of(rigid);
-  if (acted_on_[body] == 0) add_geometric_inertia(n, island_, body, links_at(body));
-  if (link < 0) {
+  if (acted_on_[body] == 0) add_geometric_inertia(n, island_, body, joints_at(body));
+  if (index < 0) {
     make_floating(n);
     axes.end_node({}, {});
   } else {
-    const Island::Link& l = island_.links[link];
-    node_of_link_[link] = node;
-    if (!attach(n, *l.joint, l.body_b == body)) return false;
-    add_rows(l);
+    const Island::Joint& joint = island_.joints[index];
+    node_of_joint_[index] = node;
+    if (!attach(n, *joint.constraint, joint.body_b == body)) return false;
+    add_rows(joint);
   }
   axes.set_change(node, make_spatial(solver_body.m_deltaLinearVelocity, solver_body.m_deltaAngularVelocity));
   return true;
 }
 
 // Adds the rows of a joint to the last node. Present rates include the velocity changes before the solve.
-void SpanningTrees::add_rows(const Island::Link& link) {
-  bullet::JointConstraint& joint = *link.joint;
+void SpanningTrees::add_rows(const Island::Joint& joint) {
+  bullet::JointConstraint& constraint = *joint.constraint;
   const auto current_velocity = [&](int id) {
     const btSolverBody& b = island_.body(id);
     return island_.velocity(id) + make_spatial(b.m_deltaLinearVelocity, b.m_deltaAngularVelocity);
   };
-  const Spatial a = current_velocity(link.body_a);
-  const Spatial b = current_velocity(link.body_b);
-  const Vec3 drift = translated(b, bullet::from_bt(joint.pose().arm_b())).linear -
-                     translated(a, bullet::from_bt(joint.pose().arm_a())).linear;
+  const Spatial a = current_velocity(joint.body_a);
+  const Spatial b = current_velocity(joint.body_b);
+  const Vec3 drift = translated(b, bullet::from_bt(constraint.pose().arm_b())).linear -
+                     translated(a, bullet::from_bt(constraint.pose().arm_a())).linear;
   const Vec3 spin = b.angular - a.angular;
   FixedArray<double, 6> rates{};
   for (int k = 0; k < 3; ++k) {
-    rates[k] = glm::dot(bullet::from_bt(joint.pose().linear_axis(k)), drift);
-    rates[3 + k] = glm::dot(bullet::from_bt(joint.pose().dual_axis(k)), spin);
+    rates[k] = glm::dot(bullet::from_bt(constraint.pose().linear_axis(k)), drift);
+    rates[3 + k] = glm::dot(bullet::from_bt(constraint.pose().dual_axis(k)), spin);
   }
-  for (const bullet::JointRow& row : joint.rows()) {
+  for (const bullet::JointRow& row : constraint.rows()) {
     axes.add(row.axis, static_cast<double>(row.velocity), static_cast<double>(row.softness),
              static_cast<double>(row.lower), static_cast<double>(row.upper), row_kind_of(row));
   }
-  axes.end_node(rates, joint.warm_start().active_set());
+  axes.end_node(rates, constraint.warm_start().active_set());
 }
 
 }  // namespace limber::sim::solver

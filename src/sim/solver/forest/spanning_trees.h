@@ -29,7 +29,7 @@ class SpanningTrees {
   const Tree& operator[](int tree) const { return trees_[tree]; }
   int count() const { return trees_.size(); }
   /// True for a tree of one body that has no joint in a tree.
-  bool is_single_body(const Tree& tree) const { return tree.last - tree.first == 1 && link_of(tree.first) < 0; }
+  bool is_single_body(const Tree& tree) const { return tree.last - tree.first == 1 && joint_of(tree.first) < 0; }
 
   int node_count() const { return body_of_.size(); }
   int body_of(int node) const { return body_of_[node]; }
@@ -37,12 +37,12 @@ class SpanningTrees {
   btSolverBody& body(int node) const { return island_.body(body_of(node)); }
   btRigidBody& rigid(int node) const { return island_.rigid(body_of(node)); }
   /// Joint between a node and its parent; -1: the node is a floating root.
-  int link_of(int node) const { return link_of_[node]; }
+  int joint_of(int node) const { return joint_of_[node]; }
   /// Node of a body; -1: the body is static.
   int node_of(int body) const { return node_of_[body]; }
   int tree_of(int node) const { return node < 0 ? -1 : tree_of_[node]; }
   /// Child node of a joint; -1: the joint closes a loop.
-  int node_of_link(int link) const { return node_of_link_[link]; }
+  int node_of_joint(int index) const { return node_of_joint_[index]; }
 
   /// Velocity of a body after the solve.
   Spatial velocity(int body) const {
@@ -53,25 +53,25 @@ class SpanningTrees {
  private:
   int root_of(int body);
   void find_acted_on();
-  void unite_links();
-  bool add_tree(int body, int link);
-  bool add_node(int body, int parent, int link);
-  void add_rows(const Island::Link& link);
-  IndexedSpan<const int> links_at(int body) const {
-    return {body_links_.data() + link_start_[body], link_start_[body + 1] - link_start_[body]};
+  void unite_joints();
+  bool add_tree(int body, int index);
+  bool add_node(int body, int parent, int index);
+  void add_rows(const Island::Joint& joint);
+  IndexedSpan<const int> joints_at(int body) const {
+    return {body_joints_.data() + joint_start_[body], joint_start_[body + 1] - joint_start_[body]};
   }
 
   const Island& island_;
   IndexedArray<Tree> trees_;
-  IndexedArray<int> tree_of_;       // by node
-  IndexedArray<int> body_of_;       // by node
-  IndexedArray<int> link_of_;       // by node
-  IndexedArray<int> node_of_;       // by body
-  IndexedArray<int> node_of_link_;  // by joint
+  IndexedArray<int> tree_of_;        // by node
+  IndexedArray<int> body_of_;        // by node
+  IndexedArray<int> joint_of_;       // by node
+  IndexedArray<int> node_of_;        // by body
+  IndexedArray<int> node_of_joint_;  // by joint
   // scratch of build()
-  IndexedArray<int> group_;       // by body: union-find
-  IndexedArray<int> link_start_;  // by body: the links of its trees are body_links_[link_start_[body]] ...
-  IndexedArray<int> body_links_;
+  IndexedArray<int> group_;        // by body: union-find
+  IndexedArray<int> joint_start_;  // by body: the joints of its trees are body_joints_[joint_start_[body]] ...
+  IndexedArray<int> body_joints_;
   IndexedArray<int> stack_;
   IndexedArray<unsigned char> acted_on_;  // by body: it has contacts, drives or gears
 };

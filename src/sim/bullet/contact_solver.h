@@ -1,5 +1,5 @@
-// ContactSweep: projected Gauss-Seidel sweeps (iterations, not motions) over the contacts and friction of an island, in
-// a compact row format.
+// ContactSolver: projected Gauss-Seidel sweeps (iterations, not motions) over the contacts and friction of an island,
+// in a compact row format.
 #pragma once
 
 #include "sim/bullet/bullet.h"
@@ -13,7 +13,7 @@ namespace limber::sim::bullet {
 /// axis or not at all. The two friction rows of a contact are solved together, within the disc that the friction cone
 /// has at the normal's impulse; Bullet's square allows up to 1.41 times as much, depending on the direction. Allocates
 /// only if an island is larger than all before. [sim]
-class ContactSweep {
+class ContactSolver {
  public:
   /// Copies an island's rows: contacts, and in their order two friction rows for each. All three must remain valid
   /// until finish().

@@ -1,4 +1,4 @@
-// AxisGoals: interpolates the targets of a joint's servos and springs over the substeps of a tick, so that
+// TargetInterpolator: interpolates the targets of a joint's servos and springs over the substeps of a tick, so that
 // targets that change once per tick cause a smooth motion.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace limber::sim::bullet {
 
 /// Target of one substep: m or rad, m/s or rad/s.
-struct GoalStep {
+struct TargetStep {
   double from;       ///< Target at the end of the previous step.
   double to;         ///< At the end of this step: on the straight line from the last tick's target to this tick's.
   double end;        ///< At the end of the tick.
@@ -20,7 +20,7 @@ struct GoalStep {
 
 /// Targets of six axes. A target that was set since the last tick is reached at the end of this tick, at a constant
 /// speed. A low-pass filter can smooth targets that arrive at irregular times. [sim]
-class AxisGoals {
+class TargetInterpolator {
  public:
   /// Makes the next step of this axis start at its target, without interpolation; to be called after a change of drive
   /// or a teleport.
@@ -31,7 +31,7 @@ class AxisGoals {
   double smoothing() const { return filter_ == nullptr ? 0 : filter_->time; }
   /// Call once in each substep of length h. `steps_left`: number of substeps to the end of the tick, this
   /// one included.
-  GoalStep advance(int axis, double target, double h, int steps_left);
+  TargetStep advance(int axis, double target, double h, int steps_left);
   /// To be called after end_tick(). True if a target moved in that tick: it was set, or the filter has not reached it
   /// yet.
   bool moving() const;
@@ -46,7 +46,7 @@ class AxisGoals {
   static constexpr std::size_t kStages = 3;
   static unsigned bit(int axis) { return 1u << axis; }
 
-  struct Goal {
+  struct Target {
     double position = 0;  // target of the current step
     float rate = 0;       // in this tick
     float last_rate = 0;  // in the previous tick
@@ -59,7 +59,7 @@ class AxisGoals {
   };
   double filtered(std::size_t axis, double target, double tick);
 
-  std::array<Goal, 6> goals_{};
+  std::array<Target, 6> targets_{};
   std::unique_ptr<Filter> filter_;
   std::uint8_t restart_ = kAll;  // bit set of axes that start at their target
   std::uint8_t started_ = 0;     // bit set of axes that were advanced in this tick

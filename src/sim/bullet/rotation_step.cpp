@@ -1,5 +1,5 @@
 // Finds the spin axis of fast bodies from their joints and inertia, and integrates rotations.
-#include "sim/bullet/spin.h"
+#include "sim/bullet/rotation_step.h"
 
 #include <algorithm>
 #include <cmath>
@@ -373,9 +373,9 @@ Vec3 tumbling_velocity(const btRigidBody& body, double h) {
 void reset_clamp(btRigidBody& body) { body.setCcdSweptSphereRadius(0); }
 
 void record_clamp(btRigidBody& body, double amount) {
-  if (amount > clamped_by(body)) body.setCcdSweptSphereRadius(to_scalar(amount));
+  if (amount > clamped_speed(body)) body.setCcdSweptSphereRadius(to_scalar(amount));
 }
 
-double clamped_by(const btRigidBody& body) { return static_cast<double>(body.getCcdSweptSphereRadius()); }
+double clamped_speed(const btRigidBody& body) { return static_cast<double>(body.getCcdSweptSphereRadius()); }
 
 }  // namespace limber::sim::bullet

@@ -1,6 +1,6 @@
-// ContactSweep compared with Bullet's sweeps on random rows: identical to the bit along normals; friction within the
+// ContactSolver compared with Bullet's sweeps on random rows: identical to the bit along normals; friction within the
 // disc, opposite to the slip.
-#include "sim/bullet/contact_sweep.h"
+#include "sim/bullet/contact_solver.h"
 
 #include <cmath>
 #include <cstring>
@@ -126,11 +126,11 @@ void expect_same(BulletSolver& ours, BulletSolver& theirs) {
   }
 }
 
-TEST(ContactSweep, MatchesBulletsNormalImpulses) {
+TEST(ContactSolver, MatchesBulletsNormalImpulses) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     BulletSolver ours(seed);
     BulletSolver theirs(seed);
-    bullet::ContactSweep contacts;
+    bullet::ContactSolver contacts;
     contacts.begin(ours.bodies(), ours.contacts(), ours.friction());
     for (int i = 0; i < 10; ++i) {
       EXPECT_GT(contacts.sweep_split_impulse(), 0);
@@ -143,10 +143,10 @@ TEST(ContactSweep, MatchesBulletsNormalImpulses) {
   }
 }
 
-TEST(ContactSweep, FrictionStaysWithinTheDisc) {
+TEST(ContactSolver, FrictionStaysWithinTheDisc) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     BulletSolver rows(seed, 0.4F);
-    bullet::ContactSweep contacts;
+    bullet::ContactSolver contacts;
     contacts.begin(rows.bodies(), rows.contacts(), rows.friction());
     for (int i = 0; i < 5; ++i) contacts.sweep();
     contacts.finish();
@@ -165,7 +165,7 @@ TEST(ContactSweep, FrictionStaysWithinTheDisc) {
 
 // A ball that presses with 6 N·s on the floor and slides at 3 m/s: friction is opposite to the slip, even if the two
 // rows have different responses (it rotates about one axis more easily).
-TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
+TEST(ContactSolver, FrictionIsOppositeToTheSlip) {
   btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(2, nullptr, nullptr));
   for (const double heading : {0.0, 0.4, 0.8, 1.2, 2.0}) {
     btAlignedObjectArray<btSolverBody> bodies;
@@ -188,7 +188,7 @@ TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
       row.m_friction = 0.1F;
       (along.z() > 0 ? contacts : friction).push_back(row);
     }
-    bullet::ContactSweep sweep;
+    bullet::ContactSolver sweep;
     sweep.begin(bodies, contacts, friction);
     for (int i = 0; i < 60; ++i) sweep.sweep();
     sweep.finish();
@@ -203,7 +203,7 @@ TEST(ContactSweep, FrictionIsOppositeToTheSlip) {
 
 // A ball of 2 kg hits the floor at 3 m/s, sliding at 0.5 m/s with a friction of 0.4: 6 N·s stop its fall, and the 1 N·s
 // that stops its slide is within 0.4 · 6. A second sweep changes nothing.
-TEST(ContactSweep, ConvergesInOneSweepForABall) {
+TEST(ContactSolver, ConvergesInOneSweepForABall) {
   btRigidBody ball(btRigidBody::btRigidBodyConstructionInfo(2, nullptr, nullptr));
   btAlignedObjectArray<btSolverBody> bodies;
   btConstraintArray contacts;
@@ -221,7 +221,7 @@ TEST(ContactSweep, ConvergesInOneSweepForABall) {
     row.m_friction = 0.4F;
     (along.z() > 0 ? contacts : friction).push_back(row);
   }
-  bullet::ContactSweep sweep;
+  bullet::ContactSolver sweep;
   sweep.begin(bodies, contacts, friction);
   EXPECT_FLOAT_EQ(sweep.sweep(), 36);
   EXPECT_FLOAT_EQ(sweep.impulse(0), 6);

@@ -58,10 +58,10 @@ double move_body(btRigidBody& body, double h);
 /// Angular velocity without spin about a driven joint's axis or a principal axis; world axes.
 Vec3 tumbling_velocity(const btRigidBody& body, double h);
 
-/// clamped_by() returns the largest angular velocity, rad/s, that the clamp has removed since reset_clamp(), which is
-/// called at the start of a tick; 0: none. It is stored in the body.
+/// clamped_speed() returns the largest angular velocity, rad/s, that the clamp has removed since reset_clamp(), which
+/// is called at the start of a tick; 0: none. It is stored in the body.
 void reset_clamp(btRigidBody& body);
 void record_clamp(btRigidBody& body, double amount);
-double clamped_by(const btRigidBody& body);
+double clamped_speed(const btRigidBody& body);
 
 }  // namespace limber::sim::bullet

@@ -1,5 +1,5 @@
 // Linear interpolation of targets within a tick, and the filter that smooths them from tick to tick.
-#include "sim/bullet/joints/axis_goals.h"
+#include "sim/bullet/joints/target_interpolator.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,17 +18,17 @@ constexpr double kSnapDistance = 1e-7;
 
 }  // namespace
 
-void AxisGoals::set_smoothing(double time) {
+void TargetInterpolator::set_smoothing(double time) {
   if (time == smoothing()) return;
   if (filter_ == nullptr) filter_ = std::make_unique<Filter>();
   // the filter continues from the present targets
   if (filter_->time == 0) {
-    for (std::size_t axis = 0; axis < goals_.size(); ++axis) filter_->stages[axis].fill(goals_[axis].position);
+    for (std::size_t axis = 0; axis < targets_.size(); ++axis) filter_->stages[axis].fill(targets_[axis].position);
   }
   filter_->time = time;
 }
 
-double AxisGoals::filtered(std::size_t axis, double target, double tick) {
+double TargetInterpolator::filtered(std::size_t axis, double target, double tick) {
   const double stage_time = kStageFraction * filter_->time + kStageTicks * std::min(filter_->time, tick);
   const double blend = 1 - fixed::exp(-tick / stage_time);
   std::array<double, kStages>& stages = filter_->stages[axis];
@@ -43,16 +43,16 @@ double AxisGoals::filtered(std::size_t axis, double target, double tick) {
   return stages.back();
 }
 
-bool AxisGoals::moving() const {
+bool TargetInterpolator::moving() const {
   for (int axis = 0; axis < 6; ++axis) {
-    if ((restart_ & bit(axis)) == 0 && goals_[static_cast<std::size_t>(axis)].rate != 0) return true;
+    if ((restart_ & bit(axis)) == 0 && targets_[static_cast<std::size_t>(axis)].rate != 0) return true;
   }
   return false;
 }
 
-GoalStep AxisGoals::advance(int axis, double target, double h, int steps_left) {
+TargetStep TargetInterpolator::advance(int axis, double target, double h, int steps_left) {
   const auto i = static_cast<std::size_t>(axis);
-  Goal& goal = goals_[i];
+  Target& state = targets_[i];
   const bool smooth = smoothing() > 0;
   if ((restart_ & bit(axis)) != 0) {
     restart_ = static_cast<std::uint8_t>(restart_ & ~bit(axis));
@@ -64,13 +64,13 @@ GoalStep AxisGoals::advance(int axis, double target, double h, int steps_left) {
     started_ = static_cast<std::uint8_t>(started_ | bit(axis));
     const double tick = h * steps_left;
     const double end = smooth ? filtered(i, target, tick) : target;
-    goal.last_rate = goal.rate;
-    goal.rate = static_cast<float>((end - goal.position) / tick);
+    state.last_rate = state.rate;
+    state.rate = static_cast<float>((end - state.position) / tick);
   }
   const double end = smooth ? filter_->stages[i].back() : target;
-  const double from = goal.position;
-  goal.position = steps_left <= 1 ? end : from + (end - from) / steps_left;
-  return {from, goal.position, end, static_cast<double>(goal.last_rate)};
+  const double from = state.position;
+  state.position = steps_left <= 1 ? end : from + (end - from) / steps_left;
+  return {from, state.position, end, static_cast<double>(state.last_rate)};
 }
 
 }  // namespace limber::sim::bullet

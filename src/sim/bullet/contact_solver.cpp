@@ -1,6 +1,6 @@
 // Rows of the same body depend on each other, so latency matters: a pair's velocities stay in registers from row to row
 // and are prefetched.
-#include "sim/bullet/contact_sweep.h"
+#include "sim/bullet/contact_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ Float4 broadcast(Float4 l) {
 }  // namespace
 
 // Bullet leaves out the normal of a static body.
-void ContactSweep::load_row(const btSolverConstraint& from, bool a_moves, Row& row) {
+void ContactSolver::load_row(const btSolverConstraint& from, bool a_moves, Row& row) {
   row.normal = with_w(a_moves ? from.m_contactNormal1 : -from.m_contactNormal2, from.m_rhs);
   row.jacobian_a = with_w(from.m_relpos1CrossNormal, from.m_jacDiagABInv);
   row.jacobian_b = with_w(from.m_relpos2CrossNormal, from.m_cfm);
@@ -44,8 +44,8 @@ void ContactSweep::load_row(const btSolverConstraint& from, bool a_moves, Row& r
   row.push_impulse = from.m_appliedPushImpulse;
 }
 
-void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btConstraintArray& contacts,
-                         const btConstraintArray& friction) {
+void ContactSolver::begin(btAlignedObjectArray<btSolverBody>& bodies, const btConstraintArray& contacts,
+                          const btConstraintArray& friction) {
   bodies_ = &bodies;
   bullet_contacts_ = &contacts;
   bullet_friction_ = &friction;
@@ -76,7 +76,7 @@ void ContactSweep::begin(btAlignedObjectArray<btSolverBody>& bodies, const btCon
 
 // Adds in Bullet's order, so that results round equally; without branches, since they are unpredictable. Scalars are
 // broadcast to all elements. Returns the squared change.
-inline float ContactSweep::solve(Row& row, float target, float& impulse, float lower, float upper, PairVelocity& v) {
+inline float ContactSolver::solve(Row& row, float target, float& impulse, float lower, float upper, PairVelocity& v) {
   const Float4 speeds = sum_xyz(row.normal * v.linear_a, row.jacobian_a * v.angular_a, row.normal * v.linear_b,
                                 row.jacobian_b * v.angular_b);
   const Float4 step = broadcast<3>(row.jacobian_a);
@@ -100,7 +100,7 @@ inline float ContactSweep::solve(Row& row, float target, float& impulse, float l
 }
 
 // Impulse that the row needs in addition to its present one; its softness applies to the direct solver only.
-inline float ContactSweep::unclamped_change(const Row& row, const PairVelocity& v) {
+inline float ContactSolver::unclamped_change(const Row& row, const PairVelocity& v) {
   const Float4 speeds = sum_xyz(row.normal * v.linear_a, row.jacobian_a * v.angular_a, row.normal * v.linear_b,
                                 row.jacobian_b * v.angular_b);
   return row.normal[3] - ((speeds[0] + speeds[1]) + (speeds[3] - speeds[2])) * row.jacobian_a[3];
@@ -108,7 +108,7 @@ inline float ContactSweep::unclamped_change(const Row& row, const PairVelocity& 
 
 // Sticks if the disc permits the impulse. Otherwise both rows take a step of the same length against the slip and are
 // projected onto the disc, so that friction becomes opposite to the slip. Returns the larger squared change.
-inline float ContactSweep::solve_friction(Row& first, Row& second, float normal_impulse, PairVelocity& v) {
+inline float ContactSolver::solve_friction(Row& first, Row& second, float normal_impulse, PairVelocity& v) {
   const float max_impulse = first.friction * normal_impulse;
   const float free_first = unclamped_change(first, v);
   const float free_second = unclamped_change(second, v);
@@ -135,7 +135,7 @@ inline float ContactSweep::solve_friction(Row& first, Row& second, float normal_
 
 // Calls work(contact, velocity) for each contact, with the velocity of its pair.
 template <class Velocity, class Work>
-void ContactSweep::for_each_contact(Work&& work) {
+void ContactSolver::for_each_contact(Work&& work) {
   constexpr std::size_t kSpeeds = 7 * sizeof(btVector3);  // up to and including the split-impulse velocities
   const int count = pairs_.size();
   for (int p = 0; p < count; ++p) {
@@ -153,7 +153,7 @@ void ContactSweep::for_each_contact(Work&& work) {
   }
 }
 
-btScalar ContactSweep::sweep_split_impulse() {
+btScalar ContactSolver::sweep_split_impulse() {
   float largest = 0;
   for_each_contact<PairPushVelocity>([&](int i, PairPushVelocity& v) {
     Row& row = contacts_[i];
@@ -163,7 +163,7 @@ btScalar ContactSweep::sweep_split_impulse() {
   return largest;
 }
 
-btScalar ContactSweep::sweep() {
+btScalar ContactSolver::sweep() {
   float largest = 0;
   for_each_contact<PairVelocity>([&](int i, PairVelocity& v) {
     Row& row = contacts_[i];
@@ -177,7 +177,7 @@ btScalar ContactSweep::sweep() {
   return largest;
 }
 
-void ContactSweep::finish() const {
+void ContactSolver::finish() const {
   for (int i = 0; i < contacts_.size(); ++i) {
     (*bullet_contacts_)[i].m_appliedImpulse = contacts_[i].impulse;
     (*bullet_contacts_)[i].m_appliedPushImpulse = contacts_[i].push_impulse;
