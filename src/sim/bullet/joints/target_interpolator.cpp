@@ -57,7 +57,7 @@ TargetStep TargetInterpolator::advance(int axis, double target, double h, int st
   if ((restart_ & bit(axis)) != 0) {
     restart_ = static_cast<std::uint8_t>(restart_ & ~bit(axis));
     started_ = static_cast<std::uint8_t>(started_ | bit(axis));
-    goal = {target, 0, 0};
+    state = {target, 0, 0};
     if (smooth) filter_->stages[i].fill(target);
   }
   if ((started_ & bit(axis)) == 0) {
