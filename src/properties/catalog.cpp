@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-struct StoreShape {
+struct StoreTree {
   using Ref = limber::PropertyRef;
   using Set = limber::PropertySet;
   const Store& store;
@@ -40,18 +40,18 @@ struct StoreShape {
 }  // namespace
 
 Result<PropertyRef> find_property(const Store& store, std::string_view path, bool hint) {
-  return PathMatcher<StoreShape>::find({store}, path, hint);
+  return PathMatcher<StoreTree>::find({store}, path, hint);
 }
 
 Result<std::vector<PropertyRef>> match_properties(const Store& store, std::string_view pattern, PatternBudget& budget,
                                                   std::size_t limit) {
-  const StoreShape shape{store};
-  return PathMatcher(shape, budget).match(pattern, limit);
+  const StoreTree tree{store};
+  return PathMatcher(tree, budget).match(pattern, limit);
 }
 
 Result<std::vector<PropertySet>> match_nodes(const Store& store, std::string_view pattern, PatternBudget& budget) {
-  const StoreShape shape{store};
-  return PathMatcher(shape, budget).match_nodes(pattern, SIZE_MAX);
+  const StoreTree tree{store};
+  return PathMatcher(tree, budget).match_nodes(pattern, SIZE_MAX);
 }
 
 }  // namespace limber

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-struct TreeShape {
+struct SnapshotTree {
   using Ref = TreePropertyRef;
   struct Set {
     std::uint32_t node = 0;
@@ -104,14 +104,14 @@ ValueLocation TreeSnapshot::location(const TreePropertyRef& place) const {
 
 Result<TreePropertyRef> TreeSnapshot::find(std::string_view path) const {
   if (path == "/") return TreePropertyRef{};
-  return PathMatcher<TreeShape>::find({*this}, path);
+  return PathMatcher<SnapshotTree>::find({*this}, path);
 }
 
 Result<std::vector<TreePropertyRef>> TreeSnapshot::match(std::string_view pattern, PatternBudget& budget,
                                                          std::size_t limit) const {
   if (pattern == "/") return std::vector<TreePropertyRef>{{}};
-  const TreeShape shape{*this};
-  return PathMatcher(shape, budget).match(pattern, limit);
+  const SnapshotTree tree{*this};
+  return PathMatcher(tree, budget).match(pattern, limit);
 }
 
 }  // namespace limber

@@ -148,6 +148,26 @@ TEST(Recovery, TheSecondProgramTakesOverAfterTheFirst) {
   EXPECT_TRUE(RecoveryShow::logged(before, "the other program that played this scene has ended"));
 }
 
+TEST(Recovery, ValuesThatWaitAreSavedWithoutAnotherTick) {
+  const RecoveryShow fixture;
+  std::optional<Show> first(std::in_place, fixture.options);
+  first->send("/physics/sim/gravity", 0, 0, -3.5);
+  first->ticks(1);
+  fixture.play_until_saved(*first, "-3.5");
+  Show second(fixture.options);
+  second.send("/physics/sim/gravity", 0, 0, -7.5);
+  const std::uint64_t start = second.engine.world().tick();
+  second.ticks(100);
+  first->engine.end_recovery();
+  first.reset();
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (fixture.saved().find("-7.5") == std::string::npos && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_NE(fixture.saved().find("-7.5"), std::string::npos);
+  EXPECT_EQ(second.engine.world().tick(), start + 100);
+}
+
 TEST(Recovery, EachSceneHasItsOwnFile) {
   RecoveryShow fixture;
   fixture.folder.write("scripts/other.lua", kRecoverScene);
