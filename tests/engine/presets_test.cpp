@@ -368,6 +368,23 @@ osc:on("/mix", function() presets:morph("script", "four", 0.5) presets:delete("f
   EXPECT_TRUE(names_of(show).empty());
 }
 
+// Steps of one behavior type run in one call of the script engine; a failure rolls back only its own step.
+TEST(Presets, RequestOfABehaviorSurvivesTheFailureOfTheNextOne) {
+  constexpr const char* kKeeper = R"(
+return behavior { step = function(self)
+  if sim.tick == 2 then
+    presets:store(self.body.name, { poses = true })
+    if self.body.name == "right" then error("stop") end
+  end
+end })";
+  EditedShow edited(std::string(kTwoBodyScene) + R"(
+for _, name in ipairs { "left", "right" } do sim:body(name):add_behavior("keeper", "keeper") end
+)",
+                    {{"behaviors_lua/keeper.lua", kKeeper}});
+  edited.show().ticks(5);
+  EXPECT_EQ(names_of(edited.show()), (std::vector<std::string>{"left"}));
+}
+
 TEST(Presets, TheCommandLineRecallsOne) {
   EditedShow edited(kTwoBodyScene);
   edited.show().send("/scene/wind", 7);

@@ -30,8 +30,8 @@ class CallEffects {
 
   /// Forgets requests for reset and panic from outside of a call.
   void begin_call() { reset_ = panic_ = false; }
-  /// True if the call can be joined with the next one, because it requested nothing but forces and presets.
-  bool can_wait() const { return messages_.empty() && !reset_ && !panic_; }
+  /// True if the call can be joined with the next one, because it requested nothing but forces.
+  bool can_wait() const { return messages_.empty() && presets_.empty() && !reset_ && !panic_; }
   /// Applies the forces and passes the requests to the host.
   void apply(sim::World& world, ScriptHost& host);
   /// Removes the messages and presets.
