@@ -7,6 +7,10 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "sim/world/body.h"
+#include "sim/world/joint.h"
+#include "sim/world/motor.h"
+#include "sim/world/part.h"
 #include "sim/world/world.h"
 
 namespace limber::sim {

@@ -123,7 +123,7 @@ int CoupledSystem::defer_ill_conditioned_gears() {
 // Defers the motors and limits of a gear's axes; where locks hold these, disables the gear for the step.
 int CoupledSystem::defer_gear(CoupledRow& row) {
   int deferred = 0;
-  const bullet::GearConstraint& gear = *island_.gears[row.gear].gear;
+  const bullet::GearConstraint& gear = *island_.gears[row.gear].constraint;
   for (int i = 0; i < island_.joints.size(); ++i) {
     const int node = trees_.node_of_joint(i);
     if (node < 0) continue;
