@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/world/world.h"
+
 namespace limber::sim {
 
 namespace {
