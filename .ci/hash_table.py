@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the table of docs/hashes.md from the results of all platforms: hash_table.py FOLDER PAGE.
+"""Writes the table of docs/reference/hashes.md from the results of all platforms: hash_table.py FOLDER PAGE.
 
 FOLDER has for each platform NAME.name (its title) and either NAME.lines ("scene ticks hash threads") or NAME.missing
 (the reason for skipping it). NAME.own has the reason if a platform is expected to have different hashes.
