@@ -6,9 +6,15 @@
   const field = document.getElementById("search");
   const list = document.getElementById("results");
   const kMaxResults = 12, kExcerpt = 160;
+  // pages that name everything, but that few readers look for
+  const kMinor = /^(project\/|howto\/from-)/, kMinorBoost = 0.3;
   let index = null, loading = null;
 
   field.parentElement.hidden = false;
+
+  // the list of pages may be longer than the window
+  const current = document.querySelector("nav [aria-current]");
+  if (current) current.closest("nav").scrollTop = current.offsetTop - window.innerHeight / 2;
 
   function load(file) {
     return new Promise((done, failed) => {
@@ -30,7 +36,9 @@
       this.field("title", { boost: 8 });
       this.field("page", { boost: 3 });
       this.field("text");
-      limberPages.forEach((entry, id) => this.add({ id, ...entry }));
+      limberPages.forEach((entry, id) => {
+        this.add({ id, ...entry }, { boost: kMinor.test(entry.location) ? kMinorBoost : 1 });
+      });
     });
   }
 
@@ -39,9 +47,15 @@
     return loading;
   }
 
-  // Finds sections with all words or words that begin with them; if there are none, sections with some of the words.
-  function find(text) {
-    const terms = words(text).filter((word) => lunr.stopWordFilter(new lunr.Token(word)) !== undefined);
+  // Returns the words of a query, without "the", "how" and so on unless there are no others.
+  function search_terms(text) {
+    const all = words(text);
+    const terms = all.filter((word) => lunr.stopWordFilter(new lunr.Token(word)) !== undefined);
+    return terms.length > 0 ? terms : all;
+  }
+
+  // Finds sections with all terms or words that begin with them, then sections with some of the terms.
+  function find(terms) {
     if (terms.length === 0) return [];
     const query = (presence) => index.query((q) => {
       for (const word of terms) {
@@ -50,8 +64,12 @@
         q.term(stem, { usePipeline: false, boost: 5 });
       }
     });
-    const all = query(lunr.Query.presence.REQUIRED);
-    return (all.length > 0 ? all : query(lunr.Query.presence.OPTIONAL)).slice(0, kMaxResults);
+    const found = query(lunr.Query.presence.REQUIRED);
+    if (found.length < kMaxResults) {
+      const known = new Set(found.map((result) => result.ref));
+      found.push(...query(lunr.Query.presence.OPTIONAL).filter((result) => !known.has(result.ref)));
+    }
+    return found.slice(0, kMaxResults).map((result) => limberPages[result.ref]);
   }
 
   // Adds the text to an element, with the words that begin with a search term marked.
@@ -121,8 +139,8 @@
       return;
     }
     if (field.value !== text) return;  // a later call shows the results
-    const terms = words(text);
-    const links = find(text).map((found, id) => result_link(limberPages[found.ref], terms, id));
+    const terms = search_terms(text);
+    const links = find(terms).map((entry, id) => result_link(entry, terms, id));
     if (links.length === 0) show_note("Nothing found. Try fewer or shorter words.");
     else list.replaceChildren(...links);
     select(list.querySelector("a"));
