@@ -5,6 +5,7 @@
   the file name for the tests; lists and tables need an empty line before them.
 - The search index is a script instead of JSON, which browsers load from a server only.
 """
+import html
 import json
 import os
 import pathlib
@@ -97,7 +98,7 @@ def on_post_build(config):
         {
             "location": entry["location"],
             "page": titles[entry["location"].partition("#")[0]],
-            "title": entry["title"],
+            "title": html.unescape(entry["title"]),
             "text": re.sub(r"\s+", " ", entry["text"]).strip(),
         }
         for entry in index["docs"]
