@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "engine/seed_table.h"
 #include "script/luacats.h"
+#include "sim/behavior/behavior_type.h"
 
 namespace limber::app::test {
 namespace {
