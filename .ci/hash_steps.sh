@@ -1,5 +1,6 @@
 # shellcheck shell=bash disable=SC2046,SC2086,SC2154
-# Compares the golden scenes on all platforms that this machine can build or emulate, in a table: docs/hashes.md.
+# Compares the golden scenes on all platforms that this machine can build or emulate, in the table of
+# docs/reference/hashes.md.
 
 hash_folder=build/check/hashes
 
@@ -123,7 +124,7 @@ hash_chroot() {
   hash_row "$label" hash_lines_of .ci/chroot "$1" .ci/golden lines
 }
 
-# --long hashes: the golden scenes with each available compiler, processor and release; writes docs/hashes.md
+# --long hashes: the golden scenes with each available compiler, processor and release; writes docs/reference/hashes.md
 long_hashes() {
   mkdir -p $hash_folder && rm -f $hash_folder/*
   configure release build -DLIMBER_TESTS=ON
@@ -133,7 +134,7 @@ long_hashes() {
   hash_chroot trixie "Debian 13 (trixie)"
   hash_chroot sid "Debian sid"
   hash_arm64
-  if python3 .ci/hash_table.py $hash_folder docs/hashes.md >$hash_folder/verdict; then
+  if python3 .ci/hash_table.py $hash_folder docs/reference/hashes.md >$hash_folder/verdict; then
     pass
   else
     fail "hashes differ: $(tr '\n' ';' <$hash_folder/verdict)"

@@ -40,7 +40,7 @@ run_part() {
 step_long() {
   local name
   sanitizer_options
-  say "--long: add the results to docs/evidence.md, with this commit: $(git rev-parse --short=10 HEAD)"
+  say "--long: add the results to docs/understand/measurements.md, with this commit: $(git rev-parse --short=10 HEAD)"
   [ $# != 0 ] || set -- $(part_names)
   for name; do run_part "$name"; done
 }
@@ -90,11 +90,11 @@ long_lua_difference() {
 }
 # --long math: the math functions against MPFR, ten million arguments each, and all floats
 long_math() { tests_at_length 'LongMath*'; }
-# --long environment: a session with full disks, hung displays, floods and so on; writes docs/environments.md
+# --long environment: a session with full disks, hung displays, floods and so on; writes docs/reference/environments.md
 long_environment() {
   configure release build
   build build limber || return
-  if tests/environment/run build/limber --page docs/environments.md >build/check/environment.log 2>&1; then
+  if tests/environment/run build/limber --page docs/reference/environments.md >build/check/environment.log 2>&1; then
     pass
   else
     fail "environment: $(grep -c '^FAIL' build/check/environment.log) rows differ: build/check/environment.log"

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates the models of this folder: *.urdf, meshes/*.stl, and the tables in docs/models.md.
+"""Generates the models of this folder: *.urdf, meshes/*.stl, and the tables in docs/reference/models.md.
 
     python3 urdf/make_models.py            writes all files; the output is deterministic
     python3 urdf/make_models.py --check    compares with the existing files; exits with 1 if one differs
@@ -17,7 +17,7 @@ from kit.solid import stl_bytes
 from kit.tables import fill
 
 HERE = pathlib.Path(__file__).resolve().parent
-PAGE = HERE.parent / "docs" / "models.md"
+PAGE = HERE.parent / "docs" / "reference" / "models.md"
 
 
 def everything():

@@ -1,4 +1,5 @@
--- Four arms, each with another behavior, for their picture in docs/behaviors.md; the debug picture shows what they do.
+-- Four arms, each with another behavior, for their picture in docs/reference/behaviors.md. The debug overlay shows what
+-- they do.
 visuals.camera:look_at(vec3(1.2, -4.6, 1.7), vec3(1.2, 0, 0.65))
 visuals.look.overlay = true
 sim.substeps = 10

@@ -1,4 +1,5 @@
--- For the pictures of docs/panel.md: arms that stand on their springs until a hand pulls at one, and a misspelt name.
+-- For the pictures of docs/reference/panel.md: arms that rest on their springs until the mouse
+-- pulls at one, and a misspelt name.
 sim.gravity = vec3(0, 0, -9.81)
 sim.substeps = 14
 visuals.camera:look_at(vec3(0.2, -4.4, 1.9), vec3(0.2, 0, 0.75))

@@ -135,9 +135,9 @@ params {
   EXPECT_EQ(found, 2U);
 }
 
-// docs/osc.md must name all messages
+// docs/reference/osc_addresses.md must name all messages
 TEST(Describe, OscReferenceNamesEveryMessage) {
-  std::ifstream in(LIMBER_SOURCE_DIR "/docs/osc.md");
+  std::ifstream in(LIMBER_SOURCE_DIR "/docs/reference/osc_addresses.md");
   const std::string page{std::istreambuf_iterator<char>(in), {}};
   ASSERT_FALSE(page.empty());
   std::vector<std::string> known;
@@ -146,7 +146,8 @@ TEST(Describe, OscReferenceNamesEveryMessage) {
     const std::string& address = cells[2] == "message" ? cells[0] : cells[1];
     if (!address.starts_with("/")) continue;
     known.push_back(address);
-    EXPECT_NE(page.find("`" + address + "`"), std::string::npos) << "docs/osc.md does not name " << address;
+    EXPECT_NE(page.find("`" + address + "`"), std::string::npos)
+        << "docs/reference/osc_addresses.md does not name " << address;
   }
   // and every address in the first column of a table must exist
   for (const std::string& line : lines_of(page)) {

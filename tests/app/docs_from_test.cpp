@@ -1,4 +1,5 @@
-// docs/from-ofxDabPhysics.md: every Limber name in its tables exists, and every message of ofxDabPhysics is listed.
+// docs/howto/from-ofxDabPhysics.md: every Limber name in its tables exists, and every message of ofxDabPhysics is
+// listed.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include "base/text.h"
 #include "engine/seed_table.h"
 #include "script/luacats.h"
+#include "sim/behavior/behavior_type.h"
 
 namespace limber::app::test {
 namespace {
@@ -41,7 +43,7 @@ std::vector<std::string> names_in(const std::string& text) {
 
 struct LegacyPage : testing::Test {
   LegacyPage() {
-    std::ifstream in(LIMBER_SOURCE_DIR "/docs/from-ofxDabPhysics.md");
+    std::ifstream in(LIMBER_SOURCE_DIR "/docs/howto/from-ofxDabPhysics.md");
     std::string section;
     for (std::string line; std::getline(in, line);) {
       if (line.starts_with("## ")) section = line.substr(3);

@@ -1,5 +1,5 @@
-// The examples in docs/osc.md, docs/presets.md and docs/examples work: each message is sent to a scene that has the
-// named objects.
+// The examples in docs/reference/osc.md, docs/howto/presets.md and docs/examples work: each message is sent to a scene
+// that has the named objects.
 #include <algorithm>
 #include <fstream>
 #include <iterator>
@@ -98,8 +98,8 @@ Message message_of(const std::vector<std::string>& words) {
 }
 
 TEST(DocsOsc, ExamplesOfThePagesAreAccepted) {
-  for (const auto& [page_name, min_count] : {std::pair("osc.md", 25u), std::pair("presets.md", 12u),
-                                             std::pair("takes.md", 4u), std::pair("recovery.md", 2u)}) {
+  for (const auto& [page_name, min_count] : {std::pair("reference/osc.md", 25u), std::pair("howto/presets.md", 12u),
+                                             std::pair("howto/takes.md", 4u), std::pair("howto/recovery.md", 2u)}) {
     LocalEngine engine;
     std::istringstream page(text_of(page_name));
     std::size_t sent = 0;
@@ -117,7 +117,7 @@ TEST(DocsOsc, ExamplesOfThePagesAreAccepted) {
 }
 
 TEST(DocsOsc, ReferenceIsUpToDate) {
-  const std::string page = text_of("osc.md");
+  const std::string page = text_of("reference/osc_addresses.md");
   const std::string marker = "<!-- reference -->\n";
   const std::size_t at = page.find(marker);
   ASSERT_NE(at, std::string::npos);

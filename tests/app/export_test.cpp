@@ -340,7 +340,8 @@ TEST(Export, ErrorsNameTheFix) {
     EXPECT_NE(result.err.find(c.message), std::string::npos) << result.err;
   }
   const std::string help = run({"export", "--help"}).out;
-  for (const char* taught : {"--rate", "--body", "--from", "--overwrite", "Y up", "docs/export.md", "evening.glb"})
+  for (const char* taught :
+       {"--rate", "--body", "--from", "--overwrite", "Y up", "docs/howto/export.md", "evening.glb"})
     EXPECT_NE(help.find(taught), std::string::npos) << taught;
 }
 

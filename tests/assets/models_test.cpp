@@ -1,5 +1,5 @@
 // The models in urdf/: masses, inertias, poses and collision shapes, compared with the construction set
-// (docs/models.md).
+// (docs/reference/models.md).
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -107,7 +107,7 @@ TEST(Models, AreExactlyTheOnesInTheTable) {
   }
   std::set<std::string> known;
   for (const auto& [name, expected] : kModels) known.insert(name);
-  EXPECT_EQ(found, known) << "update kModels and docs/models.md when a model is added or removed";
+  EXPECT_EQ(found, known) << "update kModels and docs/reference/models.md when a model is added or removed";
 }
 
 TEST(Models, ImportWithoutWarningsAndWithAllJoints) {

@@ -188,7 +188,8 @@ TEST(NetworkLimits, StopsErrorLoop) {
   log_to_stderr(true);
 }
 
-// docs/osc.md, "Clients": --osc-in 0.0.0.0:9003, --osc-out TABLET:PORT, faders, buttons, /subscribe every 20 s
+// docs/reference/osc.md, "Clients": --osc-in 0.0.0.0:9003, --osc-out TABLET:PORT, faders, buttons,
+// /subscribe every 20 s
 TEST(NetworkLimits, DocumentedTouchOscSetupWorks) {
   log_to_stderr(false);
   const engine::test::SceneFile file(engine::test::kEverything);

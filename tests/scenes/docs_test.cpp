@@ -76,16 +76,17 @@ TEST_P(LuaPage, EveryBehaviorOnThePageIsPlayed) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Docs, LuaPage,
-                         testing::Values("docs/scripting.md", "docs/bodies.md", "docs/behaviors.md", "docs/presets.md"),
+                         testing::Values("docs/learn/scripting.md", "docs/howto/bodies.md",
+                                         "docs/reference/behaviors.md", "docs/howto/presets.md"),
                          [](const auto& page) { return std::filesystem::path(page.param).stem().string(); });
 
-TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/scripting.md").size(), 12u); }
+TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/learn/scripting.md").size(), 12u); }
 
-// ---- docs/bodies.md
+// ---- docs/howto/bodies.md
 
 TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
   const app::test::TempFolder folder;
-  const std::vector<DocBlock> blocks = blocks_of_page("docs/bodies.md");
+  const std::vector<DocBlock> blocks = blocks_of_page("docs/howto/bodies.md");
   const auto body = std::find_if(blocks.begin(), blocks.end(), [](const DocBlock& b) { return b.language == "xml"; });
   ASSERT_NE(body, blocks.end());
   ASSERT_EQ(body->output.size(), 2u) << "the output of inspect, and its error for a comma";
@@ -102,7 +103,7 @@ TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
   EXPECT_NE((wrong.out + wrong.err).find(body->output[1]), std::string::npos) << wrong.out << wrong.err;
 }
 
-// ---- docs/behaviors.md
+// ---- docs/reference/behaviors.md
 
 bool is_number(const std::string& word) { return std::regex_match(word, std::regex("-?[0-9.]+")); }
 
@@ -136,12 +137,12 @@ local ball, fish = chain("ball", { "ball" }), { chain("fish1", { "fish" }), chai
 
 TEST(Docs, EveryExampleOfABehaviorWorks) {
   const ShowFolder show;
-  const std::vector<std::string> lines = lines_of_page("docs/behaviors.md");
+  const std::vector<std::string> lines = lines_of_page("docs/reference/behaviors.md");
   std::size_t examples = 0;
   for (std::size_t i = 0; i + 1 < lines.size(); i++) {
     const std::string line = lines[i].substr(std::min<std::size_t>(4, lines[i].size()));
     if (!lines[i].starts_with("    ") || line.find(":add_") == std::string::npos) continue;
-    SCOPED_TRACE("docs/behaviors.md:" + std::to_string(i + 1) + " " + line);
+    SCOPED_TRACE("docs/reference/behaviors.md:" + std::to_string(i + 1) + " " + line);
     examples++;
     Player player(show.write("scripts/example.lua", kExampleBodies + line));
     ASSERT_TRUE(player.started.ok());
@@ -162,11 +163,11 @@ TEST(Docs, EveryExampleOfABehaviorWorks) {
 
 TEST(Docs, TheFirstMessagesToBehaviorsAreAccepted) {
   const ShowFolder show;
-  const DocBlock first = blocks_of_page("docs/behaviors.md").at(0);
+  const DocBlock first = blocks_of_page("docs/reference/behaviors.md").at(0);
   Player player(show.write(first.file, first.text));
   const std::regex call("    oscsend localhost 9003 (\\S+) ([a-z]+) (.*)");
   int sent = 0;
-  for (const std::string& line : lines_of_page("docs/behaviors.md")) {
+  for (const std::string& line : lines_of_page("docs/reference/behaviors.md")) {
     std::smatch match;
     if (!std::regex_match(line, match, call)) continue;
     SCOPED_TRACE(line);
@@ -183,7 +184,7 @@ TEST(Docs, TheFirstMessagesToBehaviorsAreAccepted) {
   EXPECT_EQ(player.value("/physics/group/swarm/amount"), 3);
 }
 
-// ---- docs/console.md, README.md
+// ---- docs/howto/console.md, README.md
 
 Evaluation evaluate(Player& player, const std::string& text) {
   Evaluation answer;
@@ -196,7 +197,7 @@ Evaluation evaluate(Player& player, const std::string& text) {
 }
 
 TEST(Docs, TheConsoleAnswersAsDocumented) {
-  const std::vector<DocBlock> blocks = blocks_of_page("docs/console.md");
+  const std::vector<DocBlock> blocks = blocks_of_page("docs/howto/console.md");
   ASSERT_EQ(blocks.size(), 1u);
   ASSERT_EQ(blocks[0].language, "console");
   Player player(LIMBER_SOURCE_DIR "/" + blocks[0].file);
@@ -234,7 +235,7 @@ TEST(Docs, ConsoleLinesOnOtherPagesAreAccepted) {
   player.play(0.1);
   const std::map<std::string, std::regex> patterns = {
       {"README.md", std::regex("`(sim[.:][^`]*)`")},
-      {"docs/console.md", std::regex("-e '([^']*)'|\"evaluate\":\"([^\"]*)\"|printf '([^']*)'")}};
+      {"docs/howto/console.md", std::regex("-e '([^']*)'|\"evaluate\":\"([^\"]*)\"|printf '([^']*)'")}};
   for (const auto& [page, pattern] : patterns) {
     int found = 0;
     for (const std::string& line : lines_of_page(page)) {

@@ -1,4 +1,4 @@
-// docs/plots: the plots in docs/behaviors.md are equal to those that the program draws.
+// docs/plots: the plots in docs/reference/behaviors.md are equal to those that the program draws.
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
@@ -84,7 +84,7 @@ TEST(Plots, AreUpToDate) {
 
 TEST(Plots, EveryBuiltInTypeHasAPlotOnThePage) {
   std::string page;
-  for (const std::string& line : lines_of_page("docs/behaviors.md")) page += line + "\n";
+  for (const std::string& line : lines_of_page("docs/reference/behaviors.md")) page += line + "\n";
   const sim::BehaviorTypes built_in;
   for (const auto& type : built_in.all()) {
     EXPECT_FALSE(app::test::content(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;

@@ -1,5 +1,5 @@
 // Known faults of LuaJIT: each file of luajit_faults/ reproduces one in a plain Lua state, and not in a scene.
-// docs/luajit.md has a table row for each, with the affected releases and the protection.
+// docs/understand/luajit.md has a table row for each, with the affected releases and the protection.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ std::map<std::string, std::string> fault_texts() {
 // The rows of the table: cells by the file name in the first cell.
 std::map<std::string, std::vector<std::string>> table_rows() {
   std::map<std::string, std::vector<std::string>> rows;
-  std::istringstream lines(content(LIMBER_SOURCE_DIR "/docs/luajit.md"));
+  std::istringstream lines(content(LIMBER_SOURCE_DIR "/docs/understand/luajit.md"));
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with("| `")) continue;
     std::vector<std::string> cells;

@@ -1,4 +1,4 @@
-"""Generates the tables of docs/models.md from the models."""
+"""Generates the tables of docs/reference/models.md from the models."""
 
 import math
 

@@ -113,7 +113,8 @@ void add_describe(CLI::App& app, CommandLine& line) {
   describe->add_option("scene", line.scene, "List the addresses of this scene; default: those of all classes.")
       ->type_name("SCENE.lua");
   CLI::Option* json = describe->add_flag("--json", line.json, "Print JSON.");
-  describe->add_flag("--markdown", line.markdown, "Print Markdown, as in docs/osc.md.")->excludes(json);
+  describe->add_flag("--markdown", line.markdown, "Print Markdown, as in docs/reference/osc_addresses.md.")
+      ->excludes(json);
 }
 
 void add_bench(CLI::App& app, CommandLine& line) {
@@ -242,7 +243,7 @@ void add_export(CLI::App& app, ExportCommand& command) {
       "  limber export evening.take --format gltf                    write evening.glb\n"
       "  limber export evening.take -o arm1.bvh --body arm1 --rate 30\n"
       "  limber export evening.take -o arms.csv --body 'arm*' --from 60 --to 90\n"
-      "The formats are described in docs/export.md.");
+      "The formats are described in docs/howto/export.md.");
   subcommand->add_option("take", command.take, "The take.")->type_name("TAKE")->required();
   subcommand->add_option("--format", command.format, "Format; default: by the extension of -o.")
       ->type_name("csv|bvh|gltf")
@@ -270,7 +271,8 @@ void add_service(CLI::App& app, ServiceCommand& command) {
       "  limber service install my.lua --fullscreen   write the user unit limber-my, and print it\n"
       "  systemctl --user enable --now limber-my      start it, now and with each session\n"
       "  limber service remove my                     delete the unit\n"
-      "After install come the scene and options of `limber play`. The unit is described in docs/installations.md.");
+      "After install come the scene and options of `limber play`.\n"
+      "The unit is described in docs/howto/installations.md.");
   CLI::App* install =
       service->add_subcommand("install", "Write a unit that plays a scene with options of play in the current folder.");
   install->add_option("--name", command.name, "Name of the service after limber-; default: the name of the scene.")

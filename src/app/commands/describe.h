@@ -15,8 +15,8 @@ std::vector<engine::SpecialAddress> described_messages();
 /// Returns the text that `limber describe` prints without a scene; a golden file holds it. [any]
 std::string describe_classes();
 
-/// Returns the reference in the form of docs/osc.md (`--markdown`): tables of every class's properties and of the
-/// messages that belong to no property. [any]
+/// Returns the reference in docs/reference/osc_addresses.md (`--markdown`): tables of every class's properties and of
+/// the messages that belong to no property. [any]
 std::string describe_page();
 
 }  // namespace limber::app

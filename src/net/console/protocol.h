@@ -1,4 +1,4 @@
-// The console protocol: one JSON object per line (docs/console.md), written and parsed here for both ends.
+// The console protocol: one JSON object per line (docs/howto/console.md), written and parsed here for both ends.
 #pragma once
 
 #include <cstddef>

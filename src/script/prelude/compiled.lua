@@ -1,6 +1,6 @@
 -- Works around faults of LuaJIT's compiler that replaced functions can't prevent. Affected functions of scripts are
 -- interpreted, or compiled without the faulty optimization. Each fault has a test in tests/script/luajit_faults/ and an
--- entry in docs/luajit.md.
+-- entry in docs/understand/luajit.md.
 local P = ...
 local util = require("jit.util")
 local funcbc, funck = util.funcbc, util.funck

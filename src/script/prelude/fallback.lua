@@ -69,7 +69,7 @@ local function report(proto, location, closure)
   if reported[key] then return end
   reported[key] = true
   local text = format("%s: LuaJIT doesn't compile this %s, so it runs many times slower; %s", key, location.kind,
-    closure and "create its functions outside of it" or "see docs/luajit.md for code that it can't compile")
+    closure and "create its functions outside of it" or "see docs/understand/luajit.md for code that it can't compile")
   api.warn(ctx, text, #text)
 end
 

@@ -1,5 +1,5 @@
 // Rotation of a body within one substep: split into a spin about a body axis, which is integrated exactly at any
-// speed, and the rest, which is clamped beyond a quarter of pi. docs/solver.md. [any]
+// speed, and the rest, which is clamped beyond a quarter of pi. docs/understand/solver.md. [any]
 #pragma once
 
 #include "sim/bullet/bullet.h"

@@ -1,7 +1,7 @@
 // DirectSolver: solves one island exactly. Its joints form trees (articulated bodies); contacts, gears and joints that
-// close loops are coupled rows, solved as an LCP with the trees' response. docs/solver.md. The stages of a substep
-// are in direct_solver.cpp; other code needs only this header and, of the parts that
-// `bullet` shares, axis_active_set.h, gyroscope.h and indexed_array.h.
+// close loops are coupled rows, solved as an LCP with the trees' response (docs/understand/solver.md). The stages of a
+// substep are in direct_solver.cpp; other code needs only this header and, of the parts that `bullet` shares,
+// axis_active_set.h, gyroscope.h and indexed_array.h.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // WorkBudget: counts the work of a solver step on an island. Beyond its limit, rows are solved with a larger tolerance,
-// which bounds the time of a step. docs/solver.md. Doesn't depend on Bullet.
+// which bounds the time of a step. docs/understand/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,6 @@
 // AxisActiveSet: constraint rows of the joint axes of a forest (locks, motors, servos, limits, friction, springs),
-// solved exactly together with the trees by block principal pivoting. docs/solver.md. Doesn't depend on Bullet.
+// solved exactly together with the trees by block principal pivoting (docs/understand/solver.md). Doesn't depend on
+// Bullet.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Forest: articulated bodies in impulse form. Computes the velocity changes of all bodies of the trees for given
 // impulses and prescribed joint rates, exactly and in time linear in the number of bodies. Featherstone's
 // articulated-body algorithm with hybrid dynamics (Rigid Body Dynamics Algorithms, 2008, chapters 7 and 9);
-// docs/solver.md. Doesn't depend on Bullet.
+// docs/understand/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // BoxedLcp: solves a linear complementarity problem with bounds (boxed LCP) on a dense matrix, in which the bounds of
 // friction rows depend on their normals: by block pivoting with sliding friction tied to its normal, then projected
-// Gauss-Seidel, staggered friction and Lemke's path; docs/solver.md. Doesn't depend on Bullet.
+// Gauss-Seidel, staggered friction and Lemke's path; docs/understand/solver.md. Doesn't depend on Bullet.
 #pragma once
 
 #include "sim/solver/lcp/lemke_path.h"
