@@ -286,6 +286,7 @@ step_style() {
   local log=build/check/format.log files
   check_module_lists
   if .ci/words.py >build/check/words.log 2>&1; then pass; else fail "wording" build/check/words.log; fi
+  if .ci/questions.py >build/check/questions.log 2>&1; then pass; else fail "docs/questions.md" build/check/questions.log; fi
   if .ci/measures.py --check >build/check/measures.log 2>&1; then pass; else fail "measures" build/check/measures.log; fi
   if python3 tests/mutations/plant.py >build/check/plant.log 2>&1; then pass; else fail "mutations" build/check/plant.log; fi
   git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint skipped"; return; }

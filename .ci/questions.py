@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""Checks docs/questions.md: at least thirty questions, each with a link to an existing page and heading that has text.
+
+Prints each finding as page:line, and ends with 1 if there are any.
+"""
+import pathlib
+import re
+import sys
+
+DOCS = pathlib.Path(__file__).parent.parent / "docs"
+LEAST_QUESTIONS = 30
+# a row of the table: question, link to page and heading
+ROW = re.compile(r"^\| (.+\?.*) \| \[[^\]]+\]\(([^)#]+)#([^)]+)\) \|$")
+
+
+def anchor_of(title):
+    """The anchor of a heading, as mkdocs and GitHub make it."""
+    text = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title).lower()
+    return re.sub(r"[\s-]+", "-", re.sub(r"[^\w\s-]", "", text).strip())
+
+
+def headings_of(page):
+    """{anchor: True if text follows before the next heading of the same or a higher level}."""
+    found, code, open_levels = {}, False, {}
+    for line in page.read_text(encoding="utf-8").split("\n"):
+        if line.startswith("```"):
+            code = not code
+        heading = None if code else re.match(r"(#+) (.*)", line)
+        if heading:
+            level = len(heading.group(1))
+            open_levels = {anchor: at for anchor, at in open_levels.items() if at < level}
+            anchor = anchor_of(heading.group(2))
+            found[anchor] = False
+            open_levels[anchor] = level
+        elif line.strip():
+            found.update({anchor: True for anchor in open_levels})
+    return found
+
+
+def findings():
+    """Yields (line, text) of each fault."""
+    questions, known = {}, {}
+    for number, line in enumerate((DOCS / "questions.md").read_text(encoding="utf-8").split("\n"), 1):
+        if not line.startswith("| ") or line.startswith("| question "):
+            continue
+        row = ROW.match(line)
+        if not row:
+            yield number, f"expected '| question? | [page](page.md#heading) |', got {line}"
+            continue
+        question, page, heading = row.groups()
+        if question in questions:
+            yield number, f"'{question}' is also in line {questions[question]}"
+        questions[question] = number
+        path = DOCS / page
+        if not path.is_file():
+            yield number, f"page docs/{page} not found"
+            continue
+        headings = known.setdefault(page, headings_of(path))
+        if heading not in headings:
+            yield number, f"docs/{page} has no heading '{heading}'"
+        elif not headings[heading]:
+            yield number, f"docs/{page}: no text under the heading '{heading}'"
+    if len(questions) < LEAST_QUESTIONS:
+        yield 1, f"expected at least {LEAST_QUESTIONS} questions, got {len(questions)}"
+
+
+def main():
+    """Prints the findings; returns the exit code."""
+    faults = list(findings())
+    for line, text in faults:
+        print(f"docs/questions.md:{line}: {text}")
+    print(f"{len(faults)} findings")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
