@@ -9,8 +9,9 @@ import sys
 
 DOCS = pathlib.Path(__file__).parent.parent / "docs"
 LEAST_QUESTIONS = 30
-# a row of the table: question, link to page and heading
-ROW = re.compile(r"^\| (.+\?.*) \| \[[^\]]+\]\(([^)#]+)#([^)]+)\) \|$")
+# an item of the list: the question, and below it the link to page and heading
+QUESTION = re.compile(r"- (.+)$")
+ANSWER = re.compile(r"  \[[^\]]+\]\(([^)#]+)#([^)]+)\)$")
 
 
 def anchor_of(title):
@@ -40,17 +41,19 @@ def headings_of(page):
 def findings():
     """Yields (line, text) of each fault."""
     questions, known = {}, {}
-    for number, line in enumerate((DOCS / "questions.md").read_text(encoding="utf-8").split("\n"), 1):
-        if not line.startswith("| ") or line.startswith("| question "):
+    lines = (DOCS / "questions.md").read_text(encoding="utf-8").split("\n")
+    for number, (line, below) in enumerate(zip(lines, lines[1:]), 1):
+        question = QUESTION.match(line)
+        if not question:
             continue
-        row = ROW.match(line)
-        if not row:
-            yield number, f"expected '| question? | [page](page.md#heading) |', got {line}"
+        answer = ANSWER.match(below)
+        if not answer:
+            yield number, f"expected '  [page](page.md#heading)' below the question, got '{below}'"
             continue
-        question, page, heading = row.groups()
-        if question in questions:
-            yield number, f"'{question}' is also in line {questions[question]}"
-        questions[question] = number
+        if question.group(1) in questions:
+            yield number, f"'{question.group(1)}' is also in line {questions[question.group(1)]}"
+        questions[question.group(1)] = number
+        page, heading = answer.groups()
         path = DOCS / page
         if not path.is_file():
             yield number, f"page docs/{page} not found"
