@@ -1,6 +1,7 @@
 // Reads a page of docs/ for tests: its code blocks and its lines.
 #pragma once
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -28,6 +29,17 @@ inline std::vector<std::string> lines_of_page(const std::string& page) {
   return lines;
 }
 
+/// Appends a line of a block. A backslash at its end continues the line, because pages have at most 120 columns.
+inline void append_line(std::string& text, const std::string& line) {
+  if (line.ends_with(" \\")) {
+    text += line.substr(0, line.size() - 1);
+  } else if (text.ends_with(' ')) {
+    text += line.substr(std::min(line.find_first_not_of(' '), line.size())) + "\n";
+  } else {
+    text += line + "\n";
+  }
+}
+
 inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
   std::vector<DocBlock> list;
   std::string* target = nullptr;
@@ -35,7 +47,7 @@ inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
   for (const std::string& line : lines_of_page(page)) {
     number++;
     if (!line.starts_with("```")) {
-      if (target != nullptr) *target += line + "\n";
+      if (target != nullptr) append_line(*target, line);
       continue;
     }
     if (target != nullptr) {
