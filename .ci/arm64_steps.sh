@@ -19,7 +19,7 @@ hash_arm64() {
     return
   fi
   hash_row "$label" hash_lines_of .ci/chroot bookworm --name arm64 --arch arm64 .ci/arm64 golden
-  hash_differs_by_design "$label" "Debian's Bullet for arm64 contains fused multiply-adds, see [arm64.md](arm64.md)"
+  hash_differs_by_design "$label" "Debian's Bullet for arm64 contains fused multiply-adds, see [arm64](../understand/arm64.md)"
 }
 
 # Writes a table with each scene's hash on arm64 and on this machine.

@@ -282,6 +282,18 @@ lint_groups() {
          printf "%s%s", (count++ ? " " : ""), $0; last = folder } END { print "" }'
 }
 
+# The pages of the documentation, and the site that mkdocs builds from them.
+check_docs() {
+  local log=build/check/docs.log
+  if { python3 .ci/docs_test.py && .ci/docs.py; } >"$log" 2>&1; then pass; else fail "pages of the documentation" "$log"; fi
+  command -v mkdocs >/dev/null || { say "no mkdocs: the documentation's site skipped"; return; }
+  log=build/check/site.log
+  if mkdocs build --strict --clean -d "$PWD/build/check/site" >"$log" 2>&1 &&
+    python3 .ci/package/site_links.py build/check/site docs >>"$log" 2>&1; then pass; else
+    fail "the documentation's site" "$log"
+  fi
+}
+
 step_style() {
   local log=build/check/format.log files
   check_module_lists
@@ -289,6 +301,7 @@ step_style() {
   if .ci/questions.py >build/check/questions.log 2>&1; then pass; else fail "docs/questions.md" build/check/questions.log; fi
   if .ci/measures.py --check >build/check/measures.log 2>&1; then pass; else fail "measures" build/check/measures.log; fi
   if python3 tests/mutations/plant.py >build/check/plant.log 2>&1; then pass; else fail "mutations" build/check/plant.log; fi
+  check_docs
   git rev-parse --git-dir >/dev/null 2>&1 || { say "no git checkout: format and lint skipped"; return; }
   # other versions format differently and have other warnings
   if ! command -v clang-format-14 >/dev/null || ! command -v clang-tidy-14 >/dev/null; then

@@ -80,7 +80,8 @@ def link_faults(root, name, lines, anchors):
 
 def nav_faults(root, names):
     """Pages that the navigation or the index page of their folder lacks."""
-    nav = set(re.findall(r"^ *- (?:[^#\n]*: )?(\S+\.md)", (root / "mkdocs.yml").read_text(encoding="utf-8"), re.MULTILINE))
+    settings = (root / "mkdocs.yml").read_text(encoding="utf-8")
+    nav = set(re.findall(r"^ *- (?:[^#\n]*: )?(\S+\.md)", settings, re.MULTILINE))
     for name in names:
         if not name.startswith("docs/"):
             continue
@@ -90,7 +91,7 @@ def nav_faults(root, names):
         index = root / page.parent / "index.md"
         if page.name != "index.md" and page.parent.as_posix() != "docs/reference/lua":
             text = index.read_text(encoding="utf-8") if index.exists() else ""
-            if f"]({page.name})" not in text:
+            if not re.search(rf"\]\({re.escape(page.name)}[)#]", text):
                 yield f"{name}: {page.parent}/index.md has no link to it"
 
 
@@ -105,6 +106,7 @@ def faults(root):
 
 
 if __name__ == "__main__":
-    found = list(faults(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent).resolve()))
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent
+    found = list(faults(folder.resolve()))
     print("\n".join([*found, f"{len(found)} findings"]))
     sys.exit(1 if found else 0)

@@ -10,6 +10,7 @@ import datetime
 import pathlib
 import subprocess
 import sys
+import textwrap
 
 SHOW = "show.take"  # one test plays it with each number of threads
 MARK = "<!-- made by ./check --long hashes -->"
@@ -67,7 +68,8 @@ def main():
             "| platform | 1 thread | 2 threads | 3 threads |", "|---|---|---|---|"]
     text += ["| " + " | ".join([platform] + cells) + " |" for platform, cells in rows]
     if notes:
-        text += [""] + [f"{platform}: different hashes, equal for all numbers of threads. {why}." for platform, why in notes]
+        texts = [f"{platform}: different hashes, equal for all numbers of threads. {why}." for platform, why in notes]
+        text += [""] + [textwrap.fill(note, 120, break_long_words=False, break_on_hyphens=False) for note in texts]
     text += ["", "## Differences", ""]
     if differing:
         text += ["| platform | threads | scene | expected | here |", "|---|---|---|---|---|"]

@@ -63,14 +63,16 @@ install_tree() {
   install_licences "$prefix/share/doc/limber/licences" $compiled_in
 }
 
-# install_site FOLDER: builds the documentation as HTML pages that work offline.
+# install_site FOLDER: builds the documentation as HTML pages that work offline, from a server and from files.
 install_site() {
   local folder=$1
   need_program mkdocs mkdocs
-  mkdocs build --clean -f mkdocs.yml -d "$PWD/$folder" >"$package_out/site.log" 2>&1 ||
+  mkdocs build --strict --clean -f mkdocs.yml -d "$PWD/$folder" >"$package_out/site.log" 2>&1 ||
     die 3 "mkdocs could not build the documentation (whole output: $package_out/site.log)." "fix the problem in its output."
   # the sources of the images, and files that mkdocs writes for servers
   rm -rf "$folder"/{media,plots}/{make,*.lua} "$folder"/{sitemap.xml,sitemap.xml.gz,404.html}
+  # the search contains lunr
+  install_licences "$(dirname "$folder")/licences" libjs-lunr
 }
 
 # Prints the newest section of CHANGELOG.md as an entry of a Debian changelog.
@@ -143,8 +145,6 @@ debian_documents() {
   debian_changelog "$version" >"$doc/changelog.Debian"
   cp .ci/package/copyright "$doc/copyright"
   install_site "${doc#"$PWD"/}/html"
-  # the page of licenses links to the license, which is in this file
-  sed -i 's|"../LICENSE"|"../copyright"|g' "$doc/html/licences.html"
   gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1/usr/share/man/man1/limber.1"
   mkdir -p "$1/usr/share/doc-base"
   # Debian 12's lintian reports the unknown tag as an error

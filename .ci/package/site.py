@@ -1,10 +1,11 @@
 """Hook of mkdocs: adds files of the repository as pages, adapts Markdown, and writes the files of the search.
 
 - Pages that link to CHANGELOG.md, the license and so on keep these links: the files are pages of the site (PROJECT).
-- Python-Markdown, which mkdocs uses, is stricter than GitHub: the fence of a code block may only have a language, not the
-  file name for the tests; lists and tables need an empty line before them.
+- Python-Markdown, which mkdocs uses, is stricter than GitHub: the fence of a code block may only have a language, not
+  the file name for the tests; lists and tables need an empty line before them.
 - The search index is a script instead of JSON, which browsers load from a server only.
 """
+import html
 import json
 import os
 import pathlib
@@ -48,7 +49,7 @@ def on_page_read_source(page, config):
 
 
 def adapt_links(markdown, path):
-    """Links to files that are pages of the site lead there; links to other files of the repository become plain text."""
+    """Redirects links to files that are pages of the site; links to other files of the repository become text."""
     here = posixpath.dirname(PROJECT.get(path, path.removeprefix("docs/")))
 
     def adapted(match):
@@ -97,7 +98,7 @@ def on_post_build(config):
         {
             "location": entry["location"],
             "page": titles[entry["location"].partition("#")[0]],
-            "title": entry["title"],
+            "title": html.unescape(entry["title"]),
             "text": re.sub(r"\s+", " ", entry["text"]).strip(),
         }
         for entry in index["docs"]

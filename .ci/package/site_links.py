@@ -1,7 +1,7 @@
 """Checks the built documentation: each internal link has a target, and nothing is loaded from another host.
 
-Usage: site_links.py FOLDER PAGES, where PAGES is the folder of the Markdown pages. Prints all errors; exit code 1 if there
-are any. Links to other hosts are allowed as `<a href>` only: a page must not request anything when it is shown.
+Usage: site_links.py FOLDER PAGES, where PAGES is the folder of the Markdown pages. Prints all errors; exit code 1 if
+there are any. Links to other hosts are allowed as `<a href>` only: a page must not request anything when it is shown.
 """
 import html.parser
 import json
@@ -11,9 +11,12 @@ import sys
 import urllib.parse
 
 # attributes that make a browser load something, or that send something
-LOADING = {"src", "srcset", "href", "xlink:href", "poster", "data", "action", "formaction", "background", "ping", "manifest"}
+LOADING = {
+    "src", "srcset", "href", "xlink:href", "poster", "data", "action", "formaction", "background", "ping", "manifest"
+}
 # functions that request something; the search loads scripts of the site by `src`
-REQUESTS = r"\bfetch\s*\(|\bimport\s*\(|^\s*import\b|importScripts|XMLHttpRequest|WebSocket|EventSource|sendBeacon|\bWorker\s*\("
+REQUESTS = (r"\bfetch\s*\(|\bimport\s*\(|^\s*import\b|importScripts|XMLHttpRequest|WebSocket|EventSource|sendBeacon"
+            r"|\bWorker\s*\(")
 INDEX = "const limberPages = "
 
 
@@ -59,7 +62,8 @@ class Page(html.parser.HTMLParser):
                 if is_foreign(value) and not re.match(r"(https?|mailto):", value):
                     self.faults.append(f"links to {value}")
             elif key in LOADING:
-                self.loaded += [part.split()[0] for part in value.split(",") if part.strip()] if key == "srcset" else [value]
+                parts = [part.split()[0] for part in value.split(",") if part.strip()]
+                self.loaded += parts if key == "srcset" else [value]
             elif key == "style":
                 self.faults += style_faults(value)
             elif key.startswith("on"):
@@ -130,5 +134,5 @@ def faults(folder, sources):
 
 if __name__ == "__main__":
     errors = faults(pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]))
-    print("\n".join(errors))
+    print("\n".join([*errors, f"{len(errors)} errors"]))
     sys.exit(1 if errors else 0)

@@ -1,5 +1,5 @@
-// The search of the documentation. It uses lunr, which the first use of the field loads together with the index. Scripts
-// are loaded instead of JSON, so that it works without a server.
+// The search of the documentation. It uses lunr, which the first use of the field loads together with the index. The
+// index is a script instead of JSON, so that the search works without a server.
 (() => {
   "use strict";
   const base = document.currentScript.dataset.base;
