@@ -38,10 +38,10 @@ def headings_of(page):
     return found
 
 
-def findings():
+def findings(folder=DOCS):
     """Yields (line, text) of each fault."""
     questions, known = {}, {}
-    lines = (DOCS / "questions.md").read_text(encoding="utf-8").split("\n")
+    lines = (folder / "questions.md").read_text(encoding="utf-8").split("\n")
     for number, (line, below) in enumerate(zip(lines, lines[1:]), 1):
         question = QUESTION.match(line)
         if not question:
@@ -54,7 +54,7 @@ def findings():
             yield number, f"'{question.group(1)}' is also in line {questions[question.group(1)]}"
         questions[question.group(1)] = number
         page, heading = answer.groups()
-        path = DOCS / page
+        path = folder / page
         if not path.is_file():
             yield number, f"page docs/{page} not found"
             continue
