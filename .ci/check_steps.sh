@@ -285,7 +285,7 @@ lint_groups() {
 # The pages of the documentation, and the site that mkdocs builds from them.
 check_docs() {
   local log=build/check/docs.log
-  if { python3 .ci/docs_test.py && .ci/docs.py; } >"$log" 2>&1; then pass; else fail "pages of the documentation" "$log"; fi
+  if { python3 .ci/docs_test.py && .ci/docs.py && .ci/questions.py; } >"$log" 2>&1; then pass; else fail "pages of the documentation" "$log"; fi
   command -v mkdocs >/dev/null || { say "no mkdocs: the documentation's site skipped"; return; }
   log=build/check/site.log
   if mkdocs build --strict --clean -d "$PWD/build/check/site" >"$log" 2>&1 &&

@@ -1,4 +1,4 @@
-"""Tests docs.py and package/site_links.py: each finds the faults that are planted here, and nothing else."""
+"""Tests docs.py, questions.py and package/site_links.py: each finds the faults that are planted here, and nothing else."""
 import importlib.util
 import pathlib
 import tempfile
@@ -15,6 +15,7 @@ def load(path):
 
 
 docs = load(HERE / "docs.py")
+questions = load(HERE / "questions.py")
 site_links = load(HERE / "package" / "site_links.py")
 
 
@@ -69,6 +70,32 @@ class Pages(unittest.TestCase):
         self.assertEqual(len(found), 2, found)
         self.assertIn("navigation", found[0])
         self.assertIn("index.md has no link", found[1])
+
+
+class Questions(unittest.TestCase):
+    def faults(self, item):
+        """The faults of a list of thirty good questions and this item."""
+        good = "".join(f"- Question {i}?\n  [first](first.md#the-end)\n" for i in range(30))
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "first.md").write_text("# First\n\n## Empty\n\n## The end\n\nText.\n", encoding="utf-8")
+            (root / "questions.md").write_text("# Questions\n\n" + good + item, encoding="utf-8")
+            return [text for _, text in questions.findings(root)]
+
+    def test_accepts_good_lists(self):
+        self.assertEqual(self.faults("- One more?\n  [first](first.md#first)\n"), [])
+
+    def test_reports_missing_answers(self):
+        for item, text in [
+            ("- One more?\n  [second](second.md#first)\n", "page docs/second.md not found"),
+            ("- One more?\n  [first](first.md#begin)\n", "has no heading 'begin'"),
+            ("- One more?\n  [first](first.md#empty)\n", "no text under the heading 'empty'"),
+            ("- One more?\n", "below the question"),
+            ("- Question 1?\n  [first](first.md#first)\n", "is also in line"),
+        ]:
+            found = self.faults(item)
+            self.assertEqual(len(found), 1, found)
+            self.assertIn(text, found[0])
 
 
 class Site(unittest.TestCase):

@@ -40,7 +40,7 @@ run_part() {
 step_long() {
   local name
   sanitizer_options
-  say "--long: add the results to docs/understand/measurements.md, with this commit: $(git rev-parse --short=10 HEAD)"
+  say "--long: replace the figures in docs/understand/measurements.md"
   [ $# != 0 ] || set -- $(part_names)
   for name; do run_part "$name"; done
 }

@@ -56,7 +56,6 @@ NAMES = {
 }
 # (path, text or word): reason
 EXCEPTIONS = {
-    ("docs/understand/measurements.md", "*"): "quotes titles of commits and names of tests of their time",
     ("CHANGELOG.md", "*"): "quotes what versions were called",
     (".ci/words.py", "*"): "lists the words",
     ("tests/golden/show.lua", "*"): "part of a recorded take, which contains its text",
