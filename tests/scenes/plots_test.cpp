@@ -88,7 +88,7 @@ TEST(Plots, EveryBuiltInTypeHasAPlotOnThePage) {
   const sim::BehaviorTypes built_in;
   for (const auto& type : built_in.all()) {
     EXPECT_FALSE(app::test::content(LIMBER_SOURCE_DIR "/docs/plots/" + type->name + ".svg").empty()) << type->name;
-    EXPECT_NE(page.find("![" + type->name + "](plots/" + type->name + ".svg)"), std::string::npos) << type->name;
+    EXPECT_NE(page.find("![" + type->name + "](../plots/" + type->name + ".svg)"), std::string::npos) << type->name;
   }
 }
 
