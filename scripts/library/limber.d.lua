@@ -4,6 +4,7 @@
 -- src/script/annotations and the program's property tables; edit those, not this file. Units are meters, kilograms,
 -- seconds, newtons, radians; Z is up; coordinates are in the world frame unless noted otherwise.
 
+---A vec3, or a list of three numbers such as `{ 0, 0, 1 }`. Arguments and settable properties accept both.
 ---@alias vec3like vec3|number[]
 
 ---Three numbers. Immutable: assign the whole value.
@@ -159,13 +160,13 @@ function warn(...) end
 
 ---A named set of parts, joints and motors.
 ---@class body
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists; any other use of a removed object is an error.
 ---@field root part # read-only. The first part.
----@field parts part_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field joints joint_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field motors motor_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field behaviors behavior_list # read-only. In the order of attachment.
+---@field parts part_list # read-only. Its parts, in stream order; call it to iterate over those that match a pattern.
+---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
+---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
+---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@field position vec3like # m, -10000 .. 10000. Position of the root's link frame, world; setting it moves the whole body rigidly. Beyond 10 km, the stability check restores the body.
 ---@field rotation quat # Rotation of the root's link frame, world: x y z w; setting it rotates the whole body about the root.
@@ -268,10 +269,10 @@ function body_:state_hash() end
 
 ---A rigid part of a body.
 ---@class part
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
----@field body body # read-only.
----@field shape shape # read-only.
+---@field body body # read-only. The body that it belongs to.
+---@field shape shape # read-only. The geometry, which other parts may share.
 ---@field mass number # kg, 0.001 .. 1000000, default 1. Mass; the inertia scales with it. A part created with mass 0 is static.
 ---@field linear_damping number # 1/s, 0 .. 1, default 0. Fraction of the velocity lost per second.
 ---@field angular_damping number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
@@ -330,12 +331,12 @@ function part_:apply_torque(torque) end
 
 ---A connection of two parts. Its own axis is z of the joint's frame.
 ---@class joint
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
----@field type "revolute"|"prismatic"|"spherical"|"planar"|"floating"|"fixed" # read-only.
----@field body body # read-only.
----@field parent part # read-only.
----@field child part # read-only.
+---@field type "revolute"|"prismatic"|"spherical"|"planar"|"floating"|"fixed" # read-only. Its type.
+---@field body body # read-only. The body that it belongs to.
+---@field parent part # read-only. The part in front of the joint, nearer to the root.
+---@field child part # read-only. The part behind the joint.
 ---@field motor? motor # read-only. nil if it has none.
 ---@field linear_lower_limit vec3like|number # m, -10000 .. 10000, default 0 0 0. Lower limit along each axis; equal to the upper: locked; above it: free.
 ---@field linear_upper_limit vec3like|number # m, -10000 .. 10000, default 0 0 0. Upper limit along each axis.
@@ -372,8 +373,8 @@ local joint_ = {}
 ---@class motor
 ---@field name string # read-only. The joint's.
 ---@field alive boolean # read-only. True while it exists.
----@field body body # read-only.
----@field joint joint # read-only.
+---@field body body # read-only. The body that it belongs to.
+---@field joint joint # read-only. The joint that it drives.
 ---@field mode "off"|"spin"|"servo"|"spring" # Mode of the own axis; setting it sets the three flags.
 ---@field target number # m | rad, -10000 .. 10000. Target of the own axis's servo or spring; full turns count: 20π is ten.
 ---@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; maximal speed of its servo. From 500 m/s on, the stability check restores the body.
@@ -434,10 +435,10 @@ local motor_ = {}
 
 ---Couples two joints in both directions: position of b = ratio * position of a + offset. Created by sim:add_gear.
 ---@class gear
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists; it is removed with the bodies of its joints.
----@field joint_a joint # read-only.
----@field joint_b joint # read-only.
+---@field joint_a joint # read-only. The first joint.
+---@field joint_b joint # read-only. The second joint.
 ---@field enabled boolean # default true. False: the gear does not couple its joints.
 ---@field ratio number # -1000000 .. 1000000, default 1. Travel of joint b per travel of joint a; not 0.
 ---@field offset number # m | rad, -10000 .. 10000, default 0. Position of joint b where joint a is at 0.
@@ -458,7 +459,7 @@ function gear_:remove() end
 
 ---Geometry of parts for rendering and collision.
 ---@class shape
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
 ---@field transparency number # 0 .. 1, default 0. 0: opaque; 1: invisible.
 ---@field ambient_scale number # 0 .. 10, default 0.5. Factor on the ambient light.
@@ -478,32 +479,38 @@ function shape_:add_child(child, position, rotation) end
 
 ---A link of a URDF file; merged links keep their frames.
 ---@class link
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while its body exists.
----@field body body # read-only.
+---@field body body # read-only. The body that it belongs to.
 ---@field position vec3 # read-only, m, world.
 ---@field rotation quat # read-only, world.
 
+---The bodies of the world.
 ---@class body_list
 ---@field [integer] body
 ---@overload fun(self: sim, wanted?: string|body|(string|body)[]): fun(): body, integer
 
+---The behaviors of a body, in the order in which they run.
 ---@class behavior_list
 ---@field [integer] behavior
 ---@overload fun(self: body, wanted?: string|behavior|(string|behavior)[]): fun(): behavior, integer
 
+---The parts of a body, or of a behavior.
 ---@class part_list
 ---@field [integer] part
 ---@overload fun(self: body, wanted?: string|part|(string|part)[]): fun(): part, integer
 
+---The joints of a body, or of a behavior.
 ---@class joint_list
 ---@field [integer] joint
 ---@overload fun(self: body, wanted?: string|joint|(string|joint)[]): fun(): joint, integer
 
+---The gears of the world.
 ---@class gear_list
 ---@field [integer] gear
 ---@overload fun(self: sim, wanted?: string|gear|(string|gear)[]): fun(): gear, integer
 
+---The motors of a body, or of a behavior.
 ---@class motor_list
 ---@field [integer] motor
 ---@overload fun(self: body, wanted?: string|motor|(string|motor)[]): fun(): motor, integer
@@ -513,9 +520,9 @@ function shape_:add_child(child, position, rotation) end
 ---The world. The top level of a scene describes the objects; callbacks act on them.
 ---@class sim
 ---@field alive boolean # read-only. Always true.
----@field bodies body_list # read-only. In stream order; call it to iterate over those that match a pattern.
+---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
----@field gears gear_list # read-only. Created by add_gear, in stream order.
+---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
 ---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick.
@@ -687,6 +694,7 @@ function sim:panic() end
 ---@return string
 function sim:state_hash() end
 
+---A timer of sim:every, sim:after or sim:at.
 ---@class timer
 local timer_ = {}
 
@@ -698,8 +706,8 @@ function timer_:cancel() end
 ---Rendering: background, camera, look, materials of the shapes.
 ---@class visuals
 ---@field alive boolean # read-only. Always true.
----@field camera camera # read-only.
----@field look look # read-only.
+---@field camera camera # read-only. The camera.
+---@field look look # read-only. Light and ground.
 ---@field background vec3like # hsb, 0 .. 1, default 0.62 0.45 0.06. Background color: hue, saturation, brightness; the default is that of the look.
 visuals = {}
 
@@ -762,12 +770,13 @@ function look_:prefer(style) end
 ---@class param
 ---@field [1] string # Its name: letters, digits, _.
 ---@field [2] number|boolean|vec3like|string # Its default.
----@field min? number|vec3like
----@field max? number|vec3like
+---@field min? number|vec3like # Smallest value.
+---@field max? number|vec3like # Largest value.
 ---@field step? number # Change per mouse wheel step.
----@field unit? string
----@field doc? string
----@field choices? string[]
+---@field unit? string # A unit such as "m" or "N·s", shown in the panel.
+---@field doc? string # One sentence about its purpose.
+---@field choices? string[] # The words to choose from.
+---@field rerun? boolean # default false. A change runs the scene file again.
 
 ---The scene's own parameters: declared once with `params { … }`, shown in this order in the panel, /scene/<name> over
 ---OSC.
@@ -780,6 +789,7 @@ params = {}
 ---@type table<string, any>
 state = {}
 
+---OSC messages: handlers, and messages that the scene sends.
 ---@class osc
 ---@field address? string # read-only. During a handler: the message's address.
 ---@field sender? string # read-only. During a handler: the sender, such as 127.0.0.1:4000.
@@ -822,6 +832,7 @@ function osc:stream_to(target, opts) end
 ---@return address
 function osc:to(target) end
 
+---An address to send to, made by osc:to.
 ---@class address
 local address_ = {}
 
@@ -884,15 +895,15 @@ function behavior(definition) end
 
 ---The first argument of a behavior's functions: its parameters by name, and these members.
 ---@class behavior_self
----@field active boolean
+---@field active boolean # Whether it runs.
 ---@field place integer # Its position, from 1, in the order in which the behaviors of its body run.
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it is attached.
----@field type string # read-only.
----@field body body # read-only.
----@field parts part_list # read-only.
----@field joints joint_list # read-only.
----@field motors motor_list # read-only.
+---@field type string # read-only. Its type, such as "cohesion".
+---@field body body # read-only. The body that it belongs to.
+---@field parts part_list # read-only. The parts that it acts on.
+---@field joints joint_list # read-only. The joints that it acts on.
+---@field motors motor_list # read-only. The motors that it acts on.
 ---@field neighbor_parts part_list # read-only. Of other bodies; only in a group.
 ---@field time number # read-only, s.
 ---@field state table<string, any> # Plain data; survives a reload.
@@ -934,17 +945,17 @@ function behavior_self_:neighbor_push(part, min_dist, max_dist) end
 
 ---A behavior attached to a body; its parameters are properties.
 ---@class behavior
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it is attached.
----@field type string # read-only.
----@field body body # read-only.
+---@field type string # read-only. Its type, such as "cohesion".
+---@field body body # read-only. The body that it belongs to.
 ---@field active boolean # default true. Setting it to any value reactivates a failed behavior.
 ---@field place integer # Its position, from 1, in the order in which the behaviors of its body run; can be set.
 ---@field error? string # read-only. The reason why it is suspended although it is active.
 ---@field time number # read-only, µs. Time spent on it in the last tick.
----@field parts part_list # read-only.
----@field joints joint_list # read-only.
----@field motors motor_list # read-only.
+---@field parts part_list # read-only. The parts that it acts on.
+---@field joints joint_list # read-only. The joints that it acts on.
+---@field motors motor_list # read-only. The motors that it acts on.
 ---@field [string] any # Its parameters.
 local behavior_ = {}
 
@@ -960,9 +971,9 @@ function behavior_:remove() end
 
 ---A behavior of several bodies.
 ---@class behavior_group
----@field name string # read-only.
----@field alive boolean # read-only.
----@field type string # read-only.
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field type string # read-only. Its type, such as "cohesion".
 ---@field active boolean # default true. Setting it sets it for all members.
 ---@field place integer # Its position, from 1, in the order of all behavior names; can be set.
 ---@field time number # read-only, µs. Time spent on all its members in the last tick.
