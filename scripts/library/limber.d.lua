@@ -188,73 +188,73 @@ local body_ = {}
 ---@field enabled? boolean # False: removed from the simulation, as after the second instability; reset enables it.
 
 ---Adds a part with that shape. The pose is in world coordinates; default: the origin.
----@param name string
----@param shape shape|string
+---@param name string # A name of your choice, unique in the body.
+---@param shape shape|string # A shape, or its name.
 ---@param opts? part_opts # `mass` 0: static.
 ---@return part
 function body_:add_part(name, shape, opts) end
 
 ---Adds a joint between two parts. Their current pose is its zero position; its own axis is unlimited until limits are
 ---set.
----@param name string
----@param parent part|string|integer
----@param child part|string|integer
----@param opts? joint_opts
+---@param name string # A name of your choice, unique in the body.
+---@param parent part|string|integer # A part, its name or its number.
+---@param child part|string|integer # A part, its name or its number.
+---@param opts? joint_opts # Such as `position`, `axis` and limits.
 ---@return joint
 function body_:add_joint(name, parent, child, opts) end
 
 ---Adds a motor to a joint, with the joint's name; initially a servo that holds the position.
----@param joint joint|string|integer
----@param opts? motor_opts
+---@param joint joint|string|integer # A joint, its name or its number.
+---@param opts? motor_opts # Such as `mode` and `target`.
 ---@return motor
 function body_:add_motor(joint, opts) end
 
 ---Returns a part by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|part
+---@param key string|integer|part # Its name, its number from 1, or -1 for the last.
 ---@return part
 function body_:part(key) end
 
 ---Returns a joint by name or number (-1: the last).
----@param key string|integer|joint
+---@param key string|integer|joint # Its name, its number from 1, or -1 for the last.
 ---@return joint
 function body_:joint(key) end
 
 ---Attaches a behavior: a built-in type, or a file of behaviors_lua/.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
+---@param name string # A name of your choice, unique in the body.
 ---@param opts? behavior_opts # Targets (default: all), `active`, and the type's parameters.
 ---@return behavior
 function body_:add_behavior(type, name, opts) end
 
 ---Returns a behavior by name or number (-1: the last).
----@param key string|integer|behavior
+---@param key string|integer|behavior # Its name, its number from 1, or -1 for the last.
 ---@return behavior
 function body_:behavior(key) end
 
 ---Returns a motor by name or number (-1: the last).
----@param key string|integer|motor
+---@param key string|integer|motor # Its name, its number from 1, or -1 for the last.
 ---@return motor
 function body_:motor(key) end
 
 ---Returns a link of the URDF file, including merged ones.
----@param name string
+---@param name string # The name of the link in the file.
 ---@return link
 function body_:link(name) end
 
 ---Creates a copy of the body as it has been described so far.
----@param name string
----@param opts? body_opts
+---@param name string # The name of the copy, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
 function body_:copy(name, opts) end
 
 ---Excludes two parts of the body from collision with each other.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 function body_:exclude_pair(a, b) end
 
 ---Enables collision of two parts that was excluded by exclude_pair or by an overlap at the home pose.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 function body_:include_pair(a, b) end
 
 ---Returns to the start pose, at rest.
@@ -316,17 +316,17 @@ local part_ = {}
 ---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, not counting rotation about a driven joint's axis or a principal axis, and from 20000 rad/s on in any case.
 
 ---Force in N for one tick, world; at a world point, else the center. From 500 m/s on, the stability check restores the body.
----@param force vec3like
----@param at? vec3like
+---@param force vec3like # N, world.
+---@param at? vec3like # m, world; default: the center of mass.
 function part_:apply_force(force, at) end
 
 ---Impulse in N·s, world; at a world point, else the center. From 500 m/s on, the stability check restores the body.
----@param impulse vec3like
----@param at? vec3like
+---@param impulse vec3like # N·s, world.
+---@param at? vec3like # m, world; default: the center of mass.
 function part_:apply_impulse(impulse, at) end
 
 ---Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the stability check restores the body.
----@param torque vec3like
+---@param torque vec3like # N·m, world axes.
 function part_:apply_torque(torque) end
 
 ---A connection of two parts. Its own axis is z of the joint's frame.
@@ -471,9 +471,9 @@ function gear_:remove() end
 local shape_ = {}
 
 ---Adds a shape to a compound shape.
----@param child shape|string
+---@param child shape|string # A shape, or its name.
 ---@param position? vec3like # m
----@param rotation? quat
+---@param rotation? quat # Default: none.
 ---@return shape
 function shape_:add_child(child, position, rotation) end
 
@@ -543,8 +543,8 @@ function shape_:add_child(child, position, rotation) end
 sim = {}
 
 ---Loads a body from a URDF file.
----@param path string
----@param opts? urdf_opts
+---@param path string # Searched in the program's data, the folder of the scene and the folders above it.
+---@param opts? urdf_opts # Such as `name` and `position`.
 ---@return body
 function sim:load_urdf(path, opts) end
 
@@ -557,20 +557,20 @@ function sim:load_urdf(path, opts) end
 ---@field package_path? string|string[] # Search path for package://.
 
 ---Creates an empty body.
----@param name string
----@param opts? body_opts
+---@param name string # A name of your choice, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
 function sim:add_body(name, opts) end
 
 ---Attaches a behavior to several bodies, one instance per body. Values set on the group are set on all members.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
----@param opts? group_opts
+---@param name string # A name of your choice, unique among groups.
+---@param opts? group_opts # Such as `bodies`, and the type's parameters.
 ---@return behavior_group
 function sim:add_group_behavior(type, name, opts) end
 
 ---Returns a group by name.
----@param name string|behavior_group
+---@param name string|behavior_group # The name of the group.
 ---@return behavior_group
 function sim:group_behavior(name) end
 
@@ -584,12 +584,12 @@ function sim:group_behavior(name) end
 function sim:add_gear(joint_a, joint_b, ratio, opts) end
 
 ---Returns a gear by name or number (-1: the last).
----@param key string|integer|gear
+---@param key string|integer|gear # Its name, its number from 1, or -1 for the last.
 ---@return gear
 function sim:gear(key) end
 
 ---Returns a body by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|body
+---@param key string|integer|body # Its name, its number from 1, or -1 for the last.
 ---@return body
 function sim:body(key) end
 
@@ -599,39 +599,39 @@ function sim:body(key) end
 function sim:find_body(name) end
 
 ---Creates an infinite plane.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param normal? vec3like # default 0 0 1.
 ---@return shape
 function sim:add_plane_shape(name, normal) end
 
 ---Creates a sphere.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@return shape
 function sim:add_sphere_shape(name, radius) end
 
 ---Creates a box.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param size vec3like # m, full edge lengths
 ---@return shape
 function sim:add_box_shape(name, size) end
 
 ---Creates a cylinder along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
 function sim:add_cylinder_shape(name, radius, height) end
 
 ---Creates a capsule (a cylinder with hemispherical caps) along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m, without the caps
 ---@return shape
 function sim:add_capsule_shape(name, radius, height) end
 
 ---Creates a cone along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
@@ -642,45 +642,45 @@ function sim:add_cone_shape(name, radius, height) end
 ---@field max_vertices? integer # 4 .. 255, default 64 for a file, 255 for a list.
 
 ---Creates the convex hull of a mesh file, or of points.
----@param name string
----@param source string|vec3like[]
+---@param name string # A name of your choice, unique among shapes.
+---@param source string|vec3like[] # A file (STL, OBJ or DAE), or a list of points, m.
 ---@param opts? mesh_opts
 ---@return shape
 function sim:add_convex_mesh_shape(name, source, opts) end
 
 ---Creates a shape that consists of other shapes; see `shape:add_child`.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@return shape
 function sim:add_compound_shape(name) end
 
 ---Calls f at the start and after each reset.
----@param f fun()
+---@param f fun() # The function to call.
 function sim:on_start(f) end
 
 ---Calls f in each tick, before the physics step.
----@param f fun(dt: number)
+---@param f fun(dt: number) # The function to call; dt is the time step in s.
 function sim:on_step(f) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
----@param f fun(part: part, other: part, impulse: number, position: vec3)
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
 function sim:on_contact(f) end
 
 ---Calls f each time the simulation time passes a multiple of `seconds`. Timers set in callbacks survive a reload.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time. Above 0.
+---@param f fun() # The function to call.
 ---@return timer
 function sim:every(seconds, f) end
 
 ---Calls f once, `seconds` from now. Timers set in callbacks survive a reload; one set at the top level keeps its due
 ---time.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time.
+---@param f fun() # The function to call.
 ---@return timer
 function sim:after(seconds, f) end
 
 ---Calls f once, at that simulation time.
 ---@param time number # s
----@param f fun()
+---@param f fun() # The function to call.
 ---@return timer
 function sim:at(time, f) end
 
@@ -712,7 +712,7 @@ function timer_:cancel() end
 visuals = {}
 
 ---Returns a shape by name; its properties are its material. Shapes of a URDF file: robot.link, robot.link.2, …
----@param key string|integer|shape
+---@param key string|integer|shape # Its name.
 ---@return shape
 function visuals:shape(key) end
 
@@ -734,14 +734,14 @@ local camera_ = {}
 
 ---Looks from one point at another, upright: at once, or (in callbacks) with a transition of some seconds of simulation
 ---time that eases in and out. Moving the camera by hand ends the transition.
----@param eye vec3like
----@param target vec3like
+---@param eye vec3like # m, world.
+---@param target vec3like # m, world.
 ---@param seconds? number # above 0.
 function camera_:look_at(eye, target, seconds) end
 
 ---Makes the camera follow a part, or the root of a body (in callbacks). Distance and direction stay the same and can be
 ---changed by hand. nil: stop following.
----@param thing body|part|nil
+---@param thing body|part|nil # A part, a body, or nil.
 function camera_:follow(thing) end
 
 ---Lighting, and the ground.
@@ -761,7 +761,7 @@ function camera_:follow(thing) end
 local look_ = {}
 
 ---Selects a style by number (0: stage, 1: studio), unless the scene sets one.
----@param style integer
+---@param style integer # 0 or 1.
 function look_:prefer(style) end
 
 -- A scene's own parameters and state, and OSC.
@@ -776,7 +776,7 @@ function look_:prefer(style) end
 ---@field unit? string # A unit such as "m" or "N·s", shown in the panel.
 ---@field doc? string # One sentence about its purpose.
 ---@field choices? string[] # The words to choose from.
----@field rerun? boolean # default false. A change runs the scene file again.
+---@field rerun? boolean # default false. True: a change runs the scene file again.
 
 ---The scene's own parameters: declared once with `params { … }`, shown in this order in the panel, /scene/<name> over
 ---OSC.
@@ -797,17 +797,17 @@ osc = {}
 
 ---Registers a handler for messages whose address matches the pattern; its arguments are numbers, text and booleans.
 ---Note that 0 is true in Lua.
----@param pattern string
----@param f fun(...: any)
+---@param pattern string # An address, or a pattern such as `/light/*`.
+---@param f fun(...: any) # The function to call with the arguments.
 function osc:on(pattern, f) end
 
 ---Sends a message to all targets.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function osc:send(address, ...) end
 
 ---Sends a message to the sender of the one being handled.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function osc:reply(address, ...) end
 
@@ -837,7 +837,7 @@ function osc:to(target) end
 local address_ = {}
 
 ---Sends a message to this address only.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function address_:send(address, ...) end
 
@@ -856,25 +856,25 @@ presets = {}
 ---@field velocities? boolean # Include velocities.
 
 ---Stores current values. Replaces a preset of the same name; without options, stores the same properties as before.
----@param name string
+---@param name string # A name of your choice.
 ---@param opts? preset_opts
 function presets:store(name, opts) end
 
 ---Recalls values, at once or over some seconds of simulation time. 2.5 is half-way between the second and the third
 ---preset.
----@param which string|number
----@param seconds? number
+---@param which string|number # A name, or a number from 1.
+---@param seconds? number # s, simulation time; default 0: at once.
 ---@param easing? "smooth"|"linear"|"in"|"out" # default "smooth".
 function presets:recall(which, seconds, easing) end
 
 ---Sets values between two presets.
----@param a string|integer
----@param b string|integer
+---@param a string|integer # A name, or a number from 1.
+---@param b string|integer # A name, or a number from 1.
 ---@param amount number # 0: the first, 1: the second.
 function presets:morph(a, b, amount) end
 
 ---Deletes a preset.
----@param which string|integer
+---@param which string|integer # A name, or a number from 1.
 function presets:delete(which) end
 
 -- Files of behaviors_lua: each returns a behavior { … }.
@@ -882,11 +882,11 @@ function presets:delete(which) end
 ---The return value of a file of behaviors_lua. The name of the type is the name of the file.
 ---@class behavior_definition
 ---@field doc? string # One sentence about its purpose.
----@field params? param[] # In this order in the panel.
----@field group? boolean # default false. Attached by sim:add_group_behavior, one instance for each body.
----@field start? fun(self: behavior_self) # Before the first step, after a reset, and after its parts have changed.
----@field step? fun(self: behavior_self, dt: number) # In each tick while active.
----@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # After a save.
+---@field params? param[] # Its parameters, in the order of the panel.
+---@field group? boolean # default false. True: attached by sim:add_group_behavior, one instance for each body.
+---@field start? fun(self: behavior_self) # Called before the first step, after a reset, and after its parts have changed.
+---@field step? fun(self: behavior_self, dt: number) # Called in each tick while active.
+---@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # Called after a save: converts the state of the earlier version.
 
 ---Declares a behavior.
 ---@param definition behavior_definition
@@ -904,8 +904,8 @@ function behavior(definition) end
 ---@field parts part_list # read-only. The parts that it acts on.
 ---@field joints joint_list # read-only. The joints that it acts on.
 ---@field motors motor_list # read-only. The motors that it acts on.
----@field neighbor_parts part_list # read-only. Of other bodies; only in a group.
----@field time number # read-only, s.
+---@field neighbor_parts part_list # read-only. Parts of other bodies that count as neighbors; only in a group.
+---@field time number # read-only, s. Simulated time.
 ---@field state table<string, any> # Plain data; survives a reload.
 ---@field rng rng # read-only. Its own random generator.
 ---@field [string] any # Its parameters.
@@ -918,7 +918,7 @@ function behavior_self_:due(interval) end
 
 ---Iterates over the neighbors of a part: for other, offset, distance in self:neighbors(part, radius) do … Only in a
 ---group.
----@param part part
+---@param part part # A part of the body.
 ---@param radius number # m
 ---@return fun(): part, vec3, number
 function behavior_self_:neighbors(part, radius) end
@@ -926,7 +926,7 @@ function behavior_self_:neighbors(part, radius) end
 ---Means over the neighbors between two distances, computed for the whole group at once: their number, the offset to
 ---their center (m), their mean velocity relative to the part (m/s), and the same for angular velocity (rad/s). Zeros
 ---without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return integer
@@ -937,7 +937,7 @@ function behavior_self_:neighbor_means(part, min_dist, max_dist) end
 
 ---Mean over the neighbors between two distances of the unit vector to the neighbor, times 1 - distance / max_dist.
 ---Points to where it is crowded. Zero without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return vec3

@@ -23,8 +23,8 @@ local body_ = {}
 ---@opts body
 
 ---Adds a part with that shape. The pose is in world coordinates; default: the origin.
----@param name string
----@param shape shape|string
+---@param name string # A name of your choice, unique in the body.
+---@param shape shape|string # A shape, or its name.
 ---@param opts? part_opts # `mass` 0: static.
 ---@return part
 ---@error body:add_part("tip", "no shape") --> there is no shape 'no shape'; there are: arm6.base, arm6.link_1, arm6.block_1, arm6.link_2, arm6.block_2, arm6.link_3, arm6.tip, arm6.tip.2 …
@@ -36,10 +36,10 @@ function body_:add_part(name, shape, opts) end
 
 ---Adds a joint between two parts. Their current pose is its zero position; its own axis is unlimited until limits are
 ---set.
----@param name string
----@param parent part|string|integer
----@param child part|string|integer
----@param opts? joint_opts
+---@param name string # A name of your choice, unique in the body.
+---@param parent part|string|integer # A part, its name or its number.
+---@param child part|string|integer # A part, its name or its number.
+---@param opts? joint_opts # Such as `position`, `axis` and limits.
 ---@return joint
 ---@error body:add_joint("pin", "ball", "ball") --> joint 'body/pin': parent and child must be different parts
 ---@error body:add_joint("pin", "ball", "tail") --> body 'body' has no part 'tail'; there are: ball, cube
@@ -49,8 +49,8 @@ function body_:add_part(name, shape, opts) end
 function body_:add_joint(name, parent, child, opts) end
 
 ---Adds a motor to a joint, with the joint's name; initially a servo that holds the position.
----@param joint joint|string|integer
----@param opts? motor_opts
+---@param joint joint|string|integer # A joint, its name or its number.
+---@param opts? motor_opts # Such as `mode` and `target`.
 ---@return motor
 ---@error body:add_motor("knee") --> body 'body' has no joint 'knee'; none exist
 ---@error arm:add_motor("joint_1") --> joint 'arm/joint_1' has a motor already
@@ -59,7 +59,7 @@ function body_:add_joint(name, parent, child, opts) end
 function body_:add_motor(joint, opts) end
 
 ---Returns a part by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|part
+---@param key string|integer|part # Its name, its number from 1, or -1 for the last.
 ---@return part
 ---@error body:part("tail") --> body 'body' has no part 'tail'; there are: ball, cube
 ---@error body:part(9) --> body 'body' has 2 parts; there is no 9
@@ -68,7 +68,7 @@ function body_:add_motor(joint, opts) end
 function body_:part(key) end
 
 ---Returns a joint by name or number (-1: the last).
----@param key string|integer|joint
+---@param key string|integer|joint # Its name, its number from 1, or -1 for the last.
 ---@return joint
 ---@error arm:joint("joint_9") --> body 'arm' has no joint 'joint_9'; did you mean 'joint_1'?
 ---@see body.joints
@@ -79,7 +79,7 @@ function body_:joint(key) end
 
 ---Attaches a behavior: a built-in type, or a file of behaviors_lua/.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
+---@param name string # A name of your choice, unique in the body.
 ---@param opts? behavior_opts # Targets (default: all), `active`, and the type's parameters.
 ---@return behavior
 ---@error arm:add_behavior("windd", "wind") --> there is no behavior type 'windd'; …
@@ -89,7 +89,7 @@ function body_:joint(key) end
 function body_:add_behavior(type, name, opts) end
 
 ---Returns a behavior by name or number (-1: the last).
----@param key string|integer|behavior
+---@param key string|integer|behavior # Its name, its number from 1, or -1 for the last.
 ---@return behavior
 ---@error arm:behavior("wind") --> body 'arm' has no behavior 'wind'; none exist
 ---@see body.behaviors
@@ -99,7 +99,7 @@ function body_:behavior(key) end
 ---@page bodies
 
 ---Returns a motor by name or number (-1: the last).
----@param key string|integer|motor
+---@param key string|integer|motor # Its name, its number from 1, or -1 for the last.
 ---@return motor
 ---@error arm:motor("joint_9") --> body 'arm' has no motor 'joint_9'; did you mean 'joint_1'?
 ---@see body.motors
@@ -107,7 +107,7 @@ function body_:behavior(key) end
 function body_:motor(key) end
 
 ---Returns a link of the URDF file, including merged ones.
----@param name string
+---@param name string # The name of the link in the file.
 ---@return link
 ---@error arm:link("tipp") --> body 'arm' has no link 'tipp'; did you mean 'tip'?
 ---@see link
@@ -115,8 +115,8 @@ function body_:motor(key) end
 function body_:link(name) end
 
 ---Creates a copy of the body as it has been described so far.
----@param name string
----@param opts? body_opts
+---@param name string # The name of the copy, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
 ---@error body:copy("arm") --> there is a body 'arm' already; names are unique
 ---@see sim:add_body
@@ -124,16 +124,16 @@ function body_:link(name) end
 function body_:copy(name, opts) end
 
 ---Excludes two parts of the body from collision with each other.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 ---@error body:exclude_pair("ball", "ball") --> body 'body': a pair needs two different parts, not 'ball' twice
 ---@see body:include_pair, body.excluded_pairs, part.collision_mask
 ---@example excluded_pairs
 function body_:exclude_pair(a, b) end
 
 ---Enables collision of two parts that was excluded by exclude_pair or by an overlap at the home pose.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 ---@see body:exclude_pair
 ---@example excluded_pairs
 function body_:include_pair(a, b) end
@@ -175,23 +175,23 @@ local part_ = {}
 ---@opts part
 
 ---@action part apply_force
----@param force vec3like
----@param at? vec3like
+---@param force vec3like # N, world.
+---@param at? vec3like # m, world; default: the center of mass.
 ---@error body:part(1):apply_force(vec3(0, 0, 1)) --> part 'body/ball':apply_force acts on the running scene; at the top level use sim:on_start(function() … end)
 ---@see part:apply_impulse, part:apply_torque
 ---@example forces
 function part_:apply_force(force, at) end
 
 ---@action part apply_impulse
----@param impulse vec3like
----@param at? vec3like
+---@param impulse vec3like # N·s, world.
+---@param at? vec3like # m, world; default: the center of mass.
 ---@error body:part(1):apply_impulse(vec3(0, 0, 1)) --> part 'body/ball':apply_impulse acts on the running scene; at the top level use sim:on_start(function() … end)
 ---@see part:apply_force
 ---@example forces
 function part_:apply_impulse(impulse, at) end
 
 ---@action part apply_torque
----@param torque vec3like
+---@param torque vec3like # N·m, world axes.
 ---@error body:part(1):apply_torque(vec3(0, 0, 1)) --> part 'body/ball':apply_torque acts on the running scene; at the top level use sim:on_start(function() … end)
 ---@see part:apply_force
 ---@example forces
@@ -275,9 +275,9 @@ function gear_:remove() end
 local shape_ = {}
 
 ---Adds a shape to a compound shape.
----@param child shape|string
+---@param child shape|string # A shape, or its name.
 ---@param position? vec3like # m
----@param rotation? quat
+---@param rotation? quat # Default: none.
 ---@return shape
 ---@error shape:add_child(shape) --> shape 'ball' is not a compound; create one with sim:add_compound_shape
 ---@see sim:add_compound_shape

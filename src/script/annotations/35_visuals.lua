@@ -13,7 +13,7 @@
 visuals = {}
 
 ---Returns a shape by name; its properties are its material. Shapes of a URDF file: robot.link, robot.link.2, …
----@param key string|integer|shape
+---@param key string|integer|shape # Its name.
 ---@return shape
 ---@error visuals:shape("bal") --> there is no shape 'bal'; did you mean 'ball'?
 ---@see shape
@@ -32,8 +32,8 @@ local camera_ = {}
 
 ---Looks from one point at another, upright: at once, or (in callbacks) with a transition of some seconds of simulation
 ---time that eases in and out. Moving the camera by hand ends the transition.
----@param eye vec3like
----@param target vec3like
+---@param eye vec3like # m, world.
+---@param target vec3like # m, world.
 ---@param seconds? number # above 0.
 ---@see camera.eye, camera.target
 ---@example camera
@@ -41,7 +41,7 @@ function camera_:look_at(eye, target, seconds) end
 
 ---Makes the camera follow a part, or the root of a body (in callbacks). Distance and direction stay the same and can be
 ---changed by hand. nil: stop following.
----@param thing body|part|nil
+---@param thing body|part|nil # A part, a body, or nil.
 ---@error visuals.camera:follow(body) --> camera:follow acts on the running scene; at the top level use sim:on_start(function() … end)
 ---@see camera.distance
 ---@example following
@@ -57,7 +57,7 @@ function camera_:follow(thing) end
 local look_ = {}
 
 ---Selects a style by number (0: stage, 1: studio), unless the scene sets one.
----@param style integer
+---@param style integer # 0 or 1.
 ---@see look.style
 ---@example look
 function look_:prefer(style) end

@@ -12,7 +12,7 @@
 ---@field unit? string # A unit such as "m" or "N·s", shown in the panel.
 ---@field doc? string # One sentence about its purpose.
 ---@field choices? string[] # The words to choose from.
----@field rerun? boolean # default false. A change runs the scene file again.
+---@field rerun? boolean # default false. True: a change runs the scene file again.
 ---@see params
 ---@example sliders
 
@@ -45,15 +45,15 @@ osc = {}
 
 ---Registers a handler for messages whose address matches the pattern; its arguments are numbers, text and booleans.
 ---Note that 0 is true in Lua.
----@param pattern string
----@param f fun(...: any)
+---@param pattern string # An address, or a pattern such as `/light/*`.
+---@param f fun(...: any) # The function to call with the arguments.
 ---@error osc:on("kick", print) --> osc:on: 'kick' is not an address; it must begin with /
 ---@see osc:reply, osc.sender
 ---@example osc_handlers
 function osc:on(pattern, f) end
 
 ---Sends a message to all targets.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 ---@error osc:send("/ball", 1) --> osc:send acts on the running scene; at the top level use sim:on_start(function() … end)
 ---@see address:send, osc:stream_to
@@ -61,7 +61,7 @@ function osc:on(pattern, f) end
 function osc:send(address, ...) end
 
 ---Sends a message to the sender of the one being handled.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 ---@see osc:on
 ---@example osc_handlers
@@ -104,7 +104,7 @@ function osc:to(target) end
 local address_ = {}
 
 ---Sends a message to this address only.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 ---@see osc:send
 ---@example osc_sending

@@ -5,11 +5,11 @@
 ---The return value of a file of behaviors_lua. The name of the type is the name of the file.
 ---@class behavior_definition
 ---@field doc? string # One sentence about its purpose.
----@field params? param[] # In this order in the panel.
----@field group? boolean # default false. Attached by sim:add_group_behavior, one instance for each body.
----@field start? fun(self: behavior_self) # Before the first step, after a reset, and after its parts have changed.
----@field step? fun(self: behavior_self, dt: number) # In each tick while active.
----@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # After a save.
+---@field params? param[] # Its parameters, in the order of the panel.
+---@field group? boolean # default false. True: attached by sim:add_group_behavior, one instance for each body.
+---@field start? fun(self: behavior_self) # Called before the first step, after a reset, and after its parts have changed.
+---@field step? fun(self: behavior_self, dt: number) # Called in each tick while active.
+---@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # Called after a save: converts the state of the earlier version.
 ---@see behavior_self, param
 ---@example nod
 ---@example shy
@@ -33,8 +33,8 @@ function behavior(definition) end
 ---@field parts part_list # read-only. The parts that it acts on.
 ---@field joints joint_list # read-only. The joints that it acts on.
 ---@field motors motor_list # read-only. The motors that it acts on.
----@field neighbor_parts part_list # read-only. Of other bodies; only in a group.
----@field time number # read-only, s.
+---@field neighbor_parts part_list # read-only. Parts of other bodies that count as neighbors; only in a group.
+---@field time number # read-only, s. Simulated time.
 ---@field state table<string, any> # Plain data; survives a reload.
 ---@field rng rng # read-only. Its own random generator.
 ---@field [string] any # Its parameters.
@@ -50,7 +50,7 @@ function behavior_self_:due(interval) end
 
 ---Iterates over the neighbors of a part: for other, offset, distance in self:neighbors(part, radius) do … Only in a
 ---group.
----@param part part
+---@param part part # A part of the body.
 ---@param radius number # m
 ---@return fun(): part, vec3, number
 ---@see self:neighbor_means, self.neighbor_parts
@@ -60,7 +60,7 @@ function behavior_self_:neighbors(part, radius) end
 ---Means over the neighbors between two distances, computed for the whole group at once: their number, the offset to
 ---their center (m), their mean velocity relative to the part (m/s), and the same for angular velocity (rad/s). Zeros
 ---without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return integer
@@ -73,7 +73,7 @@ function behavior_self_:neighbor_means(part, min_dist, max_dist) end
 
 ---Mean over the neighbors between two distances of the unit vector to the neighbor, times 1 - distance / max_dist.
 ---Points to where it is crowded. Zero without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return vec3
