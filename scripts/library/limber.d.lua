@@ -4,6 +4,7 @@
 -- src/script/annotations and the program's property tables; edit those, not this file. Units are meters, kilograms,
 -- seconds, newtons, radians; Z is up; coordinates are in the world frame unless noted otherwise.
 
+---A vec3, or a list of three numbers such as `{ 0, 0, 1 }`. Arguments and settable properties accept both.
 ---@alias vec3like vec3|number[]
 
 ---Three numbers. Immutable: assign the whole value.
@@ -159,13 +160,13 @@ function warn(...) end
 
 ---A named set of parts, joints and motors.
 ---@class body
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists; any other use of a removed object is an error.
 ---@field root part # read-only. The first part.
----@field parts part_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field joints joint_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field motors motor_list # read-only. In stream order; call it to iterate over those that match a pattern.
----@field behaviors behavior_list # read-only. In the order of attachment.
+---@field parts part_list # read-only. Its parts, in stream order; call it to iterate over those that match a pattern.
+---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
+---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
+---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@field position vec3like # m, -10000 .. 10000. Position of the root's link frame, world; setting it moves the whole body rigidly. Beyond 10 km, the stability check restores the body.
 ---@field rotation quat # Rotation of the root's link frame, world: x y z w; setting it rotates the whole body about the root.
@@ -187,73 +188,73 @@ local body_ = {}
 ---@field enabled? boolean # False: removed from the simulation, as after the second instability; reset enables it.
 
 ---Adds a part with that shape. The pose is in world coordinates; default: the origin.
----@param name string
----@param shape shape|string
+---@param name string # A name of your choice, unique in the body.
+---@param shape shape|string # A shape, or its name.
 ---@param opts? part_opts # `mass` 0: static.
 ---@return part
 function body_:add_part(name, shape, opts) end
 
 ---Adds a joint between two parts. Their current pose is its zero position; its own axis is unlimited until limits are
 ---set.
----@param name string
----@param parent part|string|integer
----@param child part|string|integer
----@param opts? joint_opts
+---@param name string # A name of your choice, unique in the body.
+---@param parent part|string|integer # A part, its name or its number.
+---@param child part|string|integer # A part, its name or its number.
+---@param opts? joint_opts # Such as `position`, `axis` and limits.
 ---@return joint
 function body_:add_joint(name, parent, child, opts) end
 
 ---Adds a motor to a joint, with the joint's name; initially a servo that holds the position.
----@param joint joint|string|integer
----@param opts? motor_opts
+---@param joint joint|string|integer # A joint, its name or its number.
+---@param opts? motor_opts # Such as `mode` and `target`.
 ---@return motor
 function body_:add_motor(joint, opts) end
 
 ---Returns a part by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|part
+---@param key string|integer|part # Its name, its number from 1, or -1 for the last.
 ---@return part
 function body_:part(key) end
 
 ---Returns a joint by name or number (-1: the last).
----@param key string|integer|joint
+---@param key string|integer|joint # Its name, its number from 1, or -1 for the last.
 ---@return joint
 function body_:joint(key) end
 
 ---Attaches a behavior: a built-in type, or a file of behaviors_lua/.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
+---@param name string # A name of your choice, unique in the body.
 ---@param opts? behavior_opts # Targets (default: all), `active`, and the type's parameters.
 ---@return behavior
 function body_:add_behavior(type, name, opts) end
 
 ---Returns a behavior by name or number (-1: the last).
----@param key string|integer|behavior
+---@param key string|integer|behavior # Its name, its number from 1, or -1 for the last.
 ---@return behavior
 function body_:behavior(key) end
 
 ---Returns a motor by name or number (-1: the last).
----@param key string|integer|motor
+---@param key string|integer|motor # Its name, its number from 1, or -1 for the last.
 ---@return motor
 function body_:motor(key) end
 
 ---Returns a link of the URDF file, including merged ones.
----@param name string
+---@param name string # The name of the link in the file.
 ---@return link
 function body_:link(name) end
 
 ---Creates a copy of the body as it has been described so far.
----@param name string
----@param opts? body_opts
+---@param name string # The name of the copy, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
 function body_:copy(name, opts) end
 
 ---Excludes two parts of the body from collision with each other.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 function body_:exclude_pair(a, b) end
 
 ---Enables collision of two parts that was excluded by exclude_pair or by an overlap at the home pose.
----@param a part|string|integer
----@param b part|string|integer
+---@param a part|string|integer # A part, its name or its number.
+---@param b part|string|integer # A part, its name or its number.
 function body_:include_pair(a, b) end
 
 ---Returns to the start pose, at rest.
@@ -268,10 +269,10 @@ function body_:state_hash() end
 
 ---A rigid part of a body.
 ---@class part
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
----@field body body # read-only.
----@field shape shape # read-only.
+---@field body body # read-only. The body that it belongs to.
+---@field shape shape # read-only. The geometry, which other parts may share.
 ---@field mass number # kg, 0.001 .. 1000000, default 1. Mass; the inertia scales with it. A part created with mass 0 is static.
 ---@field linear_damping number # 1/s, 0 .. 1, default 0. Fraction of the velocity lost per second.
 ---@field angular_damping number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
@@ -315,27 +316,27 @@ local part_ = {}
 ---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, not counting rotation about a driven joint's axis or a principal axis, and from 20000 rad/s on in any case.
 
 ---Force in N for one tick, world; at a world point, else the center. From 500 m/s on, the stability check restores the body.
----@param force vec3like
----@param at? vec3like
+---@param force vec3like # N, world.
+---@param at? vec3like # m, world; default: the center of mass.
 function part_:apply_force(force, at) end
 
 ---Impulse in N·s, world; at a world point, else the center. From 500 m/s on, the stability check restores the body.
----@param impulse vec3like
----@param at? vec3like
+---@param impulse vec3like # N·s, world.
+---@param at? vec3like # m, world; default: the center of mass.
 function part_:apply_impulse(impulse, at) end
 
 ---Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the stability check restores the body.
----@param torque vec3like
+---@param torque vec3like # N·m, world axes.
 function part_:apply_torque(torque) end
 
 ---A connection of two parts. Its own axis is z of the joint's frame.
 ---@class joint
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
----@field type "revolute"|"prismatic"|"spherical"|"planar"|"floating"|"fixed" # read-only.
----@field body body # read-only.
----@field parent part # read-only.
----@field child part # read-only.
+---@field type "revolute"|"prismatic"|"spherical"|"planar"|"floating"|"fixed" # read-only. Its type.
+---@field body body # read-only. The body that it belongs to.
+---@field parent part # read-only. The part in front of the joint, nearer to the root.
+---@field child part # read-only. The part behind the joint.
 ---@field motor? motor # read-only. nil if it has none.
 ---@field linear_lower_limit vec3like|number # m, -10000 .. 10000, default 0 0 0. Lower limit along each axis; equal to the upper: locked; above it: free.
 ---@field linear_upper_limit vec3like|number # m, -10000 .. 10000, default 0 0 0. Upper limit along each axis.
@@ -372,8 +373,8 @@ local joint_ = {}
 ---@class motor
 ---@field name string # read-only. The joint's.
 ---@field alive boolean # read-only. True while it exists.
----@field body body # read-only.
----@field joint joint # read-only.
+---@field body body # read-only. The body that it belongs to.
+---@field joint joint # read-only. The joint that it drives.
 ---@field mode "off"|"spin"|"servo"|"spring" # Mode of the own axis; setting it sets the three flags.
 ---@field target number # m | rad, -10000 .. 10000. Target of the own axis's servo or spring; full turns count: 20π is ten.
 ---@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; maximal speed of its servo. From 500 m/s on, the stability check restores the body.
@@ -434,10 +435,10 @@ local motor_ = {}
 
 ---Couples two joints in both directions: position of b = ratio * position of a + offset. Created by sim:add_gear.
 ---@class gear
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists; it is removed with the bodies of its joints.
----@field joint_a joint # read-only.
----@field joint_b joint # read-only.
+---@field joint_a joint # read-only. The first joint.
+---@field joint_b joint # read-only. The second joint.
 ---@field enabled boolean # default true. False: the gear does not couple its joints.
 ---@field ratio number # -1000000 .. 1000000, default 1. Travel of joint b per travel of joint a; not 0.
 ---@field offset number # m | rad, -10000 .. 10000, default 0. Position of joint b where joint a is at 0.
@@ -458,7 +459,7 @@ function gear_:remove() end
 
 ---Geometry of parts for rendering and collision.
 ---@class shape
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
 ---@field transparency number # 0 .. 1, default 0. 0: opaque; 1: invisible.
 ---@field ambient_scale number # 0 .. 10, default 0.5. Factor on the ambient light.
@@ -470,40 +471,46 @@ function gear_:remove() end
 local shape_ = {}
 
 ---Adds a shape to a compound shape.
----@param child shape|string
+---@param child shape|string # A shape, or its name.
 ---@param position? vec3like # m
----@param rotation? quat
+---@param rotation? quat # Default: none.
 ---@return shape
 function shape_:add_child(child, position, rotation) end
 
 ---A link of a URDF file; merged links keep their frames.
 ---@class link
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while its body exists.
----@field body body # read-only.
+---@field body body # read-only. The body that it belongs to.
 ---@field position vec3 # read-only, m, world.
 ---@field rotation quat # read-only, world.
 
+---The bodies of the world.
 ---@class body_list
 ---@field [integer] body
 ---@overload fun(self: sim, wanted?: string|body|(string|body)[]): fun(): body, integer
 
+---The behaviors of a body, in the order in which they run.
 ---@class behavior_list
 ---@field [integer] behavior
 ---@overload fun(self: body, wanted?: string|behavior|(string|behavior)[]): fun(): behavior, integer
 
+---The parts of a body, or of a behavior.
 ---@class part_list
 ---@field [integer] part
 ---@overload fun(self: body, wanted?: string|part|(string|part)[]): fun(): part, integer
 
+---The joints of a body, or of a behavior.
 ---@class joint_list
 ---@field [integer] joint
 ---@overload fun(self: body, wanted?: string|joint|(string|joint)[]): fun(): joint, integer
 
+---The gears of the world.
 ---@class gear_list
 ---@field [integer] gear
 ---@overload fun(self: sim, wanted?: string|gear|(string|gear)[]): fun(): gear, integer
 
+---The motors of a body, or of a behavior.
 ---@class motor_list
 ---@field [integer] motor
 ---@overload fun(self: body, wanted?: string|motor|(string|motor)[]): fun(): motor, integer
@@ -513,9 +520,9 @@ function shape_:add_child(child, position, rotation) end
 ---The world. The top level of a scene describes the objects; callbacks act on them.
 ---@class sim
 ---@field alive boolean # read-only. Always true.
----@field bodies body_list # read-only. In stream order; call it to iterate over those that match a pattern.
+---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
----@field gears gear_list # read-only. Created by add_gear, in stream order.
+---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
 ---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick.
@@ -536,8 +543,8 @@ function shape_:add_child(child, position, rotation) end
 sim = {}
 
 ---Loads a body from a URDF file.
----@param path string
----@param opts? urdf_opts
+---@param path string # Searched in the program's data, the folder of the scene and the folders above it.
+---@param opts? urdf_opts # Such as `name` and `position`.
 ---@return body
 function sim:load_urdf(path, opts) end
 
@@ -550,20 +557,20 @@ function sim:load_urdf(path, opts) end
 ---@field package_path? string|string[] # Search path for package://.
 
 ---Creates an empty body.
----@param name string
----@param opts? body_opts
+---@param name string # A name of your choice, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
 function sim:add_body(name, opts) end
 
 ---Attaches a behavior to several bodies, one instance per body. Values set on the group are set on all members.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
----@param opts? group_opts
+---@param name string # A name of your choice, unique among groups.
+---@param opts? group_opts # Such as `bodies`, and the type's parameters.
 ---@return behavior_group
 function sim:add_group_behavior(type, name, opts) end
 
 ---Returns a group by name.
----@param name string|behavior_group
+---@param name string|behavior_group # The name of the group.
 ---@return behavior_group
 function sim:group_behavior(name) end
 
@@ -577,12 +584,12 @@ function sim:group_behavior(name) end
 function sim:add_gear(joint_a, joint_b, ratio, opts) end
 
 ---Returns a gear by name or number (-1: the last).
----@param key string|integer|gear
+---@param key string|integer|gear # Its name, its number from 1, or -1 for the last.
 ---@return gear
 function sim:gear(key) end
 
 ---Returns a body by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|body
+---@param key string|integer|body # Its name, its number from 1, or -1 for the last.
 ---@return body
 function sim:body(key) end
 
@@ -592,39 +599,39 @@ function sim:body(key) end
 function sim:find_body(name) end
 
 ---Creates an infinite plane.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param normal? vec3like # default 0 0 1.
 ---@return shape
 function sim:add_plane_shape(name, normal) end
 
 ---Creates a sphere.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@return shape
 function sim:add_sphere_shape(name, radius) end
 
 ---Creates a box.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param size vec3like # m, full edge lengths
 ---@return shape
 function sim:add_box_shape(name, size) end
 
 ---Creates a cylinder along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
 function sim:add_cylinder_shape(name, radius, height) end
 
 ---Creates a capsule (a cylinder with hemispherical caps) along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m, without the caps
 ---@return shape
 function sim:add_capsule_shape(name, radius, height) end
 
 ---Creates a cone along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
@@ -635,45 +642,45 @@ function sim:add_cone_shape(name, radius, height) end
 ---@field max_vertices? integer # 4 .. 255, default 64 for a file, 255 for a list.
 
 ---Creates the convex hull of a mesh file, or of points.
----@param name string
----@param source string|vec3like[]
+---@param name string # A name of your choice, unique among shapes.
+---@param source string|vec3like[] # A file (STL, OBJ or DAE), or a list of points, m.
 ---@param opts? mesh_opts
 ---@return shape
 function sim:add_convex_mesh_shape(name, source, opts) end
 
 ---Creates a shape that consists of other shapes; see `shape:add_child`.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@return shape
 function sim:add_compound_shape(name) end
 
 ---Calls f at the start and after each reset.
----@param f fun()
+---@param f fun() # The function to call.
 function sim:on_start(f) end
 
 ---Calls f in each tick, before the physics step.
----@param f fun(dt: number)
+---@param f fun(dt: number) # The function to call; dt is the time step in s.
 function sim:on_step(f) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
----@param f fun(part: part, other: part, impulse: number, position: vec3)
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
 function sim:on_contact(f) end
 
 ---Calls f each time the simulation time passes a multiple of `seconds`. Timers set in callbacks survive a reload.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time. Above 0.
+---@param f fun() # The function to call.
 ---@return timer
 function sim:every(seconds, f) end
 
 ---Calls f once, `seconds` from now. Timers set in callbacks survive a reload; one set at the top level keeps its due
 ---time.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time.
+---@param f fun() # The function to call.
 ---@return timer
 function sim:after(seconds, f) end
 
 ---Calls f once, at that simulation time.
 ---@param time number # s
----@param f fun()
+---@param f fun() # The function to call.
 ---@return timer
 function sim:at(time, f) end
 
@@ -687,6 +694,7 @@ function sim:panic() end
 ---@return string
 function sim:state_hash() end
 
+---A timer of sim:every, sim:after or sim:at.
 ---@class timer
 local timer_ = {}
 
@@ -698,13 +706,13 @@ function timer_:cancel() end
 ---Rendering: background, camera, look, materials of the shapes.
 ---@class visuals
 ---@field alive boolean # read-only. Always true.
----@field camera camera # read-only.
----@field look look # read-only.
+---@field camera camera # read-only. The camera.
+---@field look look # read-only. Light and ground.
 ---@field background vec3like # hsb, 0 .. 1, default 0.62 0.45 0.06. Background color: hue, saturation, brightness; the default is that of the look.
 visuals = {}
 
 ---Returns a shape by name; its properties are its material. Shapes of a URDF file: robot.link, robot.link.2, …
----@param key string|integer|shape
+---@param key string|integer|shape # Its name.
 ---@return shape
 function visuals:shape(key) end
 
@@ -726,14 +734,14 @@ local camera_ = {}
 
 ---Looks from one point at another, upright: at once, or (in callbacks) with a transition of some seconds of simulation
 ---time that eases in and out. Moving the camera by hand ends the transition.
----@param eye vec3like
----@param target vec3like
+---@param eye vec3like # m, world.
+---@param target vec3like # m, world.
 ---@param seconds? number # above 0.
 function camera_:look_at(eye, target, seconds) end
 
 ---Makes the camera follow a part, or the root of a body (in callbacks). Distance and direction stay the same and can be
 ---changed by hand. nil: stop following.
----@param thing body|part|nil
+---@param thing body|part|nil # A part, a body, or nil.
 function camera_:follow(thing) end
 
 ---Lighting, and the ground.
@@ -753,7 +761,7 @@ function camera_:follow(thing) end
 local look_ = {}
 
 ---Selects a style by number (0: stage, 1: studio), unless the scene sets one.
----@param style integer
+---@param style integer # 0 or 1.
 function look_:prefer(style) end
 
 -- A scene's own parameters and state, and OSC.
@@ -762,12 +770,13 @@ function look_:prefer(style) end
 ---@class param
 ---@field [1] string # Its name: letters, digits, _.
 ---@field [2] number|boolean|vec3like|string # Its default.
----@field min? number|vec3like
----@field max? number|vec3like
+---@field min? number|vec3like # Smallest value.
+---@field max? number|vec3like # Largest value.
 ---@field step? number # Change per mouse wheel step.
----@field unit? string
----@field doc? string
----@field choices? string[]
+---@field unit? string # A unit such as "m" or "N·s", shown in the panel.
+---@field doc? string # One sentence about its purpose.
+---@field choices? string[] # The words to choose from.
+---@field rerun? boolean # default false. True: a change runs the scene file again.
 
 ---The scene's own parameters: declared once with `params { … }`, shown in this order in the panel, /scene/<name> over
 ---OSC.
@@ -780,6 +789,7 @@ params = {}
 ---@type table<string, any>
 state = {}
 
+---OSC messages: handlers, and messages that the scene sends.
 ---@class osc
 ---@field address? string # read-only. During a handler: the message's address.
 ---@field sender? string # read-only. During a handler: the sender, such as 127.0.0.1:4000.
@@ -787,17 +797,17 @@ osc = {}
 
 ---Registers a handler for messages whose address matches the pattern; its arguments are numbers, text and booleans.
 ---Note that 0 is true in Lua.
----@param pattern string
----@param f fun(...: any)
+---@param pattern string # An address, or a pattern such as `/light/*`.
+---@param f fun(...: any) # The function to call with the arguments.
 function osc:on(pattern, f) end
 
 ---Sends a message to all targets.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function osc:send(address, ...) end
 
 ---Sends a message to the sender of the one being handled.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function osc:reply(address, ...) end
 
@@ -822,11 +832,12 @@ function osc:stream_to(target, opts) end
 ---@return address
 function osc:to(target) end
 
+---An address to send to, made by osc:to.
 ---@class address
 local address_ = {}
 
 ---Sends a message to this address only.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
 function address_:send(address, ...) end
 
@@ -845,25 +856,25 @@ presets = {}
 ---@field velocities? boolean # Include velocities.
 
 ---Stores current values. Replaces a preset of the same name; without options, stores the same properties as before.
----@param name string
+---@param name string # A name of your choice.
 ---@param opts? preset_opts
 function presets:store(name, opts) end
 
 ---Recalls values, at once or over some seconds of simulation time. 2.5 is half-way between the second and the third
 ---preset.
----@param which string|number
----@param seconds? number
+---@param which string|number # A name, or a number from 1.
+---@param seconds? number # s, simulation time; default 0: at once.
 ---@param easing? "smooth"|"linear"|"in"|"out" # default "smooth".
 function presets:recall(which, seconds, easing) end
 
 ---Sets values between two presets.
----@param a string|integer
----@param b string|integer
+---@param a string|integer # A name, or a number from 1.
+---@param b string|integer # A name, or a number from 1.
 ---@param amount number # 0: the first, 1: the second.
 function presets:morph(a, b, amount) end
 
 ---Deletes a preset.
----@param which string|integer
+---@param which string|integer # A name, or a number from 1.
 function presets:delete(which) end
 
 -- Files of behaviors_lua: each returns a behavior { … }.
@@ -871,11 +882,11 @@ function presets:delete(which) end
 ---The return value of a file of behaviors_lua. The name of the type is the name of the file.
 ---@class behavior_definition
 ---@field doc? string # One sentence about its purpose.
----@field params? param[] # In this order in the panel.
----@field group? boolean # default false. Attached by sim:add_group_behavior, one instance for each body.
----@field start? fun(self: behavior_self) # Before the first step, after a reset, and after its parts have changed.
----@field step? fun(self: behavior_self, dt: number) # In each tick while active.
----@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # After a save.
+---@field params? param[] # Its parameters, in the order of the panel.
+---@field group? boolean # default false. True: attached by sim:add_group_behavior, one instance for each body.
+---@field start? fun(self: behavior_self) # Called before the first step, after a reset, and after its parts have changed.
+---@field step? fun(self: behavior_self, dt: number) # Called in each tick while active.
+---@field migrate? fun(self: behavior_self, old_state: table<string, any>): table<string, any> # Called after a save: converts the state of the earlier version.
 
 ---Declares a behavior.
 ---@param definition behavior_definition
@@ -884,17 +895,17 @@ function behavior(definition) end
 
 ---The first argument of a behavior's functions: its parameters by name, and these members.
 ---@class behavior_self
----@field active boolean
+---@field active boolean # Whether it runs.
 ---@field place integer # Its position, from 1, in the order in which the behaviors of its body run.
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it is attached.
----@field type string # read-only.
----@field body body # read-only.
----@field parts part_list # read-only.
----@field joints joint_list # read-only.
----@field motors motor_list # read-only.
----@field neighbor_parts part_list # read-only. Of other bodies; only in a group.
----@field time number # read-only, s.
+---@field type string # read-only. Its type, such as "cohesion".
+---@field body body # read-only. The body that it belongs to.
+---@field parts part_list # read-only. The parts that it acts on.
+---@field joints joint_list # read-only. The joints that it acts on.
+---@field motors motor_list # read-only. The motors that it acts on.
+---@field neighbor_parts part_list # read-only. Parts of other bodies that count as neighbors; only in a group.
+---@field time number # read-only, s. Simulated time.
 ---@field state table<string, any> # Plain data; survives a reload.
 ---@field rng rng # read-only. Its own random generator.
 ---@field [string] any # Its parameters.
@@ -907,7 +918,7 @@ function behavior_self_:due(interval) end
 
 ---Iterates over the neighbors of a part: for other, offset, distance in self:neighbors(part, radius) do … Only in a
 ---group.
----@param part part
+---@param part part # A part of the body.
 ---@param radius number # m
 ---@return fun(): part, vec3, number
 function behavior_self_:neighbors(part, radius) end
@@ -915,7 +926,7 @@ function behavior_self_:neighbors(part, radius) end
 ---Means over the neighbors between two distances, computed for the whole group at once: their number, the offset to
 ---their center (m), their mean velocity relative to the part (m/s), and the same for angular velocity (rad/s). Zeros
 ---without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return integer
@@ -926,7 +937,7 @@ function behavior_self_:neighbor_means(part, min_dist, max_dist) end
 
 ---Mean over the neighbors between two distances of the unit vector to the neighbor, times 1 - distance / max_dist.
 ---Points to where it is crowded. Zero without neighbors. Only in a group.
----@param part part
+---@param part part # A part of the body.
 ---@param min_dist number # m
 ---@param max_dist number # m
 ---@return vec3
@@ -934,17 +945,17 @@ function behavior_self_:neighbor_push(part, min_dist, max_dist) end
 
 ---A behavior attached to a body; its parameters are properties.
 ---@class behavior
----@field name string # read-only.
+---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it is attached.
----@field type string # read-only.
----@field body body # read-only.
+---@field type string # read-only. Its type, such as "cohesion".
+---@field body body # read-only. The body that it belongs to.
 ---@field active boolean # default true. Setting it to any value reactivates a failed behavior.
 ---@field place integer # Its position, from 1, in the order in which the behaviors of its body run; can be set.
 ---@field error? string # read-only. The reason why it is suspended although it is active.
 ---@field time number # read-only, µs. Time spent on it in the last tick.
----@field parts part_list # read-only.
----@field joints joint_list # read-only.
----@field motors motor_list # read-only.
+---@field parts part_list # read-only. The parts that it acts on.
+---@field joints joint_list # read-only. The joints that it acts on.
+---@field motors motor_list # read-only. The motors that it acts on.
 ---@field [string] any # Its parameters.
 local behavior_ = {}
 
@@ -960,9 +971,9 @@ function behavior_:remove() end
 
 ---A behavior of several bodies.
 ---@class behavior_group
----@field name string # read-only.
----@field alive boolean # read-only.
----@field type string # read-only.
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field type string # read-only. Its type, such as "cohesion".
 ---@field active boolean # default true. Setting it sets it for all members.
 ---@field place integer # Its position, from 1, in the order of all behavior names; can be set.
 ---@field time number # read-only, µs. Time spent on all its members in the last tick.

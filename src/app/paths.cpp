@@ -65,6 +65,22 @@ std::string shader_dir() {
   return (fs::path(data) / "shaders").string();
 }
 
+std::string site_dir() {
+  std::error_code error;
+  const fs::path program = system::executable_path();
+  std::vector<fs::path> candidates;
+  if (!program.empty()) {
+    const fs::path folder = program.parent_path();
+    // the second one for a nested build folder: build/asan
+    candidates = {folder / "site", folder.parent_path() / "site", folder.parent_path() / "share/doc/limber/html"};
+  }
+  candidates.push_back(fs::path(install_data_dir()).parent_path() / "doc/limber/html");
+  for (const fs::path& candidate : candidates) {
+    if (fs::is_regular_file(candidate / "index.html", error)) return candidate.lexically_normal().string();
+  }
+  return {};
+}
+
 std::string state_dir() {
   const char* state = std::getenv("XDG_STATE_HOME");
   if (state != nullptr && state[0] == '/') return std::string(state) + "/limber";

@@ -20,6 +20,10 @@ std::string program_command();
 /// Returns the folder of the shaders, which may be edited while the program runs; empty if there is none. [any]
 std::string shader_dir();
 
+/// Returns the folder with the pages of the documentation: build/site in a checkout, share/doc/limber/html next to an
+/// installed program; empty if there is none. [any]
+std::string site_dir();
+
 /// Returns the folder for the user's persistent state, without a trailing /: $XDG_STATE_HOME/limber, else the same
 /// below ~/.local/state; empty if there is no home folder. [any]
 std::string state_dir();

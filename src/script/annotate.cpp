@@ -1,7 +1,6 @@
 // Converts properties to LuaCATS fields.
 #include "script/annotate.h"
 
-#include <array>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -9,18 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/check.h"
 #include "base/embedded.h"
 #include "base/text.h"
 #include "properties/property_text.h"
-#include "sim/gears/gear.h"
-#include "sim/shapes/shape.h"
-#include "sim/visuals/visuals.h"
-#include "sim/world/body.h"
-#include "sim/world/joint.h"
-#include "sim/world/motor.h"
-#include "sim/world/part.h"
-#include "sim/world/world.h"
+#include "script/reference/annotation_reader.h"
 
 namespace limber::script {
 
@@ -30,18 +21,6 @@ std::span<const EmbeddedFile> annotation_files();
 namespace {
 
 constexpr std::size_t kMaxLineWidth = 116;  // of a line of names, characters
-
-const PropertyTable& class_table(std::string_view name) {
-  const std::array<const PropertyTable*, 10> classes = {
-      &sim::World::table(),      &sim::Body::table(),  &sim::Part::table(),    &sim::Joint::table(),
-      &sim::Motor::table(),      &sim::Shape::table(), &sim::Visuals::table(), &sim::Camera::table(),
-      &sim::Appearance::table(), &sim::Gear::table()};
-  for (const PropertyTable* table : classes) {
-    if (table->name() == name) return *table;
-  }
-  LIMBER_CHECK(!"a class that scripts see");
-  return sim::World::table();
-}
 
 // the LuaCATS type: of the value on reading, plus the other types that may be assigned
 std::string type_text(const Property& property) {
@@ -114,12 +93,16 @@ std::string annotations(std::string_view names) {
   std::string text;
   for (const EmbeddedFile& file : annotation_files()) {
     if (!text.empty()) text += "\n";
+    bool skips = false;  // the introduction of a page, and the empty line after it
     for (const std::string_view line : split(file.text.substr(0, file.text.find_last_not_of('\n') + 1), '\n')) {
       const std::vector<std::string_view> words = split(line, ' ');
-      if (words[0] == "---@properties" || words[0] == "---@opts") {
-        text += fields(class_table(words[1]), words[0] == "---@opts");
+      skips = skips || words[0] == "---@page";
+      if (skips || is_reference_line(line)) {
+        skips = skips && !line.empty();
+      } else if (words[0] == "---@properties" || words[0] == "---@opts") {
+        text += fields(annotated_class(words[1]), words[0] == "---@opts");
       } else if (words[0] == "---@action") {
-        text += fmt::format("---{}\n", class_table(words[1]).at(words[2]).doc);
+        text += fmt::format("---{}\n", annotated_class(words[1]).at(words[2]).doc);
       } else if (words[0] == "---@names") {
         text += builtin_names(names, text);
       } else {

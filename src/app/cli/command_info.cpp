@@ -55,17 +55,19 @@ OptionInfo option_info(const CLI::Option& option) {
   return info;
 }
 
-// leaves out the program's footer, which commands without their own inherit
-CommandInfo read_command(const CLI::App& app, const std::string& inherited) {
+// Leaves out the footers of the commands around it, which commands without their own inherit.
+CommandInfo read_command(const CLI::App& app, const std::vector<std::string>& inherited) {
   CommandInfo info;
   info.name = app.get_name();
   info.about = app.get_description();
-  if (app.get_footer() != inherited) info.footer = app.get_footer();
+  if (std::ranges::find(inherited, app.get_footer()) == inherited.end()) info.footer = app.get_footer();
   for (const CLI::Option* option : app.get_options()) {
     (option->get_positional() ? info.positionals : info.options).push_back(option_info(*option));
   }
+  std::vector<std::string> outer = inherited;
+  outer.push_back(app.get_footer());
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    info.commands.push_back(read_command(*command, inherited.empty() ? info.footer : inherited));
+    info.commands.push_back(read_command(*command, outer));
   }
   return info;
 }

@@ -1,5 +1,5 @@
-// The command line as plain data, and the manual page and the completions for shells that are generated from it, so
-// that no option is missing.
+// The command line as plain data, and the manual page, the page of the reference and the completions for shells that
+// are generated from it, so that no option is missing.
 #pragma once
 
 #include <string>
@@ -41,6 +41,9 @@ std::string file_extension(const OptionInfo& option);
 
 /// Returns limber(1) in the man macros of roff, with all commands on one page. [any]
 std::string man_page(const CommandInfo& program);
+
+/// Returns the same as a page of Markdown, docs/reference/command_line.md. [any]
+std::string command_page(const CommandInfo& program);
 
 /// Returns a bash script that completes `limber`. It depends on no other script. [any]
 std::string bash_completion(const CommandInfo& program);

@@ -1,10 +1,12 @@
 // Writes roff. Help texts are plain text: a line that begins with two spaces is an example, "command   explanation".
 #include "app/cli/command_info.h"
 
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "app/cli/manual_sections.h"
 #include "base/build_info.h"
 #include "base/text.h"
 
@@ -12,59 +14,14 @@ namespace limber::app {
 
 namespace {
 
-constexpr std::string_view kClosingSections = R"(.SH EXIT STATUS
-.TP
-.B 0
-Success.
-.TP
-.B 1
-Invalid input: a scene, a robot or a take. The error names the place and the fix.
-.TP
-.B 2
-Wrong usage.
-.TP
-.B 3
-A problem of the machine: a port is in use, for example, or there is no reply.
-.SH FILES
-.TP
-.I /usr/share/limber
-Scenes, robots, behaviors and shaders of an installed program. A scene that is not found in the current folder is
-searched there.
-.TP
-.I $XDG_CONFIG_HOME/limber/panel.json
-Settings of the panel; by default in
-.IR ~/.config/limber .
-.TP
-.I $XDG_STATE_HOME/limber
-History of the console, and values for
-.BR \-\-recover ;
-by default
-.IR ~/.local/state/limber .
-.TP
-.I $XDG_RUNTIME_DIR/limber\-PID.sock
-Socket of a running program, for
-.B limber console
-and
-.BR "limber monitor" .
-Without that folder it is in
-.I $TMPDIR
-or
-.IR /tmp .
-.SH ENVIRONMENT
-.TP
-.BR DISPLAY ", " WAYLAND_DISPLAY
-Without both,
-.B limber
-plays without a window.
-.TP
-.BR XDG_CONFIG_HOME ", " XDG_STATE_HOME ", " XDG_RUNTIME_DIR ", " HOME ", " TMPDIR
-Locations of the files above.
-.SH SEE ALSO
+constexpr std::string_view kSeeAlso = R"(.SH SEE ALSO
 .BR oscsend (1),
 .BR oscdump (1)
 .PP
 The documentation is in
-.IR /usr/share/doc/limber .
+.IR /usr/share/doc/limber ;
+.B limber docs
+shows it in a browser.
 )";
 
 // escapes the characters that have a meaning in roff
@@ -155,6 +112,12 @@ void add_roff_command(std::string& page, const CommandInfo& command, const std::
   for (const CommandInfo& inner : command.commands) add_roff_command(page, inner, path + " " + inner.name);
 }
 
+void add_roff_entries(std::string& page, std::string_view title, std::span<const ManualEntry> entries) {
+  page += fmt::format(".SH {}\n", title);
+  for (const ManualEntry& entry : entries)
+    page += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(entry.term), roff(entry.text));
+}
+
 }  // namespace
 
 std::string man_page(const CommandInfo& program) {
@@ -168,7 +131,10 @@ std::string man_page(const CommandInfo& program) {
   for (const OptionInfo& option : program.options) add_roff_option(page, option);
   page += ".SH COMMANDS\nWithout a command,\n.B limber\nplays.\n";
   for (const CommandInfo& command : program.commands) add_roff_command(page, command, "limber " + command.name);
-  page += kClosingSections;
+  add_roff_entries(page, "EXIT STATUS", manual_exit_codes());
+  add_roff_entries(page, "FILES", manual_files());
+  add_roff_entries(page, "ENVIRONMENT", manual_environment());
+  page += kSeeAlso;
   return page;
 }
 

@@ -31,9 +31,9 @@ namespace limber::app {
 
 namespace {
 
-constexpr std::array<std::string_view, 16> kCommands = {
-    "play",  "console", "monitor", "send",   "new",    "inspect", "describe",   "annotate",
-    "bench", "preset",  "take",    "export", "doctor", "service", "completion", "man"};
+constexpr std::array<std::string_view, 17> kCommands = {
+    "play",   "console", "monitor", "send",   "new",     "inspect", "describe",   "annotate", "bench",
+    "preset", "take",    "export",  "doctor", "service", "docs",    "completion", "man"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua and controlled over OSC.\n\n"
@@ -82,6 +82,7 @@ struct CommandLine {
   std::string robot;        // inspect
   std::string scene;        // describe
   std::string definitions;  // annotate
+  std::string reference;    // annotate: folder of the Lua reference
   ConsoleCommand console;
   MonitorCommand monitor;
   SendCommand send;
@@ -90,6 +91,7 @@ struct CommandLine {
   std::string take;
   ExportCommand exported;
   DoctorCommand doctor;
+  DocsCommand docs;
   ServiceCommand service;
   std::string shell;  // completion
   bool json = false;
@@ -100,6 +102,9 @@ struct CommandLine {
 void add_inspect(CLI::App& app, CommandLine& line) {
   CLI::App* inspect =
       app.add_subcommand("inspect", "Check a URDF file: links, joints, and every problem with its line and fix.");
+  inspect->footer(
+      "  limber inspect urdf/arm6.urdf                a table of the arm, and its problems\n"
+      "  limber inspect robot.urdf --json             the same for programs");
   inspect->add_option("file", line.robot, "The robot.")->type_name("FILE.urdf")->required();
   inspect->add_flag("--json", line.json, "Print JSON.");
   inspect->add_option("--package-path", line.package_paths, "Folder for package:// paths; may be repeated.")
@@ -110,6 +115,9 @@ void add_inspect(CLI::App& app, CommandLine& line) {
 void add_describe(CLI::App& app, CommandLine& line) {
   CLI::App* describe =
       app.add_subcommand("describe", "List all OSC addresses with type, unit, range, default and meaning.");
+  describe->footer(
+      "  limber describe scripts/arms.lua             the addresses of this scene\n"
+      "  limber describe --json                       all classes, for programs");
   describe->add_option("scene", line.scene, "List the addresses of this scene; default: those of all classes.")
       ->type_name("SCENE.lua");
   CLI::Option* json = describe->add_flag("--json", line.json, "Print JSON.");
@@ -119,6 +127,7 @@ void add_describe(CLI::App& app, CommandLine& line) {
 
 void add_bench(CLI::App& app, CommandLine& line) {
   CLI::App* bench = app.add_subcommand("bench", "Measure how many arms this machine plays in real time.");
+  bench->footer("  limber bench --ticks 300                     a longer measurement");
   bench->add_flag("--json", line.bench.json, "Print JSON.");
   bench->add_option("--ticks", line.bench.ticks, "Number of timed ticks for each number of arms; default: 60.")
       ->type_name("N")
@@ -158,6 +167,7 @@ void add_monitor(CLI::App& app, MonitorCommand& command) {
 
 void add_doctor(CLI::App& app, DoctorCommand& command) {
   CLI::App* doctor = app.add_subcommand("doctor", "Check this machine: ports, buffers, data, OpenGL, display.");
+  doctor->footer("  limber doctor --osc-in 0.0.0.0:9003          with the address of a show");
   add_gl_option(*doctor, command.gl);
   doctor->add_option("--osc-in", command.osc_in, "Address of OSC input to check; default 127.0.0.1:9003.")
       ->type_name("[ADDR:]PORT|off");
@@ -191,9 +201,14 @@ void add_send(CLI::App& app, SendCommand& command) {
 void add_new(CLI::App& app, NewCommand& command) {
   CLI::App* subcommand = app.add_subcommand("new", "Create a commented template of a show, a scene or a behavior.");
   subcommand->require_subcommand(1);
+  subcommand->footer(
+      "  limber new show my_show                      a folder with an example\n"
+      "  limber new behavior wave                     behaviors_lua/wave.lua");
   const auto add = [&](const char* word, NewCommand::Kind value, const char* option, const char* about) {
     CLI::App* kind = subcommand->add_subcommand(word, about);
-    kind->add_option(option, command.name)->required()->type_name("");
+    kind->add_option(option, command.name, value == NewCommand::Kind::show ? "The folder." : "The name.")
+        ->required()
+        ->type_name("");
     kind->callback([&command, value] { command.kind = value; });
   };
   add("show", NewCommand::Kind::show, "DIR", "A folder with a scene, a robot and settings for editors.");
@@ -204,6 +219,7 @@ void add_new(CLI::App& app, NewCommand& command) {
 void add_preset(CLI::App& app, PresetCommand& command) {
   CLI::App* preset = app.add_subcommand("preset", "Import presets of other programs.");
   preset->require_subcommand(1);
+  preset->footer("  limber preset import looks.json my.lua       append them to the presets of my.lua");
   CLI::App* import =
       preset->add_subcommand("import", "Append the presets of a Max pattrstorage (writejson) to those of a scene.");
   import->add_option("file", command.file, "The pattrstorage file.")->type_name("FILE.json")->required();
@@ -217,6 +233,7 @@ void add_take(CLI::App& app, std::string& file) {
   info->add_option("file", file, "The take.")->type_name("TAKE")->required();
   take->footer(
       "  limber my.lua --record evening.take\n"
+      "  limber take info evening.take\n"
       "  limber --replay evening.take --fast\n"
       "  limber export evening.take --format gltf");
 }
@@ -325,7 +342,37 @@ void add_shell_files(CLI::App& app, CommandLine& line) {
       ->type_name("SHELL")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh"}));
-  app.add_subcommand("man", "Print the manual page.")->footer("  limber man | man -l -                        read it");
+  CLI::App* man = app.add_subcommand("man", "Print the manual page.");
+  man->footer("  limber man | man -l -                        read it");
+  man->add_flag("--markdown", line.markdown, "Print Markdown, as in docs/reference/command_line.md.");
+}
+
+void add_annotate(CLI::App& app, CommandLine& line) {
+  CLI::App* annotate = app.add_subcommand("annotate", "Write the definitions of the Lua API for editors (LuaCATS).");
+  annotate->footer(
+      "An editor with lua-language-server completes and explains the names of Limber with these definitions.\n"
+      "  limber annotate limber.d.lua                 write them to a file\n"
+      "  limber annotate --markdown reference         write the Lua reference, one page per subject");
+  CLI::Option* file =
+      annotate->add_option("file", line.definitions, "Output file; default: stdout.")->type_name("FILE");
+  annotate->add_option("--markdown", line.reference, "Write the pages of the Lua reference to this folder instead.")
+      ->type_name("DIR")
+      ->excludes(file);
+}
+
+void add_docs(CLI::App& app, DocsCommand& command) {
+  CLI::App* docs = app.add_subcommand("docs", "Read the documentation in a browser, with a search, offline.");
+  docs->footer(
+      "Serves the pages to this machine only, prints their address, and opens a browser if there is a display.\n"
+      "Ctrl+C ends it. The Debian package contains the pages; in a checkout, `mkdocs build` makes them.\n"
+      "  limber docs                                  open them\n"
+      "  limber docs --no-browser --port 0            print the address, at a free port\n"
+      "Exit codes: 3 there are no pages, or the port is in use.");
+  docs->add_option("--port", command.port,
+                   "TCP port on 127.0.0.1; 0: a free one; default: 9010, or a free one if it is in use.")
+      ->type_name("PORT")
+      ->check(CLI::Range(0, 65535));
+  docs->add_flag("--no-browser", command.no_browser, "Don't open a browser.");
 }
 
 void add_commands(CLI::App& app, CommandLine& line) {
@@ -343,18 +390,19 @@ void add_commands(CLI::App& app, CommandLine& line) {
   add_preset(app, line.preset);
   add_take(app, line.take);
   add_export(app, line.exported);
-  CLI::App* annotate = app.add_subcommand("annotate", "Write the definitions of the Lua API for editors (LuaCATS).");
-  annotate->add_option("file", line.definitions, "Output file; default: stdout.")->type_name("FILE");
+  add_annotate(app, line);
   add_doctor(app, line.doctor);
   add_service(app, line.service);
+  add_docs(app, line.docs);
   add_shell_files(app, line);
 }
 
-int print_shell_file(const CLI::App& app, const std::string& command, const std::string& shell) {
+int print_shell_file(const CLI::App& app, const std::string& command, const CommandLine& line) {
   const CommandInfo program = command_info(app);
-  print_result("{}", command == "man" ? man_page(program)
-                     : shell == "zsh" ? zsh_completion(program)
-                                      : bash_completion(program));
+  print_result("{}", command == "man" && line.markdown ? command_page(program)
+                     : command == "man"                ? man_page(program)
+                     : line.shell == "zsh"             ? zsh_completion(program)
+                                                       : bash_completion(program));
   return 0;
 }
 
@@ -393,10 +441,14 @@ constexpr CommandRunner kRunners[] = {
     {"preset", [](CommandLine& l) { return preset_command(l.preset); }},
     {"take", [](CommandLine& l) { return take_command(l.take); }},
     {"export", [](CommandLine& l) { return export_command(l.exported); }},
-    {"annotate", [](CommandLine& l) { return annotate_command(l.definitions); }},
+    {"annotate",
+     [](CommandLine& l) {
+       return l.reference.empty() ? annotate_command(l.definitions) : lua_reference_command(l.reference);
+     }},
     {"bench", [](CommandLine& l) { return bench_command(l.bench); }},
     {"doctor", [](CommandLine& l) { return doctor_command(l.doctor); }},
     {"service", [](CommandLine& l) { return run_service(l.service); }},
+    {"docs", [](CommandLine& l) { return docs_command(l.docs); }},
 };
 
 int run_command(int argc, char** argv) {
@@ -424,7 +476,7 @@ int run_command(int argc, char** argv) {
   }
   const std::string command = app.get_subcommands().front()->get_name();
   const auto* const runner = std::ranges::find(kRunners, command, &CommandRunner::name);
-  return runner != std::end(kRunners) ? runner->run(line) : print_shell_file(app, command, line.shell);
+  return runner != std::end(kRunners) ? runner->run(line) : print_shell_file(app, command, line);
 }
 
 }  // namespace

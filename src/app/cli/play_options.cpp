@@ -24,6 +24,15 @@ std::string whole_number_fault(const std::string& text) {
 
 namespace {
 
+constexpr const char* kPlayExamples =
+    "  limber my.lua --fullscreen --monitor 2       a show on the second monitor\n"
+    "  limber my.lua --headless --osc-in 0.0.0.0:9003  without a window, open to the network\n"
+    "  limber my.lua --set /physics/sim/gravity=0,0,-1.6\n"
+    "  limber my.lua --screenshot still.png --at 3  an image\n"
+    "  limber my.lua --render film.mp4 --duration 10  a film\n"
+    "  limber my.lua --record evening.take          record all input\n"
+    "  limber --replay evening.take --fast --hash   the same motion again, as fast as possible";
+
 // duration of a run in seconds
 CLI::Validator positive_time() {
   return CLI::Validator(
@@ -83,6 +92,7 @@ void add_log(CLI::App& play, LogOptions& o) {
 
 void add_play_options(CLI::App& command, PlayOptions& o) {
   CLI::App* const play = &command;
+  play->footer(kPlayExamples);
   CLI::Option* scene =
       play->add_option("scene", o.scene, "File of the scene; default scripts/arms.lua.")->type_name("SCENE.lua");
   add_display_options(*play, o.display);

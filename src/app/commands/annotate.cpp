@@ -1,4 +1,4 @@
-// Collects the Lua names from a scene that never runs and the properties from the tables.
+// Writes the definitions for editors and the Lua reference, with the names of a scene that never runs.
 #include "app/commands/commands.h"
 
 #include <filesystem>
@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "engine/engine.h"
 #include "script/annotate.h"
+#include "script/reference/lua_reference.h"
 
 namespace limber::app {
 
@@ -26,30 +27,43 @@ struct NullHost : script::ScriptHost {
   void script_error(std::string_view, int, std::string_view) override {}
 };
 
-}  // namespace
-
-std::string annotations_text() {
+// the names that scripts see
+std::string script_names() {
   Store store;
   sim::World world(store);
   NullHost host;
   script::Scene scene(world, host, {});
-  return script::annotations(scene.names());
+  return scene.names();
 }
 
-int annotate_command(const std::string& file) {
-  const std::string text = annotations_text();
-  if (file.empty()) {
-    print_result("{}", text);
-    return kSuccess;
-  }
+// writes a file and creates its folder; an error ends the program with 3
+int write_file(const std::filesystem::path& file, const std::string& text) {
   std::error_code ignored;
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder, ignored);
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
   std::ofstream out(file, std::ios::binary);
   out << text;
   out.close();
   if (out) return kSuccess;
-  return fail(kMachineError, fmt::format("{} can't be written; check the folder's permissions", file));
+  return fail(kMachineError, fmt::format("{} can't be written; check the folder's permissions", file.string()));
+}
+
+}  // namespace
+
+std::string annotations_text() { return script::annotations(script_names()); }
+
+int annotate_command(const std::string& file) {
+  const std::string text = annotations_text();
+  if (!file.empty()) return write_file(file, text);
+  print_result("{}", text);
+  return kSuccess;
+}
+
+int lua_reference_command(const std::string& folder) {
+  for (const script::ReferencePage& page : script::lua_reference(script_names()).pages) {
+    if (const int code = write_file(std::filesystem::path(folder) / page.file, page.text); code != kSuccess)
+      return code;
+  }
+  return kSuccess;
 }
 
 }  // namespace limber::app

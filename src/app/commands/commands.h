@@ -19,6 +19,9 @@ namespace limber::app {
 int annotate_command(const std::string& file);
 /// Returns the definitions as text.
 std::string annotations_text();
+/// `limber annotate --markdown`: writes the pages of the Lua reference to the folder. Returns 3 if one can't be
+/// written.
+int lua_reference_command(const std::string& folder);
 
 struct BenchOptions {
   bool json = false;
@@ -39,6 +42,14 @@ int console_command(const ConsoleCommand& command);
 /// `limber describe`: prints every OSC address with type, unit, range, default and meaning: of all classes (with <name>
 /// as a placeholder), or, if a scene is given, of all its objects.
 int describe_command(const std::string& scene, bool json);
+
+struct DocsCommand {
+  std::optional<int> port;  ///< Empty: 9010, or a free one if it is in use; 0: a free one.
+  bool no_browser = false;
+};
+/// `limber docs`: serves the documentation on 127.0.0.1, prints its address and opens it in a browser, until Ctrl+C.
+/// Returns 3 if the pages are not installed or the port is in use.
+int docs_command(const DocsCommand& command);
 
 struct DoctorCommand {
   std::string osc_in = "9003";  ///< OSC input address, as in `play`.

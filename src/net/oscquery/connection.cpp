@@ -38,7 +38,7 @@ std::optional<std::string> field(const http::request<http::empty_body>& request,
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(boost::asio::ip::tcp::socket socket, QueryContext& context, std::uint32_t address, bool accepted)
+  Connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context, std::uint32_t address, bool accepted)
       : context_(context), slot_(context, address, accepted), stream_(std::move(socket)) {}
   ~Connection() { context_.response_bytes -= response_bytes_; }
   Connection(const Connection&) = delete;
@@ -81,16 +81,16 @@ class Connection : public std::enable_shared_from_this<Connection> {
     request.keep_alive = message.keep_alive();
     const bool head = message.method() == http::verb::head;
     const bool keep_alive = request.keep_alive;
-    if (beast::websocket::is_upgrade(message)) {
-      if (std::optional<HttpResponse> rejection = reject_unknown_origin(request, context_.hub.info()))
+    QueryContext* const web_sockets = context_.web_sockets();
+    if (web_sockets != nullptr && beast::websocket::is_upgrade(message)) {
+      if (std::optional<HttpResponse> rejection = reject_unknown_origin(request, web_sockets->hub.info()))
         return write(std::move(*rejection), false, false);
-      return serve_web_socket(std::move(stream_), message, context_, std::move(slot_));
+      return serve_web_socket(std::move(stream_), message, *web_sockets, std::move(slot_));
     }
     stream_.expires_never();  // the hub's request timeout is shorter
-    context_.hub.handle_request(std::move(request),
-                                [self = shared_from_this(), head, keep_alive](HttpResponse response) {
-                                  self->write(std::move(response), head, keep_alive);
-                                });
+    context_.handle_request(std::move(request), [self = shared_from_this(), head, keep_alive](HttpResponse response) {
+      self->write(std::move(response), head, keep_alive);
+    });
   }
 
   // Returns the HTTP status for invalid input, or 0 if the connection ended.
@@ -146,7 +146,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
                             });
   }
 
-  QueryContext& context_;
+  ConnectionContext& context_;
   ConnectionSlot slot_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{QueryLimits::kHeader + QueryLimits::kFrame};
@@ -157,12 +157,12 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 }  // namespace
 
-void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context) {
+void serve_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context) {
   boost::system::error_code error;
   const auto peer = socket.remote_endpoint(error);
   const bool known = !error && peer.address().is_v4();
   const std::uint32_t address = known ? peer.address().to_v4().to_uint() : 0;
-  const bool allowed = !known || context.hub.host().is_allowed(address);
+  const bool allowed = !known || context.is_allowed(address);
   const bool accepted = allowed && !context.full(address);
   if (!accepted && context.rejected >= kMaxRejected) return;
   const auto connection = std::make_shared<Connection>(std::move(socket), context, address, accepted);

@@ -27,9 +27,18 @@ struct QueryLimits {
   static constexpr int kIdleSeconds = 60;                            ///< Timeout for an idle WebSocket.
 };
 
-/// State shared by all connections.
-struct QueryContext {
-  QueryHub& hub;
+struct QueryContext;
+
+/// State shared by all connections of a server, and the server's side of them. [query]
+struct ConnectionContext {
+  virtual ~ConnectionContext() = default;
+  /// True if this address (IPv4, host byte order; 0: unknown) may connect.
+  virtual bool is_allowed(std::uint32_t address) const = 0;
+  /// Calls `respond` immediately or later.
+  virtual void handle_request(HttpRequest request, QueryHub::Respond respond) = 0;
+  /// Returns the context of WebSockets; null: requests to upgrade are answered like others.
+  virtual QueryContext* web_sockets() { return nullptr; }
+
   int connections = 0;
   std::map<std::uint32_t, int> connections_by_address = {};  ///< By IPv4 address; 0: unknown.
   int rejected = 0;                ///< Number of rejected connections that are still receiving the reason.
@@ -43,11 +52,23 @@ struct QueryContext {
   }
 };
 
+/// The connections of the query server.
+struct QueryContext : ConnectionContext {
+  explicit QueryContext(QueryHub& hub_of_server) : hub(hub_of_server) {}
+  bool is_allowed(std::uint32_t address) const override { return hub.host().is_allowed(address); }
+  void handle_request(HttpRequest request, QueryHub::Respond respond) override {
+    hub.handle_request(std::move(request), std::move(respond));
+  }
+  QueryContext* web_sockets() override { return this; }
+
+  QueryHub& hub;
+};
+
 /// Counts an open connection during its lifetime.
 class ConnectionSlot {
  public:
   /// `accepted`: true for an accepted connection, false for a rejected one.
-  ConnectionSlot(QueryContext& context, std::uint32_t address, bool accepted)
+  ConnectionSlot(ConnectionContext& context, std::uint32_t address, bool accepted)
       : context_(&context), address_(address), accepted_(accepted) {
     (accepted ? context.connections : context.rejected)++;
     if (accepted) context.connections_by_address[address]++;
@@ -64,12 +85,12 @@ class ConnectionSlot {
   }
 
  private:
-  QueryContext* context_;
+  ConnectionContext* context_;
   std::uint32_t address_;
   bool accepted_;
 };
 
 /// Serves a client for the whole lifetime of its connection. `context` must outlive the io_context's handlers.
-void serve_connection(boost::asio::ip::tcp::socket socket, QueryContext& context);
+void serve_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context);
 
 }  // namespace limber::oscquery

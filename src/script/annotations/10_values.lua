@@ -4,6 +4,9 @@
 -- src/script/annotations and the program's property tables; edit those, not this file. Units are meters, kilograms,
 -- seconds, newtons, radians; Z is up; coordinates are in the world frame unless noted otherwise.
 
+---@page vectors
+
+---A vec3, or a list of three numbers such as `{ 0, 0, 1 }`. Arguments and settable properties accept both.
 ---@alias vec3like vec3|number[]
 
 ---Three numbers. Immutable: assign the whole value.
@@ -16,30 +19,44 @@
 ---@operator mul(vec3like|number): vec3
 ---@operator div(vec3like|number): vec3
 ---@operator unm: vec3
+---@error vec3(1, 2, 3).w --> a vec3 has no member 'w'; did you mean 'x'?
+---@see quat, rng:direction
+---@example vectors
 local vec3_ = {}
 
 ---Returns its length.
 ---@return number
+---@see vec3:normalized
+---@example vectors
 function vec3_:length() end
 
 ---Returns a vector of length 1 in the same direction; the zero vector stays zero.
 ---@return vec3
+---@see vec3:length
+---@example vectors
 function vec3_:normalized() end
 
 ---Returns the dot product.
 ---@param other vec3like
 ---@return number
+---@error vec3(1, 0, 0):dot(2) --> vec3:dot takes a vec3, not 2
+---@see vec3:cross
+---@example vectors
 function vec3_:dot(other) end
 
 ---Returns the cross product.
 ---@param other vec3like
 ---@return vec3
+---@see vec3:dot
+---@example vectors
 function vec3_:cross(other) end
 
 ---Interpolates linearly from this vector (t = 0) to the other (t = 1).
 ---@param other vec3like
 ---@param t number
 ---@return vec3
+---@see math.lerp, quat:slerp
+---@example vectors
 function vec3_:lerp(other, t) end
 
 ---Creates a vector; omitted values are 0.
@@ -47,6 +64,8 @@ function vec3_:lerp(other, t) end
 ---@param y? number
 ---@param z? number
 ---@return vec3
+---@error vec3("up") --> vec3 takes three numbers, not 'up', nothing, nothing
+---@example vectors
 function vec3(x, y, z) end
 
 ---A rotation. `p * q` applies q first; `q * v` rotates a vector.
@@ -57,22 +76,30 @@ function vec3(x, y, z) end
 ---@field w number
 ---@operator mul(quat): quat
 ---@operator mul(vec3like): vec3
+---@see vec3, body.rotation
+---@example rotations
 local quat_ = {}
 
 ---Returns the inverse rotation.
 ---@return quat
+---@example rotations
 function quat_:inverse() end
 
 ---Interpolates along the shortest arc from this rotation (t = 0) to the other (t = 1).
 ---@param other quat
 ---@param t number
 ---@return quat
+---@see vec3:lerp
+---@example rotations
 function quat_:slerp(other, t) end
 
 ---Creates rotations: `quat(x, y, z, w)`, without arguments the identity.
 ---@class quat_maker
 ---@overload fun(): quat
 ---@overload fun(x: number, y: number, z: number, w: number): quat
+---@error quat(1) --> quat takes four numbers x, y, z, w, or none
+---@see quat.axis, quat.euler
+---@example rotations
 quat = {}
 
 ---Creates a rotation about the fixed axes x, then y, then z.
@@ -80,12 +107,17 @@ quat = {}
 ---@param y? number # rad
 ---@param z? number # rad
 ---@return quat
+---@see quat.axis
+---@example rotations
 function quat.euler(x, y, z) end
 
 ---Creates a rotation about an axis.
 ---@param direction vec3like # Need not be normalized.
 ---@param angle number # rad
 ---@return quat
+---@error quat.axis(vec3(0, 0, 0), 1) --> quat.axis: the axis must not be zero
+---@see quat.euler
+---@example rotations
 function quat.axis(direction, angle) end
 
 ---Three booleans, one per axis, as members 1, 2, 3 or x, y, z.
@@ -94,19 +126,29 @@ function quat.axis(direction, angle) end
 ---@field y boolean
 ---@field z boolean
 ---@field [integer] boolean
+---@see motor.linear_active
+---@example flags
 
 ---Converts red, green, blue (each 0 .. 1) to a color as hue, saturation, brightness (each 0 .. 1).
 ---@param r number
 ---@param g number
 ---@param b number
 ---@return vec3
+---@error rgb("red") --> rgb takes a number, not 'red'
+---@see shape.diffuse_color, visuals.background
+---@example colors
 function rgb(r, g, b) end
+
+---@page math
 
 ---Clamps x to lo .. hi.
 ---@param x number
 ---@param lo number
 ---@param hi number
 ---@return number
+---@error math.clamp(nil, 0, 1) --> math.clamp takes three numbers: value, minimum, maximum
+---@see math.map
+---@example mapping
 function math.clamp(x, lo, hi) end
 
 ---Interpolates linearly from a (t = 0) to b (t = 1).
@@ -114,6 +156,8 @@ function math.clamp(x, lo, hi) end
 ---@param b number
 ---@param t number
 ---@return number
+---@see vec3:lerp
+---@example mapping
 function math.lerp(a, b, t) end
 
 ---Maps x linearly from the range a .. b to c .. d.
@@ -123,6 +167,8 @@ function math.lerp(a, b, t) end
 ---@param c number
 ---@param d number
 ---@return number
+---@see math.clamp
+---@example mapping
 function math.map(x, a, b, c, d) end
 
 ---Returns smooth noise, -1 .. 1; the same for the same arguments.
@@ -130,10 +176,14 @@ function math.map(x, a, b, c, d) end
 ---@param y? number
 ---@param z? number
 ---@return number
+---@see rng:uniform
+---@example mapping
 function math.noise(x, y, z) end
 
 ---The file's own random generator; starts from the seed in each run. `math.random` uses it too.
 ---@class rng
+---@see sim.seed, math.noise
+---@example random
 rng = {}
 
 ---Returns a random number 0 .. 1, or a .. b; for vec3s one per axis.
@@ -141,16 +191,24 @@ rng = {}
 ---@param a? number
 ---@param b? number
 ---@return number
+---@error rng:uniform("a") --> rng:uniform takes a vec3, not 'a'
+---@see math.noise
+---@example random
 function rng:uniform(a, b) end
 
 ---Returns a random unit vector, uniformly distributed over all directions.
 ---@return vec3
+---@example random
 function rng:direction() end
 
 ---Returns a normally distributed number: mean 0, standard deviation 1.
 ---@return number
+---@example random
 function rng:normal() end
+
+---@page lua
 
 ---Logs text as a warning, to stderr and the console.
 ---@param ... any
+---@example printing
 function warn(...) end

@@ -1,18 +1,29 @@
 -- The world, and the callbacks of a scene.
 
+---@page world
+
 ---The world. The top level of a scene describes the objects; callbacks act on them.
 ---@class sim
 ---@field alive boolean # read-only. Always true.
----@field bodies body_list # read-only. In stream order; call it to iterate over those that match a pattern.
+---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
----@field gears gear_list # read-only. Created by add_gear, in stream order.
+---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@properties sim
+---@error sim.gravty = vec3() --> sim has no property 'gravty'; did you mean 'gravity'?
+---@error sim.gravity = 9.81 --> sim: 'gravity' takes a vec3, not 9.81
+---@error sim.time = 0 --> sim: 'time' is a readout: it can be read, not set
+---@see sim:add_body, sim:on_step
+---@example world
 sim = {}
 
 ---Loads a body from a URDF file.
----@param path string
----@param opts? urdf_opts
+---@param path string # Searched in the program's data, the folder of the scene and the folders above it.
+---@param opts? urdf_opts # Such as `name` and `position`.
 ---@return body
+---@error sim:load_urdf("urdf/arm7.urdf") --> there is no file 'urdf/arm7.urdf'; looked for …
+---@error sim:load_urdf("urdf/arm6.urdf", { name = "second", pose = { elbow = 1 } }) --> … pose: 'arm6' has no movable joint 'elbow'; there are: joint_1, joint_2, joint_3, joint_4, joint_5, joint_6
+---@see sim:add_body, body:link
+---@example robot
 function sim:load_urdf(path, opts) end
 
 ---@class urdf_opts: body_opts
@@ -24,22 +35,35 @@ function sim:load_urdf(path, opts) end
 ---@field package_path? string|string[] # Search path for package://.
 
 ---Creates an empty body.
----@param name string
----@param opts? body_opts
+---@param name string # A name of your choice, unique in the world.
+---@param opts? body_opts # Such as `position`.
 ---@return body
+---@error sim:add_body("arm") --> there is a body 'arm' already; names are unique
+---@error sim:add_body() --> add_body: the name takes text, not nothing
+---@see sim:load_urdf, body:add_part, body:copy
+---@example body
 function sim:add_body(name, opts) end
+
+---@page behaviors
 
 ---Attaches a behavior to several bodies, one instance per body. Values set on the group are set on all members.
 ---@param type string # Case, underscores and a trailing "behavior" don't matter.
----@param name string
----@param opts? group_opts
+---@param name string # A name of your choice, unique among groups.
+---@param opts? group_opts # Such as `bodies`, and the type's parameters.
 ---@return behavior_group
+---@error sim:add_group_behavior("random_force", "gusts") --> 'random_force' acts on one body: attach it with body:add_behavior
+---@see behavior_group, body:add_behavior
+---@example swarm
 function sim:add_group_behavior(type, name, opts) end
 
 ---Returns a group by name.
----@param name string|behavior_group
+---@param name string|behavior_group # The name of the group.
 ---@return behavior_group
+---@error sim:group_behavior("swarm") --> sim has no group behavior 'swarm'; none exist
+---@example swarm
 function sim:group_behavior(name) end
+
+---@page joints
 
 ---Couples the own axes of two joints of one or two bodies in both directions: position of b = ratio * position of a +
 ---offset.
@@ -48,60 +72,92 @@ function sim:group_behavior(name) end
 ---@param ratio number # Travel of b per travel of a; not 0.
 ---@param opts? gear_opts # `offset`: default from the current positions.
 ---@return gear
+---@error sim:add_gear(arm:joint(1), arm:joint(1), 2) --> gear 'joint_1_joint_1': needs two different joints
+---@error sim:add_gear(arm:joint(1), arm:joint(2), 0) --> gear 'joint_1_joint_2': the ratio must be -1000000 .. 1000000 and not 0, got 0
+---@see gear
+---@example gears
 function sim:add_gear(joint_a, joint_b, ratio, opts) end
 
 ---Returns a gear by name or number (-1: the last).
----@param key string|integer|gear
+---@param key string|integer|gear # Its name, its number from 1, or -1 for the last.
 ---@return gear
+---@error sim:gear("drive") --> there is no gear 'drive'; none exist
+---@see sim.gears
+---@example gears
 function sim:gear(key) end
 
+---@page world
+
 ---Returns a body by name or number (-1: the last). If there is none, the error suggests similar names.
----@param key string|integer|body
+---@param key string|integer|body # Its name, its number from 1, or -1 for the last.
 ---@return body
+---@error sim:body("amr") --> there is no body 'amr'; did you mean 'arm'?
+---@see sim:find_body, sim.bodies
+---@example finding
 function sim:body(key) end
 
 ---Returns a body by name, or nil.
 ---@param name string
 ---@return body?
+---@see sim:body
+---@example finding
 function sim:find_body(name) end
 
+---@page shapes
+
 ---Creates an infinite plane.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param normal? vec3like # default 0 0 1.
 ---@return shape
+---@see look.floor
+---@example shapes
 function sim:add_plane_shape(name, normal) end
 
 ---Creates a sphere.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@return shape
+---@error sim:add_sphere_shape("dot", -1) --> shape 'dot': a sphere needs a radius of 0.0001 .. 10000 m, not -1
+---@error sim:add_sphere_shape("ball", 0.1) --> there is a shape 'ball' already; names are unique
+---@see body:add_part
+---@example shapes
 function sim:add_sphere_shape(name, radius) end
 
 ---Creates a box.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param size vec3like # m, full edge lengths
 ---@return shape
+---@error sim:add_box_shape("cube", 0.1) --> add_box_shape: the size (full edges) takes a vec3, not 0.1
+---@see body:add_part
+---@example shapes
 function sim:add_box_shape(name, size) end
 
 ---Creates a cylinder along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
+---@error sim:add_cylinder_shape("rod", 0.1) --> add_cylinder_shape: the height takes a number, not nothing
+---@see body:add_part
+---@example shapes
 function sim:add_cylinder_shape(name, radius, height) end
 
 ---Creates a capsule (a cylinder with hemispherical caps) along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m, without the caps
 ---@return shape
+---@see body:add_part
+---@example shapes
 function sim:add_capsule_shape(name, radius, height) end
 
 ---Creates a cone along z.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
 ---@param height number # m
 ---@return shape
+---@see body:add_part
+---@example shapes
 function sim:add_cone_shape(name, radius, height) end
 
 ---@class mesh_opts
@@ -109,60 +165,97 @@ function sim:add_cone_shape(name, radius, height) end
 ---@field max_vertices? integer # 4 .. 255, default 64 for a file, 255 for a list.
 
 ---Creates the convex hull of a mesh file, or of points.
----@param name string
----@param source string|vec3like[]
+---@param name string # A name of your choice, unique among shapes.
+---@param source string|vec3like[] # A file (STL, OBJ or DAE), or a list of points, m.
 ---@param opts? mesh_opts
 ---@return shape
+---@error sim:add_convex_mesh_shape("hull", "no.stl") --> there is no file 'no.stl'; looked for …
+---@see sim:add_compound_shape
+---@example mesh
 function sim:add_convex_mesh_shape(name, source, opts) end
 
 ---Creates a shape that consists of other shapes; see `shape:add_child`.
----@param name string
+---@param name string # A name of your choice, unique among shapes.
 ---@return shape
+---@see shape:add_child
+---@example compound
 function sim:add_compound_shape(name) end
 
+---@page events
+
 ---Calls f at the start and after each reset.
----@param f fun()
+---@param f fun() # The function to call.
+---@error sim:on_start(3) --> sim:on_start takes a function, not 3
+---@see sim:on_step
+---@example callbacks
 function sim:on_start(f) end
 
 ---Calls f in each tick, before the physics step.
----@param f fun(dt: number)
+---@param f fun(dt: number) # The function to call; dt is the time step in s.
+---@see sim:every, sim.timestep
+---@example callbacks
 function sim:on_step(f) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
----@param f fun(part: part, other: part, impulse: number, position: vec3)
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
+---@see part.report_contacts
+---@example contacts
 function sim:on_contact(f) end
 
 ---Calls f each time the simulation time passes a multiple of `seconds`. Timers set in callbacks survive a reload.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time. Above 0.
+---@param f fun() # The function to call.
 ---@return timer
+---@error sim:every(0, print) --> sim:every takes seconds above 0, not 0
+---@see timer:cancel, sim:after
+---@example timers
 function sim:every(seconds, f) end
 
 ---Calls f once, `seconds` from now. Timers set in callbacks survive a reload; one set at the top level keeps its due
 ---time.
----@param seconds number
----@param f fun()
+---@param seconds number # s, simulation time.
+---@param f fun() # The function to call.
 ---@return timer
+---@see sim:at, sim:every
+---@example timers
 function sim:after(seconds, f) end
 
 ---Calls f once, at that simulation time.
 ---@param time number # s
----@param f fun()
+---@param f fun() # The function to call.
 ---@return timer
+---@see sim:after
+---@example timers
 function sim:at(time, f) end
 
 ---@action sim reset
+---@error sim:reset() --> sim:reset acts on the running scene; at the top level use sim:on_start(function() … end)
+---@see body:reset, state
+---@example restarting
 function sim:reset() end
 
 ---@action sim panic
+---@error sim:panic() --> sim:panic acts on the running scene; at the top level use sim:on_start(function() … end)
+---@see sim.panicked, sim.panic_motors
+---@example panic
 function sim:panic() end
+
+---@page world
 
 ---Returns a hash of the world's exact state; equal states have equal hashes.
 ---@return string
+---@see body:state_hash
+---@example hashes
 function sim:state_hash() end
 
+---@page events
+
+---A timer of sim:every, sim:after or sim:at.
 ---@class timer
+---@see sim:every
+---@example timers
 local timer_ = {}
 
 ---Cancels the timer.
+---@example timers
 function timer_:cancel() end

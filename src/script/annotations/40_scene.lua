@@ -1,50 +1,76 @@
 -- A scene's own parameters and state, and OSC.
 
+---@page params
+
 ---A parameter. Its default gives the type: number, boolean, vec3, or text with choices.
 ---@class param
 ---@field [1] string # Its name: letters, digits, _.
 ---@field [2] number|boolean|vec3like|string # Its default.
----@field min? number|vec3like
----@field max? number|vec3like
+---@field min? number|vec3like # Smallest value.
+---@field max? number|vec3like # Largest value.
 ---@field step? number # Change per mouse wheel step.
----@field unit? string
----@field doc? string
----@field choices? string[]
+---@field unit? string # A unit such as "m" or "N·s", shown in the panel.
+---@field doc? string # One sentence about its purpose.
+---@field choices? string[] # The words to choose from.
+---@field rerun? boolean # default false. True: a change runs the scene file again.
+---@see params
+---@example sliders
 
 ---The scene's own parameters: declared once with `params { … }`, shown in this order in the panel, /scene/<name> over
 ---OSC.
 ---@class params
 ---@field [string] any
 ---@overload fun(list: param[])
+---@error params { { "my height", 1 } } --> params: entry 1 begins with a name of letters, digits and _, not 'my height'
+---@error params { { "gait", "walk" } } --> params: 'gait' is text, so it needs choices = { … }
+---@see param, state
+---@example sliders
 params = {}
 
 ---Plain data of the scene; survives a reload, emptied by a reset.
 ---@type table<string, any>
+---@see params
+---@example state
 state = {}
 
+---@page osc
+
+---OSC messages: handlers, and messages that the scene sends.
 ---@class osc
 ---@field address? string # read-only. During a handler: the message's address.
 ---@field sender? string # read-only. During a handler: the sender, such as 127.0.0.1:4000.
+---@see osc:on
+---@example osc_handlers
 osc = {}
 
 ---Registers a handler for messages whose address matches the pattern; its arguments are numbers, text and booleans.
 ---Note that 0 is true in Lua.
----@param pattern string
----@param f fun(...: any)
+---@param pattern string # An address, or a pattern such as `/light/*`.
+---@param f fun(...: any) # The function to call with the arguments.
+---@error osc:on("kick", print) --> osc:on: 'kick' is not an address; it must begin with /
+---@see osc:reply, osc.sender
+---@example osc_handlers
 function osc:on(pattern, f) end
 
 ---Sends a message to all targets.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
+---@error osc:send("/ball", 1) --> osc:send acts on the running scene; at the top level use sim:on_start(function() … end)
+---@see address:send, osc:stream_to
+---@example osc_sending
 function osc:send(address, ...) end
 
 ---Sends a message to the sender of the one being handled.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
+---@see osc:on
+---@example osc_handlers
 function osc:reply(address, ...) end
 
 ---Listens for OSC on a port of this machine, instead of the default.
 ---@param port integer # 1 .. 65535
+---@error osc:listen(0) --> osc:listen takes a port 1 .. 65535, not 0
+---@example osc_ports
 function osc:listen(port) end
 
 ---@class stream_opts
@@ -57,17 +83,29 @@ function osc:listen(port) end
 ---Streams the joints' poses to a host, instead of the default.
 ---@param target string # host:port
 ---@param opts? stream_opts
+---@error osc:stream_to("127.0.0.1:9104", { streams = "positions" }) --> osc:stream_to: there is no stream 'positions'; there are: pos, relpos, relrot, rot
+---@error osc:stream_to("127.0.0.1") --> '127.0.0.1' is not an address; write "host:port", such as "127.0.0.1:9000"
+---@see stream_opts
+---@example osc_ports
 function osc:stream_to(target, opts) end
 
 ---Returns an address to send to.
 ---@param target string # host:port
 ---@return address
+---@error osc:to("somewhere") --> 'somewhere' is not an address; write "host:port", such as "127.0.0.1:9000"
+---@see address:send
+---@example osc_sending
 function osc:to(target) end
 
+---An address to send to, made by osc:to.
 ---@class address
+---@see osc:to
+---@example osc_sending
 local address_ = {}
 
 ---Sends a message to this address only.
----@param address string
+---@param address string # Such as `/light/1`.
 ---@param ... number|string|boolean|vec3like
+---@see osc:send
+---@example osc_sending
 function address_:send(address, ...) end
