@@ -24,7 +24,8 @@ local board = sim:add_body("board")
 local kWood, kBrass = vec3(0.6, 0.3, 0.3), vec3(0.11, 0.7, 1)
 local function add_piece(name, shape, position, color, rotation)
   shape.ambient_color, shape.diffuse_color = color, color
-  return board:add_part(name, shape, { mass = 0, position = position, rotation = rotation, restitution = 1, friction = 0.3 })
+  local opts = { mass = 0, position = position, rotation = rotation, restitution = 1, friction = 0.3 }
+  return board:add_part(name, shape, opts)
 end
 local kWidth = kBins * kGap
 add_piece("floor", sim:add_box_shape("floor", vec3(kWidth, kDepth, 0.04)), vec3(0, 0, 0.02), kWood)

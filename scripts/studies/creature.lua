@@ -21,6 +21,11 @@ local function add_limb(name, from, to, radius, mass, color)
   return beetle:add_part(name, shape, { mass = mass, friction = 1, position = (from + to) / 2, rotation = turn })
 end
 
+-- Trunk
+local kHeight = 0.22 -- m, of the trunk above the ground
+local neck, rump = vec3(0.25, 0, kHeight), vec3(-0.25, 0, kHeight)
+add_limb("trunk", rump, neck, 0.1, 2, kShell)
+
 -- Hinges: a joint with limits, and its motor
 local function add_hinge(name, parent, child, position, axis, limit)
   local joint = beetle:add_joint(name, parent, child, { position = position, axis = axis })
@@ -28,10 +33,7 @@ local function add_hinge(name, parent, child, position, axis, limit)
   return beetle:add_motor(joint, { max_angular_force = 20 })
 end
 
--- Trunk, head and tail
-local kHeight = 0.22 -- m, of the trunk above the ground
-local neck, rump = vec3(0.25, 0, kHeight), vec3(-0.25, 0, kHeight)
-add_limb("trunk", rump, neck, 0.1, 2, kShell)
+-- Head and tail
 add_limb("head", neck + vec3(0.1, 0, 0.03), neck + vec3(0.15, 0, 0.04), 0.09, 0.2, kShell)
 add_limb("tail", rump - vec3(0.08, 0, 0), rump - vec3(0.3, 0, -0.08), 0.08, 0.2, kShell)
 add_hinge("neck", "trunk", "head", neck, vec3(0, 0, 1), 0.6)

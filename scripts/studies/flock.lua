@@ -55,6 +55,12 @@ sim:on_step(function()
   end
 end)
 
+-- Rules of each fish: it keeps its speed and returns to the middle
+for _, fish in ipairs(school) do
+  fish:add_behavior("speed", "cruise", { parts = "head", speed = 1, amount = 0.3 })
+  fish:add_behavior("target_attraction", "home", { parts = "head", target_pos = kMiddle, max_amp = 0.5 })
+end
+
 -- Rules of the flock: how a fish reacts to its neighbors
 local function add_rule(type, name, opts)
   opts.bodies, opts.parts = "fish*", "head"
@@ -64,19 +70,14 @@ add_rule("cohesion", "together", { max_dist = 1.5, amount = 0.04 })
 add_rule("alignment", "same_way", { max_dist = 1, linear_amount = 0.15, angular_amount = 0 })
 add_rule("separation", "apart", { max_dist = 0.7, amount = 0.5 })
 
--- Rules of each fish: it keeps its speed and returns to the middle
-for _, fish in ipairs(school) do
-  fish:add_behavior("speed", "cruise", { parts = "head", speed = 1, amount = 0.3 })
-  fish:add_behavior("target_attraction", "home", { parts = "head", target_pos = kMiddle, max_amp = 0.5 })
-end
-
 -- The shark
 local shark = add_fish("shark", 4, vec3(0.58, 0.4, 0.7), kMiddle + vec3(3, 0, 0), quat.euler(0, 0, math.pi / 2))
 shark:add_behavior("orbit", "hunt", { parts = "head", center = kMiddle, radius = 1.2, speed = 1.5, grip = 1 })
 swimmers[#swimmers + 1] = shark
 local fears = {}
 for i, fish in ipairs(school) do
-  fears[i] = fish:add_behavior("target_attraction", "fear", { parts = "head", max_dist = 1.5, min_amp = -0.6, max_amp = 0 })
+  local push = { parts = "head", max_dist = 1.5, min_amp = -0.6, max_amp = 0 } -- N, at the shark and at max_dist
+  fears[i] = fish:add_behavior("target_attraction", "fear", push)
 end
 sim:on_step(function()
   for _, fear in ipairs(fears) do fear.target_pos = shark.position end

@@ -41,7 +41,8 @@ local balls = {}
 local ball_shape = sim:add_sphere_shape("ball", 0.12)
 for i = 1, 6 do
   local position = vec3(0.4 * i - 1.4, 0, 1.2 + 0.2 * i)
-  balls[i] = sim:add_body("ball" .. i):add_part("ball", ball_shape, { mass = 0.3, restitution = 0.5, position = position })
+  local opts = { mass = 0.3, restitution = 0.5, position = position }
+  balls[i] = sim:add_body("ball" .. i):add_part("ball", ball_shape, opts)
 end
 
 -- Rescue: a ball that has left the floor falls onto its middle again

@@ -1,21 +1,9 @@
 -- Ring of lights: a wave runs around a ring of lamps on jointed stems. It bends the stems and lights the lamps.
--- docs/learn/study_ring.md builds this scene step by step.
 
 -- Sizes
 local kLamps = 32
 local kRadius = 2 -- m, of the ring
 local kRod = 0.6 -- m, length of each of the two rods of a stem
-
--- View
-visuals.camera:look_at(vec3(0, -6.5, 2.9), vec3(0, 0, 0.7))
-
--- Sliders
-params {
-  { "rate", 0.25, min = 0, max = 2, unit = "Hz", doc = "Waves per second that pass a lamp." },
-  { "waves", 2, min = 0, max = 8, doc = "Number of waves around the ring." },
-  { "bend", 0.6, min = 0, max = 1.2, unit = "rad", doc = "How far the joints bend." },
-  { "glow", 6, min = 0, max = 10, doc = "How bright a lamp is at the top of the wave." },
-}
 
 -- Shapes that all stems share
 local rod = sim:add_capsule_shape("rod", 0.025, kRod - 0.05)
@@ -42,7 +30,7 @@ local function add_lamp(name, angle)
   local ankle = body:add_joint("ankle", "foot", "lower", { position = at(0), axis = along })
   local knee = body:add_joint("knee", "lower", "upper", { position = at(kRod), axis = along })
   body:add_joint("socket", "upper", "bulb", { type = "fixed" })
-  return { ankle = body:add_motor(ankle), knee = body:add_motor(knee), bulb = bulb, body = body, angle = angle, flash = 0 }
+  return { ankle = body:add_motor(ankle), knee = body:add_motor(knee), bulb = bulb, angle = angle, flash = 0 }
 end
 
 -- The ring
@@ -50,6 +38,17 @@ local lamps = {}
 for i = 1, kLamps do
   lamps[i] = add_lamp("lamp" .. i, 2 * math.pi * (i - 1) / kLamps)
 end
+
+-- View
+visuals.camera:look_at(vec3(0, -6.5, 2.9), vec3(0, 0, 0.7))
+
+-- Sliders
+params {
+  { "rate", 0.25, min = 0, max = 2, unit = "Hz", doc = "Waves per second that pass a lamp." },
+  { "waves", 2, min = 0, max = 8, doc = "Number of waves around the ring." },
+  { "bend", 0.6, min = 0, max = 1.2, unit = "rad", doc = "How far the joints bend." },
+  { "glow", 6, min = 0, max = 10, doc = "How bright a lamp is at the top of the wave." },
+}
 
 -- The wave
 state.phase = state.phase or 0

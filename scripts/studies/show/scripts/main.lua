@@ -12,7 +12,7 @@ local reeds = {}
 for i = 1, kRows * kRows do
   local column, row = (i - 1) % kRows, math.floor((i - 1) / kRows)
   local middle = (kRows - 1) / 2
-  local place = vec3((column - middle + rng:uniform(-0.3, 0.3)) * kGap, (row - middle + rng:uniform(-0.3, 0.3)) * kGap, 0)
+  local place = (vec3(column - middle, row - middle, 0) + rng:uniform(vec3(-0.3, -0.3, 0), vec3(0.3, 0.3, 0))) * kGap
   if i == 1 then
     first.position = place
     reeds[i] = first
