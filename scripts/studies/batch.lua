@@ -11,7 +11,7 @@ local kTop = kWall + 0.25 + kRows * kStep -- where the balls start
 local kDepth = 0.1 -- from the front pane to the back pane
 
 -- View
-visuals.camera:look_at(vec3(0.6, -3.8, 1.6), vec3(0, 0, 1.1))
+visuals.camera:look_at(vec3(0.6, -4.3, 1.6), vec3(0, 0, 1.1))
 
 -- Sliders
 params {
