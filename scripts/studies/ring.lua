@@ -59,7 +59,7 @@ sim:on_step(function(dt)
     lamp.ankle.target = params.bend * (0.4 - 0.6 * wave)
     lamp.knee.target = -params.bend * (0.4 - wave)
     lamp.flash = lamp.flash * math.exp(-dt / 0.4)
-    lamp.bulb.ambient_scale = 0.1 + params.glow * (0.5 + 0.5 * wave) ^ 3 + lamp.flash
+    lamp.bulb.ambient_scale = math.min(0.1 + params.glow * (0.5 + 0.5 * wave) ^ 3 + lamp.flash, 10)
   end
 end)
 
