@@ -46,11 +46,11 @@ for row = 1, kRows do
   end
 end
 
--- Balls: one every 0.1 s, until there are 120
-local kBalls = 120
+-- Balls: one every 0.1 s, until there are 100
+local kBalls = 100
 local shapes = {}
 for i = 1, 12 do
-  shapes[i] = sim:add_sphere_shape("ball" .. i, 0.035)
+  shapes[i] = sim:add_sphere_shape("ball" .. i, 0.03)
   local color = vec3(i / 12, 0.75, 1)
   shapes[i].ambient_color, shapes[i].diffuse_color = color, color
 end
@@ -81,4 +81,4 @@ local function count()
   end
   return bins
 end
-sim:at(20, function() print(sim.seed .. "," .. params.tilt .. "," .. table.concat(count(), ",")) end)
+sim:at(15, function() print(sim.seed .. "," .. params.tilt .. "," .. table.concat(count(), ",")) end)

@@ -305,7 +305,7 @@ TEST(StudyOfBatch, TheCommandsWork) {
   for (std::string row; std::getline(table, row); lines++) EXPECT_TRUE(std::regex_match(row + "\n", line)) << row;
   EXPECT_EQ(lines, 3);
   EXPECT_TRUE(content(reader.path("seed7.csv")).starts_with("time,ball1/part/ball/x,"));
-  const std::regex hash("hash ([0-9a-f]{16}) tick 1260\n");
+  const std::regex hash("hash ([0-9a-f]{16}) tick 960\n");
   const auto hashes = std::distance(std::sregex_iterator(result.out.begin(), result.out.end(), hash), {});
   EXPECT_EQ(hashes, 2) << result.out;
 }
