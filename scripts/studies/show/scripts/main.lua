@@ -1,4 +1,4 @@
--- A show: a field of reeds in the wind, with presets, cues over OSC, and a slow camera.
+-- A show: a field of reeds in the wind, with presets, and cues over OSC.
 -- docs/learn/study_show.md builds it step by step.
 
 -- View
@@ -30,14 +30,15 @@ params {
 }
 
 -- Wind: waves that travel over the field
-state.phase = state.phase or 0
+state.phase, state.gust = state.phase or 0, state.gust or 0
 sim:on_step(function(dt)
   state.phase = state.phase + 2 * math.pi * params.speed * dt
+  state.gust = state.gust * math.exp(-dt / 0.8)
   for _, reed in ipairs(reeds) do
     local place = reed.position
     local phase = state.phase - 2 * math.pi * (place.x + 0.4 * place.y) / params.length
     for i, motor in ipairs(reed.motors) do
-      motor.target = params.lean + params.depth * math.sin(phase - 0.8 * i)
+      motor.target = params.lean + state.gust + params.depth * math.sin(phase - 0.8 * i)
     end
   end
 end)
@@ -45,7 +46,5 @@ end)
 -- Cues: /cue storm 4 morphs to the preset storm in 4 s
 osc:on("/cue", function(name, seconds) presets:recall(name, seconds or 4) end)
 
--- Gust: /gust 0.5 pushes all tips
-osc:on("/gust", function(strength)
-  for _, reed in ipairs(reeds) do reed:part("tip"):apply_impulse(vec3(strength or 0.5, 0, 0)) end
-end)
+-- Gust: /gust 0.4 bends all reeds, for about a second
+osc:on("/gust", function(strength) state.gust = math.clamp(strength or 0.4, -0.6, 0.6) end)
