@@ -18,15 +18,14 @@ params {
 
 -- The lines above create the objects. Callbacks run while the scene plays: this one in each tick. Values in `state`
 -- survive when this file is saved and reloaded.
-state.phase = state.phase or 0
+state.phase, state.gust = state.phase or 0, state.gust or 0
 sim:on_step(function(dt)
   state.phase = state.phase + 2 * math.pi * params.speed * dt
+  state.gust = state.gust * math.exp(-dt / 0.8) -- fades within a second or two
   for i, motor in ipairs(reed.motors) do
-    motor.target = params.depth * math.sin(state.phase - 0.8 * i)
+    motor.target = state.gust + params.depth * math.sin(state.phase - 0.8 * i)
   end
 end)
 
--- And this one for each message /gust: oscsend 127.0.0.1 9003 /gust f 0.5
-osc:on("/gust", function(strength)
-  reed:part("tip"):apply_impulse(vec3(strength or 0.5, 0, 0))
-end)
+-- And this one for each message /gust: oscsend 127.0.0.1 9003 /gust f 0.4
+osc:on("/gust", function(strength) state.gust = strength or 0.4 end)
