@@ -1,11 +1,15 @@
 // Performance: the time of a tick and its budget, its phases, and lost messages.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "ui/panel/imgui_versions.h"
 #include "ui/panel/panel.h"
+#include "ui/panel/text/number_format.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/samples.h"
 
@@ -20,12 +24,20 @@ constexpr double kGraphUpdateInterval = 0.25;  // s between updates of the numbe
 struct Phase {
   const char* name;
   double engine::PhaseTimes::*time;
+  const char* hint;
 };
 constexpr std::array kPhases = {
-    Phase{"Commands", &engine::PhaseTimes::commands},   Phase{"Scripts", &engine::PhaseTimes::scripts},
-    Phase{"Behaviors", &engine::PhaseTimes::behaviors}, Phase{"Callbacks", &engine::PhaseTimes::callbacks},
-    Phase{"Physics", &engine::PhaseTimes::physics},     Phase{"Readouts", &engine::PhaseTimes::readouts},
-    Phase{"Snapshot", &engine::PhaseTimes::snapshot},   Phase{"GC", &engine::PhaseTimes::gc}};
+    Phase{"Commands", &engine::PhaseTimes::commands, "Messages from OSC, the panel and consoles, and preset morphs."},
+    Phase{"Scripts", &engine::PhaseTimes::scripts, "Timers, contact callbacks and on_step of the scene."},
+    Phase{"Behaviors", &engine::PhaseTimes::behaviors, "All active behaviors. The list of behaviors shows each time."},
+    Phase{"Callbacks", &engine::PhaseTimes::callbacks, "On-change callbacks: values that were set are passed on."},
+    Phase{"Physics", &engine::PhaseTimes::physics,
+          "Collisions, joints and motion. Usually the largest part; it grows with bodies, contacts and substeps."},
+    Phase{"Readouts", &engine::PhaseTimes::readouts, "Forces, contacts and other computed values."},
+    Phase{"Snapshot", &engine::PhaseTimes::snapshot, "Copy of the state for the view, the panel and OSC."},
+    Phase{"GC", &engine::PhaseTimes::gc, "Garbage collection of the scene's Lua memory."}};
+
+constexpr const char* kMeanHint = "Milliseconds per tick, averaged over about the last 20 ticks.";
 
 class PerformancePanel : public Panel {
  public:
@@ -50,9 +62,10 @@ class PerformancePanel : public Panel {
                           std::max(context.number("/physics/sim/speed", 1), 0.01) * 1e3;
     if (context.clock - updated_at_ > kGraphUpdateInterval) {
       updated_at_ = context.clock;
-      shown_ = {fmt::format("{:.2f} ms", mean_tick_), fmt::format("{:.2f} ms", max_), fmt::format("{:.1f} ms", budget),
-                fmt::format("{:.2f} \u00d7", context.snapshot->speed)};
-      for (std::size_t i = 0; i < kPhases.size(); i++) shown_phases_[i] = fmt::format("{:.2f} ms", means_[i]);
+      const auto ms = [](double value, int decimals) { return number_label(value, {.decimals = decimals}) + " ms"; };
+      shown_ = {ms(mean_tick_, 2), ms(max_, 2), ms(budget, 1),
+                number_label(context.snapshot->speed, {.decimals = 2}) + " \u00d7"};
+      for (std::size_t i = 0; i < kPhases.size(); i++) shown_phases_[i] = ms(means_[i], 2);
     }
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, ImGui::GetFontSize() * 0.12F});
     const float lines = ImGui::GetTextLineHeightWithSpacing() * 7.2F;
@@ -67,11 +80,22 @@ class PerformancePanel : public Panel {
  private:
   void numbers(GuiContext& context) const {
     const std::uint64_t lost = context.link.counters.dropped.load() + context.link.counters.dropped_kernel.load();
-    pair(context, "Tick", shown_[0], "Max", shown_[1]);
-    pair(context, "Budget", shown_[2], "Speed", shown_[3]);
-    for (std::size_t i = 0; i + 1 < kPhases.size(); i += 2)
-      pair(context, kPhases[i].name, shown_phases_[i], kPhases[i + 1].name, shown_phases_[i + 1]);
-    pair(context, "Dropped", fmt::format("{}", lost), "Queue", fmt::format("{}", context.link.command_queue.dropped()));
+    figure(context, 0, "Tick", shown_[0],
+           fmt::format("Computing time of a tick. {} Normal: below the budget.", kMeanHint));
+    figure(context, 1, "Max", shown_[1],
+           "The slowest tick since the last click on the graph, in milliseconds. A single one above the budget delays "
+           "the show by its excess; the first ticks of a scene are slow.");
+    figure(context, 0, "Budget", shown_[2],
+           "Milliseconds of real time per tick: timestep / speed. Slower ticks make the simulation lag (Speed).");
+    figure(context, 1, "Speed", shown_[3],
+           "Simulated seconds per real second. Normal: the speed that is set, 1 by default; less if ticks take longer "
+           "than the budget.");
+    for (std::size_t i = 0; i < kPhases.size(); i++)
+      figure(context, i % 2, kPhases[i].name, shown_phases_[i], fmt::format("{} {}", kPhases[i].hint, kMeanHint));
+    figure(context, 0, "Dropped", counter_label(lost),
+           "OSC datagrams that were lost because they arrived faster than they were read. Normal: 0.");
+    figure(context, 1, "Queue", counter_label(context.link.command_queue.dropped()),
+           "Messages that were dropped because the queue of the simulation was full. Normal: 0.");
   }
 
   void graph(GuiContext& context, float height, double budget) {
@@ -80,7 +104,7 @@ class PerformancePanel : public Panel {
     if (ImGui::InvisibleButton("##graph", {width, height})) max_ = 0;
     context.names.add("performance.graph");
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("Time of the last %d ticks in ms; the red line is the budget; click to reset the maximum",
+      ImGui::SetTooltip("Computing time of the last %d ticks; the red line is the budget; click to reset the maximum",
                         static_cast<int>(kGraphTicks));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
@@ -103,21 +127,32 @@ class PerformancePanel : public Panel {
     list.PopClipRect();
   }
 
-  static void pair(GuiContext& context, const char* name, const std::string& value, const char* other,
-                   const std::string& second) {
-    const float half = ImGui::GetWindowWidth() / 2;
-    const float name_width = half * 0.5F;
-    const auto draw = [&](const char* label, const std::string& text, float x) {
-      ImGui::SameLine(x + 1);
-      ImGui::TextDisabled("%s", label);
-      ImGui::SameLine(x + name_width);
-      ImGui::PushFont(context.fonts.code);
-      ImGui::TextUnformatted(text.c_str());
-      ImGui::PopFont();
-    };
-    ImGui::Dummy({0, ImGui::GetTextLineHeight()});
-    draw(name, value, 0);
-    draw(other, second, half);
+  static std::string counter_label(std::uint64_t count) {
+    return number_label(static_cast<double>(count), {.integer = true});
+  }
+
+  // Draws a name and a value in the left (0) or right (1) column.
+  static void figure(GuiContext& context, std::size_t column, const char* name, const std::string& value,
+                     const std::string& hint) {
+    const float half = std::floor(ImGui::GetContentRegionAvail().x / 2);
+    if (column > 0) ImGui::SameLine(half);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float height = std::max(ImGui::GetTextLineHeight(), imgui::font_height(*context.fonts.code));
+    ImGui::Dummy({(column > 0 ? ImGui::GetContentRegionAvail().x : half) - 1, height});
+    context.names.add(fmt::format("performance.{}", name));
+    if (ImGui::IsItemHovered()) {
+      ImGui::BeginTooltip();
+      ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+      ImGui::TextUnformatted(hint.c_str());
+      ImGui::PopTextWrapPos();
+      ImGui::EndTooltip();
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddText(at, packed_color(ThemeColor::secondary), name);
+    ImGui::PushFont(context.fonts.code);
+    list.AddText({at.x + ImGui::GetFontSize() * 5, at.y - ImGui::GetFontSize() / 16}, packed_color(ThemeColor::text),
+                 value.c_str());
+    ImGui::PopFont();
   }
 
   std::shared_ptr<const engine::Snapshot> last_;
