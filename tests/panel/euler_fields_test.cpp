@@ -55,7 +55,10 @@ TEST(EulerFields, AnglesGiveTheSameRotation) {
   for (int i = 0; i < 1000; i++) {
     double q[4];
     double sum = 0;
-    for (double& v : q) sum += (v = normal(random)) * v;
+    for (double& v : q) {
+      v = normal(random);
+      sum += v * v;
+    }
     for (double& v : q) v /= std::sqrt(sum);
     const Vec3 degrees = degrees_of(q);
     EXPECT_LT(difference(matrix_of_degrees(degrees.x, degrees.y, degrees.z), matrix_of_quaternion(q)), 1e-9);
