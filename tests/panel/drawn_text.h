@@ -25,6 +25,12 @@ struct DrawnGlyph {
   unsigned color = 0;
 };
 
+/// A rectangle in one color.
+struct DrawnBox {
+  double left = 0, top = 0, right = 0, bottom = 0;
+  unsigned color = 0;
+};
+
 class DrawnText {
  public:
   /// Reads the last frame of the current context.
@@ -37,6 +43,7 @@ class DrawnText {
   }
 
   const std::vector<DrawnGlyph>& glyphs() const { return glyphs_; }
+  const std::vector<DrawnBox>& boxes() const { return boxes_; }
 
   /// Returns the text in a rectangle, with its lines joined by spaces, or nothing.
   std::string in(const PanelRect& rect) const {
@@ -103,7 +110,14 @@ class DrawnText {
         if (at[1] != at[0] + 1 || at[2] != at[0] + 2 || at[3] != at[0] || at[4] != at[2] || at[5] != at[0] + 3)
           continue;
         const ImDrawVert* const corner = list.VtxBuffer.Data + command.VtxOffset + at[0];
-        if (corner[0].uv.x == white.x && corner[2].uv.x == white.x) continue;
+        if (corner[0].uv.x == white.x && corner[2].uv.x == white.x) {
+          const ImVec2 low = corner[0].pos;
+          const ImVec2 high = corner[2].pos;
+          if (corner[1].pos.y == low.y && corner[3].pos.x == low.x)
+            boxes_.push_back({static_cast<double>(low.x), static_cast<double>(low.y), static_cast<double>(high.x),
+                              static_cast<double>(high.y), corner[0].col});
+          continue;
+        }
         if (corner[0].uv.x >= corner[2].uv.x || corner[0].pos.y != corner[1].pos.y) continue;
         add(command, corner[0], corner[2]);
         i += 3;
@@ -142,6 +156,7 @@ class DrawnText {
 
   std::map<Place, FontGlyph> glyphs_by_place_;
   std::vector<DrawnGlyph> glyphs_;
+  std::vector<DrawnBox> boxes_;
 };
 
 }  // namespace limber::panel::test

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <random>
 #include <set>
 #include <sstream>
@@ -201,6 +202,179 @@ TEST_P(Legibility, NumbersEqualTheWorld) {
       ADD_FAILURE() << address << " was not read";
       if (++missing > 20) break;
     }
+  }
+}
+
+std::string without_blanks(std::string text) {
+  std::erase(text, ' ');
+  return text;
+}
+
+void expect_nothing_is_cut() {
+  for (const std::string& piece : DrawnText().cut()) ADD_FAILURE() << "cut: '" << piece << "'";
+}
+
+TEST_P(Legibility, NamesOfPropertiesAreComplete) {
+  const auto [width, scale] = GetParam();
+  PanelFixture fixture(kAllClasses, width, kTall * scale);
+  fixture.scale = scale;
+  fixture.sync();
+  for (const std::string& path : one_of_each_class(*fixture.gui->context().value_snapshot->tree)) {
+    const Object object = object_at(fixture, path);
+    show(fixture, path);
+    const DrawnText drawn;
+    std::set<std::string> texts;
+    for (const Property& property : object.table->properties()) {
+      if (path == "/physics/sim" && property.kind == PropertyKind::action) continue;
+      const std::string address = path + "/" + property.name;
+      SCOPED_TRACE(address);
+      const bool action = property.kind == PropertyKind::action;
+      const std::string text = without_blanks(drawn.in(fixture.rect_of(action ? address : "name:" + address)));
+      EXPECT_TRUE(text.starts_with(without_blanks(property_label(property)))) << text;
+      EXPECT_TRUE(texts.insert(text).second) << text << " appears twice";
+      if (!action && property.unit != "hsb") {
+        const PanelRect name = fixture.rect_of("name:" + address);
+        EXPECT_NE(drawn.in({name.x, name.y, 440 * scale, name.height}).find(property.unit), std::string::npos);
+      }
+    }
+    expect_nothing_is_cut();
+  }
+}
+
+TEST_P(Legibility, MarksCoverNoDigits) {
+  const auto [width, scale] = GetParam();
+  PanelFixture fixture(kAllClasses, width, kTall * scale);
+  fixture.scale = scale;
+  std::mt19937 random(6);
+  const unsigned accent = packed_color(ThemeColor::accent);
+  std::size_t marks = 0;
+  for (const std::string& path : one_of_each_class(*fixture.gui->context().value_snapshot->tree)) {
+    set_randomly(fixture, object_at(fixture, path), random);
+    show(fixture, path);
+    const DrawnText drawn;
+    for (const DrawnBox& box : drawn.boxes()) {
+      if (box.color != accent) continue;
+      marks++;
+      for (const DrawnGlyph& g : drawn.glyphs()) {
+        const bool covers = box.left < g.right && box.right > g.left && box.top < g.bottom && box.bottom > g.top;
+        ASSERT_FALSE(covers) << path << ": '" << drawn.in({box.left - 60, box.top, 120, box.bottom - box.top}) << "'";
+      }
+    }
+  }
+  EXPECT_GT(marks, 100u);
+}
+
+// Returns the texts of all visible widgets whose name begins with the prefix, by the part of the name before the last
+// slash.
+std::map<std::string, std::vector<std::string>> texts_of(const PanelFixture& fixture, const std::string& prefix) {
+  const DrawnText drawn;
+  std::map<std::string, std::vector<std::string>> texts;
+  for (const NamedWidget& widget : fixture.gui->names().all()) {
+    if (widget.name.starts_with(prefix) && !widget.visible.empty())
+      texts[widget.name.substr(0, widget.name.rfind('/'))].push_back(drawn.in(widget.visible));
+  }
+  return texts;
+}
+
+void expect_different(const std::map<std::string, std::vector<std::string>>& texts, std::size_t at_least) {
+  std::size_t count = 0;
+  for (const auto& [parent, members] : texts) {
+    std::set<std::string> different;
+    for (const std::string& text : members) {
+      EXPECT_FALSE(text.empty()) << parent;
+      EXPECT_TRUE(different.insert(text).second) << parent << ": '" << text << "' appears twice";
+      count++;
+    }
+  }
+  EXPECT_GE(count, at_least);
+}
+
+TEST_P(Legibility, ObjectsAndBehaviorsHaveDifferentNames) {
+  const auto [width, scale] = GetParam();
+  PanelFixture fixture(kAllClasses, width, kTall * scale);
+  fixture.scale = scale;
+  fixture.sync();
+  if (fixture.is_visible("tab:scene")) fixture.click("tab:scene");
+  fixture.gui->context().select("/physics/body/arm/behavior/one force");
+  fixture.frames(3);
+  expect_different(texts_of(fixture, "tree:"), 20);
+  expect_nothing_is_cut();
+  fixture.gui->context().selected.clear();
+  fixture.sync();
+  if (fixture.is_visible("tab:behaviors")) fixture.click("tab:behaviors");
+  fixture.frames(3);
+  expect_different(texts_of(fixture, "behavior:"), 14);
+  expect_nothing_is_cut();
+}
+
+TEST_P(Legibility, NothingIsCutInTheOtherPanels) {
+  const auto [width, scale] = GetParam();
+  PanelFixture fixture(kAllClasses, width, 900 * scale);
+  fixture.scale = scale;
+  fixture.gui->context().plots = {"/scene/the_length_of_the_upper_segment_of_the_left_leg",
+                                  "/physics/body/the_upper_segment_of_the_left_leg/part/tip/linear_velocity"};
+  fixture.show.link.counters.received = 123456789012345;
+  fixture.show.link.counters.sent = 987654321098765;
+  log_error(
+      "scene.lua:12: an error whose text is longer than any panel is wide, so that it has to be wrapped somewhere");
+  for (const char* const tab : {"tab:errors", "tab:osc", "tab:performance", "tab:plots", "tab:console"}) {
+    if (fixture.is_visible(tab)) fixture.click(tab);
+    fixture.show.link.message_log.add(
+        true, "127.0.0.1",
+        engine::test::message("/physics/body/the_upper_segment_of_the_left_leg/part/tip/position", 0.123456789));
+    fixture.show.ticks(1);
+    fixture.move(0, 0);
+    fixture.sync();
+    SCOPED_TRACE(tab);
+    expect_nothing_is_cut();
+  }
+  for (const char* const lamp : {"IN", "OUT", "LUA"})
+    EXPECT_EQ(DrawnText().in(fixture.rect_of(std::string("status.") + lamp)), lamp);
+}
+
+// Addresses in the results of a search are complete.
+TEST_P(Legibility, AddressesOfSearchResultsAreComplete) {
+  const auto [width, scale] = GetParam();
+  PanelFixture fixture(kAllClasses, width, kTall * scale);
+  fixture.scale = scale;
+  fixture.click("parameters.search");
+  fixture.type("segment max");
+  fixture.frames(5);
+  std::size_t results = 0;
+  const DrawnText drawn;
+  for (const NamedWidget& widget : fixture.gui->names().all()) {
+    if (!widget.name.starts_with("name:/") || widget.visible.empty()) continue;
+    const std::string text = without_blanks(drawn.in(widget.visible));
+    EXPECT_TRUE(text.starts_with(without_blanks(widget.name.substr(5)))) << text;
+    results++;
+  }
+  EXPECT_GT(results, 3u);
+  expect_nothing_is_cut();
+}
+
+TEST(LegibilityOfText, StatusHasSingularAndPlural) {
+  for (const auto& [count, expected] : {std::pair(1, "1 body"), {2, "2 bodies"}}) {
+    std::string scene;
+    for (int i = 0; i < count; i++) scene += "sim:add_body('b" + std::to_string(i) + "')\n";
+    PanelFixture fixture(scene, 1900, 900);
+    fixture.frames(2);
+    const std::string text = DrawnText().in(fixture.rect_of("status.text"));
+    EXPECT_NE(text.find(expected), std::string::npos) << text;
+    EXPECT_NE(text.find("0 parts"), std::string::npos) << text;
+  }
+}
+
+TEST(LegibilityOfText, FiguresHaveTooltips) {
+  PanelFixture fixture;
+  for (const char* const name : {"Tick", "Max", "Budget", "Speed", "Commands", "Scripts", "Behaviors", "Callbacks",
+                                 "Physics", "Readouts", "Snapshot", "GC", "Dropped", "Queue"}) {
+    const std::string widget = std::string("performance.") + name;
+    if (!fixture.is_visible(widget)) fixture.scroll("performance.Tick", -20);
+    const std::size_t before = DrawnText().glyphs().size();
+    fixture.point(widget);
+    EXPECT_GT(DrawnText().glyphs().size(), before + 20) << name;
+    fixture.move(0, 0);
+    fixture.frames(3);
   }
 }
 
