@@ -105,8 +105,8 @@ LineLayout line_layout(const GuiContext& context, const PropertyHandle& handle, 
     layout.unit_width = 0;
     layout.widget_width = rest;
     layout.name = wrapped(name, layout.name_width - unit - gap, text_width);
-    layout.name_height =
-        ImGui::GetStyle().FramePadding.y + static_cast<float>(layout.name.size()) * ImGui::GetTextLineHeight();
+    const float lines = static_cast<float>(layout.name.size()) * ImGui::GetTextLineHeight();
+    layout.name_height = std::max(layout.name_height, lines + ImGui::GetStyle().FramePadding.y);
   } else {
     layout.name = {name};
   }
