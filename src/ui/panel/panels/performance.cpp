@@ -11,6 +11,7 @@
 #include "ui/panel/panel.h"
 #include "ui/panel/text/number_format.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/samples.h"
 
 namespace limber::panel {
@@ -62,10 +63,8 @@ class PerformancePanel : public Panel {
                           std::max(context.number("/physics/sim/speed", 1), 0.01) * 1e3;
     if (context.clock - updated_at_ > kGraphUpdateInterval) {
       updated_at_ = context.clock;
-      const auto ms = [](double value, int decimals) { return number_label(value, {.decimals = decimals}) + " ms"; };
-      shown_ = {ms(mean_tick_, 2), ms(max_, 2), ms(budget, 1),
-                number_label(context.snapshot->speed, {.decimals = 2}) + " \u00d7"};
-      for (std::size_t i = 0; i < kPhases.size(); i++) shown_phases_[i] = ms(means_[i], 2);
+      shown_ = {mean_tick_, max_, budget, context.snapshot->speed};
+      shown_phases_ = means_;
     }
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, ImGui::GetFontSize() * 0.12F});
     const float lines = ImGui::GetTextLineHeightWithSpacing() * 7.2F;
@@ -80,22 +79,32 @@ class PerformancePanel : public Panel {
  private:
   void numbers(GuiContext& context) const {
     const std::uint64_t lost = context.link.counters.dropped.load() + context.link.counters.dropped_kernel.load();
-    figure(context, 0, "Tick", shown_[0],
-           fmt::format("Computing time of a tick. {} Normal: below the budget.", kMeanHint));
-    figure(context, 1, "Max", shown_[1],
-           "The slowest tick since the last click on the graph, in milliseconds. A single one above the budget delays "
-           "the show by its excess; the first ticks of a scene are slow.");
-    figure(context, 0, "Budget", shown_[2],
-           "Milliseconds of real time per tick: timestep / speed. Slower ticks make the simulation lag (Speed).");
-    figure(context, 1, "Speed", shown_[3],
-           "Simulated seconds per real second. Normal: the speed that is set, 1 by default; less if ticks take longer "
-           "than the budget.");
+    figure(context, 0, {"Tick", fmt::format("Computing time of a tick. {} Normal: below the budget.", kMeanHint)},
+           shown_[0]);
+    figure(context, 1,
+           {"Max",
+            "The slowest tick since the last click on the graph, in milliseconds. A single one above the budget delays "
+            "the show by its excess; the first ticks of a scene are slow."},
+           shown_[1]);
+    figure(context, 0,
+           {"Budget",
+            "Milliseconds of real time per tick: timestep / speed. Slower ticks make the simulation lag (Speed)."},
+           shown_[2]);
+    figure(context, 1,
+           {"Speed",
+            "Simulated seconds per real second. Normal: the speed that is set, 1 by default; less if ticks take longer "
+            "than the budget.",
+            " \u00d7"},
+           shown_[3]);
     for (std::size_t i = 0; i < kPhases.size(); i++)
-      figure(context, i % 2, kPhases[i].name, shown_phases_[i], fmt::format("{} {}", kPhases[i].hint, kMeanHint));
-    figure(context, 0, "Dropped", counter_label(lost),
-           "OSC datagrams that were lost because they arrived faster than they were read. Normal: 0.");
-    figure(context, 1, "Queue", counter_label(context.link.command_queue.dropped()),
-           "Messages that were dropped because the queue of the simulation was full. Normal: 0.");
+      figure(context, i % 2, {kPhases[i].name, fmt::format("{} {}", kPhases[i].hint, kMeanHint)}, shown_phases_[i]);
+    figure(
+        context, 0,
+        {"Dropped", "OSC datagrams that were lost because they arrived faster than they were read. Normal: 0.", "", 0},
+        static_cast<double>(lost));
+    figure(context, 1,
+           {"Queue", "Messages that were dropped because the queue of the simulation was full. Normal: 0.", "", 0},
+           static_cast<double>(context.link.command_queue.dropped()));
   }
 
   void graph(GuiContext& context, float height, double budget) {
@@ -127,31 +136,36 @@ class PerformancePanel : public Panel {
     list.PopClipRect();
   }
 
-  static std::string counter_label(std::uint64_t count) {
-    return number_label(static_cast<double>(count), {.integer = true});
-  }
+  struct Label {
+    const char* name;
+    std::string hint;
+    const char* unit = " ms";
+    int decimals = 2;
+  };
 
   // Draws a name and a value in the left (0) or right (1) column.
-  static void figure(GuiContext& context, std::size_t column, const char* name, const std::string& value,
-                     const std::string& hint) {
+  static void figure(GuiContext& context, std::size_t column, const Label& label, double value) {
     const float half = std::floor(ImGui::GetContentRegionAvail().x / 2);
     if (column > 0) ImGui::SameLine(half);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float height = std::max(ImGui::GetTextLineHeight(), imgui::font_height(*context.fonts.code));
-    ImGui::Dummy({(column > 0 ? ImGui::GetContentRegionAvail().x : half) - 1, height});
-    context.names.add(fmt::format("performance.{}", name));
+    const float width = (column > 0 ? ImGui::GetContentRegionAvail().x : half) - 1;
+    ImGui::Dummy({width, std::max(ImGui::GetTextLineHeight(), imgui::font_height(*context.fonts.code))});
+    context.names.add(fmt::format("performance.{}", label.name));
     if (ImGui::IsItemHovered()) {
       ImGui::BeginTooltip();
       ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-      ImGui::TextUnformatted(hint.c_str());
+      ImGui::TextUnformatted(label.hint.c_str());
       ImGui::PopTextWrapPos();
       ImGui::EndTooltip();
     }
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddText(at, packed_color(ThemeColor::secondary), name);
+    list.AddText(at, packed_color(ThemeColor::secondary), label.name);
+    const float x = ImGui::GetFontSize() * 5.2F;
     ImGui::PushFont(context.fonts.code);
-    list.AddText({at.x + ImGui::GetFontSize() * 5, at.y - ImGui::GetFontSize() / 16}, packed_color(ThemeColor::text),
-                 value.c_str());
+    const float room = width - x - text_width(label.unit);
+    const NumberFormat format{.integer = label.decimals == 0, .decimals = label.decimals == 0 ? -1 : label.decimals};
+    const std::string text = fitted_number(value, format, room, text_width) + label.unit;
+    list.AddText({at.x + x, at.y - ImGui::GetFontSize() / 16}, packed_color(ThemeColor::text), text.c_str());
     ImGui::PopFont();
   }
 
@@ -161,8 +175,8 @@ class PerformancePanel : public Panel {
   double max_ = 0;
   std::array<double, kPhases.size()> means_{};
   double updated_at_ = -1;
-  std::array<std::string, 4> shown_;
-  std::array<std::string, kPhases.size()> shown_phases_;
+  std::array<double, 4> shown_{};
+  std::array<double, kPhases.size()> shown_phases_{};
 };
 
 [[maybe_unused]] const bool kPerformancePanel =
