@@ -14,6 +14,7 @@ namespace {
 
 constexpr int kMinPlainExponent = -4;  // smaller numbers are in scientific form: 1.2e-5
 constexpr int kMaxPlainExponent = 6;   // and larger ones: 1.2e7
+constexpr double kMaxFixed = 1e15;     // larger numbers have no fixed decimals
 
 // Removes zeros at the end of the decimals.
 void strip_zeros(std::string& text) {
@@ -47,20 +48,20 @@ bool is_plain(int exponent, const NumberFormat& format) {
   return format.integer ? exponent >= 0 : exponent >= kMinPlainExponent && exponent <= kMaxPlainExponent;
 }
 
-}  // namespace
-
-std::string fitted_number(double value, const NumberFormat& format, float width, const TextWidth& width_of) {
-  if (std::isnan(value)) return "nan";
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  if (format.integer) value = std::round(value);
-  if (value == 0 || std::abs(value) < format.zero_below) value = 0;
-  const auto fits = [&](const std::string& text) { return width_of(text) <= width; };
-  for (int decimals = format.decimals; decimals >= 0 && std::abs(value) < 1e15; decimals--) {
+// The number with a fixed number of decimals, or fewer if they don't fit; empty if it doesn't fit without them.
+template <class Fits>
+std::string with_decimals(double value, int decimals, const Fits& fits) {
+  for (; decimals >= 0 && std::abs(value) < kMaxFixed; decimals--) {
     std::string text = fmt::format("{:.{}f}", value, decimals);
     if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
     if (fits(text)) return text;
   }
-  if (value == 0) return "0";
+  return {};
+}
+
+// The number with as many digits as fit; with one digit, in the shortest form, if none fits.
+template <class Fits>
+std::string with_digits(double value, const NumberFormat& format, const Fits& fits) {
   std::string shortest;
   for (int digits = kMaxDigits; digits > 0; digits--) {
     const Scientific form = scientific(value, digits);
@@ -72,6 +73,18 @@ std::string fitted_number(double value, const NumberFormat& format, float width,
     }
   }
   return shortest;
+}
+
+}  // namespace
+
+std::string fitted_number(double value, const NumberFormat& format, float width, const TextWidth& width_of) {
+  if (std::isnan(value)) return "nan";
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  if (format.integer) value = std::round(value);
+  if (std::abs(value) < format.zero_below) value = 0;
+  const auto fits = [&](const std::string& text) { return width_of(text) <= width; };
+  if (std::string text = with_decimals(value, format.decimals, fits); !text.empty()) return text;
+  return value == 0 ? "0" : with_digits(value, format, fits);
 }
 
 std::string number_label(double value, const NumberFormat& format) {
