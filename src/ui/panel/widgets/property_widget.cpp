@@ -318,9 +318,16 @@ void property_widget(GuiContext& context, const PropertyHandle& handle, float wi
 void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
   const Property& property = *handle.ref.property;
   const float width = ImGui::GetContentRegionAvail().x;
+  // lines outside the visible area have the height of the last time
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID key = ImGui::GetID(handle.path.c_str());
+  const float known = storage.GetFloat(key + 1) == width ? storage.GetFloat(key) : 0;
+  const auto hidden = [&](float height) { return !ImGui::IsRectVisible({width, height}) && !ImGui::IsAnyItemActive(); };
+  if (known > 0 && hidden(known)) return ImGui::Dummy({width, known});
   const LineLayout layout = line_layout(context, handle, options, width);
-  if (!ImGui::IsRectVisible({width, layout.height}) && !ImGui::IsAnyItemActive())
-    return ImGui::Dummy({width, layout.height});
+  storage.SetFloat(key, layout.height);
+  storage.SetFloat(key + 1, width);
+  if (hidden(layout.height)) return ImGui::Dummy({width, layout.height});
   ImGui::PushID(handle.path.c_str());
   const float start = ImGui::GetCursorStartPos().x;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
