@@ -321,12 +321,13 @@ void property_line(GuiContext& context, const PropertyHandle& handle, const Prop
   // lines outside the visible area have the height of the last time
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID key = ImGui::GetID(handle.path.c_str());
-  const float known = storage.GetFloat(key + 1) == width ? storage.GetFloat(key) : 0;
+  const float mode = width + (options.with_path ? 0.5F : 0);
+  const float known = storage.GetFloat(key + 1) == mode ? storage.GetFloat(key) : 0;
   const auto hidden = [&](float height) { return !ImGui::IsRectVisible({width, height}) && !ImGui::IsAnyItemActive(); };
   if (known > 0 && hidden(known)) return ImGui::Dummy({width, known});
   const LineLayout layout = line_layout(context, handle, options, width);
   storage.SetFloat(key, layout.height);
-  storage.SetFloat(key + 1, width);
+  storage.SetFloat(key + 1, mode);
   if (hidden(layout.height)) return ImGui::Dummy({width, layout.height});
   ImGui::PushID(handle.path.c_str());
   const float start = ImGui::GetCursorStartPos().x;
