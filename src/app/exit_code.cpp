@@ -9,6 +9,7 @@
 
 #include "base/log/log.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::app {
@@ -20,7 +21,7 @@ int fail(int code, std::string_view text) {
 
 int finish_command(int code) {
   if (const std::uint64_t count = log_suppressed(); count > 0)
-    print_notice("{} repeated line{} suppressed above", count, count == 1 ? " is" : "s are");
+    print_notice("{} suppressed above", counted(count, "repeated line is", "repeated lines are"));
   const int error = result_error();
   // a closed pipe or a signal ends a command quietly
   if (error == ETIMEDOUT) {

@@ -1,4 +1,5 @@
 // Markup scanner: tags, comments, CDATA and declarations; tracks nesting without recursion.
+#include "base/plural.h"
 #include "model/xml_text.h"
 
 #include <algorithm>
@@ -185,7 +186,7 @@ class Scanner {
     }
     if (depth_ > 0 || !has_element_) {
       if (has_element_) {
-        problems_.error(line_of(text_, text_.size()), fmt::format("the file ends inside {} open element(s)", depth_),
+        problems_.error(line_of(text_, text_.size()), "the file ends inside " + counted(depth_, "open element"),
                         "The file may be truncated: get it again, or close every element.");
       }
       return;

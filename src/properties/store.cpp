@@ -12,6 +12,7 @@
 
 #include "base/check.h"
 #include "base/memory/archive.h"
+#include "base/plural.h"
 
 namespace limber {
 
@@ -37,8 +38,7 @@ bool normalize(double* q) {
 // Rounds, clamps and normalizes values of a property. The error follows the property's path.
 Result<SetOutcome> accept_values(const Property& property, std::span<const double> values, double* accepted) {
   if (values.size() != property.width)
-    return Error{
-        fmt::format("takes {} number{}, not {}", property.width, property.width == 1 ? "" : "s", values.size())};
+    return Error{fmt::format("takes {}, not {}", counted(property.width, "number"), values.size())};
   SetOutcome outcome;
   for (std::size_t i = 0; i < property.width; i++) {
     if (!std::isfinite(values[i])) return Error{fmt::format("takes finite numbers, not {}", values[i])};

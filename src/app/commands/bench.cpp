@@ -17,6 +17,7 @@
 #include "base/build_info.h"
 #include "base/check.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/system/clock.h"
 #include "base/system/process.h"
 #include "base/text.h"
@@ -161,8 +162,8 @@ int bench_command(const BenchOptions& options) {
   if (!options.json) {
     print_result(
         "Arms of 17 servo-driven joints that this machine plays in real time, 60 ticks a second.\n"
-        "Processor: {}, {} cores\n\n{:<10}{:>8}{:>8}\n",
-        all["cpu"].get<std::string>(), cores, "solver", "threads", "arms");
+        "Processor: {}, {}\n\n{:<10}{:>8}{:>8}\n",
+        all["cpu"].get<std::string>(), counted(cores, "core"), "solver", "threads", "arms");
   }
   for (const Setting& setting : settings(cores)) {
     all["settings"].push_back(measure_setting(*model, setting, ticks));

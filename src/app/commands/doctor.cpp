@@ -18,6 +18,7 @@
 #include "base/build_info.h"
 #include "base/log/output.h"
 #include "base/math/fixed_math.h"
+#include "base/plural.h"
 #include "base/system/file.h"
 #include "base/system/net/udp_socket.h"
 #include "base/system/process.h"
@@ -100,10 +101,10 @@ int doctor_command(const DoctorCommand& command) {
   if (!query) return fail(kUsageError, query.error());
 
   print_check("ok", "limber", fmt::format("{} ({})", version(), commit()));
-  print_check(
-      "ok", "system",
-      fmt::format("{}, {}, {} cores{}", system_name(), system::machine_name(), std::thread::hardware_concurrency(),
-                  system::is_portable() ? "; built with POSIX calls only" : ""));
+  print_check("ok", "system",
+              fmt::format("{}, {}, {}{}", system_name(), system::machine_name(),
+                          counted(std::thread::hardware_concurrency(), "core"),
+                          system::is_portable() ? "; built with POSIX calls only" : ""));
 
   const bool exact = fixed::is_arithmetic_exact() && fixed::is_libm_replaced();
   print_check(

@@ -15,6 +15,7 @@
 #include "app/progress.h"
 #include "app/view/offline_clock.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/system/signals.h"
 #include "base/text.h"
 #include "engine/takes/reader.h"
@@ -149,8 +150,8 @@ ExportResult write_frames(const ExportCommand& command, std::uint64_t ticks, eng
 
 int report_result(const Plan& plan, const ExportCommand& command, const ExportResult& end, const MotionSource& source,
                   const engine::Engine& engine) {
-  print_notice("{}: {} frames of {} bod{}, {} a second", printable(plan.output), end.frames, source.bodies(),
-               source.bodies() == 1 ? "y" : "ies", number_text(command.rate));
+  print_notice("{}: {} of {}, {} a second", printable(plan.output), counted(end.frames, "frame"),
+               counted(source.bodies(), "body", "bodies"), number_text(command.rate));
   const engine::ReplayResult result = engine.replay_result();
   print_notice("{}", engine::text_of(result));
   return result.diverged_at || !result.damage.empty() ? kInputError : kSuccess;

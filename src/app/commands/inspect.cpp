@@ -11,6 +11,7 @@
 
 #include "app/exit_code.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "model/urdf/import.h"
 
@@ -132,7 +133,7 @@ void add_body(const model::BodyModel& model, std::string& out) {
     for (const model::PlacedShape& s : link.collisions) {
       out += fmt::format(", {}", kind_name(s.shape.kind));
       if (s.shape.kind != model::ShapeKind::mesh || !s.shape.mesh) continue;
-      out += fmt::format(" of {} points (farthest vertex {:.2g} m outside)", s.shape.mesh->hull.size(),
+      out += fmt::format(" of {} (farthest vertex {:.2g} m outside)", counted(s.shape.mesh->hull.size(), "point"),
                          s.shape.mesh->hull_error);
     }
     if (!link.self_collision) out += ", does not collide with its own body (selfCollide)";
@@ -185,8 +186,9 @@ std::string inspect_json(const model::BodyModel& model) {
 std::string inspect_table(const model::BodyModel& model) {
   double mass = 0;
   for (const model::FileLink& link : model.file_links) mass += link.mass;
-  std::string out = fmt::format("{}: {} links, {} joints, {:.6g} kg\n", printable(model.name), model.file_links.size(),
-                                model.file_joints.size(), mass);
+  std::string out =
+      fmt::format("{}: {}, {}, {:.6g} kg\n", printable(model.name), counted(model.file_links.size(), "link"),
+                  counted(model.file_joints.size(), "joint"), mass);
   add_links(model, out);
   if (!model.file_joints.empty()) add_joints(model, out);
   add_mimics(model, out);

@@ -7,6 +7,7 @@
 
 #include "app/exit_code.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/system/signals.h"
 #include "net/console/console_client.h"
 
@@ -30,7 +31,7 @@ class MessagePrinter {
   /// Returns false after the last line (--count).
   bool show(const console::ConsoleLine& line) {
     if (line.kind == Kind::missed)
-      write_line(OutputTo::error, fmt::format("({} lines dropped: too many messages)", line.count));
+      write_line(OutputTo::error, fmt::format("({} dropped: too many messages)", counted(line.count, "line")));
     const bool message = line.kind == Kind::in || line.kind == Kind::out;
     if (!message && line.kind != Kind::change) return true;
     if ((command_.only_in && line.kind == Kind::out) || (command_.only_out && line.kind == Kind::in)) return true;

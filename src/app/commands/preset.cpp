@@ -10,6 +10,7 @@
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/system/file.h"
 #include "base/text.h"
 #include "engine/presets/file.h"
@@ -57,8 +58,8 @@ int preset_command(const PresetCommand& command) {
     return fail(kMachineError, fmt::format("{}: {}", printable(file.path()), saved.error()));
   for (const std::string& problem : imported->problems) print_notice("{}", printable(problem));
   if (!notice.empty()) print_notice("{}", notice);
-  print_result("{} presets are in {} now, {} of them new\n", before->presets.size(), printable(file.path()),
-               imported->presets.size());
+  print_result("{} in {} now, {} of them new\n", counted(before->presets.size(), "preset is", "presets are"),
+               printable(file.path()), imported->presets.size());
   return kSuccess;
 }
 

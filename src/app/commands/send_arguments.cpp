@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::app {
@@ -95,8 +96,7 @@ Result<Message> tagged_message(const std::string& address, std::string_view tags
     message.args.push_back(arg_of_tag(tag, word));
   }
   if (at != words.size() || count != words.size())
-    return Error{
-        fmt::format("--tags '{}' needs {} argument{}, got {}", tags, count, count == 1 ? "" : "s", words.size())};
+    return Error{fmt::format("--tags '{}' needs {}, got {}", tags, counted(count, "argument"), words.size())};
   return message;
 }
 

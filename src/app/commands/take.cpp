@@ -8,6 +8,7 @@
 
 #include "app/exit_code.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "engine/takes/reader.h"
 
@@ -46,7 +47,7 @@ void print_files(const engine::TakeReader& reader) {
     }
   }
   for (const auto& [path, file] : files) {
-    print_result("  {} ({} bytes{})\n", printable(path), file.second,
+    print_result("  {} ({}{})\n", printable(path), counted(file.second, "byte"),
                  file.first > 1 ? fmt::format(", {} versions", file.first) : std::string());
   }
 }
@@ -66,11 +67,13 @@ int take_command(const std::string& file) {
   print_result("recorded  {} by limber {}\n", printable(reader.header().recorded), printable(reader.header().limber));
   print_result("ticks     {}\n", count.ticks);
   print_result("messages  {}, console inputs {}\n", count.messages, count.texts);
-  print_result("runs      {} reloads, {} resets, {} other scenes\n",
-               runs(engine::TakeSceneRun::Kind::reload_finished) + runs(engine::TakeSceneRun::Kind::reload) +
-                   runs(engine::TakeSceneRun::Kind::rerun),
-               runs(engine::TakeSceneRun::Kind::reset), runs(engine::TakeSceneRun::Kind::scene));
-  print_result("stopped   {} script calls\n", count.stopped);
+  print_result("runs      {}, {}, {}\n",
+               counted(runs(engine::TakeSceneRun::Kind::reload_finished) + runs(engine::TakeSceneRun::Kind::reload) +
+                           runs(engine::TakeSceneRun::Kind::rerun),
+                       "reload"),
+               counted(runs(engine::TakeSceneRun::Kind::reset), "reset"),
+               counted(runs(engine::TakeSceneRun::Kind::scene), "other scene"));
+  print_result("stopped   {}\n", counted(count.stopped, "script call"));
   print_result("bytes     {}\n", reader.size());
   if (reader.end()) {
     print_result("end       complete; hash {:016x} tick {}\n", reader.end()->state_hash, reader.end()->tick);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/log/output.h"
+#include "base/plural.h"
 
 namespace limber::app {
 
@@ -80,7 +81,7 @@ void ConsoleSession::show(const console::ConsoleLine& line) const {
       print_notice("error: {}", line.text);
       break;
     case Kind::missed:
-      write_line(OutputTo::error, fmt::format("({} lines dropped: too much output)", line.count));
+      write_line(OutputTo::error, fmt::format("({} dropped: too much output)", counted(line.count, "line")));
       break;
     default:
       return;  // no output

@@ -11,6 +11,7 @@
 #include "app/exit_code.h"
 #include "base/log/log.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/system/service_manager.h"
 #include "base/system/signals.h"
 #include "base/text.h"
@@ -89,9 +90,10 @@ void ShowLoop::print_status() const {
   std::size_t joints = 0;
   for (const engine::BodyEntry& body : now->body_list->bodies) joints += body.joint_offsets.size();
   const std::string line =
-      fmt::format("{:8.1f} s  tick {}  {}  {} bodies, {} joints  OSC in {} out {}{}", now->time, now->tick,
+      fmt::format("{:8.1f} s  tick {}  {}  {}, {}  OSC in {} out {}{}", now->time, now->tick,
                   now->paused ? std::string("paused") : fmt::format("{:.2f} × real time", now->speed),
-                  now->body_list->bodies.size(), joints, link_.counters.received.load(), link_.counters.sent.load(),
+                  counted(now->body_list->bodies.size(), "body", "bodies"), counted(joints, "joint"),
+                  link_.counters.received.load(), link_.counters.sent.load(),
                   link_.counters.dropped.load() + link_.counters.dropped_kernel.load() > 0 ? "  (some were lost)" : "");
   notifier_.status(line);
   if (prints_status_) write_line(OutputTo::error, "limber: " + line);

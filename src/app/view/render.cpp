@@ -13,6 +13,7 @@
 #include "app/view/offline_clock.h"
 #include "app/view/panel_setup.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "ui/render/offscreen.h"
 
@@ -105,8 +106,8 @@ RenderResult draw_film(const DisplayOptions& options, const ImageSize& size, ren
     progress.report(done + 1);
   }
   if (const auto finished = (*film)->finish(); !finished) return failure(kMachineError, finished.error());
-  print_notice("{}: {} frames, {} × {}, {} a second{}", printable(options.render), done, size.width, size.height,
-               number_text(fps),
+  print_notice("{}: {}, {} × {}, {} a second{}", printable(options.render), counted(done, "frame"), size.width,
+               size.height, number_text(fps),
                done < frames
                    ? fmt::format("; {}, {} were requested", canceled ? "cancelled" : "the take has ended", frames)
                    : "");

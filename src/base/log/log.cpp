@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "base/log/log_throttle.h"
 #include "base/log/output.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber {
@@ -92,8 +93,8 @@ void log_print(std::string_view text, OutputTo to) {
     missing = std::exchange(log.suppressed_since_print, 0);
   }
   if (missing > 0)
-    log_warning("print: {} line{} dropped; at most {} per second are printed", missing,
-                missing == 1 ? " was" : "s were", kMaxPrintsPerSecond);
+    log_warning("print: {} dropped; at most {} per second are printed", counted(missing, "line was", "lines were"),
+                kMaxPrintsPerSecond);
   write_print(to, text);
 }
 

@@ -14,6 +14,7 @@
 
 #include "base/log/log.h"
 #include "base/log/output_writer.h"
+#include "base/plural.h"
 #include "base/system/clock.h"
 #include "base/system/service_manager.h"
 #include "base/text.h"
@@ -66,7 +67,7 @@ OutputStream stream_of(OutputTo to, OutputMode mode) {
   };
   if (to == OutputTo::out) {
     stream.on_gap = [](std::uint64_t lines) {
-      log_warning("standard output accepts text again; {} line{} lost", lines, lines == 1 ? " is" : "s are");
+      log_warning("standard output accepts text again; {} lost", counted(lines, "line is", "lines are"));
     };
   }
   return stream;
@@ -80,7 +81,7 @@ OutputStream log_stream(std::unique_ptr<OutputDevice> device, const std::string&
                 error == 0 ? "is too slow" : fmt::format("fails: {}", std::generic_category().message(error)));
   };
   stream.on_gap = [name](std::uint64_t lines) {
-    log_warning("the log file {} accepts text again; {} line{} lost", name, lines, lines == 1 ? " is" : "s are");
+    log_warning("the log file {} accepts text again; {} lost", name, counted(lines, "line is", "lines are"));
   };
   return stream;
 }

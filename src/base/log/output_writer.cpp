@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/system/thread.h"
 #include "base/text.h"
 
@@ -163,8 +164,8 @@ bool OutputWriter::load(StreamState& state) {
     state.dropping = state.loss_reported = false;
   }
   if (state.missing > 0 && state.stream.inserts_notice) {
-    state.text.insert(0, fmt::format("{}limber: warning: {} line{} missing here: the output was blocked\n",
-                                     state.open_line ? "\n" : "", state.missing, state.missing == 1 ? " is" : "s are"));
+    state.text.insert(0, fmt::format("{}limber: warning: {} missing here: the output was blocked\n",
+                                     state.open_line ? "\n" : "", counted(state.missing, "line is", "lines are")));
   }
   state.writing = true;
   return queued;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -94,18 +95,15 @@ bool action_accepts_count(const Property& action, std::size_t numbers) {
 std::string expected_text(const Property& property) {
   if (property.kind == PropertyKind::action) {
     if (property.max_args == 0) return "no value";
-    if (property.min_args == 0)
-      return fmt::format("no value or {} number{}", property.max_args, property.max_args == 1 ? "" : "s");
+    if (property.min_args == 0) return "no value or " + counted(property.max_args, "number");
     return property.min_args == property.max_args
-               ? fmt::format("{} numbers", property.min_args)
+               ? counted(property.min_args, "number")
                : fmt::format("{} or {} numbers", property.min_args, property.max_args);
   }
   if (property.type == PropertyType::choice) return fmt::format("one of {}", fmt::join(property.choices, ", "));
   if (property.type == PropertyType::boolean) return "true or false";
   if (property.type == PropertyType::flags3) return "1 or 3 times true or false";
-  if (property.width == 1) return "1 number";
-  return accepts_one(property) ? fmt::format("1 or {} numbers", property.width)
-                               : fmt::format("{} numbers", property.width);
+  return accepts_one(property) ? fmt::format("1 or {} numbers", property.width) : counted(property.width, "number");
 }
 
 Result<ValueSplit> split_value(const Property& property, std::span<const Arg> args) {

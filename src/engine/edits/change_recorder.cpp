@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "properties/property_text.h"
 
 namespace limber::engine {
@@ -58,7 +59,8 @@ void ChangeRecorder::flush(const Store& store) {
     if (store.alive(note.id)) flush(store, note);
   }
   touched_.clear();
-  if (omitted_ > 0) log_.add({0, time_, sender_text(source_), fmt::format("({} more values)", omitted_), "", "", 0});
+  if (omitted_ > 0)
+    log_.add({0, time_, sender_text(source_), fmt::format("({})", counted(omitted_, "more value")), "", "", 0});
   omitted_ = 0;
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/plural.h"
 #include "properties/catalog.h"
 
 namespace limber::engine {
@@ -197,8 +198,8 @@ Result<void> UndoStack::exchange(Steps& from, Steps& to, sim::World& world, cons
     to.push_back(std::move(*at));
     from.erase(at);
     if (removed > 0) {
-      log_warning("{}: {} value{} of removed objects {} skipped", verb, removed, removed == 1 ? "" : "s",
-                  removed == 1 ? "was" : "were");
+      log_warning("{}: {} of removed objects {} skipped", verb, counted(removed, "value"),
+                  plural(removed, "was", "were"));
     }
     return {};
   }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "properties/catalog.h"
 
@@ -156,15 +157,16 @@ class PresetBinding::Builder {
   void describe_omissions(bool of_everything) {
     std::vector<std::string> texts;
     if (missing_count_ > 0)
-      texts.push_back(fmt::format("{} object{} not found ({})", missing_count_, missing_count_ == 1 ? " was" : "s were",
+      texts.push_back(fmt::format("{} not found ({})", counted(missing_count_, "object was", "objects were"),
                                   join_some(missing_, missing_count_)));
     if (mismatch_count_ > 0)
-      texts.push_back(fmt::format("{} propert{} missing or of another type ({})", mismatch_count_,
-                                  mismatch_count_ == 1 ? "y is" : "ies are", join_some(mismatches_, mismatch_count_)));
+      texts.push_back(fmt::format("{} missing or of another type ({})",
+                                  counted(mismatch_count_, "property is", "properties are"),
+                                  join_some(mismatches_, mismatch_count_)));
     const std::size_t added = of_everything ? count_added() : 0;
     if (added > 0)
-      texts.push_back(fmt::format("{} new and {}", added == 1 ? "1 value is" : fmt::format("{} values are", added),
-                                  added == 1 ? "stays unchanged" : "stay unchanged"));
+      texts.push_back(fmt::format("{} new and {} unchanged", counted(added, "value is", "values are"),
+                                  plural(added, "stays", "stay")));
     binding_.omissions_ = fmt::format("{}", fmt::join(texts, "; "));
   }
 
@@ -224,8 +226,7 @@ std::string missing_choices(const Store& store, const PresetBinding& binding, co
     }
   }
   if (count == 0) return {};
-  return fmt::format("{} choice{} {} ({})", count, count == 1 ? "" : "s",
-                     count == 1 ? "stays unchanged" : "stay unchanged", first);
+  return fmt::format("{} unchanged ({})", counted(count, "choice stays", "choices stay"), first);
 }
 
 RecallResult recall(Store& store, const PresetBinding& binding, const Blend& blend) {

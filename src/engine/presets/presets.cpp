@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "base/log/log.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::engine {
@@ -403,8 +404,8 @@ Result<std::string> Presets::apply(sim::World& world, const Blend& blend, double
     const RecallResult result = limber::engine::recall(store, **binding, blend);
     const std::size_t count = result.clamped + result.rejected;
     if (count > 0) {
-      notices.push_back(fmt::format("{} value{} clamped or rejected ({})", count, count == 1 ? " was" : "s were",
-                                    result.first_problem));
+      notices.push_back(
+          fmt::format("{} clamped or rejected ({})", counted(count, "value was", "values were"), result.first_problem));
     }
   }
   overrides_.add_recall(blend);

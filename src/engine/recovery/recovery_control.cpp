@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::engine {
@@ -37,7 +38,7 @@ Result<void> RecoveryControl::apply() {
   const Result<std::string> notice = show_.presets.restore(show_.session->world, show_.recovered);
   if (!notice) return Error{fmt::format("--recover: {}", notice.error())};
   const std::size_t count = show_.recovered->schema->property_count();
-  log_info("--recover: {} value{} as of {}{}{}", count, count == 1 ? " was restored" : "s were restored",
+  log_info("--recover: {} restored as of {}{}{}", counted(count, "value was", "values were"),
            crash_time_.empty() ? "the start of the take" : crash_time_, notice->empty() ? "" : "; ", *notice);
   if (saver_ != nullptr && !suspended_) saver_->set_recovered();
   return {};

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/plural.h"
 #include "base/system/file.h"
 #include "base/text.h"
 #include "engine/presets/text.h"
@@ -53,8 +54,8 @@ std::string RecoverableValues::time_text() const {
 
 std::string RecoverableValues::message() const {
   const std::size_t count = values->schema->property_count();
-  return fmt::format("the last run of this scene did not exit cleanly; {} value{} of {} can be restored with --recover",
-                     count, count == 1 ? "" : "s", time_text());
+  return fmt::format("the last run of this scene did not exit cleanly; {} of {} can be restored with --recover",
+                     counted(count, "value"), time_text());
 }
 
 std::shared_ptr<const Preset> changed_values(const Preset& now, const Preset& script) {

@@ -7,18 +7,11 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/plural.h"
 #include "engine/presets/capturer.h"
 #include "script/scene/earlier_runs.h"
 
 namespace limber::engine {
-
-namespace {
-
-std::string counted(std::uint64_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 SceneReloader::SceneReloader(std::string file, script::ScriptHost& host, Overrides& overrides)
     : file_(std::move(file)), host_(host), overrides_(overrides) {}
@@ -98,9 +91,9 @@ void SceneReloader::report_timers(const script::CarriedTimers& timers, bool from
   if (!from_disk) return;
   if (timers.timers > 0) {
     log_info("{} set by callbacks before the save {}{}; a reset ends {}", counted(timers.timers, "timer"),
-             timers.timers == 1 ? "continues" : "continue",
+             plural(timers.timers, "continues", "continue"),
              timers.repeating > 0 ? fmt::format(" ({} repeating)", timers.repeating) : "",
-             timers.timers == 1 ? "it" : "them");
+             plural(timers.timers, "it", "them"));
   }
   if (timers.handlers > 0) {
     log_warning(

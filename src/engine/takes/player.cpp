@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/build_info.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "sim/world/body.h"
 
@@ -100,7 +101,7 @@ ReplayResult TakePlayer::result() const {
 }
 
 std::string text_of(const ReplayResult& v) {
-  std::string text = fmt::format("replayed {} ticks: ", v.ticks);
+  std::string text = fmt::format("replayed {}: ", counted(v.ticks, "tick"));
   if (!v.compared) {
     text += fmt::format("nothing was compared, limber {} recorded it with other hashes", printable(v.recorded_by));
   } else if (!v.diverged_at) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "model/urdf/reader.h"
 
@@ -217,7 +218,7 @@ class UrdfChecker {
       }
     }
     for (const auto& [name, usage] : undefined) {
-      const std::string users = usage.first == 1 ? "a visual" : fmt::format("{} visuals", usage.first);
+      const std::string users = usage.first == 1 ? "a visual" : counted(usage.first, "visual");
       problems_.warning(usage.second,
                         fmt::format("material '{}' of {} is not defined; the default color is used",
                                     printable(std::string_view(name).substr(0, kMaxShownName)), users),
@@ -289,7 +290,7 @@ class UrdfChecker {
       if (++kinds > kMaxKinds) break;
       const bool xacro = kind.starts_with("xacro:");
       const std::string text =
-          fmt::format("{} <{}> element{} ignored", usage.first, printable(kind), usage.first == 1 ? "" : "s");
+          fmt::format("{} <{}> {} ignored", usage.first, printable(kind), plural(usage.first, "element"));
       const std::string_view suggestion = nearest_name(kind, kElements);
       if (!suggestion.empty() && suggestion != kind) {
         problems_.warning(usage.second, text, fmt::format("Did you mean <{}>?", suggestion));

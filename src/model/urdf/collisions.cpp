@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "model/mesh/mass_properties.h"
 #include "model/overlap.h"
@@ -72,8 +73,9 @@ void check_overlaps(UrdfBuildContext& build) {
                            "Shrink the collision shapes, or let the pair collide with body:include_pair(a, b).");
   }
   if (result.unchecked > 0) {
-    build.problems.warning(1, fmt::format("{} pairs of links were not checked for overlap", result.unchecked),
-                           "Use fewer collision shapes.");
+    build.problems.warning(
+        1, counted(result.unchecked, "pair of links was", "pairs of links were") + " not checked for overlap",
+        "Use fewer collision shapes.");
   }
 }
 
@@ -91,7 +93,7 @@ void check_missing_collisions(UrdfBuildContext& build) {
     if (names.size() < kMaxListedLinks) names.push_back(printable(link.name));
   }
   if (count == 0) return;
-  std::string text = fmt::format("{} {} no collision geometry: {}{}", count, count == 1 ? "link has" : "links have",
+  std::string text = fmt::format("{} no collision geometry: {}{}", counted(count, "link has", "links have"),
                                  fmt::join(names, ", "), count > names.size() ? " …" : "");
   const char* const fix = "Add <collision> elements, unless nothing should touch these links.";
   if (visible) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::model {
@@ -159,10 +160,10 @@ bool UrdfReader::numbers(const Element& element, const char* attribute, const st
     nonstandard_text_ = printable_excerpt(text);
   }
   if (count == out.size()) return true;
-  problems.error(
-      found->GetLineNum(),
-      fmt::format("{}: '{}' has {} numbers, expected {}; ignored", where, printable_excerpt(text), count, out.size()),
-      fmt::format("Write {} numbers with blanks between them.", out.size() == 3 ? "three" : "four"));
+  problems.error(found->GetLineNum(),
+                 fmt::format("{}: '{}' has {}, expected {}; ignored", where, printable_excerpt(text),
+                             counted(count, "number"), out.size()),
+                 fmt::format("Write {} numbers with blanks between them.", out.size() == 3 ? "three" : "four"));
   return false;
 }
 
@@ -272,8 +273,8 @@ void UrdfReader::report_deferred() {
   if (nonstandard_numbers_ == 0) return;
   problems.note(
       nonstandard_line_,
-      fmt::format("{} number(s) use a notation that some readers reject, first '{}'; accepted", nonstandard_numbers_,
-                  nonstandard_text_),
+      fmt::format("{} a notation that some readers reject, first '{}'; accepted",
+                  counted(nonstandard_numbers_, "number uses", "numbers use"), nonstandard_text_),
       "Write digits on both sides of the point, no '+', and single blanks between numbers only: 0.5, 5.0, 1.");
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/log/log.h"
+#include "base/plural.h"
 #include "base/text.h"
 #include "net/osc/packets/decode.h"
 #include "net/osc/packets/packet_parser.h"
@@ -215,7 +216,8 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
   if (!decoded) {
     link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
     warn_throttled(malformed_log_, [&] {
-      return fmt::format("OSC in: {} bytes from {} are not valid OSC: {}", size, endpoint_text(from), decoded.error());
+      return fmt::format("OSC in: {} from {} {} not valid OSC: {}", counted(size, "byte"), endpoint_text(from),
+                         plural(size, "is", "are"), decoded.error());
     });
     return;
   }
@@ -305,9 +307,9 @@ void Receiver::record_kernel_drops(ListenSocket& socket, std::uint32_t count) {
   link_.counters.dropped_kernel.fetch_add(new_drops, std::memory_order_relaxed);
   warn_throttled(kernel_drops_log_, [&] {
     return fmt::format(
-        "OSC in {}: the system dropped {} datagrams. Increase net.core.rmem_max, or send bundles instead of single "
+        "OSC in {}: the system dropped {}. Increase net.core.rmem_max, or send bundles instead of single "
         "messages",
-        endpoint_text(socket.socket.local()), new_drops);
+        endpoint_text(socket.socket.local()), counted(new_drops, "datagram"));
   });
 }
 

@@ -40,10 +40,22 @@
     return { element: box, summary, free: close, refresh, path, children: () => rows };
   }
 
+  // The titles of the program's own nodes, as in the panel of the window; objects have the names that users gave them.
+  const TITLES = {
+    '/physics/sim': 'World', '/physics/body': 'Bodies', '/physics/gear': 'Gears', '/visuals': 'View', '/preset': 'Presets',
+    '/take': 'Takes', '/edit': 'Undo', '/osc': 'OSC counters',
+  };
+  const MEMBERS = { part: 'Parts', joint: 'Joints', motor: 'Motors', behavior: 'Behaviors' };
+
+  function titleOf(node) {
+    const group = /^\/physics\/body\/[^/]+\/([^/]+)$/.exec(node.FULL_PATH);
+    return TITLES[node.FULL_PATH] || (group && MEMBERS[group[1]]);
+  }
+
   function fillProperties(node, contents) {
     const items = [];
     for (const child of children(node)) {
-      const part = isObject(child) ? objectSection(child.FULL_PATH, widgets.label(child), fillProperties) : widgets.row(child);
+      const part = isObject(child) ? objectSection(child.FULL_PATH, titleOf(child) || widgets.label(child), fillProperties) : widgets.row(child);
       contents.append(part.element);
       items.push(part);
     }
@@ -62,12 +74,11 @@
     const top = [root.CONTENTS.scene, physics && physics.CONTENTS.sim, physics && physics.CONTENTS.body, root.CONTENTS.osc]
       .concat(children(physics || {}).filter((c) => !['sim', 'body', 'group'].includes(widgets.label(c))))
       .concat(children(root).filter((c) => !['scene', 'physics', 'osc', 'transport'].includes(widgets.label(c))));
-    const titles = { '/physics/sim': 'World', '/physics/body': 'Bodies', '/osc': 'OSC counters' };
     const place = byId('parameters');
     place.replaceChildren();
     for (const node of top) {
       if (!node || children(node).length === 0) continue;
-      const section = isObject(node) ? objectSection(node.FULL_PATH, titles[node.FULL_PATH] || widgets.sentenceCase(widgets.label(node)), fillProperties) : widgets.row(node);
+      const section = isObject(node) ? objectSection(node.FULL_PATH, titleOf(node) || widgets.sentenceCase(widgets.label(node)), fillProperties) : widgets.row(node);
       place.append(section.element);
       sections.push(section);
     }

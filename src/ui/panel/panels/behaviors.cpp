@@ -1,6 +1,8 @@
 // Behaviors: activates them by name on all bodies or the selected one, shows their time and errors, reorders, adds and
 // removes them.
 #include <algorithm>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,9 +13,11 @@
 #include "ui/panel/gui.h"
 #include "ui/panel/lua_path.h"
 #include "ui/panel/panel.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/behavior_entries.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber::panel {
 
@@ -37,8 +41,10 @@ class BehaviorsPanel : public Panel {
 
   void draw(GuiContext& context) override {
     const float side = ImGui::GetFrameHeight();
-    ImGui::TextDisabled("%s",
-                        body_ == 0 ? "All bodies" : std::string(context.value_snapshot->tree->name(body_)).c_str());
+    const std::string title = body_ == 0 ? "All bodies" : std::string(context.value_snapshot->tree->name(body_));
+    const float buttons = 3 * side + 3 * ImGui::GetStyle().ItemInnerSpacing.x;
+    ImGui::TextDisabled("%s", elided(title, ImGui::GetContentRegionAvail().x - buttons, text_width).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The list shows the behaviors of: %s", title.c_str());
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     ImGui::SameLine(ImGui::GetWindowWidth() - 3 * side - 2 * gap - ImGui::GetStyle().WindowPadding.x);
     ImGui::SetCursorPosY(ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y * 0.5F);
@@ -56,8 +62,11 @@ class BehaviorsPanel : public Panel {
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(entries_.size()), ImGui::GetFrameHeightWithSpacing());
     while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++)
-        draw_line(context, entries_[static_cast<std::size_t>(i)]);
+      const auto shown =
+          std::span(entries_).subspan(static_cast<std::size_t>(clipper.DisplayStart),
+                                      static_cast<std::size_t>(clipper.DisplayEnd - clipper.DisplayStart));
+      const std::vector<std::string> names = names_of(shown);
+      for (std::size_t i = 0; i < shown.size(); i++) draw_line(context, shown[i], names[i]);
     }
     if (entries_.empty()) ImGui::TextDisabled("No behaviors");
     ImGui::EndChild();
@@ -100,7 +109,35 @@ class BehaviorsPanel : public Panel {
     return ref && ref->property == nullptr ? ref->node : 0;
   }
 
-  void draw_line(GuiContext& context, const BehaviorEntry& entry) {
+  static std::string suffix_of(const BehaviorEntry& entry) {
+    return entry.group ? "group" : entry.nodes.size() > 1 ? fmt::format("\u00d7{}", entry.nodes.size()) : "";
+  }
+  static std::string time_of(const BehaviorEntry& entry) {
+    return entry.time >= 0.5 ? number_label(entry.time, {.decimals = 0}) + " µs" : "";
+  }
+  static float close_width() { return ImGui::GetFrameHeight() * 0.9F; }
+  // Width of an entry's name and suffix, beside the checkbox.
+  static float name_width(const BehaviorEntry& entry) {
+    return ImGui::GetContentRegionAvail().x - close_width() - text_width(time_of(entry)) -
+           ImGui::GetStyle().ItemInnerSpacing.x;
+  }
+
+  // Returns the names, shortened to the narrowest room of all entries, different for different names.
+  static std::vector<std::string> names_of(std::span<const BehaviorEntry> entries) {
+    std::vector<std::string> names;
+    const float used = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + 3;  // by the checkbox
+    float width = ImGui::GetContentRegionAvail().x;
+    for (const BehaviorEntry& entry : entries) {
+      names.push_back(entry.name);
+      const float sign = entry.error.empty() ? 0 : ImGui::GetFontSize() * 1.05F;
+      const std::string suffix = suffix_of(entry);
+      const float gap = suffix.empty() ? 0 : ImGui::GetFontSize() * 0.5F;
+      width = std::min(width, name_width(entry) - used - sign - gap - text_width(suffix));
+    }
+    return elided_apart(names, width, text_width);
+  }
+
+  void draw_line(GuiContext& context, const BehaviorEntry& entry, const std::string& name) {
     ImGui::PushID(entry.pattern.c_str());
     const std::string address = entry.pattern + "/active";
     const auto count = static_cast<int>(entry.nodes.size());
@@ -119,15 +156,14 @@ class BehaviorsPanel : public Panel {
                                                 {low.x + side * 0.75F, low.y + side * 0.58F},
                                                 packed_color(ThemeColor::accent));
     ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
-    draw_name(context, entry, active, count);
+    draw_name(context, entry, name, active, count);
     ImGui::PopID();
   }
 
-  void draw_name(GuiContext& context, const BehaviorEntry& entry, int active, int count) {
-    const std::string time = entry.time >= 0.5 ? fmt::format("{:.0f} µs", entry.time) : "";
-    const float right = ImGui::CalcTextSize(time.c_str()).x;
-    const float close = ImGui::GetFrameHeight() * 0.9F;
-    const float width = ImGui::GetContentRegionAvail().x - close - right - ImGui::GetStyle().ItemInnerSpacing.x;
+  void draw_name(GuiContext& context, const BehaviorEntry& entry, const std::string& name, int active, int count) {
+    const std::string time = time_of(entry);
+    const float close = close_width();
+    const float width = name_width(entry);
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const bool selected = context.selected == entry.pattern;
     if (ImGui::Selectable("##name", selected, 0, {std::max(width, 8.0F), ImGui::GetFrameHeight()}))
@@ -145,12 +181,9 @@ class BehaviorsPanel : public Panel {
                 ImGui::GetFontSize() * 0.4F, packed_color(ThemeColor::red));
       x += ImGui::GetFontSize() * 1.05F;
     }
-    list.PushClipRect(from, {from.x + width, from.y + ImGui::GetFrameHeight()}, true);
-    list.AddText({x, y}, packed_color(color), entry.name.c_str());
-    const std::string suffix = entry.group ? "group" : count > 1 ? fmt::format("\u00d7{}", count) : "";
-    const float end = x + ImGui::CalcTextSize(entry.name.c_str()).x;
-    list.AddText({end + ImGui::GetFontSize() * 0.5F, y}, packed_color(ThemeColor::secondary), suffix.c_str());
-    list.PopClipRect();
+    list.AddText({x, y}, packed_color(color), name.c_str());
+    list.AddText({x + text_width(name) + ImGui::GetFontSize() * 0.5F, y}, packed_color(ThemeColor::secondary),
+                 suffix_of(entry).c_str());
     list.AddText({from.x + width + ImGui::GetStyle().ItemInnerSpacing.x, y}, packed_color(ThemeColor::secondary),
                  time.c_str());
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - close);
@@ -167,7 +200,8 @@ class BehaviorsPanel : public Panel {
     if (!ImGui::IsItemHovered()) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
-    ImGui::Text("%s: %d of %d active", entry.type.c_str(), active, count);
+    ImGui::Text("%s (%s): %d of %d active", entry.name.c_str(), entry.type.c_str(), active, count);
+    if (entry.time >= 0.5) ImGui::TextDisabled("The time is that of the last tick, summed over all bodies");
     if (!entry.error.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, packed_color(ThemeColor::red));
       ImGui::TextUnformatted(entry.error.c_str());

@@ -1,6 +1,7 @@
 // OSC monitor: incoming and outgoing messages and the counters. A frequent address is shown only a few times per
 // second.
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <unordered_map>
 
@@ -8,8 +9,10 @@
 #include <imgui.h>
 
 #include "ui/panel/panel.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber::panel {
 
@@ -19,6 +22,17 @@ constexpr std::size_t kMonitorLines = 400;
 constexpr int kMonitorHiddenFrames = 30;  // frames without drawing until messages are no longer logged
 constexpr double kMonitorInterval = 0.5;  // s until an address is shown again
 constexpr std::size_t kMonitorAddresses = 4096;
+
+struct CounterText {
+  const char* name;
+  const char* hint;
+};
+constexpr CounterText kCounters[] = {
+    {"In", "Messages received"},
+    {"Out", "Datagrams sent"},
+    {"Rejected", "Messages received that had an error: unknown addresses, wrong arguments, no permission"},
+    {"Clamped", "Values received that were outside their range"},
+    {"Dropped", "Messages received that were lost"}};
 
 class OscPanel : public Panel {
  public:
@@ -65,18 +79,23 @@ class OscPanel : public Panel {
     const engine::Counters& c = context.link.counters;
     const std::uint64_t lost = c.dropped.load() + c.dropped_kernel.load();
     const std::uint64_t rejected = c.malformed.load() + c.denied.load() + c.unknown.load() + c.refused.load();
-    const std::string texts[] = {fmt::format("In {}", c.received.load()), fmt::format("Out {}", c.sent.load()),
-                                 fmt::format("Rejected {}", rejected), fmt::format("Clamped {}", c.clamped.load()),
-                                 fmt::format("Dropped {}", lost)};
+    const std::uint64_t counts[] = {c.received.load(), c.sent.load(), rejected, c.clamped.load(), lost};
     const ThemeColor tones[] = {ThemeColor::blue, ThemeColor::green,
                                 rejected > 0 ? ThemeColor::accent : ThemeColor::secondary, ThemeColor::secondary,
                                 lost > 0 ? ThemeColor::red : ThemeColor::secondary};
-    for (std::size_t i = 0; i < 5; i++) {
-      if (i > 0) ImGui::SameLine();
+    float x = 0;
+    for (std::size_t i = 0; i < std::size(kCounters); i++) {
+      const std::string text =
+          fmt::format("{} {}", kCounters[i].name, number_label(static_cast<double>(counts[i]), {.integer = true}));
+      // in a second line if there is no room for it
+      const bool fits = x + text_width(text) <= ImGui::GetContentRegionMax().x;
+      if (i > 0 && fits) ImGui::SameLine();
       ImGui::PushStyleColor(ImGuiCol_Text, packed_color(tones[i]));
-      ImGui::TextUnformatted(texts[i].c_str());
+      ImGui::TextUnformatted(text.c_str());
       ImGui::PopStyleColor();
+      x = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x + ImGui::GetStyle().ItemSpacing.x;
       context.names.add(fmt::format("osc.counter{}", i));
+      if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", kCounters[i].hint);
     }
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("Dropped by Limber: %llu, by the kernel: %llu",
@@ -109,11 +128,17 @@ class OscPanel : public Panel {
     ImGui::TextUnformatted(line.in ? "<" : ">");
     ImGui::PopStyleColor();
     ImGui::SameLine();
-    if (ImGui::Selectable(fmt::format("{}##{}", line.text, i).c_str())) context.copy_with_notice(line.text);
+    const std::string repeats =
+        line.repeats == 0 ? "" : "\u00d7" + number_label(static_cast<double>(line.repeats) + 1, {.integer = true});
+    const float space = repeats.empty() ? 0 : text_width(repeats) + ImGui::GetStyle().ItemSpacing.x;
+    const std::string text = elided(line.text, ImGui::GetContentRegionAvail().x - space, text_width);
+    if (ImGui::Selectable(fmt::format("{}###{}", text, i).c_str(), false, 0, {text_width(text), 0}))
+      context.copy_with_notice(line.text);
     context.names.add(fmt::format("osc.line{}", i));
-    if (line.repeats == 0) return;
+    if (text != line.text && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", line.text.c_str());
+    if (repeats.empty()) return;
     ImGui::SameLine();
-    ImGui::TextDisabled("\u00d7%llu", static_cast<unsigned long long>(line.repeats) + 1);
+    ImGui::TextDisabled("%s", repeats.c_str());
   }
 
   std::unique_ptr<engine::MessageLog::Watch> watch_;

@@ -66,7 +66,7 @@ class ParametersPanel : public Panel {
   void show_found(GuiContext& context) {
     for (const PropertyHandle& handle : search_.found()) {
       if (favorites_only_ && !context.settings.favorites.contains(handle.path)) continue;
-      property_line(context, handle, {.star = true, .with_path = true, .name_fraction = 0.36});
+      property_line(context, handle, {.star = true, .with_path = true});
     }
     if (search_.done() && search_.found().empty()) ImGui::TextDisabled("No results");
     if (search_.more()) ImGui::TextDisabled("There are more results; add a word");
@@ -77,8 +77,7 @@ class ParametersPanel : public Panel {
     // a copy, because a star may be removed during iteration
     const std::set<std::string> paths = context.settings.favorites;
     for (const std::string& path : paths) {
-      if (const auto handle = context.find(path))
-        property_line(context, *handle, {.star = true, .with_path = true, .name_fraction = 0.36});
+      if (const auto handle = context.find(path)) property_line(context, *handle, {.star = true, .with_path = true});
     }
     if (paths.empty()) ImGui::TextDisabled("Click the star of a property to add it");
   }

@@ -1,12 +1,17 @@
 // Performance: the time of a tick and its budget, its phases, and lost messages.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "ui/panel/imgui_versions.h"
 #include "ui/panel/panel.h"
+#include "ui/panel/text/number_format.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/samples.h"
 
 namespace limber::panel {
@@ -20,12 +25,20 @@ constexpr double kGraphUpdateInterval = 0.25;  // s between updates of the numbe
 struct Phase {
   const char* name;
   double engine::PhaseTimes::*time;
+  const char* hint;
 };
 constexpr std::array kPhases = {
-    Phase{"Commands", &engine::PhaseTimes::commands},   Phase{"Scripts", &engine::PhaseTimes::scripts},
-    Phase{"Behaviors", &engine::PhaseTimes::behaviors}, Phase{"Callbacks", &engine::PhaseTimes::callbacks},
-    Phase{"Physics", &engine::PhaseTimes::physics},     Phase{"Readouts", &engine::PhaseTimes::readouts},
-    Phase{"Snapshot", &engine::PhaseTimes::snapshot},   Phase{"GC", &engine::PhaseTimes::gc}};
+    Phase{"Commands", &engine::PhaseTimes::commands, "Messages from OSC, the panel and consoles, and preset morphs."},
+    Phase{"Scripts", &engine::PhaseTimes::scripts, "Timers, contact callbacks and on_step of the scene."},
+    Phase{"Behaviors", &engine::PhaseTimes::behaviors, "All active behaviors. The list of behaviors shows each time."},
+    Phase{"Callbacks", &engine::PhaseTimes::callbacks, "On-change callbacks: values that were set are passed on."},
+    Phase{"Physics", &engine::PhaseTimes::physics,
+          "Collisions, joints and motion. Usually the largest part; it grows with bodies, contacts and substeps."},
+    Phase{"Readouts", &engine::PhaseTimes::readouts, "Forces, contacts and other computed values."},
+    Phase{"Snapshot", &engine::PhaseTimes::snapshot, "Copy of the state for the view, the panel and OSC."},
+    Phase{"GC", &engine::PhaseTimes::gc, "Garbage collection of the scene's Lua memory."}};
+
+constexpr const char* kMeanHint = "Milliseconds per tick, averaged over about the last 20 ticks.";
 
 class PerformancePanel : public Panel {
  public:
@@ -50,9 +63,8 @@ class PerformancePanel : public Panel {
                           std::max(context.number("/physics/sim/speed", 1), 0.01) * 1e3;
     if (context.clock - updated_at_ > kGraphUpdateInterval) {
       updated_at_ = context.clock;
-      shown_ = {fmt::format("{:.2f} ms", mean_tick_), fmt::format("{:.2f} ms", max_), fmt::format("{:.1f} ms", budget),
-                fmt::format("{:.2f} \u00d7", context.snapshot->speed)};
-      for (std::size_t i = 0; i < kPhases.size(); i++) shown_phases_[i] = fmt::format("{:.2f} ms", means_[i]);
+      shown_ = {mean_tick_, max_, budget, context.snapshot->speed};
+      shown_phases_ = means_;
     }
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, ImGui::GetFontSize() * 0.12F});
     const float lines = ImGui::GetTextLineHeightWithSpacing() * 7.2F;
@@ -67,11 +79,32 @@ class PerformancePanel : public Panel {
  private:
   void numbers(GuiContext& context) const {
     const std::uint64_t lost = context.link.counters.dropped.load() + context.link.counters.dropped_kernel.load();
-    pair(context, "Tick", shown_[0], "Max", shown_[1]);
-    pair(context, "Budget", shown_[2], "Speed", shown_[3]);
-    for (std::size_t i = 0; i + 1 < kPhases.size(); i += 2)
-      pair(context, kPhases[i].name, shown_phases_[i], kPhases[i + 1].name, shown_phases_[i + 1]);
-    pair(context, "Dropped", fmt::format("{}", lost), "Queue", fmt::format("{}", context.link.command_queue.dropped()));
+    figure(context, 0, {"Tick", fmt::format("Computing time of a tick. {} Normal: below the budget.", kMeanHint)},
+           shown_[0]);
+    figure(context, 1,
+           {"Max",
+            "The slowest tick since the last click on the graph, in milliseconds. A single one above the budget delays "
+            "the show by its excess; the first ticks of a scene are slow."},
+           shown_[1]);
+    figure(context, 0,
+           {"Budget",
+            "Milliseconds of real time per tick: timestep / speed. Slower ticks make the simulation lag (Speed)."},
+           shown_[2]);
+    figure(context, 1,
+           {"Speed",
+            "Simulated seconds per real second. Normal: the speed that is set, 1 by default; less if ticks take longer "
+            "than the budget.",
+            " \u00d7"},
+           shown_[3]);
+    for (std::size_t i = 0; i < kPhases.size(); i++)
+      figure(context, i % 2, {kPhases[i].name, fmt::format("{} {}", kPhases[i].hint, kMeanHint)}, shown_phases_[i]);
+    figure(
+        context, 0,
+        {"Dropped", "OSC datagrams that were lost because they arrived faster than they were read. Normal: 0.", "", 0},
+        static_cast<double>(lost));
+    figure(context, 1,
+           {"Queue", "Messages that were dropped because the queue of the simulation was full. Normal: 0.", "", 0},
+           static_cast<double>(context.link.command_queue.dropped()));
   }
 
   void graph(GuiContext& context, float height, double budget) {
@@ -80,7 +113,7 @@ class PerformancePanel : public Panel {
     if (ImGui::InvisibleButton("##graph", {width, height})) max_ = 0;
     context.names.add("performance.graph");
     if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("Time of the last %d ticks in ms; the red line is the budget; click to reset the maximum",
+      ImGui::SetTooltip("Computing time of the last %d ticks; the red line is the budget; click to reset the maximum",
                         static_cast<int>(kGraphTicks));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 to{from.x + width, from.y + height};
@@ -103,21 +136,37 @@ class PerformancePanel : public Panel {
     list.PopClipRect();
   }
 
-  static void pair(GuiContext& context, const char* name, const std::string& value, const char* other,
-                   const std::string& second) {
-    const float half = ImGui::GetWindowWidth() / 2;
-    const float name_width = half * 0.5F;
-    const auto draw = [&](const char* label, const std::string& text, float x) {
-      ImGui::SameLine(x + 1);
-      ImGui::TextDisabled("%s", label);
-      ImGui::SameLine(x + name_width);
-      ImGui::PushFont(context.fonts.code);
-      ImGui::TextUnformatted(text.c_str());
-      ImGui::PopFont();
-    };
-    ImGui::Dummy({0, ImGui::GetTextLineHeight()});
-    draw(name, value, 0);
-    draw(other, second, half);
+  struct Label {
+    const char* name;
+    std::string hint;
+    const char* unit = " ms";
+    int decimals = 2;
+  };
+
+  // Draws a name and a value in the left (0) or right (1) column.
+  static void figure(GuiContext& context, std::size_t column, const Label& label, double value) {
+    const float half = std::floor(ImGui::GetContentRegionAvail().x / 2);
+    if (column > 0) ImGui::SameLine(half);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = (column > 0 ? ImGui::GetContentRegionAvail().x : half) - 1;
+    ImGui::Dummy({width, std::max(ImGui::GetTextLineHeight(), imgui::font_height(*context.fonts.code))});
+    context.names.add(fmt::format("performance.{}", label.name));
+    if (ImGui::IsItemHovered()) {
+      ImGui::BeginTooltip();
+      ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+      ImGui::TextUnformatted(label.hint.c_str());
+      ImGui::PopTextWrapPos();
+      ImGui::EndTooltip();
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddText(at, packed_color(ThemeColor::secondary), label.name);
+    const float x = ImGui::GetFontSize() * 5.2F;
+    ImGui::PushFont(context.fonts.code);
+    const float room = width - x - text_width(label.unit);
+    const NumberFormat format{.integer = label.decimals == 0, .decimals = label.decimals == 0 ? -1 : label.decimals};
+    const std::string text = fitted_number(value, format, room, text_width) + label.unit;
+    list.AddText({at.x + x, at.y - ImGui::GetFontSize() / 16}, packed_color(ThemeColor::text), text.c_str());
+    ImGui::PopFont();
   }
 
   std::shared_ptr<const engine::Snapshot> last_;
@@ -126,8 +175,8 @@ class PerformancePanel : public Panel {
   double max_ = 0;
   std::array<double, kPhases.size()> means_{};
   double updated_at_ = -1;
-  std::array<std::string, 4> shown_;
-  std::array<std::string, kPhases.size()> shown_phases_;
+  std::array<double, 4> shown_{};
+  std::array<double, kPhases.size()> shown_phases_{};
 };
 
 [[maybe_unused]] const bool kPerformancePanel =

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "ui/panel/panel.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/number_slider.h"
@@ -70,13 +71,15 @@ class PlotsPanel : public Panel {
     const bool closed = icon_button(context.names, ("unplot:" + path).c_str(), Icon::close, "Remove the plot");
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    std::string label = path;
+    std::string numbers;
     if (!series.samples.empty()) {
       for (std::size_t i = 0; i < series.width; i++)
-        label += fmt::format("  {}", number_label(series.samples[series.samples.size() - 1][i], false));
-      label += " " + series.unit;
+        numbers += "  " + number_label(series.samples[series.samples.size() - 1][i]);
+      numbers += " " + series.unit;
     }
-    ImGui::TextUnformatted(label.c_str());
+    const float space = ImGui::GetContentRegionAvail().x;
+    ImGui::TextUnformatted((elided(path, space - text_width(numbers), text_width) + numbers).c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", path.c_str());
     graph(series, ImGui::GetFontSize() * 3.4F);
     context.names.add("plot:" + path);
     ImGui::PopID();
@@ -110,9 +113,9 @@ class PlotsPanel : public Panel {
       list.AddPolyline(points.data(), static_cast<int>(points.size()),
                        packed_color(series.width == 1 ? ThemeColor::accent : kPlotColors[i]), 0, 1.4F);
     }
-    list.AddText({from.x + 4, from.y + 1}, packed_color(ThemeColor::secondary), number_label(high, false).c_str());
+    list.AddText({from.x + 4, from.y + 1}, packed_color(ThemeColor::secondary), number_label(high).c_str());
     list.AddText({from.x + 4, to.y - ImGui::GetFontSize() - 2}, packed_color(ThemeColor::secondary),
-                 number_label(low, false).c_str());
+                 number_label(low).c_str());
   }
 
   std::map<std::string, Series> series_;

@@ -1,10 +1,16 @@
 // Scene: the object tree; the parameters panel shows the properties of the selected object.
+#include <map>
+#include <span>
+#include <vector>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "ui/panel/panel.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/tree_list.h"
 
 namespace limber::panel {
@@ -38,9 +44,11 @@ class ScenePanel : public Panel {
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(lines.size()), height);
     while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++) {
-        if (draw_line(context, *tree, lines[static_cast<std::size_t>(i)]))
-          toggled = lines[static_cast<std::size_t>(i)].node;
+      const auto shown = std::span(lines).subspan(static_cast<std::size_t>(clipper.DisplayStart),
+                                                  static_cast<std::size_t>(clipper.DisplayEnd - clipper.DisplayStart));
+      const std::vector<std::string> titles = titles_of(*tree, shown);
+      for (std::size_t i = 0; i < shown.size(); i++) {
+        if (draw_line(context, *tree, shown[i], titles[i])) toggled = shown[i].node;
       }
     }
     if (scroll_to_ >= 0) ImGui::SetScrollY(height * static_cast<float>(scroll_to_) - ImGui::GetWindowHeight() / 2);
@@ -51,14 +59,35 @@ class ScenePanel : public Panel {
   }
 
  private:
+  static float indent_of(const TreeList::Line& l) {
+    return ImGui::GetFontSize() * 0.85F * (static_cast<float>(l.depth) + 1.2F);
+  }
+
+  // Returns the titles of lines, shortened to the width, different for all children of an object.
+  static std::vector<std::string> titles_of(const TreeSnapshot& tree, std::span<const TreeList::Line> lines) {
+    std::vector<std::string> titles(lines.size());
+    std::map<std::uint32_t, std::vector<std::size_t>> siblings;
+    for (std::size_t i = 0; i < lines.size(); i++) siblings[tree.nodes()[lines[i].node].parent].push_back(i);
+    for (const auto& [parent, members] : siblings) {
+      std::vector<std::string> names;
+      for (const std::size_t i : members) names.emplace_back(TreeList::title(tree, lines[i].node));
+      const TreeList::Line& first = lines[members.front()];
+      float width = ImGui::GetContentRegionAvail().x - indent_of(first);
+      if (first.depth <= 3) width -= text_width("00000");  // for the number of members
+      const std::vector<std::string> texts = elided_apart(names, width, text_width);
+      for (std::size_t k = 0; k < members.size(); k++) titles[members[k]] = texts[k];
+    }
+    return titles;
+  }
+
   // Returns true if the line was expanded or collapsed.
-  bool draw_line(GuiContext& context, const TreeSnapshot& tree, const TreeList::Line& l) {
+  bool draw_line(GuiContext& context, const TreeSnapshot& tree, const TreeList::Line& l, const std::string& title) {
     const TreeSnapshot::Node& node = tree.nodes()[l.node];
     const float indent = ImGui::GetFontSize() * 0.85F;
     const float height = ImGui::GetTextLineHeight();
     ImGui::PushID(static_cast<int>(l.node));
     const ImVec2 from = ImGui::GetCursorScreenPos();
-    const float x = from.x + indent * (static_cast<float>(l.depth) + 1.2F);
+    const float x = from.x + indent_of(l);
     const bool pressed = ImGui::Selectable("##line", l.node == selected_, 0, {0, height});
     const std::string path = tree.path(l.node);
     context.names.add("tree:" + path);
@@ -73,10 +102,8 @@ class ScenePanel : public Panel {
     if (l.expandable)
       draw_icon(l.expanded ? Icon::down : Icon::right, x - indent * 0.62F, from.y + height / 2, height * 0.24F,
                 packed_color(ThemeColor::secondary));
-    const std::string_view title = TreeList::title(tree, l.node);
-    ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.AddText({x, from.y}, packed_color(group ? ThemeColor::secondary : ThemeColor::text), title.data(),
-                 title.data() + title.size());
+    ImGui::GetWindowDrawList()->AddText({x, from.y}, packed_color(group ? ThemeColor::secondary : ThemeColor::text),
+                                        title.c_str());
     if (group && l.depth <= 3) draw_member_count(tree, l.node, from);
     ImGui::PopID();
     return toggled;

@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "base/plural.h"
 #include "ui/panel/panel.h"
+#include "ui/panel/text/number_format.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
 
@@ -39,15 +41,14 @@ class StatusPanel : public Panel {
     const auto s = static_cast<float>(context.scale);
     const bool wide = ImGui::GetWindowWidth() > 1500 * s;
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
-    std::string text = fmt::format("{:3.0f} fps", frame_rate_);
+    std::string text = number_label(frame_rate_, {.decimals = 0}) + " fps";
     if (wide) text += counts_text(*context.snapshot);
     const float indicator = ImGui::GetFontSize() * 0.9F;
-    const bool show_names = wide || compact;
     float width = ImGui::CalcTextSize(text.c_str()).x;
     const std::vector<engine::HealthEntry> losses = context.link.health.entries();
     const std::string lost = losses.empty() ? "" : fmt::format("{}", losses.size());
     if (!losses.empty()) width += indicator + ImGui::CalcTextSize(lost.c_str()).x + 12 * s;
-    for (const char* const name : kNames) width += indicator + (show_names ? ImGui::CalcTextSize(name).x : 0) + 6 * s;
+    for (const char* const name : kNames) width += indicator + ImGui::CalcTextSize(name).x + 6 * s;
     if (compact) {
       // beside the transport controls, in the first of two rows
       ImGui::SetCursorPos({0, ImGui::GetStyle().WindowPadding.y});
@@ -62,9 +63,12 @@ class StatusPanel : public Panel {
     }
     ImGui::TextUnformatted(text.c_str());
     context.names.add("status.text");
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("Frames of the window per second (usually 60). World: %s",
+                        counts_text(*context.snapshot).c_str());
     for (const Indicator& each : indicators(context)) {
       ImGui::SameLine(0, 6 * s);
-      draw_indicator(indicator, each, show_names);
+      draw_indicator(indicator, each);
       context.names.add(fmt::format("status.{}", each.name));
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", each.tip.c_str());
     }
@@ -84,20 +88,21 @@ class StatusPanel : public Panel {
     const std::uint64_t errors = context.errors;
     // errors are shown as a square, so that color is not the only cue
     return {Indicator{kNames[0], in ? ThemeColor::blue : ThemeColor::line, false,
-                      fmt::format("OSC in: {} messages", received_)},
+                      "OSC in: " + counted(received_, "message")},
             Indicator{kNames[1], out ? ThemeColor::green : ThemeColor::line, false,
-                      fmt::format("OSC out: {} datagrams", sent_)},
-            errors > 0
-                ? Indicator{kNames[2], ThemeColor::red, true, fmt::format("Scripts: {} errors, see Errors", errors)}
-                : Indicator{kNames[2], ThemeColor::green, false, "Scripts: no errors"}};
+                      "OSC out: " + counted(sent_, "datagram")},
+            errors > 0 ? Indicator{kNames[2], ThemeColor::red, true,
+                                   fmt::format("Scripts: {}, see Errors", counted(errors, "error"))}
+                       : Indicator{kNames[2], ThemeColor::green, false, "Scripts: no errors"}};
   }
   static std::string counts_text(const engine::Snapshot& snapshot) {
     if (snapshot.body_list == nullptr) return {};
     std::size_t parts = 0;
     for (const engine::BodyEntry& body : snapshot.body_list->bodies) parts += body.part_offsets.size();
-    return fmt::format("   {} bodies   {} parts", snapshot.body_list->bodies.size(), parts);
+    return fmt::format("   {}   {}", counted(snapshot.body_list->bodies.size(), "body", "bodies"),
+                       counted(parts, "part"));
   }
-  static void draw_indicator(float size, const Indicator& indicator, bool show_name) {
+  static void draw_indicator(float size, const Indicator& indicator) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float high = ImGui::GetFrameHeight();
     const ImVec2 center{at.x + size / 2, at.y + high / 2};
@@ -109,10 +114,9 @@ class StatusPanel : public Panel {
     } else {
       list.AddCircleFilled(center, half, packed_color(indicator.color), 16);
     }
-    ImGui::Dummy({size + (show_name ? ImGui::CalcTextSize(indicator.name).x : 0), high});
-    if (show_name)
-      list.AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(ThemeColor::secondary),
-                   indicator.name);
+    ImGui::Dummy({size + ImGui::CalcTextSize(indicator.name).x, high});
+    list.AddText({at.x + size, at.y + ImGui::GetStyle().FramePadding.y}, packed_color(ThemeColor::secondary),
+                 indicator.name);
   }
   // A warning sign and the number of kinds of losses; a click copies the list.
   static void draw_losses(GuiContext& context, const std::vector<engine::HealthEntry>& losses,

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
+
 namespace limber::panel {
 
 ErrorEntry parse_error_line(const LogLine& line) {
@@ -38,7 +40,7 @@ std::string ErrorList::count_text() const {
   const std::size_t warnings = entries_.size() - error_count();
   std::string text = error_count() == 0 ? "" : fmt::format("{}", error_count());
   if (warnings == 0) return text;
-  return text + fmt::format("{}{} warning{}", text.empty() ? "" : " + ", warnings, warnings == 1 ? "" : "s");
+  return text + (text.empty() ? "" : " + ") + counted(warnings, "warning");
 }
 
 std::size_t ErrorList::error_count() const {

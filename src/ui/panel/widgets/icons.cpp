@@ -7,7 +7,9 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/widget_names.h"
 
 namespace limber::panel {
@@ -155,7 +157,9 @@ bool search_field(WidgetNames& names, const char* name, const char* hint, std::s
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {style.FramePadding.x + icon_width, style.FramePadding.y});
   ImGui::SetNextItemWidth(width);
   ImGui::PushID(name);
-  const bool changed = ImGui::InputTextWithHint("##search", hint, &text, ImGuiInputTextFlags_AutoSelectAll);
+  const float space = (width < 0 ? ImGui::GetContentRegionAvail().x : width) - 2 * ImGui::GetStyle().FramePadding.x;
+  const std::string shown = elided(hint, space, text_width);
+  const bool changed = ImGui::InputTextWithHint("##search", shown.c_str(), &text, ImGuiInputTextFlags_AutoSelectAll);
   ImGui::PopID();
   ImGui::PopStyleVar();
   names.add(name);

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
-#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double kMaxLinearSpan = 200;    // wider ranges get a nonlinear scale
 constexpr double kDefaultPosition = 0.4;  // position of the default value on the slider
+constexpr double kNoise = 1e-6;           // fraction of a linear range below which a value shows 0
+constexpr float kSidePadding = 0.5F;      // space beside a number, in units of the frame's padding
 
 double round_to_digits(double value) {
   if (value == 0 || !std::isfinite(value)) return value;
@@ -24,7 +27,20 @@ double round_to_digits(double value) {
   return std::round(value / unit) * unit;
 }
 
-void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGuiID id, int axis) {
+// The mark at the value. It leaves out the text, so that it covers no digit.
+void draw_mark(float x, float width, const ImRect& box, const TextSpan& text) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto part = [&](float top, float bottom) {
+    list.AddRectFilled({x - width / 2, top}, {x + width / 2, bottom}, packed_color(ThemeColor::accent));
+  };
+  const float margin = ImGui::GetStyle().FramePadding.y - 1;
+  const float beside = 1 + width;
+  if (x + beside < text.begin || x - beside > text.end) return part(box.Min.y + 1, box.Max.y - 1);
+  part(box.Min.y, box.Min.y + margin);
+  part(box.Max.y - margin, box.Max.y);
+}
+
+void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGuiID id, int axis, double zero_below) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImGuiStyle& style = ImGui::GetStyle();
   const bool active = ImGui::GetActiveID() == id;
@@ -32,22 +48,21 @@ void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGu
   ImGui::RenderNavHighlight(box, id);
   list.AddRectFilled(box.Min, box.Max, packed_color(active || hovered ? ThemeColor::hover : ThemeColor::field),
                      style.FrameRounding);
+  const float mark = std::max(style.GrabMinSize * 0.5F, 1.0F);
+  float end = box.Min.x;
   if (range.bounded()) {
     const auto at = [&](double v) {
       const double position = std::clamp(range.position_of(v), 0.0, 1.0);
       return box.Min.x + static_cast<float>(position) * box.GetWidth();
     };
     const float zero = at(std::clamp(0.0, range.min, range.max));
-    const float end = at(value);
-    const float mark = std::max(style.GrabMinSize * 0.5F, 1.0F);
+    end = at(value);
     const float default_x = at(range.default_value);
     list.PushClipRect(box.Min, box.Max, true);
     list.AddRectFilled({std::min(zero, end), box.Min.y}, {std::max(zero, end), box.Max.y},
                        packed_color(ThemeColor::fill), style.FrameRounding);
-    list.AddLine({default_x, box.Max.y - box.GetHeight() * 0.18F}, {default_x, box.Max.y},
+    list.AddLine({default_x, box.Max.y - style.FramePadding.y}, {default_x, box.Max.y},
                  packed_color(ThemeColor::secondary), 1);
-    const float x = std::clamp(end, box.Min.x + mark, box.Max.x - mark);
-    list.AddRectFilled({x - mark / 2, box.Min.y + 1}, {x + mark / 2, box.Max.y - 1}, packed_color(ThemeColor::accent));
     list.PopClipRect();
   }
   constexpr ThemeColor kAxes[] = {ThemeColor::red, ThemeColor::green, ThemeColor::blue};
@@ -55,9 +70,9 @@ void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGu
     list.AddRectFilled(box.Min, {box.Min.x + std::max(style.GrabMinSize * 0.6F, 2.0F), box.Max.y},
                        packed_color(kAxes[axis]), style.FrameRounding, ImDrawFlags_RoundCornersLeft);
   }
-  const std::string text = number_label(value, range.integer);
-  ImGui::RenderTextClipped({box.Min.x + style.FramePadding.x * 0.5F, box.Min.y}, box.Max, text.c_str(),
-                           text.c_str() + text.size(), nullptr, {0.5F, 0.5F});
+  const NumberFormat format{zero_below < 0 ? range.zero_below() : zero_below, range.integer};
+  const TextSpan text = draw_number(value, format, {box.Min.x, box.Min.y, box.GetWidth(), box.GetHeight()});
+  if (range.bounded()) draw_mark(std::clamp(end, box.Min.x + mark, box.Max.x - mark), mark, box, text);
 }
 
 }  // namespace
@@ -67,7 +82,7 @@ bool SliderRange::bounded() const { return std::isfinite(min) && std::isfinite(m
 double SliderRange::exponent() const {
   const double bound = std::max(std::abs(min), std::abs(max));
   const double size = default_value == 0 ? 1 : std::abs(default_value);
-  if (max - min <= kMaxLinearSpan || size > bound / 20 || (min < 0 && max < 0)) return 1;
+  if (linear || max - min <= kMaxLinearSpan || size > bound / 20 || (min < 0 && max < 0)) return 1;
   // the default value is at kDefaultPosition from the lower end, or from zero if the range contains it
   const double span = min >= 0 ? max - min : bound;
   return std::log(std::max(size - std::max(min, 0.0), 1e-12) / span) / std::log(kDefaultPosition);
@@ -92,14 +107,31 @@ double SliderRange::value_at(double position) const {
   return zero < 1 ? max * std::pow((position - zero) / (1 - zero), p) : 0;
 }
 
-std::string number_label(double value, bool integer) {
-  if (!std::isfinite(value)) return value > 0 ? "inf" : "-inf";
-  if (integer) return fmt::format("{:.0f}", value);
-  const std::string text = fmt::format("{:.5g}", value);
-  return text == "-0" ? "0" : text;
+double SliderRange::zero_below() const {
+  return bounded() && exponent() == 1 ? (max - min) * kNoise : std::numeric_limits<double>::epsilon();
 }
 
-bool number_slider(const char* id_text, const SliderRange& range, float width, double& value, int axis) {
+float text_width(std::string_view text) { return ImGui::CalcTextSize(text.data(), text.data() + text.size()).x; }
+
+float min_number_width(const SliderRange& range) {
+  const bool short_exponent = range.bounded() && range.zero_below() > 1e-10 && std::abs(range.max) < 1e5;
+  return text_width(short_exponent ? "-0.001" : "-1.2e-5") + 2 * ImGui::GetStyle().FramePadding.x * kSidePadding;
+}
+
+TextSpan draw_number(double value, const NumberFormat& format, const PanelRect& field) {
+  const auto x = static_cast<float>(field.x);
+  const auto width = static_cast<float>(field.width);
+  const std::string text =
+      fitted_number(value, format, width - 2 * ImGui::GetStyle().FramePadding.x * kSidePadding, text_width);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const ImVec2 at{std::floor(x + std::max((width - size.x) / 2, 0.0F)),
+                  static_cast<float>(field.y + (field.height - static_cast<double>(size.y)) / 2)};
+  ImGui::GetWindowDrawList()->AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+  return {at.x, at.x + size.x};
+}
+
+bool number_slider(const char* id_text, const SliderRange& range, float width, double& value, int axis,
+                   double zero_below) {
   ImGuiWindow* const window = ImGui::GetCurrentWindow();
   if (window->SkipItems) return false;
   ImGuiContext& g = *ImGui::GetCurrentContext();
@@ -145,7 +177,7 @@ bool number_slider(const char* id_text, const SliderRange& range, float width, d
     if (changed) value = round_to_digits(value);
   }
   if (changed && range.integer) value = std::round(value);
-  draw_slider(box, range, value, id, axis);
+  draw_slider(box, range, value, id, axis, zero_below);
   return changed;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -12,8 +14,12 @@
 #include "properties/property_text.h"
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/lua_path.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/euler_fields.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/line_layout.h"
+#include "ui/panel/widgets/number_fields.h"
 #include "ui/panel/widgets/number_slider.h"
 
 namespace limber::panel {
@@ -22,32 +28,21 @@ namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z", "w"};
 
-bool is_color(const Property& property) { return property.type == PropertyType::vec3 && property.unit == "hsb"; }
-
-SliderRange range_of(const Property& property, std::size_t i) {
-  return {property.low(i), property.high(i), property.initial[i], property.step,
-          property.type == PropertyType::integer};
-}
-
-std::string axis_name(const PropertyHandle& handle, std::size_t i) {
-  return handle.ref.property->width > 1 ? fmt::format("{}/{}", handle.path, i) : handle.path;
-}
-
-// Writable numbers: one bar for each, side by side.
+// Writable numbers: one bar for each, side by side if there is room.
 void numbers(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   const Property& property = *handle.ref.property;
-  const float gap = ImGui::GetStyle().ItemInnerSpacing.x * 0.7F;
-  const auto count = static_cast<float>(property.width);
-  const float each = (width - gap * (count - 1)) / count;
+  const FieldGrid grid = field_grid(property, width, context.fonts.code);
+  const float left = ImGui::GetCursorPosX();
   bool changed = false;
   bool dragging = false;
   ImGui::PushFont(context.fonts.code);
   for (std::size_t i = 0; i < property.width; i++) {
-    if (i > 0) ImGui::SameLine(0, gap);
-    changed |= number_slider(fmt::format("##{}", i).c_str(), range_of(property, i), each, values[i],
-                             property.width == 3 && !is_color(property) ? static_cast<int>(i) : -1);
+    next_field(i, grid, left);
+    changed |= number_slider(fmt::format("##{}", i).c_str(), range_of(property, i), grid.each, values[i],
+                             property.width == 3 && !is_color(property) ? static_cast<int>(i) : -1,
+                             zero_below(property, i, values));
     dragging |= ImGui::IsItemActive();
-    context.names.add(axis_name(handle, i));
+    context.names.add(component_name(handle, i));
     ImGui::PopFont();
     property_hint(context, handle);
     ImGui::PushFont(context.fonts.code);
@@ -65,7 +60,7 @@ void checkboxes(GuiContext& context, const PropertyHandle& handle, PendingValues
       values[i] = on ? 1 : 0;
       context.set(handle, values, false);
     }
-    context.names.add(axis_name(handle, i));
+    context.names.add(component_name(handle, i));
     property_hint(context, handle);
   }
 }
@@ -74,8 +69,10 @@ void choice(GuiContext& context, const PropertyHandle& handle, PendingValues::Va
   const Property& property = *handle.ref.property;
   const auto selected = static_cast<std::size_t>(std::max(values[0], 0.0));
   ImGui::SetNextItemWidth(width);
-  const bool open =
-      ImGui::BeginCombo("##choice", selected < property.choices.size() ? property.choices[selected].c_str() : "");
+  const float space = width - ImGui::GetFrameHeight() - 2 * ImGui::GetStyle().FramePadding.x;
+  const bool open = ImGui::BeginCombo("##choice", selected < property.choices.size()
+                                                      ? elided(property.choices[selected], space, text_width).c_str()
+                                                      : "");
   if (!open) {
     context.names.add(handle.path);
     return property_hint(context, handle);
@@ -96,7 +93,7 @@ void color(GuiContext& context, const PropertyHandle& handle, PendingValues::Val
   float rgb[3];
   ImGui::ColorConvertHSVtoRGB(hsb[0], hsb[1], hsb[2], rgb[0], rgb[1], rgb[2]);
   const float height = ImGui::GetFrameHeight();
-  const float swatch = height * 1.5F;
+  const float swatch = swatch_width() - ImGui::GetStyle().ItemInnerSpacing.x;
   constexpr ImGuiColorEditFlags kPlain = ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop;
   if (ImGui::ColorButton("##swatch", {rgb[0], rgb[1], rgb[2], 1}, kPlain, {swatch, height})) ImGui::OpenPopup("picker");
   context.names.add("swatch:" + handle.path);
@@ -117,32 +114,57 @@ void color(GuiContext& context, const PropertyHandle& handle, PendingValues::Val
   numbers(context, handle, values, width - swatch - ImGui::GetStyle().ItemInnerSpacing.x);
 }
 
-// A read-only value as plain text.
+// The text of a read-only value that is no number.
+std::string readout_label(GuiContext& context, const PropertyHandle& handle, double value) {
+  const Property& property = *handle.ref.property;
+  if (property.type == PropertyType::text) {
+    std::string text(context.text(handle.ref));
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+  if (property.type == PropertyType::boolean || property.type == PropertyType::flags3) return value != 0 ? "yes" : "no";
+  const auto label = static_cast<std::size_t>(std::max(value, 0.0));
+  return label < property.choices.size() ? property.choices[label] : number_label(value, {.integer = true});
+}
+
+// A read-only value as plain text, in the places of fields.
 void readout_text(GuiContext& context, const PropertyHandle& handle, const PendingValues::Values& values, float width) {
   const Property& property = *handle.ref.property;
-  std::string text;
-  const bool is_boolean = property.type == PropertyType::boolean || property.type == PropertyType::flags3;
-  if (property.type == PropertyType::text) text = context.text(handle.ref);
-  for (std::size_t i = 0; i < property.width && property.type != PropertyType::text; i++) {
-    const auto label = static_cast<std::size_t>(std::max(values[i], 0.0));
-    if (i > 0) text += "  ";
-    text += is_boolean ? (values[i] != 0 ? "yes" : "no")
-            : property.type == PropertyType::choice && label < property.choices.size()
-                ? property.choices[label]
-                : number_label(values[i], property.type == PropertyType::integer);
+  const bool numeric = is_numeric(property);
+  const FieldGrid grid =
+      numeric ? field_grid(property, width, context.fonts.code) : field_grid(std::max(property.width, 1u), width, 0);
+  const float left = ImGui::GetCursorPosX();
+  const bool is_error = property.name == "error" && !context.text(handle.ref).empty();
+  for (std::size_t i = 0; i < std::max(property.width, 1u); i++) {
+    next_field(i, grid, left);
+    ImGui::PushFont(context.fonts.code);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImGui::Dummy({grid.each, height});
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(is_error ? ThemeColor::red : ThemeColor::text));
+    if (numeric) {
+      draw_number(values[i], {zero_below(property, i, values), property.type == PropertyType::integer},
+                  {from.x, from.y, grid.each, height});
+    } else {
+      const std::string label = readout_label(context, handle, values[i]);
+      const std::string text = elided(label, grid.each, text_width);
+      if (text != label && ImGui::IsItemHovered()) {
+        ImGui::BeginTooltip();
+        ImGui::PushTextWrapPos(ImGui::GetFontSize() * 26);
+        ImGui::TextUnformatted(label.c_str());
+        ImGui::PopTextWrapPos();
+        ImGui::EndTooltip();
+      }
+      const bool centered = property.type != PropertyType::text;
+      const float x = centered ? std::floor(from.x + (grid.each - text_width(text)) / 2) : from.x;
+      ImGui::GetWindowDrawList()->AddText({x, from.y + ImGui::GetStyle().FramePadding.y},
+                                          ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+    }
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+    context.names.add(component_name(handle, i));
+    property_hint(context, handle);
   }
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  const bool is_error = property.name == "error" && !text.empty();
-  ImGui::PushFont(context.fonts.code);
-  const ImVec2 from = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({width, ImGui::GetFrameHeight()});
-  context.names.add(handle.path);
-  const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(is_error ? ThemeColor::red : ThemeColor::text));
-  imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
-  ImGui::PopStyleColor();
-  ImGui::PopFont();
-  property_hint(context, handle);
 }
 
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
@@ -151,10 +173,11 @@ std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
 void action(GuiContext& context, const PropertyHandle& handle, float width) {
   const Property& property = *handle.ref.property;
   ImGuiStorage& storage = *ImGui::GetStateStorage();
-  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
-  const auto fields = static_cast<float>(property.min_args);
-  const float button = property.min_args == 0 ? width : width * 0.34F;
-  if (ImGui::Button(property_label(property).c_str(), {button, 0})) {
+  const ActionLayout layout = action_layout(context, property, width);
+  const float left = ImGui::GetCursorPosX();
+  const std::string label =
+      elided(property_label(property), layout.button - 2 * ImGui::GetStyle().FramePadding.x + 1, text_width);
+  if (ImGui::Button(fmt::format("{}###act", label).c_str(), {layout.button, 0})) {
     std::vector<Arg> args;
     for (std::uint32_t i = 0; i < property.min_args; i++)
       args.push_back(Arg::of(static_cast<double>(storage.GetFloat(ImGui::GetID(field_id(i).c_str()) + 1))));
@@ -162,17 +185,22 @@ void action(GuiContext& context, const PropertyHandle& handle, float width) {
   }
   context.names.add(handle.path);
   property_hint(context, handle);
-  const float each = (width - button - gap * fields) / std::max(fields, 1.0F);
-  ImGui::PushFont(context.fonts.code);
   for (std::uint32_t i = 0; i < property.min_args; i++) {
-    ImGui::SameLine(0, gap);
+    if (i == 0 && !layout.below) {
+      ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    } else if (i == 0) {
+      ImGui::SetCursorPosX(left);
+    } else {
+      next_field(i, layout.fields, left);
+    }
     float* const number = storage.GetFloatRef(ImGui::GetID(field_id(i).c_str()) + 1, 0);
     double value = static_cast<double>(*number);
-    const SliderRange range{-kUnbounded, kUnbounded, 1, 0, false};
-    if (number_slider(field_id(i).c_str(), range, each, value, -1)) *number = static_cast<float>(value);
+    ImGui::PushFont(context.fonts.code);
+    if (number_slider(field_id(i).c_str(), kArgument, layout.fields.each, value)) *number = static_cast<float>(value);
+    ImGui::PopFont();
     context.names.add(fmt::format("{}/{}", handle.path, i));
+    property_hint(context, handle);
   }
-  ImGui::PopFont();
 }
 
 void reset_button(GuiContext& context, const PropertyHandle& handle, float side) {
@@ -204,15 +232,21 @@ void star_button(GuiContext& context, const std::string& path, float side) {
             ImGui::GetFontSize() * 0.4F, packed_color(starred || hovered ? ThemeColor::accent : ThemeColor::secondary));
 }
 
-void name_text(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options, bool bright,
-               float width) {
-  const std::string text = options.with_path ? handle.path : property_label(*handle.ref.property);
+// Draws the lines of the name, and the unit after the last one if it isn't beside the widget.
+void name_text(GuiContext& context, const PropertyHandle& handle, const LineLayout& layout, bool bright) {
   const ImVec2 from = ImGui::GetCursorScreenPos();
-  ImGui::Dummy({width, ImGui::GetFrameHeight()});
-  const float y = from.y + ImGui::GetStyle().FramePadding.y;
-  ImGui::PushStyleColor(ImGuiCol_Text, packed_color(bright ? ThemeColor::text : ThemeColor::secondary));
-  imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
-  ImGui::PopStyleColor();
+  const float line = ImGui::GetTextLineHeight();
+  ImGui::Dummy({layout.name_width, layout.name_height});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  float y = from.y + ImGui::GetStyle().FramePadding.y;
+  for (const std::string& text : layout.name) {
+    list.AddText({from.x, y}, packed_color(bright ? ThemeColor::text : ThemeColor::secondary), text.c_str());
+    y += line;
+  }
+  if (layout.above && !layout.unit.empty()) {
+    const float x = from.x + text_width(layout.name.back()) + ImGui::GetFontSize() * 0.6F;
+    list.AddText({x, y - line}, packed_color(ThemeColor::secondary), layout.unit.c_str());
+  }
   context.names.add("name:" + handle.path);
   property_hint(context, handle);
 }
@@ -232,12 +266,6 @@ void property_tooltip(const PropertyHandle& handle) {
   ImGui::PopStyleColor();
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
-}
-
-// True if the unit is shown beside the widget.
-bool shows_unit(const Property& property) {
-  return !property.unit.empty() && property.unit != "hsb" && property.unit.size() <= 8 &&
-         property.kind != PropertyKind::action;
 }
 
 }  // namespace
@@ -289,40 +317,48 @@ void property_widget(GuiContext& context, const PropertyHandle& handle, float wi
 
 void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
   const Property& property = *handle.ref.property;
-  const float height = ImGui::GetFrameHeight();
   const float width = ImGui::GetContentRegionAvail().x;
-  const bool below = options.with_path;
-  const float lines = below ? 2 * height + ImGui::GetStyle().ItemSpacing.y : height;
-  if (!ImGui::IsRectVisible({width, lines}) && !ImGui::IsAnyItemActive()) return ImGui::Dummy({width, lines});
+  // lines outside the visible area have the height of the last time
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID key = ImGui::GetID(handle.path.c_str());
+  const float mode = width + (options.with_path ? 0.5F : 0);
+  const float known = storage.GetFloat(key + 1) == mode ? storage.GetFloat(key) : 0;
+  const auto hidden = [&](float height) { return !ImGui::IsRectVisible({width, height}) && !ImGui::IsAnyItemActive(); };
+  if (known > 0 && hidden(known)) return ImGui::Dummy({width, known});
+  const LineLayout layout = line_layout(context, handle, options, width);
+  storage.SetFloat(key, layout.height);
+  storage.SetFloat(key + 1, mode);
+  if (hidden(layout.height)) return ImGui::Dummy({width, layout.height});
   ImGui::PushID(handle.path.c_str());
-  const float side = height * 0.86F;
+  const float start = ImGui::GetCursorStartPos().x;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
   PendingValues::Values values{};
   const bool differs = context.values(handle, values) && property.kind == PropertyKind::setting &&
                        differs_from_default(property, values);
   if (options.star) {
-    star_button(context, handle.path, side);
+    star_button(context, handle.path, reset_width());
     ImGui::SameLine(0, gap * 0.5F);
   }
-  const float left = options.star ? side + gap * 0.5F : 0;
-  const float name = below ? width - left : static_cast<float>(options.name_fraction) * width - left;
-  name_text(context, handle, options, differs || !property.writable(), name - gap);
-  if (below) {
-    ImGui::SetCursorPosX(ImGui::GetCursorPosX() + left);
-  } else {
-    ImGui::SameLine(left + name + ImGui::GetCursorStartPos().x);
+  if (!layout.name.empty()) name_text(context, handle, layout, differs || !property.writable());
+  if (layout.above) {
+    ImGui::SetCursorPos({start + layout.left, ImGui::GetCursorPosY() - ImGui::GetStyle().ItemSpacing.y + kNameSpacing});
+  } else if (!layout.name.empty()) {
+    ImGui::SameLine(start + layout.left + layout.name_width + gap);
   }
-  const bool unit = shows_unit(property);
-  const float units = unit ? ImGui::GetFontSize() * 2.3F : 0;
-  property_widget(context, handle, width - left - (below ? 0 : name) - side - gap - units);
-  if (unit) {
-    ImGui::SameLine(width - side - gap - units + gap * 0.7F + ImGui::GetCursorStartPos().x);
+  const float widget_x = ImGui::GetCursorPosX();
+  property_widget(context, handle, layout.widget_width);
+  if (!layout.above && !layout.unit.empty()) {
+    ImGui::SameLine(widget_x + layout.widget_width + gap * 0.7F);
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%s", property.unit.c_str());
+    ImGui::TextDisabled("%s", layout.unit.c_str());
   }
   if (differs) {
-    ImGui::SameLine(width - side + ImGui::GetCursorStartPos().x);
-    reset_button(context, handle, side);
+    ImGui::SameLine(start + width - reset_width());
+    reset_button(context, handle, reset_width());
+  }
+  if (property.type == PropertyType::quat) {
+    ImGui::SetCursorPosX(widget_x);
+    euler_fields(context, handle, values, layout.widget_width);
   }
   ImGui::PopID();
 }

@@ -13,7 +13,7 @@ namespace limber::panel {
 struct PropertyLineOptions {
   bool star = true;             ///< Button that marks it as a favorite.
   bool with_path = false;       ///< Show the address instead of the name.
-  double name_fraction = 0.36;  ///< Fraction of the width for the name.
+  double name_fraction = 0.46;  ///< Fraction of the width for the name.
 };
 
 /// Draws a line with star, name, widget and reset button. A line outside the visible area is skipped. Its widgets are

@@ -10,6 +10,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "ui/panel/text/number_format.h"
 #include "ui/panel/theme.h"
 
 namespace limber::panel {
@@ -35,9 +36,9 @@ void draw_history(const HistoryRange& range, double dragged_back, bool highlight
     list.AddRectFilled({at(dragged_back) - mark / 2, low.y + 1}, {at(dragged_back) + mark / 2, high.y - 1},
                        packed_color(ThemeColor::accent));
   }
-  std::string text = fmt::format("{:.1f} s back", range.rewindable);
+  std::string text = number_label(range.rewindable, {.decimals = 1}) + " s back";
   if (range.length <= 0) text = "No history";
-  if (dragged_back > 0) text = fmt::format("-{:.1f} s", dragged_back);
+  if (dragged_back > 0) text = "-" + number_label(dragged_back, {.decimals = 1}) + " s";
   ImGui::RenderTextClipped(low, high, text.c_str(), text.c_str() + text.size(), nullptr, {0.5F, 0.5F});
 }
 

@@ -15,10 +15,13 @@ struct Title {
   std::string_view name, title;
 };
 // Titles of the top-level nodes in display order; other nodes follow.
-constexpr std::array kTitles = {
-    Title{"scene", "Scene"},         Title{"sim", "World"},      Title{"body", "Bodies"},
-    Title{"gear", "Gears"},          Title{"group", "Groups"},   Title{"visuals", "View"},
-    Title{"transport", "Transport"}, Title{"preset", "Presets"}, Title{"osc", "OSC counters"}};
+constexpr std::array kTitles = {Title{"scene", "Scene"},         Title{"sim", "World"},       Title{"body", "Bodies"},
+                                Title{"gear", "Gears"},          Title{"group", "Groups"},    Title{"visuals", "View"},
+                                Title{"transport", "Transport"}, Title{"preset", "Presets"},  Title{"take", "Takes"},
+                                Title{"edit", "Undo"},           Title{"osc", "OSC counters"}};
+// Titles of the groups of a body's members.
+constexpr std::array kMembers = {Title{"part", "Parts"}, Title{"joint", "Joints"}, Title{"motor", "Motors"},
+                                 Title{"behavior", "Behaviors"}};
 
 std::size_t rank(std::string_view name) {
   const auto* found = std::find_if(kTitles.begin(), kTitles.end(), [&](const Title& t) { return t.name == name; });
@@ -44,7 +47,10 @@ std::string_view TreeList::title(const TreeSnapshot& tree, std::uint32_t node) {
   const std::uint32_t parent = tree.nodes()[node].parent;
   const bool top = parent == 0 || (tree.nodes()[parent].parent == 0 && tree.name(parent) == "physics");
   const std::size_t at = rank(name);
-  return top && at < kTitles.size() ? kTitles[at].title : name;
+  if (top && at < kTitles.size()) return kTitles[at].title;
+  if (!tree.nodes()[node].table->properties().empty()) return name;
+  const auto* members = std::find_if(kMembers.begin(), kMembers.end(), [&](const Title& t) { return t.name == name; });
+  return members == kMembers.end() ? name : members->title;
 }
 
 // Returns the root's children, with /physics replaced by its children.
