@@ -196,7 +196,7 @@ TEST_P(Studies, EveryMessageIsAccepted) {
   }
   player.play(0.5);
   EXPECT_EQ(player.engine->faults(), 0u);
-  EXPECT_GE(messages.size(), GetParam().page == "study_batch" ? 0u : 1u);
+  EXPECT_EQ(messages.empty(), GetParam().page == "study_batch") << "a batch gets no messages";
 }
 
 INSTANTIATE_TEST_SUITE_P(Docs, Studies, testing::ValuesIn(kStudies),
@@ -296,14 +296,15 @@ TEST(StudyOfBatch, TheCommandsWork) {
     if (command && line.find("--render") == std::string::npos) commands += line.substr(4) + "\n";
   }
   commands = std::regex_replace(commands, std::regex("1 2 3 4 5 6 7 8 9 10"), "1");
+  commands = std::regex_replace(commands, std::regex("in -0.1 0 0.1"), "in -0.1");
   app::test::Process shell({"sh", "-e", "-c", commands}, reader.path());
   const RunResult result = shell.finish();
   EXPECT_EQ(result.code, 0) << result.err;
-  const std::regex line("1,(-0.1|0|0.1)(,[0-9]+){14}\n");
+  const std::regex line("1,-0.1(,[0-9]+){14}");
   std::istringstream table(content(reader.path("results.csv")));
   int lines = 0;
-  for (std::string row; std::getline(table, row); lines++) EXPECT_TRUE(std::regex_match(row + "\n", line)) << row;
-  EXPECT_EQ(lines, 3);
+  for (std::string row; std::getline(table, row); lines++) EXPECT_TRUE(std::regex_match(row, line)) << row;
+  EXPECT_EQ(lines, 1);
   EXPECT_TRUE(content(reader.path("seed7.csv")).starts_with("time,ball1/part/ball/x,"));
   const std::regex hash("hash ([0-9a-f]{16}) tick 960\n");
   const auto hashes = std::distance(std::sregex_iterator(result.out.begin(), result.out.end(), hash), {});
