@@ -36,9 +36,12 @@ for i, name in ipairs { "arm", "the_upper_segment_of_the_left_leg", "the_lower_s
   body:add_behavior("force", "push_the_upper_segment_of_the_left_leg", { amp = 0 })
   body:add_behavior("force", "push_the_lower_segment_of_the_left_leg", { amp = 0 })
 end
-for _, kind in ipairs { "alignment", "cohesion", "force", "random_force", "random_rotation_target", "random_torque",
-                        "rotation_target", "separation", "speed", "target_attraction", "torque", "volume" } do
+for _, kind in ipairs { "alignment", "cohesion", "separation" } do
   sim:add_group_behavior(kind, "all_" .. kind)
+end
+for _, kind in ipairs { "force", "random_force", "random_rotation_target", "random_torque", "rotation_target", "speed",
+                        "target_attraction", "torque", "volume" } do
+  sim.bodies[1]:add_behavior(kind, "one_" .. kind)
 end
 sim:add_gear(joints[1], joints[2], 2)
 )";
