@@ -100,7 +100,7 @@ TEST(EulerFields, ShowAndSetTheRotation) {
   fixture.sync();
   fixture.sync();
   const DrawnText drawn;
-  EXPECT_EQ(drawn.in(fixture.rect_of("name:euler:" + kRotation)), "Euler angles deg");
+  EXPECT_EQ(drawn.in(fixture.rect_of("name:euler:" + kRotation)), "Euler angles");
   for (const auto& [i, expected] : {std::pair(0, 30.0), {1, -45.0}, {2, 120.0}})
     EXPECT_NEAR(std::stod(drawn.in(fixture.rect_of("euler:" + kRotation + "/" + std::to_string(i)))), expected, 0.01);
   fixture.click("euler:" + kRotation + "/0", 0, kCtrl);

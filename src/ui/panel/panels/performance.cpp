@@ -162,9 +162,9 @@ class PerformancePanel : public Panel {
     list.AddText(at, packed_color(ThemeColor::secondary), label.name);
     const float x = ImGui::GetFontSize() * 5.2F;
     ImGui::PushFont(context.fonts.code);
-    const float available = width - x - text_width(label.unit);
+    const float space = width - x - text_width(label.unit);
     const NumberFormat format{.integer = label.decimals == 0, .decimals = label.decimals == 0 ? -1 : label.decimals};
-    const std::string text = fitted_number(value, format, available, text_width) + label.unit;
+    const std::string text = fitted_number(value, format, space, text_width) + label.unit;
     list.AddText({at.x + x, at.y - ImGui::GetFontSize() / 16}, packed_color(ThemeColor::text), text.c_str());
     ImGui::PopFont();
   }

@@ -1,4 +1,5 @@
 // Scene: the object tree; the parameters panel shows the properties of the selected object.
+#include <algorithm>
 #include <map>
 #include <span>
 #include <vector>
@@ -73,7 +74,8 @@ class ScenePanel : public Panel {
       for (const std::size_t i : members) names.emplace_back(TreeList::title(tree, lines[i].node));
       const TreeList::Line& first = lines[members.front()];
       float width = ImGui::GetContentRegionAvail().x - indent_of(first);
-      if (first.depth <= 3) width -= text_width("00000");  // for the number of members
+      const auto is_group = [&](std::size_t i) { return tree.nodes()[lines[i].node].table->properties().empty(); };
+      if (std::ranges::any_of(members, is_group)) width -= text_width("00000");  // for the number of members
       const std::vector<std::string> texts = elided_apart(names, width, text_width);
       for (std::size_t k = 0; k < members.size(); k++) titles[members[k]] = texts[k];
     }

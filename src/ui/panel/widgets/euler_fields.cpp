@@ -68,9 +68,11 @@ float euler_height(const GuiContext& context, float width) {
 void euler_fields(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
   const bool writable = handle.ref.property->writable();
   const float left = ImGui::GetCursorPosX();
-  ImGui::TextDisabled("%s  %s", kEulerLabel, kEulerUnit);
+  ImGui::TextDisabled("%s", kEulerLabel);
   context.names.add("name:euler:" + handle.path);
   angle_hint();
+  ImGui::SameLine(0, ImGui::GetFontSize() * 0.6F);
+  ImGui::TextDisabled("%s", kEulerUnit);
   const Vec3 degrees = degrees_of(values.data());
   double angles[] = {degrees.x, degrees.y, degrees.z};
   const FieldGrid grid = angle_grid(context, width);

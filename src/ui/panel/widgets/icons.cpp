@@ -157,7 +157,7 @@ bool search_field(WidgetNames& names, const char* name, const char* hint, std::s
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {style.FramePadding.x + icon_width, style.FramePadding.y});
   ImGui::SetNextItemWidth(width);
   ImGui::PushID(name);
-  const float space = (width < 0 ? ImGui::GetContentRegionAvail().x : width) - 2 * ImGui::GetStyle().FramePadding.x;
+  const float space = (width < 0 ? ImGui::GetContentRegionAvail().x : width) - ImGui::GetStyle().FramePadding.x;
   const std::string shown = elided(hint, space, text_width);
   const bool changed = ImGui::InputTextWithHint("##search", shown.c_str(), &text, ImGuiInputTextFlags_AutoSelectAll);
   ImGui::PopID();

@@ -59,8 +59,9 @@ void draw_slider(const ImRect& box, const SliderRange& range, double value, ImGu
     end = at(value);
     const float default_x = at(range.default_value);
     list.PushClipRect(box.Min, box.Max, true);
-    list.AddRectFilled({std::min(zero, end), box.Min.y}, {std::max(zero, end), box.Max.y},
-                       packed_color(ThemeColor::fill), style.FrameRounding);
+    if (std::abs(end - zero) >= 1)
+      list.AddRectFilled({std::min(zero, end), box.Min.y}, {std::max(zero, end), box.Max.y},
+                         packed_color(ThemeColor::fill), style.FrameRounding);
     list.AddLine({default_x, box.Max.y - style.FramePadding.y}, {default_x, box.Max.y},
                  packed_color(ThemeColor::secondary), 1);
     list.PopClipRect();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -268,6 +269,26 @@ void property_tooltip(const PropertyHandle& handle) {
   ImGui::EndTooltip();
 }
 
+// Returns the layout of a line, or skips it if it is outside the visible area. The heights of skipped lines are those
+// of the last time.
+std::optional<LineLayout> visible_layout(const GuiContext& context, const PropertyHandle& handle,
+                                         const PropertyLineOptions& options, float width) {
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID key = ImGui::GetID(handle.path.c_str());
+  const float mode = width + (options.with_path ? 0.5F : 0);
+  const auto skip = [&](float height) {
+    if (ImGui::IsRectVisible({width, height}) || ImGui::IsAnyItemActive()) return false;
+    ImGui::Dummy({width, height});
+    return true;
+  };
+  if (storage.GetFloat(key + 1) == mode && skip(storage.GetFloat(key))) return std::nullopt;
+  LineLayout layout = line_layout(context, handle, options, width);
+  storage.SetFloat(key, layout.height);
+  storage.SetFloat(key + 1, mode);
+  if (skip(layout.height)) return std::nullopt;
+  return layout;
+}
+
 }  // namespace
 
 std::string property_label(const Property& property) {
@@ -318,17 +339,9 @@ void property_widget(GuiContext& context, const PropertyHandle& handle, float wi
 void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options) {
   const Property& property = *handle.ref.property;
   const float width = ImGui::GetContentRegionAvail().x;
-  // lines outside the visible area have the height of the last time
-  ImGuiStorage& storage = *ImGui::GetStateStorage();
-  const ImGuiID key = ImGui::GetID(handle.path.c_str());
-  const float mode = width + (options.with_path ? 0.5F : 0);
-  const float known = storage.GetFloat(key + 1) == mode ? storage.GetFloat(key) : 0;
-  const auto hidden = [&](float height) { return !ImGui::IsRectVisible({width, height}) && !ImGui::IsAnyItemActive(); };
-  if (known > 0 && hidden(known)) return ImGui::Dummy({width, known});
-  const LineLayout layout = line_layout(context, handle, options, width);
-  storage.SetFloat(key, layout.height);
-  storage.SetFloat(key + 1, mode);
-  if (hidden(layout.height)) return ImGui::Dummy({width, layout.height});
+  const std::optional<LineLayout> shown = visible_layout(context, handle, options, width);
+  if (!shown) return;
+  const LineLayout& layout = *shown;
   ImGui::PushID(handle.path.c_str());
   const float start = ImGui::GetCursorStartPos().x;
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
