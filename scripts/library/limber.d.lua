@@ -862,6 +862,11 @@ function presets:recall(which, seconds, easing) end
 ---@param amount number # 0: the first, 1: the second.
 function presets:morph(a, b, amount) end
 
+---Renames a preset. Its values and its position in the order stay.
+---@param which string|integer
+---@param name string # New name; no other preset may have it.
+function presets:rename(which, name) end
+
 ---Deletes a preset.
 ---@param which string|integer
 function presets:delete(which) end
