@@ -57,6 +57,7 @@ class TimePanel : public Panel {
     if (!speed) return;
     ImGui::PushID("speed");
     property_widget(context, *speed, 74 * s);
+    property_menu(context, *speed);
     ImGui::PopID();
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();

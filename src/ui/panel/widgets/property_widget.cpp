@@ -21,6 +21,7 @@ namespace limber::panel {
 namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z", "w"};
+constexpr const char* kMenu = "##menu";  // id of the context menu in the scope of the property
 
 bool is_color(const Property& property) { return property.type == PropertyType::vec3 && property.unit == "hsb"; }
 
@@ -49,7 +50,7 @@ void numbers(GuiContext& context, const PropertyHandle& handle, PendingValues::V
     dragging |= ImGui::IsItemActive();
     context.names.add(axis_name(handle, i));
     ImGui::PopFont();
-    property_hint(context, handle);
+    property_hint(handle);
     ImGui::PushFont(context.fonts.code);
   }
   ImGui::PopFont();
@@ -66,7 +67,7 @@ void checkboxes(GuiContext& context, const PropertyHandle& handle, PendingValues
       context.set(handle, values, false);
     }
     context.names.add(axis_name(handle, i));
-    property_hint(context, handle);
+    property_hint(handle);
   }
 }
 
@@ -78,7 +79,7 @@ void choice(GuiContext& context, const PropertyHandle& handle, PendingValues::Va
       ImGui::BeginCombo("##choice", selected < property.choices.size() ? property.choices[selected].c_str() : "");
   if (!open) {
     context.names.add(handle.path);
-    return property_hint(context, handle);
+    return property_hint(handle);
   }
   for (std::size_t i = 0; i < property.choices.size(); i++) {
     if (ImGui::Selectable(property.choices[i].c_str(), i == selected)) {
@@ -100,7 +101,7 @@ void color(GuiContext& context, const PropertyHandle& handle, PendingValues::Val
   constexpr ImGuiColorEditFlags kPlain = ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop;
   if (ImGui::ColorButton("##swatch", {rgb[0], rgb[1], rgb[2], 1}, kPlain, {swatch, height})) ImGui::OpenPopup("picker");
   context.names.add("swatch:" + handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
   if (ImGui::BeginPopup("picker")) {
     ImGui::SetNextItemWidth(static_cast<float>(220 * context.scale));
     const bool changed = ImGui::ColorPicker3("##picker", hsb,
@@ -142,7 +143,7 @@ void readout_text(GuiContext& context, const PropertyHandle& handle, const Pendi
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   ImGui::PopFont();
-  property_hint(context, handle);
+  property_hint(handle);
 }
 
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
@@ -161,7 +162,7 @@ void action(GuiContext& context, const PropertyHandle& handle, float width) {
     context.send(handle.path, std::move(args));
   }
   context.names.add(handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
   const float each = (width - button - gap * fields) / std::max(fields, 1.0F);
   ImGui::PushFont(context.fonts.code);
   for (std::uint32_t i = 0; i < property.min_args; i++) {
@@ -214,7 +215,7 @@ void name_text(GuiContext& context, const PropertyHandle& handle, const Property
   imgui::text_ellipsis({from.x, y}, {from.x + width, y + ImGui::GetTextLineHeight()}, text);
   ImGui::PopStyleColor();
   context.names.add("name:" + handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
 }
 
 void property_tooltip(const PropertyHandle& handle) {
@@ -258,19 +259,25 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
   return false;
 }
 
-void property_hint(GuiContext& context, const PropertyHandle& handle) {
-  const Property& property = *handle.ref.property;
+void property_hint(const PropertyHandle& handle) {
   if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) property_tooltip(handle);
-  if (!ImGui::BeginPopupContextItem("##copy")) return;
+  ImGui::OpenPopupOnItemClick(kMenu, ImGuiPopupFlags_MouseButtonRight);
+}
+
+void property_menu(GuiContext& context, const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
+  if (!ImGui::BeginPopup(kMenu)) return;
   if (ImGui::Selectable("Copy OSC address")) context.copy_with_notice(handle.path);
-  context.names.add("copy_address");
-  const std::string lua = lua_path(*context.value_snapshot->tree, handle.ref);
-  if (!lua.empty() && ImGui::Selectable("Copy Lua path")) context.copy_with_notice(lua);
-  if (!lua.empty()) context.names.add("copy_lua");
+  context.names.add("menu:copy_address");
+  if (const std::string lua = lua_path(*context.value_snapshot->tree, handle.ref); !lua.empty()) {
+    if (ImGui::Selectable("Copy Lua path")) context.copy_with_notice(lua);
+    context.names.add("menu:copy_lua");
+  }
   const bool plotted = std::find(context.plots.begin(), context.plots.end(), handle.path) != context.plots.end();
-  if (!plotted && property.width > 0 && property.type != PropertyType::text && ImGui::Selectable("Plot"))
-    context.plots.push_back(handle.path);
-  context.names.add("plot_it");
+  if (!plotted && property.width > 0 && property.type != PropertyType::text) {
+    if (ImGui::Selectable("Plot")) context.plots.push_back(handle.path);
+    context.names.add("menu:plot");
+  }
   ImGui::EndPopup();
 }
 
@@ -324,6 +331,7 @@ void property_line(GuiContext& context, const PropertyHandle& handle, const Prop
     ImGui::SameLine(width - side + ImGui::GetCursorStartPos().x);
     reset_button(context, handle, side);
   }
+  property_menu(context, handle);
   ImGui::PopID();
 }
 
