@@ -190,6 +190,26 @@ TEST(PropertyWidget, MenuIsTheSameForFavoritesAndTheTransport) {
   EXPECT_EQ(fixture.names_with("menu:"), all) << "in the top panel";
 }
 
+TEST(PropertyWidget, RemovalAsksAndNamesTheBody) {
+  PanelFixture fixture;
+  fixture.search("/physics/body/arm/remove");
+  fixture.click("/physics/body/arm/remove");
+  ASSERT_TRUE(fixture.is_visible("confirmation.question"));
+  EXPECT_NE(fixture.gui->context().requests.confirmation->question.find("body 'arm'"), std::string::npos)
+      << fixture.gui->context().requests.confirmation->question;
+  fixture.click("confirmation.cancel");
+  EXPECT_FALSE(fixture.is_visible("confirmation.question"));
+  EXPECT_EQ(fixture.show.engine.world().bodies().size(), 2u);
+  fixture.click("/physics/body/arm/remove");
+  fixture.key(GuiKey::escape);
+  EXPECT_EQ(fixture.show.engine.world().bodies().size(), 2u);
+  fixture.click("/physics/body/arm/remove");
+  fixture.click("confirmation.confirm");
+  EXPECT_FALSE(fixture.is_visible("confirmation.question"));
+  ASSERT_EQ(fixture.show.engine.world().bodies().size(), 1u);
+  EXPECT_EQ(fixture.show.engine.world().bodies().front()->name(), "leg");
+}
+
 TEST(PropertyWidget, ShowsDraggedValue) {
   PanelFixture fixture;
   const PanelRect at = fixture.rect_of("/scene/rate");

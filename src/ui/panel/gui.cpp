@@ -11,6 +11,7 @@
 #include "base/log/log.h"
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/confirmation.h"
 
 namespace limber::panel {
 
@@ -159,6 +160,7 @@ void Gui::frame(const GuiFrame& frame) {
   if (context_.spring_marker) draw_spring(*context_.spring_marker);
   if (!context_.settings.hidden && context_.panicked()) draw_panic();
   if (context_.show_help) draw_help();
+  draw_confirmation(context_);
   if (context_.notice.visible(context_.clock)) draw_notice();
   if (!ImGui::IsAnyItemActive()) context_.end_drag();
   ImGui::Render();
@@ -184,6 +186,7 @@ void Gui::handle_keys(const std::vector<KeyPress>& keys) {
       bind_key(press);
       continue;
     }
+    if (handle_confirmation_key(context_, press)) continue;
     // during keyboard navigation these keys act on the selected widget
     if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
     const Hotkey* const hotkey = hotkeys_.match(press, io.WantTextInput);

@@ -40,11 +40,7 @@ class TimePanel : public Panel {
       draw_replay(context, compact, s);
     } else {
       draw_history(context, (compact ? 120 : 200) * s);
-      if (take_.recording()) {
-        draw_recording(context);
-      } else {
-        draw_play_take(context);
-      }
+      if (take_.recording()) draw_recording(context);
     }
     draw_rejection(context, compact ? 0 : static_cast<float>(kMorphWidth) * s);
   }
@@ -81,12 +77,6 @@ class TimePanel : public Panel {
     if (ImGui::IsItemHovered() && dragged_back_ == 0)
       ImGui::SetTooltip("History: %.1f s of %.0f s. Press or drag to a time and release to rewind", range.rewindable,
                         range.length);
-    ImGui::SameLine();
-  }
-
-  static void draw_play_take(GuiContext& context) {
-    if (icon_button(context.names, "take.play", Icon::play, "Play the latest take (Ctrl+Shift+R)"))
-      context.toggle_take_playback();
     ImGui::SameLine();
   }
 

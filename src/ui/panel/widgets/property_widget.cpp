@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "base/text.h"
 #include "properties/property_text.h"
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/lua_path.h"
@@ -148,6 +150,22 @@ void readout_text(GuiContext& context, const PropertyHandle& handle, const Pendi
 
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
 
+// Sends the message of an action. A removal can't be undone, so the user is asked before.
+void invoke(GuiContext& context, const PropertyHandle& handle, Message message) {
+  if (handle.ref.property->name != "remove") {
+    context.send(std::move(message));
+    return;
+  }
+  const TreeSnapshot& tree = *context.value_snapshot->tree;
+  const std::string object = handle.path.substr(0, handle.path.find_last_of('/'));
+  const std::string which = is_pattern(object) ? fmt::format("every object that matches {}", object)
+                                               : fmt::format("{} '{}'", tree.nodes()[handle.ref.node].table->name(),
+                                                             tree.name(handle.ref.node));
+  context.requests.confirmation = {
+      fmt::format("Remove {}? This can't be undone; a reset restores the objects of the scene.", which), "Remove",
+      std::move(message)};
+}
+
 // The arguments of an action are stored while its line is visible.
 void action(GuiContext& context, const PropertyHandle& handle, float width) {
   const Property& property = *handle.ref.property;
@@ -159,7 +177,7 @@ void action(GuiContext& context, const PropertyHandle& handle, float width) {
     std::vector<Arg> args;
     for (std::uint32_t i = 0; i < property.min_args; i++)
       args.push_back(Arg::of(static_cast<double>(storage.GetFloat(ImGui::GetID(field_id(i).c_str()) + 1))));
-    context.send(handle.path, std::move(args));
+    invoke(context, handle, {handle.path, std::move(args)});
   }
   context.names.add(handle.path);
   property_hint(handle);
