@@ -32,6 +32,16 @@ const char* get_clipboard(void* options) {
   return pasted.c_str();
 }
 
+// True for actions that the window performs.
+bool is_of_window(HotkeyAction action) {
+  return action == HotkeyAction::toggle_output_window || action == HotkeyAction::toggle_full_screen ||
+         action == HotkeyAction::default_view;
+}
+
+bool frames(HotkeyAction action) {
+  return action == HotkeyAction::frame_selection || action == HotkeyAction::frame_all;
+}
+
 // Performs the hotkey actions that only need the context.
 void perform_in_context(HotkeyAction action, GuiContext& context) {
   switch (action) {
@@ -248,13 +258,14 @@ void Gui::perform(HotkeyAction action, const KeyPress& press) {
     case HotkeyAction::move_behavior_later:
       context_.requests.move_behavior = action == HotkeyAction::move_behavior_earlier ? -1 : 1;
       break;
-    case HotkeyAction::toggle_output_window:
-    case HotkeyAction::toggle_full_screen:
-    case HotkeyAction::default_view:
-      actions_.push_back(action);
-      break;
     default:
-      perform_in_context(action, context_);
+      if (is_of_window(action)) {
+        actions_.push_back(action);
+      } else if (!frames(action)) {
+        perform_in_context(action, context_);
+      } else if (!wants_mouse()) {  // the pointer is over the view
+        actions_.push_back(action);
+      }
       break;
   }
 }
