@@ -8,6 +8,9 @@
 #include <numbers>
 #include <random>
 
+#include "sim/visuals/visuals.h"
+#include "support/world_objects.h"
+
 namespace limber::sim {
 namespace {
 
@@ -80,6 +83,61 @@ TEST(Framing, ShapesAreEnclosed) {
   EXPECT_EQ(extent(shape), Vec3(0.5, 0.5, 1.5));
   shape.kind = model::ShapeKind::plane;
   EXPECT_EQ(extent(shape), Vec3(0));
+}
+
+struct FramedWorld : testing::Test {
+  Store store;
+  World world{store};
+  Camera& camera = world.visuals().camera();
+
+  void add(const std::string& name, double size, const Vec3& at, double mass) {
+    model::ShapeModel box;
+    box.size = Vec3(size);
+    Body& body = **world.add_body(name);
+    ASSERT_TRUE(body.add_part("part", **world.shapes().add(name, box), mass, {at, quat_identity()}).ok());
+  }
+};
+
+TEST_F(FramedWorld, DefaultViewShowsBodiesThatMove) {
+  add("ball", 0.2, {10, 20, 0.5}, 1);
+  add("stand", 30, {0, 0, -15}, 0);
+  frame_scene(world);
+  EXPECT_NEAR(glm::length(camera.target() - Vec3(10, 20, 0.5)), 0, 1e-9) << "without the static body";
+  EXPECT_LT(glm::length(camera.eye() - camera.target()), 1.5);
+  EXPECT_TRUE(camera.has_framed_pose());
+}
+
+TEST_F(FramedWorld, DefaultViewShowsStaticBodiesIfThereAreNoOthers) {
+  add("stand", 3, {0, 0, -15}, 0);
+  frame_scene(world);
+  EXPECT_NEAR(glm::length(camera.target() - Vec3(0, 0, -15)), 0, 1e-9);
+}
+
+TEST_F(FramedWorld, HashIgnoresTheDefaultView) {
+  add("ball", 0.2, {10, 20, 0.5}, 1);
+  const std::uint64_t before = world.state_hash();
+  frame_scene(world);
+  EXPECT_EQ(world.state_hash(), before);
+  ASSERT_TRUE(store.set(camera.id(), "fovy", std::vector{50.0}).ok());
+  const std::uint64_t zoomed = world.state_hash();
+  EXPECT_NE(zoomed, before) << "but no other property of the camera";
+  ASSERT_TRUE(store.set(camera.id(), "distance", std::vector{7.0}).ok());
+  EXPECT_FALSE(camera.has_framed_pose());
+  EXPECT_NE(world.state_hash(), zoomed) << "a view that was set";
+}
+
+TEST_F(FramedWorld, ViewThatWasSetStays) {
+  add("ball", 0.2, {10, 20, 0.5}, 1);
+  camera.look_at({1, 2, 3}, {0, 0, 0});
+  frame_scene(world);
+  EXPECT_NEAR(glm::length(camera.eye() - Vec3(1, 2, 3)), 0, 1e-9);
+  EXPECT_FALSE(camera.has_framed_pose());
+}
+
+TEST_F(FramedWorld, EmptySceneKeepsTheTablesView) {
+  frame_scene(world);
+  EXPECT_FALSE(camera.has_framed_pose());
+  EXPECT_FALSE(camera.pose_is_set());
 }
 
 }  // namespace

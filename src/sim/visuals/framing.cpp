@@ -8,6 +8,11 @@
 #include <numbers>
 
 #include "base/math/fixed_math.h"
+#include "sim/shapes/geometry.h"
+#include "sim/visuals/visuals.h"
+#include "sim/world/body.h"
+#include "sim/world/part.h"
+#include "sim/world/world.h"
 
 namespace limber::sim {
 
@@ -15,6 +20,7 @@ namespace {
 
 constexpr double kFilled = 0.8;       // fraction of the view that the objects fill
 constexpr double kMinDistance = 0.2;  // m
+constexpr double kMinAspect = 4.0 / 3;
 
 void add_box(const Vec3& half, const Pose& pose, std::vector<FramedSphere>& out) {
   for (int corner = 0; corner < 8; corner++) {
@@ -86,6 +92,37 @@ std::optional<FramedView> frame(std::span<const FramedSphere> spheres, const Vec
                          distance_for(glm::dot(at, up), ahead, sphere.radius, vertical)});
   }
   return FramedView{target + distance * back, target};
+}
+
+std::vector<FramedSphere> framed_bodies(const World& world) {
+  std::vector<FramedSphere> spheres;
+  const auto can_move = [](const auto& body) {
+    return std::ranges::any_of(body->parts(), [](const auto& part) { return !part->is_static(); });
+  };
+  const bool any_moves = std::ranges::any_of(world.bodies(), can_move);
+  for (const auto& body : world.bodies()) {
+    if (!body->in_world() || (any_moves && !can_move(body))) continue;
+    for (const auto& part : body->parts()) {
+      const Pose pose = part->pose();
+      if (!is_finite(pose.position) || !is_finite(pose.rotation) || part->geometry() == nullptr) continue;
+      for (const model::PlacedShape& placed : part->geometry()->placed)
+        add_framed_shape(placed.shape, pose * placed.origin, spheres);
+    }
+  }
+  return spheres;
+}
+
+void frame_scene(World& world) {
+  Camera& camera = world.visuals().camera();
+  if (camera.pose_is_set()) return;
+  const auto value = [&](const char* name) { return world.store().values(camera.id(), Camera::table().at(name))[0]; };
+  const double aspect = value("aspect") > 0 ? value("aspect") : kMinAspect;
+  const auto view = frame(framed_bodies(world), camera.eye() - camera.target(), {value("fovy"), aspect});
+  if (!view) return;
+  // beyond half of the far clipping distance, the objects would be hidden by the fog
+  const Vec3 offset = view->eye - view->target;
+  const double distance = std::min(glm::length(offset), value("far") / 2);
+  camera.set_default_pose(view->target + distance * normalized(offset), view->target);
 }
 
 }  // namespace limber::sim

@@ -10,6 +10,8 @@
 
 namespace limber::sim {
 
+class World;
+
 /// A sphere that a view shall contain, in world coordinates.
 struct FramedSphere {
   Vec3 center{0};
@@ -34,5 +36,12 @@ void add_framed_shape(const model::ShapeModel& shape, const Pose& pose, std::vec
 /// Returns the nearest view along `direction` (from the target to the eye) that contains all spheres, with a margin;
 /// nothing without spheres. Its target is the center of their bounding box. The result depends on the arguments only.
 std::optional<FramedView> frame(std::span<const FramedSphere> spheres, const Vec3& direction, const FrameShape& shape);
+
+/// Returns spheres around the bodies that can move or, if there are none, around all. [sim]
+std::vector<FramedSphere> framed_bodies(const World& world);
+
+/// Makes a view of these bodies the default view of the camera, unless its pose was set or there are none. The
+/// direction is that of the table's default. It fits into views with an aspect ratio of at least 4:3. [sim]
+void frame_scene(World& world);
 
 }  // namespace limber::sim
