@@ -27,8 +27,11 @@ void main() {
   float shine = v_specular * (v_ambient.w + 8.0) * 0.04 * pow(max(dot(n, half_way), 0.0), v_ambient.w);
   light += light_color.rgb * incoming * max(facing_light, 0.0) * (v_diffuse.rgb + shine);
 
+  // rim light has mostly the hue of the shape, so that it doesn't tint a color that was set
   float edge = 1.0 - clamp(dot(n, to_eye), 0.0, 1.0);
-  light += rim.rgb * pow(edge, 2.8) * (0.45 + 0.55 * n.z);
+  float brightest = max(max(v_diffuse.r, v_diffuse.g), max(v_diffuse.b, 1e-3));
+  vec3 rim_hue = mix(vec3(1.0), v_diffuse.rgb / brightest, 0.8);
+  light += rim.rgb * rim_hue * pow(edge, 2.8) * (0.45 + 0.55 * n.z);
 
   // transparent shapes are more opaque at their silhouette (Fresnel)
   float alpha = v_diffuse.w;

@@ -466,8 +466,9 @@ function gear_:remove() end
 ---@field diffuse_scale number # 0 .. 10, default 0.5. Factor on the lamps' light.
 ---@field specular_scale number # 0 .. 10, default 0.5. Brightness of highlights.
 ---@field specular_pow number # 0 .. 1000, default 10. Shininess: the higher, the smaller the highlights.
----@field ambient_color vec3like # hsb, 0 .. 1, default 0 0 1. Color in ambient light: hue, saturation, brightness.
+---@field ambient_color vec3like # hsb, 0 .. 1, default 0 0 1. Color in ambient light: hue, saturation, brightness; the default is diffuse_color.
 ---@field diffuse_color vec3like # hsb, 0 .. 1, default 0 0 1. Color in the lamps' light: hue, saturation, brightness.
+---@field color vec3like # hsb, 0 .. 1. Sets ambient_color and diffuse_color; reads diffuse_color.
 local shape_ = {}
 
 ---Adds a shape to a compound shape.
@@ -872,6 +873,11 @@ function presets:recall(which, seconds, easing) end
 ---@param b string|integer # A name, or a number from 1.
 ---@param amount number # 0: the first, 1: the second.
 function presets:morph(a, b, amount) end
+
+---Renames a preset. Its values and its position in the order stay.
+---@param which string|integer
+---@param name string # New name; no other preset may have it.
+function presets:rename(which, name) end
 
 ---Deletes a preset.
 ---@param which string|integer # A name, or a number from 1.

@@ -24,6 +24,7 @@ namespace limber::engine {
 /// The engine's rules that apply: while a take is replayed those of the version that recorded it, else the newest.
 struct ShowRules {
   bool before_first_revision = false;          ///< See kTakeRules.
+  bool frames_scenes = true;                   ///< The default view frames the bodies of a scene.
   bool keeps_timers = true;                    ///< Reloads keep timers, and console texts set overrides.
   std::optional<script::ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
 };

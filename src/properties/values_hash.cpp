@@ -27,9 +27,13 @@ std::uint64_t node_hash(const Store& store, NodeId id) {
 }
 
 std::uint64_t fixed_node_hash(const Store& store, NodeId id) {
-  const std::uint64_t values = persistent_hash(store, id);
+  return fixed_node_hash(store.table(id), store.persistent_block(id));
+}
+
+std::uint64_t fixed_node_hash(const PropertyTable& table, const double* persistent) {
+  const std::uint64_t values = values_hash(table.hashed_persistent(), persistent);
   if (values == 0) return 0;
-  std::uint64_t mixed = values ^ hash_bytes(store.table(id).name());
+  std::uint64_t mixed = values ^ hash_bytes(table.name());
   return splitmix64(mixed);
 }
 

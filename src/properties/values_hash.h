@@ -20,5 +20,7 @@ std::uint64_t node_hash(const Store& store, NodeId id);
 /// name, so that the hashes of several nodes can be added. 0: all values are at their defaults, so a new class of such
 /// nodes does not change existing hashes.
 std::uint64_t fixed_node_hash(const Store& store, NodeId id);
+/// The same for these persistent values of a node with this table.
+std::uint64_t fixed_node_hash(const PropertyTable& table, const double* persistent);
 
 }  // namespace limber

@@ -56,6 +56,7 @@ TEST(RenderScene, ReadsMaterialsCameraAndAppearanceFromProperties) {
     return material_of(*now, now->render_scene->shapes[now->render_scene->instances[piece].shape].material);
   };
   EXPECT_EQ(material(6).diffuse_color, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(material(6).ambient_color, Vec3(0.1, 0.2, 0.3)) << "its default is the diffuse color";
   EXPECT_EQ(material(0).diffuse_color, Vec3(0, 0, 1));
   EXPECT_EQ(material(0).specular_pow, 77);
   EXPECT_EQ(material_of(*now, 0).specular_pow, 10) << "0: the defaults of the table";

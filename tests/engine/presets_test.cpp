@@ -385,6 +385,62 @@ for _, name in ipairs { "left", "right" } do sim:body(name):add_behavior("keeper
   EXPECT_EQ(names_of(edited.show()), (std::vector<std::string>{"left"}));
 }
 
+TEST(Presets, RenameKeepsValuesAndPosition) {
+  EditedShow edited(kTwoBodyScene);
+  Show& show = edited.show();
+  for (const double wind : {2.0, 3.0}) {
+    show.send("/scene/wind", wind);
+    show.send("/preset/store", wind == 2 ? "breeze" : "storm");
+  }
+  show.ticks(1);
+  EXPECT_EQ(send_and_get_reply(show, "/preset/rename", "breeze", "light wind"), "");
+  EXPECT_EQ(names_of(show), (std::vector<std::string>{"light wind", "storm"}));
+  EXPECT_EQ(send_and_get_reply(show, "/preset/rename", 2, "gale"), "");
+  EXPECT_EQ(names_of(show), (std::vector<std::string>{"light wind", "gale"}));
+  EXPECT_EQ(send_and_get_reply(show, "/preset/recall", "light wind"), "");
+  EXPECT_EQ(show.read("/scene/wind"), 2);
+  show.engine.finish_saving();
+  Show later(fast_options(edited.folder.path("scripts/scene.lua")));
+  EXPECT_EQ(names_of(later), (std::vector<std::string>{"light wind", "gale"})) << "from the file";
+}
+
+TEST(Presets, RenameRejectsTakenAndInvalidNames) {
+  EditedShow edited(kTwoBodyScene);
+  Show& show = edited.show();
+  show.send("/preset/store", "dusk");
+  show.send("/preset/store", "dawn");
+  show.ticks(1);
+  const auto rejection = [&](auto... args) {
+    const std::string reply = send_and_get_reply(show, "/preset/rename", args...);
+    return reply.substr(std::min(reply.size(), std::string("/error /preset/rename ").size()));
+  };
+  EXPECT_EQ(rejection("dusk", "dawn"), "there is a preset 'dawn' already; delete it first");
+  EXPECT_EQ(rejection("dusk", "script"), "'script' is reserved for the values of the scene; use another name");
+  EXPECT_EQ(rejection("script", "scene"), "'script' has the values of the scene; it can't be renamed");
+  EXPECT_EQ(rejection("dsk", "night"), "there is no preset 'dsk'; did you mean 'dusk'?");
+  EXPECT_EQ(rejection("dusk"), "expected the name or the number of a preset, and its new name");
+  EXPECT_EQ(rejection("dusk", 3), "expected the name or the number of a preset, and its new name");
+  EXPECT_EQ(rejection("dusk", "dusk"), "") << "the name that it has";
+  EXPECT_EQ(names_of(show), (std::vector<std::string>{"dusk", "dawn"}));
+}
+
+TEST(Presets, ScriptsRename) {
+  EditedShow edited(std::string(kTwoBodyScene) + R"(
+osc:on("/go", function()
+  presets:store("a")
+  presets:rename("a", "b")
+  presets:recall("b")
+end)
+osc:on("/wrong", function() presets:rename("b", "c") presets:recall("b") end)
+)");
+  Show& show = edited.show();
+  EXPECT_EQ(send_and_get_reply(show, "/go"), "");
+  EXPECT_EQ(names_of(show), (std::vector<std::string>{"b"}));
+  const std::string wrong = send_and_get_reply(show, "/wrong");
+  EXPECT_NE(wrong.find("presets:recall: there is no preset 'b'"), std::string::npos) << wrong;
+  EXPECT_EQ(names_of(show), (std::vector<std::string>{"b"})) << "the failed call is rolled back";
+}
+
 TEST(Presets, TheCommandLineRecallsOne) {
   EditedShow edited(kTwoBodyScene);
   edited.show().send("/scene/wind", 7);

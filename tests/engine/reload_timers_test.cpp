@@ -363,7 +363,7 @@ TEST(ReloadTimers, ATakeReplaysThem) {
   EXPECT_FALSE(again.result.diverged_at.has_value());
   // a take of a version that ended timers when a file was saved
   std::string bytes = file_bytes(options.record);
-  ASSERT_EQ(bytes.substr(0, 13), "limber take 4");
+  ASSERT_EQ(bytes.substr(0, 13), fmt::format("limber take {}", kTakeVersion));
   bytes[12] = '3';
   folder.write("old.take", bytes);
   EXPECT_EQ(replay_take(folder.path("old.take")).result.diverged_at, 3u)

@@ -220,6 +220,30 @@ TEST(Gui, ReturnsOnlyActionsOfTheWindow) {
   EXPECT_TRUE(fixture.gui->consume_actions().empty());
 }
 
+TEST(Gui, FramesOnlyWithThePointerOverTheView) {
+  PanelFixture fixture;
+  const PanelRect view = fixture.gui->layout().view;
+  fixture.move(view.x + view.width / 2, view.y + view.height / 2);
+  fixture.frames(2);
+  fixture.key(GuiKey::f);
+  fixture.key(GuiKey::a);
+  EXPECT_EQ(fixture.gui->consume_actions(),
+            (std::vector<HotkeyAction>{HotkeyAction::frame_selection, HotkeyAction::frame_all}));
+  fixture.point("tree:/physics/body/arm");
+  fixture.key(GuiKey::f);
+  fixture.key(GuiKey::a);
+  EXPECT_TRUE(fixture.gui->consume_actions().empty()) << "over a panel";
+  fixture.click("parameters.search");
+  fixture.move(view.x + view.width / 2, view.y + view.height / 2);
+  fixture.frames(2);
+  fixture.key(GuiKey::f);
+  fixture.key(GuiKey::a);
+  EXPECT_TRUE(fixture.gui->consume_actions().empty()) << "in a text field";
+  fixture.key(GuiKey::f2);
+  EXPECT_TRUE(fixture.is_visible("help:frame"));
+  EXPECT_TRUE(fixture.is_visible("help:frame_all"));
+}
+
 TEST(Gui, SupportsTinyWindow) {
   PanelFixture fixture;
   fixture.resize(1, 1);

@@ -41,6 +41,21 @@ TEST(Hotkeys, BindingsReplaceDefaults) {
   EXPECT_EQ(keys_text(*hotkeys.find("recall"), {}), "1 .. 8");
 }
 
+TEST(Hotkeys, FramingYieldsItsKeyToABinding) {
+  const Hotkeys defaults;
+  EXPECT_EQ(defaults.match({GuiKey::f, {}}, false)->action, HotkeyAction::frame_selection);
+  EXPECT_EQ(defaults.match({GuiKey::a, {}}, false)->action, HotkeyAction::frame_all);
+  EXPECT_EQ(defaults.match({GuiKey::f, {}}, true), nullptr) << "it types a letter";
+  EXPECT_EQ(defaults.match({GuiKey::none, {}}, false), nullptr);
+  const Hotkeys hotkeys(KeyBindings{{"record", "F"}, {"frame_all", "G"}, {"reset", "A"}});
+  EXPECT_TRUE(hotkeys.errors().empty());
+  EXPECT_EQ(hotkeys.match({GuiKey::f, {}}, false)->action, HotkeyAction::toggle_recording);
+  EXPECT_EQ(hotkeys.match({GuiKey::a, {}}, false)->action, HotkeyAction::reset);
+  EXPECT_EQ(hotkeys.match({GuiKey::g, {}}, false)->action, HotkeyAction::frame_all);
+  EXPECT_EQ(hotkeys.match({GuiKey::none, {}}, false), nullptr);
+  EXPECT_EQ(keys_text(*hotkeys.find("frame"), {}), "(no key)");
+}
+
 TEST(Hotkeys, ReportInvalidBindings) {
   const auto error = [](const std::string& name, const std::string& key) {
     const Hotkeys hotkeys(KeyBindings{{name, key}});

@@ -12,7 +12,7 @@ namespace {
 TEST(PanelPlots, PlotsSelectedProperty) {
   PanelFixture fixture;
   fixture.click("/scene/rate", 1);
-  fixture.click("plot_it");
+  fixture.click("menu:plot");
   EXPECT_EQ(fixture.gui->context().plots, std::vector<std::string>{"/scene/rate"});
   fixture.click("tab:plots");
   EXPECT_TRUE(fixture.is_visible("plot:/scene/rate"));
@@ -43,7 +43,7 @@ TEST(PanelPlots, DiscardSamplesAfterRewind) {
   PanelFixture fixture;
   const std::string path = "/scene/rate";
   fixture.click(path, 1);
-  fixture.click("plot_it");
+  fixture.click("menu:plot");
   fixture.click("tab:plots");
   const auto play = [&](int ticks) {
     for (int i = 0; i < ticks; i++) {

@@ -104,13 +104,31 @@ TEST(PanelTime, PlaysLatestTake) {
     asked.push_back(message.address);
   };
   fixture.click("take.play");
+  EXPECT_TRUE(asked.empty()) << "the user is asked before";
+  fixture.click("confirmation.cancel");
+  EXPECT_TRUE(asked.empty());
+  fixture.click("take.play");
+  fixture.click("confirmation.confirm");
   EXPECT_EQ(asked, (std::vector<std::string>{"/take/play"}));
   fixture.key(GuiKey::r, kCtrlShift);
+  ASSERT_TRUE(fixture.is_visible("confirmation.question")) << "also with the key";
+  fixture.key(GuiKey::space);
+  EXPECT_EQ(asked.size(), 1u) << "only Enter confirms";
+  fixture.key(GuiKey::enter);
   EXPECT_EQ(asked.size(), 2u);
+  EXPECT_FALSE(fixture.is_visible("confirmation.question"));
+  fixture.key(GuiKey::f1);
+  fixture.key(GuiKey::r, kCtrlShift);
+  EXPECT_TRUE(fixture.is_visible("confirmation.question")) << "while the panel is hidden";
+  fixture.key(GuiKey::escape);
+  fixture.key(GuiKey::f1);
+  EXPECT_EQ(asked.size(), 2u);
+  fixture.key(GuiKey::space);
   fixture.click("transport.record");
   fixture.show.ticks(40);
   fixture.sync();
-  EXPECT_FALSE(fixture.is_visible("take.play")) << "only one take at a time";
+  fixture.click("take.play");
+  EXPECT_FALSE(fixture.is_visible("confirmation.question")) << "only one take at a time";
   fixture.click("transport.record");
   fixture.show.engine.finish_saving();
   ASSERT_EQ(saved_takes(fixture.folder()).size(), 1u);
@@ -120,7 +138,6 @@ TEST(PanelTime, PlaysLatestTake) {
   fixture.click("take.stop");
   fixture.sync();
   EXPECT_FALSE(fixture.gui->context().take_state().in_show);
-  EXPECT_TRUE(fixture.is_visible("take.play"));
   EXPECT_NE(fixture.gui->context().notice.text.find("has ended; live control resumes"), std::string::npos)
       << fixture.gui->context().notice.text;
 }

@@ -139,11 +139,75 @@ TEST(PropertyWidget, ReleasedModifierHasNoEffect) {
 TEST(PropertyWidget, RightClickCopies) {
   PanelFixture fixture;
   fixture.click("/scene/rate", 1);
-  fixture.click("copy_address");
+  fixture.click("menu:copy_address");
   EXPECT_EQ(fixture.clipboard, "/scene/rate");
   fixture.click("name:/physics/sim/gravity", 1);
-  fixture.click("copy_lua");
+  fixture.click("menu:copy_lua");
   EXPECT_EQ(fixture.clipboard, "sim.gravity");
+}
+
+// One widget of each kind: its menu has each entry once, and closes again.
+TEST(PropertyWidget, RightClickOpensOneMenu) {
+  PanelFixture fixture;
+  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot"};
+  const std::vector<std::string> unplotted{"menu:copy_address", "menu:copy_lua"};
+  struct Item {
+    std::string address, widget;
+    std::vector<std::string> entries;
+  };
+  const std::vector<Item> items{
+      {"/scene/rate", "name:/scene/rate", all},
+      {"/scene/rate", "/scene/rate", all},
+      {"/scene/lit", "/scene/lit", all},
+      {"/scene/mode", "/scene/mode", all},
+      {"/physics/sim/gravity", "/physics/sim/gravity/1", all},
+      {"/visuals/background", "swatch:/visuals/background", all},
+      {"/visuals/background", "/visuals/background/2", all},
+      {"/physics/sim/time", "/physics/sim/time", all},
+      {"/physics/body/arm/part/tip/rotation", "/physics/body/arm/part/tip/rotation/3", all},
+      {"/physics/body/arm/remove", "/physics/body/arm/remove", unplotted},
+      {"/take/name", "/take/name", {"menu:copy_address"}},
+  };
+  for (const Item& item : items) {
+    SCOPED_TRACE(item.widget);
+    fixture.search(item.address);
+    fixture.click(item.widget, 1);
+    EXPECT_EQ(fixture.names_with("menu:"), item.entries);
+    fixture.key(GuiKey::escape);
+    EXPECT_TRUE(fixture.names_with("menu:").empty());
+  }
+}
+
+TEST(PropertyWidget, MenuIsTheSameForFavoritesAndTheTransport) {
+  PanelFixture fixture;
+  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot"};
+  fixture.click("star:/scene/rate");
+  fixture.click("parameters.favorites");
+  fixture.click("/scene/rate", 1);
+  EXPECT_EQ(fixture.names_with("menu:"), all);
+  fixture.key(GuiKey::escape);
+  fixture.click("/physics/sim/speed", 1);
+  EXPECT_EQ(fixture.names_with("menu:"), all) << "in the top panel";
+}
+
+TEST(PropertyWidget, RemovalAsksAndNamesTheBody) {
+  PanelFixture fixture;
+  fixture.search("/physics/body/arm/remove");
+  fixture.click("/physics/body/arm/remove");
+  ASSERT_TRUE(fixture.is_visible("confirmation.question"));
+  EXPECT_NE(fixture.gui->context().requests.confirmation->question.find("body 'arm'"), std::string::npos)
+      << fixture.gui->context().requests.confirmation->question;
+  fixture.click("confirmation.cancel");
+  EXPECT_FALSE(fixture.is_visible("confirmation.question"));
+  EXPECT_EQ(fixture.show.engine.world().bodies().size(), 2u);
+  fixture.click("/physics/body/arm/remove");
+  fixture.key(GuiKey::escape);
+  EXPECT_EQ(fixture.show.engine.world().bodies().size(), 2u);
+  fixture.click("/physics/body/arm/remove");
+  fixture.click("confirmation.confirm");
+  EXPECT_FALSE(fixture.is_visible("confirmation.question"));
+  ASSERT_EQ(fixture.show.engine.world().bodies().size(), 1u);
+  EXPECT_EQ(fixture.show.engine.world().bodies().front()->name(), "leg");
 }
 
 TEST(PropertyWidget, ShowsDraggedValue) {

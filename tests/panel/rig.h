@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -171,6 +172,22 @@ class PanelFixture {
     event.kind = InputEvent::Kind::wheel;
     event.y = steps;
     push(event);
+    frames(2);
+  }
+
+  /// Names of the widgets whose names start with `prefix`, in the order in which they were drawn.
+  std::vector<std::string> names_with(const std::string& prefix) const {
+    std::vector<std::string> names;
+    for (const NamedWidget& widget : gui->names().all()) {
+      if (widget.name.starts_with(prefix)) names.push_back(widget.name);
+    }
+    return names;
+  }
+  /// Shows only the parameter with this address, by searching for it.
+  void search(const std::string& address) {
+    key(GuiKey::f, kCtrl);
+    key(GuiKey::a, kCtrl);
+    type(address);
     frames(2);
   }
 

@@ -244,6 +244,32 @@ TEST(Renderer, MaterialsAreProperties) {
   EXPECT_LT(brightness(draw(scene), 88, 40), 20) << "no light of any kind, but a little fog";
 }
 
+// A new scene with one shape, of which only diffuse_color is set: the centers of its faces have this hue, on lit and on
+// unlit sides.
+TEST(Renderer, ShapeHasTheColorThatWasSet) {
+  for (const double style : {0.0, 1.0}) {
+    for (const double h : {0.0, 1.0 / 6, 1.0 / 3, 2.0 / 3}) {
+      SCOPED_TRACE(fmt::format("style {}, hue {}", style, h));
+      TestScene scene;
+      scene.set("/visuals/look/style", {style});
+      scene.add("shape", box({1, 1, 1}), {0, 0, 0.5});
+      scene.set("/visuals/shape/shape/diffuse_color", {h, 1, 1});
+      scene.look_from({3, -4, 3}, {0, 0, 0.5});
+      const auto now = scene.snapshot();
+      const Pixels pixels = draw(*now, 160, 90);
+      // the centers of the three visible faces: top, front, right
+      for (const Vec3& face : {Vec3(0, 0, 1), Vec3(0, -0.5, 0.5), Vec3(0.5, 0, 0.5)}) {
+        const Spot at = spot_of(*now, face, 160, 90);
+        const Vec3 seen = color(pixels, at.x, at.y);
+        const double off = std::abs(hue(seen) - h);
+        EXPECT_LT(std::min(off, 1 - off), 0.04) << seen.x << " " << seen.y << " " << seen.z;
+        EXPECT_GT(hsb_of(seen / 255.0).y, 0.65) << seen.x << " " << seen.y << " " << seen.z;
+        EXPECT_GT(hsb_of(seen / 255.0).z, 0.35) << seen.x << " " << seen.y << " " << seen.z;
+      }
+    }
+  }
+}
+
 TEST(Renderer, ExposureIncreasesBrightness) {
   TestScene scene;
   scene.add("ball", round(model::ShapeKind::sphere, 0.5), {0, 0, 0.5});

@@ -120,5 +120,17 @@ TEST_F(VisualsTest, ClearingTheWorldRestoresDefaults) {
   EXPECT_EQ(get(world.visuals().id(), "background")[1], background.initial[1]);
 }
 
+TEST_F(VisualsTest, ColorSetsBothColors) {
+  model::ShapeModel ball;
+  ball.kind = model::ShapeKind::sphere;
+  const NodeId shape = (*world.shapes().add("ball", ball))->id();
+  set(shape, "color", {0.3, 0.6, 0.9});
+  EXPECT_EQ(get(shape, "ambient_color"), (std::vector<double>{0.3, 0.6, 0.9}));
+  EXPECT_EQ(get(shape, "diffuse_color"), (std::vector<double>{0.3, 0.6, 0.9}));
+  set(shape, "diffuse_color", {0.1, 1, 1});
+  EXPECT_EQ(get(shape, "color"), (std::vector<double>{0.1, 1, 1}));
+  EXPECT_EQ(get(shape, "ambient_color"), (std::vector<double>{0.3, 0.6, 0.9}));
+}
+
 }  // namespace
 }  // namespace limber::sim

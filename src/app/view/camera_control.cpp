@@ -46,6 +46,14 @@ std::vector<Message> CameraControl::follow(const engine::Snapshot& snapshot, std
   return set_camera({at + follow_offset_, at});
 }
 
+std::vector<Message> CameraControl::frame(const engine::CameraSettings& camera,
+                                          std::span<const sim::FramedSphere> spheres, double aspect) {
+  const render::Orbit orbit = orbit_of(camera);
+  const auto view = sim::frame(spheres, orbit.eye - orbit.target, {camera.fovy, aspect});
+  if (!view) return {};
+  return set_camera({view->eye, view->target});
+}
+
 std::vector<Message> CameraControl::move(const MouseMovement& mouse, const engine::CameraSettings& camera,
                                          double height, double now) {
   if (now - moved_at_ > kLocalCameraTime) orbit_ = orbit_of(camera);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/paths.h"
+#include "app/view/frame_parts.h"
 #include "app/view/panel_setup.h"
 #include "base/log/log.h"
 #include "base/log/output.h"
@@ -134,9 +135,29 @@ void WindowShow::act(panel::HotkeyAction action) {
   if (action == panel::HotkeyAction::toggle_output_window) toggle_output();
   if (action == panel::HotkeyAction::toggle_full_screen)
     output_ != nullptr ? output_->toggle_full_screen() : window_->toggle_full_screen();
+  if (action == panel::HotkeyAction::frame_selection || action == panel::HotkeyAction::frame_all) return frame(action);
   if (action != panel::HotkeyAction::default_view && action != panel::HotkeyAction::restore_view) return;
   viewport_mouse_.stop_following();
   if (action == panel::HotkeyAction::default_view) send(camera_.default_view());
+}
+
+// Frames the selected object, or everything.
+void WindowShow::frame(panel::HotkeyAction action) {
+  panel::GuiContext& context = gui_->context();
+  if (context.value_snapshot == nullptr) return;
+  const bool all = action == panel::HotkeyAction::frame_all;
+  const engine::Snapshot& snapshot = snapshots_.current();
+  const std::vector<sim::FramedSphere> spheres =
+      all ? spheres_of_all(snapshot) : spheres_of(snapshot, parts_of(*context.value_snapshot->tree, context.selected));
+  if (spheres.empty())
+    return context.show_notice(all ? "There are no bodies to frame" : "Select a body or a part first");
+  viewport_mouse_.stop_following();
+  const engine::CameraSettings camera = engine::camera_of(snapshot);
+  const int width = std::max(window_->width(), 1);
+  const int height = std::max(window_->height(), 1);
+  const render::FreeArea free_area = free_part(*gui_, width, height);
+  const double aspect = camera.aspect > 0 ? camera.aspect : static_cast<double>(width) / height;
+  send(CameraControl::frame(camera, spheres, aspect * free_area.width / free_area.height));
 }
 
 void WindowShow::toggle_output() {

@@ -45,6 +45,7 @@ class WindowShow {
   void check_for_changes(double now);
   void handle_input(int width, int height, double now);
   void act(panel::HotkeyAction action);
+  void frame(panel::HotkeyAction action);
   void toggle_output();
   Result<void> draw_window(double mix, int width, int height);
   Result<void> draw_output(double mix);

@@ -58,6 +58,7 @@ constexpr SpecialAddress kSpecialAddresses[] = {
      "Recalls a preset, at once or over a time in seconds, with the easing smooth, linear, in or out."},
     {"/preset/morph", "preset preset amount", "Blends two presets; amount 0: the first, 1: the second."},
     {"/preset/delete", "name", "Deletes a preset."},
+    {"/preset/rename", "name name", "Renames a preset, given by name or number. Its values and its position stay."},
     {"/take/record", "[name]", "Resets the scene and records all input from its start, so that it can be replayed."},
     {"/take/stop", "", "Ends the recording of a take and completes its file, or ends the take that plays."},
     {"/take/play", "[name]",

@@ -126,10 +126,16 @@ Material material_of(const Snapshot& snapshot, std::uint32_t material) {
   }();
   const double* const v =
       material == 0 ? defaults.data() : snapshot.visuals.data() + first + (material - 1) * table.persistent_width();
-  return {v[at(table, "transparency")],           v[at(table, "ambient_scale")],
-          v[at(table, "diffuse_scale")],          v[at(table, "specular_scale")],
-          v[at(table, "specular_pow")],           vec3_at(v + at(table, "ambient_color")),
-          vec3_at(v + at(table, "diffuse_color"))};
+  const Vec3 diffuse = vec3_at(v + at(table, "diffuse_color"));
+  const Vec3 ambient = vec3_at(v + at(table, "ambient_color"));
+  const bool ambient_is_default = ambient == vec3_at(defaults.data() + at(table, "ambient_color"));
+  return {v[at(table, "transparency")],
+          v[at(table, "ambient_scale")],
+          v[at(table, "diffuse_scale")],
+          v[at(table, "specular_scale")],
+          v[at(table, "specular_pow")],
+          ambient_is_default ? diffuse : ambient,
+          diffuse};
 }
 
 CameraSettings camera_of(const Snapshot& snapshot) {

@@ -57,7 +57,7 @@ struct Material {
   double diffuse_scale = 0;
   double specular_scale = 0;
   double specular_pow = 0;
-  Vec3 ambient_color{0};
+  Vec3 ambient_color{0};  ///< The diffuse color if the property has its default.
   Vec3 diffuse_color{0};
 };
 Material material_of(const Snapshot& snapshot, std::uint32_t material);

@@ -65,6 +65,12 @@ struct RecallCommand {
   Easing easing = Easing::smooth;
 };
 
+// Arguments: name|number new_name
+struct RenameCommand {
+  Arg preset;
+  std::string name;
+};
+
 // Arguments: name|number name|number amount
 struct MorphCommand {
   Arg a, b;
@@ -102,6 +108,12 @@ bool parse_word(std::string_view word, bool& after_except, PresetSelection& sele
   return true;
 }
 
+Result<void> check_new_name(const std::string& name) {
+  if (const auto fault = name_error(name)) return Error{fmt::format("invalid name: {}", *fault)};
+  if (name == kScript) return Error{"'script' is reserved for the values of the scene; use another name"};
+  return {};
+}
+
 Result<StoreCommand> parse_store(const Message& message) {
   const std::vector<Arg>& args = message.args;
   if (args.empty() || !is_preset_reference(args[0]))
@@ -109,8 +121,7 @@ Result<StoreCommand> parse_store(const Message& message) {
   StoreCommand command;
   if (args[0].is_text()) {
     command.name = args[0].text;
-    if (const auto fault = name_error(command.name)) return Error{fmt::format("invalid name: {}", *fault)};
-    if (command.name == kScript) return Error{"'script' is reserved for the values of the scene; use another name"};
+    if (const Result<void> valid = check_new_name(command.name); !valid) return Error{valid.error()};
   } else {
     command.number = args[0].number;
   }
@@ -145,6 +156,14 @@ Result<RecallCommand> parse_recall(const Message& message) {
   return command;
 }
 
+Result<RenameCommand> parse_rename(const Message& message) {
+  const std::vector<Arg>& args = message.args;
+  if (args.size() != 2 || !is_preset_reference(args[0]) || !args[1].is_text())
+    return Error{"expected the name or the number of a preset, and its new name"};
+  if (const Result<void> valid = check_new_name(args[1].text); !valid) return Error{valid.error()};
+  return RenameCommand{args[0], args[1].text};
+}
+
 Result<MorphCommand> parse_morph(const Message& message) {
   const std::vector<Arg>& args = message.args;
   const std::optional<double> amount = args.size() == 3 ? number_of(args[2]) : std::nullopt;
@@ -169,6 +188,11 @@ Result<std::vector<Arg>> referenced_presets(const Message& message) {
     const Result<MorphCommand> command = parse_morph(message);
     if (!command) return Error{command.error()};
     return std::vector<Arg>{command->a, command->b};
+  }
+  if (message.address == "/preset/rename") {
+    const Result<RenameCommand> command = parse_rename(message);
+    if (!command) return Error{command.error()};
+    return std::vector<Arg>{command->preset};
   }
   return message.args;
 }
@@ -237,6 +261,7 @@ Outcome Presets::execute(std::string_view command, const Message& message, sim::
   if (command == "recall") return recall(message, world);
   if (command == "morph") return morph(message, world);
   if (command == "delete") return erase(message);
+  if (command == "rename") return rename(message);
   return list_names(message);
 }
 
@@ -333,6 +358,23 @@ Outcome Presets::erase(const Message& message) {
   return {};
 }
 
+Outcome Presets::rename(const Message& message) {
+  const Result<RenameCommand> command = parse_rename(message);
+  if (!command) return Outcome::rejected(command.error());
+  const auto preset = resolve(command->preset);
+  if (!preset) return Outcome::rejected(preset.error());
+  if (*preset == script_) return Outcome::rejected("'script' has the values of the scene; it can't be renamed");
+  if ((*preset)->name == command->name) return {};
+  if (find(command->name) != nullptr)
+    return Outcome::rejected(fmt::format("there is a preset '{}' already; delete it first", printable(command->name)));
+  auto renamed = std::make_shared<Preset>(**preset);
+  renamed->name = command->name;
+  *std::find(bank_.list.begin(), bank_.list.end(), *preset) = std::move(renamed);
+  update_names();
+  save();
+  return {};
+}
+
 Outcome Presets::recall(const Message& message, sim::World& world) {
   const Result<RecallCommand> command = parse_recall(message);
   if (!command) return Outcome::rejected(command.error());
@@ -422,9 +464,10 @@ Result<void> Presets::check(const Message& message, std::span<const Message> bef
   const auto will_exist = [&](std::string_view name) {
     bool exists = find(name) != nullptr || name == kScript;
     for (const Message& m : before) {
+      if (m.address == "/preset/rename" && m.args[1].text == name) exists = true;
       if (m.args.empty() || m.args[0].text != name) continue;
       if (m.address == "/preset/store") exists = true;
-      if (m.address == "/preset/delete") exists = false;
+      if (m.address == "/preset/delete" || m.address == "/preset/rename") exists = false;
     }
     return exists;
   };

@@ -1,5 +1,5 @@
-// Presets: the ordered list of presets of a session, and the commands on them: store, recall, morph, delete. Presets
-// survive resets; a PresetSaver writes them to the disk. [sim]
+// Presets: the ordered list of presets of a session, and the commands on them: store, recall, morph, rename, delete.
+// Presets survive resets; a PresetSaver writes them to the disk. [sim]
 #pragma once
 
 #include <cstdint>
@@ -52,7 +52,7 @@ class Presets {
   /// Canonical path of the preset file; empty: none.
   const std::string& file() const { return bank_.file; }
 
-  /// Executes /preset/store, recall, morph, delete or /list/presets, selected by the last word of the address.
+  /// Executes /preset/store, recall, morph, rename, delete or /list/presets, selected by the last word of the address.
   Outcome execute(std::string_view command, const Message& message, sim::World& world);
   /// Checks whether a message would succeed after the messages in `before`.
   Result<void> check(const Message& message, std::span<const Message> before) const;
@@ -112,6 +112,7 @@ class Presets {
   Outcome recall(const Message& message, sim::World& world);
   Outcome morph(const Message& message, sim::World& world);
   Outcome erase(const Message& message);
+  Outcome rename(const Message& message);
   Outcome list_names(const Message& message) const;
 
   const std::shared_ptr<const Preset>* find(std::string_view name) const;

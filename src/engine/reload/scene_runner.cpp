@@ -9,6 +9,7 @@
 #include "base/log/log.h"
 #include "base/text.h"
 #include "engine/reload/reload_candidate.h"
+#include "sim/visuals/framing.h"
 #include "sim/visuals/visuals.h"
 
 namespace limber::engine {
@@ -20,9 +21,10 @@ SceneRunner::Run SceneRunner::begin_run(TakeSceneRun::Kind kind, bool reuse_file
   return run;
 }
 
-// Captures the result of a run, for reloads and for the preset "script".
-void SceneRunner::capture_run(const Session& session, const script::SceneOptions& options, const std::string& file,
+// Frames the bodies, and captures the result of a run, for reloads and for the preset "script".
+void SceneRunner::capture_run(Session& session, const script::SceneOptions& options, const std::string& file,
                               std::vector<script::SourceFile> failed_files) {
+  if (show_.rules.frames_scenes) sim::frame_scene(session.world);
   reloader_.capture(session, options, file, std::move(failed_files));
   show_.presets.set_script_preset(reloader_.script_preset());
 }
@@ -240,6 +242,7 @@ SceneReloader::ApplyResult SceneRunner::apply_candidate(ReloadCandidate& candida
   if ((candidate.diff().world >> seed.index & 1u) != 0) show_.scene_seed = session.world.seed();
   if (!is_start) return result;
   show_.scene_seed = session.world.seed();
+  if (show_.rules.frames_scenes) sim::frame_scene(session.world);
   if (const Result<void> set = apply_initial_overrides(); !set) log_error("{}", set.error());
   begin_show();
   return result;

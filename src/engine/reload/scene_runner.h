@@ -64,7 +64,7 @@ class SceneRunner {
  private:
   void copy_session_value(Session& fresh, std::string_view name) const;
   std::unique_ptr<Session> install_session(std::unique_ptr<Session> fresh);
-  void capture_run(const Session& session, const script::SceneOptions& options, const std::string& file,
+  void capture_run(Session& session, const script::SceneOptions& options, const std::string& file,
                    std::vector<script::SourceFile> failed_files = {});
   void reapply_overrides();
   Result<void> apply_initial_overrides();

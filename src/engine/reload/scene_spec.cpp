@@ -134,6 +134,11 @@ SceneSpec describe(const sim::World& world) {
   out.world = spec_values_of(world.store(), world.id());
   out.visuals = spec_values_of(world.store(), world.visuals().id());
   out.camera = spec_values_of(world.store(), world.visuals().camera().id());
+  if (world.visuals().camera().has_framed_pose()) {
+    std::erase_if(out.camera, [](const SpecValue& value) {
+      return !value.is_set && (sim::Camera::pose_mask() >> value.property & 1u) != 0;
+    });
+  }
   out.appearance = spec_values_of(world.store(), world.visuals().appearance().id());
   Shapes shapes;
   for (const auto& shape : world.shapes().list()) {

@@ -29,6 +29,7 @@ ShowRules rules_of(const TakePlayer& player, bool in_show) {
   ShowRules rules;
   rules.before_first_revision = player.rules() == 0;
   rules.keeps_timers = player.keeps_timers();
+  rules.frames_scenes = player.frames_scenes();
   if (!player.current_scripts()) rules.limits = replay_limits(in_show);
   return rules;
 }

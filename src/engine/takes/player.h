@@ -36,6 +36,7 @@ class TakePlayer {
   bool current_scripts() const { return current_scripts_; }
   /// True if reloads kept timers when the take was recorded.
   bool keeps_timers() const { return reader_->header().version >= kFirstTakeVersionKeepingTimers; }
+  bool frames_scenes() const { return reader_->header().version >= kFirstTakeVersionFramingScenes; }
   /// See kTakeRules.
   int rules() const { return reader_->header().rules; }
   /// Advances to the next tick. False at the end of the take, and once the replay has diverged and the first differing

@@ -20,10 +20,12 @@
 namespace limber::engine {
 
 /// Version of the format. 3: the hashes skip values that are at their defaults; takes of version 1 and 2 can be
-/// replayed, but not compared. 4: a reload keeps timers (SceneOptions::keep_timers).
-inline constexpr int kTakeVersion = 4;
+/// replayed, but not compared. 4: a reload keeps timers (SceneOptions::keep_timers). 5: the default view
+/// frames the bodies of a scene (ShowRules::frames_scenes).
+inline constexpr int kTakeVersion = 5;
 inline constexpr int kFirstComparableTakeVersion = 3;
 inline constexpr int kFirstTakeVersionKeepingTimers = 4;
+inline constexpr int kFirstTakeVersionFramingScenes = 5;
 /// Revision of the engine's behavior that a replay must reproduce. 1: a handler that failed is disabled, repeated panic
 /// requests are ignored for a second, handlers have a time budget. 0: older takes, without these rules.
 inline constexpr int kTakeRules = 1;

@@ -41,6 +41,11 @@ function presets:recall(which, seconds, easing) end
 ---@example presets
 function presets:morph(a, b, amount) end
 
+---Renames a preset. Its values and its position in the order stay.
+---@param which string|integer
+---@param name string # New name; no other preset may have it.
+function presets:rename(which, name) end
+
 ---Deletes a preset.
 ---@param which string|integer # A name, or a number from 1.
 ---@example presets

@@ -4,7 +4,7 @@ local api, ctx = P.api, P.ctx
 local fail, describe = P.fail, P.describe
 
 local presets = {}
-local members = { "store", "recall", "morph", "delete", "names" }
+local members = { "store", "recall", "morph", "rename", "delete", "names" }
 P.preset_members, P.preset_functions = members, presets
 
 local function begin(self, operation)
@@ -80,6 +80,14 @@ function presets.morph(self, a, b, amount)
   put_which(b, "presets:morph")
   api.message_number(ctx, P.check_number(amount, "presets:morph: the amount"))
   finish("morph")
+end
+
+function presets.rename(self, which, name)
+  begin(self, "rename")
+  put_which(which, "presets:rename")
+  P.check_text(name, "presets:rename: the new name")
+  api.message_text(ctx, name, #name)
+  finish("rename")
 end
 
 function presets.delete(self, which)

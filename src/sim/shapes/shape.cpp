@@ -20,14 +20,18 @@ const PropertyTable& Shape::table() {
           number("diffuse_scale", "", 0.5, 0, 10, "Factor on the lamps' light."),
           number("specular_scale", "", 0.5, 0, 10, "Brightness of highlights."),
           number("specular_pow", "", 10, 0, 1000, "Shininess: the higher, the smaller the highlights."),
-          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1, "Color in ambient light: hue, saturation, brightness."),
+          vec3("ambient_color", "hsb", {0, 0, 1}, 0, 1,
+               "Color in ambient light: hue, saturation, brightness; the default is diffuse_color."),
           vec3("diffuse_color", "hsb", {0, 0, 1}, 0, 1, "Color in the lamps' light: hue, saturation, brightness."),
+          state(computed<&Shape::read_color, &Shape::write_color>(
+              vec3("color", "hsb", {0, 0, 1}, 0, 1, "Sets ambient_color and diffuse_color; reads diffuse_color."))),
       });
   return table;
 }
 
 namespace {
 
+constexpr const char* kColors[] = {"ambient_color", "diffuse_color"};
 constexpr double kMinLength = 1e-4;
 constexpr double kMaxLength = 1e4;
 
@@ -78,6 +82,12 @@ Shape::Shape(Store& store, NodeId group, std::string name, model::ShapeModel mod
   if (model_.kind == model::ShapeKind::plane) model_.normal = normalized(model_.normal);
 }
 
+void Shape::read_color(double* out) const { std::copy_n(store_.values(id_, table().at("diffuse_color")), 3, out); }
+
+void Shape::write_color(const double* in) {
+  for (const char* const property : kColors) (void)store_.set(id_, table().at(property), {in, 3});
+}
+
 Shape::~Shape() { store_.remove(id_); }
 
 Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
@@ -121,7 +131,7 @@ void Shape::assign_geometry(const Shape& source) {
 void Shape::set_color(const model::PlacedShape& visual) {
   if (!visual.color) return;
   const Vec3 hsb = hsb_of(*visual.color);
-  for (const char* const property : {"ambient_color", "diffuse_color"}) {
+  for (const char* const property : kColors) {
     double* const out = store_.mutable_values(id_, table().at(property));
     for (int i = 0; i < 3; i++) out[i] = std::clamp(hsb[i], 0.0, 1.0);
   }

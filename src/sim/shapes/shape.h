@@ -41,6 +41,9 @@ class Shape {
   std::shared_ptr<const Geometry> geometry() const;
 
  private:
+  void read_color(double* out) const;
+  void write_color(const double* in);
+
   Store& store_;
   NodeId id_;
   model::ShapeModel model_;

@@ -58,9 +58,8 @@ std::uint64_t body_hash(const Body& body, std::uint64_t start) {
 }
 
 std::uint64_t World::state_hash() const {
-  std::uint64_t fixed = 0;
-  for (const NodeId id : {id_, visuals_->id(), visuals_->camera().id(), visuals_->appearance().id()})
-    fixed += fixed_node_hash(store_, id);
+  std::uint64_t fixed = visuals_->camera().settings_hash();
+  for (const NodeId id : {id_, visuals_->id(), visuals_->appearance().id()}) fixed += fixed_node_hash(store_, id);
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
   for (const auto& shape : shapes_->list()) numbers.add_word(persistent_hash(store_, shape->id()));
   for (const auto& gear : gears_->list()) numbers.add_word(persistent_hash(store_, gear->id()));

@@ -5,6 +5,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "properties/values_hash.h"
+#include "sim/world/world.h"
 
 #include "sim/world/world.h"
 
@@ -44,6 +48,8 @@ View view_from_to(const Vec3& eye, const Vec3& target) {
   view.position = -(rotation_matrix(view.rotation) * eye);
   return view;
 }
+
+constexpr std::array kPose = {"position", "rotation", "distance"};
 
 std::array<double, 3> to_array(const Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -94,6 +100,46 @@ void Camera::look_at(const Vec3& eye, const Vec3& target) {
   (void)store_.set(id_, table().at("position"), to_array(view.position));
   (void)store_.set(id_, table().at("rotation"), to_array(view.rotation));
   (void)store_.set(id_, table().at("distance"), {&view.distance, 1});
+}
+
+Camera::CameraPose Camera::pose() const {
+  CameraPose pose{};
+  double* out = pose.data();
+  for (const char* const name : kPose) {
+    const Property& property = table().at(name);
+    out = std::copy_n(store_.values(id_, property), property.width, out);
+  }
+  return pose;
+}
+
+std::uint64_t Camera::pose_mask() {
+  std::uint64_t mask = 0;
+  for (const char* const name : kPose) mask |= std::uint64_t{1} << table().at(name).index;
+  return mask;
+}
+
+bool Camera::pose_is_set() const {
+  if ((store_.explicitly_set(id_) & pose_mask()) != 0) return true;
+  return !std::ranges::all_of(kPose, [&](const char* name) {
+    const Property& property = table().at(name);
+    return std::equal(property.initial.begin(), property.initial.begin() + property.width,
+                      store_.values(id_, property));
+  });
+}
+
+void Camera::set_default_pose(const Vec3& eye, const Vec3& target) {
+  look_at(eye, target);
+  default_pose_ = pose();
+}
+
+std::uint64_t Camera::settings_hash() const {
+  if (!has_framed_pose()) return fixed_node_hash(table(), store_.persistent_block(id_));
+  std::vector<double> values(store_.persistent_block(id_), store_.persistent_block(id_) + table().persistent_width());
+  for (const char* const name : kPose) {
+    const Property& property = table().at(name);
+    std::copy_n(property.initial.begin(), property.width, values.begin() + property.offset);
+  }
+  return fixed_node_hash(table(), values.data());
 }
 
 void Camera::read_eye(double* out) const { std::ranges::copy(to_array(eye()), out); }

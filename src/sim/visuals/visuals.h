@@ -2,6 +2,10 @@
 // rendering is elsewhere. [sim]
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
+
 #include "base/vec.h"
 #include "properties/store.h"
 #include "sim/visuals/appearance.h"
@@ -25,7 +29,21 @@ class Camera {
   /// Looks from one point at another, upright. Does nothing if the points coincide.
   void look_at(const Vec3& eye, const Vec3& target);
 
+  /// True if a script or a message has set the pose: it isn't the default one any more.
+  bool pose_is_set() const;
+  /// Sets the pose and makes it the default one of this world. For the hash, and for reloads, it counts as not set.
+  void set_default_pose(const Vec3& eye, const Vec3& target);
+  /// True if the pose is that of set_default_pose().
+  bool has_framed_pose() const { return default_pose_ && pose() == *default_pose_; }
+  /// Bits of the pose's properties: position, rotation and distance.
+  static std::uint64_t pose_mask();
+  /// Hash of the settings, for the hash of the world.
+  std::uint64_t settings_hash() const;
+
  private:
+  using CameraPose = std::array<double, 7>;  // position, rotation, distance
+
+  CameraPose pose() const;
   /// Rotation from world axes to eye axes.
   Mat3 rotation() const;
   void read_eye(double* out) const;
@@ -35,6 +53,7 @@ class Camera {
 
   Store& store_;
   NodeId id_;
+  std::optional<CameraPose> default_pose_;  // nothing: that of the table
 };
 
 class Visuals {

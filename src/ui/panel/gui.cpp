@@ -11,6 +11,7 @@
 #include "base/log/log.h"
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/confirmation.h"
 
 namespace limber::panel {
 
@@ -29,6 +30,16 @@ const char* get_clipboard(void* options) {
   static std::string pasted;
   pasted = static_cast<const GuiOptions*>(options)->paste();
   return pasted.c_str();
+}
+
+// True for actions that the window performs.
+bool is_of_window(HotkeyAction action) {
+  return action == HotkeyAction::toggle_output_window || action == HotkeyAction::toggle_full_screen ||
+         action == HotkeyAction::default_view;
+}
+
+bool frames(HotkeyAction action) {
+  return action == HotkeyAction::frame_selection || action == HotkeyAction::frame_all;
 }
 
 // Performs the hotkey actions that only need the context.
@@ -159,6 +170,7 @@ void Gui::frame(const GuiFrame& frame) {
   if (context_.spring_marker) draw_spring(*context_.spring_marker);
   if (!context_.settings.hidden && context_.panicked()) draw_panic();
   if (context_.show_help) draw_help();
+  draw_confirmation(context_);
   if (context_.notice.visible(context_.clock)) draw_notice();
   if (!ImGui::IsAnyItemActive()) context_.end_drag();
   ImGui::Render();
@@ -184,6 +196,7 @@ void Gui::handle_keys(const std::vector<KeyPress>& keys) {
       bind_key(press);
       continue;
     }
+    if (handle_confirmation_key(context_, press)) continue;
     // during keyboard navigation these keys act on the selected widget
     if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
     const Hotkey* const hotkey = hotkeys_.match(press, io.WantTextInput);
@@ -245,13 +258,14 @@ void Gui::perform(HotkeyAction action, const KeyPress& press) {
     case HotkeyAction::move_behavior_later:
       context_.requests.move_behavior = action == HotkeyAction::move_behavior_earlier ? -1 : 1;
       break;
-    case HotkeyAction::toggle_output_window:
-    case HotkeyAction::toggle_full_screen:
-    case HotkeyAction::default_view:
-      actions_.push_back(action);
-      break;
     default:
-      perform_in_context(action, context_);
+      if (is_of_window(action)) {
+        actions_.push_back(action);
+      } else if (!frames(action)) {
+        perform_in_context(action, context_);
+      } else if (!wants_mouse()) {  // the pointer is over the view
+        actions_.push_back(action);
+      }
       break;
   }
 }

@@ -107,6 +107,16 @@ TakeState GuiContext::take_state() const {
   return state;
 }
 
+void GuiContext::toggle_take_playback() {
+  if (take_state().in_show) {
+    send("/take/stop");
+    return;
+  }
+  requests.confirmation = {"Play the latest take? It replaces the running show until it ends or is stopped.",
+                           "Play take",
+                           {"/take/play", {}}};
+}
+
 void GuiContext::select(std::string path) {
   selected = std::move(path);
   requests.reveal_path = selected;

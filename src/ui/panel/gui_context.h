@@ -46,11 +46,19 @@ struct TimedText {
   bool visible(double now) const { return now < until; }
 };
 
+/// A question that is asked before a message is sent.
+struct Confirmation {
+  std::string question;
+  std::string verb;  ///< Label of the button that sends the message.
+  Message message;
+};
+
 /// Requests to panels. The panel that carries one out resets it.
 struct PanelRequests {
   std::string reveal_path;    ///< Address of an object that the tree scrolls to in the next frame; empty: none.
   bool focus_search = false;  ///< Moves the keyboard focus to the search field in the next frame.
   int move_behavior = 0;      ///< Moves the selected behavior: -1 earlier, 1 later.
+  std::optional<Confirmation> confirmation;  ///< The question that the user is asked.
 };
 
 /// Duration of one rewind, s.
@@ -122,8 +130,8 @@ class GuiContext {
   TakeState take_state() const;
   /// Starts or stops recording a take.
   void toggle_recording() { send(take_state().recording() ? "/take/stop" : "/take/record"); }
-  /// Plays the latest take instead of the live scene, or stops it.
-  void toggle_take_playback() { send(take_state().in_show ? "/take/stop" : "/take/play"); }
+  /// Stops the take that plays, or asks whether the latest one shall replace the running show.
+  void toggle_take_playback();
 
   /// Undoes the latest edit, from any source.
   void undo();

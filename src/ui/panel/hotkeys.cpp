@@ -37,6 +37,8 @@ constexpr std::array kHotkeys = {
     Hotkey{{GuiKey::equal, kCtrl}, A::increase_text_size, "larger", "Larger text", true},
     Hotkey{{GuiKey::minus, kCtrl}, A::decrease_text_size, "smaller", "Smaller text", true},
     Hotkey{{GuiKey::home, {}}, A::default_view, "home_view", "Default view"},
+    Hotkey{{GuiKey::f, {}}, A::frame_selection, "frame", "Frame the selected object in the view", false, 1, true},
+    Hotkey{{GuiKey::a, {}}, A::frame_all, "frame_all", "Frame all bodies in the view", false, 1, true},
     Hotkey{{GuiKey::digit_1, kCtrl}, A::restore_view, "go_to_view", "Restore a stored view", false, 9},
     Hotkey{{GuiKey::digit_1, kCtrlShift}, A::store_view, "keep_view", "Store this view", false, 9},
     Hotkey{{GuiKey::f1, {}}, A::toggle_panel, "hide", "Hide the panel", true},
@@ -78,6 +80,7 @@ bool types_text(const KeyPress& press) {
 std::string_view name_of(const Hotkey& hotkey) { return hotkey.name; }
 
 bool matches(const Hotkey& hotkey, const KeyPress& press) {
+  if (hotkey.press.key == GuiKey::none) return false;
   const int offset = static_cast<int>(press.key) - static_cast<int>(hotkey.press.key);
   return press.mods == hotkey.press.mods && offset >= 0 && offset < hotkey.key_count;
 }
@@ -109,6 +112,12 @@ std::optional<KeyPress> parse_key(std::string_view text) {
 }
 
 Hotkeys::Hotkeys(const KeyBindings& bindings) : list_(kHotkeys.begin(), kHotkeys.end()) {
+  for (Hotkey& hotkey : list_) {
+    const auto takes_key = [&](const auto& binding) {
+      return binding.first != hotkey.name && parse_key(binding.second) == hotkey.press;
+    };
+    if (hotkey.yields && std::ranges::any_of(bindings, takes_key)) hotkey.press = {};
+  }
   for (const auto& [name, text] : bindings) {
     const std::optional<KeyPress> press = parse_key(text);
     const auto hotkey = std::ranges::find(list_, std::string_view(name), name_of);
@@ -150,6 +159,7 @@ std::string Hotkeys::conflict(std::string_view name, const KeyPress& press) cons
 }
 
 std::string keys_text(const Hotkey& hotkey, const KeyLabels& labels) {
+  if (hotkey.press.key == GuiKey::none) return "(no key)";
   std::string text = key_text(hotkey.press, labels);
   if (hotkey.key_count == 1) return text;
   return fmt::format("{} .. {}", text,

@@ -35,6 +35,8 @@ enum class HotkeyAction : std::uint8_t {
   toggle_output_window,
   toggle_full_screen,
   default_view,
+  frame_selection,
+  frame_all,
   store_view,
   restore_view,
   recall_preset,
@@ -49,6 +51,9 @@ struct Hotkey {
   bool while_typing = false;  ///< Also active while a text field has the focus.
   /// Number of consecutive keys, starting at `press` (1 to 9). If there is more than one, the hotkey can't be rebound.
   int key_count = 1;
+  /// A user may bind the default key to another hotkey; this one then has no key. Set for hotkeys that are newer than
+  /// the settings of some users.
+  bool yields = false;
 };
 
 /// Rebound keys by the name of the hotkey, in the format of key_text().

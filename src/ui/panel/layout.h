@@ -27,6 +27,9 @@ struct Layout {
 /// A window narrower than this many units (pixels at text size 16) is compact.
 inline constexpr double kCompactBelow = 1200;
 
+/// Width in units at the right end of the top panel's second row, which the morph controls use.
+inline constexpr double kMorphWidth = 380;
+
 /// `scale`: pixels per unit, where a unit is a pixel at text size 16. Slots that do not fit are empty.
 Layout lay_out(double width, double height, double scale);
 

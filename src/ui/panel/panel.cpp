@@ -1,8 +1,12 @@
-// The registry of panels.
+// The registry of panels, and the rows of the top panel.
 #include "ui/panel/panel.h"
 
 #include <algorithm>
 #include <tuple>
+
+#include <imgui.h>
+
+#include "ui/panel/imgui_versions.h"
 
 namespace limber::panel {
 
@@ -18,6 +22,12 @@ std::vector<PanelType>& registered_panels() {
 bool register_panel(const PanelType& type) {
   registered_panels().push_back(type);
   return true;
+}
+
+float top_row_y(const GuiContext& context, int row) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float height = imgui::font_height(*context.fonts.code) + 2 * style.FramePadding.y + style.ItemSpacing.y;
+  return style.WindowPadding.y + static_cast<float>(row) * height;
 }
 
 std::vector<PanelType> panel_types() {

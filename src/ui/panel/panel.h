@@ -31,6 +31,9 @@ class Panel {
   }
 };
 
+/// Vertical position in the top panel's window of a row, from 0, in pixels.
+float top_row_y(const GuiContext& context, int row);
+
 /// A registered kind of panel, with its slot in wide and compact windows.
 struct PanelType {
   std::string_view name;   ///< Its file name.

@@ -1,48 +1,45 @@
-// Presets: store and recall slots, the duration and easing of morphs, and an index that interpolates between presets.
+// Presets: a strip and a list of presets by name, to recall, store, rename and delete them; the duration and easing of
+// morphs, and an index that interpolates between presets.
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 #include "base/text.h"
 #include "engine/presets/morph.h"
+#include "ui/panel/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
+#include "ui/panel/widgets/icons.h"
 #include "ui/panel/widgets/number_slider.h"
 
 namespace limber::panel {
 
 namespace {
 
-constexpr std::size_t kPresetSlots = 8;
+constexpr double kMaxSlotWidth = 130;      // units
+constexpr double kStatusWidth = 230;       // units of the first row that the status uses
+constexpr double kWideStatusWidth = 350;   // with the numbers of bodies and parts
+constexpr double kWideStatusAbove = 1500;  // units
 
 class PresetsPanel : public Panel {
  public:
   void draw(GuiContext& context) override {
     const std::vector<std::string> names = names_of(context);
     const auto s = static_cast<float>(context.scale);
-    // its own row in a compact window
-    if (ImGui::GetWindowWidth() > static_cast<float>(kCompactBelow) * s * 0.95F) ImGui::SameLine(0, 16 * s);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("Preset");
-    for (std::size_t i = 0; i < kPresetSlots; i++) {
-      ImGui::SameLine(0, 4 * s);
-      draw_slot(context, names, i);
-    }
-    ImGui::SameLine(0, 10 * s);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("Morph s");
-    ImGui::SameLine(0, 5 * s);
-    ImGui::PushFont(context.fonts.code);
-    const SliderRange seconds{0, GuiSettings::kMaxMorphSeconds, 1.5, 0, false};
-    double morph = context.settings.morph_seconds;
-    if (time_bar(context, seconds, morph, 72 * s)) context.settings.morph_seconds = morph;
-    ImGui::PopFont();
-    ImGui::SameLine(0, 4 * s);
-    draw_easing(context, 84 * s);
-    ImGui::SameLine(0, 10 * s);
-    draw_index(context, names, 110 * s);
+    const float window = ImGui::GetWindowWidth();
+    const bool compact = window < static_cast<float>(kCompactBelow) * s * 0.95F;
+    if (!compact) ImGui::SameLine(0, 16 * s);  // else in its own row
+    const ImVec2 strip = ImGui::GetCursorPos();
+    const float morph = window - static_cast<float>(kMorphWidth) * s;
+    ImGui::SetCursorPos({morph, top_row_y(context, 1)});
+    draw_morph(context, names, s);
+    ImGui::SetCursorPos(strip);
+    const double status = window > static_cast<float>(kWideStatusAbove) * s ? kWideStatusWidth : kStatusWidth;
+    draw_strip(context, names, s, compact ? morph : window - static_cast<float>(status) * s);
   }
 
  private:
@@ -63,37 +60,153 @@ class PresetsPanel : public Panel {
     return name;
   }
 
-  void draw_slot(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
-    const bool exists = i < names.size();
-    const bool active = exists && recalled_ == names[i];
+  static std::string label_of(const std::vector<std::string>& names, std::size_t i) {
+    return fmt::format("{} {}", i + 1, names[i]);
+  }
+
+  static float slot_width(const std::vector<std::string>& names, std::size_t i, float s) {
+    const float text = ImGui::CalcTextSize(label_of(names, i).c_str()).x + 2 * ImGui::GetStyle().FramePadding.x;
+    return std::min(text, static_cast<float>(kMaxSlotWidth) * s);
+  }
+
+  // Draws the presets as buttons, as many as fit up to `right`; the arrows and the wheel scroll. The list has all.
+  void draw_strip(GuiContext& context, const std::vector<std::string>& names, float s, float right) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Presets");
+    ImGui::SameLine(0, 6 * s);
+    const float gap = 4 * s;
     const float side = ImGui::GetFrameHeight();
+    const float space = right - ImGui::GetCursorPosX() - 2 * (side + gap);  // without the list and the plus
+    const bool scrolls = count_fitting(names, 0, 1, space, s) < names.size();
+    const float strip = scrolls ? space - 2 * (side + gap) : space;
+    // at the end of the scroll range, the last presets fill the strip
+    const std::size_t last = names.size() - count_fitting(names, names.size() - 1, -1, strip, s);
+    first_ = scrolls ? std::min(first_, last) : 0;
+    const std::size_t count = count_fitting(names, first_, 1, strip, s);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    if (scrolls) {
+      draw_arrow(context, "preset.earlier", ImGuiDir_Left, "Earlier presets", first_ == 0, -1);
+      ImGui::SameLine(0, gap);
+    }
+    for (std::size_t i = first_; i < first_ + count; i++) {
+      draw_slot(context, names, i, slot_width(names, i, s));
+      ImGui::SameLine(0, gap);
+    }
+    if (scrolls) {
+      draw_arrow(context, "preset.later", ImGuiDir_Right, "Later presets", first_ == last, 1);
+      ImGui::SameLine(0, gap);
+    }
+    if (ImGui::IsMouseHoveringRect(from, {from.x + strip, from.y + side})) scroll(-ImGui::GetIO().MouseWheel);
+    draw_list_button(context, names);
+    ImGui::SameLine(0, gap);
+    if (icon_button(context.names, "preset.new", Icon::plus, "Store the current state as a new preset", false, side))
+      store(context, unused_name(names, names.size() + 1));
+  }
+
+  // Returns how many presets fit from `at` on, forwards or backwards (-1); at least one, if there is one.
+  static std::size_t count_fitting(const std::vector<std::string>& names, std::size_t at, int direction, float width,
+                                   float s) {
+    std::size_t count = 0;
+    for (float used = 0; at < names.size(); at += static_cast<std::size_t>(direction), count++) {
+      used += slot_width(names, at, s);
+      if (used > width && count > 0) break;
+      used += 4 * s;
+    }
+    return count;
+  }
+
+  void scroll(float steps) {
+    if (steps > 0) first_++;
+    if (steps < 0 && first_ > 0) first_--;
+  }
+
+  void draw_arrow(GuiContext& context, const char* name, ImGuiDir direction, const char* tooltip, bool at_end,
+                  float steps) {
+    ImGui::BeginDisabled(at_end);
+    if (ImGui::ArrowButton(name, direction)) scroll(steps);
+    ImGui::EndDisabled();
+    context.names.add(name);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tooltip);
+  }
+
+  void draw_slot(GuiContext& context, const std::vector<std::string>& names, std::size_t i, float width) {
+    const bool active = recalled_ == names[i];
     ImGui::PushID(static_cast<int>(i));
-    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(active   ? ThemeColor::active
-                                                        : exists ? ThemeColor::field
-                                                                 : ThemeColor::header));
-    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(active   ? ThemeColor::on_active
-                                                      : exists ? ThemeColor::text
-                                                               : ThemeColor::secondary));
-    if (ImGui::Button(fmt::format("{}###slot", i + 1).c_str(), {side * 1.05F, side})) press_slot(context, names, i);
-    ImGui::PopStyleColor(2);
+    ImGui::PushStyleColor(ImGuiCol_Button, packed_color(active ? ThemeColor::active : ThemeColor::field));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed_color(active ? ThemeColor::on_active : ThemeColor::text));
+    if (ImGui::Button("###slot", {width, ImGui::GetFrameHeight()})) press(context, names, i);
     context.names.add(fmt::format("preset.{}", i + 1));
-    if (ImGui::IsItemHovered()) {
-      if (exists)
-        ImGui::SetTooltip("%s: click to recall, Ctrl+click to overwrite, right click for more", names[i].c_str());
-      if (!exists) ImGui::SetTooltip("Empty: click to store the current state");
-    }
-    if (exists && ImGui::BeginPopupContextItem("more")) {
-      if (ImGui::Selectable("Store the current state here")) store(context, names[i]);
-      context.names.add("preset.store");
-      if (ImGui::Selectable("Delete")) context.send("/preset/delete", {Arg::of(std::string_view(names[i]))});
-      context.names.add("preset.delete");
-      ImGui::EndPopup();
-    }
+    // drawn here, because a name may contain "##", which ends a label of Dear ImGui
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const ImVec2 padding = ImGui::GetStyle().FramePadding;
+    imgui::text_ellipsis({low.x + padding.x, low.y + padding.y},
+                         {low.x + width - padding.x + 1, ImGui::GetItemRectMax().y}, label_of(names, i));
+    ImGui::PopStyleColor(2);
+    preset_hint(context, names, i);
     ImGui::PopID();
   }
 
-  void press_slot(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
-    if (i >= names.size()) return store(context, unused_name(names, names.size() + 1));
+  // Adds a tooltip and the context menu to the last item, which stands for a preset.
+  void preset_hint(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s: click to recall, Ctrl+click to overwrite, right click to rename or delete",
+                        names[i].c_str());
+    if (!ImGui::BeginPopupContextItem("##menu")) return;
+    if (ImGui::IsWindowAppearing()) edited_ = names[i];
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 12);
+    bool renamed = ImGui::InputText("Name", &edited_, ImGuiInputTextFlags_EnterReturnsTrue);
+    context.names.add("menu:preset_name");
+    renamed |= ImGui::Selectable("Rename");
+    context.names.add("menu:preset_rename");
+    if (ImGui::Selectable("Store the current state here")) store(context, names[i]);
+    context.names.add("menu:preset_store");
+    if (ImGui::Selectable("Delete")) context.send("/preset/delete", {Arg::of(std::string_view(names[i]))});
+    context.names.add("menu:preset_delete");
+    if (renamed) {
+      rename(context, names[i]);
+      ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+  }
+
+  void rename(GuiContext& context, const std::string& name) {
+    if (edited_ == name) return;
+    context.send("/preset/rename", {Arg::of(std::string_view(name)), Arg::of(std::string_view(edited_))});
+    if (recalled_ == name) recalled_ = edited_;
+  }
+
+  // A list of all presets with their whole names.
+  void draw_list_button(GuiContext& context, const std::vector<std::string>& names) {
+    ImGui::BeginDisabled(names.empty());
+    if (ImGui::ArrowButton("preset.list", ImGuiDir_Down)) ImGui::OpenPopup("all");
+    ImGui::EndDisabled();
+    context.names.add("preset.list");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("All presets");
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    ImGui::SetNextWindowSizeConstraints({0, 0}, {ImGui::GetIO().DisplaySize.x, 20 * line});
+    if (!ImGui::BeginPopup("all")) return;
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(names.size()));
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; i++) draw_list_line(context, names, i);
+    }
+    ImGui::EndPopup();
+  }
+
+  void draw_list_line(GuiContext& context, const std::vector<std::string>& names, int i) {
+    const auto index = static_cast<std::size_t>(i);
+    const std::string label = label_of(names, index);
+    ImGui::PushID(i);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const float width = std::max(ImGui::CalcTextSize(label.c_str(), nullptr, false).x, ImGui::GetFontSize() * 10);
+    if (ImGui::Selectable("##line", recalled_ == names[index], 0, {width, 0})) press(context, names, index);
+    context.names.add(fmt::format("preset.list.{}", i + 1));
+    ImGui::GetWindowDrawList()->AddText(from, packed_color(ThemeColor::text), label.c_str());
+    preset_hint(context, names, index);
+    ImGui::PopID();
+  }
+
+  void press(GuiContext& context, const std::vector<std::string>& names, std::size_t i) {
     if (ImGui::GetIO().KeyCtrl) return store(context, names[i]);
     recalled_ = names[i];
     context.recall(static_cast<double>(i + 1));
@@ -103,6 +216,26 @@ class PresetsPanel : public Panel {
     context.send("/preset/store", {Arg::of(std::string_view(name))});
     context.show_notice(fmt::format("Stored: {}", name));
     recalled_ = name;
+  }
+
+  // The duration and easing of recalls, and the index that interpolates between presets.
+  void draw_morph(GuiContext& context, const std::vector<std::string>& names, float s) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Morph s");
+    ImGui::SameLine(0, 5 * s);
+    ImGui::PushFont(context.fonts.code);
+    const SliderRange seconds{0, GuiSettings::kMaxMorphSeconds, 1.5, 0, false};
+    double morph = context.settings.morph_seconds;
+    if (time_bar(context, seconds, morph, 72 * s)) context.settings.morph_seconds = morph;
+    ImGui::PopFont();
+    ImGui::SameLine(0, 4 * s);
+    draw_easing(context, 84 * s);
+    ImGui::SameLine(0, 10 * s);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextDisabled("Blend");
+    context.names.add("preset.index.label");
+    ImGui::SameLine(0, 5 * s);
+    draw_index(context, names, 100 * s);
   }
 
   static bool time_bar(GuiContext& context, const SliderRange& range, double& seconds, float width) {
@@ -157,7 +290,9 @@ class PresetsPanel : public Panel {
     }
   }
 
-  std::string recalled_;
+  std::string recalled_;   // name of the preset that was recalled or stored last
+  std::string edited_;     // text in the field for the name in the menu
+  std::size_t first_ = 0;  // index of the first preset in the strip
   double index_ = 1;
 };
 

@@ -34,21 +34,15 @@ class TimePanel : public Panel {
     const auto s = static_cast<float>(context.scale);
     const ImGuiStyle& style = ImGui::GetStyle();
     const bool compact = ImGui::GetWindowWidth() < static_cast<float>(kCompactBelow) * s * 0.95F;
-    const float rows = compact ? 2 : 1;  // above this one
-    const float row = imgui::font_height(*context.fonts.code) + 2 * style.FramePadding.y + style.ItemSpacing.y;
-    ImGui::SetCursorPos({style.WindowPadding.x, style.WindowPadding.y + rows * row});
+    ImGui::SetCursorPos({style.WindowPadding.x, top_row_y(context, compact ? 2 : 1)});
     draw_speed(context, s);
     if (take_.replaying) {
       draw_replay(context, compact, s);
     } else {
       draw_history(context, (compact ? 120 : 200) * s);
-      if (take_.recording()) {
-        draw_recording(context);
-      } else {
-        draw_play_take(context);
-      }
+      if (take_.recording()) draw_recording(context);
     }
-    draw_rejection(context);
+    draw_rejection(context, compact ? 0 : static_cast<float>(kMorphWidth) * s);
   }
 
  private:
@@ -57,6 +51,7 @@ class TimePanel : public Panel {
     if (!speed) return;
     ImGui::PushID("speed");
     property_widget(context, *speed, 74 * s);
+    property_menu(context, *speed);
     ImGui::PopID();
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
@@ -82,12 +77,6 @@ class TimePanel : public Panel {
     if (ImGui::IsItemHovered() && dragged_back_ == 0)
       ImGui::SetTooltip("History: %.1f s of %.0f s. Press or drag to a time and release to rewind", range.rewindable,
                         range.length);
-    ImGui::SameLine();
-  }
-
-  static void draw_play_take(GuiContext& context) {
-    if (icon_button(context.names, "take.play", Icon::play, "Play the latest take (Ctrl+Shift+R)"))
-      context.toggle_take_playback();
     ImGui::SameLine();
   }
 
@@ -138,11 +127,11 @@ class TimePanel : public Panel {
     ImGui::SameLine();
   }
 
-  // Extends to the end of the row; the tooltip shows the full text.
-  static void draw_rejection(GuiContext& context) {
+  // Extends to the end of the row, of which `reserved` pixels are used by others; the tooltip shows the full text.
+  static void draw_rejection(GuiContext& context, float reserved) {
     if (!context.rejection.visible(context.clock)) return;
     const float high = ImGui::GetFrameHeight();
-    const float width = ImGui::GetContentRegionAvail().x;
+    const float width = ImGui::GetContentRegionAvail().x - reserved;
     if (width < high) return;
     const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::InvisibleButton("##rejection", {width, high})) context.copy_with_notice(context.rejection.text);

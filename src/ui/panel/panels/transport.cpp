@@ -1,4 +1,4 @@
-// Transport: reset, step back, play or pause, step; record; panic; simulated time.
+// Transport: reset, step back, play or pause, step; record and play a take; panic; simulated time.
 #include <imgui.h>
 
 #include "ui/panel/panel.h"
@@ -35,6 +35,8 @@ class TransportPanel : public Panel {
     ImGui::SameLine();
     draw_record(context);
     ImGui::SameLine();
+    draw_play_take(context);
+    ImGui::SameLine();
     draw_panic(context);
     ImGui::SameLine();
     ImGui::PushFont(context.fonts.code);
@@ -56,6 +58,16 @@ class TransportPanel : public Panel {
     const ImVec2 high = ImGui::GetItemRectMax();
     draw_icon(icon, (low.x + high.x) / 2, (low.y + high.y) / 2, (high.y - low.y) * 0.27F,
               packed_color(ThemeColor::red));
+  }
+
+  // Disabled while a take is recorded or played: only one take is active at a time.
+  static void draw_play_take(GuiContext& context) {
+    ImGui::BeginDisabled(!context.take_state().name.empty());
+    if (ImGui::Button("Play take…")) context.toggle_take_playback();
+    ImGui::EndDisabled();
+    context.names.add("take.play");
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+      ImGui::SetTooltip("Play the latest take instead of the show, after a confirmation (Ctrl+Shift+R)");
   }
 
   // The same width in both states, so that nothing moves.

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "base/text.h"
 #include "properties/property_text.h"
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/lua_path.h"
@@ -28,6 +30,7 @@ namespace limber::panel {
 namespace {
 
 constexpr const char* kAxes[] = {"x", "y", "z", "w"};
+constexpr const char* kMenu = "##menu";  // id of the context menu in the scope of the property
 
 // Writable numbers: one bar for each, side by side if there is room.
 void numbers(GuiContext& context, const PropertyHandle& handle, PendingValues::Values& values, float width) {
@@ -45,7 +48,7 @@ void numbers(GuiContext& context, const PropertyHandle& handle, PendingValues::V
     dragging |= ImGui::IsItemActive();
     context.names.add(component_name(handle, i));
     ImGui::PopFont();
-    property_hint(context, handle);
+    property_hint(handle);
     ImGui::PushFont(context.fonts.code);
   }
   ImGui::PopFont();
@@ -62,7 +65,7 @@ void checkboxes(GuiContext& context, const PropertyHandle& handle, PendingValues
       context.set(handle, values, false);
     }
     context.names.add(component_name(handle, i));
-    property_hint(context, handle);
+    property_hint(handle);
   }
 }
 
@@ -76,7 +79,7 @@ void choice(GuiContext& context, const PropertyHandle& handle, PendingValues::Va
                                                       : "");
   if (!open) {
     context.names.add(handle.path);
-    return property_hint(context, handle);
+    return property_hint(handle);
   }
   for (std::size_t i = 0; i < property.choices.size(); i++) {
     if (ImGui::Selectable(property.choices[i].c_str(), i == selected)) {
@@ -98,7 +101,7 @@ void color(GuiContext& context, const PropertyHandle& handle, PendingValues::Val
   constexpr ImGuiColorEditFlags kPlain = ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop;
   if (ImGui::ColorButton("##swatch", {rgb[0], rgb[1], rgb[2], 1}, kPlain, {swatch, height})) ImGui::OpenPopup("picker");
   context.names.add("swatch:" + handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
   if (ImGui::BeginPopup("picker")) {
     ImGui::SetNextItemWidth(static_cast<float>(220 * context.scale));
     const bool changed = ImGui::ColorPicker3("##picker", hsb,
@@ -164,11 +167,27 @@ void readout_text(GuiContext& context, const PropertyHandle& handle, const Pendi
     ImGui::PopStyleColor();
     ImGui::PopFont();
     context.names.add(component_name(handle, i));
-    property_hint(context, handle);
+    property_hint(handle);
   }
 }
 
 std::string field_id(std::uint32_t i) { return fmt::format("##arg{}", i); }
+
+// Sends the message of an action. A removal can't be undone, so the user is asked before.
+void invoke(GuiContext& context, const PropertyHandle& handle, Message message) {
+  if (handle.ref.property->name != "remove") {
+    context.send(std::move(message));
+    return;
+  }
+  const TreeSnapshot& tree = *context.value_snapshot->tree;
+  const std::string object = handle.path.substr(0, handle.path.find_last_of('/'));
+  const std::string which = is_pattern(object) ? fmt::format("every object that matches {}", object)
+                                               : fmt::format("{} '{}'", tree.nodes()[handle.ref.node].table->name(),
+                                                             tree.name(handle.ref.node));
+  context.requests.confirmation = {
+      fmt::format("Remove {}? This can't be undone; a reset restores the objects of the scene.", which), "Remove",
+      std::move(message)};
+}
 
 // The arguments of an action are stored while its line is visible.
 void action(GuiContext& context, const PropertyHandle& handle, float width) {
@@ -182,10 +201,10 @@ void action(GuiContext& context, const PropertyHandle& handle, float width) {
     std::vector<Arg> args;
     for (std::uint32_t i = 0; i < property.min_args; i++)
       args.push_back(Arg::of(static_cast<double>(storage.GetFloat(ImGui::GetID(field_id(i).c_str()) + 1))));
-    context.send(handle.path, std::move(args));
+    invoke(context, handle, {handle.path, std::move(args)});
   }
   context.names.add(handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
   for (std::uint32_t i = 0; i < property.min_args; i++) {
     if (i == 0 && !layout.below) {
       ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
@@ -200,7 +219,7 @@ void action(GuiContext& context, const PropertyHandle& handle, float width) {
     if (number_slider(field_id(i).c_str(), kArgument, layout.fields.each, value)) *number = static_cast<float>(value);
     ImGui::PopFont();
     context.names.add(fmt::format("{}/{}", handle.path, i));
-    property_hint(context, handle);
+    property_hint(handle);
   }
 }
 
@@ -249,7 +268,7 @@ void name_text(GuiContext& context, const PropertyHandle& handle, const LineLayo
     list.AddText({x, y - line}, packed_color(ThemeColor::secondary), layout.unit.c_str());
   }
   context.names.add("name:" + handle.path);
-  property_hint(context, handle);
+  property_hint(handle);
 }
 
 void property_tooltip(const PropertyHandle& handle) {
@@ -307,19 +326,25 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
   return false;
 }
 
-void property_hint(GuiContext& context, const PropertyHandle& handle) {
-  const Property& property = *handle.ref.property;
+void property_hint(const PropertyHandle& handle) {
   if (ImGui::IsItemHovered() && !ImGui::IsMouseDown(0) && !ImGui::IsMouseDown(1)) property_tooltip(handle);
-  if (!ImGui::BeginPopupContextItem("##copy")) return;
+  ImGui::OpenPopupOnItemClick(kMenu, ImGuiPopupFlags_MouseButtonRight);
+}
+
+void property_menu(GuiContext& context, const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
+  if (!ImGui::BeginPopup(kMenu)) return;
   if (ImGui::Selectable("Copy OSC address")) context.copy_with_notice(handle.path);
-  context.names.add("copy_address");
-  const std::string lua = lua_path(*context.value_snapshot->tree, handle.ref);
-  if (!lua.empty() && ImGui::Selectable("Copy Lua path")) context.copy_with_notice(lua);
-  if (!lua.empty()) context.names.add("copy_lua");
+  context.names.add("menu:copy_address");
+  if (const std::string lua = lua_path(*context.value_snapshot->tree, handle.ref); !lua.empty()) {
+    if (ImGui::Selectable("Copy Lua path")) context.copy_with_notice(lua);
+    context.names.add("menu:copy_lua");
+  }
   const bool plotted = std::find(context.plots.begin(), context.plots.end(), handle.path) != context.plots.end();
-  if (!plotted && property.width > 0 && property.type != PropertyType::text && ImGui::Selectable("Plot"))
-    context.plots.push_back(handle.path);
-  context.names.add("plot_it");
+  if (!plotted && property.width > 0 && property.type != PropertyType::text) {
+    if (ImGui::Selectable("Plot")) context.plots.push_back(handle.path);
+    context.names.add("menu:plot");
+  }
   ImGui::EndPopup();
 }
 
@@ -373,6 +398,7 @@ void property_line(GuiContext& context, const PropertyHandle& handle, const Prop
     ImGui::SetCursorPosX(widget_x);
     euler_fields(context, handle, values, layout.widget_width);
   }
+  property_menu(context, handle);
   ImGui::PopID();
 }
 

@@ -20,7 +20,7 @@ struct PropertyLineOptions {
 /// named by the address, with /0, /1, … for vectors, and with the prefixes "star:" and "reset:".
 void property_line(GuiContext& context, const PropertyHandle& handle, const PropertyLineOptions& options = {});
 
-/// Draws only the widget with this width in pixels.
+/// Draws only the widget with this width in pixels. The caller draws its context menu: property_menu().
 void property_widget(GuiContext& context, const PropertyHandle& handle, float width);
 
 /// True if a value differs from the default by more than the rounding of 32-bit floats in OSC messages.
@@ -29,7 +29,11 @@ bool differs_from_default(const Property& property, const PendingValues::Values&
 /// Returns the name with spaces: "linear damping".
 std::string property_label(const Property& property);
 
-/// Adds a tooltip to the last item (documentation, unit, range, default, address) and a context menu.
-void property_hint(GuiContext& context, const PropertyHandle& handle);
+/// Adds a tooltip to the last item (documentation, unit, range, default, address). A right click on the item opens the
+/// property's menu.
+void property_hint(const PropertyHandle& handle);
+
+/// Draws the property's context menu, if it is open. Call it once per property, in the same id scope as its widgets.
+void property_menu(GuiContext& context, const PropertyHandle& handle);
 
 }  // namespace limber::panel
