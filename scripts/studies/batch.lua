@@ -23,7 +23,7 @@ params {
 local board = sim:add_body("board")
 local kWood, kBrass = vec3(0.6, 0.3, 0.3), vec3(0.11, 0.7, 1)
 local function add_piece(name, shape, position, color, rotation)
-  shape.ambient_color, shape.diffuse_color = color, color
+  shape.color = color
   local opts = { mass = 0, position = position, rotation = rotation, restitution = 1, friction = 0.3 }
   return board:add_part(name, shape, opts)
 end
@@ -52,7 +52,7 @@ local shapes = {}
 for i = 1, 12 do
   shapes[i] = sim:add_sphere_shape("ball" .. i, 0.03)
   local color = vec3(i / 12, 0.75, 1)
-  shapes[i].ambient_color, shapes[i].diffuse_color = color, color
+  shapes[i].color = color
 end
 state.balls = state.balls or 0
 sim:every(0.1, function()

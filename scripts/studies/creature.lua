@@ -15,7 +15,7 @@ local beetle = sim:add_body("beetle")
 local function add_limb(name, from, to, radius, mass, color)
   local way = to - from
   local shape = sim:add_capsule_shape(name, radius, way:length())
-  shape.ambient_color, shape.diffuse_color = color, color
+  shape.color = color
   local up = vec3(0, 0, 1) -- a capsule is along z; turn it to the way
   local turn = quat.axis(up:cross(way), math.acos(way:normalized().z))
   return beetle:add_part(name, shape, { mass = mass, friction = 1, position = (from + to) / 2, rotation = turn })

@@ -20,7 +20,7 @@ local function add_fish(name, size, color, position, rotation)
     at(-0.07, 0.006, -0.07), at(-0.07, -0.006, -0.07), -- lower tip
   })
   for _, shape in ipairs { head_shape, tail_shape } do
-    shape.ambient_color, shape.diffuse_color = color, color
+    shape.color = color
     shape.ambient_scale = 1
   end
 

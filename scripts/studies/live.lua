@@ -32,7 +32,7 @@ sim:on_step(function()
     local height = math.clamp(0.5 + 2 * motor.joint.value, 0, 1)
     local color = vec3((params.hue + params.spread * height) % 1, 0.8, 0.3 + 0.7 * height)
     local shape = motor.joint.child.shape
-    shape.ambient_color, shape.diffuse_color = color, color
+    shape.color = color
   end
 end)
 

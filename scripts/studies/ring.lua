@@ -9,7 +9,7 @@ local kRod = 0.6 -- m, length of each of the two rods of a stem
 local rod = sim:add_capsule_shape("rod", 0.025, kRod - 0.05)
 local foot = sim:add_cylinder_shape("foot", 0.1, 0.04)
 for _, shape in ipairs { rod, foot } do
-  shape.ambient_color, shape.diffuse_color = vec3(0.6, 0.4, 0.5), vec3(0.6, 0.4, 0.5)
+  shape.color = vec3(0.6, 0.4, 0.5)
 end
 
 -- One lamp, at an angle in the ring
@@ -20,7 +20,7 @@ local function add_lamp(name, angle)
 
   local bulb = sim:add_sphere_shape(name, 0.12)
   local color = vec3(angle / (2 * math.pi), 0.8, 1) -- hue, saturation, brightness
-  bulb.ambient_color, bulb.diffuse_color = color, color
+  bulb.color = color
 
   local body = sim:add_body(name)
   body:add_part("foot", foot, { mass = 0, position = at(0.02) })
