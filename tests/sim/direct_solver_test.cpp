@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "bench/raw/machines.h"
@@ -42,6 +43,23 @@ TEST(DirectSolver, LongArmOfAnyMassesFollowsItsServos) {
     EXPECT_LT(player->direct().unbounded, 1e-6) << ratio;
     EXPECT_EQ(player->direct().direct, 360);
     EXPECT_EQ(player->direct().fallbacks, 0);
+  }
+}
+
+// The first step asks most motors of the lower half for more than their torque, at the base for three times as much,
+// but only two must yield. Motors of 3·10⁵ N·m can't carry the arm either, so more of them yield again and again.
+TEST(DirectSolver, LongArmWhoseMotorsYieldRecovers) {
+  for (const auto& [force, max_error] : {std::pair(1e6, 0.1), std::pair(3e5, 2.5)}) {
+    RawScene s = raw_arm(170, 1, force, 0.3, false);
+    s.measure = true;
+    const auto player = RawSimulation::make(s, RawSolver::direct);
+    const RawMeasurements f = play(*player, 360);
+    EXPECT_TRUE(f.finite) << force;
+    EXPECT_LT(f.gap, 1.5e-3) << force;
+    EXPECT_LT(f.servo_error, max_error) << force;
+    EXPECT_LT(player->direct().bounded, 1e-3) << force;
+    EXPECT_EQ(player->direct().direct, 360) << force;
+    EXPECT_EQ(player->direct().fallbacks, 0) << force;
   }
 }
 

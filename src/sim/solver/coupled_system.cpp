@@ -13,7 +13,8 @@ constexpr double kMaxViolation = 1e-2;
 /// A gear is ill-conditioned if its response is below this fraction of the response of its bodies alone.
 constexpr double kIllConditioned = 1e-6;
 /// Work budget of a step, in multiply-adds: constant, per body and per pair of contact rows. It is multiplied by
-/// kUndeferredFactor while no motor is deferred, because the accuracy of contacts is visible then.
+/// kUndeferredFactor while no motor is deferred, because the accuracy of contacts is visible then. If nothing but axes
+/// is coupled, there is no limit: such steps are rare, and motors that violate their conditions tear a tree apart.
 constexpr double kBaseWork = 5e4;
 constexpr double kWorkPerBody = 2e3;
 constexpr double kWorkPerContactPair = 1;
@@ -37,7 +38,8 @@ void CoupledSystem::collect_deferred_axes() {
   rows.collect_deferred_axes();
   const auto fixed = static_cast<double>(rows.fixed_count());
   const double limit = kBaseWork + kWorkPerBody * trees_.node_count() + kWorkPerContactPair * fixed * fixed;
-  budget_.set_limit(rows.size() > rows.fixed_count() ? limit : kUndeferredFactor * limit);
+  if (rows.size() == rows.fixed_count()) return budget_.set_limit(kUndeferredFactor * limit);
+  budget_.set_limit(rows.fixed_count() == 0 ? WorkBudget::kUnlimited : limit);
 }
 
 bool CoupledSystem::solve() {

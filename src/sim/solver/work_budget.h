@@ -9,6 +9,8 @@ namespace limber::sim::solver {
 /// Work is counted in multiply-adds instead of time, so that results are the same on every machine. [sim]
 class WorkBudget {
  public:
+  static constexpr double kUnlimited = 1e300;
+
   /// Starts a step.
   void reset() { spent_ = 0; }
   /// Sets the limit of the step, in multiply-adds.
@@ -26,7 +28,7 @@ class WorkBudget {
   static constexpr double kVectorOverhead = 8;
   static constexpr double kRelaxedTolerance = 1e-2;
 
-  double limit_ = 1e300;
+  double limit_ = kUnlimited;
   double spent_ = 0;
 };
 

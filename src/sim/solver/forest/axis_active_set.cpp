@@ -14,6 +14,7 @@ void AxisActiveSet::clear(int capacity) {
   bounded_rows_.clear();
   bounded_rows_start_.assign(1, 0);
   bounded_row_indices_.clear();
+  violations_.clear_and_reserve(capacity);
   rates_.clear();
   known_impulses_.clear();
   changes_.clear();

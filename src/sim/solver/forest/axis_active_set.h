@@ -71,9 +71,9 @@ class AxisActiveSet {
   /// Sets a velocity change that was applied to the body from outside; rates must include it already.
   void set_change(int node, const Spatial& change) { changes_[node] = change; }
 
-  /// Factors and solves the whole trees of nodes first .. last - 1 until no row is violated, in at most `max_exchanges`
-  /// exchanges of the active set. Rows of axes that have not converged by then are deferred. Returns false if the
-  /// system is singular because an axis has no inertia.
+  /// Factors and solves the whole trees of nodes first .. last - 1 until no row is violated: in at most `max_exchanges`
+  /// exchanges of the active set, and then by exchanging the largest violations only. Rows of axes that have not
+  /// converged by then are deferred. Returns false if the system is singular because an axis has no inertia.
   bool solve_from_scratch(int first, int last, int max_exchanges);
   /// Like solve_from_scratch(), but first tries the existing factor, if there is one.
   bool solve(int first, int last, int max_exchanges);
@@ -120,6 +120,11 @@ class AxisActiveSet {
     bool deferred = false;
     bool deferred_before = false;  // contacts changed its state in the step before
   };
+  struct Violation {
+    double size = 0;
+    int index = 0;  // in bounded_rows_, or of a soft row
+    bool soft = false;
+  };
   AxisRow& row_of(const BoundedRows& bounded, int i) { return rows_[bounded_row_indices_[bounded.first + i]]; }
   const AxisRow& row_of(const BoundedRows& bounded, int i) const {
     return rows_[bounded_row_indices_[bounded.first + i]];
@@ -134,11 +139,11 @@ class AxisActiveSet {
   void apply_state(BoundedRows& bounded);
   template <class F>
   int defer_if(int first, int last, F&& matches);
-  void defer_row(AxisRow& row);
   int required_state(const BoundedRows& bounded) const;
   int find_violations(int first, int last);
-  bool is_violated(const AxisRow& row) const;
   void exchange(int first, int last, bool only_last);
+  double violation_of(const BoundedRows& bounded) const;
+  void exchange_worst(int first, int last, int divisor);
   void prepare_node(int i);
   void accumulate_node(int i);
   IndexedSpan<BoundedRows> bounded_rows(int first, int last);
@@ -153,6 +158,7 @@ class AxisActiveSet {
   IndexedArray<BoundedRows> bounded_rows_;
   IndexedArray<int> bounded_rows_start_;  // by node
   IndexedArray<int> bounded_row_indices_;
+  IndexedArray<Violation> violations_;  // scratch
   IndexedArray<FixedArray<double, 6>> rates_;
   IndexedArray<FixedArray<double, 6>> known_impulses_;  // known impulse changes on prescribed axes
   IndexedArray<Spatial> changes_;
