@@ -340,6 +340,7 @@ TEST_P(Legibility, AddressesOfSearchResultsAreComplete) {
   const auto [width, scale] = GetParam();
   PanelFixture fixture(kAllClasses, width, kTall * scale);
   fixture.scale = scale;
+  fixture.sync();
   fixture.click("parameters.search");
   fixture.type("segment max");
   fixture.frames(5);

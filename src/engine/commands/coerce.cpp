@@ -103,6 +103,7 @@ std::string expected_text(const Property& property) {
   if (property.type == PropertyType::choice) return fmt::format("one of {}", fmt::join(property.choices, ", "));
   if (property.type == PropertyType::boolean) return "true or false";
   if (property.type == PropertyType::flags3) return "1 or 3 times true or false";
+  if (property.width == 1) return "1 number";
   return accepts_one(property) ? fmt::format("1 or {} numbers", property.width) : counted(property.width, "number");
 }
 

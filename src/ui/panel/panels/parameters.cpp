@@ -7,8 +7,10 @@
 
 #include "base/text.h"
 #include "ui/panel/panel.h"
+#include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"
+#include "ui/panel/widgets/number_slider.h"
 #include "ui/panel/widgets/property_search.h"
 #include "ui/panel/widgets/property_widget.h"
 
@@ -115,7 +117,9 @@ class ParametersPanel : public Panel {
 
   static bool header(GuiContext& context, const std::string& path, const std::string& title, bool open) {
     ImGui::PushStyleColor(ImGuiCol_Header, packed_color(ThemeColor::header));
-    const bool is_open = ImGui::CollapsingHeader(fmt::format("{}###{}", title, path).c_str(),
+    const float arrow = ImGui::GetFontSize() + 4 * ImGui::GetStyle().FramePadding.x;
+    const std::string shown = elided(title, ImGui::GetContentRegionAvail().x - arrow, text_width);
+    const bool is_open = ImGui::CollapsingHeader(fmt::format("{}###{}", shown, path).c_str(),
                                                  open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
     ImGui::PopStyleColor();
     context.names.add("section:" + path);
