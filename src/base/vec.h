@@ -42,11 +42,14 @@ inline Quat quat_euler(double x, double y, double z) {
   return quat_axis({0, 0, 1}, z) * quat_axis({0, 1, 0}, y) * quat_axis({1, 0, 0}, x);
 }
 
-/// The inverse of quat_euler: x and z in (-pi, pi], y in [-pi/2, pi/2].
+/// The inverse of quat_euler: x and z in (-pi, pi], y in [-pi/2, pi/2]. At y = ±pi/2 only the sum or the difference of
+/// x and z is determined; z is 0 there.
 inline Vec3 euler_of(const Quat& q) {
+  constexpr double kLockCosine = 1e-7;  // cosine of y below which x and z consist of rounding errors
   const Mat3 m = glm::mat3_cast(q);
   const double sin_y = -m[0][2];
   const double y = fixed::asin(sin_y > 1 ? 1 : (sin_y < -1 ? -1 : sin_y));
+  if (m[1][2] * m[1][2] + m[2][2] * m[2][2] < kLockCosine * kLockCosine) return {fixed::atan2(-m[2][1], m[1][1]), y, 0};
   return {fixed::atan2(m[1][2], m[2][2]), y, fixed::atan2(m[0][1], m[0][0])};
 }
 

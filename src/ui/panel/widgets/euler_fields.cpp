@@ -1,8 +1,6 @@
 // Converts with euler_of() and quat_euler().
 #include "ui/panel/widgets/euler_fields.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -15,7 +13,6 @@ namespace limber::panel {
 
 namespace {
 
-constexpr double kLockCosine = 1e-7;  // smaller cosines of y are rounding errors
 constexpr const char* kEulerLabel = "Euler angles";
 constexpr const char* kEulerUnit = "deg";
 constexpr const char* kEulerHint =
@@ -45,14 +42,7 @@ void angle_hint() {
 
 }  // namespace
 
-Vec3 degrees_of(const double* quaternion) {
-  const Quat q = glm::normalize(quat_at(quaternion));
-  Vec3 angles = euler_of(q);
-  // at y = ±90 degrees the x and z of euler_of() consist of rounding errors
-  const Mat3 m = glm::mat3_cast(q);
-  if (std::hypot(m[1][2], m[2][2]) < kLockCosine) angles = {std::atan2(-m[2][1], m[1][1]), angles.y, 0};
-  return angles * (180 / kPi);
-}
+Vec3 degrees_of(const double* quaternion) { return euler_of(glm::normalize(quat_at(quaternion))) * (180 / kPi); }
 
 void put_degrees(const Vec3& degrees, double* quaternion) {
   const Vec3 angles = degrees * (kPi / 180);
