@@ -394,7 +394,7 @@ local joint_ = {}
 ---@field linear_spring_damping_applied vec3 # read-only, N·s/m. Spring damping in effect along each axis.
 ---@field angular_active flags3|boolean[]|boolean # default false false false. Motor on about each axis: a spin, or a servo if that is active too.
 ---@field angular_velocity vec3like|number # rad/s, -10000 .. 10000, default 0 0 0. Speed of a spin about each axis; maximal speed of a servo (0: limited by its force only).
----@field max_angular_force vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Maximal force of a spin or servo about each axis.
+---@field max_angular_force vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Maximal torque of a spin or servo about each axis.
 ---@field angular_servo_active flags3|boolean[]|boolean # default false false false. Servo on about each axis (needs the motor active).
 ---@field angular_servo_position vec3like|number # rad, -10000 .. 10000, default 0 0 0. Target position of a servo about each axis; full turns count.
 ---@field angular_spring_active flags3|boolean[]|boolean # default false false false. Spring on about each axis; it replaces spin and servo.
@@ -425,7 +425,7 @@ local motor_ = {}
 ---@field linear_spring_damping? vec3like|number # N·s/m, 0 .. 1000000, default 0 0 0. Spring damping along each axis.
 ---@field angular_active? flags3|boolean[]|boolean # default false false false. Motor on about each axis: a spin, or a servo if that is active too.
 ---@field angular_velocity? vec3like|number # rad/s, -10000 .. 10000, default 0 0 0. Speed of a spin about each axis; maximal speed of a servo (0: limited by its force only).
----@field max_angular_force? vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Maximal force of a spin or servo about each axis.
+---@field max_angular_force? vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Maximal torque of a spin or servo about each axis.
 ---@field angular_servo_active? flags3|boolean[]|boolean # default false false false. Servo on about each axis (needs the motor active).
 ---@field angular_servo_position? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Target position of a servo about each axis; full turns count.
 ---@field angular_spring_active? flags3|boolean[]|boolean # default false false false. Spring on about each axis; it replaces spin and servo.
@@ -526,7 +526,7 @@ function shape_:add_child(child, position, rotation) end
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
----@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick.
+---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick; more are more accurate and slower.
 ---@field solver_iterations integer # 1 .. 10000, default 50. Iterations of the contact and joint solver per substep.
 ---@field panic_motors "held"|"limp" # default held. Motors during a panic: they hold their position with their own strength, or are off.
 ---@field solver "iterative"|"direct" # default direct. Solver of joints: iterative, together with the contacts; or direct, which is exact for trees of joints.

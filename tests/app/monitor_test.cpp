@@ -99,6 +99,10 @@ TEST(Send, PrintsReplies) {
   EXPECT_EQ(show.send({"/list/bodies"}).out, "/list/bodies arm\n");
   EXPECT_EQ(show.send({"/hello", "two words"}).out, "/hello/back \"two words\" 2\n");
   EXPECT_EQ(show.send({"/ping"}).out.substr(0, 6), "/pong ");
+  // the value that the command itself queries to see the end of the replies
+  for (const char* path : {"/physics/sim/tick", "/physics/sim/ti?k"}) {
+    EXPECT_EQ(show.send({"/get", path}).out.substr(0, 18), "/physics/sim/tick ") << path;
+  }
 }
 
 TEST(Send, ReportsErrors) {

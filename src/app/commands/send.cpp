@@ -1,12 +1,17 @@
 // Sends two queries after the message, one after the other. The second is answered in a later tick, when the scene's
-// own handlers have processed the message too; then all replies have arrived.
+// own handlers have processed the message too; then all replies have arrived. The queries have a socket of their own,
+// so that their answers can't be confused with those of the message.
 #include "app/commands/commands.h"
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,16 +46,17 @@ Result<system::Endpoint> endpoint_named(const std::string& text) {
   return at;
 }
 
-// returns the messages of one datagram; invalid packets are ignored
-std::vector<Message> receive(int fd, double seconds) {
-  system::PollEntry waiting{.fd = fd};
-  const auto limit = std::chrono::milliseconds(static_cast<int>(std::max(seconds, 0.0) * 1000) + 1);
-  if (!system::wait_ready({&waiting, 1}, limit)) return {};
+// Returns the messages of the datagrams that have arrived; invalid packets are ignored.
+std::vector<Message> receive(int fd) {
+  std::vector<Message> messages;
   std::vector<char> bytes(65536);
-  const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
-  if (got <= 0) return {};
-  Result<osc::Decoded> decoded = osc::decode_packet(bytes.data(), static_cast<std::size_t>(got));
-  return decoded ? std::move(decoded->messages) : std::vector<Message>();
+  for (system::PollEntry waiting{.fd = fd}; system::wait_ready({&waiting, 1}, std::chrono::nanoseconds(0));) {
+    const std::ptrdiff_t got = system::receive_bytes(fd, bytes.data(), bytes.size());
+    if (got <= 0) break;
+    Result<osc::Decoded> decoded = osc::decode_packet(bytes.data(), static_cast<std::size_t>(got));
+    if (decoded) std::ranges::move(decoded->messages, std::back_inserter(messages));
+  }
+  return messages;
 }
 
 struct Replies {
@@ -59,20 +65,24 @@ struct Replies {
   bool rejected = false;
 };
 
+// Prints the replies to the message that arrive at `fd`, until both queries are answered at `query_fd`.
 // `delayed`: the reply comes from another thread, after the replies to the queries
-Replies show_replies(int fd, double wait, bool delayed, const std::function<void()>& query) {
+Replies show_replies(int fd, int query_fd, double wait, bool delayed, const std::function<void()>& query) {
   Replies replies;
   int queries = 1;
   bool reply_seen = !delayed;
   query();
   const double end = system::clock_seconds() + wait;
   while (!replies.complete && system::clock_seconds() < end) {
-    for (const Message& message : receive(fd, end - system::clock_seconds())) {
-      if (message.address == kProbeAddress) {
-        replies.queries_answered = queries == 2;
-        if (queries++ == 1) query();
-        continue;
-      }
+    std::array<system::PollEntry, 2> sockets = {system::PollEntry{.fd = fd}, system::PollEntry{.fd = query_fd}};
+    const std::chrono::duration<double> left(std::max(end - system::clock_seconds(), 0.0));
+    (void)system::wait_ready(sockets, std::chrono::ceil<std::chrono::milliseconds>(left));
+    for (const Message& message : receive(query_fd)) {
+      if (message.address != kProbeAddress) continue;
+      replies.queries_answered = queries == 2;
+      if (queries++ == 1) query();
+    }
+    for (const Message& message : receive(fd)) {
       reply_seen = true;
       if (message.address == "/error" && message.args.size() == 2) {
         replies.rejected = true;
@@ -111,15 +121,17 @@ int send_command(const SendCommand& command) {
   if (!to) return fail(kUsageError, "send: " + to.error());
   const Result<system::UdpSocket> socket = system::open_udp({});
   if (!socket) return fail(kMachineError, "send: " + socket.error());
+  const Result<system::UdpSocket> queries = system::open_udp({});
+  if (!queries) return fail(kMachineError, "send: " + queries.error());
   if (!send_message(socket->fd(), *to, message, command.tags)) {
     return fail(kMachineError,
                 fmt::format("send: the message could not be sent to {}. Check its length and the address", command.to));
   }
   if (command.wait <= 0) return kSuccess;
-  const auto query = [&] { (void)send_message(socket->fd(), *to, {"/get", {Arg::of(kProbeAddress)}}, {}); };
+  const auto query = [&] { (void)send_message(queries->fd(), *to, {"/get", {Arg::of(kProbeAddress)}}, {}); };
   const bool delayed =
       std::ranges::any_of(kDelayedReplies, [&](const char* start) { return message.address.starts_with(start); });
-  const Replies replies = show_replies(socket->fd(), command.wait, delayed, query);
+  const Replies replies = show_replies(socket->fd(), queries->fd(), command.wait, delayed, query);
   if (replies.rejected) return kInputError;
   if (!replies.queries_answered) {
     return fail(kMachineError,

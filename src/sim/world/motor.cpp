@@ -73,8 +73,9 @@ void add_axes(std::vector<Property>& out, const std::string& side, bool angular)
   out.push_back(
       target_property(side + "_velocity", speed,
                       "Speed of a spin " + where + "; maximal speed of a servo (0: limited by its force only)."));
-  out.push_back(numbers_property("max_" + side + "_force", force, 10000, 0, 1e9,
-                                 "Maximal force of a spin or servo " + where + "."));
+  out.push_back(numbers_property(
+      "max_" + side + "_force", force, 10000, 0, 1e9,
+      (angular ? "Maximal torque of a spin or servo " : "Maximal force of a spin or servo ") + where + "."));
   out.push_back(flags_property(side + "_servo_active", "Servo on " + where + " (needs the motor active)."));
   out.push_back(target_property(side + "_servo_position", length,
                                 "Target position of a servo " + where + (angular ? "; full turns count." : ".")));

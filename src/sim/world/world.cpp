@@ -83,7 +83,7 @@ const PropertyTable& World::table() {
       {
           on_change<&apply_gravity>(vec3("gravity", "m/s²", {0, 0, -9.81}, -1e4, 1e4, "Gravitational acceleration.")),
           number("timestep", "s", 1.0 / 60, 1e-5, 1, "Simulated time per tick."),
-          integer("substeps", 4, 1, 1000, "Number of equal substeps in a tick."),
+          integer("substeps", 4, 1, 1000, "Number of equal substeps in a tick; more are more accurate and slower."),
           on_change<&apply_solver_settings>(
               integer("solver_iterations", 50, 1, 10000, "Iterations of the contact and joint solver per substep.")),
           on_change<&apply_panic_motors>(
