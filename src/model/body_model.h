@@ -73,8 +73,9 @@ struct LinkModel {
   std::vector<PlacedShape> collisions;  ///< Including those of merged children, in this link's frame.
   std::vector<PlacedShape> visuals;
   bool self_collision = true;  ///< False: <gazebo><selfCollide> disables its collisions with its own body.
-  Pose home;                   ///< World pose with all joints at 0 and the root at the origin.
-  Pose start;                  ///< World pose with all joints at their start values, the root at the origin.
+  /// World pose with all joints at 0 and the root where the file places it (URDF: at the origin).
+  Pose home;
+  Pose start;  ///< World pose with all joints at their start values, and the root's start pose.
 };
 
 enum class JointType { fixed, revolute, continuous, prismatic, planar, floating, spherical };
@@ -98,6 +99,7 @@ struct JointModel {
   double damping = 0;     ///< <dynamics damping>, N·m·s/rad or N·s/m.
   double friction = 0;    ///< <dynamics friction>, Coulomb limit, N·m or N.
   double start = 0;       ///< Joint value used for `LinkModel::start`.
+  bool driven = true;     ///< False: no actuator of the file drives it, so its motor starts in mode off.
   /// Index of the joint that this one follows; -1: none. value = mimic_multiplier * (value of joint `mimic`) +
   /// mimic_offset. The followed joint never follows another: the importer resolves chains.
   int mimic = -1;
@@ -105,12 +107,13 @@ struct JointModel {
   double mimic_offset = 0;
 };
 
-/// The frame of a link that was merged into its parent because its joint is fixed; scripts can still address it
-/// (`body:link(name)`).
+/// A named frame: that of a link that was merged into its parent because its joint is fixed, or a site of an MJCF file;
+/// scripts can address it (`body:link(name)`).
 struct MergedLink {
   std::string name;
-  int link = -1;  ///< Index of the link it was merged into.
-  Pose offset;    ///< Its frame in that link's frame.
+  int link = -1;      ///< Index of the link it was merged into, or that it is on.
+  Pose offset;        ///< Its frame in that link's frame.
+  bool site = false;  ///< True for a site.
 };
 
 /// Two links with overlapping collision shapes.
@@ -161,19 +164,21 @@ struct FileJoint {
 /// A complete articulated body. Links and joints are in depth-first order from the root; siblings are in file order.
 struct BodyModel {
   std::string name;
-  std::string file;                ///< Path of the URDF file, for messages.
+  std::string file;                ///< Path of the model file, for messages.
   std::vector<LinkModel> links;    ///< links[0] is the root.
   std::vector<JointModel> joints;  ///< The parent's index is always less than the child's.
   std::vector<MergedLink> merged;
   /// Pairs of links without a common joint that overlap with all joints at 0; excluded from collision by default.
   std::vector<Overlap> overlaps;
+  std::vector<std::pair<int, int>> exclusions;  ///< Pairs of links that the file excludes from collision, a < b.
   std::vector<FileLink> file_links;
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;
   std::uint64_t content_hash = 0;  ///< Hash of the options and of all files: models with equal hashes are identical.
-  std::vector<std::string> files;  ///< All files that were read: the URDF first, then its meshes.
+  std::vector<std::string> files;  ///< All files that were read: the model file first, then others.
   std::vector<std::uint64_t> file_hashes;  ///< hash_bytes() of each file as it was read; 0: it could not be loaded.
-  std::vector<std::pair<std::string, std::string>> mesh_paths;  ///< Mesh URIs from the URDF and their resolved paths.
+  std::vector<std::pair<std::string, std::string>>
+      mesh_paths;  ///< Mesh URIs in the model file and their resolved paths.
 };
 
 }  // namespace limber::model

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/import.h"
 
 namespace limber::model {
 
@@ -28,28 +29,27 @@ Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_from_memory(const st
                                                                         const ImportOptions& options) {
   const std::string* const bytes = memory_files_->content(path);
   if (bytes == nullptr) return Error{fmt::format("{}: is not among the saved files.", printable(path))};
-  return import_urdf_text(*bytes, path, options, meshes_);
+  return import_model_text(*bytes, path, options, meshes_);
 }
 
-Result<std::shared_ptr<const BodyModel>> ModelLibrary::load_urdf(const std::string& path,
-                                                                 const ImportOptions& options) {
+Result<std::shared_ptr<const BodyModel>> ModelLibrary::load(const std::string& path, const ImportOptions& options) {
   const std::string key = model_key(path, options);
   {
     const std::lock_guard lock(mutex_);
     const auto found = models_.find(key);
     if (found != models_.end() && is_current(found->second)) return found->second.model;
   }
-  // imported without holding the lock, so that other threads are not blocked; the URDF's stamp is created first, so
+  // imported without holding the lock, so that other threads are not blocked; the file's stamp is created first, so
   // that a change during the import is detected by the next call
   const bool disk = memory_files_ == nullptr;
-  const FileStamp urdf_stamp = disk ? FileStamp(path) : FileStamp();
+  const FileStamp file_stamp = disk ? FileStamp(path) : FileStamp();
   Result<std::shared_ptr<const BodyModel>> model =
-      disk ? import_urdf(path, options, meshes_) : load_from_memory(path, options);
+      disk ? import_model(path, options, meshes_) : load_from_memory(path, options);
   if (!model) return model;
   Entry entry{*model, {}};
   if (disk) {
     for (const std::string& file : (*model)->files) entry.stamps.emplace_back(file);
-    entry.stamps.front() = urdf_stamp;
+    entry.stamps.front() = file_stamp;
   }
   const std::lock_guard lock(mutex_);
   Entry& cached = models_[key];

@@ -18,7 +18,8 @@ constexpr int kMaxAttributes = 65;
 /// Scans the markup once and sanitizes it in place.
 class Scanner {
  public:
-  Scanner(std::string& text, Problems& problems) : text_(text), problems_(problems) {}
+  Scanner(std::string& text, const XmlFormat& format, Problems& problems)
+      : text_(text), format_(format), problems_(problems) {}
 
   /// True if there is at least one element.
   bool run() {
@@ -125,7 +126,7 @@ class Scanner {
   void track_depth(TagKind kind, std::size_t open) {
     if (kind == TagKind::end) {
       --depth_;
-    } else if (depth_ + 1 > kMaxUrdfDepth && deep_from_ == std::string::npos) {
+    } else if (depth_ + 1 > format_.max_depth && deep_from_ == std::string::npos) {
       deep_from_ = open;
       deep_depth_ = depth_;
     }
@@ -136,7 +137,7 @@ class Scanner {
     if (!attributes_reported_) {
       problems_.error(line_of(text_, from),
                       fmt::format("an element has more than {} attributes; the rest is ignored", kMaxAttributes - 1),
-                      "URDF needs at most six: remove the others.");
+                      format_.attributes_fix);
     }
     attributes_reported_ = true;
     blank(from, std::max(from, to));
@@ -172,8 +173,8 @@ class Scanner {
   void blank_deep_element() {
     if (!depth_reported_) {
       problems_.error(line_of(text_, deep_from_),
-                      fmt::format("elements are nested more than {} deep; deeper ones are ignored", kMaxUrdfDepth),
-                      "A URDF needs at most six levels: reduce the nesting.");
+                      fmt::format("elements are nested more than {} deep; deeper ones are ignored", format_.max_depth),
+                      format_.nesting_fix);
     }
     depth_reported_ = true;
     blank(deep_from_, position_);
@@ -200,6 +201,7 @@ class Scanner {
   }
 
   std::string& text_;
+  const XmlFormat& format_;
   Problems& problems_;
   std::size_t position_ = 0;
   std::size_t deep_from_ = std::string::npos;
@@ -218,6 +220,8 @@ int line_of(std::string_view text, std::size_t at) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
 
-bool clean_markup(std::string& text, Problems& problems) { return Scanner(text, problems).run(); }
+bool clean_markup(std::string& text, const XmlFormat& format, Problems& problems) {
+  return Scanner(text, format, problems).run();
+}
 
 }  // namespace limber::model

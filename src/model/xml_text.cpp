@@ -1,4 +1,4 @@
-// Sanitizes a URDF's bytes: encoding, control characters, and (in xml_markup.cpp) the markup.
+// Sanitizes a model file's bytes: encoding, control characters, and (in xml_markup.cpp) the markup.
 #include "model/xml_text.h"
 
 #include <filesystem>
@@ -78,7 +78,7 @@ Result<std::string> read_whole_file(const std::string& path, std::size_t max_byt
   return bytes;
 }
 
-Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems) {
+Result<std::string> clean_xml_text(std::string_view bytes, const XmlFormat& format, Problems& problems) {
   if (bytes.size() > kMaxUrdfBytes) {
     return Error{fmt::format("has {} bytes; the limit is {}. Split or simplify it.", bytes.size(), kMaxUrdfBytes)};
   }
@@ -93,10 +93,29 @@ Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems) 
   std::string text = to_utf8(bytes, problems);
   drop_control_characters(text, problems);
   if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Error{"is empty. Give a file with a <robot> element."};
+    return Error{fmt::format("is empty. Give a file with a <{}> element.", format.root)};
   }
-  if (!clean_markup(text, problems)) return Error{"contains no XML element. Give a file with a <robot> element."};
+  if (!clean_markup(text, format, problems)) {
+    return Error{fmt::format("contains no XML element. Give a file with a <{}> element.", format.root)};
+  }
   return text;
+}
+
+Result<std::string> clean_urdf_text(std::string_view bytes, Problems& problems) {
+  return clean_xml_text(bytes, kUrdfFormat, problems);
+}
+
+std::string_view root_element_name(std::string_view bytes) {
+  std::size_t at = bytes.find('<');
+  while (at != std::string_view::npos && at + 1 < bytes.size()) {
+    const std::string_view rest = bytes.substr(at);
+    if (rest[1] != '?' && rest[1] != '!') return rest.substr(1, rest.find_first_of(" \t\r\n/>", 1) - 1);
+    const std::string_view end = rest[1] == '?' ? "?>" : rest.starts_with("<!--") ? "-->" : ">";
+    const std::size_t found = rest.find(end, 2);
+    if (found == std::string_view::npos) return {};
+    at = bytes.find('<', at + found + end.size());
+  }
+  return {};
 }
 
 }  // namespace limber::model

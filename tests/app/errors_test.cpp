@@ -74,6 +74,9 @@ void write_inputs(const TempFolder& folder) {
   EXPECT_EQ(run({folder.path() + "/good.lua", "--fast", "--ticks", "6", "--record", folder.path() + "/six.take"}).code,
             0);
   folder.file("broken.urdf", "<robot name='r'><link name='a'>");
+  folder.file("empty.xml", "<mujoco/>");
+  folder.file("ball.xml",
+              "<mujoco>\n<worldbody><body name='ball'><freejoint/><geom size='1'/></body></worldbody></mujoco>");
 }
 
 // splits arguments at spaces, '…' groups words

@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                 limber::model::MeshFormat::dae};
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const limber::Vec3 scale = data[0] % 2 == 0 ? limber::Vec3(1) : limber::Vec3(0.5, -2, 3);
-  const auto mesh = limber::model::mesh_from_bytes(bytes, kFormats[data[0] / 2 % 3], scale, "fuzz");
+  const auto format = data[0] >= 200 ? limber::model::MeshFormat::msh : kFormats[data[0] / 2 % 3];
+  const auto mesh = limber::model::mesh_from_bytes(bytes, format, scale, "fuzz");
   if (!mesh) {
     limber::must(!mesh.error().empty());
     return 0;

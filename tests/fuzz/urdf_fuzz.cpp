@@ -1,43 +1,10 @@
 // Fuzzes the URDF importer. Checks that it returns a consistent body or an error.
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
-#include "fuzz/target.h"
-#include "model/mesh/mass_properties.h"
+#include "fuzz/body_checks.h"
 #include "model/urdf/import.h"
-
-namespace {
-
-bool is_sound(const limber::Pose& pose) {
-  return limber::is_finite(pose.position) && std::abs(glm::length(pose.rotation) - 1) < 1e-6;
-}
-
-void check_links(const limber::model::BodyModel& model) {
-  limber::must(!model.links.empty() && model.links.size() == model.joints.size() + 1);
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    const limber::model::LinkModel& link = model.links[i];
-    limber::must(is_sound(link.home) && is_sound(link.start) && std::isfinite(link.inertial.mass));
-    limber::must(i == 0 || link.inertial.mass > 0);
-    if (link.inertial.mass > 0) limber::must(limber::model::tensor_error(link.inertial.tensor).empty());
-    for (const limber::model::PlacedShape& s : link.collisions) limber::must(is_sound(s.origin));
-  }
-}
-
-void check_joints(const limber::model::BodyModel& model) {
-  const int count = static_cast<int>(model.joints.size());
-  for (int i = 0; i < count; ++i) {
-    const limber::model::JointModel& j = model.joints[static_cast<std::size_t>(i)];
-    limber::must(j.child == i + 1 && j.parent >= 0 && j.parent < j.child);
-    limber::must(is_sound(j.frame_in_parent) && is_sound(j.frame_in_child) && std::isfinite(j.start));
-    limber::must(j.effort > 0 && j.velocity >= 0 && j.damping >= 0 && j.friction >= 0);
-    limber::must(!j.limited || (j.lower <= j.upper && j.start >= j.lower && j.start <= j.upper));
-    limber::must(j.mimic < count && (j.mimic < 0 || model.joints[static_cast<std::size_t>(j.mimic)].mimic < 0));
-  }
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   limber::model::MeshLibrary meshes;
@@ -50,8 +17,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     limber::must(model.error().find("fuzz.urdf") != std::string::npos);
     return 0;
   }
-  check_links(**model);
-  check_joints(**model);
-  for (const limber::model::Problem& p : (*model)->problems) limber::must(!p.text.empty() && !p.fix.empty());
+  limber::check_body(**model);
   return 0;
 }

@@ -21,14 +21,14 @@ TEST(ModelLibrary, CachesModelsByFileAndOptions) {
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   const std::string path = files.write("r.urdf", kRobot);
   ModelLibrary library;
-  const auto a = library.load_urdf(path);
-  const auto b = library.load_urdf(path);
+  const auto a = library.load(path);
+  const auto b = library.load(path);
   ASSERT_TRUE(a && b);
   EXPECT_EQ(*a, *b);
   ASSERT_EQ((*a)->links[0].collisions.size(), 1u);
   ImportOptions free;
   free.fixed_base = false;
-  const auto c = library.load_urdf(path, free);
+  const auto c = library.load(path, free);
   ASSERT_TRUE(c);
   EXPECT_NE(*a, *c);
   EXPECT_NEAR((*c)->links[0].inertial.mass, 1000, 1e-2);
@@ -40,11 +40,11 @@ TEST(ModelLibrary, ReimportsChangedFiles) {
   files.write("m.stl", test::binary_stl(test::box({1, 1, 1})));
   const std::string path = files.write("r.urdf", kRobot);
   ModelLibrary library;
-  const auto first = library.load_urdf(path);
+  const auto first = library.load(path);
   files.write("m.stl", test::binary_stl(test::cylinder(1, 1, 8)));
-  const auto mesh_changed = library.load_urdf(path);
+  const auto mesh_changed = library.load(path);
   files.write("r.urdf", R"(<robot name="new"><link name="a"/></robot>)");
-  const auto urdf_changed = library.load_urdf(path);
+  const auto urdf_changed = library.load(path);
   ASSERT_TRUE(first && mesh_changed && urdf_changed);
   EXPECT_NE(*first, *mesh_changed);
   EXPECT_EQ((*mesh_changed)->links[0].collisions[0].shape.mesh->vertices.size(), 18u);
@@ -57,7 +57,7 @@ TEST(ModelLibrary, EqualContentHasTheSameHashInAnyLibrary) {
   const std::string path = files.write("r.urdf", kRobot);
   const auto content = [](const std::string& file, const ImportOptions& options = {}) {
     ModelLibrary library;
-    const auto model = library.load_urdf(file, options);
+    const auto model = library.load(file, options);
     EXPECT_TRUE(model.ok());
     return model ? (*model)->content_hash : 0;
   };
@@ -84,7 +84,7 @@ TEST(ModelLibrary, SharesOneModelBetweenThreads) {
   std::array<std::thread, 4> threads;
   for (std::size_t i = 0; i < 4; ++i) {
     threads[i] = std::thread([&, i] {
-      const auto model = library.load_urdf(path);
+      const auto model = library.load(path);
       if (model) got[i] = *model;
     });
   }
@@ -96,7 +96,7 @@ TEST(ModelLibrary, SharesOneModelBetweenThreads) {
 TEST(ModelLibrary, ReportsAMissingFileEachTime) {
   ModelLibrary library;
   for (int i = 0; i < 2; ++i) {
-    const auto none = library.load_urdf("no_such.urdf");
+    const auto none = library.load("no_such.urdf");
     ASSERT_FALSE(none);
     EXPECT_NE(none.error().find("no_such.urdf"), std::string::npos);
   }

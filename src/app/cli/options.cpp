@@ -80,6 +80,7 @@ struct CommandLine {
   PlayOptions play;
   BenchOptions bench;
   std::string robot;        // inspect
+  std::string root;         // inspect
   std::string scene;        // describe
   std::string definitions;  // annotate
   std::string reference;    // annotate: folder of the Lua reference
@@ -100,16 +101,18 @@ struct CommandLine {
 };
 
 void add_inspect(CLI::App& app, CommandLine& line) {
-  CLI::App* inspect =
-      app.add_subcommand("inspect", "Check a URDF file: links, joints, and every problem with its line and fix.");
+  CLI::App* inspect = app.add_subcommand(
+      "inspect", "Check a URDF or MJCF file: links, joints, and every problem with its line and fix.");
   inspect->footer(
       "  limber inspect urdf/arm6.urdf                a table of the arm, and its problems\n"
       "  limber inspect robot.urdf --json             the same for programs");
-  inspect->add_option("file", line.robot, "The robot.")->type_name("FILE.urdf")->required();
+  inspect->add_option("file", line.robot, "The robot: URDF, or MJCF (.xml).")->type_name("FILE")->required();
   inspect->add_flag("--json", line.json, "Print JSON.");
   inspect->add_option("--package-path", line.package_paths, "Folder for package:// paths; may be repeated.")
       ->type_name("DIR")
       ->allow_extra_args(false);
+  inspect->add_option("--root", line.root, "MJCF: the top-level body to show, or world; default: the first that moves.")
+      ->type_name("BODY");
 }
 
 void add_describe(CLI::App& app, CommandLine& line) {
@@ -427,7 +430,7 @@ struct CommandRunner {
 // all but those that need the command line's description: completion and man
 constexpr CommandRunner kRunners[] = {
     {"play", [](CommandLine& l) { return play_command(l.play); }},
-    {"inspect", [](CommandLine& l) { return inspect_command(l.robot, l.json, l.package_paths); }},
+    {"inspect", [](CommandLine& l) { return inspect_command(l.robot, l.json, l.package_paths, l.root); }},
     {"describe",
      [](CommandLine& l) {
        if (!l.markdown) return describe_command(l.scene, l.json);

@@ -148,7 +148,7 @@ std::vector<Setting> settings(int cores) {
 
 int bench_command(const BenchOptions& options) {
   model::ModelLibrary library;
-  const auto model = library.load_urdf(data_dir() + "/urdf/arm17.urdf");
+  const auto model = library.load(data_dir() + "/urdf/arm17.urdf");
   if (!model) return fail(kMachineError, model.error());
   const int ticks = options.ticks > 0 ? options.ticks : 60;
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));

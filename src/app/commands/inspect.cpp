@@ -1,4 +1,4 @@
-// Prints the contents of a URDF file in file order, and every problem with its line and fix.
+// Prints the contents of a URDF or MJCF file in file order, and every problem with its line and fix.
 #include "app/commands/commands.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include "base/log/output.h"
 #include "base/plural.h"
 #include "base/text.h"
-#include "model/urdf/import.h"
+#include "model/import.h"
 
 namespace limber::app {
 
@@ -140,7 +140,7 @@ void add_body(const model::BodyModel& model, std::string& out) {
     out += '\n';
   }
   for (const model::MergedLink& m : model.merged) {
-    out += fmt::format("  {}: merged into {}\n", printable(m.name),
+    out += fmt::format("  {}: {} {}\n", printable(m.name), m.site ? "site of" : "merged into",
                        printable(model.links[static_cast<std::size_t>(m.link)].name));
   }
 }
@@ -150,6 +150,10 @@ const std::string& link_name(const model::BodyModel& model, int link) {
 }
 
 void add_overlaps(const model::BodyModel& model, std::string& out) {
+  if (!model.exclusions.empty()) out += "\npairs excluded from collision by the file\n";
+  for (const auto& [a, b] : model.exclusions) {
+    out += fmt::format("  {} and {}\n", printable(link_name(model, a)), printable(link_name(model, b)));
+  }
   if (model.overlaps.empty()) return;
   out += "\npairs excluded from collision (they overlap with all joints at 0)\n";
   for (const model::Overlap& overlap : model.overlaps) {
@@ -171,6 +175,8 @@ std::string inspect_json(const model::BodyModel& model) {
   for (const model::Overlap& overlap : model.overlaps) {
     pairs.push_back({{"a", link_name(model, overlap.a)}, {"b", link_name(model, overlap.b)}, {"depth", overlap.depth}});
   }
+  for (const auto& [a, b] : model.exclusions)
+    pairs.push_back({{"a", link_name(model, a)}, {"b", link_name(model, b)}, {"depth", nullptr}});
   for (const model::LinkModel& link : model.links) {
     if (!link.self_collision) no_self_collision.push_back(link.name);
   }
@@ -201,10 +207,12 @@ std::string inspect_table(const model::BodyModel& model) {
   return out;
 }
 
-int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths) {
+int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths,
+                    const std::string& root) {
   model::ImportOptions options;
   options.package_paths = package_paths;
-  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_urdf(path, options);
+  options.root = root;
+  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_model(path, options);
   if (!model) {
     write_line(OutputTo::error, model.error());
     return kInputError;

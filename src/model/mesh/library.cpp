@@ -10,6 +10,7 @@
 
 #include "base/text.h"
 #include "model/mesh/load.h"
+#include "model/xml_text.h"
 
 namespace limber::model {
 
@@ -80,7 +81,7 @@ fs::path find_upwards(fs::path at, const std::vector<fs::path>& suffixes) {
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                               const std::vector<std::string>& package_paths) {
   if (uri.starts_with("http://") || uri.starts_with("https://")) {
-    return Error{fmt::format("'{}' is a network address, which is not supported. Copy the file next to the URDF.",
+    return Error{fmt::format("'{}' is a network address, which is not supported. Copy the file next to the model file.",
                              printable(uri))};
   }
   if (uri.find('\0') != std::string::npos || uri.size() > 4096)
@@ -111,6 +112,13 @@ Result<std::string> MeshLibrary::find(const std::string& uri, const std::string&
     return Error{
         fmt::format("'{}' is not among the saved files. It was missing when they were saved.", printable(uri))};
   return known->second;
+}
+
+Result<std::string> MeshLibrary::read(const std::string& path, std::size_t max_bytes) const {
+  if (memory_files_ == nullptr) return read_whole_file(path, max_bytes);
+  const std::string* const bytes = memory_files_->content(path);
+  if (bytes == nullptr) return Error{fmt::format("{}: is not among the saved files.", printable(path))};
+  return *bytes;
 }
 
 Result<std::shared_ptr<const MeshModel>> MeshLibrary::load_from_memory(const std::string& path,

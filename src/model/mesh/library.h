@@ -1,4 +1,4 @@
-// Resolves the mesh URIs of URDF files and caches loaded meshes: one shared mesh for each file and scale.
+// Resolves the mesh URIs of model files and caches loaded meshes: one shared mesh for each file and scale.
 #pragma once
 
 #include <map>
@@ -16,9 +16,9 @@
 namespace limber::model {
 
 /// Resolves `uri` (package://, model://, file://, relative or absolute path) to a file. Searches for the path as
-/// written (relative to the URDF's folder), then below each of `package_paths`, then in the folder and its parents,
-/// with and without the path's leading components. The error lists the searched folders. Never accesses a network.
-/// [any]
+/// written (relative to the model file's folder), then below each of `package_paths`, then in the folder and its
+/// parents, with and without the path's leading components. The error lists the searched folders. Never accesses a
+/// network. [any]
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                               const std::vector<std::string>& package_paths);
 
@@ -32,6 +32,8 @@ class MeshLibrary {
   /// Resolves a URI like find_mesh(), or among the in-memory files.
   Result<std::string> find(const std::string& uri, const std::string& folder,
                            const std::vector<std::string>& package_paths) const;
+  /// Reads a file of at most `max_bytes`, from the disk or among the in-memory files.
+  Result<std::string> read(const std::string& path, std::size_t max_bytes) const;
   /// Returns the mesh of a file, scaled, from the cache if the file is unchanged.
   Result<std::shared_ptr<const MeshModel>> load(const std::string& path, const Vec3& scale);
 

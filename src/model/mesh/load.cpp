@@ -24,7 +24,7 @@ namespace limber::model {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> kExtensions{"stl", "obj", "dae"};
+constexpr std::array<std::string_view, 4> kExtensions{"stl", "obj", "dae", "msh"};
 constexpr double kMaxCoordinate = 1e6;
 
 Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format) {
@@ -35,6 +35,8 @@ Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format) {
       return soup_from_obj(bytes);
     case MeshFormat::dae:
       return soup_from_collada(bytes);
+    case MeshFormat::msh:
+      return soup_from_msh(bytes);
   }
   return Error{"is not a supported mesh format. Use an STL, OBJ or DAE file."};
 }

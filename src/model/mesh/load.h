@@ -1,4 +1,4 @@
-// Loads meshes from STL (binary and ASCII), OBJ and Collada (DAE) files.
+// Loads meshes from STL (binary and ASCII), OBJ, Collada (DAE) and MSH (MuJoCo) files.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace limber::model {
 inline constexpr std::size_t kMaxMeshBytes = 128u << 20;
 inline constexpr std::size_t kMaxMeshTriangles = 2'000'000;
 
-enum class MeshFormat { stl, obj, dae };
+enum class MeshFormat { stl, obj, dae, msh };
 /// The format by the file name's extension, in any case; the error lists the supported formats. [any]
 Result<MeshFormat> mesh_format_of(std::string_view path);
 

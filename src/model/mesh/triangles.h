@@ -21,6 +21,7 @@ using MeshSoup = std::vector<Vec3>;
 /// kMaxMeshTriangles triangles. Errors give the line (of text formats) and the fix. [any]
 Result<MeshSoup> soup_from_stl(std::string_view bytes);
 Result<MeshSoup> soup_from_obj(std::string_view bytes);
+Result<MeshSoup> soup_from_msh(std::string_view bytes);
 /// Reads the active scene, converted to meters by the file's unit; axes are not converted. Skins and morphs use their
 /// undeformed geometry; holes of polygons are ignored. Errors for <skew>, instances of missing elements, and files
 /// larger than 32 MB. [any]

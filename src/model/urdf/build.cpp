@@ -1,7 +1,9 @@
 // Structure of the body: links, merging of fixed links, joint frames and limits.
 #include "model/urdf/build.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -53,25 +55,52 @@ JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
   out.type = from.type;
   out.parent = build.body_link[parent];
   out.child = build.body_link[node];
-  out.frame_in_parent = build.offset[parent] * from.origin.pose() * Pose{Vec3(0), rotation};
-  out.frame_in_child = {Vec3(0), rotation};
+  out.frame_in_parent = build.offset[parent] * from.origin.pose() * Pose{from.anchor, rotation};
+  out.frame_in_child = {from.anchor, rotation};
   out.limited = from.limited;
   out.lower = from.lower;
   out.upper = from.upper;
   out.velocity = from.velocity;
   out.damping = from.damping;
   out.friction = from.friction;
-  const bool driven =
+  out.start = from.start;
+  out.driven = from.driven;
+  const bool has_motor =
       from.type == JointType::revolute || from.type == JointType::continuous || from.type == JointType::prismatic;
   if (from.effort > 0) {
     out.effort = from.effort;
-  } else if (driven) {
+  } else if (has_motor) {
     build.problems.note(from.line,
                         fmt::format("joint '{}': effort is 0 or absent; using {:g} {}", printable(from.name),
                                     out.effort, from.type == JointType::prismatic ? "N" : "N·m"),
                         "Write <limit effort=\"…\"/> with the motor's largest torque or force.");
   }
   return out;
+}
+
+// frames on links, and pairs of links that don't collide
+void add_frames_and_exclusions(UrdfBuildContext& build) {
+  if (build.file.frames.empty() && build.file.exclusions.empty()) return;
+  std::vector<int> node_of_link(build.file.links.size(), -1);
+  for (std::size_t node = 0; node < build.tree.size(); ++node)
+    node_of_link[static_cast<std::size_t>(build.tree[node].link)] = static_cast<int>(node);
+  for (const UrdfFrame& frame : build.file.frames) {
+    const int node = node_of_link[static_cast<std::size_t>(frame.link)];
+    if (node < 0) continue;
+    const auto at = static_cast<std::size_t>(node);
+    build.model.merged.push_back({frame.name, build.body_link[at], build.offset[at] * frame.pose, true});
+  }
+  for (const auto& [a, b] : build.file.exclusions) {
+    const int node_a = node_of_link[static_cast<std::size_t>(a)];
+    const int node_b = node_of_link[static_cast<std::size_t>(b)];
+    if (node_a < 0 || node_b < 0) continue;
+    const int link_a = build.body_link[static_cast<std::size_t>(node_a)];
+    const int link_b = build.body_link[static_cast<std::size_t>(node_b)];
+    if (link_a != link_b) build.model.exclusions.emplace_back(std::minmax(link_a, link_b));
+  }
+  std::sort(build.model.exclusions.begin(), build.model.exclusions.end());
+  const auto end = std::unique(build.model.exclusions.begin(), build.model.exclusions.end());
+  build.model.exclusions.erase(end, build.model.exclusions.end());
 }
 
 bool is_merged(UrdfBuildContext& build, std::size_t node) {
@@ -98,7 +127,7 @@ void build_structure(UrdfBuildContext& build) {
       const auto parent = static_cast<std::size_t>(build.tree[node].parent);
       build.body_link[node] = build.body_link[parent];
       build.offset[node] = build.offset[parent] * build.joint(node).origin.pose();
-      build.model.merged.push_back({build.link(node).name, build.body_link[node], build.offset[node]});
+      build.model.merged.push_back({build.link(node).name, build.body_link[node], build.offset[node], false});
       const LinkModel& carrier = build.model.links[static_cast<std::size_t>(build.body_link[node])];
       if (!build.link(node).self_collision.value_or(true) && carrier.self_collision) {
         build.problems.warning(build.link(node).line,
@@ -118,6 +147,15 @@ void build_structure(UrdfBuildContext& build) {
     }
     add_shapes(build, node);
   }
+  add_frames_and_exclusions(build);
+}
+
+Result<void> build_body(UrdfBuildContext& build) {
+  build_structure(build);
+  build_masses(build);
+  if (Result<void> posed = build_poses(build); !posed) return posed;
+  build_collisions(build);
+  return {};
 }
 
 }  // namespace limber::model

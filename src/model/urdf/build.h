@@ -29,6 +29,9 @@ struct UrdfBuildContext {
   const UrdfJoint& joint(std::size_t node) const { return file.joints[static_cast<std::size_t>(tree[node].joint)]; }
 };
 
+/// Runs all steps. The error is that of build_poses(). [any]
+Result<void> build_body(UrdfBuildContext& build);
+
 /// Creates links, merged links, and joints with frames and limits. The shapes' meshes must be loaded already. [any]
 void build_structure(UrdfBuildContext& build);
 /// Sets masses and inertia tensors, and decides if the root is static (mass.cpp). [any]

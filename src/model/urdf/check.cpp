@@ -12,6 +12,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "model/urdf/reader.h"
+#include "model/xml_document.h"
 
 namespace limber::model {
 
@@ -24,32 +25,6 @@ constexpr std::size_t kMaxShownName = 40;
 constexpr std::array<std::string_view, 16> kElements{
     "link",  "joint", "material", "inertial", "visual", "collision", "origin",  "parent",
     "child", "axis",  "limit",    "dynamics", "mimic",  "geometry",  "inertia", "mass"};
-
-const char* xml_error_fix(tinyxml2::XMLError error) {
-  switch (error) {
-    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "Close every element with its own end tag, in order.";
-    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      return "Write each attribute once, as name=\"value\" with quotes.";
-    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
-      return "Write <name …> and remove single '<' from texts.";
-    default:
-      return "Fix the XML; the file may be truncated.";
-  }
-}
-
-const char* xml_error_text(tinyxml2::XMLError error) {
-  switch (error) {
-    case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "an element is not closed, or closed by another's end tag";
-    case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      return "an attribute can't be read";
-    case tinyxml2::XML_ERROR_PARSING_ELEMENT:
-      return "an element can't be read";
-    default:
-      return "the XML can't be read";
-  }
-}
 
 class UrdfChecker {
  public:
@@ -329,12 +304,7 @@ std::string text_of(const Problems& problems) {
 
 Result<UrdfFile> check_urdf(const std::string& text, const std::string& fallback_name, Problems& problems) {
   tinyxml2::XMLDocument document;
-  document.Parse(text.data(), text.size());
-  if (document.Error()) {
-    const tinyxml2::XMLError error = document.ErrorID();
-    return Error{fmt::format("{}: {}. {}{}", document.ErrorLineNum(), xml_error_text(error), xml_error_fix(error),
-                             text_of(problems))};
-  }
+  if (const Result<void> parsed = parse_xml(text, document); !parsed) return Error{parsed.error() + text_of(problems)};
   const Element* robot = document.RootElement();
   if (!robot) return Error{"1: <robot> element not found. Give a URDF file."};
   const std::string_view name = robot->Name();

@@ -52,10 +52,18 @@ int line_of_link(const UrdfBuildContext& build, int link) {
   return 1;
 }
 
+bool is_connector(const UrdfBuildContext& build, int link) {
+  for (std::size_t node = 0; node < build.tree.size(); ++node) {
+    if (build.body_link[node] == link) return build.link(node).connector;
+  }
+  return false;
+}
+
 void check_overlaps(UrdfBuildContext& build) {
   BodyModel& model = build.model;
   std::set<std::pair<int, int>> connected;
   for (const JointModel& joint : model.joints) connected.insert(std::minmax(joint.parent, joint.child));
+  connected.insert(model.exclusions.begin(), model.exclusions.end());
   std::vector<OverlapPart> parts;
   for (const LinkModel& link : model.links) parts.push_back({link.collisions, link.home});
   OverlapResult result = find_overlaps(parts, [&](std::size_t a, std::size_t b) {
@@ -86,7 +94,8 @@ void check_missing_collisions(UrdfBuildContext& build) {
   int line = 0;
   for (std::size_t i = 0; i < build.model.links.size(); ++i) {
     const LinkModel& link = build.model.links[i];
-    const bool frame = link.inertial.mass <= 0 && link.visuals.empty();  // a fixed root that is only a frame for others
+    // a link between the joints of one body, or a fixed root that is only a frame for others
+    const bool frame = link.visuals.empty() && (link.inertial.mass <= 0 || is_connector(build, static_cast<int>(i)));
     if (!link.collisions.empty() || frame) continue;
     visible = visible || !link.visuals.empty();
     if (count++ == 0) line = line_of_link(build, static_cast<int>(i));

@@ -1,8 +1,10 @@
-// UrdfFile: the parsed and validated contents of a URDF file, from which a BodyModel is built.
+// UrdfFile: the parsed and validated contents of a URDF file, from which a BodyModel is built. The MJCF reader converts
+// its files to it; fields that only MJCF files set say so.
 #pragma once
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/vec.h"
@@ -43,7 +45,9 @@ struct UrdfLink {
   std::optional<UrdfInertial> inertial;
   std::vector<UrdfShape> collisions;
   std::vector<UrdfShape> visuals;
-  std::optional<bool> self_collision;  ///< From a <gazebo> element that refers to this link.
+  std::optional<bool> self_collision;  ///< From a <gazebo> element that refers to this link; MJCF: from contact masks.
+  /// MJCF: a link without shapes that connects the joints of one body; its small mass isn't reported.
+  bool connector = false;
 };
 
 struct UrdfMimic {
@@ -60,7 +64,8 @@ struct UrdfJoint {
   std::string parent;
   std::string child;
   UrdfOrigin origin;
-  Vec3 axis{1, 0, 0};  ///< Unit.
+  Vec3 anchor{0, 0, 0};  ///< MJCF: position of the joint in the child's frame.
+  Vec3 axis{1, 0, 0};    ///< Unit.
   bool limited = false;
   double lower = 0;
   double upper = 0;
@@ -68,13 +73,28 @@ struct UrdfJoint {
   double velocity = 0;  ///< As written; 0: absent.
   double damping = 0;
   double friction = 0;
+  double start = 0;    ///< MJCF: value at the start, from a keyframe.
+  bool driven = true;  ///< MJCF: false if the joint has no actuator.
   std::optional<UrdfMimic> mimic;
+};
+
+/// A named frame on a link, such as a <site> of MJCF.
+struct UrdfFrame {
+  std::string name;
+  int link = 0;  ///< Index into UrdfFile::links.
+  Pose pose;     ///< In the link's frame.
 };
 
 struct UrdfFile {
   std::string name;
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
+  // MJCF only
+  std::vector<UrdfFrame> frames;
+  std::vector<std::pair<int, int>> exclusions;  ///< Pairs of links that don't collide; indices into `links`.
+  std::optional<bool> fixed_root;               ///< Unset: a root without mass is fixed to the world.
+  Pose root_home;                               ///< Pose of the root link.
+  Pose root_start;
 };
 
 }  // namespace limber::model

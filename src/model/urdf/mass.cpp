@@ -88,6 +88,7 @@ void drop_planes(UrdfBuildContext& build, LinkModel& link, int line) {
 
 void report_root(UrdfBuildContext& build, const UrdfLink& root, bool has_mass, double merged_mass) {
   const std::string name = printable(root.name);
+  if (build.file.fixed_root) return;  // the file says so
   if (!build.options.fixed_base.has_value() && !has_mass) {
     const std::string also =
         merged_mass > 0 ? fmt::format(", with the {:.4g} kg that are fixed to it", merged_mass) : "";
@@ -101,10 +102,12 @@ class MassBuilder {
   explicit MassBuilder(UrdfBuildContext& build) : build_(build) {
     parts_.resize(build.model.links.size());
     lines_.resize(build.model.links.size());
+    connectors_.resize(build.model.links.size(), false);
     for (std::size_t node = 0; node < build.tree.size(); ++node) {
       const auto at = static_cast<std::size_t>(build.body_link[node]);
       const UrdfLink& link = build.link(node);
       if (lines_[at] == 0) lines_[at] = link.line;
+      if (link.connector) connectors_[at] = true;
       if (link.inertial && link.inertial->mass > 0) {
         parts_[at].push_back(transformed(declared_inertial(build, link), build.offset[node]));
         if (node == 0) root_has_mass_ = true;
@@ -116,7 +119,7 @@ class MassBuilder {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       LinkModel& link = build_.model.links[i];
       link.inertial = combined(parts_[i]);
-      const bool is_static = i == 0 && build_.options.fixed_base.value_or(!root_has_mass_);
+      const bool is_static = i == 0 && is_root_fixed();
       if (i == 0) report_root(build_, build_.link(0), root_has_mass_, link.inertial.mass);
       if (is_static) {
         link.inertial = {};
@@ -124,10 +127,10 @@ class MassBuilder {
         if (i == 0 && !root_has_mass_) add_root_mass(link);
         const bool estimated = link.inertial.mass <= 0;
         if (estimated) estimate(link, lines_[i]);
-        regularize(link, lines_[i], estimated);
+        regularize(link, lines_[i], estimated || connectors_[i]);
         drop_planes(build_, link, lines_[i]);
       }
-      if (link.collisions.empty() && link.visuals.empty()) {
+      if (link.collisions.empty() && link.visuals.empty() && !connectors_[i]) {
         build_.problems.note(
             lines_[i],
             fmt::format("link '{}' has no shape: it is invisible and does not collide", printable(link.name)),
@@ -137,6 +140,10 @@ class MassBuilder {
   }
 
  private:
+  bool is_root_fixed() const {
+    return build_.options.fixed_base.value_or(build_.file.fixed_root.value_or(!root_has_mass_));
+  }
+
   // a root without a mass that is not fixed: adds the mass of its own shapes to that of the links merged into it
   void add_root_mass(LinkModel& link) {
     const Inertial root_inertial = scaled(shapes_inertial(build_.link(0)), kDensity);
@@ -158,11 +165,11 @@ class MassBuilder {
                             "Write an <inertial> with mass and inertia.");
   }
 
-  void regularize(LinkModel& link, int line, bool estimated) {
+  void regularize(LinkModel& link, int line, bool silent) {
     bool raised = false;
     if (!tensor_error(link.inertial.tensor).empty()) link.inertial.tensor = sphere_tensor(link.inertial.mass);
     link.inertial.tensor = regularized_tensor(link.inertial.tensor, raised);
-    if (!raised || estimated) return;
+    if (!raised || silent) return;
     build_.problems.note(
         line,
         fmt::format("link '{}': its inertia about an axis is too small for a stable simulation; raised",
@@ -173,6 +180,7 @@ class MassBuilder {
   UrdfBuildContext& build_;
   std::vector<std::vector<Inertial>> parts_;  // by model link
   std::vector<int> lines_;
+  std::vector<bool> connectors_;  // by model link
   bool root_has_mass_ = false;
 };
 

@@ -192,7 +192,8 @@ void set_starts(UrdfBuildContext& build) {
 Pose joint_transform(const UrdfJoint& joint, double value) {
   if (joint.type == JointType::prismatic) return {value * joint.axis, quat_identity()};
   if (joint.type == JointType::revolute || joint.type == JointType::continuous) {
-    return {Vec3(0), quat_axis(joint.axis, value)};
+    const Quat rotation = quat_axis(joint.axis, value);
+    return {joint.anchor - rotation * joint.anchor, rotation};
   }
   return {};
 }
@@ -230,6 +231,10 @@ void place_links(UrdfBuildContext& build) {
   std::vector<FileLink>& links = build.model.file_links;
   for (std::size_t node = 0; node < build.tree.size(); ++node) {
     FileLink link = file_link(build.link(node));
+    if (node == 0) {
+      link.home = build.file.root_home;
+      link.start = build.file.root_start;
+    }
     if (build.tree[node].joint >= 0) {
       const UrdfJoint& joint = build.joint(node);
       const FileLink& parent = links[static_cast<std::size_t>(build.tree[node].parent)];

@@ -16,7 +16,7 @@
 ---@example world
 sim = {}
 
----Loads a body from a URDF file.
+---Loads a body from a URDF file, or from an MJCF file of MuJoCo (.xml).
 ---@param path string # Searched in the program's data, the folder of the scene and the folders above it.
 ---@param opts? urdf_opts # Such as `name` and `position`.
 ---@return body
@@ -28,11 +28,12 @@ function sim:load_urdf(path, opts) end
 
 ---@class urdf_opts: body_opts
 ---@field name? string # default: the robot's name.
----@field fixed_base? boolean # default: true if the root link has no mass.
+---@field fixed_base? boolean # default: true if the root link has no mass; MJCF: if it has no free joint.
 ---@field keep_fixed? boolean # default false. Keep links with fixed joints as separate parts.
----@field motors? "servo"|"off" # default "servo".
+---@field motors? "servo"|"off" # default "servo"; MJCF: "off" for joints without an actuator.
 ---@field pose? table<string, number> # Joint = value, rad or m.
 ---@field package_path? string|string[] # Search path for package://.
+---@field root? string # MJCF: the top-level body to load, or "world" for all; default: the first that moves.
 
 ---Creates an empty body.
 ---@param name string # A name of your choice, unique in the world.

@@ -1,4 +1,4 @@
-// C API: creating bodies, parts, joints, motors, shapes; loading URDF files.
+// C API: creating bodies, parts, joints, motors, shapes; loading model files (URDF, MJCF).
 #include <algorithm>
 #include <cmath>
 
@@ -330,6 +330,10 @@ void urdf_pose(void* c, const char* joint, std::int32_t length, double value) {
 
 void urdf_package_path(void* c, const char* path, std::int32_t length) {
   context_of(c).arguments.import.package_paths.emplace_back(text_of(path, length));
+}
+
+void urdf_root(void* c, const char* body, std::int32_t length) {
+  context_of(c).arguments.import.root = std::string(text_of(body, length));
 }
 
 std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, const char* name, std::int32_t length,

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "model/urdf/import.h"
+#include "model/import_options.h"
 #include "script/api/c_api.h"
 #include "script/api/call_effects.h"
 #include "script/api/params_node.h"

@@ -1,4 +1,4 @@
--- `sim`: the world's properties, shapes, bodies, URDF files, gears.
+-- `sim`: the world's properties, shapes, bodies, model files, gears.
 local P = ...
 local ffi, api, ctx = P.ffi, P.api, P.ctx
 local fail, describe, classes = P.fail, P.describe, P.classes
@@ -110,8 +110,8 @@ method("add_convex_mesh_shape", function(_, name, source, opts)
   return P.answered_handle()
 end)
 
--- URDF
-local urdf_own = { name = true, fixed_base = true, keep_fixed = true, motors = true, pose = true, package_path = true,
+-- model files: URDF and MJCF
+local urdf_own = { name = true, fixed_base = true, keep_fixed = true, motors = true, pose = true, package_path = true, root = true,
   position = true, rotation = true }
 local function flag(which, value, subject)
   if value == nil then return end
@@ -146,6 +146,10 @@ method("load_urdf", function(_, path, opts)
   for _, folder in ipairs(type(paths) == "table" and paths or { paths }) do
     P.check_text(folder, "load_urdf: package_path")
     api.urdf_package_path(ctx, folder, #folder)
+  end
+  if opts.root ~= nil then
+    P.check_text(opts.root, "load_urdf: root")
+    api.urdf_root(ctx, opts.root, #opts.root)
   end
   local name = opts.name == nil and "" or P.check_text(opts.name, "load_urdf: name")
   local code = api.load_urdf(ctx, path, #path, name, #name, P.pose_of(opts, "load_urdf", 0 / 0))

@@ -87,7 +87,7 @@ Result<std::shared_ptr<const model::BodyModel>> Sources::model(const std::string
   contents_.try_emplace(path, 0);  // watch unreadable files as well
   const auto* before = find_known(&Sources::models_, key);
   model::ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
-  Result<std::shared_ptr<const model::BodyModel>> model = before ? *before : library.load_urdf(path, options);
+  Result<std::shared_ptr<const model::BodyModel>> model = before ? *before : library.load(path, options);
   if (!model) return model;
   for (std::size_t i = 0; i < (*model)->files.size(); i++) contents_[(*model)->files[i]] = (*model)->file_hashes[i];
   return models_[key] = *model;

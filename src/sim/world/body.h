@@ -27,7 +27,8 @@ class World;
 
 /// Options for building a body from a model.
 struct BuildOptions {
-  bool servo_motors = true;      ///< false: motors are created in mode `off`.
+  /// Mode of the motors: servo or off; unset: servo, except for joints that no actuator of the file drives.
+  std::optional<bool> servo_motors;
   std::optional<Vec3> position;  ///< Of the root's link frame; default: as in the model.
   std::optional<Quat> rotation;
 };

@@ -1,5 +1,6 @@
 // Body: construction from a model, and as a copy of another body.
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
@@ -17,7 +18,7 @@ namespace limber::sim {
 namespace {
 
 // Gives the motor of a model's joint its limits, and its mode.
-void set_up_motor(Motor& motor, const model::JointModel& m, bool servo) {
+void set_up_motor(Motor& motor, const model::JointModel& m, std::optional<bool> servo) {
   const Joint& joint = motor.joint();
   Store& store = joint.body().store();
   const bool linear = joint.own_axis() == 2;
@@ -25,8 +26,8 @@ void set_up_motor(Motor& motor, const model::JointModel& m, bool servo) {
   store.mutable_values(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
   store.mutable_values(motor.id(), Motor::table().at("damping"))[0] = m.damping;
   // planar and floating joints have several axes, and mimic joints follow their leader: none gets a servo by default
-  const bool use_servo =
-      servo && m.type != model::JointType::floating && m.type != model::JointType::planar && !joint.spec().mimic;
+  const bool use_servo = servo.value_or(m.driven) && m.type != model::JointType::floating &&
+                         m.type != model::JointType::planar && !joint.spec().mimic;
   if (!use_servo) motor.set_mode(MotorMode::off);
 }
 

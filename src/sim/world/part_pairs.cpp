@@ -127,6 +127,9 @@ void PartPairs::build(const model::BodyModel& model) {
   for (const model::Overlap& overlap : model.overlaps) {
     (void)set_overlaps(static_cast<std::size_t>(overlap.a), static_cast<std::size_t>(overlap.b));
   }
+  for (const auto& [a, b] : model.exclusions) {
+    (void)set_overlaps(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+  }
   state_.checked_count = body_.parts().size();
   apply_all();
 }

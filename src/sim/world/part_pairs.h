@@ -29,7 +29,7 @@ enum class PairEdit : std::uint16_t { none, excluded, included };
 struct PartPair {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
-  std::uint16_t overlaps = 0;  ///< 1: they overlapped at the home pose, or at the first tick.
+  std::uint16_t overlaps = 0;  ///< 1: overlapping at the home pose or first tick, or excluded by the file.
   PairEdit edit = PairEdit::none;
 
   bool excluded() const { return edit == PairEdit::none ? overlaps != 0 : edit == PairEdit::excluded; }

@@ -23,7 +23,7 @@ nlohmann::ordered_json measure_spawn(const MeasureOptions&) {
   model::ModelLibrary library;
 
   const double start = system::clock_seconds();
-  const auto model = library.load_urdf(file);
+  const auto model = library.load(file);
   if (!model) return {{"fault", model.error()}};
   const Result<sim::Body*> first = world.add_body(*model, "arm", sim::BuildOptions{});
   if (!first) return {{"fault", first.error()}};

@@ -1,0 +1,115 @@
+// The attributes of MJCF elements: which are used, which are valid but have no effect, and which are misspelled.
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/text.h"
+#include "model/mjcf/reader.h"
+#include "model/xml_numbers.h"
+
+namespace limber::model {
+
+namespace {
+
+struct ElementAttributes {
+  std::string_view element;
+  std::string_view used;     ///< Names with blanks between them.
+  std::string_view ignored;  ///< Valid in MuJoCo, without effect here.
+};
+
+constexpr std::string_view kActuatorUsed =
+    "name class joint jointinparent gear ctrllimited ctrlrange forcelimited forcerange gainprm biastype biasprm "
+    "gaintype";
+constexpr std::string_view kActuatorIgnored =
+    "group lengthrange actlimited actrange user site refsite body tendon cranklength cranksite slidersite dyntype "
+    "dynprm "
+    "actdim actearly kp kv dampratio timeconst inheritrange timelimit plugin area diameter bias lmin lmax vmax fpmax "
+    "fvmax force scale range gain nsample interp delay";
+
+constexpr std::array<ElementAttributes, 17> kElements{{
+    {"compiler",
+     "angle eulerseq meshdir assetdir autolimits coordinate inertiafromgeom inertiagrouprange boundmass boundinertia "
+     "balanceinertia settotalmass strippath",
+     "texturedir discardvisual usethread fusestatic exactmeshinertia convexhull fitaabb alignfree saveinertial"},
+    {"body", "name childclass pos quat axisangle euler xyaxes zaxis mocap", "user gravcomp sleep"},
+    {"frame", "name childclass pos quat axisangle euler xyaxes zaxis", ""},
+    {"inertial", "pos quat axisangle euler xyaxes zaxis mass diaginertia fullinertia", ""},
+    {"freejoint", "name", "group align"},
+    {"joint",
+     "name class type pos axis limited range ref damping frictionloss actuatorfrcrange actuatorfrclimited "
+     "springref springdamper stiffness armature",
+     "group margin user solreflimit solimplimit solreffriction solimpfriction actuatorgravcomp"},
+    {"geom",
+     "name class type pos quat axisangle euler xyaxes zaxis fromto size mass density contype conaffinity group rgba "
+     "material mesh hfield",
+     "condim priority friction solmix solref solimp margin gap user shellinertia fitscale fluidshape fluidcoef"},
+    {"site", "name class pos quat axisangle euler xyaxes zaxis fromto", "type size group material rgba user"},
+    {"mesh", "name class file scale refpos refquat vertex face",
+     "normal texcoord smoothnormal maxhullvert inertia "
+     "content_type builtin params material"},
+    {"material", "name class rgba texture",
+     "texrepeat texuniform emission specular shininess reflectance metallic "
+     "roughness"},
+    {"exclude", "name class body1 body2", ""},
+    {"general", kActuatorUsed, kActuatorIgnored},
+    {"motor", kActuatorUsed, kActuatorIgnored},
+    {"position", kActuatorUsed, kActuatorIgnored},
+    {"velocity", kActuatorUsed, kActuatorIgnored},
+    {"intvelocity", kActuatorUsed, kActuatorIgnored},
+    {"damper", kActuatorUsed, kActuatorIgnored},
+}};
+
+bool lists(std::string_view names, std::string_view name) {
+  for (std::size_t at = names.find(name); at != std::string_view::npos; at = names.find(name, at + 1)) {
+    const std::size_t end = at + name.size();
+    if ((at == 0 || names[at - 1] == ' ') && (end == names.size() || names[end] == ' ')) return true;
+  }
+  return false;
+}
+
+const char* fix_of(const std::set<std::string>& attributes) {
+  if (attributes.contains("friction")) return "Set the friction of parts in the scene: part.friction.";
+  if (attributes.contains("kp")) return "A servo uses its whole effort; set modes and limits of motors in the scene.";
+  if (attributes.contains("gravcomp")) return "Set forces in the scene.";
+  return "Nothing to do, unless you expected an effect.";
+}
+
+}  // namespace
+
+void MjcfReader::check_attributes(const MjcfElement& element) {
+  const auto known = std::find_if(kElements.begin(), kElements.end(),
+                                  [&](const ElementAttributes& e) { return e.element == element.name; });
+  if (known == kElements.end()) return;
+  for (const auto& [attribute, value] : element.attributes) {
+    if (lists(known->used, attribute)) continue;
+    if (lists(known->ignored, attribute)) {
+      Ignored& entry = ignored_[element.name];
+      if (entry.count++ == 0) entry.first = &element;
+      entry.attributes.insert(attribute);
+      continue;
+    }
+    std::vector<std::string_view> names = split(known->used, ' ');
+    for (const std::string_view name : split(known->ignored, ' ')) names.push_back(name);
+    const std::string_view suggestion = nearest_name(attribute, names);
+    unsupported(element, fmt::format("<{}> has no attribute '{}'; ignored", element.name, printable_excerpt(attribute)),
+                suggestion.empty() ? "Remove it, or correct its name." : fmt::format("Did you mean '{}'?", suggestion),
+                Severity::warning);
+  }
+}
+
+void MjcfReader::report_ignored() {
+  for (const auto& [element, entry] : ignored_) {
+    note(*entry.first,
+         fmt::format("<{}>: {} {} no effect", element, fmt::join(entry.attributes, ", "),
+                     entry.attributes.size() == 1 ? "has" : "have"),
+         fix_of(entry.attributes));
+  }
+  ignored_.clear();
+}
+
+}  // namespace limber::model

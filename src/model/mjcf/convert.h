@@ -1,0 +1,27 @@
+// Steps from an MjcfFile to the importer's UrdfFile. Internal to the module: only src/model includes it.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "model/mjcf/file.h"
+#include "model/problems.h"
+#include "model/urdf/file.h"
+#include "model/urdf/mesh_loader.h"
+
+namespace limber::model {
+
+/// Loads the meshes of the geoms; removes geoms whose mesh can't be loaded. [any]
+void load_meshes(MjcfFile& file, MeshLoader& loader);
+
+/// Gives unnamed bodies and joints names, and makes all names unique. [any]
+void complete_names(MjcfFile& file, Problems& problems);
+
+/// Sets `MjcfBody::inertial` of all bodies from <inertial> or their geoms, as MuJoCo's compiler does. [any]
+void set_masses(MjcfFile& file, const MjcfCompiler& compiler);
+
+/// Returns the links and joints of the chosen top-level body (ImportOptions::root). The error, an unknown root, starts
+/// with a line number and a colon. [any]
+Result<UrdfFile> convert_mjcf(const MjcfFile& file, const std::string& root, Problems& problems);
+
+}  // namespace limber::model

@@ -1,0 +1,83 @@
+// MjcfFile: the parsed and validated contents of an MJCF file, in SI units and radians.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/vec.h"
+#include "model/body_model.h"
+#include "model/urdf/file.h"
+
+namespace limber::model {
+
+/// The settings of <compiler>.
+struct MjcfCompiler {
+  enum class FromGeoms { no, yes, automatic };
+
+  bool degrees = true;
+  bool global = false;  ///< Poses are those in the world, not in the parent's frame.
+  std::string euler_order = "xyz";
+  std::string mesh_folder;
+  bool strip_path = false;
+  bool auto_limits = true;
+  FromGeoms inertia_from_geoms = FromGeoms::automatic;
+  double first_group = 0;  ///< Geoms of these groups have mass.
+  double last_group = 5;
+  double bound_mass = 0;
+  double bound_inertia = 0;
+  bool balance_inertia = false;
+  double total_mass = -1;  ///< Above 0: all masses are scaled to this sum.
+};
+
+struct MjcfGeom {
+  UrdfShape shape;
+  std::optional<double> mass;     ///< Empty: from the density.
+  double density = 1000;          ///< kg/m³.
+  std::optional<Inertial> unit;   ///< Mass properties at density 1, in the shape's frame; empty: from the shape.
+  unsigned contact_type = 1;      ///< contype: it touches geoms whose affinity has one of these bits.
+  unsigned contact_affinity = 1;  ///< conaffinity
+  int group = 0;
+};
+
+struct MjcfJoint {
+  std::string name;
+  int line = 0;
+  JointType type = JointType::revolute;
+  Vec3 anchor{0, 0, 0};  ///< In the body's frame.
+  Vec3 axis{0, 0, 1};    ///< Unit, in the body's frame.
+  bool limited = false;
+  double lower = 0;  ///< As MuJoCo counts: `reference` at the home pose.
+  double upper = 0;
+  double reference = 0;
+  double damping = 0;
+  double friction = 0;
+  double effort = 0;  ///< Of its actuators; 0: not limited.
+  double velocity = 0;
+  bool driven = false;  ///< An actuator drives it.
+  double start = 0;     ///< Value at the start, 0 at the home pose.
+  std::optional<UrdfMimic> mimic;
+};
+
+struct MjcfBody {
+  std::string name;
+  int line = 0;
+  int parent = -1;    ///< Index into MjcfFile::bodies; -1: the world.
+  Pose pose;          ///< In the parent's frame.
+  Pose start;         ///< Of a free body: its pose at the start.
+  bool free = false;  ///< A free joint connects it to the world.
+  std::vector<MjcfJoint> joints;
+  std::vector<MjcfGeom> geoms;
+  std::vector<std::pair<std::string, Pose>> sites;
+  std::optional<UrdfInertial> declared;  ///< <inertial>
+  Inertial inertial;                     ///< From `declared` or the geoms.
+};
+
+struct MjcfFile {
+  std::string name;
+  std::vector<MjcfBody> bodies;                 ///< bodies[0] is the world; parents come before their children.
+  std::vector<std::pair<int, int>> exclusions;  ///< <contact><exclude>: indices into `bodies`.
+};
+
+}  // namespace limber::model

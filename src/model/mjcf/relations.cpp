@@ -1,0 +1,214 @@
+// Actuators, contact exclusions, equalities, keyframes, and sections without effect.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "model/mjcf/file_reader.h"
+#include "model/xml_numbers.h"
+
+namespace limber::model {
+
+namespace {
+
+constexpr double kMaxEffort = 1e9;
+constexpr std::array<std::string_view, 11> kActuators{"motor",    "position", "velocity", "intvelocity",
+                                                      "damper",   "general",  "cylinder", "muscle",
+                                                      "adhesion", "plugin",   "dcmotor"};
+
+double largest_of(const std::vector<double>& range) {
+  double largest = 0;
+  for (const double value : range) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+bool is_single_axis(JointType type) { return type == JointType::revolute || type == JointType::prismatic; }
+
+}  // namespace
+
+int MjcfFileReader::body_named(const MjcfElement& element, const char* attribute) {
+  const std::string* const name = element.attribute(attribute);
+  for (std::size_t i = 0; name != nullptr && i < file_.bodies.size(); ++i) {
+    if (file_.bodies[i].name == *name) return static_cast<int>(i);
+  }
+  std::vector<std::string> names;
+  for (const MjcfBody& known : file_.bodies) {
+    if (names.size() < 200 && !known.name.empty()) names.push_back(known.name);
+  }
+  const std::string written = name != nullptr ? *name : "";
+  reader_.error(element,
+                fmt::format("{}: body '{}' does not exist{}; ignored", reader_.shown(element),
+                            printable_excerpt(written), name_hint(written, names)),
+                fmt::format("Write {}=\"…\" with the name of a body.", attribute));
+  return -1;
+}
+
+MjcfJoint* MjcfFileReader::joint_named(const MjcfElement& element, const char* attribute, const std::string& use) {
+  const std::string* const name = element.attribute(attribute);
+  if (name == nullptr) return nullptr;
+  std::vector<std::string> names;
+  for (MjcfBody& known : file_.bodies) {
+    for (MjcfJoint& joint : known.joints) {
+      if (joint.name == *name && !name->empty()) return &joint;
+      if (names.size() < 200) names.push_back(joint.name);
+    }
+  }
+  reader_.error(element,
+                fmt::format("{} {}: joint '{}' does not exist{}; ignored", reader_.shown(element), use,
+                            printable_excerpt(*name), name_hint(*name, names)),
+                fmt::format("Write {}=\"…\" with the name of a joint.", attribute));
+  return nullptr;
+}
+
+void MjcfFileReader::read_actuator(const MjcfElement& element) {
+  if (std::find(kActuators.begin(), kActuators.end(), element.name) == kActuators.end()) {
+    reader_.unsupported(
+        element, fmt::format("<{}> in <actuator> ignored: it is not an actuator", printable_excerpt(element.name)),
+        "Use motor, position, velocity or general.", Severity::warning);
+    return;
+  }
+  reader_.check_attributes(element);
+  const char* const attribute = element.attribute("joint") != nullptr ? "joint" : "jointinparent";
+  if (element.attribute(attribute) == nullptr) {
+    reader_.unsupported(element, fmt::format("<{}> that drives no joint ignored: it has no force", element.name),
+                        "Drive a joint: joint=\"…\".", Severity::warning);
+    return;
+  }
+  MjcfJoint* const joint = joint_named(element, attribute, "drives");
+  if (joint == nullptr) return;
+  joint->driven = true;
+  limit_joint(element, reader_.class_of(element, 0), *joint);
+}
+
+void MjcfFileReader::limit_joint(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
+  const std::vector<double> gears = reader_.numbers(element, cls, "gear", 1, 6);
+  const double gear = gears.empty() ? 1 : std::abs(gears[0]);
+  const std::vector<double> force = reader_.limited(element, cls, "forcelimited", "forcerange")
+                                        ? reader_.numbers(element, cls, "forcerange", 2, 2)
+                                        : std::vector<double>();
+  const std::vector<double> control = reader_.limited(element, cls, "ctrllimited", "ctrlrange")
+                                          ? reader_.numbers(element, cls, "ctrlrange", 2, 2)
+                                          : std::vector<double>();
+  double effort = largest_of(force) * gear;
+  const std::string* const bias = reader_.text(element, cls, "biastype");
+  const bool general_motor = element.name == "general" && (bias == nullptr || *bias == "none");
+  if (force.empty() && (element.name == "motor" || general_motor)) {
+    const std::vector<double> gain = reader_.numbers(element, cls, "gainprm", 1, 10);
+    effort = largest_of(control) * gear * (general_motor && !gain.empty() ? std::abs(gain[0]) : 1);
+  }
+  // a joint with several actuators gets the sum of their forces
+  if (effort > 0) joint.effort = std::min(joint.effort + effort, kMaxEffort);
+  if (element.name == "velocity" && !control.empty() && gear > 0)
+    joint.velocity = std::min(std::max(joint.velocity, largest_of(control) / gear), kMaxEffort);
+}
+
+void MjcfFileReader::read_contacts(const MjcfElement& section) {
+  for (const MjcfElement& e : section.children) {
+    reader_.check_attributes(e);
+    if (e.name != "exclude") {
+      reader_.unsupported(
+          e,
+          fmt::format("<{}> in <contact> ignored: contacts follow the masks of the geoms", printable_excerpt(e.name)),
+          "Set collision groups in the scene.");
+      continue;
+    }
+    const int a = body_named(e, "body1");
+    const int b = body_named(e, "body2");
+    if (a >= 0 && b >= 0 && a != b) file_.exclusions.emplace_back(a, b);
+  }
+}
+
+void MjcfFileReader::read_equality(const MjcfElement& element) {
+  if (const std::string* active = element.attribute("active"); active != nullptr && *active == "false") return;
+  if (element.name != "joint") {
+    reader_.unsupported(element,
+                        fmt::format("<{}> in <equality> ignored: the loop stays open", printable_excerpt(element.name)),
+                        "Add the joint in the scene.", Severity::warning);
+    return;
+  }
+  MjcfJoint* const follower = joint_named(element, "joint1", "couples");
+  MjcfJoint* const leader = joint_named(element, "joint2", "couples");
+  if (follower == nullptr || leader == nullptr || follower == leader || !is_single_axis(follower->type) ||
+      !is_single_axis(leader->type)) {
+    if (follower != nullptr) {
+      reader_.unsupported(element, "<joint> in <equality> ignored: it names no two joints with one axis each",
+                          "Name two hinges or slides.", Severity::warning);
+    }
+    return;
+  }
+  std::vector<double> polynomial = reader_.numbers(element, 0, "polycoef", 1, 5);
+  if (polynomial.empty()) polynomial = {0, 1, 0, 0, 0};
+  polynomial.resize(5, 0);
+  if (polynomial[2] != 0 || polynomial[3] != 0 || polynomial[4] != 0) {
+    reader_.unsupported(element, "<joint polycoef> in <equality>: only the linear part has an effect",
+                        "Drive the joint in the scene.", Severity::warning);
+  }
+  follower->mimic = UrdfMimic{reader_.line_of(element), leader->name, std::clamp(polynomial[1], -1e6, 1e6),
+                              std::clamp(polynomial[0], -1e6, 1e6)};
+}
+
+void MjcfFileReader::read_keyframes(const MjcfElement& section) {
+  for (const MjcfElement& e : section.children) {
+    const std::string* const name = e.attribute("name");
+    if (e.name != "key" || name == nullptr || *name != "home") {
+      reader_.unsupported(e, "<key> ignored: only a key named 'home' sets the start pose", "Save poses as presets.");
+      continue;
+    }
+    return apply_keyframe(e);
+  }
+}
+
+// The values are those of all joints in the order of the bodies: seven of a free joint, four of a ball, else one.
+void MjcfFileReader::apply_keyframe(const MjcfElement& element) {
+  std::size_t count = 0;
+  for (const MjcfBody& b : file_.bodies) {
+    if (b.free) count += 7;
+    for (const MjcfJoint& joint : b.joints) count += joint.type == JointType::spherical ? 4 : 1;
+  }
+  const std::vector<double> values = reader_.numbers(element, 0, "qpos", count, count);
+  if (values.empty()) return;
+  std::size_t at = 0;
+  for (MjcfBody& b : file_.bodies) {
+    if (b.free) {
+      const double* const v = values.data() + at;
+      const Quat rotation = quat_xyzw(v[4], v[5], v[6], v[3]);
+      if (glm::length(rotation) > 1e-9 && glm::length(vec3_at(v)) <= 1e4)
+        b.start = {vec3_at(v), glm::normalize(rotation)};
+      at += 7;
+    }
+    for (MjcfJoint& joint : b.joints) {
+      if (joint.type == JointType::spherical) {
+        const Quat rotation = quat_xyzw(values[at + 1], values[at + 2], values[at + 3], values[at]);
+        if (!nearly_same(rotation, quat_identity())) {
+          reader_.unsupported(element, "<key>: the start of a ball joint is ignored", "Set it in the scene.");
+        }
+        at += 4;
+      } else {
+        joint.start = std::clamp(values[at++] - joint.reference, -1e4, 1e4);
+      }
+    }
+  }
+}
+
+void MjcfFileReader::report_section(const MjcfElement& section) {
+  if (section.name == "option") {
+    reader_.unsupported(section, "<option> ignored: the scene sets gravity and time step",
+                        "Set sim.gravity and sim.timestep in the scene.");
+  } else if (section.name == "tendon" || section.name == "sensor") {
+    for (const MjcfElement& e : section.children) {
+      reader_.unsupported(
+          e, fmt::format("<{}> in <{}> ignored: it is not supported", printable_excerpt(e.name), section.name),
+          section.name == "sensor" ? "Read the properties of parts and joints instead."
+                                   : "Use gears or springs in the scene.",
+          section.name == "sensor" ? Severity::note : Severity::warning);
+    }
+  } else if (section.name == "deformable" || section.name == "extension") {
+    reader_.unsupported(section, fmt::format("<{}> ignored: it is not supported", section.name),
+                        "Remove it, or use rigid bodies.", Severity::warning);
+  }
+}
+
+}  // namespace limber::model
