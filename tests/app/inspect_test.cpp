@@ -107,11 +107,11 @@ TEST(Inspect, ExitCodeIsOneOnlyWithoutABody) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   std::ofstream(file) << kRobot;
-  const int good = inspect_command(file.string(), true, {});
+  const int good = inspect_command({file.string(), true, {}, {}});
   std::ofstream(file) << "<robot name=\"r\"><link name=\"a\"></robot>";
-  const int bad = inspect_command(file.string(), true, {});
+  const int bad = inspect_command({file.string(), true, {}, {}});
   std::filesystem::remove(file);
-  const int missing = inspect_command(file.string(), true, {});
+  const int missing = inspect_command({file.string(), true, {}, {}});
   const std::string out = testing::internal::GetCapturedStdout();
   const std::string err = testing::internal::GetCapturedStderr();
   EXPECT_EQ(good, 0);

@@ -79,8 +79,7 @@ std::optional<std::string> mistyped_command(int argc, char** argv) {
 struct CommandLine {
   PlayOptions play;
   BenchOptions bench;
-  std::string robot;        // inspect
-  std::string root;         // inspect
+  InspectCommand inspect;
   std::string scene;        // describe
   std::string definitions;  // annotate
   std::string reference;    // annotate: folder of the Lua reference
@@ -97,7 +96,6 @@ struct CommandLine {
   std::string shell;  // completion
   bool json = false;
   bool markdown = false;
-  std::vector<std::string> package_paths;
 };
 
 void add_inspect(CLI::App& app, CommandLine& line) {
@@ -106,12 +104,14 @@ void add_inspect(CLI::App& app, CommandLine& line) {
   inspect->footer(
       "  limber inspect urdf/arm6.urdf                a table of the arm, and its problems\n"
       "  limber inspect robot.urdf --json             the same for programs");
-  inspect->add_option("file", line.robot, "The robot: URDF, or MJCF (.xml).")->type_name("FILE")->required();
-  inspect->add_flag("--json", line.json, "Print JSON.");
-  inspect->add_option("--package-path", line.package_paths, "Folder for package:// paths; may be repeated.")
+  inspect->add_option("file", line.inspect.file, "The robot: URDF, or MJCF (.xml).")->type_name("FILE")->required();
+  inspect->add_flag("--json", line.inspect.json, "Print JSON.");
+  inspect->add_option("--package-path", line.inspect.package_paths, "Folder for package:// paths; may be repeated.")
       ->type_name("DIR")
       ->allow_extra_args(false);
-  inspect->add_option("--root", line.root, "MJCF: the top-level body to show, or world; default: the first that moves.")
+  inspect
+      ->add_option("--root", line.inspect.root,
+                   "MJCF: the top-level body to show, or world; default: the first that moves.")
       ->type_name("BODY");
 }
 
@@ -430,7 +430,7 @@ struct CommandRunner {
 // all but those that need the command line's description: completion and man
 constexpr CommandRunner kRunners[] = {
     {"play", [](CommandLine& l) { return play_command(l.play); }},
-    {"inspect", [](CommandLine& l) { return inspect_command(l.robot, l.json, l.package_paths, l.root); }},
+    {"inspect", [](CommandLine& l) { return inspect_command(l.inspect); }},
     {"describe",
      [](CommandLine& l) {
        if (!l.markdown) return describe_command(l.scene, l.json);

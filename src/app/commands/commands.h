@@ -77,10 +77,15 @@ int export_command(const ExportCommand& command);
 /// Like export_command(); `cancel` is called before each tick and returns true to stop.
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel);
 
+struct InspectCommand {
+  std::string file;
+  bool json = false;
+  std::vector<std::string> package_paths;
+  std::string root;  ///< See ImportOptions.
+};
 /// `limber inspect`: prints links, joints and problems of a URDF or MJCF file to stdout; if the file contains no body,
-/// an error to stderr. Returns 0 if there is a body, even with problems, else 1. `root`: see ImportOptions.
-int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths,
-                    const std::string& root = {});
+/// an error to stderr. Returns 0 if there is a body, even with problems, else 1.
+int inspect_command(const InspectCommand& command);
 /// Return the same as text: indented JSON, or a table for people.
 std::string inspect_json(const model::BodyModel& model);
 std::string inspect_table(const model::BodyModel& model);

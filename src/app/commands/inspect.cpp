@@ -207,17 +207,16 @@ std::string inspect_table(const model::BodyModel& model) {
   return out;
 }
 
-int inspect_command(const std::string& path, bool json, const std::vector<std::string>& package_paths,
-                    const std::string& root) {
+int inspect_command(const InspectCommand& command) {
   model::ImportOptions options;
-  options.package_paths = package_paths;
-  options.root = root;
-  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_model(path, options);
+  options.package_paths = command.package_paths;
+  options.root = command.root;
+  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_model(command.file, options);
   if (!model) {
     write_line(OutputTo::error, model.error());
     return kInputError;
   }
-  const std::string text = json ? inspect_json(**model) : inspect_table(**model);
+  const std::string text = command.json ? inspect_json(**model) : inspect_table(**model);
   write_result(text);
   return kSuccess;
 }
