@@ -99,6 +99,8 @@ struct JointModel {
   double damping = 0;     ///< <dynamics damping>, N·m·s/rad or N·s/m.
   double friction = 0;    ///< <dynamics friction>, Coulomb limit, N·m or N.
   double start = 0;       ///< Joint value used for `LinkModel::start`.
+  double stiffness = 0;   ///< Above 0, if not driven: a spring of this stiffness, N·m/rad or N/m.
+  double rest = 0;        ///< Joint value at which the spring is at rest.
   bool driven = true;     ///< False: no actuator of the file drives it, so its motor starts in mode off.
   /// Index of the joint that this one follows; -1: none. value = mimic_multiplier * (value of joint `mimic`) +
   /// mimic_offset. The followed joint never follows another: the importer resolves chains.

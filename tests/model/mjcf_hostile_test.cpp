@@ -108,6 +108,22 @@ TEST(MjcfHostile, BoundsNestingAndCounts) {
   EXPECT_TRUE(has_problem(body_with(many), Severity::error, "a body has more than 1000 geoms", 2));
 }
 
+// Takes linear time; each would take minutes in quadratic time.
+TEST(MjcfHostile, ManyEqualAndUnknownNamesAreReported) {
+  std::string bodies, actuators;
+  for (int i = 0; i < 9000; ++i) {
+    bodies +=
+        "<body name='n'><joint name='n'/><joint/><geom size='.1' mass='1' sizes='1' contype='0' "
+        "conaffinity='0'/></body>";
+    actuators += "<motor joint='m" + std::to_string(i) + "'/><motor joint='n'/>";
+  }
+  const auto model = import("<mujoco><worldbody><body name='r'>" + bodies + "</body></worldbody><actuator>" +
+                            actuators + actuators + "</actuator></mujoco>");
+  ASSERT_TRUE(model) << model.error();
+  EXPECT_EQ((*model)->links.size(), 18001u);
+  EXPECT_EQ((*model)->links.back().name, "n_9000");
+}
+
 TEST(MjcfHostile, BoundsEllipsoids) {
   std::string many;
   for (int i = 1; i < 700; ++i) many += "<geom type='ellipsoid' size='.1 .2 " + std::to_string(i) + "'/>";

@@ -192,6 +192,15 @@ TEST(Mjcf, TurnsABodyAboutTheAnchorOfItsJoint) {
   expect_near(m.links[1].start.position, {-1, 0, 2}, 1e-12);
 }
 
+TEST(Mjcf, BodiesDoNotCollideWithMovingParents) {
+  const BodyModel m = mjcf(R"(<mujoco><worldbody><body name='base'><freejoint/><geom size='.1'/>
+<body name='arm' pos='0 0 1'><joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 0'/><geom size='.1'/></body></body>
+</worldbody></mujoco>)");
+  ASSERT_EQ(m.links.size(), 3u);
+  ASSERT_EQ(m.exclusions.size(), 1u);
+  EXPECT_EQ(m.exclusions[0], std::pair(0, 2));
+}
+
 TEST(Mjcf, ChainsSeveralJointsOfABody) {
   const BodyModel m = jointed(
       "<joint name='x' axis='1 0 0'/><joint name='y' axis='0 1 0' pos='0 0 .1'/><joint name='s' type='slide'/>");
@@ -204,9 +213,7 @@ TEST(Mjcf, ChainsSeveralJointsOfABody) {
   const double mass = 1000 * 0.2 * 0.4 * 0.6;
   EXPECT_NEAR(m.links[3].inertial.mass, mass, 1e-9);
   EXPECT_NEAR(m.links[1].inertial.mass, mass * 1e-5, 1e-9);
-  // the body and its parent don't collide, as in MuJoCo
-  ASSERT_EQ(m.exclusions.size(), 1u);
-  EXPECT_EQ(m.exclusions[0], std::pair(0, 3));
+  EXPECT_TRUE(m.exclusions.empty()) << "in MuJoCo, bodies collide with static parents";
   for (const Problem& p : m.problems) EXPECT_EQ(p.severity, Severity::note) << p.text;
   // both turn: first about x, then about the turned y
   ImportOptions options;
@@ -300,10 +307,33 @@ TEST(Mjcf, ActuatorsLimitTheirJoint) {
       joint("<general joint='j' ctrlrange='-1 1' gainprm='30' biastype='affine' biasprm='0 -30 -1' forcerange='-9 9'/>")
           .effort,
       9);
+  EXPECT_EQ(joint("<motor joint='j' ctrlrange='-1 1' gear='4'/><motor joint='j' ctrlrange='-1 1' gear='3'/>").effort,
+            7);
+  const auto limited = [](const std::string& gear) {
+    return jointed("<joint name='j' actuatorfrcrange='-5 5'/>",
+                   "<actuator><motor joint='j' ctrlrange='-1 1' gear='" + gear + "'/></actuator>")
+        .joints.at(0)
+        .effort;
+  };
+  EXPECT_EQ(limited("4"), 4);
+  EXPECT_EQ(limited("40"), 5);
   EXPECT_FALSE(joint("").driven);
   const BodyModel passive = jointed("<joint name='j'/>");
   EXPECT_TRUE(has_problem(passive, Severity::note, "1 joint(s) have no actuator and move freely, first 'j'", 1))
       << all_problems(passive);
+}
+
+TEST(Mjcf, JointsWithoutAnActuatorKeepTheirSpring) {
+  const std::string joint = "<joint name='j' stiffness='3' springref='90' ref='45'/>";
+  const BodyModel passive = jointed(joint);
+  EXPECT_EQ(passive.joints[0].stiffness, 3);
+  EXPECT_NEAR(passive.joints[0].rest, kPi / 4, 1e-12);
+  const BodyModel driven = jointed(joint, "<actuator><motor joint='j'/></actuator>");
+  EXPECT_EQ(driven.joints[0].stiffness, 0);
+  EXPECT_TRUE(has_problem(driven, Severity::warning, "1 joint(s) have an actuator and a spring, first 'j'", 1))
+      << all_problems(driven);
+  EXPECT_TRUE(has_problem(jointed("<joint type='ball' stiffness='3'/>"), Severity::warning,
+                          "stiffness of a ball joint ignored", 1));
 }
 
 TEST(Mjcf, KeyframeHomeSetsTheStart) {
@@ -415,7 +445,6 @@ TEST(Mjcf, ReportsWhatItDoesNotSupportOncePerKind) {
   EXPECT_TRUE(has_problem(m, Severity::note, "<option> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<light> ignored: the scene sets the view (2 places)", 1))
       << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::warning, "<joint stiffness> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<joint armature> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<geom>: friction has no effect", 2)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::error, "<geom type='hfield'> ignored", 2)) << all_problems(m);

@@ -105,6 +105,20 @@ TEST(Docs, InspectPrintsTheOutputOnThePageOfBodies) {
   EXPECT_NE((wrong.out + wrong.err).find(body->output[1]), std::string::npos) << wrong.out << wrong.err;
 }
 
+TEST(Docs, TheMjcfExampleOnThePageOfBodiesHasNoProblem) {
+  const app::test::TempFolder folder;
+  const std::vector<DocBlock> blocks = blocks_of_page("docs/howto/bodies.md");
+  const auto body =
+      std::find_if(blocks.begin(), blocks.end(), [](const DocBlock& b) { return b.file == "hopper.xml"; });
+  ASSERT_NE(body, blocks.end());
+  folder.file(body->file, body->text);
+  const app::test::RunResult result = app::test::run({"inspect", body->file}, folder.path());
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.out.find("torso_x"), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find(": warning: "), std::string::npos) << result.out;
+  EXPECT_EQ(result.out.find(": error: "), std::string::npos) << result.out;
+}
+
 // ---- docs/reference/behaviors.md
 
 bool is_number(const std::string& word) { return std::regex_match(word, std::regex("-?[0-9.]+")); }

@@ -48,6 +48,14 @@ TEST_F(MjcfScene, DrivesAllJointsOnRequest) {
 TEST_F(MjcfScene, DrivesNoJointOnRequest) {
   EXPECT_EQ(value(", { motors = 'off' }", "body:motor('x').mode, body:motor('y').mode"), "off\toff");
 }
+TEST_F(MjcfScene, SpringsOfPassiveJointsAct) {
+  fixture.write("scene.xml", R"(<mujoco model="scene"><worldbody><body name="post"><body name="arm">
+<joint name="y" axis="0 1 0" stiffness="3" springref="90"/><geom size=".1"/></body></body></worldbody></mujoco>)");
+  EXPECT_EQ(value("",
+                  "body:motor('y').mode, body:motor('y').angular_spring_stiffness.z, "
+                  "string.format('%.4f', body:motor('y').target)"),
+            "spring\t3\t1.5708");
+}
 TEST_F(MjcfScene, FindsSites) { EXPECT_EQ(value("", "body:link('tip').position"), "vec3(0.4, 0, 1.5)"); }
 TEST_F(MjcfScene, RejectsUnknownTrees) {
   EXPECT_NE(value(", { root = 'bal' }", "1").find("there is no top-level body 'bal'; did you mean 'ball'?"),

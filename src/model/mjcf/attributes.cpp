@@ -93,10 +93,13 @@ void MjcfReader::check_attributes(const MjcfElement& element) {
       entry.attributes.insert(attribute);
       continue;
     }
+    const std::string text =
+        fmt::format("<{}> has no attribute '{}'; ignored", element.name, printable_excerpt(attribute));
+    if (count_unsupported(text)) continue;
     std::vector<std::string_view> names = split(known->used, ' ');
     for (const std::string_view name : split(known->ignored, ' ')) names.push_back(name);
     const std::string_view suggestion = nearest_name(attribute, names);
-    unsupported(element, fmt::format("<{}> has no attribute '{}'; ignored", element.name, printable_excerpt(attribute)),
+    unsupported(element, text,
                 suggestion.empty() ? "Remove it, or correct its name." : fmt::format("Did you mean '{}'?", suggestion),
                 Severity::warning);
   }

@@ -26,6 +26,14 @@ constexpr int kLastVisibleGroup = 2;  // MuJoCo's viewer hides geoms of other gr
 constexpr double kDefaultEffort = 10000;
 constexpr std::size_t kMaxExclusions = 20'000;
 constexpr std::size_t kMaxShownNames = 8;
+constexpr std::size_t kMaxStem = 100;  // bytes of a name before a suffix
+
+/// The beginning of a name that leaves room for a suffix, without a part of a character at its end.
+std::string stem_of(const std::string& name) {
+  std::size_t end = std::min(name.size(), kMaxStem);
+  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
+  return name.substr(0, end);
+}
 
 /// The contact masks of a link's geoms, united.
 struct ContactMask {
@@ -53,12 +61,19 @@ class Converter {
     }
     add_exclusions();
     report_joints();
+    report_springs();
     return std::move(out_);
   }
 
  private:
   const MjcfBody& body(std::size_t index) const { return file_.bodies[index]; }
   static bool moves(const MjcfBody& b) { return b.free || !b.joints.empty(); }
+
+  // True for the world and bodies that are fixed to it.
+  bool is_static(std::size_t index) const {
+    while (index != 0 && !moves(body(index))) index = static_cast<std::size_t>(body(index).parent);
+    return index == 0;
+  }
 
   // the top-level body of each body, and which of them contain a joint
   void find_trees() {
@@ -163,8 +178,8 @@ class Converter {
       out_.joints.push_back(std::move(joint));
     }
     add_link(index);
-    // no joint connects them directly, so the pair would collide
-    if (b.joints.size() > 1) out_.exclusions.emplace_back(link_of_[parent], link_of_[index]);
+    // No joint connects them directly, so the pair would collide. In MuJoCo, too, bodies collide with static parents.
+    if (b.joints.size() > 1 && !is_static(parent)) out_.exclusions.emplace_back(link_of_[parent], link_of_[index]);
   }
 
   void add_link(std::size_t index) {
@@ -206,6 +221,22 @@ class Converter {
     joint.origin.quat = pose.rotation;
   }
 
+  // 0: not limited
+  static double effort_of(const MjcfJoint& from) {
+    if (from.largest_effort <= 0) return from.effort;
+    return from.effort > 0 ? std::min(from.effort, from.largest_effort) : from.largest_effort;
+  }
+
+  // for report_joints()
+  void count(const MjcfJoint& from) {
+    if (!from.driven && from.type != JointType::spherical && !from.mimic) {
+      if (passive_++ == 0) first_passive_ = &from;
+    } else if (from.driven && effort_of(from) <= 0) {
+      if (unlimited_++ == 0) first_unlimited_ = &from;
+    }
+    if (from.driven && from.stiffness > 0 && sprung_++ == 0) first_sprung_ = &from;
+  }
+
   UrdfJoint converted(const MjcfJoint& from) {
     UrdfJoint out;
     out.name = from.name;
@@ -216,18 +247,16 @@ class Converter {
     out.limited = from.limited;
     out.lower = from.limited ? from.lower - from.reference : 0;
     out.upper = from.limited ? from.upper - from.reference : 0;
-    out.effort = from.effort > 0 ? from.effort : kDefaultEffort;
+    out.effort = effort_of(from) > 0 ? effort_of(from) : kDefaultEffort;
     out.velocity = from.velocity;
     out.damping = from.damping;
     out.friction = from.friction;
+    out.stiffness = from.driven ? 0 : from.stiffness;
+    out.rest = from.rest;
     out.start = from.start;
     out.driven = from.driven;
     out.mimic = from.mimic;
-    if (!from.driven && from.type != JointType::spherical && !from.mimic) {
-      if (passive_++ == 0) first_passive_ = &from;
-    } else if (from.driven && from.effort <= 0) {
-      if (unlimited_++ == 0) first_unlimited_ = &from;
-    }
+    count(from);
     return out;
   }
 
@@ -260,10 +289,10 @@ class Converter {
     }
     std::map<ContactMask, std::vector<std::size_t>> by_mask;
     for (const std::size_t index : in_contact_) by_mask[masks_[index]].push_back(index);
-    for (const auto& [mask, members] : by_mask) {
-      const auto touches = [&](const auto& other) { return mask.touches(other.first); };
+    for (const auto& entry : by_mask) {
+      const auto touches = [&](const auto& other) { return entry.first.touches(other.first); };
       if (std::any_of(by_mask.begin(), by_mask.end(), touches)) continue;
-      for (const std::size_t index : members) self_collision_off(index);
+      for (const std::size_t index : entry.second) self_collision_off(index);
     }
     for (auto a = by_mask.begin(); a != by_mask.end(); ++a) {
       for (auto b = a; b != by_mask.end(); ++b) {
@@ -311,6 +340,14 @@ class Converter {
     }
   }
 
+  void report_springs() {
+    if (sprung_ == 0) return;
+    problems_.warning(first_sprung_->line,
+                      fmt::format("{} joint(s) have an actuator and a spring, first '{}'; the spring is ignored",
+                                  sprung_, printable(first_sprung_->name)),
+                      "Set the mode of the motor to \"spring\" in the scene, or remove the actuator.");
+  }
+
   std::string unique_link(const std::string& base) { return unique(base, link_names_); }
   std::string unique_joint(const std::string& base) { return unique(base, joint_names_); }
   std::string unique(const std::string& base, std::set<std::string>& used) {
@@ -321,8 +358,10 @@ class Converter {
       }
       joint_names_.insert("");
     }
-    std::string name = base.substr(0, 110);
-    for (int i = 2; !used.insert(name).second; ++i) name = fmt::format("{}_{}", base.substr(0, 110), i);
+    const std::string stem = stem_of(base);
+    std::string name = stem;
+    while (!used.insert(name).second)
+      name = fmt::format("{}_{}", stem, ++next_suffix_.try_emplace(stem, 1).first->second);
     return name;
   }
 
@@ -335,40 +374,57 @@ class Converter {
   std::vector<std::size_t> top_;         // by body: its top-level body
   std::set<std::size_t> moving_;         // top-level bodies whose tree has a joint
   std::set<std::string> frame_names_, link_names_, joint_names_;
-  std::size_t passive_ = 0, unlimited_ = 0;
+  std::map<std::string, int> next_suffix_;
+  std::size_t passive_ = 0, unlimited_ = 0, sprung_ = 0;
   const MjcfJoint* first_passive_ = nullptr;
   const MjcfJoint* first_unlimited_ = nullptr;
+  const MjcfJoint* first_sprung_ = nullptr;
   bool exclusions_reported_ = false;
+};
+
+/// Gives elements of one kind unique names.
+class Namer {
+ public:
+  Namer(const char* kind, Problems& problems) : kind_(kind), problems_(problems) {}
+
+  /// Makes `name` unique; an empty one starts with `base`.
+  void complete(std::string& name, const std::string& base, int line) {
+    if (!name.empty() && used_.insert(name).second) return;
+    const std::string stem = stem_of(base);
+    std::string next = stem;
+    while (!used_.insert(next).second)
+      next = fmt::format("{}_{}", stem, ++next_suffix_.try_emplace(stem, 1).first->second);
+    if (!name.empty()) {
+      problems_.error(
+          line,
+          fmt::format("{} '{}' is declared twice; the second is called '{}'", kind_, printable(name), printable(next)),
+          fmt::format("Give every {} a name of its own.", kind_));
+    }
+    name = next;
+  }
+
+ private:
+  const char* kind_;
+  Problems& problems_;
+  std::set<std::string> used_;
+  std::map<std::string, int> next_suffix_;
 };
 
 }  // namespace
 
 void complete_names(MjcfFile& file, Problems& problems) {
-  std::set<std::string> bodies, joints;
-  const auto rename = [&](std::string& name, std::set<std::string>& used, const std::string& base, const char* kind,
-                          int line) {
-    const bool unnamed = name.empty();
-    if (!unnamed && used.insert(name).second) return;
-    const std::string stem = (unnamed ? base : name).substr(0, 110);
-    std::string next = stem;
-    for (int i = unnamed ? 1 : 2; next.empty() || !used.insert(next).second; ++i)
-      next = i == 1 ? stem : fmt::format("{}_{}", stem, i);
-    if (!unnamed) {
-      problems.error(
-          line,
-          fmt::format("{} '{}' is declared twice; the second is called '{}'", kind, printable(name), printable(next)),
-          fmt::format("Give every {} a name of its own.", kind));
-    }
-    name = next;
-  };
+  Namer bodies("body", problems), joints("joint", problems);
   // names of the file have precedence over made-up ones
+  for (MjcfBody& body : file.bodies) {
+    if (!body.name.empty()) bodies.complete(body.name, body.name, body.line);
+  }
+  for (MjcfBody& body : file.bodies) {
+    if (body.name.empty()) bodies.complete(body.name, "body", body.line);
+  }
   for (const bool unnamed : {false, true}) {
     for (MjcfBody& body : file.bodies) {
-      if (body.name.empty() == unnamed) rename(body.name, bodies, "body", "body", body.line);
-    }
-    for (MjcfBody& body : file.bodies) {
       for (MjcfJoint& joint : body.joints) {
-        if (joint.name.empty() == unnamed) rename(joint.name, joints, body.name, "joint", joint.line);
+        if (joint.name.empty() == unnamed) joints.complete(joint.name, unnamed ? body.name : joint.name, joint.line);
       }
     }
   }

@@ -53,7 +53,10 @@ struct MjcfJoint {
   double reference = 0;
   double damping = 0;
   double friction = 0;
-  double effort = 0;  ///< Of its actuators; 0: not limited.
+  double stiffness = 0;
+  double rest = 0;            ///< Of the spring, 0 at the home pose.
+  double effort = 0;          ///< Of its actuators; 0: not limited.
+  double largest_effort = 0;  ///< Of all actuators together; 0: not limited.
   double velocity = 0;
   bool driven = false;  ///< An actuator drives it.
   double start = 0;     ///< Value at the start, 0 at the home pose.

@@ -51,6 +51,7 @@ Result<MjcfFile> MjcfFileReader::run(const std::string& fallback_name) {
     return Error{fmt::format("{}: no body and no geom found. Write <worldbody> with at least one <body>.",
                              file_.bodies[0].line)};
   }
+  index_names();
   for_each_section("contact", [&](const MjcfElement& e) { read_contacts(e); });
   for_each_section("equality", [&](const MjcfElement& e) {
     for (const MjcfElement& child : e.children) read_equality(child);
@@ -165,11 +166,12 @@ void MjcfFileReader::report_unknown(const MjcfElement& element, const MjcfElemen
     return;
   }
   constexpr std::array<std::string_view, 7> kKnown{"body", "geom", "site", "frame", "joint", "inertial", "freejoint"};
+  const std::string text = fmt::format("<{}> inside <{}> ignored: it is not supported", printable_excerpt(element.name),
+                                       printable_excerpt(parent.name));
+  if (reader_.count_unsupported(text)) return;
   const std::string_view suggestion = nearest_name(element.name, kKnown);
   const bool misspelled = !suggestion.empty() && suggestion != element.name;
-  reader_.unsupported(element,
-                      fmt::format("<{}> inside <{}> ignored: it is not supported", printable_excerpt(element.name),
-                                  printable_excerpt(parent.name)),
+  reader_.unsupported(element, text,
                       misspelled ? fmt::format("Did you mean <{}>?", suggestion)
                                  : "Load the file in MuJoCo and save it: it then has plain bodies.",
                       Severity::warning);

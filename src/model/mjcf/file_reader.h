@@ -52,6 +52,7 @@ class MjcfFileReader {
   void read_joint(const MjcfElement& element, MjcfBody& body, MjcfClass inherited, const Pose& frame);
   void read_free_joint(const MjcfElement& element, MjcfBody& body);
   void read_limits(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint);
+  void read_spring(const MjcfElement& element, MjcfClass cls, double stiffness, MjcfJoint& joint);
   void read_passive_forces(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint);
   // geoms.cpp
   void read_geom(const MjcfElement& element, MjcfBody& body, MjcfClass inherited, const Pose& frame);
@@ -74,6 +75,7 @@ class MjcfFileReader {
   void read_equality(const MjcfElement& element);
   void read_keyframes(const MjcfElement& section);
   void apply_keyframe(const MjcfElement& element);
+  void index_names();
   int body_named(const MjcfElement& element, const char* attribute);
   MjcfJoint* joint_named(const MjcfElement& element, const char* attribute, const std::string& use);
   void report_section(const MjcfElement& section);
@@ -90,6 +92,9 @@ class MjcfFileReader {
   const MjcfDocument& document_;
   MjcfReader& reader_;
   MjcfFile file_;
+  std::map<std::string, int, std::less<>> body_index_;
+  std::map<std::string, MjcfJoint*, std::less<>> joint_index_;
+  std::vector<std::string> joint_names_;  // the first ones, for suggestions
   std::map<std::string, MeshAsset, std::less<>> meshes_;
   std::map<std::string, Material, std::less<>> materials_;
   std::map<std::string, std::shared_ptr<const MeshModel>> ellipsoids_;  // by radii

@@ -168,6 +168,7 @@ bool MjcfFileReader::read_size(const MjcfElement& element, MjcfClass cls, std::s
 bool MjcfFileReader::set_mesh(const MjcfElement& element, const std::string& mesh, MjcfGeom& geom) {
   const auto found = meshes_.find(mesh);
   if (found == meshes_.end()) {
+    if (!reader_.can_report()) return false;
     std::vector<std::string> names;
     for (const auto& [name, asset] : meshes_) {
       if (names.size() < 200) names.push_back(name);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxJointsOfBody = 6;
 constexpr double kMaxForce = 1e9;
+constexpr double kMaxStiffness = 1e6;
 constexpr double kMaxBound = 1e4;  // limits beyond this mean none
 
 std::optional<JointType> joint_type_of(std::string_view text) {
@@ -104,6 +105,18 @@ void MjcfFileReader::read_limits(const MjcfElement& element, MjcfClass cls, Mjcf
   }
 }
 
+void MjcfFileReader::read_spring(const MjcfElement& element, MjcfClass cls, double stiffness, MjcfJoint& joint) {
+  if (stiffness <= 0) return;
+  if (joint.type == JointType::spherical) {
+    reader_.unsupported(element, "stiffness of a ball joint ignored: the joint has no spring",
+                        "Set the springs of its motor in the scene.", Severity::warning);
+    return;
+  }
+  const double unit = joint.type == JointType::revolute && reader_.compiler.degrees ? kPi / 180 : 1;
+  joint.stiffness = std::min(stiffness, kMaxStiffness);
+  joint.rest = std::clamp(reader_.number(element, cls, "springref", 0) * unit - joint.reference, -kMaxBound, kMaxBound);
+}
+
 void MjcfFileReader::read_passive_forces(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
   // MuJoCo 3 has coefficients of powers as second and third numbers
   const auto first_of = [&](const char* attribute) {
@@ -112,10 +125,7 @@ void MjcfFileReader::read_passive_forces(const MjcfElement& element, MjcfClass c
   };
   joint.damping = std::clamp(first_of("damping"), 0.0, kMaxForce);
   joint.friction = std::clamp(reader_.number(element, cls, "frictionloss", 0), 0.0, kMaxForce);
-  if (first_of("stiffness") != 0) {
-    reader_.unsupported(element, "<joint stiffness> ignored: the joint has no spring",
-                        "Set the motor's mode to \"spring\" in the scene.", Severity::warning);
-  }
+  read_spring(element, cls, first_of("stiffness"), joint);
   if (reader_.text(element, cls, "springdamper") != nullptr) {
     reader_.unsupported(element, "<joint springdamper> ignored: the joint has no spring",
                         "Set the motor's mode to \"spring\" in the scene.", Severity::warning);
@@ -125,7 +135,7 @@ void MjcfFileReader::read_passive_forces(const MjcfElement& element, MjcfClass c
   }
   if (reader_.limited(element, cls, "actuatorfrclimited", "actuatorfrcrange")) {
     const std::vector<double> range = reader_.numbers(element, cls, "actuatorfrcrange", 2, 2);
-    if (!range.empty()) joint.effort = std::min(std::max(std::abs(range[0]), std::abs(range[1])), kMaxForce);
+    if (!range.empty()) joint.largest_effort = std::min(std::max(std::abs(range[0]), std::abs(range[1])), kMaxForce);
   }
 }
 

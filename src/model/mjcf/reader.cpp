@@ -89,6 +89,7 @@ MjcfClass MjcfReader::class_of(const MjcfElement& element, MjcfClass inherited, 
   if (written == nullptr) return inherited;
   const auto found = class_index_.find(*written);
   if (found != class_index_.end()) return found->second;
+  if (!can_report()) return inherited;
   std::vector<std::string> names;
   for (const DefaultClass& known : classes_) {
     if (names.size() < 200) names.push_back(known.name);
@@ -256,11 +257,17 @@ void MjcfReader::note(const MjcfElement& element, const std::string& text, const
   problems_.note(line_of(element), prefix(element) + text, fix);
 }
 
+bool MjcfReader::count_unsupported(const std::string& text) {
+  const auto found = deferred_.find(text);
+  if (found != deferred_.end()) ++found->second.count;
+  return found != deferred_.end() || deferred_.size() >= kMaxDeferred;
+}
+
 void MjcfReader::unsupported(const MjcfElement& element, const std::string& text, const std::string& fix,
                              Severity severity) {
-  if (deferred_.size() >= kMaxDeferred && !deferred_.contains(text)) return;
+  if (count_unsupported(text)) return;
   Deferred& entry = deferred_[text];
-  if (entry.count++ > 0) return;
+  entry.count = 1;
   entry.first = &element;
   entry.fix = fix;
   entry.severity = severity;

@@ -52,6 +52,11 @@ class MjcfReader {
   /// Counts an effect that is not supported; report_deferred() reports each once, with the number of places.
   void unsupported(const MjcfElement& element, const std::string& text, const std::string& fix,
                    Severity severity = Severity::note);
+  /// True if unsupported() has this text already, which is then counted, or can't add another one: then its fix needs
+  /// no search for a similar name.
+  bool count_unsupported(const std::string& text);
+  /// False if the list of problems is full.
+  bool can_report() const { return problems_.list().size() < Problems::kMaxProblems; }
   /// Counts the attributes of an element that have no effect.
   void check_attributes(const MjcfElement& element);
   void report_deferred();

@@ -29,16 +29,29 @@ bool is_single_axis(JointType type) { return type == JointType::revolute || type
 
 }  // namespace
 
+void MjcfFileReader::index_names() {
+  constexpr std::size_t kMaxSuggestions = 200;
+  for (std::size_t i = 0; i < file_.bodies.size(); ++i) {
+    MjcfBody& b = file_.bodies[i];
+    if (!b.name.empty()) body_index_.try_emplace(b.name, static_cast<int>(i));
+    for (MjcfJoint& joint : b.joints) {
+      if (joint.name.empty()) continue;
+      joint_index_.try_emplace(joint.name, &joint);
+      if (joint_names_.size() < kMaxSuggestions) joint_names_.push_back(joint.name);
+    }
+  }
+}
+
 int MjcfFileReader::body_named(const MjcfElement& element, const char* attribute) {
   const std::string* const name = element.attribute(attribute);
-  for (std::size_t i = 0; name != nullptr && i < file_.bodies.size(); ++i) {
-    if (file_.bodies[i].name == *name) return static_cast<int>(i);
-  }
-  std::vector<std::string> names;
-  for (const MjcfBody& known : file_.bodies) {
-    if (names.size() < 200 && !known.name.empty()) names.push_back(known.name);
-  }
   const std::string written = name != nullptr ? *name : "";
+  const auto found = body_index_.find(written);
+  if (found != body_index_.end()) return found->second;
+  if (!reader_.can_report()) return -1;
+  std::vector<std::string> names;
+  for (const auto& [known, index] : body_index_) {
+    if (names.size() < 200) names.push_back(known);
+  }
   reader_.error(element,
                 fmt::format("{}: body '{}' does not exist{}; ignored", reader_.shown(element),
                             printable_excerpt(written), name_hint(written, names)),
@@ -49,16 +62,12 @@ int MjcfFileReader::body_named(const MjcfElement& element, const char* attribute
 MjcfJoint* MjcfFileReader::joint_named(const MjcfElement& element, const char* attribute, const std::string& use) {
   const std::string* const name = element.attribute(attribute);
   if (name == nullptr) return nullptr;
-  std::vector<std::string> names;
-  for (MjcfBody& known : file_.bodies) {
-    for (MjcfJoint& joint : known.joints) {
-      if (joint.name == *name && !name->empty()) return &joint;
-      if (names.size() < 200) names.push_back(joint.name);
-    }
-  }
+  const auto found = joint_index_.find(*name);
+  if (found != joint_index_.end()) return found->second;
+  if (!reader_.can_report()) return nullptr;
   reader_.error(element,
                 fmt::format("{} {}: joint '{}' does not exist{}; ignored", reader_.shown(element), use,
-                            printable_excerpt(*name), name_hint(*name, names)),
+                            printable_excerpt(*name), name_hint(*name, joint_names_)),
                 fmt::format("Write {}=\"…\" with the name of a joint.", attribute));
   return nullptr;
 }

@@ -63,6 +63,8 @@ JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
   out.velocity = from.velocity;
   out.damping = from.damping;
   out.friction = from.friction;
+  out.stiffness = from.stiffness;
+  out.rest = from.rest;
   out.start = from.start;
   out.driven = from.driven;
   const bool has_motor =

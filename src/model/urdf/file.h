@@ -73,8 +73,10 @@ struct UrdfJoint {
   double velocity = 0;  ///< As written; 0: absent.
   double damping = 0;
   double friction = 0;
-  double start = 0;    ///< MJCF: value at the start, from a keyframe.
-  bool driven = true;  ///< MJCF: false if the joint has no actuator.
+  double stiffness = 0;  ///< MJCF: of a spring, N·m/rad or N/m; 0: none.
+  double rest = 0;       ///< MJCF: value at which the spring is at rest.
+  double start = 0;      ///< MJCF: value at the start, from a keyframe.
+  bool driven = true;    ///< MJCF: false if the joint has no actuator.
   std::optional<UrdfMimic> mimic;
 };
 

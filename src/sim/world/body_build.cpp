@@ -1,6 +1,7 @@
 // Body: construction from a model, and as a copy of another body.
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "sim/behavior/behavior_list.h"
@@ -29,6 +30,11 @@ void set_up_motor(Motor& motor, const model::JointModel& m, std::optional<bool> 
   const bool use_servo = servo.value_or(m.driven) && m.type != model::JointType::floating &&
                          m.type != model::JointType::planar && !joint.spec().mimic;
   if (!use_servo) motor.set_mode(MotorMode::off);
+  if (m.stiffness <= 0 || servo) return;
+  const std::string side = linear ? "linear" : "angular";
+  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_stiffness"))[2] = m.stiffness;
+  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_rest_length"))[2] = m.rest;
+  motor.set_mode(MotorMode::spring);
 }
 
 }  // namespace
