@@ -106,7 +106,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
                           ->type_name("N")
                           ->check(plain_count());
   play->add_option("--threads", o.threads,
-                   "Number of threads for physics and readouts; the result is identical for any number.")
+                   "Number of threads for physics and readouts, default 1; the result is identical for any number.")
       ->type_name("N")
       ->check(CLI::Range(1, ThreadPool::kMaxThreads));
   CLI::Option* sets =
