@@ -71,5 +71,5 @@
 ---load C libraries. `print` writes a line to the terminal, the console and the log. `require("steps")` loads
 ---`lib/steps.lua` beside the scene, or beside the behavior that requires it. `math.random` uses the generator of the scene, so
 ---each run with the same seed gives the same numbers. A call that runs longer than 50 ms is stopped and its effects are
----rolled back.
+---rolled back. The top level of a scene may take 5 s. All scripts of a scene together may use 64 MiB.
 ---@example libraries
