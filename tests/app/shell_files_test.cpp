@@ -152,7 +152,8 @@ struct Offer {
 
 TEST(BashCompletion, OffersMatchingWords) {
   const TempFolder folder;
-  for (const char* name : {"show/a.lua", "show/b.lua", "show/c.take", "show/d.urdf", "show/e.json", "show/f.txt"})
+  for (const char* name :
+       {"show/a.lua", "show/b.lua", "show/c.take", "show/d.urdf", "show/e.json", "show/f.txt", "show/g.xml"})
     folder.file(name, "");
   for (const Offer& offer : {Offer{"limber pl", "play"},
                              {"limber preset ''", "import"},
@@ -167,7 +168,7 @@ TEST(BashCompletion, OffersMatchingWords) {
                              {"limber show/a.lua show/", ""},
                              {"limber --replay show/", "show/c.take"},
                              {"limber take info show/", "show/c.take"},
-                             {"limber inspect show/", "show/d.urdf"},
+                             {"limber inspect show/", "show/d.urdf show/g.xml"},
                              {"limber preset import show/", "show/e.json"},
                              {"limber preset import show/e.json show/", "show/a.lua show/b.lua"},
                              {"limber --package-path sh", "show"},

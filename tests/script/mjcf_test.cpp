@@ -13,7 +13,7 @@ namespace {
 
 // a free ball, and a fixed post with an arm on two hinges, of which the first is driven
 constexpr const char* kMjcf = R"(<mujoco model="scene"><worldbody>
-<body name="post" pos="0 0 1"><geom type="box" size=".1 .1 .1"/>
+<body name="post" pos="0 0 1"><geom type="box" size=".1 .1 .03"/>
   <body name="arm" pos="0 0 .5"><joint name="x" axis="1 0 0"/><joint name="y" axis="0 1 0"/>
     <geom type="capsule" fromto="0 0 0 .4 0 0" size=".05"/><site name="tip" pos=".4 0 0"/></body></body>
 <body name="ball" pos="1 2 3"><freejoint/><geom size=".1"/></body></worldbody>

@@ -15,7 +15,7 @@ inline bool is_emulated() { return std::getenv("LIMBER_EMULATED") != nullptr; }
 
 }  // namespace limber
 
-/// Ends the test at this line if `condition` (kAddressSanitizer, kThreadSanitizer or is_emulated()) is true. The reason
+/// Ends the test at this line if `condition` (such as kAddressSanitizer or is_emulated()) is true. The reason
 /// is a string that says why that loses nothing. .ci/check_steps.sh counts the lines that begin with "left out: ".
 #define LIMBER_SKIP_IF(condition, reason)                    \
   do {                                                       \

@@ -77,14 +77,15 @@ CommandInfo read_command(const CLI::App& app, const std::vector<std::string>& in
 CommandInfo command_info(const CLI::App& app) { return read_command(app, {}); }
 
 std::string file_extension(const OptionInfo& option) {
+  std::string extensions;
   for (const std::string_view word : split(option.value, '|')) {
     if (const std::size_t dot = word.rfind('.'); dot != std::string_view::npos && is_plain_word(word.substr(dot + 1)))
-      return std::string(word.substr(dot + 1));
+      extensions.append(extensions.empty() ? "" : "|").append(word.substr(dot + 1));
     if (word == "TAKE") return "take";
     if (word == "DIR") return "/";
     if (word == "FILE") return "*";
   }
-  return {};
+  return extensions;
 }
 
 }  // namespace limber::app

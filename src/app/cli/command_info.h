@@ -35,8 +35,8 @@ struct CommandInfo {
 /// Copies the declared commands and options, in the order of their declaration. [any]
 CommandInfo command_info(const CLI::App& app);
 
-/// Returns the file name extension that completes the option's value: "lua" for "SCENE.lua", "take" for "TAKE"; "*" for
-/// any file, "/" for a folder; empty if the value is not a file. [any]
+/// Returns the file name extension that completes the option's value: "lua" for "SCENE.lua", "take" for "TAKE"; several
+/// as "urdf|xml"; "*" for any file, "/" for a folder; empty if the value is not a file. [any]
 std::string file_extension(const OptionInfo& option);
 
 /// Returns limber(1) in the man macros of roff, with all commands on one page. [any]

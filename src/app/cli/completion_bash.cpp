@@ -11,16 +11,16 @@ namespace {
 
 // the fixed part of the script; it calls the functions that bash_table() generates from the options
 constexpr std::string_view kBashReader = R"bash(
-# adds the files with this extension (* any, / none), and folders
+# adds the files with this extension, or one of several (A|B, * any, / none), and folders
 _limber_files() {
-  local name
+  local name extension
   local -a found
   mapfile -t found < <(
     compgen -d -- "$cur"
     case $1 in
       /) ;;
       '*') compgen -f -- "$cur" ;;
-      *) compgen -f -X "!*.$1" -- "$cur" ;;
+      *) for extension in ${1//|/ }; do compgen -f -X "!*.$extension" -- "$cur"; done ;;
     esac
   )
   [ ${#found[@]} = 0 ] || compopt -o filenames 2>/dev/null

@@ -35,7 +35,7 @@ std::string zsh_action(const OptionInfo& option) {
   if (extension == "/") return "_files -/";
   if (extension == "*") return "_files";
   // a space: the value has no completion
-  return extension.empty() ? " " : fmt::format("_files -g \"*.{}\"", extension);
+  return extension.empty() ? " " : fmt::format("_files -g \"*.({})\"", extension);
 }
 
 std::string zsh_value(const OptionInfo& option) {

@@ -104,7 +104,9 @@ void add_inspect(CLI::App& app, CommandLine& line) {
   inspect->footer(
       "  limber inspect urdf/arm6.urdf                a table of the arm, and its problems\n"
       "  limber inspect robot.urdf --json             the same for programs");
-  inspect->add_option("file", line.inspect.file, "The robot: URDF, or MJCF (.xml).")->type_name("FILE")->required();
+  inspect->add_option("file", line.inspect.file, "The robot: URDF, or MJCF (.xml).")
+      ->type_name("FILE.urdf|FILE.xml")
+      ->required();
   inspect->add_flag("--json", line.inspect.json, "Print JSON.");
   inspect->add_option("--package-path", line.inspect.package_paths, "Folder for package:// paths; may be repeated.")
       ->type_name("DIR")

@@ -44,6 +44,8 @@ function presets:morph(a, b, amount) end
 ---Renames a preset. Its values and its position in the order stay.
 ---@param which string|integer
 ---@param name string # New name; no other preset may have it.
+---@see presets:store
+---@example presets
 function presets:rename(which, name) end
 
 ---Deletes a preset.

@@ -1,4 +1,4 @@
--- Stores two looks of the show, morphs between them, and deletes one.
+-- Stores two looks of the show, morphs between them, renames one and deletes it.
 local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
 local motor = arm:motor("joint_2")
 motor.bounce = 0
@@ -14,5 +14,6 @@ sim:after(2, function()
 end)
 sim:after(2.5, function()
   print(motor.bounce) --> 0.4
-  presets:delete("wild")
+  presets:rename("wild", "bouncy")
+  presets:delete("bouncy")
 end)
