@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "base/utf8.h"
 
 namespace limber {
 
@@ -16,8 +17,7 @@ constexpr std::size_t kMaxColumns = 120;
 
 // number of characters; continuation bytes of UTF-8 don't count
 std::size_t columns(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return !continues_utf8(c); }));
 }
 
 // True for a word that would begin a list, a heading or a quote at the start of a line.

@@ -239,14 +239,11 @@ std::string printable(std::string_view text) {
 
 std::string shortened(std::string_view text, std::size_t max_bytes) {
   if (text.size() <= max_bytes) return std::string(text);
-  const auto inside = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xc0u) == 0x80u; };
   constexpr std::string_view kCut = " … ";
   const std::size_t available = max_bytes - std::min(max_bytes, kCut.size());
-  std::size_t head = available / 2;
-  std::size_t tail = text.size() - (available - head);
-  while (head > 0 && inside(head)) head--;
-  while (tail < text.size() && inside(tail)) tail++;
-  return fmt::format("{}{}{}", text.substr(0, head), kCut, text.substr(tail));
+  std::size_t tail = text.size() - (available - available / 2);
+  while (tail < text.size() && continues_utf8(text[tail])) tail++;
+  return fmt::format("{}{}{}", utf8_prefix(text, available / 2), kCut, text.substr(tail));
 }
 
 std::optional<double> parse_number(std::string_view text) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "base/utf8.h"
+
 namespace limber::exporter {
 
 namespace {
@@ -32,10 +34,7 @@ std::string sanitize_bvh_name(std::string_view name) { return with_underscores(n
 std::string sanitize_file_name(std::string_view name) {
   std::string out = with_underscores(name, "/\\:*?\"<>|");
   if (out.front() == '.') out.front() = '_';
-  if (out.size() <= kMaxBytes) return out;
-  std::size_t end = kMaxBytes;
-  while (end > 0 && (static_cast<unsigned char>(out[end]) & 0xc0u) == 0x80u) end--;  // don't split a UTF-8 character
-  return out.substr(0, end);
+  return std::string(utf8_prefix(out, kMaxBytes));
 }
 
 std::string percent_encode(std::string_view name) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/utf8.h"
 #include "model/body_model.h"
 
 namespace limber::model {
@@ -37,9 +38,7 @@ class Problems {
  private:
   static std::string shortened(std::string text) {
     if (text.size() <= kMaxTextBytes) return text;
-    std::size_t end = kMaxTextBytes;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0u) == 0x80u) --end;
-    return text.substr(0, end) + "…";
+    return std::string(utf8_prefix(text, kMaxTextBytes)) + "…";
   }
   void add(int line, Severity severity, std::string text, std::string fix) {
     if (list_.size() < kMaxProblems) {

@@ -319,7 +319,7 @@ TEST(Mjcf, ActuatorsLimitTheirJoint) {
   EXPECT_EQ(limited("40"), 5);
   EXPECT_FALSE(joint("").driven);
   const BodyModel passive = jointed("<joint name='j'/>");
-  EXPECT_TRUE(has_problem(passive, Severity::note, "1 joint(s) have no actuator and move freely, first 'j'", 1))
+  EXPECT_TRUE(has_problem(passive, Severity::note, "1 joint has no actuator and moves freely, first 'j'", 1))
       << all_problems(passive);
 }
 
@@ -330,7 +330,7 @@ TEST(Mjcf, JointsWithoutAnActuatorKeepTheirSpring) {
   EXPECT_NEAR(passive.joints[0].rest, kPi / 4, 1e-12);
   const BodyModel driven = jointed(joint, "<actuator><motor joint='j'/></actuator>");
   EXPECT_EQ(driven.joints[0].stiffness, 0);
-  EXPECT_TRUE(has_problem(driven, Severity::warning, "1 joint(s) have an actuator and a spring, first 'j'", 1))
+  EXPECT_TRUE(has_problem(driven, Severity::warning, "1 joint has an actuator and a spring, first 'j'", 1))
       << all_problems(driven);
   EXPECT_TRUE(has_problem(jointed("<joint type='ball' stiffness='3'/>"), Severity::warning,
                           "stiffness of a ball joint ignored", 1));

@@ -32,6 +32,7 @@ std::span<const ManualEntry> manual_environment() {
   static constexpr ManualEntry kEntries[] = {
       {"DISPLAY, WAYLAND_DISPLAY", "Without both, limber plays without a window, and limber docs opens no browser."},
       {"XDG_CONFIG_HOME, XDG_STATE_HOME, XDG_RUNTIME_DIR, HOME, TMPDIR", "Locations of the files above."},
+      {"LIMBER_GL", "The kind of OpenGL: auto, core, es or 3.1, as --gl of play and doctor."},
       {"PATH", "limber docs searches xdg-open in it, films search ffmpeg."},
   };
   return kEntries;

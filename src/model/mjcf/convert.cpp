@@ -13,7 +13,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/plural.h"
 #include "base/text.h"
+#include "base/utf8.h"
 
 namespace limber::model {
 
@@ -27,13 +29,6 @@ constexpr double kDefaultEffort = 10000;
 constexpr std::size_t kMaxExclusions = 20'000;
 constexpr std::size_t kMaxShownNames = 8;
 constexpr std::size_t kMaxStem = 100;  // bytes of a name before a suffix
-
-/// The beginning of a name that leaves room for a suffix, without a part of a character at its end.
-std::string stem_of(const std::string& name) {
-  std::size_t end = std::min(name.size(), kMaxStem);
-  while (end > 0 && end < name.size() && (static_cast<unsigned char>(name[end]) & 0xC0u) == 0x80u) --end;
-  return name.substr(0, end);
-}
 
 /// The contact masks of a link's geoms, united.
 struct ContactMask {
@@ -112,7 +107,7 @@ class Converter {
     }
     std::string rest = "the geoms of the world are";
     if (others > 0) {
-      rest = fmt::format("{} other top-level bod{} ({}{}) and {}", others, others == 1 ? "y" : "ies",
+      rest = fmt::format("{} ({}{}) and {}", counted(others, "other top-level body", "other top-level bodies"),
                          fmt::join(shown, ", "), others > shown.size() ? ", …" : "", rest);
     }
     problems_.note(body(0).line,
@@ -327,15 +322,17 @@ class Converter {
 
   void report_joints() {
     if (passive_ > 0) {
-      problems_.note(first_passive_->line,
-                     fmt::format("{} joint(s) have no actuator and move freely, first '{}'", passive_,
-                                 printable(first_passive_->name)),
-                     "Set the mode of their motors in the scene to drive them.");
+      problems_.note(
+          first_passive_->line,
+          fmt::format("{} no actuator and {} freely, first '{}'", counted(passive_, "joint has", "joints have"),
+                      plural(passive_, "moves", "move"), printable(first_passive_->name)),
+          "To drive a joint, set the mode of its motor in the scene.");
     }
     if (unlimited_ > 0) {
       problems_.note(first_unlimited_->line,
-                     fmt::format("{} joint(s) have an actuator without a limit, first '{}'; using {:g} N·m or N",
-                                 unlimited_, printable(first_unlimited_->name), kDefaultEffort),
+                     fmt::format("{} an actuator without a limit, first '{}'; using {:g} N·m or N",
+                                 counted(unlimited_, "joint has", "joints have"), printable(first_unlimited_->name),
+                                 kDefaultEffort),
                      "Write forcerange=\"…\" for the actuator.");
     }
   }
@@ -343,8 +340,8 @@ class Converter {
   void report_springs() {
     if (sprung_ == 0) return;
     problems_.warning(first_sprung_->line,
-                      fmt::format("{} joint(s) have an actuator and a spring, first '{}'; the spring is ignored",
-                                  sprung_, printable(first_sprung_->name)),
+                      fmt::format("{} an actuator and a spring, first '{}'; the spring is ignored",
+                                  counted(sprung_, "joint has", "joints have"), printable(first_sprung_->name)),
                       "Set the mode of the motor to \"spring\" in the scene, or remove the actuator.");
   }
 
@@ -358,7 +355,7 @@ class Converter {
       }
       joint_names_.insert("");
     }
-    const std::string stem = stem_of(base);
+    const std::string stem(utf8_prefix(base, kMaxStem));
     std::string name = stem;
     while (!used.insert(name).second)
       name = fmt::format("{}_{}", stem, ++next_suffix_.try_emplace(stem, 1).first->second);
@@ -390,7 +387,7 @@ class Namer {
   /// Makes `name` unique; an empty one starts with `base`.
   void complete(std::string& name, const std::string& base, int line) {
     if (!name.empty() && used_.insert(name).second) return;
-    const std::string stem = stem_of(base);
+    const std::string stem(utf8_prefix(base, kMaxStem));
     std::string next = stem;
     while (!used_.insert(next).second)
       next = fmt::format("{}_{}", stem, ++next_suffix_.try_emplace(stem, 1).first->second);

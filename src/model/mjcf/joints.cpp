@@ -98,10 +98,10 @@ void MjcfFileReader::read_limits(const MjcfElement& element, MjcfClass cls, Mjcf
   joint.limited =
       joint.lower <= joint.upper && std::abs(joint.lower) <= kMaxBound && std::abs(joint.upper) <= kMaxBound;
   if (!joint.limited) {
-    reader_.error(
-        element,
-        fmt::format("{}: range {:g} {:g} can't be a limit; it is free", reader_.shown(element), range[0], range[1]),
-        "Write range=\"lower upper\".");
+    reader_.error(element,
+                  fmt::format("{}: range {:g} {:g} can't be a limit; the joint is free", reader_.shown(element),
+                              range[0], range[1]),
+                  "Write range=\"lower upper\".");
   }
 }
 

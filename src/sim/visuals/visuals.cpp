@@ -10,8 +10,6 @@
 #include "properties/values_hash.h"
 #include "sim/world/world.h"
 
-#include "sim/world/world.h"
-
 namespace limber::sim {
 
 namespace {

@@ -7,19 +7,19 @@
 
 #include <fmt/format.h>
 
+#include "base/utf8.h"
+
 namespace limber::panel {
 
 namespace {
 
 constexpr std::string_view kEllipsis = "…";
 
-bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; }
-
 // Returns the beginnings of the characters, and the end of the text.
 std::vector<std::size_t> boundaries(std::string_view text) {
   std::vector<std::size_t> at;
   for (std::size_t i = 0; i < text.size(); i++) {
-    if (!continues_character(text[i])) at.push_back(i);
+    if (!continues_utf8(text[i])) at.push_back(i);
   }
   at.push_back(text.size());
   return at;
