@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
+#include <string>
+#include <thread>
+#include <utility>
 
 #include "engine/edited.h"
 #include "engine/taken.h"
@@ -148,24 +152,32 @@ TEST(Recovery, TheSecondProgramTakesOverAfterTheFirst) {
   EXPECT_TRUE(RecoveryShow::logged(before, "the other program that played this scene has ended"));
 }
 
+// A preset with one number.
+std::shared_ptr<const Preset> preset_of(double value) {
+  PresetBuilder builder;
+  PresetLayout layout;
+  layout.add({"x", PropertyType::number, 1, {}});
+  builder.add("/sim", std::move(layout), {value});
+  return builder.finish("p", {});
+}
+
 TEST(Recovery, ValuesThatWaitAreSavedWithoutAnotherTick) {
   const RecoveryShow fixture;
-  std::optional<Show> first(std::in_place, fixture.options);
-  first->send("/physics/sim/gravity", 0, 0, -3.5);
-  first->ticks(1);
-  fixture.play_until_saved(*first, "-3.5");
-  Show second(fixture.options);
-  second.send("/physics/sim/gravity", 0, 0, -7.5);
-  const std::uint64_t start = second.engine.world().tick();
-  second.ticks(100);
-  first->engine.end_recovery();
-  first.reset();
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-  while (fixture.saved().find("-7.5") == std::string::npos && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::yield();
-  }
-  EXPECT_NE(fixture.saved().find("-7.5"), std::string::npos);
-  EXPECT_EQ(second.engine.world().tick(), start + 100);
+  const std::string scene = fixture.options.scene, folder = fixture.options.recovery_folder;
+  const Result<std::unique_ptr<RecoveryFile>> first = RecoveryFile::open(folder, scene);
+  ASSERT_TRUE(first.ok() && *first != nullptr);
+  BackgroundWriter writer;
+  RecoverySaver second(writer, folder, std::chrono::milliseconds(1));
+  ASSERT_TRUE(second.open(scene).ok());
+  ASSERT_FALSE(second.owned());
+  second.begin();
+  second.submit(scene, preset_of(-7.5), preset_of(0));
+  while (!second.wants_values()) std::this_thread::yield();  // the writer has tried to save them
+  EXPECT_EQ(fixture.saved(), "");
+  (*first)->end(false);
+  while (fixture.saved().find("-7.5") == std::string::npos) std::this_thread::yield();
+  EXPECT_TRUE(second.owned());
+  second.end();
 }
 
 TEST(Recovery, EachSceneHasItsOwnFile) {
