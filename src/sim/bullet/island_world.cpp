@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/memory/prefetch.h"
+#include "sim/bullet/continuous_collision.h"
 #include "sim/bullet/island_solver.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
@@ -42,6 +43,13 @@ void predict_angles(btTypedConstraint& constraint, btScalar h, bool refresh) {
   if (refresh) joint.refresh();
 }
 
+bool has_fast_body(const btAlignedObjectArray<btCollisionObject*>& bodies, Islands::Range range, btScalar h) {
+  for (int i = range.first; i < range.end(); ++i) {
+    if (ContinuousCollision::is_fast(static_cast<const btRigidBody&>(*bodies[i]), h)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()), thread_pool(setup.thread_pool) {
@@ -53,6 +61,7 @@ WorldParts::WorldParts(const WorldSetup& setup) : memory(BulletMemory::current()
   dispatcher = std::make_unique<collision::Dispatcher>(configuration.get());
   broadphase = std::make_unique<collision::Broadphase>(setup.broadphase_margin, setup.thread_pool.get());
   const BulletMemory::Scope heap(nullptr);
+  continuous = std::make_unique<ContinuousCollision>();
   for (int i = 0; i < (setup.thread_pool ? setup.thread_pool->thread_count() : 1); ++i) {
     solvers.push_back(std::make_unique<IslandSolver>());
   }
@@ -220,7 +229,7 @@ void IslandWorld::predictUnconstraintMotion(btScalar) {
 }
 void IslandWorld::integrateTransforms(btScalar) {}
 
-void IslandWorld::createPredictiveContacts(btScalar) {}  // no continuous collision
+void IslandWorld::createPredictiveContacts(btScalar) {}  // see ContinuousCollision
 
 void IslandWorld::updateAabbs() {
   BT_PROFILE("updateAabbs");
@@ -268,7 +277,8 @@ void IslandWorld::solveConstraints(btContactSolverInfo& info) {
 }
 
 // Does all the work of a step on the bodies and joints of one batch while they are in the cache.
-void IslandWorld::solve_batch(const Islands::Batch& batch, IslandSolver& solver, const btContactSolverInfo& info) {
+void IslandWorld::solve_batch(int index, IslandSolver& solver, const btContactSolverInfo& info) {
+  const Islands::Batch batch = islands_.batch(index);
   const auto first = [](auto& items, Islands::Range range) {
     return range.first < items.size() ? &items[range.first] : nullptr;
   };
@@ -278,8 +288,34 @@ void IslandWorld::solve_batch(const Islands::Batch& batch, IslandSolver& solver,
   solver.solveGroup(first(islands_.bodies(), batch.bodies), batch.bodies.count,
                     first(islands_.contacts(), batch.contacts), batch.contacts.count,
                     first(islands_.joints(), batch.joints), batch.joints.count, info, nullptr, getDispatcher());
-  const bool any_fast = move_bodies(batch.bodies, info.m_timeStep);
-  end_joints(batch.joints, info.m_timeStep, any_fast);
+  if (has_fast_body(islands_.bodies(), batch.bodies, info.m_timeStep)) {
+    continuous->mark_fast(index);
+  } else {
+    move_batch(batch, info.m_timeStep, false);
+  }
+}
+
+// `may_stop`: its bodies may stop before the end of the substep.
+void IslandWorld::move_batch(const Islands::Batch& batch, btScalar h, bool may_stop) {
+  const bool any_fast = move_bodies(batch.bodies, h, may_stop);
+  end_joints(batch.joints, h, any_fast, may_stop);
+}
+
+// Moves the batches with fast bodies.
+void IslandWorld::move_fast_batches(btScalar h) {
+  if (!continuous->any_fast()) return;
+  continuous->begin(awake_);
+  for (int i = 0; i < islands_.batch_count(); ++i) {
+    if (!continuous->is_fast_batch(i)) continue;
+    const Islands::Range range = islands_.batch(i).bodies;
+    for (int k = range.first; k < range.end(); ++k) {
+      continuous->add(static_cast<btRigidBody&>(*islands_.bodies()[k]), h);
+    }
+  }
+  continuous->find_stops(*broadphase, *dispatcher, h);
+  for (int i = 0; i < islands_.batch_count(); ++i) {
+    if (continuous->is_fast_batch(i)) move_batch(islands_.batch(i), h, true);
+  }
 }
 
 void IslandWorld::load_bodies(Islands::Range range, btScalar h) {
@@ -297,13 +333,14 @@ void IslandWorld::load_bodies(Islands::Range range, btScalar h) {
 }
 
 // Returns true if one of the bodies rotates too fast for its joints to count turns without prediction.
-bool IslandWorld::move_bodies(Islands::Range range, btScalar h) {
+bool IslandWorld::move_bodies(Islands::Range range, btScalar h, bool may_stop) {
   bool any_fast = false;
   for (int i = range.first; i < range.end(); ++i) {
     btRigidBody& body = static_cast<btRigidBody&>(*islands_.bodies()[i]);
     if (!body.isActive() || body.isStaticOrKinematicObject()) continue;
-    const double clamped = move_body(body, static_cast<double>(h));
-    if (clamped > 0) record_clamp(body, clamped / static_cast<double>(h));
+    const double moved = static_cast<double>(may_stop ? h * continuous->stop(body) : h);
+    const double clamped = move_body(body, moved);
+    if (clamped > 0) record_clamp(body, clamped / moved);
     if (last_substep_) {
       body.clearForces();
       sleep_.observe(body, tick_length_);
@@ -315,11 +352,11 @@ bool IslandWorld::move_bodies(Islands::Range range, btScalar h) {
   return any_fast;
 }
 
-void IslandWorld::end_joints(Islands::Range range, btScalar h, bool any_fast) {
+void IslandWorld::end_joints(Islands::Range range, btScalar h, bool any_fast, bool may_stop) {
   const btAlignedObjectArray<btTypedConstraint*>& joints = islands_.joints();
   for (int i = range.first; i < range.end(); ++i) {
     if (i + range.count < joints.size()) prefetch(joints[i + range.count], sizeof(JointConstraint));
-    if (any_fast) predict_angles(*joints[i], h, !last_substep_);
+    if (any_fast) predict_angles(*joints[i], may_stop ? h * continuous->stop(*joints[i]) : h, !last_substep_);
     if (last_substep_) end_tick(*joints[i]);
   }
 }
@@ -328,10 +365,10 @@ void IslandWorld::end_joints(Islands::Range range, btScalar h, bool any_fast) {
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
   const BulletMemory::Scope heap(nullptr);  // for the solvers' rows; threads of the pool have no other memory
   const int work = islands_.joints().size() + islands_.contacts().size() + islands_.bodies().size();
+  continuous->reset_batches(islands_.batch_count());
   parallel_for(work >= kMinParallelWork ? thread_pool.get() : nullptr, islands_.batch_count(),
-               [&](int batch, int thread) {
-                 solve_batch(islands_.batch(batch), *solvers[static_cast<std::size_t>(thread)], info);
-               });
+               [&](int batch, int thread) { solve_batch(batch, *solvers[static_cast<std::size_t>(thread)], info); });
+  move_fast_batches(info.m_timeStep);
 }
 
 solver::DirectSolver& IslandWorld::direct() { return solvers.front()->direct(); }

@@ -18,6 +18,7 @@
 
 namespace limber::sim::bullet {
 
+class ContinuousCollision;
 class IslandSolver;
 
 /// Bullet's components of a world. IslandWorld inherits them first, so that they are constructed before and destroyed
@@ -31,14 +32,15 @@ struct WorldParts {
   std::unique_ptr<collision::Broadphase> broadphase;
   /// One per thread; on the heap, because their data lives for one step only.
   std::vector<std::unique_ptr<IslandSolver>> solvers;
+  std::unique_ptr<ContinuousCollision> continuous;
   std::shared_ptr<ThreadPool> thread_pool;
 };
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints in the order of
 /// their creation, contacts by the age of the parts), so an island moves bit-identically whether alone or among others.
-/// Bodies belong to the caller; they have no motion states, are not kinematic, and have no continuous collision
-/// detection. They sleep (sleep.h) if SleepTracker::allow() permits it. Persistent data is allocated in the memory of
-/// the BulletMemory::Scope at construction. [sim]
+/// Bodies belong to the caller; they have no motion states and are not kinematic. They sleep (sleep.h) if
+/// SleepTracker::allow() permits it. Persistent data is allocated in the memory of the BulletMemory::Scope at
+/// construction. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -103,10 +105,12 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void sleeping_step();
   void collect_awake();
   void solve_islands(const btContactSolverInfo& info);
-  void solve_batch(const Islands::Batch& batch, IslandSolver& solver, const btContactSolverInfo& info);
+  void solve_batch(int index, IslandSolver& solver, const btContactSolverInfo& info);
   void load_bodies(Islands::Range range, btScalar h);
-  bool move_bodies(Islands::Range range, btScalar h);
-  void end_joints(Islands::Range range, btScalar h, bool any_fast);
+  void move_batch(const Islands::Batch& batch, btScalar h, bool may_stop);
+  bool move_bodies(Islands::Range range, btScalar h, bool may_stop);
+  void end_joints(Islands::Range range, btScalar h, bool any_fast, bool may_stop);
+  void move_fast_batches(btScalar h);
 
   std::atomic<bool> unstable_{false};
   bool first_substep_ = false;  // first and last substep of a tick

@@ -53,10 +53,10 @@ struct Broadphase::Proxy : btBroadphaseProxy {
     return normal != before || distance != distance_before;
   }
   // for planes: true if the other object is within contact distance
-  bool near_plane(const Proxy& other) const {
-    return normal.dot(other.box.Center()) - distance - normal.absolute().dot(other.box.Extents()) <=
-           other.contact_distance;
+  bool near_plane(const btDbvtVolume& volume, btScalar margin) const {
+    return normal.dot(volume.Center()) - distance - normal.absolute().dot(volume.Extents()) <= margin;
   }
+  bool near_plane(const Proxy& other) const { return near_plane(other.box, other.contact_distance); }
   bool overlaps(const Proxy& other) const {
     if (leaf == nullptr) return other.leaf != nullptr && near_plane(other);
     return other.leaf == nullptr ? other.near_plane(*this) : Intersect(box, other.box);
@@ -94,7 +94,7 @@ void query_tree(const btDbvt& tree, const btDbvtVolume& box, std::vector<const b
   }
 }
 
-bool may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
+bool proxies_may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
   if ((a.m_collisionFilterGroup & b.m_collisionFilterMask) == 0) return false;
   if ((b.m_collisionFilterGroup & a.m_collisionFilterMask) == 0) return false;
   const auto& first = *static_cast<const btCollisionObject*>(a.m_clientObject);
@@ -253,7 +253,7 @@ void Broadphase::search_around(Proxy& proxy, SearchTask& search) const {
   const auto found = [&](Proxy& other) {
     // of two marked objects, the later one finds the pair
     if (&proxy == &other || other.marked_index > proxy.marked_index) return;
-    if (may_collide(proxy, other)) search.found.emplace_back(&proxy, &other);
+    if (proxies_may_collide(proxy, other)) search.found.emplace_back(&proxy, &other);
   };
   if (proxy.leaf == nullptr) {
     for (const btDbvt& tree : moving_) {
@@ -285,7 +285,7 @@ void Broadphase::remove_stale_pairs(btDispatcher* dispatcher) {
     auto& a = *static_cast<Proxy*>(pairs[i].m_pProxy0);
     auto& b = *static_cast<Proxy*>(pairs[i].m_pProxy1);
     const bool separated = (a.marked_index != 0 || b.marked_index != 0) && !a.overlaps(b);
-    if (separated || ((a.filter_changed || b.filter_changed) && !may_collide(a, b))) {
+    if (separated || ((a.filter_changed || b.filter_changed) && !proxies_may_collide(a, b))) {
       pairs_.removeOverlappingPair(&a, &b, dispatcher);  // the last pair moves to this index
     } else {
       i++;
@@ -316,6 +316,24 @@ void Broadphase::calculateOverlappingPairs(btDispatcher* dispatcher) {
     }
   }
   marked_.resizeNoInitialize(0);
+}
+
+bool Broadphase::may_collide(const btCollisionObject& a, const btCollisionObject& b) {
+  return proxies_may_collide(*a.getBroadphaseHandle(), *b.getBroadphaseHandle());
+}
+
+void Broadphase::find_collidable(const btCollisionObject& object, const btVector3& low, const btVector3& high,
+                                 std::vector<const btDbvtNode*>& stack, std::vector<btCollisionObject*>& found) const {
+  const auto& proxy = *static_cast<const Proxy*>(object.getBroadphaseHandle());
+  const btDbvtVolume box = btDbvtVolume::FromMM(low, high);
+  const auto add = [&](Proxy& other) {
+    if (&other != &proxy && proxies_may_collide(proxy, other)) found.push_back(&other.object());
+  };
+  for (const btDbvt& tree : moving_) query_tree<Proxy>(tree, box, stack, add);
+  query_tree<Proxy>(static_, box, stack, add);
+  for (int i = 0; i < planes_.size(); i++) {
+    if (planes_[i]->near_plane(box, 0)) add(*planes_[i]);
+  }
 }
 
 void Broadphase::aabbTest(const btVector3& low, const btVector3& high, btBroadphaseAabbCallback& callback) {

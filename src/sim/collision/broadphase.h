@@ -54,6 +54,13 @@ class Broadphase : public btBroadphaseInterface {
   btOverlappingPairCache* getOverlappingPairCache() override { return &pairs_; }
   const btOverlappingPairCache* getOverlappingPairCache() const override { return &pairs_; }
 
+  /// True if filters and joints permit two objects to collide.
+  static bool may_collide(const btCollisionObject& a, const btCollisionObject& b);
+  /// Appends the objects that may collide with this one and whose fattened boxes overlap an AABB, and the planes near
+  /// it, in no particular order. `stack`: scratch.
+  void find_collidable(const btCollisionObject& object, const btVector3& low, const btVector3& high,
+                       std::vector<const btDbvtNode*>& stack, std::vector<btCollisionObject*>& found) const;
+
   /// Calls back for all objects whose boxes overlap the ray's AABB, and all planes.
   void rayTest(const btVector3& from, const btVector3& to, btBroadphaseRayCallback& callback, const btVector3& low,
                const btVector3& high) override;

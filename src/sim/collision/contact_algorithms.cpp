@@ -8,10 +8,8 @@
 #include <new>
 #include <utility>
 
-#include <BulletCollision/NarrowPhaseCollision/btGjkPairDetector.h>
-#include <BulletCollision/NarrowPhaseCollision/btVoronoiSimplexSolver.h>
-
 #include "sim/collision/box_axes.h"
+#include "sim/collision/closest_points.h"
 #include "sim/collision/contact_features.h"
 #include "sim/collision/manifold_builder.h"
 
@@ -20,6 +18,8 @@ namespace {
 
 /// A face is the reference face if its normal is within 1.1 degrees of the contact normal.
 constexpr btScalar kMinAlignment = 0.9998F;
+/// Sine of the largest angle between edges that count as parallel.
+constexpr btScalar kParallelSine = 0.02F;
 /// Tolerance outside of the reference face's sides, m.
 constexpr btScalar kClipSlack = 1e-5F;
 
@@ -114,6 +114,27 @@ const ContactFeature& clip(const ContactFeature& reference, ContactFeature& inci
   return *whole;
 }
 
+// Adds the ends of the stretch along which two parallel segments touch; returns false if they aren't parallel.
+bool add_parallel_edges(const ContactFeature& a, const ContactFeature& b, const btVector3& normal,
+                        ManifoldBuilder& points) {
+  const btVector3 edge_a = a[1] - a[0];
+  const btVector3 edge_b = b[1] - b[0];
+  const btScalar length = edge_b.length();
+  if (!(length > SIMD_EPSILON) || edge_a.cross(edge_b).length() > kParallelSine * edge_a.length() * length)
+    return false;
+  const btVector3 along = edge_b / length;
+  ContactFeature from_start;
+  ContactFeature within;
+  clip_by_plane(a, b[0], -along, from_start);
+  clip_by_plane(from_start, b[1], along, within);
+  for (int i = 0; i < within.count; ++i) {
+    const btVector3 on_a = within[i] - normal * a.margin;
+    const btVector3 on_b = b[0] + along * along.dot(within[i] - b[0]) + normal * b.margin;
+    points.add(on_b, normal, normal.dot(on_a - on_b));
+  }
+  return !points.empty();
+}
+
 // Adds the points of the incident feature near the reference face. `flipped`: the reference face is body A's.
 void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ManifoldBuilder& points) {
   ContactFeature spare;
@@ -190,28 +211,9 @@ class BoxAlgorithm : public PairAlgorithm {
   SeparatingAxis separating_axis_;  // of the last step
 };
 
-// Closest points of two convex shapes.
-struct ClosestPoints : btDiscreteCollisionDetectorInterface::Result {
-  void setShapeIdentifiersA(int, int) override {}
-  void setShapeIdentifiersB(int, int) override {}
-  void addContactPoint(const btVector3& normal_on_b, const btVector3& point_on_b, btScalar signed_distance) override {
-    found = true;
-    normal = normal_on_b;
-    point = point_on_b;
-    distance = signed_distance;
-  }
-
-  bool found = false;
-  btVector3 normal{0, 0, 0};
-  btVector3 point{0, 0, 0};
-  btScalar distance = 0;
-};
-
 class ConvexAlgorithm : public PairAlgorithm {
  public:
-  ConvexAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                  const btCollisionObjectWrapper* b, btConvexPenetrationDepthSolver& depth_solver)
-      : PairAlgorithm(info, a, b), depth_solver_(depth_solver) {}
+  using PairAlgorithm::PairAlgorithm;
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult* out) override {
@@ -219,12 +221,11 @@ class ConvexAlgorithm : public PairAlgorithm {
     const auto& shape_a = static_cast<const btConvexShape&>(*a->getCollisionShape());
     const auto& shape_b = static_cast<const btConvexShape&>(*b->getCollisionShape());
     ManifoldBuilder points(manifold(), info.m_timeStep);
-    ClosestPoints nearest;
     const btScalar breaking = manifold().getContactBreakingThreshold();
-    find_nearest(*a, *b, std::max(points.max_distance(), breaking), nearest);
+    const ClosestPoints nearest = closest_points(shape_a, a->getWorldTransform(), shape_b, b->getWorldTransform());
     const bool has_sphere =
         shape_a.getShapeType() == SPHERE_SHAPE_PROXYTYPE || shape_b.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
-    if (!nearest.found) {
+    if (!nearest.found || nearest.distance > std::max(points.max_distance(), breaking)) {
       points.write();
     } else if (has_sphere) {
       // exactly one point, on the line from the center; more accurate than GJK's
@@ -245,27 +246,14 @@ class ConvexAlgorithm : public PairAlgorithm {
   }
 
  private:
-  void find_nearest(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, btScalar max_distance,
-                    ClosestPoints& nearest) {
-    const auto& shape_a = static_cast<const btConvexShape&>(*a.getCollisionShape());
-    const auto& shape_b = static_cast<const btConvexShape&>(*b.getCollisionShape());
-    btVoronoiSimplexSolver simplex;
-    btGjkPairDetector detector(&shape_a, &shape_b, &simplex, &depth_solver_);
-    btGjkPairDetector::ClosestPointInput input;
-    const btScalar max_core_distance = shape_a.getMargin() + shape_b.getMargin() + max_distance;
-    input.m_maximumDistanceSquared = max_core_distance * max_core_distance;
-    input.m_transformA = a.getWorldTransform();
-    input.m_transformB = b.getWorldTransform();
-    detector.getClosestPoints(input, nearest, nullptr);
-  }
-
-  // Returns false if no face of either shape has the contact normal.
+  // Returns false if neither a face of one of the shapes nor two parallel edges touch.
   static bool add_faces(const btCollisionObjectWrapper& a, const btCollisionObjectWrapper& b, const btVector3& normal,
                         ManifoldBuilder& points) {
     ContactFeature feature_a;
     ContactFeature feature_b;
     find_world_feature(a, -normal, feature_a);
     find_world_feature(b, normal, feature_b);
+    if (feature_a.count == 2 && feature_b.count == 2) return add_parallel_edges(feature_a, feature_b, normal, points);
     const btScalar alignment_a = feature_a.count > 2 ? -normal.dot(feature_a.normal) : btScalar(0);
     const btScalar alignment_b = feature_b.count > 2 ? normal.dot(feature_b.normal) : btScalar(0);
     if (std::max(alignment_a, alignment_b) < kMinAlignment) return false;
@@ -284,9 +272,10 @@ class ConvexAlgorithm : public PairAlgorithm {
     find_feature(static_cast<const btConvexShape&>(*object.getCollisionShape()), direction * pose.getBasis(), feature);
     feature.transform(pose);
   }
-
-  btConvexPenetrationDepthSolver& depth_solver_;
 };
+
+constexpr int kConvexShapes[] = {BOX_SHAPE_PROXYTYPE,     CONVEX_HULL_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
+                                 CAPSULE_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE,        CYLINDER_SHAPE_PROXYTYPE};
 
 template <class Algorithm, class... Args>
 btCollisionAlgorithm* create(btCollisionAlgorithmConstructionInfo& info, Args&&... args) {
@@ -309,23 +298,15 @@ btCollisionAlgorithm* ContactAlgorithms::CreateBox::CreateCollisionAlgorithm(btC
 
 btCollisionAlgorithm* ContactAlgorithms::CreateConvex::CreateCollisionAlgorithm(
     btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
-  return create<ConvexAlgorithm>(info, a, b, depth_solver);
+  return create<ConvexAlgorithm>(info, a, b);
 }
 
 void ContactAlgorithms::install(btCollisionDispatcher& dispatcher) {
   plane_convex_.m_swapped = true;
-  for (const int convex : {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
-                           CAPSULE_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE}) {
+  for (const int convex : kConvexShapes) {
     dispatcher.registerCollisionCreateFunc(convex, STATIC_PLANE_PROXYTYPE, &convex_plane_);
     dispatcher.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, convex, &plane_convex_);
-  }
-  for (const int solid :
-       {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE, CYLINDER_SHAPE_PROXYTYPE}) {
-    for (const int other : {BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE,
-                            CYLINDER_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE, CAPSULE_SHAPE_PROXYTYPE}) {
-      dispatcher.registerCollisionCreateFunc(solid, other, &convex_convex_);
-      dispatcher.registerCollisionCreateFunc(other, solid, &convex_convex_);
-    }
+    for (const int other : kConvexShapes) dispatcher.registerCollisionCreateFunc(convex, other, &convex_convex_);
   }
   dispatcher.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_box_);
 }

@@ -4,8 +4,6 @@
 
 #include "sim/bullet/bullet.h"
 
-#include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
-
 namespace limber::sim::collision {
 
 /// Bullet adds one point per step, and perturbs the pose of a shape to find another: a box that falls flat tilts, and
@@ -28,7 +26,6 @@ class ContactAlgorithms {
                                                    const btCollisionObjectWrapper* b) override;
   };
   struct CreateConvex : btCollisionAlgorithmCreateFunc {
-    btGjkEpaPenetrationDepthSolver depth_solver;
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b) override;

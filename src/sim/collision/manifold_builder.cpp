@@ -29,6 +29,14 @@ btScalar rotation_speed(const btRigidBody& body) {
   return std::sqrt(body.getAngularVelocity().length2() * (box->m_aabbMax - box->m_aabbMin).length2());
 }
 
+// Distance from a body up to which its contacts are predicted: its inner radius, which a slow body doesn't exceed in a
+// step; unlimited if that isn't set.
+btScalar prediction_distance(const btRigidBody* body) {
+  if (body == nullptr) return 0;
+  const btScalar radius = body->getCcdMotionThreshold();
+  return radius > 0 ? radius : BT_LARGE_FLOAT;
+}
+
 // Copies the warm-start data of a contact.
 void copy_warm_start(const btManifoldPoint& from, btManifoldPoint& to) {
   to.m_appliedImpulse = from.m_appliedImpulse;
@@ -57,7 +65,9 @@ ManifoldBuilder::ManifoldBuilder(btPersistentManifold& manifold, btScalar h)
   if (b_ != nullptr) relative_motion_ += b_->getLinearVelocity() * h_;
   max_rotation_distance_ +=
       ((a_ != nullptr ? rotation_speed(*a_) : 0) + (b_ != nullptr ? rotation_speed(*b_) : 0)) * h_;
-  max_distance_ = max_rotation_distance_ + relative_motion_.length();
+  // beyond that, a predicted contact would deflect bodies that miss each other; see bullet::ContinuousCollision
+  const btScalar max_prediction = contact_distance_ + prediction_distance(a_) + prediction_distance(b_);
+  max_distance_ = std::min(max_rotation_distance_ + relative_motion_.length(), max_prediction);
 }
 
 // Decrease of the distance at a point in the step. Rotation moves points on a circle: without the second-order term a

@@ -9,6 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/rotation_step.h"
 #include "sim/collision/contact_friction.h"
+#include "sim/collision/time_of_impact.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
@@ -227,6 +228,7 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
   }
   rigid_->setUserPointer(this);
   rigid_->setActivationState(DISABLE_DEACTIVATION);
+  rigid_->setCcdMotionThreshold(collision::inner_radius(*geometry_->shape));  // see ContinuousCollision
   set_pose(pose);
   body_.world().mass_table().add(*this);
 }
