@@ -52,11 +52,12 @@ struct Broadphase::Proxy : btBroadphaseProxy {
     const btScalar distance_before = std::exchange(distance, shape.getPlaneConstant() + normal.dot(pose.getOrigin()));
     return normal != before || distance != distance_before;
   }
-  // for planes: true if the other object is within contact distance
-  bool near_plane(const btDbvtVolume& volume, btScalar margin) const {
-    return normal.dot(volume.Center()) - distance - normal.absolute().dot(volume.Extents()) <= margin;
+  // for planes: distance of the lowest corner of a box
+  btScalar height_of(const btDbvtVolume& volume) const {
+    return normal.dot(volume.Center()) - distance - normal.absolute().dot(volume.Extents());
   }
-  bool near_plane(const Proxy& other) const { return near_plane(other.box, other.contact_distance); }
+  // for planes: true if the other object is within contact distance
+  bool near_plane(const Proxy& other) const { return height_of(other.box) <= other.contact_distance; }
   bool overlaps(const Proxy& other) const {
     if (leaf == nullptr) return other.leaf != nullptr && near_plane(other);
     return other.leaf == nullptr ? other.near_plane(*this) : Intersect(box, other.box);
@@ -332,7 +333,7 @@ void Broadphase::find_collidable(const btCollisionObject& object, const btVector
   for (const btDbvt& tree : moving_) query_tree<Proxy>(tree, box, stack, add);
   query_tree<Proxy>(static_, box, stack, add);
   for (int i = 0; i < planes_.size(); i++) {
-    if (planes_[i]->near_plane(box, 0)) add(*planes_[i]);
+    if (planes_[i]->height_of(box) <= 0) add(*planes_[i]);
   }
 }
 
